@@ -1,10 +1,10 @@
-// Interreflection (Sloan 2002, section 4, passes b >= 1): each pass gathers what the pass before left at the
-// points that the rays of pass 0 met,
+// Computes interreflection (Sloan 2002, section 4, passes b >= 1). Each pass gathers what the previous pass
+// left at the hits of the rays of pass 0,
 //   t^b_p = sum_rays w_r rho(q_r) t^(b-1)(q_r),   t(q) interpolated over the triangle that was met,
-// all samples from the same state of the others (Jacobi), so the order of work does not matter. Passes that
-// carry less than a hundredth of all light gather over every fourth ray. The surface's albedo rho is textured
-// and coloured; the receiver's own is left out. Passes end when what is still to come would add less than
-// asked for.
+// where all samples see the same state of the others (Jacobi), so the order of work does not matter. Passes
+// that carry less than a hundredth of all light gather over every fourth ray. The albedo rho of the hit
+// surface is textured and coloured; the receiver's own is left out. Passes end once the estimate of all
+// further light is below the requested error.
 #pragma once
 
 #include <optional>
@@ -16,27 +16,27 @@
 namespace lambent::baker {
 
 struct BounceSettings {
-  int bounces = -1;          // -1: as many as it takes
-  double tail_error = 1e-3;  // with -1: relative RMS of all light that passes left out may amount to
+  int bounces = -1;          // -1: as many as tail_error asks for
+  double tail_error = 1e-3;  // only with -1: light of all further passes, relative to all light
 };
 
 inline constexpr int kMostBounces = 64;
 
 struct BounceResult {
-  TransferField field, mapped;  // sums of the passes, laid out as those of DirectResult
-  // Energy of each pass from pass 0 on: RMS over the samples under real lights, of the light (environment or
-  // one of the group's) for which the share of the last pass is the largest; relative to that of pass 0.
+  TransferField field, mapped;  // sums of all bounce passes, laid out as those of DirectResult
+  // Energy of each pass, starting with pass 0 and relative to it: RMS over the samples under real lights. It
+  // is that of the light (environment or one of the group's) with the largest share in the pass.
   std::vector<double> energy;
-  double left_out = 0.0;  // estimate of what the passes left out, relative to all light
+  double left_out = 0.0;  // estimate of the light of all further passes, relative to all light
 };
 
 // Returns nothing if stopped. Progress shows "bounce 1", "bounce 2", ... `partner` may be null. The key of
-// the context is that of all that the passes read; what they came to is kept under it until dropBounces(),
-// for a bake that is cut short.
+// the context covers everything that the passes read; results of passes are kept under it until
+// dropBounces(), in case the bake is cut short.
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
                                         const DiffuseScene& scene, const BounceSettings& settings,
                                         const BakeContext& context, BouncePartner* partner = nullptr);
-// inside_faces: samples of the partner there.
+// Removes what bakeBounces() kept. `inside_faces` is the partner's number of samples inside faces.
 void dropBounces(const DiffuseScene& scene, std::size_t inside_faces, const BakeContext& context);
 
 }  // namespace lambent::baker
