@@ -70,9 +70,9 @@ double transferEnergy(std::span<const float> vectors, const transfer::TransferSh
 // vectors: `count` times shape.size() values, count > 0; all finite.
 CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const transfer::TransferShape& shape, const CodingSettings& settings);
-// Does the same, but stops early, with an unusable result, when asked to. The key of the context is that of
-// all of the above: how far the work has come is kept under it when a checkpoint is due and when it is
-// stopped, and the next call goes on from there. It stays until CodingCheckpoint::drop (coding_state.hpp);
+// Does the same, but stops early, with an unusable result, when asked to. The key of the context covers all
+// of the above. The progress of the work is kept under it when a checkpoint is due and when it is stopped,
+// and the next call continues from there. It stays until CodingCheckpoint::drop (coding_state.hpp);
 // kept_transfer.hpp does all that.
 CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const transfer::TransferShape& shape, const CodingSettings& settings,
