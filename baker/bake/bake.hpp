@@ -1,6 +1,6 @@
-// The whole bake as one call: a scene in, a bundle out. The command line, the editor and tests all call this.
-// Stages report to a Progress and can be stopped; nothing is written before everything is known, so a bake
-// that stops or fails leaves the old bundle as it was.
+// Runs a whole bake as one call: a scene comes in, and a bundle goes out. The command line, the editor and
+// tests all call this. Stages report to a Progress and can be stopped. Nothing is written before everything
+// is known, so a bake that stops or fails leaves the old bundle as it was.
 #pragma once
 
 #include <cstdint>

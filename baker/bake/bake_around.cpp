@@ -9,7 +9,8 @@ namespace lambent::baker {
 
 namespace {
 
-// The share of the bound on coded transfer: a neighborhood is seen against nearly open sky, where errors
+// Neighborhoods get this share of the bound on coded transfer, since they are seen against nearly open sky,
+// where errors show.
 // show.
 constexpr double kShareOfBound = 1.0 / 3.0;
 // The bound on the change at the faces of grids around bodies that are moved by hand. These grids have no

@@ -35,7 +35,7 @@ struct BakeOptions {
   // Where shadows change, edges are split until the interpolation error is less than this, relative RMS
   // against open light. 0: no edges are split; negative: as the quality says.
   float refine_bound = -1.0f;
-  // Whether values at vertices are those with which interpolation over the faces shows light best
+  // True if values at vertices are those with which interpolation over the faces shows light best
   // (bake/fit_vertices.hpp), and not what the vertices see. This concerns direct and bounced light of glossy
   // surfaces, and direct light of diffuse ones. Unset: glossy surfaces alone are fitted, except in drafts.
   std::optional<bool> fit = {};

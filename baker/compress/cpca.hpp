@@ -49,8 +49,8 @@ struct CodingSettings {
   std::uint32_t clusters = 0;  // 0 means whatever codes to the fewest bytes
   int axes = -1;               // of every cluster, whatever the bound; -1 means as many as the bound needs
   std::uint32_t most_components = kUsualComponents;  // for long vectors (matrices)
-  // If above `bound`: where most_components leave out more than this, all components are used and this bound
-  // is kept instead.
+  // If this is above `bound`, and most_components leave out more than this, all components are used and this
+  // bound is kept instead.
   float loose_bound = 0.0f;
   // Limit for decoded means and axes, since on the GPU all of a cell lies in one page of 128 MiB
   // (gpu::Arena). It limits the number of clusters; if even a single cluster is too large, the bound is

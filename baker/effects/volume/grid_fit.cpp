@@ -10,7 +10,7 @@ namespace lambent::baker {
 
 namespace {
 
-// h relative to a typical voxel's weight: a few places at a voxel's rim do not move it far.
+// This is h relative to a typical voxel's weight: a few places at a voxel's rim do not move it far.
 constexpr double kHold = 0.01;
 constexpr int kMostSteps = 200;
 constexpr double kTolerance = 1e-5;  // relative residual

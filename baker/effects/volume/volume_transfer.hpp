@@ -70,8 +70,8 @@ struct VolumeTransfer {
   // [sample][single scattering, then all scatterings by channel][outputs][order²]. With one output these are
   // the mean radiance, with more its coefficients.
   std::vector<float> vectors;
-  // With more than 3 bands, the transmittance of unscattered light by direction, in order + bands - 1 bands:
-  // [sample][visibility]. The first block of `vectors` follows from it.
+  // With more than 3 bands, this is the transmittance of unscattered light by direction, in order + bands - 1
+  // bands: [sample][visibility]. The first block of `vectors` follows from it.
   std::vector<float> visibility;
 
   std::uint64_t rays = 0;       // traced in this run
