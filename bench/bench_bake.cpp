@@ -1,4 +1,4 @@
-// A whole bake, split by stage: seconds of each as counters.
+// Measures a whole bake, with the seconds of each stage as counters.
 //   bench_bake [--scene=FILE.glb] [--benchmark_...]; the default scene is the shipped gallery.
 #include <cstdio>
 #include <cstdlib>

@@ -1,10 +1,11 @@
-// What accuracy costs in storage: bytes per vertex of the coded transfer, after entropy coding, against the
-// error bound; clusters as codeTransfer chooses them, beside one cluster (plain principal components).
+// Measures what accuracy costs in storage: bytes per vertex of the coded transfer, after entropy coding,
+// against the error bound. Clusters are those that codeTransfer chooses, beside one cluster (plain principal
+// components).
 //   bench_codes SCENE [--bounds=1,0.5,0.3,0.1] [--order=N] [--rays=N] [--bounces=N] [--albedo=R,G,B]
 //               [--normal-mapped] [--clusters=N] [--csv]
-// --albedo: of all surfaces, instead of their materials'; --normal-mapped: transfer for normal maps
-// everywhere;
-// --clusters: so many instead of the best. Goal: under 16 bytes per vertex at 0.5 %, order 5, RGB, bounces.
+// --albedo is used for all surfaces in place of their materials'; --normal-mapped bakes transfer for normal
+// maps everywhere; --clusters sets the number of clusters in place of the best. The goal is under 16 bytes
+// per vertex at 0.5 %, with order 5, RGB and bounces.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,6 @@
-// Glossy transport against diffuse transport of the same mesh, in one run on one thread: rays a second of
-// pass 0, and seconds of the first bounce. The glossy bake makes all of the group's first material a metal;
-// its kernels are Lambert's (the cost of real ones comes on top).
+// Measures glossy transport against diffuse transport of the same mesh, in one run on one thread: rays per
+// second of pass 0, and seconds of the first bounce. The glossy bake turns the group's first material into a
+// metal; its kernels are Lambert's (the cost of real ones comes on top).
 //   bench_glossy [--scene=FILE.glb] [--benchmark_...]; the default scene is the shipped gallery.
 #include <ctime>
 #include <string>
@@ -20,7 +20,7 @@ using namespace lambent::baker;
 
 constexpr std::size_t kRays = 512;
 
-// Of the processor: on one thread the same as by the wall where nothing else runs, and steadier where
+// Returns processor time. On one thread it equals wall time if nothing else runs, and is steadier if
 // something does.
 double secondsSince(std::clock_t start) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;

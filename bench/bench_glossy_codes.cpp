@@ -1,8 +1,8 @@
-// What glossy transfer costs in storage: bytes per vertex of visibility and bounced light together, after
-// entropy coding, against the error of reflected light.
+// Measures what glossy transfer costs in storage: bytes per vertex of visibility and bounced light together,
+// after entropy coding, against the error of reflected light.
 //   bench_glossy_codes SCENE [--rays=N] [--bounces=N] [--bounds=3,1.5,1,0.5] [--grid] [--csv]
-// By bounds as a bake does it (clusters and axes that cost least), or with --grid for so many clusters, 1 to
-// 512, with so many axes each, 0 (vector quantization) to 16. Goal: under 40 bytes a vertex at 1.5 %.
+// Rows are error bounds, for which clusters and axes are chosen as in a bake, or with --grid, every pair of 1
+// to 512 clusters and 0 (vector quantization) to 16 axes. The goal is under 40 bytes per vertex at 1.5 %.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -84,7 +84,8 @@ GlossyField transport(const GroupWorkload& work, const SurfaceBrdfs& brdfs, cons
   return std::move(glossy->field);
 }
 
-// All cells: visibility, bounced light, and the error of both together, each with as much.
+// Holds visibility and bounced light of all cells, and the error of both together; each gets the same share
+// of the bound.
 struct Measured {
   std::array<CodedBytes, 2> parts;
   double error = 0.0;
@@ -115,7 +116,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   const auto work = loadGroup(options.scene, {}, {}, /*with_glossy=*/true);
-  if (work->samples.first_glossy == work->samples.size()) {
+  if (work->samples.glossy.empty()) {
     std::fprintf(stderr, "%s: has no glossy material; see bench/with_material.py\n", options.scene);
     return 1;
   }
@@ -163,7 +164,7 @@ int main(int argc, char** argv) {
     std::fflush(stdout);
   };
   if (options.grid) {
-    // Fine steps: what is left is what the axes leave out.
+    // The bound is small, so that the remaining error is that of the axes left out.
     for (const std::uint32_t clusters : {1u, 4u, 16u, 64u, 256u, 512u})
       for (const int axes : {0, 1, 2, 4, 8, 16}) row({.bound = 0.005f, .clusters = clusters, .axes = axes});
   } else {

@@ -1,6 +1,6 @@
-// Neighborhood transfer of a ball of 5 k triangles over a floor: time and bytes of a grid, and how far what
-// interpolation reads from the coded grid is from the truth at random points outside the ball: the closed
-// form of a black ball, many rays for a white one.
+// Measures neighborhood transfer of a ball of 5 k triangles over a floor: time and bytes of a grid, and the
+// error of interpolation in the coded grid at random points outside the ball. The truth is a closed form for
+// a black ball, and many rays for a white one.
 //   bench_neighborhood [--around] [--white] [--matrices] [--rays N]
 #include <chrono>
 #include <cstdio>
@@ -57,7 +57,8 @@ int main(int argc, char** argv) {
   const auto baked = transport.bake(5, 512, white ? -1 : 0);
   const SurfaceBody body(transport.diffuse(),
                          {baked.direct.field, white ? &baked.bounced.field : nullptr, nullptr, nullptr});
-  // change %: coding error at 99 of 100 points over the change there; the last column: all error over it.
+  // The first "change %" is the coding error relative to the change that 99 of 100 points stay under; the
+  // last column is the whole error relative to the change.
   std::printf("%-10s %8s %8s %9s %8s %8s %8s %8s %8s\n", "grid", "s", "kB", "coding %", "change %", "RMS %",
               "p99 %", "near %", "change %");
   const std::vector<glm::uvec3> sizes =
@@ -68,7 +69,7 @@ int main(int argc, char** argv) {
     settings.rays = rays;
     settings.matrices = matrices;
     settings.placement.body = {transport.geometry.bounds_min, transport.geometry.bounds_max};
-    // A floor that the ball flies over, 0.2 to 2 radii below it.
+    // This is a floor over which the ball flies, 0.2 to 2 radii below it.
     if (!around) settings.placement.receivers = Box3{{-20.0f, -3.0f, -20.0f}, {20.0f, -1.2f, 20.0f}};
     settings.placement.by_length = size;
     Progress progress;
@@ -77,7 +78,7 @@ int main(int argc, char** argv) {
     progress.end();
     const double seconds = secondsSince(start);
     const lambent::testing::DecodedNeighborhood decoded(*result->grid);
-    // The black ball has a closed form; for the white one, by many rays from the very points.
+    // The black ball has a closed form; the white one is traced with many rays from the same points.
     const CapDirections many(16 * rays);
     PointChange traced(body, many, decoded.shape());
     const lambent::testing::NeighborhoodErrors errors = lambent::testing::errorsAgainst(

@@ -1,5 +1,5 @@
-// Pass 0 against its limit: rays a second of the baker's direct pass beside bare Embree loops over the same
-// rays, in one run, on one thread. The bare loops time nothing but the calls: their packets are filled
+// Measures pass 0 against its limit: rays per second of the baker's direct pass beside bare Embree loops over
+// the same rays, in one run, on one thread. The bare loops time only the calls: their packets are filled
 // beforehand, a few samples at a time so that they stay in cache.
 //   bench_rays [--scene=FILE.glb] [--benchmark_...]; the default scene is the shipped gallery.
 #include <algorithm>
@@ -26,13 +26,13 @@ using namespace lambent;
 using namespace lambent::baker;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kRays = 512;  // 1024 directions of the whole sphere
-constexpr std::size_t kSamplesAtATime =
-    8;  // 8 x 32 packets x 832 bytes: half of a 512 KiB second-level cache
+constexpr std::size_t kRays = 512;  // 1024 directions over the whole sphere
+// 8 x 32 packets x 832 bytes take half of a 512 KiB second-level cache.
+constexpr std::size_t kSamplesAtATime = 8;
 
 struct Workload {
   std::unique_ptr<GroupWorkload> group;
-  RTCDevice device = nullptr;  // the bare scene; lives as long as the program
+  RTCDevice device = nullptr;  // of the bare scene; lives as long as the program
   RTCScene scene = nullptr;
 };
 
@@ -40,7 +40,7 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A scene of one triangle geometry under the flags that were found fastest (quality HIGH).
+// Builds a scene of one triangle geometry with the flags that were found fastest (quality HIGH).
 void buildBareScene(Workload& work) {
   work.device = rtcNewDevice(nullptr);
   work.scene = rtcNewScene(work.device);
@@ -113,7 +113,7 @@ struct Timed {
   double perSecond() const { return static_cast<double>(rays) / seconds; }
 };
 
-// Every eighth run of samples over the whole scene: enough rays to be representative.
+// Times every eighth run of samples over the whole scene, which is enough rays to be representative.
 Timed runBare(const Workload& work, const DirectionTable& table, Call call) {
   Timed timed;
   std::vector<FilledPacket> packets;
@@ -150,8 +150,7 @@ void report(benchmark::State& state, const Timed& timed) {
   state.counters["Mrays/s"] = 1e-6 * timed.perSecond();
 }
 
-// Bounces against pass 0, in one run: seconds of the first gather pass over those of the direct pass with
-// hits kept.
+// Returns the seconds of the first gather pass over those of the direct pass with hits kept, in one run.
 double bounceRatio(const Workload& work) {
   const TracedScene view = work.group->view();
   const DirectPass pass(view,

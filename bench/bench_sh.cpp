@@ -1,7 +1,7 @@
-// Spherical harmonics, one thread, at orders 5 and 6: times in nanoseconds, medians with
+// Measures spherical harmonics on one thread at orders 5 and 6: times in nanoseconds, medians with
 // --benchmark_repetitions. Rivals (docs/measurements/frames.md says where each was measured): DirectXMath's
-// SHMath evaluates one direction and rotates, drjit evaluates in batches. Limits, measured in the same run:
-// *_limit rows do the same arithmetic or move the same bytes and nothing else.
+// SHMath evaluates one direction and rotates, drjit evaluates in batches. Limits are measured in the same
+// run: *_limit rows do the same arithmetic or move the same bytes and nothing else.
 #include <array>
 #include <cstring>
 #include <vector>
@@ -36,7 +36,7 @@ Directions someDirections() {
   return dirs;
 }
 
-// The time of one item, where an iteration does several.
+// Reports the time of one item, if an iteration does several.
 void perItem(benchmark::State& state, double items) {
   state.counters["each"] =
       benchmark::Counter(items, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -55,7 +55,7 @@ void evaluateOne(benchmark::State& state) {
 }
 BENCHMARK(evaluateOne)->Arg(5)->Arg(6);
 
-// 64 directions a call: the output stays in the first-level cache.
+// With 64 directions per call, the output stays in the first-level cache.
 void evaluateBatched(benchmark::State& state) {
   const int order = static_cast<int>(state.range(0));
   constexpr std::size_t kBatch = 64;
@@ -71,7 +71,7 @@ void evaluateBatched(benchmark::State& state) {
 }
 BENCHMARK(evaluateBatched)->Arg(5)->Arg(6);
 
-// The limit of evaluateBatched: writing its output.
+// The limit of evaluateBatched is writing its output.
 void evaluateBatched_limit(benchmark::State& state) {
   constexpr std::size_t kBatch = 64;
   std::vector<float> out(kMaxCoefficients * kBatch);
@@ -166,8 +166,8 @@ void projectCube(benchmark::State& state) {
 }
 BENCHMARK(projectCube)->Arg(5)->Arg(6);
 
-// The limit of a projection without mirror symmetry: the plain table's multiply-adds at the full vector rate,
-// from registers, without loading anything. 12 sums in flight cover the units' latency.
+// The limit of a projection without mirror symmetry is the plain table's multiply-adds at the full vector
+// rate, from registers, without loading anything. 12 sums in flight cover the units' latency.
 void projectCube_plainTableLimit(benchmark::State& state) {
   using Lanes = float __attribute__((vector_size(32)));
   const int steps =
@@ -180,7 +180,7 @@ void projectCube_plainTableLimit(benchmark::State& state) {
     for (int k = 0; k < steps; ++k) {
       s0 += a * b, s1 += a * b, s2 += a * b, s3 += a * b, s4 += a * b, s5 += a * b;
       s6 += a * b, s7 += a * b, s8 += a * b, s9 += a * b, s10 += a * b, s11 += a * b;
-      asm volatile("" : "+x"(a), "+x"(b));  // or the products would be hoisted out
+      asm volatile("" : "+x"(a), "+x"(b));  // keeps the products from being hoisted
     }
     Lanes sum = s0 + s1 + s2 + s3 + s4 + s5 + s6 + s7 + s8 + s9 + s10 + s11;
     benchmark::DoNotOptimize(sum);
@@ -189,7 +189,7 @@ void projectCube_plainTableLimit(benchmark::State& state) {
 }
 BENCHMARK(projectCube_plainTableLimit)->Arg(5)->Arg(6);
 
-// The limit of any projection: reading the picture once.
+// The limit of any projection is reading the picture once.
 void projectCube_readLimit(benchmark::State& state) {
   auto texels = someCube();
   auto copy = texels;
@@ -202,7 +202,7 @@ void projectCube_readLimit(benchmark::State& state) {
 }
 BENCHMARK(projectCube_readLimit);
 
-// Every light change pays this once; the bar is 1 ms.
+// Every light change pays for this once; the goal is 1 ms.
 void autoWindow(benchmark::State& state) {
   const int order = static_cast<int>(state.range(0));
   const LightVector light = discLight(order, {0.48f, 0.6f, 0.64f}, 0.1, {3, 2, 1}) +

@@ -1,10 +1,10 @@
-// Frames of a flight along many bundles that take more memory than there is: bench_streaming FOLDER|BUNDLE...
-// [--share S] [--copies N] [--frames N] [--size WxH] [--light LIGHT] [--log FILE]. Opens every bundle N
-// times, side by side along X, and flies past them twice: with room for all, all of it here, and with room
-// for a share S of that, streaming. Prints for both how long frames took: median, worst, how many took over
-// twice the median, and as a histogram; what was resident, and how bundles were shown. Wall time of a frame
-// until the GPU is done, and the CPU time of all threads in it, which says what a frame costs where others
-// use the machine too.
+// Measures frames of a flight along many bundles that need more memory than there is: bench_streaming
+// FOLDER|BUNDLE... [--share S] [--copies N] [--frames N] [--size WxH] [--light LIGHT] [--log FILE]. It opens
+// every bundle N times, side by side along X, and flies past them twice: with enough memory and everything
+// loaded, then streaming with a share S of that memory. For both flights it prints how long frames took
+// (median, worst, how many took over twice the median, and a histogram), what was resident, and how bundles
+// were shown. Frame times are wall time until the GPU is done, and the CPU time of all threads, which shows
+// the cost of a frame if others use the machine too.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -43,7 +43,7 @@ struct Words {
   int copies = 1, frames = 300;
   spec::Size size{640, 360};
   std::string light = "constant:1,1,1";
-  std::string log;  // file; empty: none
+  std::string log;  // file; empty: no log
 };
 
 void stop(const Error& error) {
@@ -96,7 +96,7 @@ struct Row {
         for (const ecs::Entity group : world.instance(*slot).groups)
           box.add(scene::groupBounds(world.registry(), group));
         const float radius = box.empty() ? 1.0f : box.radius();
-        // Standing side by side, their centres on the X axis.
+        // Bundles stand side by side, with their centres on the X axis.
         at += radius;
         auto& root = world.registry().edit<scene::Transform>(world.instance(*slot).root);
         root.translation = glm::vec3(at, 0.0f, 0.0f) - (box.empty() ? glm::vec3(0.0f) : box.center());
@@ -117,16 +117,17 @@ struct Row {
 
 struct Flight {
   frame::FrameTimes times, cpu_times;
-  std::array<std::size_t, 4> shown{};  // bundles in frames, by frame::Shown
+  std::array<std::size_t, 4> shown{};  // number of bundles, summed over frames, by frame::Shown
   std::uint64_t most_bytes = 0, least_bytes = ~std::uint64_t{0}, uploaded = 0;
-  std::size_t brought = 0;  // frames that uploaded something
-  // By pass: milliseconds of the CPU in each frame that had it.
+  std::size_t brought = 0;  // number of frames that uploaded something
+  // One entry per pass: milliseconds of the CPU in each frame that had it.
   std::map<std::string, frame::FrameTimes> passes{};
-  // Where the time of the slowest frames went: milliseconds, and the passes that took most.
+  // The time of the slowest frames in milliseconds, and the passes that took most of it.
   std::vector<std::pair<double, std::string>> slowest{};
 };
 
-// "upload 12.1 (gpu 0.3), glossy 4.0 (gpu 9.1)": passes of over a twentieth of the frame.
+// Lists the passes that took more than a twentieth of the frame: "upload 12.1 (gpu 0.3), glossy 4.0 (gpu
+// 9.1)".
 std::string dearest(std::span<const gpu::PassTime> passes, double frame_ms) {
   std::string text;
   for (const gpu::PassTime& pass : passes) {
@@ -137,7 +138,7 @@ std::string dearest(std::span<const gpu::PassTime> passes, double frame_ms) {
   return text;
 }
 
-// "upload:12.10:0.30:65536 raster:1.00:4.00:0": name, ms of the CPU, ms of the GPU and bytes uploaded.
+// Lists name, CPU ms, GPU ms and bytes uploaded of each pass: "upload:12.10:0.30:65536 raster:1.00:4.00:0".
 std::string everyPass(std::span<const gpu::PassTime> passes) {
   std::string text;
   for (const gpu::PassTime& pass : passes) {
@@ -149,7 +150,7 @@ std::string everyPass(std::span<const gpu::PassTime> passes) {
   return text;
 }
 
-// Of CLOCK_MONOTONIC, which profilers can be told to take too.
+// Returns seconds of CLOCK_MONOTONIC, which profilers can use too.
 double seconds(std::chrono::steady_clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
@@ -174,7 +175,7 @@ Flight fly(const Words& words, Row& row, const lighting::Environment& environmen
     gpu::Counters counters;
     if (const Result<void> done = row.world.uploadAll(counters); !done) stop(done.error());
   }
-  // Programs are compiled, and what stands at the start is here.
+  // These frames compile programs and load what is visible at the start.
   for (int i = 0; i < 2000 && (i < 30 || !row.world.loaded()); ++i) render(0.0f);
   const frame::FrameTimes empty(static_cast<std::size_t>(words.frames));
   Flight flight{.times = empty, .cpu_times = empty};

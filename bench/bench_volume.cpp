@@ -1,5 +1,5 @@
-// The bake of a volume by parts: rays through its density, rows of weights, the solver. On the procedural
-// cloud, 30 per metre, transfer of 24 x 24 x 24.
+// Measures the parts of a volume's bake: rays through its density, rows of weights, and the solver. The
+// volume is the procedural cloud at 30 per metre, with transfer of 24 x 24 x 24.
 //   bench_volume [--benchmark_...]
 #include <limits>
 #include <memory>
@@ -27,8 +27,8 @@ struct Cloud {
   }
 };
 
-// From the samples of the grid, all directions: rays per second on one core. The limit is memory: a ray
-// reads eight floats in each cell that it crosses.
+// Measures rays per second on one core, from the samples of the grid in all directions. The limit is memory:
+// a ray reads eight floats in each cell that it crosses.
 void rays(benchmark::State& state) {
   const Cloud cloud;
   const TransferGrid grid(*cloud.field, cloud.values, glm::uvec3(24));

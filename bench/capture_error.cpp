@@ -1,11 +1,12 @@
-// What cube maps of light cost and lose: the tables of docs/measurements/captures.md, through the real GPU
-// path. Discs are bodies: a polygon of 256 corners that faces its point, drawn, resolved and projected like
-// any other body; the truth is the disc in closed form. Environment maps go through the sky's texels, turned
-// at random; the truth is the picture projected texel by texel and rotated. Error: |c - c_exact|² /
-// |c_exact|².
-//   capture_error [--directions N] [--environment maps DIR] [-o DIR] [--time]
-// Prints the table as markdown; with -o also writes capture_error.csv. --time: instead, how long a capture of
-// 200 points among 200 balls takes, each seeing about 20.
+// Measures the time and the error of cube maps of light: it makes the tables of docs/measurements/captures.md
+// through the real GPU path. Discs are bodies: a polygon of 256 corners that faces its point is drawn,
+// resolved and projected like any other body; the truth is the disc's closed form. Environment maps go
+// through the sky's texels, at random rotations; the truth is the picture projected texel by texel and
+// rotated. The error is |c - c_exact|² / |c_exact|².
+//   capture_error [--directions N] [--probes DIR] [-o DIR] [--time]
+// DIR of --probes is a folder of environment maps. Prints the table as markdown; with -o also writes
+// capture_error.csv. With --time it measures instead how long a capture of 200 points among 200 balls takes,
+// each of which sees about 20.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -48,7 +49,7 @@ struct Row {
   std::uint32_t size = 0;
   int order = 0;
   std::size_t count = 0;
-  double average = 0, worst = 0, milliseconds = 0;  // the last: of one cube map
+  double average = 0, worst = 0, milliseconds = 0;  // milliseconds of one cube map
 
   void add(double error) {
     ++count;
@@ -78,7 +79,7 @@ glm::vec3 randomDirection(std::mt19937& random) {
   }
 }
 
-// A row for each order: lower orders have the same coefficients, only fewer.
+// Adds a row for each order; lower orders have the same coefficients, only fewer.
 std::span<Row> addRows(const std::string& light, std::uint32_t size, std::vector<Row>& rows) {
   const std::size_t first = rows.size();
   for (int order = kLeastOrder; order <= kMostOrder; ++order)
@@ -94,7 +95,7 @@ void addErrors(const sh::LightVector& captured, const sh::LightVector& exact, do
   }
 }
 
-// Points so far apart that none sees another's disc, each at 1 m from its own.
+// Points are so far apart that none sees another's disc; each is 1 m from its own.
 void discErrors(std::uint32_t size, double radius_deg, int directions, std::vector<Row>& rows) {
   const std::span<Row> own =
       addRows("disc " + std::to_string(static_cast<int>(radius_deg)) + "°", size, rows);
@@ -118,7 +119,7 @@ void discErrors(std::uint32_t size, double radius_deg, int directions, std::vect
       towards.push_back(randomDirection(random));
       points.push_back({.position_ws = 256.0f * glm::vec3(i & 1, i >> 1 & 1, i >> 2)});
       bodies.push_back(testing::discBody(0, points.back().position_ws, towards.back(), radius, 1.0f));
-      // None is too small to be measured; the others, 256 m away, must stay away.
+      // All discs are bright enough to be measured; those of other points, 256 m away, must not appear.
       bodies.back().brightness = size < 8 ? 8.0f : 1.0f;
     }
     const auto start = Clock::now();
@@ -138,7 +139,7 @@ void probeErrors(const std::filesystem::path& file, int directions, std::vector<
   for (const std::uint32_t size : kSizes) {
     Capture capture = must(Capture::create({.size = size}, environment));
     const std::span<Row> own = addRows(file.filename().string(), size, rows);
-    // Larger cubes hardly depend on how the environment map is turned, and take long.
+    // Larger cubes hardly depend on the rotation of the environment map, and take long.
     const int turns = std::max(20, directions * 256 / std::max(256, static_cast<int>(size * size)));
     std::mt19937 random(2002);
     std::normal_distribution<double> normal;
@@ -171,7 +172,7 @@ void printTable(const std::vector<Row>& rows, int order) {
   std::printf("\n");
 }
 
-// A ball in levels of (columns, rows) of its latitudes.
+// Makes a ball whose levels are given by the (columns, rows) of its latitudes.
 bundle::CaptureProxy ballProxy(std::initializer_list<std::pair<std::uint32_t, std::uint32_t>> levels) {
   bundle::CaptureProxy proxy;
   for (const auto& [columns, rows] : levels) {
@@ -214,7 +215,7 @@ void printTimes() {
         const std::vector<glm::vec4> shining(capture.triangleCount(), glm::vec4(1.0f));
         gpu::Buffer radiance("radiance", shining.size() * sizeof(glm::vec4));
         radiance.write(0, std::span<const glm::vec4>(shining));
-        // Of radius 0.5; within 19.6 m a point sees them at 16 texels.
+        // Balls have a radius of 0.5; within 19.6 m a point sees them at 16 texels.
         const float spacing = near ? 2.5f : 6.5f;
         std::vector<CaptureBody> bodies;
         std::vector<CapturePoint> points;

@@ -1,4 +1,4 @@
-// What coded transfer takes in a file, by kind, after entropy coding.
+// Measures the size of coded transfer in a file, by kind, after entropy coding.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +10,15 @@
 
 namespace lambent {
 
-inline constexpr int kZstdLevel = 19;  // as codes are stored
+inline constexpr int kZstdLevel = 19;  // the level of bundles
 
 struct CodedBytes {
   std::size_t clusters = 0, codebook = 0, ids = 0, weights = 0, codes = 0;
-  double error = 0.0, seconds = 0.0;  // the worst error; the time of all
+  double error = 0.0, seconds = 0.0;  // worst error; time of all calls
 
   std::size_t bytes() const { return codebook + ids + weights; }
 
-  // Returns the error of this one.
+  // Codes one transfer and adds it. Returns its error.
   double add(const baker::CellVectors& cell, const baker::CodingSettings& settings) {
     const auto packed = [](const std::vector<std::byte>& raw) {
       return std::min(raw.size(), bundle::compressZstd(raw, kZstdLevel).size());
@@ -35,7 +35,7 @@ struct CodedBytes {
       weights += packed(transfer::encodeWeightPlane(plane.codes, plane.bits));
       codes += plane.codes.size();
     }
-    if (!(double{coded.error} <= error)) error = double{coded.error};  // NaN shows
+    if (!(double{coded.error} <= error)) error = double{coded.error};  // NaN is kept
     return double{coded.error};
   }
 };

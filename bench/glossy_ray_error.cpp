@@ -1,8 +1,8 @@
-// What accuracy costs at glossy samples: error of visibility and of bounced light (relative RMS to both
-// together, over real lights) against the number of rays, beside the seconds of both. The truth is the same
-// bake with many rays.
+// Measures what accuracy costs at glossy samples: the error of visibility and of bounced light (RMS over real
+// lights, relative to both together) against the number of rays, beside the seconds of both. The truth is the
+// same bake with many rays.
 //   glossy_ray_error SCENE.glb [--truth=RAYS] [--bounces=N] [--rays=N,N,...]
-// N = -1: as many passes as it takes.
+// --bounces=-1 takes as many passes as needed.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
     }
   }
   const auto work = loadGroup(argv[1], {}, {}, /*with_glossy=*/true);
-  if (work->samples.first_glossy == work->samples.size()) {
+  if (work->samples.glossy.empty()) {
     std::fprintf(stderr, "%s: has no glossy material; see bench/with_material.py\n", argv[1]);
     return 1;
   }
@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
                                         .shadowed_channels = 0,
                                         .full_channels = truth.field.channels,
                                         .outputs = kOrder * kOrder};
-  // Energies are of one set of outputs each: together they are all light, as bakes weigh it.
+  // Each energy is that of one set of outputs; their sum is all light, as bakes weight it.
   const double of_bounced = transferEnergy(truth.field.bounced, bounced),
                all = transferEnergy(truth.field.visibility, visibility) + of_bounced;
   std::printf(

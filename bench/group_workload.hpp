@@ -1,5 +1,5 @@
-// The first rigid group of a scene with everything that the diffuse effect reads, as a bake makes it. Errors
-// end the program: these are benchmarks.
+// Loads the first rigid group of a scene with everything that the diffuse effect reads, as a bake makes it.
+// Errors end the program.
 #pragma once
 
 #include <cstdio>
@@ -34,8 +34,8 @@ T orExit(lambent::Result<T> result) {
   return std::move(*result);
 }
 
-// Kept in place: colours refer to the geometry. What is measured may be changed on the way: the scene as
-// read, the geometry as built.
+// The result is a pointer because colours refer to the geometry. `change_scene` may change the scene as read,
+// `change_geometry` the geometry as built.
 inline std::unique_ptr<GroupWorkload> loadGroup(
     const std::string& file, const std::function<void(lambent::baker::Scene&)>& change_scene = {},
     const std::function<void(lambent::baker::GroupGeometry&)>& change_geometry = {},

@@ -1,7 +1,7 @@
-// How much light real scenes have per coefficient of each band: makes the numbers of
+// Measures how much light real scenes have per coefficient of each band, which gives the numbers in
 // baker/compress/light_weights.hpp.
-//   light_bands PROBE...     prints each light's bands relative to band 0, and the mean over environment maps
-//   and discs
+//   light_bands MAP...
+// Prints the bands of each environment map and of some discs relative to band 0, and their mean.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -21,7 +21,7 @@ namespace {
 using namespace lambent;
 using Bands = std::array<double, sh::kMaxOrder>;
 
-// sum over m and RGB of l_lm² / (2l + 1), over that of band 0.
+// Returns sum over m and RGB of l_lm² / (2l + 1) for each band, relative to band 0.
 Bands bandPower(const sh::LightVector& light) {
   Bands bands{};
   for (int i = 0; i < sh::coefficientCount(light.order); ++i) {

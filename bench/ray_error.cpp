@@ -1,6 +1,6 @@
-// What accuracy costs at the samples: error (relative RMS of shaded radiance over real lights) against the
-// number of rays, beside the time, of direct light alone and of all light. The truth is the same bake with
-// many rays.
+// Measures what accuracy costs at the samples: the error (relative RMS of shaded radiance over real lights)
+// against the number of rays, beside the time, for direct light alone and for all light. The truth is the
+// same bake with many rays.
 //   ray_error SCENE.glb [--truth=RAYS] [--bounces=N]
 #include <chrono>
 #include <cstdio>
@@ -36,7 +36,7 @@ Baked bakeWith(const GroupWorkload& work, std::size_t rays, int bounces) {
   return baked;
 }
 
-// The last block of the vectors alone: all light where there are bounces, else direct light.
+// Returns only the last block of the vectors: all light if there are bounces, else direct light.
 CellVectors shownBlock(const CellVectors& from) {
   if (from.shape.full_channels == 0) return from;
   CellVectors out{from.shape, {}};
@@ -49,7 +49,7 @@ CellVectors shownBlock(const CellVectors& from) {
   return out;
 }
 
-// Over all cells, of light from the environment.
+// Returns the error over all cells, of light from the environment.
 double errorOf(const GroupWorkload& work, const Baked& truth, const Baked& test, bool all_light) {
   double error = 0.0, samples = 0.0;
   for (const SampleCell& cell : work.samples.cells) {

@@ -1,5 +1,5 @@
-// `--scene=FILE` of the benchmarks over scenes, taken out of the arguments before Google Benchmark sees them.
-// The default is the shipped gallery.
+// Takes `--scene=FILE` out of the arguments of a benchmark before Google Benchmark sees them. The default is
+// the shipped gallery.
 #pragma once
 
 #include <algorithm>

@@ -1,9 +1,8 @@
-// What the settings of a frame cost and lose in a scene: each setting of accuracy over its values, in the
-// scene's own view.
-//   settings BUNDLE KNOB [LIGHT...]     KNOB: a name of --help of lambent-demo, or all; prints a row per
-//   value:
-//                                    relative RMS error against the finest, then CPU and GPU milliseconds of
-//                                    a frame in which every pass has to run
+// Measures the time and the error of a frame's settings in a scene: each setting of accuracy runs over its
+// values, in the scene's own view.
+//   setting_sweep BUNDLE SETTING [LIGHT...]
+// SETTING is a name in lambent-demo's --help, or all. Prints a row per value: relative RMS error against the
+// finest, then CPU and GPU milliseconds of a frame in which every pass has to run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -22,7 +21,8 @@ using namespace lambent;
 
 constexpr spec::Size kSize{320, 180};
 
-// Of whole numbers powers of two, of others a factor of two each.
+// Returns all values of switches, choices and small whole numbers, and otherwise values a factor of two
+// apart.
 std::vector<double> valuesOf(const frame::SettingRow& row) {
   using Kind = frame::SettingRow::Kind;
   std::vector<double> values;

@@ -33,8 +33,8 @@ struct PictureError {
   // These are percentiles over pixels of the RMS difference of the channels, relative to the reference's RMS
   // over the picture. They include the noise of the references.
   double median = 0.0, percentile_95 = 0.0, percentile_99 = 0.0, largest = 0.0;
-  // How many of `pixels` show different surfaces: depths of two pictures differ by more than kSameDepth, or
-  // only one of them has a depth. Nothing if a picture has no depths.
+  // Counts those of `pixels` that show different surfaces: depths of two pictures differ by more than
+  // kSameDepth, or only one of them has a depth. Nothing if a picture has no depths.
   std::optional<std::uint64_t> pixels_of_other_surfaces = {};
   // This is relative_rms over the other pixels, by their own energy. It is also nothing if there are none or
   // they are black.

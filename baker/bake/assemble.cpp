@@ -115,8 +115,8 @@ class Assembler {
     }
   }
 
-  // Codebooks of all cells and what else belongs to their light, then plane after plane: what is wanted first
-  // lies first.
+  // Adds the codebooks of all cells and what else belongs to their light, then plane after plane: what is
+  // wanted first lies first.
   void addTransfer(const std::vector<BakedGroup>& baked) {
     std::size_t most_planes = 0;
     const auto forAll = [&](const auto& visit) {
@@ -154,7 +154,7 @@ class Assembler {
     return static_cast<std::uint32_t>(blobs_.size() - 1);
   }
 
-  // Compressed where that helps.
+  // Compresses the payload if that makes it smaller.
   std::uint32_t addPayload(bundle::PayloadType type, bundle::Blob raw, std::uint32_t priority) {
     bundle::Payload payload{type, bundle::PayloadCodec::Raw, 0, raw.size(), priority};
     if (bundle::Blob packed = bundle::compressZstd(raw, kZstdLevel); packed.size() < raw.size()) {
@@ -206,7 +206,7 @@ class Assembler {
     addGridCells(baked.cells, transfer::Domain::Voxel, 0, group);
   }
 
-  // The group is taken to stand in the light of its middle.
+  // The group is taken to stand in the light of the light probe nearest to its middle.
   void addNeighborhood(const BakedNeighborhood& baked, bundle::Group& group) {
     const glm::vec3 center = 0.5f * (group.bounds_min + group.bounds_max);
     const auto nearer = [&](const glm::vec3& a, const glm::vec3& b) {
@@ -218,7 +218,7 @@ class Assembler {
                  static_cast<std::uint32_t>(nearest - group.light_probes.begin()), group);
   }
 
-  // All of a cell's transfer but the planes, which come after the codebooks of all cells.
+  // Adds all of a cell's transfer but the planes, which come after the codebooks of all cells.
   bundle::CellTransfer addCodebook(const CodedTransfer& coded) {
     bundle::CellTransfer transfer;
     transfer.shape = coded.shape;
@@ -244,7 +244,7 @@ class Assembler {
           bundle::PayloadType::BrdfTable,
           bundle::encodeBrdfTable(firstBands(entry.table, options_.glossy_order)), kCodebookPriority);
     }
-    // Materials name their own tables by place in the bundle.
+    // Materials with a table of their own name it by its index in the bundle.
     for (std::size_t m = 0; m < tables_.of_material.size(); ++m) {
       const std::int32_t table = tables_.of_material[m];
       const bool own = table >= 0 && tables_.entries[static_cast<std::size_t>(table)].family ==
@@ -286,7 +286,7 @@ class Assembler {
     transfer::VertexWeights rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < geometry.vertex_count; ++v) {
-      // Rows without a sample show what they are lit by, unshadowed (bake_unshadowed.cpp).
+      // Rows without a sample show the light that falls on them, unshadowed (bake_unshadowed.cpp).
       if (const std::uint32_t sample = samples.vertex_sample[geometry.first_vertex + v];
           sample != kNoSample) {
         rows.samples.push_back(sample);

@@ -1,6 +1,6 @@
-// Puts a bundle together from what the bake found: views in the order in which a runtime wants them (meshes
-// and rows, images, then per cell codebook and cluster ids, light weights and proxies, then weight planes by
-// falling variance over all cells).
+// Puts a bundle together from what the bake found. Its views lie in the order in which a runtime wants them:
+// meshes and rows, images, then the codebook and cluster ids of each cell, BRDF tables, light weights and
+// proxies, then the weight planes of all cells by falling variance.
 #pragma once
 
 #include <vector>

@@ -31,7 +31,7 @@ static_assert(BakeOptions::kMostBounces == kMostBounces);
 constexpr int kMostGlossyOrder = 6;
 constexpr int kMostNeighborhoodOrder = 6;
 
-// All effects that the scene calls for, or those that the user listed.
+// Returns all effects that the scene calls for, or those that the user listed.
 Result<std::vector<EffectEntry>> effectsOf(const BakeOptions& options) {
   const auto all = effectList();
   std::vector<EffectEntry> chosen;
@@ -65,7 +65,8 @@ Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, 
   return tables;
 }
 
-// The meshes as they ship: edges split where the options and shadows ask for it, then coded.
+// Returns the meshes as they ship: edges are split where the options and shadows ask for it, then meshes are
+// coded.
 Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_maps,
                                const BakeContext& context) {
   const auto& [scene, options, plan, tables, report] = bake;
@@ -125,7 +126,8 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   return report;
 }
 
-// Of so many bands none are baked: those that nobody asked for are left out, those asked for an error.
+// No neighborhoods are baked with so many bands: one that the user asked for is an error, others are left
+// out.
 Result<void> leaveNeighborhoods(EffectPlan& plan, int order) {
   const std::string reason = fmt::format("{} bands of light are more than its matrices take", order);
   for (PlannedNeighborhood& planned : plan.neighborhoods) {
@@ -159,7 +161,7 @@ const char* reuseName(Reuse reuse) {
 Result<void> checkRequest(const BakeOptions& options, const std::filesystem::path& output) {
   if (auto checked = checkOptions(options); !checked) return checked;
   if (const auto effects = effectsOf(options); !effects) return failAgain(effects.error());
-  // Opened as it will be for writing; closing it uncommitted leaves nothing.
+  // The file is opened as for writing; closing it uncommitted leaves nothing behind.
   if (const auto writable = AtomicFile::open(output); !writable) return failAgain(writable.error());
   return {};
 }
@@ -173,7 +175,7 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
                 fmt::format("use at most {}, or --effects diffuse", kMostGlossyOrder));
   if (plan.bakes("neighborhood") && options.order > kMostNeighborhoodOrder)
     if (Result<void> left = leaveNeighborhoods(plan, options.order); !left) return failAgain(left.error());
-  // Volumes come last; without their effect they are not there.
+  // Groups of volumes come last; without the volume effect they are removed.
   if (!plan.bakes("volume"))
     while (!plan.groups.empty() && plan.groups.back().volume >= 0)
       plan.groups.pop_back(), plan.light_probes.pop_back(), plan.neighborhoods.pop_back();

@@ -9,10 +9,12 @@ namespace lambent::baker {
 
 namespace {
 
-// Of the bound on coded transfer: a neighborhood is seen against nearly open sky, where errors show.
+// Neighborhoods get this share of the bound on coded transfer, since they are seen against nearly open sky,
+// where errors show.
+// show.
 constexpr double kShareOfBound = 1.0 / 3.0;
-// Of the change on the faces of grids around bodies that are moved by hand: these have no more points than
-// others, and lie close around the body, where its contact with what it stands on shows.
+// The bound on the change at the faces of grids around bodies that are moved by hand. These grids have no
+// more points than others, and lie close around the body, where its contact with what it stands on shows.
 constexpr double kBoundByHand = 0.03;
 
 void tell(const Around& around, BakedAround baked, std::optional<BakedNeighborhood>& out) {
@@ -36,7 +38,7 @@ void tell(const Around& around, BakedAround baked, std::optional<BakedNeighborho
                                   .change_error = figures.change_error});
 }
 
-// Of the surfaces that come within reach, from the origin.
+// Returns the bounds of the surfaces that come within reach, relative to the origin.
 std::optional<Box3> receiversOf(const Around& around) {
   const PlannedNeighborhood& plan = around.plan();
   if (plan.receivers.empty() || plan.by_hand) return std::nullopt;

@@ -1,4 +1,4 @@
-// The neighborhood of a group, as the plan and the options want it: of surfaces and of volumes alike.
+// Bakes the neighborhood of a group, of surfaces or of a volume, as the plan and the options ask for it.
 #pragma once
 
 #include <cstddef>
@@ -14,31 +14,33 @@ namespace lambent::baker {
 
 struct Around {
   const SceneBake& bake;
-  std::size_t group = 0;   // of the plan
-  glm::vec3 origin{0.0f};  // where the body's points lie from, in the group's frame
-  std::size_t rays = 0;    // from each point
+  std::size_t group = 0;   // index in the plan
+  glm::vec3 origin{0.0f};  // of the body's points, in the group's frame
+  std::size_t rays = 0;    // from each grid point
 
   const PlannedNeighborhood& plan() const { return bake.plan.neighborhoods[group]; }
 };
 
-// Returns the context of the neighborhood. The key of `body` is that of all that the body's answers depend
-// on.
+// Returns the context of the neighborhood. The key of `body` must cover everything that the body's answers
+// depend on.
 BakeContext contextOf(const Around& around, const BakeContext& body);
 
-// Finds what was kept, for `out`, or for the report's notices where there is none. Returns false if it has to
-// be baked.
+// Looks for a result in the cache. If there is one, adds it to the report and sets `out`, or leaves `out`
+// unset and adds a notice if the result is that there is no neighborhood. Returns false if it has to be
+// baked.
 bool findAround(const Around& around, const BakeContext& context, std::optional<BakedNeighborhood>& out);
 
-// Does the same by baking it. bounds: of the body, from `origin`. Returns false if stopped.
+// Does the same by baking it. `bounds` are those of the body, relative to `origin`. Returns false if stopped.
 bool bakeAround(const Around& around, const Body& body, const Box3& bounds, const BakeContext& context,
                 std::optional<BakedNeighborhood>& out);
 
-// A sample of a surface has its rays over a hemisphere, a point in free space over what the body fills, whose
-// rim counts.
+// Returns the rays per grid point around surfaces. A sample of a surface spreads its rays over a hemisphere;
+// a point in free space spreads them over the directions that the body fills, and the body's rim counts.
 inline std::size_t raysAroundSurfaces(const BakeOptions& options) {
   return 2 * options.effectiveRays();
 }
-// A medium has no rims that many rays would have to find, and each ray is a march.
+// Returns the rays per grid point around a volume. A medium has no sharp rim to find, and each ray is
+// marched.
 inline std::size_t raysAroundVolumes(const BakeOptions& options) {
   constexpr std::size_t kSampleRaysPerMarch = 4;
   return options.effectiveRays() / kSampleRaysPerMarch;

@@ -28,7 +28,7 @@ LightProbes lightProbesOf(const GroupScene& group, const BakeContext& context) {
   return probes;
 }
 
-// Only a proxy that was not found asks for colours.
+// Colours are loaded only if the proxy was not found in the cache.
 Result<bundle::CaptureProxy> proxyOf(GroupScene& group, const BakeContext& context) {
   context.progress.begin("proxy");
   bundle::CaptureProxy proxy;
@@ -42,7 +42,7 @@ Result<bundle::CaptureProxy> proxyOf(GroupScene& group, const BakeContext& conte
   return proxy;
 }
 
-// What the report says of a group and its samples.
+// Adds to the report what it says of a group and its samples.
 BakeReport::Group& tell(const GroupScene& group, const BakedGroup& baked) {
   BakeReport& report = group.bake.report;
   report.vertices += group.geometry.positions.size();
@@ -57,7 +57,7 @@ BakeReport::Group& tell(const GroupScene& group, const BakedGroup& baked) {
   return told;
 }
 
-// What the report says of the light of surfaces, and of what each effect cost.
+// Adds to the report what it says of the light of surfaces, and of what each effect cost.
 void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, BakeReport::Group& told) {
   BakeReport& report = group.bake.report;
   report.filled_samples += figures.filled_samples;
@@ -79,7 +79,7 @@ void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, Ba
   if (group.anyGlossy()) add("glossy", figures.glossy);
 }
 
-// The neighborhood of surfaces whose light is baked. Returns false if stopped.
+// Bakes the neighborhood of surfaces whose light is baked. Returns false if stopped.
 bool bakeAroundSurfaces(const Around& around, const GroupScene& group, const SurfaceTransport& light,
                         const BakeContext& context, std::optional<BakedNeighborhood>& out) {
   std::optional<SurfaceBrdfs> shown;
@@ -109,7 +109,8 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
     return std::move(baked);
   };
 
-  // What is found needs neither colours nor rays. What the cells were coded from is what the body sends.
+  // A result that is found needs neither colours nor rays. The body sends the light that the cells were coded
+  // from, so their key serves the neighborhood too.
   const BakeContext cells_context = context.keyed(group.keys.cells);
   const Around around{bake, index, group.geometry.origin, raysAroundSurfaces(bake.options)};
   const BakeContext around_context = contextOf(around, cells_context);

@@ -1,4 +1,4 @@
-// One rigid group from its decoded meshes to codes: samples, rays, bounces, coding.
+// Bakes one rigid group of surfaces, from its decoded meshes to codes: samples, rays, bounces, coding.
 #pragma once
 
 #include <optional>
@@ -17,18 +17,18 @@
 namespace lambent::baker {
 
 struct BakedGroup {
-  GroupGeometry geometry;  // draws and bounds are used here
+  GroupGeometry geometry;  // of which draws and bounds are used
   SampleSet samples;
   std::vector<PlannedLight> lights;
-  std::vector<std::vector<CodedTransfer>> cells;  // as SurfaceCells has them
-  LightProbes light_probes;                       // as SampleSet::positions
+  std::vector<std::vector<CodedTransfer>> cells;  // as in SurfaceCells
+  LightProbes light_probes;                       // in the frame of SampleSet::positions
   bundle::CaptureProxy proxy;                     // group frame
-  std::optional<BakedVolume> volume;              // then all of the above is empty
+  std::optional<BakedVolume> volume;              // if set, the members above are empty but for light_probes
   std::optional<BakedNeighborhood> neighborhood;
 };
 
-// Bakes group `index` of the plan, one of surfaces. What was done before with the same inputs is found in the
-// cache. Errors: no memory for the hierarchy, images that cannot be decoded, "stopped".
+// Bakes group `index` of the plan, which is one of surfaces. Results of earlier runs with the same inputs are
+// taken from the cache. Errors: no memory for the ray hierarchy, images that cannot be decoded, "stopped".
 Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs, std::size_t index,
                              const BakeContext& context);
 

@@ -16,12 +16,13 @@ namespace lambent::baker {
 namespace {
 
 constexpr float kY00 = 0.282094792f;
-// Of codes of a single vector: next to nothing to save.
+// The coding bound for a single vector, where a looser one would save next to nothing.
 constexpr float kBound = 1e-5f;
-constexpr std::uint32_t kDenseBands =
-    3;  // outputs of so many bands are stored as they are, more as visibility
+// Outputs of up to so many bands are stored as they are, those of more bands as visibility.
+constexpr std::uint32_t kDenseBands = 3;
 
-// What a place that sees everything has: of one output the mean of the light, of more the light itself.
+// Returns the transfer of a place that sees everything: with one output the mean of the light, else the light
+// itself.
 CodedTransfer openTransfer(int order, std::uint32_t outputs) {
   transfer::TransferShape shape;
   shape.order = static_cast<std::uint32_t>(order);
@@ -39,7 +40,7 @@ CodedTransfer openTransfer(int order, std::uint32_t outputs) {
   return codeTransfer(vector, 1, shape, {.bound = kBound});
 }
 
-// A cell of one sample in the middle of the group.
+// Adds a cell with one sample in the middle of the group.
 void addSample(BakedGroup& group, SampleKind kind, CodedTransfer transfer) {
   const glm::vec3 center = group.light_probes.points.front();
   const auto first = static_cast<std::uint32_t>(group.samples.positions.size());
@@ -54,7 +55,7 @@ BakedGroup openSurfaces(const Scene& scene, const RigidGroup& group, const Shipp
   BakedGroup baked;
   baked.geometry = buildGroupGeometry(group, scene, meshes.decoded, with_glossy);
   baked.light_probes.points = {0.5f * (baked.geometry.bounds_min + baked.geometry.bounds_max)};
-  // Of no vertex: it says how many bands of light the group takes.
+  // This sample belongs to no vertex: it says how many bands of light the group takes.
   addSample(baked, SampleKind::Diffuse, openTransfer(options.order, 1));
   baked.samples.vertex_sample.assign(baked.geometry.positions.size(), kNoSample);
   for (const DrawGeometry& draw : baked.geometry.draws) {
@@ -69,7 +70,7 @@ BakedGroup openSurfaces(const Scene& scene, const RigidGroup& group, const Shipp
   return baked;
 }
 
-// One voxel fills the box.
+// The transfer of the volume is one voxel that fills its box.
 BakedGroup openVolume(const Scene& scene, const RigidGroup& group, const BakeOptions& options) {
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
   BakedGroup baked;
@@ -90,7 +91,7 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   context.progress.begin("plan");
   const auto plan = planFor(scene, options);
   if (!plan) return failAgain(plan.error());
-  // Making tables takes longer than anything here: glossy surfaces are Lambert until they are there.
+  // Making BRDF tables takes longer than all else here, so glossy surfaces are diffuse until they exist.
   const BrdfTables tables;
   auto split = splitMeshes(scene, plan->groups, options.max_edge_m);
   if (!split) return failAgain(split.error());

@@ -48,7 +48,7 @@ QuantizedDensity quantizedTo(std::span<const float> density, float largest, std:
   return out;
 }
 
-// Where the light that comes in is sampled: the middle of what is there, else of the box.
+// Returns where incoming light is sampled: the centre of mass of the density, or of the box if it is empty.
 glm::vec3 centreOf(const glm::uvec3& size, std::span<const float> values, const glm::mat4& group_from_grid) {
   glm::dvec3 sum(0.0);
   double mass = 0.0;
@@ -63,7 +63,7 @@ glm::vec3 centreOf(const glm::uvec3& size, std::span<const float> values, const 
   return glm::vec3(glm::dmat4(group_from_grid) * glm::dvec4(grid, 1.0));
 }
 
-// The vectors of some samples.
+// A Part is a range of the samples of a volume's transfer.
 struct Part {
   const VolumeTransfer& transfer;
   std::size_t begin, end;
@@ -77,7 +77,7 @@ struct Part {
     return std::span(transfer.visibility)
         .subspan(begin * transfer.visibilitySize(), count() * transfer.visibilitySize());
   }
-  // With all scatterings less the unscattered light.
+  // Returns the transfer with all scatterings, less the unscattered light.
   std::vector<float> scattered() const {
     const std::size_t block = transfer.outputs() * transfer.columns();
     std::vector<float> out;
@@ -99,7 +99,7 @@ transfer::TransferShape shapeOf(const VolumeTransfer& transfer) {
   return shape;
 }
 
-// What of a volume goes into the bundle, and what the report says of it.
+// A CodedVolume is what of a volume goes into the bundle, and what the report says of it.
 struct CodedVolume {
   std::vector<std::uint32_t> voxels;
   std::vector<CodedCell> cells;
@@ -121,13 +121,13 @@ bool read(ByteReader& in, CodedVolume& coded) {
          in.read(coded.row_bytes) && in.read(coded.iterations);
 }
 
-// Codes the transfer of a volume.
 class VolumeCoder {
  public:
   VolumeCoder(const VolumeTransfer& transfer, const BakeOptions& options, CachedCoding& coding)
       : transfer_(transfer), options_(options), coding_(coding) {}
 
-  // Codes runs of samples of nearly the same length one by one. Returns false if stopped.
+  // Cuts the samples into cells of nearly the same size and codes one after the other. Returns false if
+  // stopped.
   bool codeCells(Progress& progress, CodedVolume& out) {
     const std::size_t samples = transfer_.grid.samples();
     const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
@@ -161,8 +161,8 @@ class VolumeCoder {
     return coded;
   }
 
-  // What comes through as visibility, what is scattered as matrices; they are shown together, and errors
-  // count by how much of each band goes on, g^2l.
+  // Codes transmitted light as visibility and scattered light as matrices. They are shown together, and
+  // errors count by how much of each band the phase function keeps, g^2l.
   std::vector<CodedTransfer> codeMatrices(const Part& part, CodedVolume& out) {
     transfer::TransferShape visible = shapeOf(transfer_), scattered = visible;
     visible.full_channels = 0;
@@ -195,10 +195,10 @@ class VolumeCoder {
   CachedCoding& coding_;
 };
 
-// The surfaces that a volume never moves against, from where they lie (GroupGeometry::origin).
+// Within holds the surfaces that a volume never moves against.
 struct Within {
-  const GroupGeometry* geometry = nullptr;  // null: there are none
-  glm::mat4 from_group{1.0f};
+  const GroupGeometry* geometry = nullptr;  // null if there are none
+  glm::mat4 from_group{1.0f};  // from the volume's group to points relative to GroupGeometry::origin
 };
 
 Within surfacesAround(const std::vector<RigidGroup>& groups, std::size_t index,
@@ -211,7 +211,8 @@ Within surfacesAround(const std::vector<RigidGroup>& groups, std::size_t index,
                                glm::inverse(worldFromGroup(groups[w])) * worldFromGroup(group))};
 }
 
-// Of its transfer: the medium as it ships, and the surfaces that it never moves against.
+// Returns the key of a volume's transfer, from the medium as it ships and the surfaces that it never moves
+// against.
 Key transferKey(const Scene& scene, const BakedVolume& placed, const VolumeSettings& settings,
                 const Within& within) {
   KeyMaker key = KeyMaker::ofStage("volume");
@@ -228,7 +229,7 @@ Key transferKey(const Scene& scene, const BakedVolume& placed, const VolumeSetti
   return key.key();
 }
 
-// A volume that is placed, and how its transfer is baked.
+// A PlacedVolume is a volume in its group, and how its transfer is baked.
 struct PlacedVolume {
   const SceneBake& bake;
   const AlphaMaps& alpha_maps;
@@ -347,7 +348,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
                             surfacesAround(plan.groups, index, baked),
                             {.order = options.order,
                              .rays = options.effectiveRays(),
-                             // As the reference: bounces are counted between surfaces, not in volumes.
+                             // As in the reference, bounces are counted between surfaces, not in volumes.
                              .scatterings = options.bounces == 0 ? 0 : -1,
                              .grid = options.volume_grid,
                              .memory = options.effectiveMemory() / 2,
@@ -359,7 +360,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
 
   CodedVolume coded;
   CachedCoding coding(context);
-  // The transfer is baked only if something that follows from it is not found.
+  // The transfer is baked only if a result that follows from it is not in the cache.
   std::optional<MarchedVolume> light;
   const auto bakeLight = [&](const auto& use) -> Result<void> {
     auto transfer = transferOf(placed, own);

@@ -16,7 +16,7 @@ BakeContext insideContext(const BakeContext& context, std::span<const std::uint3
   return context.keyed(key.add(context.key).addList(triangles).key());
 }
 
-// The same rays as at the vertices, and nothing of what they meet.
+// Inside faces the same rays are traced as at the vertices, but their hits are not kept.
 DirectSettings settingsInside(const DirectSettings& settings) {
   DirectSettings inside = settings;
   inside.keep_hits = false;
@@ -24,7 +24,8 @@ DirectSettings settingsInside(const DirectSettings& settings) {
   return inside;
 }
 
-// Values of a stretch, `width` each, to what rays from inside the faces found.
+// A Part is a range of values at vertices, `width` each, and what rays from inside the faces found in their
+// place.
 struct Part {
   std::size_t width;
   std::span<const float> at_points;

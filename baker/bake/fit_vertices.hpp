@@ -1,6 +1,7 @@
-// Direct light at the vertices as interpolation over faces shows it best: rays from inside the faces over
-// which it changes, and a least-squares fit to what they see (trace/vertex_fit.hpp). Bounces gather
-// from the fitted values; what they bring to diffuse samples is added at the vertices.
+// Fits direct light at the vertices so that interpolation over faces shows it best: it traces rays from
+// inside the faces over which light changes, and fits the vertices to what they see by least squares
+// (trace/vertex_fit.hpp). Bounces gather from the fitted values; the light that they bring to diffuse samples
+// is added at the vertices.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +14,17 @@
 namespace lambent::baker {
 
 struct FitFigures {
-  std::size_t points = 0;  // inside faces
+  std::size_t points = 0;  // points inside faces
   std::uint64_t rays = 0, rays_kept = 0;
   double ray_seconds = 0.0;
 };
 
-// Fits plain and normal-mapped samples. The key of the context is that of the rays of the vertices. Returns
-// nothing if stopped. The result does not depend on the number of threads.
+// Fits diffuse samples, with and without normal maps. The key of the context is that of the rays of the
+// vertices. Returns nothing if stopped. The result does not depend on the number of threads.
 std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const TracedScene& scene, DirectResult& direct,
                                      const BakeContext& context);
-// Fits glossy samples. Where hits are kept for bounces, those of the points are, too, in what is left of the
-// memory for hits, and glossy.inside has them.
+// Fits glossy samples. If hits are kept for bounces, the hits of the points inside faces are kept too, as far
+// as the memory for hits allows, in glossy.inside.
 std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy, const BakeContext& context);
 
 }  // namespace lambent::baker

@@ -12,7 +12,7 @@ const gltf::Material* materialOf(const Scene& scene, const DrawGeometry& draw) {
   return draw.material < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(draw.material)];
 }
 
-// At unit strength: where it comes from, and the texture's share.
+// Adds where the lights of the group shine from, at unit strength, and the textures that scale emission.
 void addLights(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
                KeyMaker& key) {
   key.addText("lights").add(std::uint64_t{lights.size()});
@@ -53,13 +53,13 @@ void addColors(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key)
     key.add(material != nullptr);
     if (!material) continue;
     addValues(*material, gltf::MaterialPart::Color, key);
-    gltf::forEachMaterialTexture([&](const auto& field) {  // their coordinates are among the geometry's
+    gltf::forEachMaterialTexture([&](const auto& field) {  // texture coordinates are among the geometry's
       if (field.part == gltf::MaterialPart::Color) addTexture(scene, (material->*field.member).texture, key);
     });
   }
 }
 
-// How glossy surfaces reflect (SurfaceBrdfs), beside their base colours.
+// Adds how glossy surfaces reflect (SurfaceBrdfs), beside their base colours.
 void addReflection(const Scene& scene, const GroupGeometry& geometry, int order, KeyMaker& key) {
   bool any = false;
   for (const DrawGeometry& draw : geometry.draws) any |= draw.kind == SampleKind::Glossy;
@@ -74,7 +74,7 @@ void addReflection(const Scene& scene, const GroupGeometry& geometry, int order,
     gltf::forEachMaterialTexture([&](const auto& field) {
       if (field.part == gltf::MaterialPart::Reflection) addTextureRef(scene, m->*field.member, key);
     });
-    // Its coordinates alone: they tell the tangent.
+    // Only the coordinates of the normal map count: they define the tangent.
     const gltf::TextureRef& normal = m->normal_texture;
     key.add(normal.texture >= 0).add(normal.texcoord).add(normal.offset).add(normal.scale);
     key.add(normal.rotation_rad).add(m->brdf >= 0);
@@ -136,7 +136,7 @@ Key brdfTablesKey(const Scene& scene, int order, int shipped) {
     const bundle::BrdfFamily family = brdfKindOf(material).family;
     key.add(family);
     if (family != bundle::BrdfFamily::Measured) continue;
-    // Its table may depend on all that it reflects.
+    // A measured BRDF's table may depend on all reflection values of its material.
     addValues(material, gltf::MaterialPart::Color, key);
     addValues(material, gltf::MaterialPart::Reflection, key);
     key.add(material.brdf);

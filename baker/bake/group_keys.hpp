@@ -1,5 +1,6 @@
-// Under which keys the results of a group are kept, by what each truly depends on. Colours are not in what
-// rays ask for, the strengths of lamps nowhere, nor names, nor where a movable group stands.
+// Makes the keys under which the results of a group are kept. Each key covers only what its result depends
+// on: the keys of rays leave out colours, and no key has the strengths of lamps, names, or where a movable
+// group stands.
 #pragma once
 
 #include <span>
@@ -15,17 +16,17 @@ namespace lambent::baker {
 
 struct GroupKeys {
   Key light_probes;
-  Key rays;         // pass 0: transfer without a bounce, and what was met
-  Key glossy_rays;  // the same of glossy samples
+  Key rays;         // of pass 0: direct transfer and the hits of its rays
+  Key glossy_rays;  // the same for glossy samples
   Key proxy;
-  Key bounces;  // and what surfaces reflect
-  Key cells;    // and how it is coded: all that a group hands to the bundle
+  Key bounces;  // covers also what surfaces reflect
+  Key cells;    // covers also how transfer is coded; the result is all that a group hands to the bundle
 };
 
 GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
                     LightProbeCount light_probes, const BakeOptions& options);
 
-// Of the tables of b(v) of a scene's glossy materials.
+// Returns the key of the tables of b(v) of a scene's glossy materials.
 Key brdfTablesKey(const Scene& scene, int order, int shipped);
 
 }  // namespace lambent::baker

@@ -6,8 +6,8 @@ namespace lambent::baker {
 
 namespace {
 
-// What the runtime holds of a group's shaded samples lies in one page: a vec4 for each output of each sample,
-// and an OpenGL driver may have pages of 128 MiB.
+// The runtime holds what it shades of a group's samples in one page: a vec4 for each output of each sample.
+// An OpenGL driver may have pages of 128 MiB.
 constexpr std::uint64_t kMostBytesShaded = std::uint64_t{128} << 20;
 std::uint64_t bytesShaded(const SampleSet& samples, int glossy_order) {
   const std::uint64_t outputs =

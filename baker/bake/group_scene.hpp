@@ -1,6 +1,5 @@
-// One rigid group of surfaces as its effects share it: its geometry, where it is sampled, its lights, the
-// keys under which its results are kept; and, once something has to be computed, its colours, its BRDFs and
-// the hierarchy that rays are traced in.
+// Holds what the effects on one rigid group of surfaces share: its geometry, samples, lights and cache keys;
+// and, once something has to be computed, its colours, its BRDFs and the ray hierarchy.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +15,11 @@ namespace lambent::baker {
 
 class GroupScene {
  public:
-  // Places the samples of group `index` of the plan. All that is passed outlives this. Where the runtime
-  // could not hold its glossy samples, they are Lambert's, and the report says so.
+  // Places the samples of group `index` of the plan. All arguments must outlive this. If the runtime could
+  // not hold the group's glossy samples, they become diffuse, and the report says so.
   GroupScene(const SceneBake& bake, const SurfaceInputs& inputs, std::size_t index,
              const BakeContext& context);
-  GroupScene(const GroupScene&) = delete;  // what is loaded refers to the geometry
+  GroupScene(const GroupScene&) = delete;  // the loaded parts refer to the geometry
   GroupScene& operator=(const GroupScene&) = delete;
 
   const SceneBake& bake;
@@ -34,14 +33,15 @@ class GroupScene {
   bool anyDiffuse() const { return samples.glossy.begin > 0; }
   bool anyGlossy() const { return !samples.glossy.empty(); }
 
-  // Loads the colours, once: pictures take long to decode. Errors: images that cannot be decoded.
+  // Loads the colours once, since images take long to decode. Errors: images that cannot be decoded.
   Result<void> loadColors();
-  // Loads the colours and BRDFs, and builds the hierarchy. Errors: as loadColors(), no memory for it.
+  // Loads the colours and BRDFs, and builds the ray hierarchy. Errors: those of loadColors(), no memory for
+  // the hierarchy.
   Result<void> prepareRays(const BakeContext& context);
 
-  // After loadColors().
+  // May be called after loadColors().
   const SurfaceColors& colors() const { return *colors_; }
-  // After prepareRays(): what rays see, and how glossy surfaces reflect; null where there are none.
+  // May be called after prepareRays(). brdfs() returns null if the group has no glossy surfaces.
   TracedScene view() const { return {bake.scene, geometry, samples, *rays_, *colors_, lights}; }
   const SurfaceBrdfs* brdfs() const { return brdfs_ ? &*brdfs_ : nullptr; }
 
@@ -52,7 +52,7 @@ class GroupScene {
   std::optional<RayScene> rays_;
 };
 
-// Returns how many glossy samples a group may have: what the runtime holds of them lies in one page.
+// Returns how many glossy samples a group may have; the runtime holds what it shades of them in one page.
 std::size_t mostGlossySamples(int glossy_order);
 
 }  // namespace lambent::baker

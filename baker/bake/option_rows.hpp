@@ -19,7 +19,7 @@ struct OptionRow {
   std::string_view setting;  // in the settings that a bundle records; empty: it does not change the bytes
   std::string_view kind;     // what a word looks like, for help: "N|auto"
   std::string_view help;
-  std::vector<std::string_view> words{};  // that stand for values
+  std::vector<std::string_view> words{};  // words that stand for values
   bool only_words = false;                // it takes no other words
   bool shows_default = false;             // the default is a value like others, not "auto" or "none"
 
@@ -35,7 +35,7 @@ struct OptionRow {
   std::string_view former{};  // the name before 0.11, which is still understood but not shown; may be empty
 };
 
-// In the order of the help.
+// Returns the rows in the order of the help.
 std::span<const OptionRow> optionRows();
 const OptionRow* findOption(std::string_view name);  // null if there is none
 

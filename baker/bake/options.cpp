@@ -25,7 +25,7 @@ struct QualityRow {
   double refine_wedges;
   bool fits_glossy;
   float glossy_looseness;
-  int exit_bands;  // of exitOrder(), beside five of light
+  int exit_bands;  // for exitOrder() with five bands of incident light
 };
 constexpr std::array kQualities = {
     QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000, 0.0, false, 0.0f, 7},
@@ -38,7 +38,7 @@ const QualityRow& row(Quality quality) {
   return kQualities[static_cast<std::size_t>(quality)];
 }
 
-// How far refinement may go, in words.
+// Describes in words how far refinement may go.
 std::string refineMost(const QualityRow& row) {
   return fmt::format("{} x + {}, fans {} x", row.refine_growth, row.refine_added, row.refine_wedges);
 }
@@ -81,7 +81,8 @@ float BakeOptions::glossyLooseness() const {
 }
 
 int BakeOptions::exitOrder() const {
-  // No more than visibility is known for beside so many bands of light.
+  // A product of light with n bands and visibility needs order + n - 1 bands of visibility, of which at most
+  // kMaxVisibilityBands are known.
   return bounces == 0
              ? glossy_order
              : std::max(glossy_order, std::min(row(quality).exit_bands, sh::kMaxVisibilityBands + 1 - order));
@@ -120,7 +121,7 @@ std::uint64_t BakeOptions::effectiveMemory() const {
 }
 
 std::map<std::string, std::string> BakeOptions::settings() const {
-  // What a quality stands for beside the options.
+  // These settings follow from the quality, not from the options.
   std::map<std::string, std::string> settings = {
       {"glossyErrorBound", fmt::format("{}", effectiveGlossyErrorBound())},
       {"refineMost", refineMost(row(quality))}};
@@ -146,7 +147,8 @@ std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string,
     BakeOptions options = all;
     options.quality = quality;
     if (const std::string fit = find("fit"); fit == "on" || fit == "off") options.fit = fit == "on";
-    // The settings that options of this quality must give back, with those that follow from the quality.
+    // These are the settings that options of this quality must reproduce, among them those that follow from
+    // the quality.
     auto wanted = options.settings();
     for (const char* name : {"fit", "glossyErrorBound", "refineMost"}) wanted[name] = find(name);
     const auto wrong = [&](const BakeOptions& tried) {
@@ -154,7 +156,7 @@ std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string,
       for (const auto& [name, word] : tried.settings()) count += wanted[name] != word;
       return count;
     };
-    // What the quality stands for anyway was not asked for.
+    // An option that can be left out without changing the settings was not asked for.
     int asked = 4;
     const auto leaveOut = [&](auto member) {
       BakeOptions fewer = options;

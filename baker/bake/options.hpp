@@ -1,5 +1,6 @@
-// What a bake can be asked for, and what each quality stands for. settings() is what the bundle records:
-// everything that changes the bytes that come out, and nothing else (not the number of threads, not memory).
+// Holds what a bake can be asked for, and what each quality stands for. settings() is what the bundle
+// records: everything that changes its bytes, and nothing else (neither the number of threads nor the
+// memory).
 #pragma once
 
 #include <cstddef>
@@ -19,60 +20,63 @@ struct BakeOptions {
   static constexpr int kMostBounces = 64;
 
   Quality quality = Quality::Standard;
-  int order = 5;           // 1..8; with glossy surfaces 1..6
+  int order = 5;           // bands of incident light, 1..8, or 1..6 with glossy surfaces
   int glossy_order = 5;    // bands of the light that glossy surfaces reflect, 4..6
-  std::uint32_t rays = 0;  // per sample over its hemisphere; 0: the quality's
-  // Between surfaces. 0: direct light with shadows, and single scattering in volumes, which else scatter as
-  // often as they do; -1: as many as the error bound asks for.
+  std::uint32_t rays = 0;  // per sample over its hemisphere; 0: as the quality says
+  // Bounces between surfaces. -1: as many as the error bound asks for. 0: direct light with shadows, and only
+  // single scattering in volumes; any other value computes all scattering there.
   int bounces = -1;
-  float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's
-  float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
-  // Points of neighborhood grids along their longest, middle and shortest side, where the scene asks for no
-  // other; 0: 64 x 64 x 8 in a slab, else 32 each; for bodies that the scene does not name a quarter of that.
+  float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: as the quality says
+  float max_edge_m = 0.0f;   // edges longer than this are split; 0: no limit
+  // Points of neighborhood grids along their longest, middle and shortest side, unless the scene asks for
+  // others. 0: 64 x 64 x 8 for a slab, else 32 each, and a quarter as many for bodies that the scene does not
+  // name.
   glm::uvec3 neighborhood_grid{0};
-  // Where shadows change, edges are split until interpolation errs by less than this, relative RMS against
-  // open light; 0: nowhere; under 0: the quality's.
+  // Where shadows change, edges are split until the interpolation error is less than this, relative RMS
+  // against open light. 0: no edges are split; negative: as the quality says.
   float refine_bound = -1.0f;
-  // Light at vertices is what interpolation over the faces shows best (bake/fit_vertices.hpp), not what the
-  // vertices see: of glossy surfaces direct and bounced light, of diffuse ones direct light; none: of glossy
-  // surfaces alone, but for drafts.
+  // True if values at vertices are those with which interpolation over the faces shows light best
+  // (bake/fit_vertices.hpp), and not what the vertices see. This concerns direct and bounced light of glossy
+  // surfaces, and direct light of diffuse ones. Unset: glossy surfaces alone are fitted, except in drafts.
   std::optional<bool> fit = {};
-  int light_probes = 0;        // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
+  int light_probes = 0;        // per cell, 1..32; 0: chosen by how near light comes (local_light.hpp)
   glm::uvec3 volume_grid{32};  // voxels of a volume's transfer, 1..256 along each axis
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
-  std::uint64_t memory_bytes = 0;  // that passes may keep things in; 0: half of the machine's
+  std::uint64_t memory_bytes = 0;  // limit on what passes keep in memory; 0: half of the machine's
 
   std::size_t effectiveRays() const;
   float effectiveErrorBound() const;
-  // Of glossy transfer, where bytes are dear: the same if it was given, else the quality's own.
+  // Returns the bound for glossy transfer, which takes more bytes: error_bound if it is set, else the
+  // quality's.
   float effectiveGlossyErrorBound() const;
-  // Where few components of bounced light leave out more than so many times that bound, all of them are coded
-  // to as much; 0: never, as with a bound that was given, which is kept at any price, and for drafts: it may
-  // take as long as all else.
+  // If few components of bounced light leave an error of more than this many times that bound, all components
+  // are coded, to within that many times the bound. 0 switches this off: if error_bound was given, which is
+  // kept at any price, and for drafts, since it may take as long as all else.
   float glossyLooseness() const;
   float effectiveRefineBound() const;
-  // Bands of the light at points that rays meet, of which what leaves them is made: more than glossyOrder,
-  // since a kernel meets edges of shadows there that few bands do not have; 4..9, by quality. Without bounces
-  // glossyOrder.
+  // Returns the number of bands of the light at hits from which exit radiance is computed: 4..9, by quality,
+  // or glossy_order without bounces. It is more than glossy_order because exit kernels meet shadow edges
+  // there that few bands cannot represent.
   int exitOrder() const;
   bool fitsDiffuse() const;
   bool fitsGlossy() const;
-  // How far refinement may go: times as many vertices, and so many more.
+  // Limits on refinement: the factor on the number of vertices, and the number of vertices added beyond that.
   double refineGrowth() const;
   std::size_t refineAdded() const;
-  double refineWedges() const;  // values apart at glossy vertices, by vertices
+  double refineWedges() const;  // fans at glossy vertices, relative to the number of vertices
   std::uint64_t effectiveMemory() const;
   std::map<std::string, std::string> settings() const;
-  // Options with those settings, of the quality that they differ from least; names that settings() does not
-  // have are passed over. Nothing where one is missing or is no value of its kind. threads and memory are the
-  // usual ones.
+  // Returns options with those settings, of the quality that they differ from least. Names that settings()
+  // does not have are ignored. Returns nothing if a setting is missing or not of its kind. `threads` and
+  // `memory_bytes` keep their defaults.
   static std::optional<BakeOptions> fromSettings(const std::map<std::string, std::string>& settings);
 };
 
 const char* qualityName(Quality quality);
 
-// Points or voxels along each axis, as people write them: "48" or "64x32x64"; nothing where it is neither.
+// Reads the number of points or voxels along each axis, as "48" or "64x32x64". Returns nothing if the text is
+// neither.
 std::optional<glm::uvec3> gridSizeFrom(std::string_view text);
 
 }  // namespace lambent::baker

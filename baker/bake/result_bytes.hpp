@@ -1,5 +1,5 @@
-// What stages of a bake hand on, as bytes to keep in a cache and back. Reading is false, and leaves any part
-// changed, where the bytes are not such a result.
+// Packs the results of stages into bytes for the cache, and reads them back. read() returns false if the
+// bytes are not such a result; the value may then have changed in part.
 #pragma once
 
 #include "baker/brdf/surface_brdfs.hpp"

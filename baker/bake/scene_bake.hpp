@@ -1,4 +1,4 @@
-// What all groups of a scene share while they are baked.
+// Holds what all groups of a scene share while they are baked.
 #pragma once
 
 #include "baker/bake/bake.hpp"
@@ -9,12 +9,13 @@
 
 namespace lambent::baker {
 
-// The bake of a scene: what is asked for, what is planned, and the report that everything adds to.
+// A SceneBake is the bake of one scene: what is asked for, what is planned, and the report that all stages
+// add to.
 struct SceneBake {
   const Scene& scene;
   const BakeOptions& options;
   const EffectPlan& plan;
-  const BrdfTables& tables;  // of the scene's glossy materials; empty where all are shown as Lambert
+  const BrdfTables& tables;  // of the scene's glossy materials; empty if all are shown as diffuse
   BakeReport& report;
 
   tl::unexpected<Error> stopped() const {
@@ -22,7 +23,7 @@ struct SceneBake {
   }
 };
 
-// What surfaces are made of.
+// SurfaceInputs are the decoded meshes and images that surfaces are made of.
 struct SurfaceInputs {
   const ShippedMeshes& meshes;
   const AlphaMaps& alpha_maps;

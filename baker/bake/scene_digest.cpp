@@ -1,4 +1,5 @@
-// What decides whether a bundle is up to date: a digest of the scene, and the settings recorded in the file.
+// Computes the digest of a scene. With the settings recorded in the file it decides whether a bundle is up to
+// date.
 #include <fmt/format.h>
 
 #include "baker/bake/bake.hpp"
@@ -23,7 +24,7 @@ void addField(const T& value, KeyMaker& digest) {
   digest.add(value);
 }
 
-// Field by field: padding between fields has no value.
+// Fields are added one by one, since the padding between them is undefined.
 void addMaterial(const gltf::Material& material, KeyMaker& digest) {
   gltf::forEachMaterialField([&](const auto& field) { addField(material.*field.member, digest); });
 }

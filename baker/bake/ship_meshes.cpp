@@ -18,8 +18,9 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr int kLatticeBits =
-    18;  // of the group's longest axis: what a picture of 1000 pixels moves by is under a hundredth of one
+// Lattice bits along the group's longest axis: in a picture of 1000 pixels a vertex moves by less than a
+// hundredth of a pixel.
+constexpr int kLatticeBits = 18;
 constexpr std::size_t kMaxTriangles = 4'000'000;  // per primitive after splitting
 
 struct Box {
@@ -39,13 +40,12 @@ Box boxOf(const SceneMesh& mesh, const glm::mat4& transform) {
   return box;
 }
 
-// The longest that a unit vector of the mesh becomes in the group.
+// Returns the greatest length of a mesh's unit axes in the group's frame.
 float scaleOf(const glm::mat4& m) {
   return std::max({glm::length(glm::vec3(m[0])), glm::length(glm::vec3(m[1])), glm::length(glm::vec3(m[2]))});
 }
 
-// Per mesh: its lattice step and its longest edge, in mesh units. A mesh that several draws use takes the
-// finest.
+// Limits of one mesh, in mesh units. A mesh that several draws use takes the finest.
 struct MeshLimits {
   float step = std::numeric_limits<float>::max();
   float max_edge = std::numeric_limits<float>::infinity();
@@ -67,7 +67,7 @@ std::vector<MeshLimits> limitsOf(const Scene& scene, const std::vector<RigidGrou
       const float scale = scaleOf(draw.group_from_mesh);
       if (!(scale > 0.0f)) continue;
       MeshLimits& mesh = limits[draw.mesh];
-      // Powers of two, so that meshes under the same scale get the very same lattice.
+      // Steps are powers of two, so that meshes under the same scale get the very same lattice.
       mesh.step = std::min(mesh.step, std::exp2(std::floor(std::log2(group_step / scale))));
       if (max_edge_m > 0.0f) mesh.max_edge = std::min(mesh.max_edge, max_edge_m / scale);
     }
@@ -76,7 +76,7 @@ std::vector<MeshLimits> limitsOf(const Scene& scene, const std::vector<RigidGrou
     const Box box = boxOf(scene.meshes[m], glm::mat4(1.0f));
     if (limits[m].step == std::numeric_limits<float>::max())  // drawn by no group
       limits[m].step = latticeStep(std::max(box.longest(), std::numeric_limits<float>::min()), kLatticeBits);
-    // A mesh far from its own origin has no floats for a lattice that fine.
+    // Floats of a mesh far from its own origin cannot represent a lattice that fine.
     const float finest =
         latticeStep(std::max(box.furthest(), std::numeric_limits<float>::min()), kMaxPositionBits - 1);
     limits[m].step = std::max(limits[m].step, finest);

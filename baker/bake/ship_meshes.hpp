@@ -1,4 +1,4 @@
-// "Bake what ships": meshes are refined, coded by Draco on one lattice per group and decoded again before
+// Bakes what ships: meshes are split, encoded by Draco on one lattice per group and decoded again before
 // anything is computed on them.
 #pragma once
 
@@ -19,11 +19,12 @@ struct ShippedMeshes {
 
 using Meshes = std::vector<std::vector<bundle::MeshData>>;  // [mesh][primitive]
 
-// The scene's meshes; edges longer than max_edge_m (in the group's metres) are split, 0: none. Error: too
-// many triangles.
+// Returns the scene's meshes with edges longer than max_edge_m (metres in the group's frame; 0: no limit)
+// split. Errors: too many triangles.
 Result<Meshes> splitMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m);
 
-// A mesh that was coded before on the same lattice is found in the cache.
+// Encodes and decodes the meshes. A mesh that was encoded before on the same lattice is taken from the cache.
+// Errors: a mesh that cannot be encoded, "stopped".
 Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
                                  const Meshes& meshes, const BakeContext& context);
 

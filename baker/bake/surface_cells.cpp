@@ -11,8 +11,9 @@ namespace lambent::baker {
 
 namespace {
 
-// Of the bound on glossy light, where light bounces: to halve the error costs visibility a dozen bytes a
-// vertex, and bounced light of sharp metals a hundred (docs/decisions/compression.md, "Glossy matrices").
+// The share of visibility in the bound on glossy light, where light bounces: halving the error costs
+// visibility a dozen bytes a vertex, and bounced light of sharp metals a hundred
+// (docs/decisions/compression.md, "Glossy matrices").
 constexpr float kOfVisibility = 0.35f;
 
 class CellCoder {
@@ -44,14 +45,14 @@ class CellCoder {
 };
 
 // Visibility and bounced light are shown together: errors of both are relative to both, and their squares add
-// up to that of the bound. A bound that was asked for is kept at any price.
+// up to the square of the bound. A bound that was asked for is kept at any price.
 std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, SurfaceFigures& figures) {
   std::vector<CodedTransfer> coded;
   const std::vector<CellVectors> parts = glossyCellVectors(cell, light_.glossy->field, grey_emission_);
   double shown = 0.0;
   bool any_bounced = false;
   for (const CellVectors& part : parts) {
-    if (part.shape.order == 0) continue;  // the group's lights
+    if (part.shape.order == 0) continue;  // transfer of the group's lights
     shown += transferEnergy(part.vectors, part.shape, kernel_power_);
     any_bounced |= !part.shape.isVisibility();
   }

@@ -1,4 +1,4 @@
-// The transfer of a group's surfaces in codes: all that the group hands to the bundle of it.
+// Codes the transfer of a group's surfaces: all that the group hands to the bundle of it.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@
 namespace lambent::baker {
 
 struct SurfaceCells {
-  // Per sample cell: light of the environment (of a glossy cell visibility, then bounced light), then, where
-  // there are some, of the group's lights.
+  // Transfers of each sample cell: that of the environment (for a glossy cell visibility, then bounced
+  // light), followed by that of the group's lights if it has any.
   std::vector<std::vector<CodedTransfer>> cells;
   SurfaceFigures figures;
 };

@@ -10,7 +10,7 @@ namespace lambent::baker {
 
 namespace {
 
-// What passes left out may amount to, as a share of the bound on the coding error.
+// The light that further passes would add may be this share of the bound on the coding error.
 constexpr double kTailShare = 0.3;
 
 void add(const FitFigures& fit, SurfaceFigures::Rays& rays, SurfaceFigures& figures) {
@@ -18,7 +18,7 @@ void add(const FitFigures& fit, SurfaceFigures::Rays& rays, SurfaceFigures& figu
   figures.ray_seconds += fit.ray_seconds;
 }
 
-// Direct light of diffuse samples. Returns false if stopped.
+// Traces direct light of diffuse samples. Returns false if stopped.
 bool traceDiffuse(const DirectPass& pass, const GroupScene& group, const BakeContext& context,
                   SurfaceTransport& light) {
   const BakeContext own = context.keyed(group.keys.rays);
@@ -38,7 +38,8 @@ bool traceDiffuse(const DirectPass& pass, const GroupScene& group, const BakeCon
   return true;
 }
 
-// Direct light of glossy samples, and what it is to diffuse ones. Returns false if stopped.
+// Traces direct light of glossy samples, and derives their diffuse transfer from it. Returns false if
+// stopped.
 bool traceGlossy(const GlossyPass& pass, const GroupScene& group, const BakeContext& context,
                  SurfaceTransport& light) {
   const BakeContext own = context.keyed(group.keys.glossy_rays);
@@ -61,7 +62,7 @@ bool traceGlossy(const GlossyPass& pass, const GroupScene& group, const BakeCont
   return true;
 }
 
-// Light between the surfaces; what rays met is not needed after it. Returns false if stopped.
+// Computes the light between surfaces; hits are not needed after it. Returns false if stopped.
 bool bounce(const DirectPass& pass, const GlossyPass* glossy_pass, const GroupScene& group,
             const BakeContext& context, SurfaceTransport& light) {
   const BakeOptions& options = group.bake.options;

@@ -1,5 +1,5 @@
-// The light of a group's surfaces, diffuse and glossy together: direct light of both, its fit to the faces,
-// and the bounces between them.
+// Computes the light of a group's surfaces, diffuse and glossy together: direct light of both, its fit to the
+// faces, and the bounces between them.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace lambent::baker {
 
-// What the bake of one group's surfaces came to, whether it was done now or found.
+// SurfaceFigures measure the bake of one group's surfaces, whether it was done now or found in the cache.
 struct SurfaceFigures {
   std::uint64_t filled_samples = 0, glossy_samples = 0;
-  std::uint64_t hit_bytes = 0;  // kept for the bounces
+  std::uint64_t hit_bytes = 0;  // memory of the hits kept for the bounces
   double worst_error = 0.0, worst_glossy_error = 0.0, left_out = 0.0;
   std::vector<double> pass_energy;
   struct Rays {
-    std::uint64_t traced = 0, kept = 0;  // in this run; that results of earlier runs stand for
+    std::uint64_t traced = 0, kept = 0;  // in this run; saved by results of earlier runs
   };
   Rays diffuse, glossy;
   double ray_seconds = 0.0;  // of this run
@@ -27,13 +27,13 @@ struct SurfaceFigures {
 
 struct SurfaceTransport {
   DirectResult direct;
-  std::optional<GlossyDirect> glossy;  // where there are glossy samples
+  std::optional<GlossyDirect> glossy;  // set if there are glossy samples
   std::optional<BounceResult> bounced;
-  std::size_t inside_faces = 0;  // glossy samples at which bounces were gathered beside those of vertices
-  SurfaceFigures figures;        // but for errors of coding
+  std::size_t inside_faces = 0;  // glossy samples inside faces that gathered bounces too
+  SurfaceFigures figures;        // without the errors of coding
 };
 
-// The group is prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay until
+// The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay until
 // dropTransport().
 std::optional<SurfaceTransport> transportLight(const GroupScene& group, const BakeContext& context);
 void dropTransport(const GroupScene& group, const SurfaceTransport& light, const BakeContext& context);

@@ -1,6 +1,6 @@
-// One interface for everything that reflects: values of f for given directions in the local frame (z the
-// normal, x the tangent), parted into lobes as runtime/bundle/brdf_table.hpp has them. brdf_kinds.hpp lists
-// them. No scene, no textures, no rays.
+// Defines the interface of all BRDFs: values of f for given directions in the local frame (z the normal, x
+// the tangent), split into lobes as runtime/bundle/brdf_table.hpp has them. It knows no scene, textures or
+// rays. brdf_kinds.hpp lists the BRDFs.
 #pragma once
 
 #include <cstddef>
@@ -16,15 +16,15 @@ namespace lambent::baker {
 
 struct MeasuredBrdf;
 
-// Where on the axes of a family's table.
+// BrdfParameters are coordinates on the axes of a family's table.
 struct BrdfParameters {
   float roughness = 1.0f;  // perceptual, 0..1; alpha = roughness²
   float strength = 0.0f;   // of anisotropy, 0..1
 };
 
-// How integration finds what a BRDF sends towards a view: a share of its directions by the cosine, the others
-// by a GGX distribution of half vectors about as narrow as the highlight. Bad advice costs accuracy, never
-// correctness.
+// A BrdfFocus tells integration where a BRDF sends light towards a view: a share of its directions follows
+// the cosine, the others a GGX distribution of half vectors about as narrow as the highlight. A bad choice
+// costs accuracy, never correctness.
 struct BrdfFocus {
   double alpha_t = 1.0, alpha_b = 1.0;
   double cosine_share = 0.5;
@@ -33,36 +33,36 @@ struct BrdfFocus {
 class Brdf {
  public:
   virtual ~Brdf() = default;
-  virtual std::uint32_t lobes() const = 0;  // 2: F0 and F90 parts; 3: RGB
+  virtual std::uint32_t lobes() const = 0;  // 2: F0 and F90 parts; 3: red, green, blue
   virtual bool isotropic() const = 0;
   virtual bool hasRoughness() const = 0;
   virtual BrdfFocus focus(const BrdfParameters& at) const = 0;
-  // f of each lobe, without the cosine; v and s unit, both with z > 0. Finite; reciprocal; not isotropic:
-  // mirrors in x and in y.
+  // Computes f of each lobe, without the cosine. v and s are unit and both have z > 0. Values must be finite
+  // and reciprocal; anisotropic BRDFs must be symmetric about the planes x = 0 and y = 0.
   virtual void value(const BrdfParameters& at, const glm::dvec3& v, const glm::dvec3& s,
                      std::span<double> out) const = 0;
 };
 
 std::unique_ptr<Brdf> makeGgx(bool anisotropic);
-// The measurement as import read it; between measured directions interpolated, scaled down where it would
-// reflect more than it receives. Errors name the file: too few directions.
+// Makes a BRDF from a measurement as import read it. Values are interpolated between measured directions, and
+// scaled down where the BRDF would reflect more than it receives. Errors name the file: too few directions.
 Result<std::unique_ptr<Brdf>> makeMeasured(const MeasuredBrdf& measured);
 
-// b of one view: out[lobe * order² + k], in the frame of the view. By so many directions spread evenly over
-// what `focus` says.
+// Integrates b of one view, in the frame of the view: out[lobe * order² + k]. Uses so many directions, spread
+// evenly over what `focus` says.
 void integrateView(const Brdf& brdf, const BrdfParameters& at, const bundle::BrdfView& view, int order,
                    std::size_t directions, std::span<double> out);
 
-// Nodes along each axis of a table; docs/measurements/glossy.md, "Tables of b(v)", has what they cost and
-// leave.
+// A BrdfGrid has the number of nodes along each axis of a table; docs/measurements/glossy.md, "Tables of
+// b(v)", lists their cost and error.
 struct BrdfGrid {
   std::uint32_t angles = 2, azimuths = 1, roughnesses = 1, strengths = 1;
 };
-// For tables of which `order` bands are shipped.
+// Returns the grid for tables of which `order` bands are shipped.
 BrdfGrid gridFor(const Brdf& brdf, int order);
 
-// b(v) over the whole grid, by integration that follows the lobe however narrow it is; 0.1 % or better.
-// Deterministic, on all threads. order 1..9.
+// Integrates b(v) over the whole grid, within 0.1 % however narrow the lobe is, with `order` bands, 1..9.
+// Runs on all threads, and the result does not depend on their number.
 bundle::BrdfTable integrateTable(const Brdf& brdf, int order);
 bundle::BrdfTable integrateTable(const Brdf& brdf, int order, const BrdfGrid& grid);
 

@@ -14,7 +14,7 @@ bool always(const Material&, const Material&) {
   return true;
 }
 
-// Earlier rows go before later ones; the last one serves all that is left.
+// The first row that serves a material is used; the last one serves all that are left.
 constexpr std::array kKinds = {
     BrdfKind{"measured", BrdfFamily::Measured, [](const Material& m) { return m.brdf >= 0; },
              [](const Material& a, const Material& b) { return a.brdf == b.brdf; },

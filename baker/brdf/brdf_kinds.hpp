@@ -1,8 +1,8 @@
-// The list of BRDFs: which materials reflect by which, and which of them share a table of b(v). GGX has
-// tables that serve every material of their family, with closed forms on the GPU beside them. Any other BRDF
-// is one function of the whole material, red, green and blue: it gets a table of family Measured, by which
-// the runtime shades without knowing what it holds. A lobe that is added is a class of kind Brdf in a file of
-// its own and a row of the list.
+// Lists the BRDFs: which materials use which, and which materials share a table of b(v). A GGX table serves
+// every material of its family, with closed forms on the GPU beside it. Any other BRDF is one function of the
+// whole material in red, green and blue: it gets a table of family Measured, with which the runtime shades
+// without knowing what it holds. To add one, derive a class from Brdf in a file of its own and add a row to
+// the list.
 #pragma once
 
 #include <memory>
@@ -15,17 +15,17 @@
 namespace lambent::baker {
 
 struct BrdfKind {
-  const char* name;  // an adjective, for plans
+  const char* name;  // an adjective, shown in plans
   bundle::BrdfFamily family;
-  bool (*serves)(const gltf::Material&);  // asked of materials that are not matte
-  bool (*share)(const gltf::Material& a,
-                const gltf::Material& b);  // whether two that it serves have one table
+  bool (*serves)(const gltf::Material&);  // is asked only of materials that are not matte
+  // Returns whether two materials that it serves have one table.
+  bool (*share)(const gltf::Material& a, const gltf::Material& b);
   Result<std::unique_ptr<Brdf>> (*make)(const Scene&, const gltf::Material&);
 };
 
 std::span<const BrdfKind> brdfKinds();
 
-// The first of the list that serves a material that is not matte.
+// Returns the first entry of the list that serves the material, which must not be matte.
 const BrdfKind& brdfKindOf(const gltf::Material& material);
 
 }  // namespace lambent::baker

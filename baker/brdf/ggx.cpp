@@ -1,6 +1,6 @@
-// The microfacet model of glTF 2.0 (appendix B) and KHR_materials_anisotropy: GGX normals (Walter and others
-// 2007), height-correlated Smith shadowing (Heitz 2014), Schlick's Fresnel (1994) parted into what F0 and F90
-// multiply:
+// The microfacet model of glTF 2.0 (appendix B) and KHR_materials_anisotropy has GGX normals (Walter and
+// others 2007), height-correlated Smith shadowing (Heitz 2014), and Schlick's Fresnel term (1994) split into
+// the factors of F0 and F90:
 //   f = D G2 / (4 v_z s_z) (F0 (1 - w) + F90 w),   w = (1 - v.h)^5.
 #include <algorithm>
 #include <cmath>

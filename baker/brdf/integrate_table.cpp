@@ -23,10 +23,11 @@ using bundle::kLeastViewCosine;
 using bundle::kMaxBrdfLobes;
 
 constexpr int kMaxBands = sh::kMaxFactoredOrder;
-// Directions of a view: leave 0.03 % (isotropic) and 0.08 % (not) in the mean over views and roughness.
+// Directions per view. They leave a mean error over views and roughness of 0.03 % (isotropic) or 0.08 %
+// (anisotropic).
 constexpr std::size_t kDirections = 4096, kAnisotropicDirections = 2048;
 
-// A view, never quite along the surface, and its frame.
+// A View is a direction of view, never quite along the surface, and its frame.
 class View {
  public:
   View(double cos_theta, double cos_phi, double sin_phi)
@@ -34,7 +35,7 @@ class View {
         cos_phi_(cos_phi),
         sin_phi_(sin_phi) {}
 
-  // Unit; x the tangent, z the normal.
+  // Returns the unit direction; x is the tangent, z the normal.
   glm::dvec3 local() const {
     const double r = std::sqrt(1 - cos_theta_ * cos_theta_);
     return {r * cos_phi_, r * sin_phi_, cos_theta_};
@@ -47,7 +48,7 @@ class View {
   double cos_theta_, cos_phi_, sin_phi_;
 };
 
-// Evenly over the unit disc: radius² and turn of the k-th of `count` points of a Fibonacci lattice.
+// Returns `count` points of a Fibonacci lattice, spread evenly over the unit disc.
 std::vector<glm::dvec2> discPoints(std::size_t count) {
   std::vector<glm::dvec2> points;
   for (std::size_t k = 0; k < count; ++k) {
@@ -59,8 +60,8 @@ std::vector<glm::dvec2> discPoints(std::size_t count) {
   return points;
 }
 
-// Directions for one view: half vectors as the view sees those of a GGX distribution (Heitz 2018, "Sampling
-// the GGX Distribution of Visible Normals"), and cosine-weighted ones.
+// Chooses directions for one view: reflections at half vectors from the view's visible GGX normals (Heitz
+// 2018, "Sampling the GGX Distribution of Visible Normals"), and cosine-weighted ones.
 class Focused {
  public:
   Focused(const BrdfFocus& focus, const glm::dvec3& v) : focus_(focus), v_(v) {
@@ -71,7 +72,7 @@ class Focused {
     smith_ = glm::length(glm::dvec3(focus.alpha_t * v.x, focus.alpha_b * v.y, v.z)) + v.z;
   }
 
-  // A point of the unit disc to a direction; below the horizon it carries nothing.
+  // Maps a point of the unit disc to a direction; one below the horizon carries nothing.
   glm::dvec3 reflected(const glm::dvec2& point) const {
     const double share = 0.5 * (1 + stretched_.z);
     const double y = std::lerp(std::sqrt(std::max(0.0, 1 - point.x * point.x)), point.y, share);
@@ -85,7 +86,7 @@ class Focused {
     return {point, std::sqrt(std::max(0.0, 1 - glm::dot(point, point)))};
   }
 
-  // Per steradian, of both together: G1(v) D(h) / (4 v_z), and cos/pi.
+  // Returns the density per steradian of both kinds together: G1(v) D(h) / (4 v_z), and cos/pi.
   double density(const glm::dvec3& s) const {
     double density = focus_.cosine_share * s.z * std::numbers::inv_pi;
     if (focus_.cosine_share < 1) {
@@ -103,7 +104,7 @@ class Focused {
   double smith_;
 };
 
-// Both kinds of points, for all views.
+// Points are the points of both kinds, the same for all views.
 struct Points {
   std::vector<glm::dvec2> half, cosine;
 
@@ -115,7 +116,7 @@ struct Points {
   }
 };
 
-// out[lobe * order² + k] = Σ f[lobe] y_k(s), many directions at a time.
+// Accumulates out[lobe * order² + k] = Σ f[lobe] y_k(s), many directions at a time.
 class Sums {
  public:
   Sums(int order, std::size_t lobes) : order_(order), lobes_(lobes) {}
@@ -190,7 +191,7 @@ void integrate(const Brdf& brdf, const BrdfParameters& at, const View& view, int
   sums.finish(out);
 }
 
-// View of a node.
+// Returns the view of a node.
 View nodeView(const BrdfGrid& grid, std::size_t angle, std::size_t azimuth) {
   const double u = static_cast<double>(angle) / (grid.angles - 1), past = 1 - u * u;
   const double cos_theta = 1 - past * past;
@@ -214,8 +215,8 @@ void integrateView(const Brdf& brdf, const BrdfParameters& at, const bundle::Brd
 
 BrdfGrid gridFor(const Brdf& brdf, int order) {
   if (!brdf.isotropic()) {
-    // Each pair of roughness and strength fills layers of a texture, four values in each: as many pairs as
-    // fit into the 2048 layers that OpenGL 4.5 promises.
+    // Each pair of roughness and strength fills layers of a texture with four values each. OpenGL 4.5
+    // guarantees 2048 layers, which limits the number of pairs.
     if (order >= 6) return {.angles = 24, .azimuths = 19, .roughnesses = 14, .strengths = 8};
     return {.angles = 24, .azimuths = 19, .roughnesses = 15, .strengths = 10};
   }

@@ -16,7 +16,7 @@ constexpr std::size_t kPlaces = 512;
 constexpr std::array kCosines = {0.9f, 0.65f, 0.4f, 0.18f};
 constexpr float kGoldenAngle = 2.39996323f;
 
-// A direction this far from the triangle's normal, another way round for each `turn`.
+// Returns a direction with this cosine to the triangle's normal, rotated about it by `turn`.
 glm::vec3 viewOf(const GroupGeometry& geometry, std::uint32_t triangle, float cosine, float turn) {
   const glm::uvec3& corners = geometry.triangles[triangle];
   const glm::vec3 a = geometry.positions[corners.x], ab = geometry.positions[corners.y] - a;

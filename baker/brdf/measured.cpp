@@ -1,7 +1,7 @@
-// Isotropic measurements at scattered directions, interpolated over half vector and difference
-// (docs/conventions.md, "Materials"): a weighed mean over (theta_h, theta_d), Romeiro, Vasilyev and Zickler
-// 2008, tabulated once. It is reciprocal by its coordinates, and stays so when it is scaled down where it
-// would reflect more than it receives.
+// Interpolates isotropic measurements at scattered directions over half vector and difference
+// (docs/conventions.md, "Materials"): a weighted mean over (theta_h, theta_d), after Romeiro, Vasilyev and
+// Zickler 2008, tabulated once. Its coordinates make it reciprocal, and it stays so when it is scaled down
+// where it would reflect more than it receives.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,13 +21,14 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kFewest = 8;  // measurements that say anything
+constexpr std::size_t kFewest = 8;  // measurements without which a BRDF is refused
 constexpr double kSharpness = 400;  // 1 / (2 sigma²) of the weights
 constexpr std::size_t kHalves = 257, kDifferences = 129;
 constexpr std::size_t kScaleNodes = 65;
 constexpr std::size_t kScaleDirections = 8192;
 
-// p = (sqrt(2 theta_h / pi), 2 theta_d / pi). Arc tangents: near 0 the arc cosine has no digits.
+// Returns (sqrt(2 theta_h / pi), 2 theta_d / pi). It uses arc tangents, since the arc cosine loses all digits
+// near 0.
 glm::dvec2 placeOf(const glm::dvec3& v, const glm::dvec3& s) {
   const glm::dvec3 sum = v + s;
   const double half = std::atan2(std::hypot(sum.x, sum.y), sum.z);
@@ -42,7 +43,7 @@ glm::dvec3 directionOf(double theta, double phi) {
 
 struct Between {
   std::size_t first;
-  double share;  // of the next
+  double share;  // weight of the node after `first`
 };
 
 Between between(double unit, std::size_t nodes) {
@@ -60,7 +61,7 @@ class Measured final : public Brdf {
     parallelRanges(kScaleNodes, 1, std::stop_token{}, [&](std::size_t begin, std::size_t end) {
       for (std::size_t node = begin; node < end; ++node) {
         const double root = static_cast<double>(node) / (kScaleNodes - 1);
-        std::array<double, 3> b{};  // with all scales at 1 yet
+        std::array<double, 3> b{};  // computed while all scales are still 1
         integrateView(*this, {}, {.cos_theta = static_cast<float>(root * root)}, 1, kScaleDirections, b);
         const double albedo = 2 * std::sqrt(std::numbers::pi) * *std::max_element(b.begin(), b.end());
         scales[node] = albedo > 1 ? 1 / albedo : 1.0;
@@ -99,7 +100,8 @@ class Measured final : public Brdf {
                                  static_cast<double>(d) / (kDifferences - 1));
           for (std::size_t i = 0; i < places.size(); ++i)
             distances[i] = glm::dot(places[i] - place, places[i] - place);
-          // Against the nearest: far from all of them the weights would vanish.
+          // Weights are relative to that of the nearest measurement; otherwise all would vanish far from
+          // them.
           const double nearest = *std::min_element(distances.begin(), distances.end());
           glm::dvec3 sum(0.0);
           double weights = 0;
@@ -115,7 +117,8 @@ class Measured final : public Brdf {
     });
   }
 
-  // Where the highlight at 30 degrees has fallen to half; GGX does so where tan(theta_h) = 0.644 alpha.
+  // Finds where the highlight at theta_d = 30 degrees has fallen to half; GGX falls to half at tan(theta_h) =
+  // 0.644 alpha.
   void findFocus() {
     const auto largest = [&](std::size_t h) {
       const glm::dvec3& f = table_[kDifferences / 3 * kHalves + h];

@@ -28,21 +28,21 @@ constexpr std::size_t kMaxBands = sh::kMaxFactoredOrder, kMaxCoefficients = kMax
 using Kernel = std::array<float, kMaxCoefficients>;
 
 struct Texture {
-  std::shared_ptr<const DecodedImage> image;  // null: 1 everywhere
+  std::shared_ptr<const DecodedImage> image;  // null: the texture is 1 everywhere
   gltf::Sampler sampler;
   gltf::TextureRef ref;
 };
 
-// Of one draw.
+// A Surface is the material of one draw.
 struct Surface {
   gltf::Material material;
   bool glossy = false, colored_vertices = false;
-  std::size_t table = 0;  // of a glossy one
+  std::size_t table = 0;  // index in State::tables, if glossy
   Texture base, metallic_roughness, specular, specular_color, anisotropy;
 };
 
-// A table whose values are weights of zonal factors in place of coefficients: both look-up and factoring are
-// linear.
+// Factored is a table with weights of zonal factors in place of coefficients; this is exact between nodes
+// too, since look-up and factoring are both linear.
 struct Factored {
   BrdfFamily family;
   BrdfTable table;
@@ -83,17 +83,18 @@ glm::vec3 anyAcross(const glm::vec3& n) {
                 {1.0f, 0.0f, 0.0f});
 }
 
-// The frame of a view about a normal: x along the surface towards where the view leans.
+// A ViewFrame is the frame of a view about a normal; x points along the surface, in the direction that the
+// view leans.
 struct ViewFrame {
   glm::vec3 x, y, z;
   float cos_theta;
   BrdfView view;  // azimuth folded into the first quadrant
 };
 
-// `tangent` is unit and across the normal; isotropic surfaces give any.
+// `tangent` is unit and orthogonal to the normal; for isotropic surfaces it may be any such direction.
 ViewFrame frameOf(const glm::vec3& normal, const glm::vec3& tangent, const glm::vec3& to) {
   const float cosine = glm::dot(normal, to);
-  // Straight above there is no such direction, and a rounding must not choose one.
+  // A view along the normal has no such direction, and rounding must not choose one.
   const glm::vec3 lean = to - cosine * normal;
   ViewFrame frame{.x = glm::dot(lean, lean) > 1e-8f ? glm::normalize(lean) : tangent,
                   .y = {},
@@ -102,7 +103,7 @@ ViewFrame frameOf(const glm::vec3& normal, const glm::vec3& tangent, const glm::
                   .view = {}};
   frame.y = glm::cross(normal, frame.x);
   const float cos_phi = glm::dot(frame.x, tangent), sin_phi = glm::dot(frame.x, glm::cross(normal, tangent));
-  // A mirrored view sees the mirrored table.
+  // A mirrored view uses the mirrored table.
   if (cos_phi * sin_phi < 0.0f) frame.y = -frame.y;
   frame.view = {std::clamp(cosine, kLeastViewCosine, 1.0f), std::abs(cos_phi), std::abs(sin_phi)};
   return frame;
@@ -112,10 +113,10 @@ constexpr std::size_t inWholeVectors(std::size_t lanes) {
   return (lanes + 7) / 8 * 8;
 }
 
-// Of all directions of a factored function.
+// Lanes for the axes of a factored function: one per axis, rounded up to whole vectors.
 constexpr std::size_t kAxisLanes = inWholeVectors(2 * sh::kMaxFactoredOrder - 1);
 
-// out_k of band l = Σ_i weights[i] harmonics[k][i].
+// Computes out_k of band l = Σ_i weights[i] harmonics[k][i].
 inline void sumAxes(const float* weights, std::size_t axes, std::size_t l, const float* harmonics,
                     float* out) {
   for (std::size_t k = l * l; k < (l + 1) * (l + 1); ++k) {
@@ -125,7 +126,7 @@ inline void sumAxes(const float* weights, std::size_t axes, std::size_t l, const
   }
 }
 
-// Band l has l + 1 axes. Order known: all is unrolled.
+// Band l has l + 1 axes. Since the order is known at compile time, all loops are unrolled.
 template <int Order>
 void sumIsotropic(const float* weights, const float* harmonics, float* out) {
   sh::detail::unrolled(std::make_integer_sequence<int, Order>{}, [&](auto band) {
@@ -134,15 +135,15 @@ void sumIsotropic(const float* weights, const float* harmonics, float* out) {
   });
 }
 
-// Of a point of a GGX surface, after textures.
+// Parameters describe a point of a GGX surface, after textures.
 struct Parameters {
   float roughness = 1.0f, metal = 0.0f;
   glm::vec3 base{0.0f}, f0{0.0f};
   float f90 = 0.0f;
 };
 
-// What is left to the diffuse part: band 0 has one axis, and y_00 sqrt(4 pi) = 1, so its weight is the lobe's
-// directional albedo. `second`: where the weights of the second lobe begin.
+// Returns the albedo left to the diffuse part. Band 0 has one axis, and y_00 sqrt(4 pi) = 1, so its weight is
+// the lobe's directional albedo. The weights of the second lobe begin at `second`.
 glm::vec3 diffuseRest(const Parameters& p, std::span<const float> weights, std::size_t second) {
   const glm::vec3 reflected = p.f0 * weights[0] + p.f90 * weights[second];
   const float rest = 1.0f - std::max({reflected.r, reflected.g, reflected.b});
@@ -177,12 +178,12 @@ struct SurfaceBrdfs::State {
   glm::vec3 baseColor(const Surface& surface, std::uint32_t triangle, float u, float v) const;
   glm::vec3 normalAt(std::uint32_t triangle, float u, float v) const;
   Parameters parametersAt(const Surface& surface, std::uint32_t triangle, float u, float v) const;
-  // As anisotropy(); of isotropic surfaces any direction and strength 0.
+  // Returns what anisotropy() does, or for isotropic surfaces any tangent and strength 0.
   std::pair<glm::vec3, float> leanOf(const Surface& surface, std::uint32_t triangle, float u, float v,
                                      const glm::vec3& normal) const;
   PointReflection reflectionAt(const Surface& surface, std::uint32_t triangle, float u, float v,
                                const glm::vec3& to) const;
-  // Direction of the longer lobe, unit, across `normal`; and strength.
+  // Returns the direction of the longer lobe, unit and orthogonal to `normal`, and the strength.
   std::pair<glm::vec3, float> anisotropy(const Surface& surface, std::uint32_t triangle, float u, float v,
                                          const glm::vec3& normal) const;
   void expand(const Factored& factored, int order, std::span<const float> weights, const ViewFrame& frame,
@@ -276,7 +277,7 @@ std::pair<glm::vec3, float> SurfaceBrdfs::State::anisotropy(const Surface& surfa
     along = glm::vec3(interpolated(geometry->tangents, triangle, u, v));
     handedness = handedness < 0.0f ? -1.0f : 1.0f;
   } else {
-    // To where the texture's u rises; its v falls along the bitangent.
+    // The tangent points to where the texture's u rises; v falls along the bitangent.
     const gltf::TextureRef& ref = material.normal_texture;
     const auto& set = geometry->texcoord_sets[std::min(ref.texcoord, 1u)];
     const glm::vec2 a = ref.apply(set[corners.x]), ab = ref.apply(set[corners.y]) - a,
@@ -292,7 +293,7 @@ std::pair<glm::vec3, float> SurfaceBrdfs::State::anisotropy(const Surface& surfa
   return {unitOr(lean.x * tangent + lean.y * handedness * glm::cross(normal, tangent), any), strength};
 }
 
-// As ZonalFactors::expand, of all lobes at once: every axis in a lane of its own.
+// Does what ZonalFactors::expand does, for all lobes at once, with every axis in a lane of its own.
 void SurfaceBrdfs::State::expand(const Factored& from, int order, std::span<const float> weights,
                                  const ViewFrame& frame, std::span<Kernel> lobes) const {
   const std::size_t count = from.table.coefficients();

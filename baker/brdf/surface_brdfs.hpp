@@ -1,10 +1,10 @@
-// How the surfaces of a group reflect where a ray meets them: the exit kernel of a point towards a direction,
-// with which the radiance that leaves it is a dot product with the light that was transferred to it:
+// Computes how the surfaces of a group reflect at hits: the exit kernel of a point towards a direction. The
+// radiance that leaves the point is the dot product of the kernel with the light transferred to the point:
 //   L_out(q -> v) = Σ_k c_k(v) l'_k,   c = specular lobe + diffuse, in the group's frame, per colour channel.
-// The specular lobe is b(v) of the material's table, turned; the diffuse part is albedo (1 - metallic) (1 -
+// The specular lobe is b(v) of the material's table, rotated; the diffuse part is albedo (1 - metallic) (1 -
 // the largest channel of the specular lobe's directional albedo) A_l/pi y_lm(n), so that both together never
-// give more than they get. Textures and vertex colours are looked up at the point. Diffuse surfaces have only
-// the diffuse part.
+// reflect more than they receive. Textures and vertex colours are looked up at the point. Diffuse surfaces
+// have only the diffuse part.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@
 
 namespace lambent::baker {
 
-// The tables that a scene's glossy materials need.
+// BrdfTables are the tables that a scene's glossy materials need.
 struct BrdfTables {
   struct Entry {
     bundle::BrdfFamily family;
@@ -28,20 +28,21 @@ struct BrdfTables {
     bundle::BrdfTable table;
   };
   std::vector<Entry> entries;
-  std::vector<std::int32_t> of_material;  // place in `entries`; -1: diffuse
+  std::vector<std::int32_t> of_material;  // index in `entries`; -1: diffuse
 
-  // order: bands, 4..9, the first `shipped` of which (4..6) will be in the bundle. Errors: a measured BRDF
-  // that has too few directions.
+  // Makes tables of `order` bands, 4..9, of which the bundle will have the first `shipped` (4..6). Errors: a
+  // measured BRDF with too few directions.
   static Result<BrdfTables> make(const Scene& scene, int order, int shipped);
 };
 
-// Of at most as many bands as the table has.
+// Returns the table with at most its first `order` bands.
 bundle::BrdfTable firstBands(const bundle::BrdfTable& table, int order);
 
-// What a point of a glossy surface that is not measured reflects, after textures: for paths that follow a
-// highlight which is sharper than few bands carry. Directions in the group's frame.
+// A PointReflection describes the reflection at a point of a glossy surface whose BRDF is not measured, after
+// textures. Paths use it to follow highlights that are sharper than a few bands can represent. Directions are
+// in the group's frame.
 struct PointReflection {
-  glm::vec3 normal{0.0f, 0.0f, 1.0f}, tangent{1.0f, 0.0f, 0.0f};  // unit, across each other
+  glm::vec3 normal{0.0f, 0.0f, 1.0f}, tangent{1.0f, 0.0f, 0.0f};  // unit and orthogonal
   glm::vec3 geometric{0.0f, 0.0f, 1.0f};                          // of the triangle, unit
   float alpha_t = 1.0f, alpha_b = 1.0f;                           // GGX, along the tangent and across
   glm::vec3 f0{0.0f};
@@ -51,27 +52,29 @@ struct PointReflection {
 
 class SurfaceBrdfs {
  public:
-  // `geometry` outlives this. `tables` are of the same order and may go. Errors: those of decodeImage.
+  // `geometry` must outlive this. `tables` must have the same order and are copied. Errors: those of
+  // decodeImage.
   static Result<SurfaceBrdfs> load(const Scene& scene, const GroupGeometry& geometry,
                                    const BrdfTables& tables, DecodedImages& images, int order);
 
-  // The same surfaces, of whose kernels only so many bands are given; at most as many as were loaded.
+  // Returns the same surfaces with kernels of only so many bands, at most as many as were loaded.
   SurfaceBrdfs firstBands(int order) const { return {state_, order}; }
 
-  // Not diffuse, and with glossy samples: a draw of a glossy material whose samples were planned as Lambert's
-  // is diffuse.
+  // Returns whether the triangle has glossy samples. It has none if its material is glossy but its samples
+  // were planned as diffuse.
   bool glossy(std::uint32_t triangle) const;
-  // All kernels are the same in red, green and blue.
+  // Returns whether all kernels are the same in red, green and blue.
   bool grey() const;
-  // Towards the unit direction `to` (group frame, away from the surface) of the point u, v on `triangle`
-  // (barycentric weights of its corners 1 and 2): out[channel * order² + k], three channels. All zero where
-  // `to` lies behind the triangle; a view above it but below the plane of the interpolated normal counts as
-  // cos(theta_v) = kLeastViewCosine. From any thread; allocates nothing.
+  // Computes the kernel of a point towards the unit direction `to` (group frame, away from the surface):
+  // out[channel * order² + k], with three channels. u and v are barycentric weights of the triangle's corners
+  // 1 and 2. The kernel is zero if `to` lies behind the triangle; a view above it but below the plane of the
+  // interpolated normal counts as cos(theta_v) = kLeastViewCosine. May be called from any thread; allocates
+  // nothing.
   void exitKernel(std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) const;
 
-  // Perceptual roughness of a glossy point; 1 where its BRDF is measured, or where it is diffuse.
+  // Returns the perceptual roughness of a glossy point, or 1 if its BRDF is measured or it is diffuse.
   float roughness(std::uint32_t triangle, float u, float v) const;
-  // Of a glossy point that is not measured, seen from `to` as in exitKernel.
+  // Describes a glossy point whose BRDF is not measured, seen from `to` as in exitKernel.
   PointReflection reflection(std::uint32_t triangle, float u, float v, const glm::vec3& to) const;
 
  private:

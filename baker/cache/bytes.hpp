@@ -1,6 +1,7 @@
-// Values to bytes and back, for what a cache keeps: as they lie in memory, lists with their length before.
-// Not a file format: entries are read by the very program that wrote them (key.hpp). Reading checks every
-// length; the first thing that does not fit makes all that follows fail, so that one look at ok() is enough.
+// Packs values into bytes and back for the cache: values are copied as they lie in memory, and lists begin
+// with their length. This is no file format, since entries are only read by the very program that wrote them
+// (key.hpp). Reading checks every length; after the first mismatch all reads fail, so that it is enough to
+// look at ok() once.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +32,7 @@ class ByteWriter {
     addList(std::span<const T>(list));
   }
   void addText(std::string_view text) { addList(std::span<const char>(text)); }
-  // What another writer wrote.
+  // Appends what another writer wrote.
   void addBytes(std::span<const std::byte> bytes) { append(bytes); }
 
   std::size_t size() const { return bytes_.size(); }
@@ -59,7 +60,7 @@ class ByteReader {
     list.resize(static_cast<std::size_t>(count));
     return copy(std::as_writable_bytes(std::span(list)));
   }
-  // A list that must have just the length of `list`.
+  // Reads a list that must have exactly the length of `list`.
   template <PlainBytes T>
   bool readInto(std::span<T> list) {
     std::uint64_t count = 0;
@@ -72,7 +73,7 @@ class ByteReader {
     text.resize(static_cast<std::size_t>(count));
     return copy(std::as_writable_bytes(std::span(text)));
   }
-  // The next `count` bytes as a reader of their own.
+  // Returns a reader for the next `count` bytes, and moves past them.
   ByteReader part(std::uint64_t count) {
     if (count > left_.size()) {
       failed();

@@ -21,9 +21,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kExtension = ".entry";
-// Room is made a tenth at a time, so that a full cache is not listed for every entry.
+// Eviction frees a tenth of the cache at a time, so that a full one is not listed for every entry.
 constexpr double kLeftAfterEviction = 0.9;
-// Files that are being written belong to a program that was killed once they are this old.
+// A file that has been in the process of being written for this long was left by a killed program.
 constexpr std::int64_t kAbandoned_ns = std::int64_t{3600} * 1'000'000'000;
 
 std::int64_t now_ns() {
@@ -38,7 +38,7 @@ struct Listed {
   std::int64_t used_ns = 0;
 };
 
-// Entries, oldest first. Removes what killed programs left half written.
+// Lists the entries, oldest first. Removes files that killed programs left half written.
 std::vector<Listed> list(const fs::path& folder) {
   std::vector<Listed> entries;
   std::error_code code;
@@ -70,9 +70,9 @@ struct Cache::State {
   mutable std::atomic<std::uint64_t> found = 0, bytes_read = 0, stored = 0, bytes_written = 0, damaged = 0,
                                      evicted = 0;
 
-  mutable std::mutex lock;             // of what follows
-  std::optional<std::uint64_t> bytes;  // in the folder, as far as known; other processes add to it
-  std::uint64_t room_at = 0;           // bytes from which on room is made
+  mutable std::mutex lock;             // protects the members below
+  std::optional<std::uint64_t> bytes;  // size of the folder as far as known; other processes add to it
+  std::uint64_t room_at = 0;           // size from which eviction begins
   std::string notice;
 
   fs::path pathOf(const Key& key) const {
@@ -82,7 +82,7 @@ struct Cache::State {
   void makeRoom();
 };
 
-// With the lock held.
+// Must be called with the lock held.
 void Cache::State::makeRoom() {
   std::vector<Listed> entries = list(folder);
   std::uint64_t sum = 0;
@@ -95,7 +95,7 @@ void Cache::State::makeRoom() {
     ++evicted;
   }
   bytes = sum;
-  // Where all is in use, it is too early to look again after the next entry.
+  // If all entries are in use, looking again after the next entry would be too early.
   room_at = std::max(most_bytes, sum + most_bytes / 10);
 }
 
@@ -154,7 +154,7 @@ void Cache::put(const Key& key, std::span<const std::byte> bytes) {
   if (!state_->writing) return;
   const std::vector<std::byte> file = packEntry(key, bytes);
   const fs::path path = state_->pathOf(key);
-  std::error_code ignored;  // writing says it
+  std::error_code ignored;  // the error shows when the file is written
   fs::create_directory(path.parent_path(), ignored);
   const auto written = writeBeside(path, file);
   const std::lock_guard hold(state_->lock);

@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::array<char, 8> kMagic = {'L', 'M', 'C', 'A', 'C', 'H', 'E', '1'};
 enum class Codec : std::uint64_t { Raw, Zstd };
-// Fast, for bytes that are mostly floats; kept where it saves an eighth, and tried where a piece of the
-// middle says that it may.
+// A fast level suits bytes that are mostly floats. Compression is kept if it saves an eighth, and tried only
+// if a piece from the middle suggests that it may.
 constexpr int kZstdLevel = 1;
 constexpr std::size_t kTryBytes = std::size_t{128} << 10;
 
@@ -35,14 +35,15 @@ bool mayPay(std::span<const std::byte> bytes) {
   return pays(ZSTD_compress(out.data(), out.size(), piece.data(), piece.size(), kZstdLevel), kTryBytes);
 }
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 36;  // of an entry: more is damage
+// Limit on an entry's size; a header that claims more is damaged.
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 36;
 
 struct Header {
   std::array<char, 8> magic = kMagic;
   Key key;
   Codec codec = Codec::Raw;
   std::uint64_t bytes = 0, stored_bytes = 0;
-  std::uint64_t checksum = 0;  // of the header up to here, and of what is stored
+  std::uint64_t checksum = 0;  // of the header up to here, and of the stored bytes
 };
 static_assert(sizeof(Header) == 56 && std::has_unique_object_representations_v<Header>);
 
@@ -67,12 +68,13 @@ class Descriptor {
   int fd_;
 };
 
-// From the clock that all processes read, and finer than the one by which files are stamped.
+// This clock is common to all processes, and finer than the one with which the system stamps files.
 void touch(int descriptor) {
   timespec now{};
   ::clock_gettime(CLOCK_REALTIME, &now);
   const std::array<timespec, 2> times = {now, now};
-  ::futimens(descriptor, times.data());  // in a folder that may not be written nothing is ever evicted either
+  // This fails in a folder without write permission, but there nothing is evicted either.
+  ::futimens(descriptor, times.data());
 }
 
 }  // namespace
@@ -153,7 +155,8 @@ Result<void> writeBeside(const std::filesystem::path& path, std::span<const std:
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
   touch(file.get());
-  // No fsync: a killed program loses nothing by that, and what a power cut may spoil shows by its checksum.
+  // There is no fsync: a killed program loses nothing without it, and the checksum detects what a power cut
+  // may spoil.
   if (!file.close() || ::rename(part.c_str(), path.c_str()) != 0) return failed();
   return {};
 }

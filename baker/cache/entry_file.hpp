@@ -1,4 +1,5 @@
-// One entry of a cache as a file: a header, then the bytes, by zstd where that pays. Read and written whole.
+// Stores one cache entry as a file: a header, then the bytes, compressed by zstd if that saves enough. Files
+// are read and written as a whole.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +13,19 @@
 
 namespace lambent::baker {
 
-// Header and bytes, as the file holds them.
+// Returns the content of the file: header and bytes.
 std::vector<std::byte> packEntry(const Key& key, std::span<const std::byte> bytes);
-// Nothing if this is not, from its first byte to its last, the entry of `key`.
+// Returns nothing unless `file`, from its first byte to its last, is the entry of `key`.
 std::optional<std::vector<std::byte>> unpackEntry(const Key& key, std::span<const std::byte> file);
 
 enum class ReadFailure { Absent, Unreadable };
-// The whole file; its time becomes now, which is when it was last used.
+// Returns the whole file, and sets its time to now, since that is when it was last used.
 tl::expected<std::vector<std::byte>, ReadFailure> readAndTouch(const std::filesystem::path& path);
 
-// Written beside `path` under a name of its own for each call, then renamed. Error: the system's reason.
+// Writes a file beside `path`, under a different name for each call, then renames it. Error: the system's
+// reason.
 Result<void> writeBeside(const std::filesystem::path& path, std::span<const std::byte> bytes);
-// Part of the names of files that are being written.
+// This is a part of the names of files that are being written.
 inline constexpr const char* kPartMark = ".part-";
 
 }  // namespace lambent::baker

@@ -1,7 +1,7 @@
-// Names of what is kept: a digest of everything that a result depends on. Whoever keeps a result adds its
-// true inputs, all of them and nothing else, to a KeyMaker; equal keys then mean equal results, to the byte.
-// Keys of stages begin with a digest of the program itself, so that other code, another compiler or other
-// flags never meet entries of before. 128 bits of XXH3: against accidents, not against forgery.
+// A Key names a result in the cache: it is a digest of everything that the result depends on. Whoever keeps a
+// result adds all of its inputs, and nothing else, to a KeyMaker; equal keys then mean equal results, to the
+// byte. Keys of stages begin with a digest of the program itself, so that other code, another compiler or
+// other flags never find earlier entries. The 128 bits of XXH3 guard against accidents, not against forgery.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ struct Key {
   friend auto operator<=>(const Key&, const Key&) = default;
 };
 
-// Types whose bytes are their value: no padding, no pointers. Structs of floats are listed by whoever keeps
-// them.
+// True for types whose bytes are their value, without padding or pointers. Structs of floats are added to it
+// where they are kept.
 template <typename T>
 inline constexpr bool kPlainBytes =
     std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>;
@@ -43,8 +43,8 @@ concept PlainBytes = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> &&
 
 class KeyMaker {
  public:
-  KeyMaker();  // of values alone
-  // Of a stage's result: the program and the stage's name come first.
+  KeyMaker();  // begins with nothing
+  // Begins the key of a stage's result with the program's digest and the stage's name.
   static KeyMaker ofStage(std::string_view stage);
   KeyMaker(KeyMaker&&) noexcept;
   KeyMaker& operator=(KeyMaker&&) noexcept;
@@ -54,7 +54,7 @@ class KeyMaker {
   KeyMaker& add(const T& value) {
     return addBytes(std::as_bytes(std::span(&value, 1)));
   }
-  // Lists and texts bring their length, so that no two sequences of values read alike.
+  // Lists and texts are preceded by their length, so that no two sequences of values have the same bytes.
   template <PlainBytes T>
   KeyMaker& addList(std::span<const T> list) {
     return add(std::uint64_t{list.size()}).addBytes(std::as_bytes(list));
@@ -65,7 +65,7 @@ class KeyMaker {
   }
   KeyMaker& addText(std::string_view text) { return addList(std::span<const char>(text)); }
 
-  // Of what was added so far.
+  // Returns the key of everything added so far.
   Key key() const;
 
  private:
@@ -75,7 +75,7 @@ class KeyMaker {
   std::unique_ptr<State> state_;
 };
 
-// Of the sources of the baker and of what it uses, of the compiler and of its flags.
+// Returns a digest of the sources of the baker and of what it uses, the compiler and its flags.
 std::string_view programDigest();
 
 }  // namespace lambent::baker

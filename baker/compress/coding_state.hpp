@@ -29,7 +29,7 @@ struct CodingState {
   Step step = Step::Basis;
   transfer::SharedCodebook basis;
   double reachable = 0.0, budget = 0.0;  // mean square errors
-  // For the search: the largest number of clusters allowed, how many counts were tried, the size and the
+  // The search keeps the largest number of clusters allowed, how many counts were tried, the size and the
   // clusters of the best, and the clusters in progress.
   std::uint32_t most_clusters = std::numeric_limits<std::uint32_t>::max(), tried = 0;
   double fewest_bytes = std::numeric_limits<double>::infinity();

@@ -49,8 +49,8 @@ struct CodingSettings {
   std::uint32_t clusters = 0;  // 0 means whatever codes to the fewest bytes
   int axes = -1;               // of every cluster, whatever the bound; -1 means as many as the bound needs
   std::uint32_t most_components = kUsualComponents;  // for long vectors (matrices)
-  // If above `bound`: where most_components leave out more than this, all components are used and this bound
-  // is kept instead.
+  // If this is above `bound`, and most_components leave out more than this, all components are used and this
+  // bound is kept instead.
   float loose_bound = 0.0f;
   // Limit for decoded means and axes, since on the GPU all of a cell lies in one page of 128 MiB
   // (gpu::Arena). It limits the number of clusters; if even a single cluster is too large, the bound is
@@ -70,9 +70,9 @@ double transferEnergy(std::span<const float> vectors, const transfer::TransferSh
 // vectors: `count` times shape.size() values, count > 0; all finite.
 CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const transfer::TransferShape& shape, const CodingSettings& settings);
-// Does the same, but stops early, with an unusable result, when asked to. The key of the context is that of
-// all of the above: how far the work has come is kept under it when a checkpoint is due and when it is
-// stopped, and the next call goes on from there. It stays until CodingCheckpoint::drop (coding_state.hpp);
+// Does the same, but stops early, with an unusable result, when asked to. The key of the context covers all
+// of the above. The progress of the work is kept under it when a checkpoint is due and when it is stopped,
+// and the next call continues from there. It stays until CodingCheckpoint::drop (coding_state.hpp);
 // kept_transfer.hpp does all that.
 CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const transfer::TransferShape& shape, const CodingSettings& settings,

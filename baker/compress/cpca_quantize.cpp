@@ -98,7 +98,7 @@ transfer::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::
 CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters,
                        const transfer::SharedCodebook& basis, const transfer::TransferShape& shape,
                        double step) {
-  // By falling number of axes.
+  // Clusters are ordered by falling number of axes.
   std::vector<std::uint32_t> order(clusters.size()), place(clusters.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),

@@ -45,7 +45,7 @@ class CachedCoding {
   // Does what codeTransfer does; clusters and axes of the settings are those that it chooses.
   CodedTransfer code(std::span<const float> vectors, std::size_t count, const transfer::TransferShape& shape,
                      const CodingSettings& settings);
-  // What they all led to is kept.
+  // Removes the entries, once the result that all of them led to is kept.
   void drop();
 
  private:

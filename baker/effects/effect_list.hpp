@@ -1,5 +1,5 @@
-// The one list of effects on the baker's side. A new effect adds its room beside diffuse/ and its line here;
-// on the runtime's side it adds its room and its calls in runtime/frame/frame.cpp.
+// Lists the effects that the baker knows. A new effect adds its room beside diffuse/ and its line here; on
+// the runtime's side it adds its room and its calls in runtime/frame/frame.cpp.
 #pragma once
 
 #include <span>

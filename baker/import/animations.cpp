@@ -151,7 +151,7 @@ Result<void> convertAnimation(const Document& document, const json& source, cons
                                            word == "weights" ? "morph weights" : "\"" + word + "\""));
       continue;
     }
-    if (!target.contains("node")) continue;  // glTF says to ignore it
+    if (!target.contains("node")) continue;  // glTF says to ignore the channel
     const auto node = target["node"].get<std::size_t>();
     if (map.scene_node[node] < 0) continue;  // the node belongs to another scene
     if (!targets.emplace(node, *path).second)

@@ -13,7 +13,8 @@
 
 namespace lambent::baker {
 
-// Whether this room reads the extension. Others are refused where required and warned about where not.
+// Returns whether this room reads the extension. Others are refused if required, and cause a warning
+// otherwise.
 bool readsExtension(std::string_view name);
 
 // Errors name `file` and the object, such as "accessor 3".

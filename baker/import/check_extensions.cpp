@@ -32,7 +32,7 @@ void shareFrom(const Object& object, const char* key) {
     throw BrokenField{fmt::format("{}: {} is more than 1", object.name, key)};
 }
 
-// The object that a field of a material stands in, where there is one.
+// Returns the object that contains a field of a material, if there is one.
 std::optional<Object> placeOf(const Object& material, const gltf::MaterialJson& json) {
   const auto [outer, inner] = json.objects;
   if (!outer) return material;
@@ -40,7 +40,7 @@ std::optional<Object> placeOf(const Object& material, const gltf::MaterialJson& 
   return place && inner ? place->object(inner) : place;
 }
 
-// A number in the range that its row allows.
+// Checks a number against the range that its row allows.
 void checkFactor(const Object& place, const gltf::MaterialJson& json, float) {
   using Allowed = gltf::MaterialJson::Allowed;
   if (json.allowed == Allowed::ZeroToOne) return shareFrom(place, json.key);
@@ -50,7 +50,7 @@ void checkFactor(const Object& place, const gltf::MaterialJson& json, float) {
     throw BrokenField{fmt::format("{}: {} is {}, neither 0 nor 1 and more", place.name, json.key, value)};
 }
 
-// The same of a colour.
+// Does the same for a colour.
 void checkFactor(const Object& place, const gltf::MaterialJson& json, const glm::vec3&) {
   checkNumbers(place, json.key, 3);
   if (json.allowed != gltf::MaterialJson::Allowed::NotNegative) return;

@@ -104,8 +104,8 @@ void checkTextureTransform(const Object& texture_info);
 void checkEmissiveStrength(const Object& material);
 // Checks a textureInfo under `key`, if there is one.
 void checkTextureInfo(const Object& owner, const char* key, const Root& root);
-// All textures that are read, the numbers and colours of reflection, by the table of a material's fields, and
-// what `extras.lambent.brdf` names.
+// Checks all textures that are read, the numbers and colours of reflection (by the table of a material's
+// fields), and the file that `extras.lambent.brdf` names.
 void checkMaterialFields(const Object& material, const Root& root);
 void checkLights(const Root& root);
 void checkNodeExtensions(const Object& node, const Root& root);  // lights, instances

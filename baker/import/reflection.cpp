@@ -27,7 +27,7 @@ Result<void> assign(gltf::TextureRef& target, bool wanted, auto refer) {
   return {};
 }
 
-// Numbers may lie over 1 by a rounding.
+// Numbers may exceed 1 by rounding.
 void read(const nlohmann::json& value, const gltf::MaterialJson& json, float& factor) {
   factor = value.get<float>();
   if (json.allowed == gltf::MaterialJson::Allowed::ZeroToOne) factor = std::min(factor, 1.0f);
@@ -36,8 +36,8 @@ void read(const nlohmann::json& value, const gltf::MaterialJson&, glm::vec3& col
   for (int c = 0; c < 3; ++c) color[c] = value[static_cast<std::size_t>(c)].get<float>();
 }
 
-// The numbers and colours of reflection, by the table of a material's fields. What is unlit or measured has
-// no use for those of extensions, of which it keeps the index of refraction alone.
+// Reads the numbers and colours of reflection, by the table of a material's fields. Of those in extensions,
+// unlit and measured materials keep only the index of refraction.
 void readFactors(const nlohmann::json& source, gltf::Material& material) {
   const bool has_lobes = !material.unlit && material.brdf < 0;
   gltf::forEachMaterialField([&]<class Row>(const Row& row) {
@@ -59,7 +59,7 @@ void readFactors(const nlohmann::json& source, gltf::Material& material) {
   });
 }
 
-// The textures of KHR_materials_specular.
+// Adds the textures of KHR_materials_specular.
 Result<void> referSpecular(const tinygltf::Value& extension, std::size_t number, MaterialTextures& textures,
                            gltf::Material& material) {
   const bool reflects = material.specular > 0.0f;

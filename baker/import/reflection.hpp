@@ -1,6 +1,6 @@
-// What the surfaces of a material reflect besides their base colour: numbers and colours by the table of a
-// material's fields, their textures, and measured BRDFs, which are read when the first material names them.
-// In this room only.
+// Converts what the surfaces of a material reflect besides their base colour: numbers and colours by the
+// table of a material's fields, their textures, and measured BRDFs, which are read when the first material
+// names them. Only this room includes this header.
 #pragma once
 
 #include <cstddef>
@@ -26,8 +26,8 @@ class MeasuredBrdfs {
   std::map<std::filesystem::path, std::int32_t> number_of_;
 };
 
-// Reads what material `number` of the file reflects. After unlit, base colour and brdf are known: textures
-// that could change nothing stay out of the scene.
+// Reads what material `number` of the file reflects. Unlit, base colour and brdf must be set before; textures
+// that could change nothing are left out of the scene.
 Result<void> convertReflection(const Document& document, std::size_t number, MaterialTextures& textures,
                                gltf::Material& material);
 

@@ -1,5 +1,6 @@
-// What a bake hands to everything that it runs: whom to tell about progress, when to stop, and where results
-// are kept. A stage reads it and never changes it; copies are cheap and refer to the same progress and cache.
+// A BakeContext is what a bake hands to everything that it runs: whom to tell about progress, when to stop,
+// and where results are kept. Stages read it and never change it; copies are cheap and refer to the same
+// progress and cache.
 #pragma once
 
 #include <stop_token>

@@ -1,6 +1,6 @@
-// Results that are kept whole, under the key of a context. A type is kept by two functions beside it:
-// `void write(const T&, ByteWriter&)`, and `bool read(ByteReader&, T&)`, which returns false where the bytes
-// are no such value and may have changed a part of it by then. T may be a view of where the value lies.
+// Keeps whole results in the cache, under the key of a context. A type is kept by two functions beside it:
+// `void write(const T&, ByteWriter&)`, and `bool read(ByteReader&, T&)`, which returns false if the bytes are
+// no such value, and may have changed a part of it by then. T may be a view of where the value lies.
 #pragma once
 
 #include <optional>

@@ -19,7 +19,7 @@ bool parallelRanges(std::size_t count, std::size_t grain, const std::stop_token&
 }
 
 void withThreads(unsigned threads, const std::function<void()>& job) {
-  // More threads than cores gain nothing, and TBB allocates for each.
+  // More threads than cores gain nothing, and TBB allocates memory for each.
   if (threads == 0 || threads >= static_cast<unsigned>(tbb::info::default_concurrency())) return job();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(static_cast<int>(threads));
@@ -30,7 +30,7 @@ void inBackground(unsigned threads, const std::function<void()>& job) {
   const int most = tbb::info::default_concurrency();
   const int limit =
       threads == 0 ? std::max(most - 1, 1) : static_cast<int>(std::min(threads, static_cast<unsigned>(most)));
-  // One place is this thread's own, so that the job gets on even where all others are busy.
+  // One slot is reserved for this thread, so that the job goes on even if all other threads are busy.
   tbb::task_arena arena(limit, 1, tbb::task_arena::priority::low);
   arena.execute(job);
 }

@@ -1,6 +1,6 @@
-// How far a long job is. The job names its stages and counts units done, from any thread; whoever shows it (a
-// terminal line, the editor's bar) takes snapshots. Also remembers how long each stage took, for `--json` and
-// the benchmarks.
+// Records how far a long job is. The job names its stages and counts units done, from any thread; whoever
+// shows it (a terminal line, the editor's bar) takes snapshots. A Progress also remembers how long each stage
+// took, for `--json` and the benchmarks.
 #pragma once
 
 #include <atomic>
@@ -16,25 +16,25 @@ class Progress {
  public:
   struct Stage {
     std::string name;
-    std::string unit;         // "rays", "samples"; empty where there is nothing to count
-    std::uint64_t total = 0;  // units, 0 where unknown
+    std::string unit;         // "rays", "samples"; empty if there is nothing to count
+    std::uint64_t total = 0;  // in units; 0 if unknown
     std::uint64_t done = 0;
     double seconds = 0.0;
   };
 
-  // Ends the stage before, if any, and starts this one.
+  // Ends the running stage, if any, and starts this one.
   void begin(std::string name, std::uint64_t total = 0, std::string unit = {});
   void add(std::uint64_t units) { done_.fetch_add(units, std::memory_order_relaxed); }
   void end();
 
-  // The running stage; an empty name when none runs.
+  // Returns the running stage, with an empty name if none runs.
   Stage now() const;
-  // Finished stages, in order.
+  // Returns the finished stages, in order.
   std::vector<Stage> finished() const;
 
  private:
   using Clock = std::chrono::steady_clock;
-  Stage current() const;  // with the lock held
+  Stage current() const;  // must be called with the lock held
 
   mutable std::mutex lock_;
   Stage running_;

@@ -12,8 +12,8 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr double kWorthKeeping_s = 0.5;                    // of checkpoints
-constexpr std::size_t kEntryBytes = std::size_t{8} << 20;  // about, of an entry with many ranges
+constexpr double kWorthKeeping_s = 0.5;  // seconds; work that took less is not worth a checkpoint
+constexpr std::size_t kEntryBytes = std::size_t{8} << 20;  // approximate size of an entry with many ranges
 
 struct Cut {
   std::size_t count, grain;
@@ -32,7 +32,7 @@ bool readRange(const Stage& stage, std::size_t begin, std::size_t end, ByteReade
          in.atEnd();
 }
 
-// The entries of one stage.
+// Entries are the cache entries of one stage.
 class Entries {
  public:
   Entries(const BakeContext& context, const Cut& cut)
@@ -44,7 +44,7 @@ class Entries {
   // Returns how many items were found.
   std::size_t load(const Stage& stage, const std::stop_token& stop) {
     while (cache_.has(numbered(next_))) ++next_;
-    // Two entries may hold the same range, when two programs did the same work at once.
+    // Two entries hold the same range if two programs did the same work at once.
     const auto taken = std::make_unique<std::atomic<bool>[]>(cut_.ranges());
     const auto damaged = std::make_unique<std::atomic<bool>[]>(next_);
     std::atomic<std::size_t> found = 0;
@@ -64,14 +64,14 @@ class Entries {
         found += cut_.end(range) - cut_.begin(range);
       }
     });
-    // Entries after a hole would not be found again: it is filled first.
+    // Entries after a damaged one would not be found again, so its number is reused first.
     for (std::uint64_t e = 0; e < next_; ++e)
       if (damaged[e]) free_.push_back(e);
     return found;
   }
   bool done(std::size_t range) const { return done_[range]; }
 
-  // From any thread.
+  // May be called from any thread.
   void put(std::span<const std::byte> bytes) {
     std::uint64_t number = 0;
     {
@@ -96,7 +96,7 @@ class Entries {
   Key key_;
   Cut cut_;
   std::unique_ptr<std::atomic<bool>[]> done_;
-  std::mutex lock_;  // of what follows
+  std::mutex lock_;  // protects the members below
   std::vector<std::uint64_t> free_;
   std::uint64_t next_ = 0;
 };
@@ -106,7 +106,7 @@ void append(std::size_t range, std::span<const std::byte> bytes, ByteWriter& out
   out.addList(bytes);
 }
 
-// Ranges that have finished and are not written yet, packed or not.
+// Waiting holds the ranges that have finished and are not yet written, packed or not.
 class Waiting {
  public:
   Waiting(const Stage& stage, Cache& cache, Entries& entries, const Cut& cut)
@@ -123,7 +123,7 @@ class Waiting {
       full = packed_.take();
       cache_.checkpointed();
     }
-    entries_.put(full);  // others go on meanwhile
+    entries_.put(full);  // without the lock, so that other threads go on
   }
   void addFinished(std::size_t range) {
     std::vector<std::size_t> ranges;
@@ -136,7 +136,7 @@ class Waiting {
     }
     write(ranges);
   }
-  // After the work.
+  // Is called once all ranges are done.
   void writeAll() {
     if (packed_.size() > 0) entries_.put(packed_.take());
     write(std::exchange(finished_, {}));
@@ -157,7 +157,7 @@ class Waiting {
   Cache& cache_;
   Entries& entries_;
   Cut cut_;
-  std::mutex lock_;  // of what follows
+  std::mutex lock_;  // protects the members below
   ByteWriter packed_;
   std::vector<std::size_t> finished_;
 };
@@ -187,7 +187,7 @@ std::optional<StageFigures> runStage(const Stage& stage, const BakeContext& cont
         const std::size_t range = begin / stage.grain;
         if (entries.done(range)) return;
         compute(begin, end);
-        // A compute that was stopped may have left a part of its range out.
+        // A computation that was stopped may have left out a part of its range.
         if (context.stopped()) return;
         if (stage.keep == KeepWhen::Always)
           waiting.addPacked(range);

@@ -1,11 +1,11 @@
-// A stage of a bake: work over many items in ranges. It declares what it writes and has a function that
-// computes a range; what it reads is in the key of its context. runStage() does everything else: it runs
-// ranges on all threads, counts progress, stops, keeps finished ranges in the cache every few seconds, and
-// begins with all that an earlier run of the same stage kept. Neither the order in which ranges finish, nor
-// the number of threads, nor the place where a run was cut short shows in the result.
+// A stage of a bake is work over many items in ranges. It declares what it writes and has a function that
+// computes a range; everything that it reads is covered by the key of its context. runStage() does all else:
+// it runs ranges on all threads, counts progress, stops, keeps finished ranges in the cache every few
+// seconds, and begins with all that an earlier run of the same stage kept. The result does not depend on the
+// order in which ranges finish, on the number of threads, or on where a run was cut short.
 //
-// An entry of the cache holds any ranges of a stage; a stage's entries are numbered under its key. New ones
-// are added, and none is written twice.
+// An entry of the cache holds any ranges of a stage, and a stage's entries are numbered under its key. New
+// entries are added, and none is written twice.
 #pragma once
 
 #include <algorithm>
@@ -22,21 +22,21 @@
 
 namespace lambent::baker {
 
-// Something that a stage writes, as bytes of ranges of its items. Both functions are called from any thread,
-// and for different ranges at the same time.
+// An Output is something that a stage writes, packed as bytes for ranges of its items. Both functions are
+// called from any thread, and for different ranges at the same time.
 struct Output {
   std::function<void(std::size_t begin, std::size_t end, ByteWriter& out)> write;
   // Puts back what write() wrote; returns false if the bytes are not those of such a range.
   std::function<bool(std::size_t begin, std::size_t end, ByteReader& in)> read;
 };
 
-// Returns the row of an item, where that of item 0 is `first_row`; items before row 0 have none.
+// Returns the row of an item, if that of item 0 is `first_row`. Items with a negative row have none.
 inline std::size_t rowOfItem(std::size_t item, std::ptrdiff_t first_row) {
   return static_cast<std::size_t>(std::max(static_cast<std::ptrdiff_t>(item) + first_row, std::ptrdiff_t{0}));
 }
 
-// An output that lies in a list as rows of `width` values, by rowOfItem(). The list must outlive the stage
-// and has its full length already.
+// Returns an output that is a list with rows of `width` values, by rowOfItem(). The list must outlive the
+// stage and already have its full length.
 template <typename List>
 Output rowsOf(List& list, std::size_t width = 1, std::ptrdiff_t first_row = 0) {
   const std::span values(list);
@@ -54,7 +54,7 @@ Output rowsOf(List& list, std::size_t width = 1, std::ptrdiff_t first_row = 0) {
 
 enum class KeepWhen : std::uint8_t {
   Always,  // Later bakes read it, too: a range is packed right after it was computed, on the same thread.
-  Due,     // Checkpoints alone: ranges are packed by any thread once one is due, or when the bake stops.
+  Due,  // Only checkpoints read it: ranges are packed by any thread once one is due, or when the bake stops.
 };
 
 struct Stage {
@@ -73,13 +73,14 @@ struct StageFigures {
   std::size_t computed = 0, found = 0;  // items
 };
 
-// Returns nothing if it was stopped. Without a cache or a key in the context nothing is kept.
+// Returns nothing if it was stopped. Without a cache or a key in the context, nothing is kept.
 std::optional<StageFigures> runStage(const Stage& stage, const BakeContext& context);
 
 // Puts back what earlier runs kept and computes nothing. Returns false if a range is missing.
 bool restoreStage(const Stage& stage, const BakeContext& context);
 
-// Removes what was kept of a stage of so many items: checkpoints, once what they led to is kept.
+// Removes what was kept of a stage of so many items, such as checkpoints once the result that they led to is
+// kept.
 void dropStage(const BakeContext& context, std::size_t count, std::size_t grain);
 
 }  // namespace lambent::baker

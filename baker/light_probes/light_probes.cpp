@@ -16,8 +16,8 @@ namespace lambent::baker {
 
 namespace {
 
-// Relative to the group's diagonal: points nearer than kMerge are one; kFlat decides which light probes blend
-// where several would do equally well; kDepth is how deep under the surface they lie at least.
+// These are relative to the group's diagonal: points nearer than kMerge are one; kFlat decides which light
+// probes blend where several would do equally well; kDepth is how deep under the surface they lie at least.
 constexpr float kMerge = 1e-6f, kFlat = 1e-3f, kDepth = 5e-3f;
 constexpr std::size_t kGrain = 4096;
 

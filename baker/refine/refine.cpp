@@ -60,7 +60,7 @@ void write(const Outcome& outcome, ByteWriter& out) {
     for (const bundle::MeshData& mesh : primitives) writeMesh(mesh, out);
 }
 
-// Changes nothing where the bytes are no such outcome.
+// Changes nothing if the bytes are no such outcome.
 bool read(ByteReader& in, Outcome& outcome) {
   RefineReport report;
   std::uint64_t before = 0, after = 0, fans = 0;

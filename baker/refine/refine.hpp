@@ -41,7 +41,7 @@ struct RefineReport {
   std::uint64_t rays_kept = 0;  // rays that results in the cache saved
 };
 
-// What refinement reads beside the meshes.
+// A RefineScene is everything that refinement reads beside the meshes.
 struct RefineScene {
   const Scene& scene;
   const std::vector<RigidGroup>& groups;
@@ -49,9 +49,9 @@ struct RefineScene {
   bool with_glossy;  // materials that are not diffuse have glossy samples
 };
 
-// meshes[mesh][primitive] are changed in place; they are the same primitives as the scene's. Draws of one
-// mesh share its splits. The outcome is kept, and what was probed in each group. Errors: no memory for the
-// hierarchy, "stopped". The result does not depend on the number of threads.
+// Changes meshes[mesh][primitive] in place; they must be the same primitives as the scene's. Draws of one
+// mesh share its splits. The outcome, and the rays probed in each group, are kept in the cache. Errors: no
+// memory for the ray hierarchy, "stopped". The result does not depend on the number of threads.
 Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& options,
                                   std::vector<std::vector<bundle::MeshData>>& meshes,
                                   const BakeContext& context);

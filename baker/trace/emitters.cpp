@@ -14,16 +14,16 @@ namespace lambent::baker {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-// Points on all emitters together, and on one at least.
+// Number of points on all emitters together, and limits for each.
 constexpr std::size_t kPointsInAll = 1024, kLeastPoints = 32, kMostPoints = 256;
-constexpr float kShortOf = 1.0f - 1e-4f;  // a shadow ray ends before the surface that it asks about
+constexpr float kShortOf = 1.0f - 1e-4f;  // shadow rays end just before the surface
 
 float fraction(double x) {
   return static_cast<float>(x - std::floor(x));
 }
 
-// The origin that the i-th ray to an emitter starts from: dealt by weight, else the next from which the point
-// is above the horizon; null if there is none.
+// Returns the origin that the i-th ray to an emitter starts from: the one dealt by weight, or else the next
+// one with the point above its horizon. Returns null if there is none.
 const SampleOrigin* originBelow(glm::vec3 point, std::size_t i, std::span<const SampleOrigin> origins,
                                 const OriginDealer& dealer) {
   const std::size_t start = dealer.pick(i);
@@ -46,7 +46,7 @@ float punctualIrradiance(const gltf::Light& light, glm::vec3 light_direction, gl
     value *= std::clamp(1.0f - ratio * ratio * ratio * ratio, 0.0f, 1.0f);
   }
   if (light.type == gltf::Light::Type::Spot) {
-    // The extension's own suggestion for the falloff between the cones.
+    // KHR_lights_punctual suggests this falloff between the cones.
     const float inner = std::cos(light.inner_cone_rad), outer = std::cos(light.outer_cone_rad);
     const float scale = 1.0f / std::max(0.001f, inner - outer);
     const float along = glm::dot(light_direction, to_surface / distance);
@@ -74,7 +74,7 @@ Emitters::Emitters(const Scene& scene, const GroupGeometry& geometry, const Surf
     } else {
       const gltf::Node& node = scene.nodes[lights[k].index];
       const glm::mat4& place = lights[k].group_from_node;
-      const glm::vec3 shines = -glm::vec3(place[2]);  // along -Z of its node
+      const glm::vec3 shines = -glm::vec3(place[2]);  // lights shine along -Z of their node
       punctual_.push_back({k, scene.lights[static_cast<std::size_t>(node.light)],
                            glm::vec3(place[3]) - geometry.origin,
                            glm::length(shines) > 0.0f ? glm::normalize(shines) : glm::vec3(0, 0, -1)});
@@ -99,8 +99,8 @@ void Emitters::choosePoints(std::size_t count, Surface& surface,
   if (!(area > 0.0)) return;
   surface.area = static_cast<float>(area);
   for (std::size_t i = 0; i < count; ++i) {
-    // Even steps along the cumulated area pick the triangle; two more dimensions of Roberts' sequence (the
-    // plastic number) the place in it.
+    // Even steps along the cumulated area pick the triangle; two dimensions of Roberts' R2 sequence (from the
+    // plastic number) pick the place in it.
     const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * area;
     const auto chosen = static_cast<std::size_t>(
         std::min<std::ptrdiff_t>(std::upper_bound(cumulated.begin(), cumulated.end(), at) - cumulated.begin(),
@@ -132,7 +132,7 @@ void Emitters::addMet(std::span<const RayHit> hits, std::span<const SampleOrigin
     if (!(facing > 0.0f)) continue;
     const float points_per_steradian =
         static_cast<float>(surface.points.size()) / surface.area * glm::dot(offset, offset) / facing;
-    // Points are not chosen by way of the mirror.
+    // Chosen points never reach the sample by way of the mirrored direction, so those rays count in full.
     const float share = isAbove(straight, origin)
                             ? 1.0f - chosenShare(receiver.raysPerSteradian(local.z), points_per_steradian)
                             : 1.0f;
@@ -145,7 +145,7 @@ void Emitters::addChosen(std::span<const SampleOrigin> origins, const glm::mat3&
                          LightReceiver& receiver) const {
   struct Chosen {
     std::uint32_t light;
-    glm::vec3 radiance;  // times everything but the receiver's part
+    glm::vec3 radiance;  // times all factors but the receiver's
     glm::vec3 local;
   };
   std::vector<RaySegment> segments;
@@ -163,7 +163,8 @@ void Emitters::addChosen(std::span<const SampleOrigin> origins, const glm::mat3&
       const glm::vec3 direction = offset / distance, local = local_from_group * direction;
       const float facing = -glm::dot(direction, point.normal);
       if (!(facing > 0.0f) || !(local.z > 0.0f)) continue;
-      // One over (points + rays per steradian): the balance heuristic, with the number of points in it.
+      // The balance heuristic gives the weight 1 / (points per steradian + rays per steradian), which
+      // includes the division by the number of points.
       const float points_per_steradian =
           static_cast<float>(surface.points.size()) / surface.area * squared / facing;
       const float both = points_per_steradian + receiver.raysPerSteradian(local.z);

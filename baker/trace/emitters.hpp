@@ -1,7 +1,7 @@
-// Light that the group gives off itself, at unit strength, one column each: emissive surfaces by next-event
-// estimation combined with the sample's own rays (multiple importance sampling, balance heuristic: Veach
-// 1995), punctual lights by one shadow ray per origin. Low-discrepancy points on the surfaces, the same for
-// all samples, so errors are smooth in space.
+// Gathers light that the group itself emits, at unit strength, in one column per light. Emissive surfaces are
+// sampled by next-event estimation combined with the sample's own rays (multiple importance sampling with the
+// balance heuristic: Veach 1995), punctual lights by one shadow ray per origin. The points on the surfaces
+// are low-discrepancy and the same for all samples, so errors are smooth in space.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +16,16 @@
 
 namespace lambent::baker {
 
-// A sample as light arrives at it.
+// A LightReceiver is a sample on which light arrives. Its local frame has the normal along z.
 class LightReceiver {
  public:
   virtual ~LightReceiver() = default;
-  // Of the rays that it looked with: local frame, z its normal.
+  // Returns the unit direction of one of the sample's own rays, in the local frame.
   virtual glm::vec3 direction(std::size_t ray) const = 0;
   virtual float raysPerSteradian(float cosine) const = 0;
-  // Radiance along one of those rays.
+  // Adds radiance along one of those rays.
   virtual void addAlong(std::size_t ray, std::uint32_t light, glm::vec3 radiance) = 0;
-  // Radiance times solid angle from a local direction with z > 0.
+  // Adds radiance times solid angle from a local direction with z > 0.
   virtual void addFrom(glm::vec3 local, std::uint32_t light, glm::vec3 radiance) = 0;
 };
 
@@ -36,10 +36,10 @@ class Emitters {
 
   bool empty() const { return surfaces_.empty() && punctual_.empty(); }
 
-  // Light that the sample's rays met (hits of RayScene::traceHits).
+  // Adds emitted light that the sample's rays hit (hits of RayScene::traceHits).
   void addMet(std::span<const RayHit> hits, std::span<const SampleOrigin> origins, const glm::mat3& frame,
               LightReceiver& receiver) const;
-  // Light from points chosen on the emitters, and from punctual lights.
+  // Adds light from points chosen on the emitters, and from punctual lights.
   void addChosen(std::span<const SampleOrigin> origins, const glm::mat3& frame, const RayScene& rays,
                  LightReceiver& receiver) const;
 
@@ -55,7 +55,7 @@ class Emitters {
   struct Punctual {
     std::uint32_t light = 0;
     gltf::Light source;
-    glm::vec3 position, direction;  // unit, the way that the light shines
+    glm::vec3 position, direction;  // group frame; the direction, unit, in which light shines
   };
 
   void choosePoints(std::size_t count, Surface& surface, const std::vector<std::uint32_t>& triangles) const;
@@ -67,11 +67,12 @@ class Emitters {
   const SurfaceColors& colors_;
   std::vector<Surface> surfaces_;
   std::vector<Punctual> punctual_;
-  std::vector<std::int32_t> surface_of_light_;  // light -> place in surfaces_, -1
+  std::vector<std::int32_t> surface_of_light_;  // index of a light -> index in surfaces_, or -1
 };
 
-// Intensity of a punctual light of unit strength towards `direction` from it, over the squared distance: the
-// irradiance on a surface that faces it (KHR_lights_punctual).
+// Returns the irradiance on a surface that faces a punctual light of unit strength: its intensity in the
+// direction `to_surface`, over the squared distance (KHR_lights_punctual). `to_surface` reaches from the
+// light to the surface; for directional lights the result is 1.
 float punctualIrradiance(const gltf::Light& light, glm::vec3 light_direction, glm::vec3 to_surface);
 
 }  // namespace lambent::baker

@@ -76,7 +76,7 @@ ExitToSample::ExitToSample(const Bounce& bounce, const DirectionTable& table, co
 
 void ExitToSample::addGlossy(const GatherHit& hit, float weight, std::span<float> sum) const {
   const glm::vec3 along = frame_ * glm::vec3(table_.x[hit.ray], table_.y[hit.ray], table_.z[hit.ray]);
-  // A golden-ratio sequence over the rays, which neighbour each other: they share out the corners evenly.
+  // A golden-ratio sequence over neighbouring rays shares out the corners evenly.
   const std::uint32_t dealt = seed_ + hit.ray * 2654435769u;
   const float chance = bounce_.thinly ? static_cast<float>(dealt >> 8) * 0x1p-24f : -1.0f;
   bounce_.exit.addGlossy(hit, -along, chance, weight, sum);

@@ -1,5 +1,5 @@
-// What passes of bounces over diffuse and over other surfaces have in common: the radiance that leaves what
-// rays met, and how late passes are thinned.
+// Computes the exit radiance at hits. Bounce passes over diffuse and over other surfaces share it, and the
+// way in which late passes are thinned out.
 #pragma once
 
 #include <cstdint>
@@ -22,56 +22,57 @@ namespace lambent::baker {
 
 class ExitRadiance;
 
-// One pass of bounces, for all that gather in it.
+// A Bounce is one pass of bounces, as all that gather in it see it.
 struct Bounce {
-  int number;   // from 1 on
-  bool thinly;  // late passes are thinned
+  int number;   // starts at 1
+  bool thinly;  // if true, only a part of the hits is gathered, as late passes do
   const ExitRadiance& exit;
-  const TransferField& before;  // plain transfer of all samples, of what this pass passes on
-  // What of it samples of other surfaces than diffuse ones have from patches alone; null: nothing. They
-  // reflect it alike in all directions.
+  const TransferField& before;  // diffuse transfer of all samples, which this pass passes on
+  // The part of it that samples that are not diffuse have from patches alone, or null. They reflect it alike
+  // in all directions.
   const PatchRadiance* of_patches = nullptr;
-  // How much more light this pass passes on than the one before brought.
-  double growth = 1.0;
+  double growth = 1.0;  // energy of what this pass passes on, relative to what the previous one brought
 };
 
-// Surfaces that reflect by another law than Lambert's, with samples of their own (SampleSet::glossy
-// on): they take part in every pass, as senders and as receivers.
+// A BouncePartner stands for surfaces that are not diffuse, whose samples are SampleSet::glossy. They take
+// part in every pass, as senders and as receivers.
 class BouncePartner {
  public:
   virtual ~BouncePartner() = default;
-  // As ExitRadiance::add, of a hit on a triangle of its own; `corners` are the triangle's samples.
+  // Does what ExitRadiance::addGlossy does, for a hit on one of the partner's triangles. `corners` are the
+  // triangle's samples.
   virtual void addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
                        float weight, std::span<float> sum) const = 0;
-  // Returns how much of uniform light the point that was met reflects towards `to`, for each channel.
+  // Returns how much of uniform light the hit point reflects towards `to`, for each channel.
   virtual glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const = 0;
-  // Calls take with the hits of a sample of its own, and the direction from each towards the sample.
+  // Calls `take` with the hits of one of the partner's samples, and the direction from each to the sample.
   using TakeGlossyHit = std::function<void(const GatherHit& hit, float weight, const glm::vec3& to)>;
   virtual void visitHits(std::size_t sample, const TakeGlossyHit& take) const = 0;
-  // Gathers one pass over its samples. `now` is the plain transfer of all samples, and gets what follows at
-  // its own. The key of the context is that of this pass. Returns false if stopped.
+  // Gathers one pass over the partner's samples. `now` is the diffuse transfer of all samples; this adds to
+  // it at the partner's own samples. The key of the context is that of this pass. Returns false if stopped.
   virtual bool gather(const Bounce& bounce, TransferField& now, const BakeContext& context) = 0;
-  // Makes what was gathered last the state of the pass before.
+  // Makes what was gathered last the input of the next pass.
   virtual void advance() = 0;
-  // RMS of what was gathered last (at first: of pass 0), for each source of light: the environment, then each
-  // light.
+  // Returns the RMS of what was gathered last (at first, that of pass 0) for each light source: the
+  // environment, then each light.
   virtual std::vector<double> energies() const = 0;
 };
 
-// What leaves the points that rays met, after the pass before.
+// ExitRadiance returns the light that leaves hits, after the previous pass.
 class ExitRadiance {
  public:
-  // partner: null where all is diffuse.
+  // `partner` is null if all surfaces are diffuse.
   ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples, const BouncePartner* partner);
 
   bool isDiffuse(const GatherHit& hit) const { return triangle_samples_[hit.triangle].x < glossy_begin_; }
   bool anyGlossy() const { return partner_ != nullptr; }
-  // weight * albedo * interpolated transfer, added to `sum`, laid out as a sample of `before`.
+  // Adds weight * albedo * interpolated transfer to `sum`, which has the layout of a sample of `before`.
   void addDiffuse(const GatherHit& hit, float weight, const TransferField& before,
                   std::span<float> sum) const;
-  // What leaves a hit that is not diffuse towards `to` (unit, group frame, away from the surface). chance:
-  // below 0, what is known at the triangle's corners is interpolated; from [0, 1), it picks one corner for
-  // all three, as often as its weight says: the same in the mean for a third of the reading (thinned passes).
+  // Adds what leaves a hit that is not diffuse towards `to` (unit, group frame, away from the surface). A
+  // negative `chance` interpolates the values at the triangle's corners. A `chance` in [0, 1) picks one of
+  // the corners with the probability of its weight, which has the same mean and reads a third of the data
+  // (thinned passes).
   void addGlossy(const GatherHit& hit, const glm::vec3& to, float chance, float weight,
                  std::span<float> sum) const;
   // What leaves a hit that is not diffuse of light that patches brought.
@@ -87,10 +88,10 @@ class ExitRadiance {
   const BouncePartner* partner_;
 };
 
-// The same as one sample receives it along its rays.
+// ExitToSample does the same for one sample, which receives the light along its rays.
 class ExitToSample {
  public:
-  // table: of the sample's rays, z along its normal. Bounce and table outlive it.
+  // `table` holds the sample's rays, with z along its normal. Bounce and table must outlive this.
   ExitToSample(const Bounce& bounce, const DirectionTable& table, const glm::vec3& normal,
                std::size_t sample);
 
@@ -110,13 +111,14 @@ class ExitToSample {
   std::uint32_t seed_ = 0;
 };
 
-// Where a sample has more hits than this, thinning leaves those of every kThinned-th ray.
+// If a sample has more hits than this, thinning keeps those of every kThinned-th ray.
 inline constexpr std::size_t kHitsToThin = 64;
 inline constexpr std::uint32_t kThinned = 4;
 
-// The hits of every kThinned-th ray (rays lie along a Hilbert curve, so these are as evenly spread), others
-// in each bounce: `hits` becomes those, kept in `out`. Returns what their weights must be multiplied with to
-// stand for all, so that no light is lost or won: a white furnace stays white.
+// Keeps the hits of every kThinned-th ray, others in each bounce. Rays lie along a Hilbert curve, so the kept
+// ones are spread as evenly. Makes `hits` refer to the kept ones, which are stored in `out`. Returns the
+// factor on their weights that makes them stand for all, so that no light is lost or gained: a white furnace
+// stays white.
 template <typename Rays>
 float thinHits(int bounce, const Rays& rays, std::span<const GatherHit>& hits, std::vector<GatherHit>& out) {
   if (hits.size() <= kHitsToThin) return 1.0f;

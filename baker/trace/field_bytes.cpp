@@ -8,7 +8,7 @@ namespace lambent::baker {
 
 namespace {
 
-// Calls with the place in a sample's vector and the length of each stretch that is kept.
+// Calls visit(offset, length) for each stretch of a sample's vector that is kept.
 template <typename Visit>
 void forCached(const TransferField& field, bool grey_lights, const Visit& visit) {
   const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
@@ -23,7 +23,7 @@ void forCached(const TransferField& field, bool grey_lights, const Visit& visit)
     }
 }
 
-// The channels that were not kept, from the first.
+// Copies the first channel to the channels that were not kept.
 void spread(const TransferField& field, bool grey_lights, std::span<float> vector) {
   const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
   const std::size_t same = grey_lights ? field.columns : bands;

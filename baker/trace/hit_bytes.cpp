@@ -4,7 +4,7 @@ namespace lambent::baker {
 
 namespace {
 
-// Small differences of either sign as small numbers.
+// Maps small differences of either sign to small numbers.
 std::uint32_t zigzag(std::uint32_t difference) {
   return difference << 1 ^ (difference >> 31 ? ~std::uint32_t{0} : 0);
 }
@@ -12,7 +12,7 @@ std::uint32_t unzigzag(std::uint32_t code) {
   return code >> 1 ^ (code & 1 ? ~std::uint32_t{0} : 0);
 }
 
-// Seven bits a byte, the lowest first.
+// Writes seven bits to a byte, the lowest first.
 void put(std::uint32_t value, std::vector<std::uint8_t>& out) {
   for (; value >= 0x80; value >>= 7) out.push_back(static_cast<std::uint8_t>(value | 0x80));
   out.push_back(static_cast<std::uint8_t>(value));

@@ -1,6 +1,7 @@
-// What the rays of pass 0 met, kept for the passes that gather over it: sparse, since on open shapes few rays
-// meet anything. Ranges of samples are kept up to a limit of memory, whichever come first; the others are
-// traced again when asked for and give the very same hits, so the result does not depend on which were kept.
+// Keeps the hits of pass 0 for the passes that gather over them. They are sparse, since on open shapes few
+// rays hit anything. Ranges of samples are kept up to a memory limit, whichever come first; the others are
+// traced again when they are asked for and give the very same hits, so the result does not depend on which
+// were kept.
 #pragma once
 
 #include <algorithm>
@@ -15,30 +16,31 @@
 namespace lambent::baker {
 
 inline constexpr std::size_t kSamplesPerRange = 256;
-// Of a range, in one piece of a pass that gathers: between glossy surfaces that see nothing but each other a
-// sample takes 35 ms, and what a killed bake had begun is lost.
+// Samples that a gathering pass works on at a time. Between glossy surfaces that see nothing but each other a
+// sample takes 35 ms, and work that a killed bake had begun is lost.
 inline constexpr std::size_t kSamplesGathered = 32;
 static_assert(kSamplesPerRange % kSamplesGathered == 0);
 
 struct GatherHit {
   std::uint32_t triangle = 0, ray = 0;
-  std::uint16_t u = 0, v = 0;           // unorm16: barycentric weights of corners 1 and 2
-  std::uint16_t albedo[3] = {0, 0, 0};  // unorm16, of the point that was met
+  std::uint16_t u = 0, v = 0;           // unorm16; barycentric weights of corners 1 and 2
+  std::uint16_t albedo[3] = {0, 0, 0};  // unorm16; at the hit
 
   static std::uint16_t unorm(float value) {
     return static_cast<std::uint16_t>(std::clamp(value, 0.0f, 1.0f) * 65535.0f + 0.5f);
   }
 };
 
-// Of one range of samples.
+// RangeHits are the hits of one range of samples.
 struct RangeHits {
-  std::vector<std::uint32_t> offsets;  // of each sample's first hit, and the end
+  std::vector<std::uint32_t> offsets;  // index of each sample's first hit, then the number of hits
   std::vector<GatherHit> hits;
   bool kept = false;
 
-  // The hits that are appended from here on are of the next sample; the last call ends the range.
+  // Starts the next sample: hits that are appended from here on are its own. The last call ends the range.
   void next() { offsets.push_back(static_cast<std::uint32_t>(hits.size())); }
-  // Samples [begin, end) by a walk that looks and keeps hits, in place of what was here.
+  // Replaces these hits by those of samples [begin, end), traced by a walk with functions look() and
+  // keepHits().
   template <typename Walk>
   void traceAgain(Walk&& walk, std::size_t begin, std::size_t end) {
     offsets.clear();
@@ -52,7 +54,7 @@ struct RangeHits {
   }
 
   std::size_t bytes() const { return hits.size() * sizeof(GatherHit); }
-  // Of the sample at this place in the range.
+  // Returns the hits of the sample at this index in the range.
   std::span<const GatherHit> of(std::size_t sample) const {
     return std::span(hits).subspan(offsets[sample], offsets[sample + 1] - offsets[sample]);
   }
@@ -72,7 +74,7 @@ class HitStore {
     return *this;
   }
 
-  // From any thread, each range once.
+  // Keeps the hits of a range if there is room. May be called from any thread, once for each range.
   void offer(std::size_t range, RangeHits&& hits) {
     const std::size_t bytes = hits.bytes();
     if (held_.fetch_add(bytes) + bytes > limit_bytes_) {
@@ -93,11 +95,11 @@ class HitStore {
   std::atomic<std::size_t> held_ = 0;
 };
 
-// Of samples [begin, end), all of one range: as the store has them, or traced again by the pass that found
-// them.
+// StoredHits are the hits of samples [begin, end), which must lie in one range: those of the store, or traced
+// again by the pass that found them.
 class StoredHits {
  public:
-  // Store and pass outlive it.
+  // Store and pass must outlive this.
   template <typename Pass>
   StoredHits(const HitStore& store, const Pass& pass, std::size_t begin, std::size_t end)
       : hits_(&store.range(begin / kSamplesPerRange)), first_(begin - begin % kSamplesPerRange) {
@@ -113,7 +115,7 @@ class StoredHits {
 
  private:
   const RangeHits* hits_;
-  std::size_t first_;  // sample whose hits come first in it
+  std::size_t first_;  // sample that hits_ starts with
   RangeHits again_;
 };
 

@@ -11,8 +11,8 @@ namespace lambent::baker {
 
 namespace {
 
-// Where more than one ray in so many hits, most packets have one that does, and to ask at once what they hit
-// is faster than to ask first whether they do.
+// If more than one ray in this many hits something, most packets have a ray that hits, and it is faster to
+// ask for the closest hit at once than to ask first whether there is one.
 constexpr std::size_t kAskWhatAtOnce = 6;
 
 }  // namespace
@@ -47,10 +47,11 @@ void paintHits(const SurfaceColors& colors, RangeHits& hits) {
     const std::size_t begin = std::exchange(hits.offsets[s], static_cast<std::uint32_t>(left));
     for (std::size_t h = begin; h < hits.offsets[s + 1]; ++h) {
       GatherHit hit = hits.hits[h];
-      // At the place that is kept, so that a colour is the same whether the hit was traced or found.
+      // Colours are looked up at the rounded place, so that they are the same whether the hit was traced or
+      // found in the cache.
       const glm::vec3 albedo = colors.albedo(hit.triangle, static_cast<float>(hit.u) * (1.0f / 65535.0f),
                                              static_cast<float>(hit.v) * (1.0f / 65535.0f));
-      // What is glossy and black still mirrors.
+      // A glossy surface that is black still has a specular reflection.
       if (albedo == glm::vec3(0.0f) && !colors.glossy(hit.triangle)) continue;
       for (int c = 0; c < 3; ++c) hit.albedo[c] = GatherHit::unorm(albedo[c]);
       hits.hits[left++] = hit;

@@ -1,5 +1,5 @@
-// How a sample looks around: where its rays start, what they meet, and what lies inside something. Shared by
-// all that trace from samples; one per thread and range of samples.
+// Finds what a sample sees: where its rays start, what they hit, and whether it lies inside something.
+// Everything that traces from samples uses it, one object per thread and range of samples.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@
 
 namespace lambent::baker {
 
-// One entry per sample.
+// Both lists have one entry per sample.
 struct SampleVisibilities {
-  std::vector<std::uint8_t> valid;        // 0: lies inside something, filled from its neighbours
-  std::vector<std::uint8_t> double_rays;  // 1: looked with twice the rays
+  std::vector<std::uint8_t> valid;  // 0: the sample lies inside something, and is filled from its neighbours
+  std::vector<std::uint8_t> double_rays;  // 1: the sample is traced with twice the rays
 };
 
 class SampleVisibility {
@@ -28,20 +28,20 @@ class SampleVisibility {
   SampleVisibility(const SampleSet& samples, const RayScene& rays, const InsideTestTables& glances)
       : samples_(samples), rays_(rays), inside_test_(glances) {}
 
-  // Stands on sample `s`: its frame, the origins that lie outside, and whether to trace twice the rays.
+  // Moves to sample `s`: finds its frame, the origins that lie outside, and whether to trace twice the rays.
   void stand(std::size_t s);
-  // Traces the table's rays, with what they meet where `wants_hits`. Returns how many were traced; none where
-  // the sample has no face to stand on.
+  // Traces the table's rays, and records what they hit if `wants_hits`. Returns how many were traced, which
+  // is none if the sample has no face.
   std::uint32_t look(const DirectionTable& table, bool wants_hits,
                      BelowHorizon below = BelowHorizon::Blocked);
 
-  bool valid() const { return seen_.valid; }  // false: lies inside or under something, or has no face
-  bool double_rays() const {
-    return seen_.double_rays;
-  }  // much is in the way: to be looked at with twice the rays
+  // False if the sample lies inside or under something, or has no face.
+  bool valid() const { return seen_.valid; }
+  // True if much is in the way, so that the sample is traced with twice the rays.
+  bool double_rays() const { return seen_.double_rays; }
   const glm::dmat3& frame() const { return frame_; }  // group_from_local
   std::span<const SampleOrigin> origins() const { return seen_.origins; }
-  // Bit k of blocked()[p]: ray 16 p + k.
+  // Bit k of blocked()[p] is set if ray 16 p + k is blocked.
   std::span<const std::uint16_t> blocked() const { return blocked_; }
   std::span<const RayHit> hits() const { return hits_; }
 
@@ -59,7 +59,7 @@ class SampleVisibility {
   std::vector<RayHit> hits_;
 };
 
-// Looks up what the surfaces that were met reflect. Hits on those that reflect nothing are left out.
+// Looks up what the surfaces at hits reflect. Removes hits on surfaces that reflect nothing.
 void paintHits(const SurfaceColors& colors, RangeHits& hits);
 
 }  // namespace lambent::baker

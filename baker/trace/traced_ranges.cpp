@@ -43,7 +43,7 @@ Output TracedRanges::output() {
 
 void TracedRanges::write(std::size_t range, ByteWriter& out) {
   out.add(rays_[range]);
-  // What had no room in memory is traced again when it is asked for, now and then.
+  // Hits that had no room in memory are not written; they are traced again when they are asked for.
   const bool with_hits = keep_hits_ && store_.range(range).kept;
   out.add(with_hits);
   const std::vector<std::byte> hits = std::exchange(unpainted_[range], {});

@@ -1,6 +1,6 @@
-// What ranges of samples traced, of diffuse and of glossy surfaces alike, as an output of the stage that
-// traces: how many rays, and what they met. Hits are painted for the store; beside it they are kept
-// unpainted, so that what was traced stays good when colours change.
+// Holds what ranges of samples traced, of diffuse and of glossy surfaces alike, as an output of the stage
+// that traces: the numbers of rays, and their hits. The store gets hits with colours; the output keeps them
+// without, so that traced results stay valid when colours change.
 #pragma once
 
 #include <atomic>
@@ -17,15 +17,17 @@ namespace lambent::baker {
 
 class TracedRanges {
  public:
-  // Scene and store outlive it. keep_hits: bounces want them. kept: output() will be written.
+  // Scene and store must outlive this. `keep_hits` says that bounces need hits; `kept` says that output()
+  // will be written.
   TracedRanges(const TracedScene& scene, std::size_t samples, bool keep_hits, bool kept, HitStore& store);
 
-  // Takes what a range traced just now; from any thread, each range once. What was stopped has no hits.
+  // Takes the result of a range that was traced just now. May be called from any thread, once for each range.
+  // If a stop was requested, the hits are not kept.
   void add(std::size_t range, std::uint64_t rays, RangeHits&& hits, const std::stop_token& stop);
-  // The output of a stage with ranges of kSamplesPerRange, which must not outlive this.
+  // Returns an output for a stage with ranges of kSamplesPerRange. It must not outlive this.
   Output output();
 
-  // Once all are there.
+  // May be called once all ranges are there.
   std::uint64_t raysTraced() const { return traced_; }
   std::uint64_t raysFound() const;
 
@@ -38,7 +40,7 @@ class TracedRanges {
   HitStore& store_;
   bool keep_hits_, kept_;
   std::vector<std::uint64_t> rays_;
-  std::vector<std::vector<std::byte>> unpainted_;  // hits, until they are written
+  std::vector<std::vector<std::byte>> unpainted_;  // packed hits without colours, until they are written
   std::atomic<std::uint64_t> traced_ = 0;
 };
 

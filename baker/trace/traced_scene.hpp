@@ -1,5 +1,5 @@
-// A rigid group as rays see it, whatever is computed from what they meet: its geometry and samples, the
-// hierarchy, the colours of its surfaces and the lights that belong to it. All of it is borrowed.
+// Holds a rigid group as rays see it: its geometry and samples, the ray hierarchy, the colours of its
+// surfaces and the lights that belong to it. All of it is borrowed.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace lambent::baker {
 
-// What tracing and gathering read of a rigid group; all of it outlives the bake.
+// Everything that a TracedScene refers to must outlive the bake.
 struct TracedScene {
   const Scene& scene;
   const GroupGeometry& geometry;

@@ -15,18 +15,19 @@ namespace lambent::baker {
 
 namespace {
 
-// Of the square of all change between corners, so much lies on the triangles that get a point.
+// The triangles that get a point have this share of all squared change between corners.
 constexpr double kShareOfChange = 0.98;
-// Squared, relative: what is less is rounding, and noise of rays at the same things.
+// Limit on the squared relative change: smaller ones are rounding, and noise of rays that hit the same
+// things.
 constexpr double kLeastChange = 1e-6;
-// Of a triangle's integral.
+// Weights of the corners and of the centroid in a triangle's integral.
 constexpr double kOfCorner = 1.0 / 12.0, kOfCentroid = 3.0 / 4.0;
-// Values are solved for by Chebyshev semi-iteration (Wathen and Rees 2009): relative to their diagonal, mass
+// Values are solved for by Chebyshev semi-iteration (Wathen and Rees 2009). Relative to their diagonal, mass
 // matrices of linear functions on triangles have eigenvalues from 1/2 to 2 (Wathen 1987), so each step takes
-// two thirds of the error away, the same for all. What is left is far below the noise of rays.
+// away two thirds of the error. What is left is far below the noise of rays.
 constexpr int kSteps = 9;
 constexpr float kLeast = 0.5f, kMost = 2.0f;
-// Values of each sample that are solved for together.
+// Number of values of each sample that are solved for together.
 constexpr std::size_t kTogether = 16;
 using Row = std::array<float, kTogether>;
 
@@ -73,8 +74,8 @@ std::vector<std::uint32_t> changingTriangles(const GroupGeometry& geometry, cons
 struct VertexFit::System {
   using Matrix = Eigen::SparseMatrix<float, Eigen::RowMajor, int>;
   struct Point {
-    glm::uvec3 corners;   // from the stretch's first sample on
-    std::uint32_t point;  // from its stretch's first on
+    glm::uvec3 corners;   // samples, relative to the first of the stretch
+    std::uint32_t point;  // relative to the first of its stretch
     float weight;
   };
   std::size_t unknowns = 0;
@@ -82,7 +83,7 @@ struct VertexFit::System {
   Matrix mass;
   std::vector<float> over_diagonal;
 
-  // Puts the solution of mass x = b in the place of b.
+  // Replaces b by the solution x of mass x = b.
   void solve(std::vector<Row>& b) const;
 };
 
@@ -91,7 +92,7 @@ void VertexFit::System::solve(std::vector<Row>& b) const {
   std::vector<Row> now(unknowns, Row{}), before(unknowns, Row{});
   float omega = 1.0f;
   for (int step = 0; step < kSteps; ++step) {
-    // before becomes what comes after now.
+    // `before` is overwritten by the values that follow `now`.
     for (std::size_t s = 0; s < unknowns; ++s) {
       Row left = b[s];
       for (Matrix::InnerIterator term(mass, static_cast<Eigen::Index>(s)); term; ++term) {
@@ -132,7 +133,7 @@ VertexFit::VertexFit(const GroupGeometry& geometry, const SampleSet& samples, Sa
   system->mass.setFromTriplets(terms.begin(), terms.end());
   for (Eigen::Index s = 0; s < size; ++s) {
     const float diagonal = system->mass.coeff(s, s);
-    // Of no face, or of none whose area is a number to reckon with: stays.
+    // A sample with no face, or only faces without a usable area, keeps its value.
     system->over_diagonal.push_back(std::isnormal(diagonal) ? 1.0f / diagonal : 0.0f);
   }
   for (std::size_t p = points_stretch.begin; p < points_stretch.end; ++p) {

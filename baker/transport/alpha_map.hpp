@@ -25,7 +25,7 @@ struct AlphaMap {
   }
 };
 
-// One entry per material, null where its alpha mode is not MASK.
+// There is one entry per material, null if its alpha mode is not MASK.
 using AlphaMaps = std::vector<std::shared_ptr<const AlphaMap>>;
 Result<AlphaMaps> loadAlphaMaps(const Scene& scene, DecodedImages& images);
 

@@ -44,9 +44,9 @@ struct GroupGeometry {
   std::vector<glm::vec2> emissive_texcoords;  // for its emissive texture
   std::vector<glm::vec4> colors;              // vertex colours, linear; 1 where there are none
   // These two serve the textures of glossy surfaces. They hold values for the vertices of glossy draws, 0 for
-  // those before them, and end with the last glossy one. `texcoord_sets` are as in the file, 0 where it has
+  // those before them, and end with the last glossy one. `texcoord_sets` are as in the file, 0 if it has
   // none. `tangents` are unit, along the group's axes; w is the sign of the bitangent cross(normal, tangent)
-  // w on that side; 0 if absent.
+  // w on that side of the surface; all are 0 if absent.
   std::array<std::vector<glm::vec2>, 2> texcoord_sets;
   std::vector<glm::vec4> tangents;
   std::vector<glm::uvec3> triangles;             // into positions; corners 1 and 2 are swapped for back draws

@@ -71,7 +71,7 @@ struct PacketLanes {
   std::array<std::size_t, kPacketWidth> origin;
 };
 
-// The rays of one sample: along the directions of a table, turned by the sample's frame.
+// SampleRays are the rays of one sample: the directions of a table, rotated by the sample's frame.
 struct SampleRays {
   std::span<const SampleOrigin> origins;  // not empty
   glm::mat3 frame{1.0f};                  // group_from_local

@@ -66,9 +66,9 @@ class RayScene {
   // were traced.
   std::uint32_t trace(const SampleRays& rays, std::span<std::uint16_t> masks) const;
 
-  // As trace(), and what the blocked rays met, in the order of the rays, appended to `hits`. Backs of
-  // single-sided surfaces block and are not listed. `mostly_blocked` is a hint about which way is faster, and
-  // must be the same where the same result is wanted.
+  // Does what trace() does, and appends the hits of blocked rays to `hits`, in the order of the rays. Backs
+  // of single-sided surfaces block and are not listed. `mostly_blocked` is a hint about which way is faster,
+  // and must be the same if the same result is wanted.
   std::uint32_t traceHits(const SampleRays& rays, bool mostly_blocked, std::span<std::uint16_t> masks,
                           std::vector<RayHit>& hits) const;
 
@@ -79,7 +79,7 @@ class RayScene {
   // similar directions.
   void firstHits(std::span<const RaySegment> rays, std::span<FirstHit> hits) const;
 
-  // Per origin: what its rays met. Returns the share of all rays that met anything.
+  // Fills in what the rays of each origin hit. Returns the share of all rays that hit anything.
   float meet(const SampleRays& rays, std::span<MetShares> shares) const;
 
  private:

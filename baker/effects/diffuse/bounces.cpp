@@ -21,8 +21,8 @@ namespace lambent::baker {
 
 namespace {
 
-// Once a pass has less than this share of all light, its rays are thinned: their noise of a percent of a
-// percent is not seen.
+// Once a pass has less than this share of all light, its rays are thinned: their noise, a percent of at most
+// a percent, is not visible.
 constexpr double kShareToThin = 0.01;
 
 // Adds the squares of a vector under real lights to a sum for each source of light: the environment first,
@@ -69,7 +69,7 @@ class Gather {
            exit_.albedo(hit, -(frame * hemisphere.direction(hit.ray))));
   }
 
-  // Gathers at samples [begin, end). `mapped` gets it added; it is in the group's frame.
+  // Gathers at samples [begin, end). Adds to `mapped`, which is in the group's frame.
   void range(const Bounce& bounce, std::size_t begin, std::size_t end, TransferField& now,
              TransferField& mapped) const {
     std::vector<GatherHit> thinned;
@@ -88,7 +88,7 @@ class Gather {
   }
 
  private:
-  // What the rays of one sample met, and what leaves there towards it; hits count `scale` times.
+  // Received are the hits of a sample's rays and the exit radiance towards it; hits are weighted by `scale`.
   struct Received {
     std::span<const GatherHit> hits;
     float scale;
@@ -131,7 +131,7 @@ class Gather {
   const ExitRadiance& exit_;
 };
 
-// The largest share that a pass has of all light, over the sources of light.
+// Returns the largest share of all light that a pass has, over the light sources.
 double shareOf(const std::vector<double>& pass, const std::vector<double>& all) {
   double share = 0.0;
   for (std::size_t k = 0; k < pass.size(); ++k)
@@ -139,8 +139,8 @@ double shareOf(const std::vector<double>& pass, const std::vector<double>& all) 
   return share;
 }
 
-// What all passes after this one would add, as a share of all light: the passes shrink at least as fast as
-// the last two did, so the rest is a geometric series.
+// Estimates what all passes after this one would add, as a share of all light. Passes shrink at least as fast
+// as the last two did, so the rest is bounded by a geometric series.
 double tailOf(const std::vector<double>& before, const std::vector<double>& now,
               const std::vector<double>& all) {
   double worst = 0.0;

@@ -18,27 +18,27 @@
 namespace lambent::baker {
 
 struct BounceSettings {
-  int bounces = -1;          // -1: as many as it takes
-  double tail_error = 1e-3;  // with -1: relative RMS of all light that passes left out may amount to
+  int bounces = -1;          // -1: as many as tail_error asks for
+  double tail_error = 1e-3;  // only with -1: light of all further passes, relative to all light
 };
 
 inline constexpr int kMostBounces = 64;
 
 struct BounceResult {
-  TransferField field, mapped;  // sums of the passes, laid out as those of DirectResult
-  // Energy of each pass from pass 0 on: RMS over the samples under real lights, of the light (environment or
-  // one of the group's) for which the share of the last pass is the largest; relative to that of pass 0.
+  TransferField field, mapped;  // sums of all bounce passes, laid out as those of DirectResult
+  // Energy of each pass, starting with pass 0 and relative to it: RMS over the samples under real lights. It
+  // is that of the light (environment or one of the group's) with the largest share in the pass.
   std::vector<double> energy;
-  double left_out = 0.0;  // estimate of what the passes left out, relative to all light
+  double left_out = 0.0;  // estimate of the light of all further passes, relative to all light
 };
 
 // Returns nothing if stopped. Progress shows "bounce 1", "bounce 2", ... `partner` may be null. The key of
-// the context is that of all that the passes read; what they came to is kept under it until dropBounces(),
-// for a bake that is cut short.
+// the context covers everything that the passes read; results of passes are kept under it until
+// dropBounces(), in case the bake is cut short.
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
                                         const TracedScene& scene, const BounceSettings& settings,
                                         const BakeContext& context, BouncePartner* partner = nullptr);
-// inside_faces: samples of the partner there.
+// Removes what bakeBounces() kept. `inside_faces` is the partner's number of samples inside faces.
 void dropBounces(const TracedScene& scene, std::size_t inside_faces, const BakeContext& context);
 
 }  // namespace lambent::baker

@@ -1,12 +1,12 @@
-// The baker's room of the diffuse effect: does the scene call for it? What it computes is in direct.hpp, what
-// it stores in baker/compress; the runtime's room of the same name shades from that.
+// Decides whether a scene needs the diffuse effect. direct.hpp and bounces.hpp compute its transfer,
+// baker/compress codes it, and the runtime's room of the same name shades from it.
 #pragma once
 
 #include "baker/plan/effect_plan.hpp"
 
 namespace lambent::baker {
 
-// Every scene with a surface calls for diffuse transfer.
+// Diffuse transfer is chosen for every scene with a surface.
 EffectChoice chooseDiffuse(const Scene& scene, const std::vector<RigidGroup>& groups);
 
 }  // namespace lambent::baker

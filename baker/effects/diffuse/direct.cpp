@@ -28,7 +28,7 @@ TransferField makeField(std::size_t samples, int order, std::uint32_t outputs, s
 
 }  // namespace
 
-// One thread's way through a range of samples: scratch memory, and what each sample's rays meet.
+// A Walk is one thread's way through a range of samples: scratch memory, and the hits of each sample's rays.
 class DirectPass::Walk {
  public:
   explicit Walk(const DirectPass& pass)
@@ -37,7 +37,7 @@ class DirectPass::Walk {
         group_from_local_(glm::dmat3(1.0), pass.settings_.order),
         incident_from_local_(glm::dmat3(1.0), kIncidentOrder) {}
 
-  // Rays of sample `s`. Nothing is traced where it has no face to stand on.
+  // Traces the rays of sample `s`, or none if it has no face.
   std::uint32_t look(std::size_t s) {
     look_.stand(s);
     hemisphere_ = &pass_.hemisphereOf(s, look_.double_rays());
@@ -46,7 +46,7 @@ class DirectPass::Walk {
 
   const SampleVisibility& looked() const { return look_; }
 
-  // Transfer of the sample that was looked at.
+  // Computes the transfer of the sample that was traced.
   void project(std::span<float> scalar, std::span<float> incident) {
     std::fill(scalar.begin(), scalar.end(), 0.0f);
     std::fill(incident.begin(), incident.end(), 0.0f);
@@ -74,7 +74,7 @@ class DirectPass::Walk {
   void keepHits(RangeHits& out) const { look_.keepHits(out); }
 
  private:
-  // The environment's columns of the nine numbers, in the group's frame but for the outputs.
+  // Computes the environment's columns of the nine values; their outputs are still in the sample's frame.
   void projectIncident(std::size_t bands, std::span<float> incident) {
     const std::size_t stride = std::size_t{pass_.channels_} * pass_.columns_;
     incident_local_.assign(kIncident * bands, 0.0f);
@@ -94,7 +94,7 @@ class DirectPass::Walk {
     }
   }
 
-  // The nine outputs from the sample's frame into the group's.
+  // Rotates the nine outputs from the sample's frame to the group's.
   void turnIncident(std::span<float> incident) {
     incident_from_local_.set(look_.frame());
     const std::size_t stride = std::size_t{pass_.channels_} * pass_.columns_;

@@ -23,7 +23,7 @@ Hemisphere Hemisphere::forAnyNormal(std::size_t rays, int order) {
   Hemisphere hemisphere(std::move(table), base, order);
   hemisphere.basis_.emplace();
   for (std::size_t r = 0; r < hemisphere.table_.size(); ++r) {
-    // The solid angle of a ray follows from its weight cos/pi dω, so that the nine numbers give exactly the
+    // The solid angle of a ray follows from its weight cos/pi dω, so that the nine values give exactly the
     // sample's E/pi at its own normal.
     const double cosine = double{hemisphere.table_.z[r]};
     const double solid_angle = std::numbers::pi * hemisphere.weight(r) / cosine;

@@ -1,5 +1,5 @@
-// The directions in which samples look, with everything that depends on the directions alone: one for plain
-// samples (cosine-distributed), one for samples of normal-mapped surfaces (uniform).
+// Holds the directions of a sample's rays, with everything that depends on the directions alone:
+// cosine-distributed for plain samples, uniform for samples of normal-mapped surfaces.
 #pragma once
 
 #include <array>
@@ -14,21 +14,21 @@ namespace lambent::baker {
 
 class Hemisphere {
  public:
-  static Hemisphere forNormal(std::size_t rays, int order);     // E/pi at the sample's own normal
-  static Hemisphere forAnyNormal(std::size_t rays, int order);  // and the nine numbers beside it
+  static Hemisphere forNormal(std::size_t rays, int order);     // for E/pi at the sample's own normal
+  static Hemisphere forAnyNormal(std::size_t rays, int order);  // for E/pi and the nine incident values
 
   const DirectionTable& table() const { return table_; }
   const ProjectionTable& projection() const { return projection_; }
-  // What the radiance along a ray adds to E/pi.
+  // Returns how much radiance along a ray adds to E/pi.
   double weight(std::size_t ray) const { return projection_.weights()[ray]; }
 
-  // The same for l'_j; only where hasIncident().
+  // Returns how much radiance along a ray adds to each l'_j. May be called only if hasIncident().
   bool hasIncident() const { return basis_.has_value(); }
   const std::array<float, kIncident>& incidentWeight(std::size_t ray) const { return incident_[ray]; }
-  // l'_j of unit radiance per steradian from any direction above the horizon.
+  // Returns l'_j of unit radiance per steradian from any direction above the horizon.
   std::array<float, kIncident> incident(glm::vec3 local) const { return basis_->evaluate(local); }
 
-  // Rays per steradian in the direction with this cosine.
+  // Returns the rays per steradian in a direction with this cosine.
   float raysPerSteradian(float cosine) const;
   glm::vec3 direction(std::size_t ray) const { return {table_.x[ray], table_.y[ray], table_.z[ray]}; }
 

@@ -18,7 +18,7 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 constexpr std::array<double, 3> kCosineOverPi = {1.0, 2.0 / 3.0, 0.25};  // A_l / pi
 constexpr std::array<int, 6> kZonalPart = {0, 2, 3, 6, 7, 8};            // (l, m >= 0): 00 10 11 20 21 22
 
-// The kernel at a normal: (A_l/pi) y_j(n').
+// Returns the kernel at a normal, (A_l/pi) y_j(n').
 Vector9 kernelAt(const glm::dvec3& n) {
   Vector9 kernel;
   sh::evaluate<double>(3, n.x, n.y, n.z, std::span(kernel.data(), kIncident));
@@ -29,7 +29,7 @@ Vector9 kernelAt(const glm::dvec3& n) {
 }  // namespace
 
 IncidentBasis::IncidentBasis() {
-  // Normals by a product rule over the upper hemisphere; the integrand is smooth but for the clamp.
+  // Normals follow a product rule over the upper hemisphere; the integrand is smooth but for the clamp.
   constexpr int kRings = 96, kSpokes = 96;
   Eigen::Matrix<double, 9, 9> gram = Eigen::Matrix<double, 9, 9>::Zero();
   struct Node {
@@ -47,7 +47,8 @@ IncidentBasis::IncidentBasis() {
       gram += node.weight * node.kernel * node.kernel.transpose();
       nodes.push_back(node);
     }
-  // Least squares under one equation: kernel(z) · c = s.z / pi (a Lagrange multiplier takes the tenth row).
+  // This solves least squares under the constraint kernel(z) · c = s.z / pi; the tenth row is that of its
+  // Lagrange multiplier.
   const Vector9 own = kernelAt({0.0, 0.0, 1.0});
   const double scale = gram.trace();
   Eigen::Matrix<double, 10, 10> system = Eigen::Matrix<double, 10, 10>::Zero();
@@ -79,7 +80,7 @@ std::array<float, kIncident> IncidentBasis::evaluate(glm::vec3 s) const {
   const float side = std::sqrt(s.x * s.x + s.y * s.y);
   const float cos1 = side > 0.0f ? s.x / side : 1.0f, sin1 = side > 0.0f ? s.y / side : 0.0f;
   const float cos2 = cos1 * cos1 - sin1 * sin1, sin2 = 2.0f * cos1 * sin1;
-  // Index l(l+1)+m; m < 0 goes with the sine.
+  // The index is l(l+1)+m; m < 0 stands for the sine.
   return {c[0], sin1 * c[2], c[1], cos1 * c[2], sin2 * c[5], sin1 * c[4], c[3], cos1 * c[4], cos2 * c[5]};
 }
 

@@ -1,5 +1,5 @@
-// The light of a group's emitters as a diffuse sample receives it: E/pi at its own normal and, where the
-// surface has a normal map, the nine numbers of incident_basis.hpp.
+// Receives the light of a group's emitters at a diffuse sample: E/pi at its own normal and, if the surface
+// has a normal map, the nine values of incident_basis.hpp.
 #pragma once
 
 #include <array>
@@ -11,7 +11,8 @@
 
 namespace lambent::baker {
 
-// Where the light of one sample is added: values[(output * channels + channel) * columns + first_column + k].
+// LightSums are the columns to which light of one sample is added: values[(output * channels + channel) *
+// columns + first_column + k].
 struct LightSums {
   std::span<float> scalar;    // one output: E/pi at the sample's normal
   std::span<float> incident;  // nine outputs, local frame; empty for plain samples
@@ -21,7 +22,7 @@ struct LightSums {
            const std::array<float, kIncident>* incident_weights) const;
 };
 
-// E/pi, and the nine numbers of normal-mapped samples.
+// A LambertReceiver adds up E/pi, and the nine values of normal-mapped samples.
 class LambertReceiver : public LightReceiver {
  public:
   LambertReceiver(const Hemisphere& hemisphere, const LightSums& sums)

@@ -8,7 +8,7 @@ namespace lambent::baker {
 
 namespace {
 
-// Columns [first, first + shape.columns()) of a cell's samples.
+// Collects columns [first, first + shape.columns()) of a cell's samples.
 CellVectors stack(transfer::TransferShape shape, std::size_t first_column, std::size_t first_sample,
                   std::size_t count, const TransferField& direct, const TransferField* bounced) {
   CellVectors out{shape, {}};
@@ -29,7 +29,7 @@ CellVectors stack(transfer::TransferShape shape, std::size_t first_column, std::
   return out;
 }
 
-// Does any bounced light reach these columns of the cell?
+// Returns whether any bounced light reaches these columns of the cell.
 bool anyBounced(const TransferField* bounced, std::size_t first_column, std::size_t columns,
                 std::size_t first_sample, std::size_t count) {
   if (!bounced) return false;
@@ -61,7 +61,7 @@ std::vector<CellVectors> cellVectors(const SampleCell& cell, const SampleSet& sa
   std::vector<CellVectors> out;
   out.push_back(stack({.order = static_cast<std::uint32_t>(field.order),
                        .light_columns = 0,
-                       .shadowed_channels = 1,  // what is not reflected has no colour
+                       .shadowed_channels = 1,  // direct light of the environment has no colour
                        .full_channels = full(0, bands),
                        .outputs = field.outputs},
                       0, first, cell.count, field, extra));

@@ -1,6 +1,6 @@
-// From transfer at samples to the vectors that a cell's payloads hold (runtime/transfer/codebook.hpp): light
-// of the environment and light of the group's own lights apart, without bounces ("shadowed") and with them
-// ("full") side by side.
+// Arranges the transfer at samples into the vectors that a cell's payloads hold
+// (runtime/transfer/codebook.hpp). Light of the environment and light of the group's own lights have separate
+// vectors; in each, transfer without bounces ("shadowed") and with them ("full") stands side by side.
 #pragma once
 
 #include <vector>
@@ -12,11 +12,11 @@ namespace lambent::baker {
 
 struct CellVectors {
   transfer::TransferShape shape;
-  std::vector<float> vectors;  // sample-major, shape.size() each
+  std::vector<float> vectors;  // [sample][shape.size()]
 };
 
-// Of the environment first, then, where there are some, of the group's lights. `bounced` is null without
-// bounces; where nothing of them reaches the cell it has no full block.
+// Returns the vectors of the environment, then those of the group's lights if there are any. `bounced` is
+// null without bounces; if no bounced light reaches the cell, there is no full block.
 std::vector<CellVectors> cellVectors(const SampleCell& cell, const SampleSet& samples,
                                      const DirectResult& direct, const BounceResult* bounced,
                                      bool grey_emission);

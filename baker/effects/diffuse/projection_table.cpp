@@ -14,11 +14,11 @@ namespace lambent::baker {
 
 namespace {
 
-// The smallest relative change (least squares) of the base weights that makes the quadrature of every
-// y_i max(z, 0)/pi exact. Harmonics are nearly dependent on a hemisphere, hence the rank-revealing solver.
-// With few rays for the order exact weights may turn negative, and uniform light could come out above albedo:
-// then the combinations of harmonics that the hemisphere hardly shows are left to the base weights, more of
-// them until every weight is positive.
+// Returns weights with the smallest relative change (least squares) of the base weights that makes the
+// quadrature of every y_i max(z, 0)/pi exact. Harmonics are nearly dependent on a hemisphere, hence the
+// rank-revealing solver. If there are few rays for the order, exact weights may turn negative, and uniform
+// light could come out above the albedo. Then the combinations of harmonics that the hemisphere hardly shows
+// are left to the base weights, more of them until every weight is positive.
 Eigen::VectorXd exactWeights(const Eigen::MatrixXd& basis, const Eigen::VectorXd& base,
                              const Eigen::VectorXd& exact) {
   const Eigen::Index rays = basis.cols();
@@ -68,7 +68,8 @@ void ProjectionTable::project(std::span<const std::uint16_t> blocked, std::span<
   assert(out.size() == columns_);
   int blocked_rays = 0;
   for (const std::uint16_t mask : blocked) blocked_rays += std::popcount(mask);
-  // Sum the smaller side: what is blocked off the closed form, or what is open on nothing.
+  // The smaller side is summed: blocked rays are taken off the closed form, or open rays are added to
+  // nothing.
   const bool subtract = blocked_rays * 2 <= static_cast<int>(blocked.size() * kPacketWidth);
   if (subtract)
     std::copy(open_.begin(), open_.end(), out.begin());

@@ -1,6 +1,7 @@
-// Spherical harmonics of the shared directions, weighted so that sums over rays are exact where the answer is
-// known: with nothing blocked the sum is the closed form (A_l/pi) y_i(n) to float rounding, with everything
-// blocked it is 0. Between the two the error is that of the low-discrepancy table alone.
+// Projects visibility onto the spherical harmonics of the shared directions. Weights make sums over rays
+// exact where the answer is known: with nothing blocked the sum is the closed form (A_l/pi) y_i(n) to float
+// rounding, with everything blocked it is 0. Between the two the error is that of the low-discrepancy
+// directions alone.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +14,20 @@ namespace lambent::baker {
 
 class ProjectionTable {
  public:
-  // `base` are the weights of the rays as their distribution asks for: cos/pi over the rays' density, sum 1.
-  // order 1..8.
+  // `base` are the weights that follow from the distribution of the rays, cos/pi over their density, with the
+  // sum 1. The order is 1..8.
   ProjectionTable(const DirectionTable& table, std::span<const double> base, int order);
 
-  // Shadowed transfer in the local frame from the blocked masks of RayScene::trace. out: order² coefficients.
+  // Computes shadowed transfer in the local frame from the blocked masks of RayScene::trace; `out` has order²
+  // coefficients.
   void project(std::span<const std::uint16_t> blocked, std::span<float> out) const;
 
-  // y_i in the direction of a ray, unweighted.
+  // Returns y_i in the direction of a ray, unweighted.
   std::span<const float> harmonics(std::size_t ray) const {
     return std::span(harmonics_).subspan(ray * columns_, columns_);
   }
 
-  // The weights of the rays: near `base`, all positive. Sum to 1.
+  // Returns the weights of the rays: near `base`, all positive, with the sum 1.
   std::span<const double> weights() const { return weights_; }
 
  private:
@@ -40,8 +42,8 @@ class ProjectionTable {
   std::vector<double> weights_;
   std::vector<float> harmonics_;    // y_i of each ray
   std::vector<float> rows_;         // weight * y_i of each ray
-  std::vector<float> packet_sums_;  // of the sixteen rays of each packet
-  std::vector<float> open_;         // the closed form
+  std::vector<float> packet_sums_;  // weight * y_i, summed over the sixteen rays of each packet
+  std::vector<float> open_;         // closed form with nothing blocked
 };
 
 }  // namespace lambent::baker

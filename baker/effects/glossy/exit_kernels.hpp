@@ -1,5 +1,5 @@
-// How glossy surfaces reflect, as far as transport asks: L_out(q -> v) = Σ_k c_k(v) l'_k (surface_brdfs.hpp).
-// Handed in as functions, so that the passes know no materials.
+// Describes to light transport how glossy surfaces reflect: L_out(q -> v) = Σ_k c_k(v) l'_k
+// (surface_brdfs.hpp). Kernels are passed in as a function, so that the passes know no materials.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,9 @@ namespace lambent::baker {
 
 struct ExitKernels {
   bool grey = true;  // red, green and blue are the same
-  // Towards the unit direction `to` (group frame, away from the surface) of the point with barycentric
-  // weights u, v of corners 1 and 2: out[channel * order_out² + k], three channels. From any thread.
+  // Computes the kernel towards the unit direction `to` (group frame, away from the surface) of the point
+  // with barycentric weights u, v of corners 1 and 2: out[channel * order_out² + k], three channels. May be
+  // called from any thread.
   std::function<void(std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out)> at;
 };
 

@@ -17,14 +17,16 @@ namespace lambent::baker {
 
 namespace {
 
-// What bakes have unless told otherwise; lobes rougher than this it carries to nine tenths and more.
+// The default order of bakes; it represents at least nine tenths of the energy of lobes rougher than
+// kRoughEnough.
 constexpr int kOrder = 5;
 constexpr float kRoughEnough = 0.5f;
 
 struct Counts {
   std::size_t draws = 0, metals = 0, dielectrics = 0;
   std::map<const BrdfKind*, std::size_t> of_kind;
-  std::size_t smooth = 0, textured = 0;  // roughness below what the order carries; by texture perhaps
+  // Draws smoother than kRoughEnough, and other draws that a texture may make so.
+  std::size_t smooth = 0, textured = 0;
   float smoothest = 1.0f;
 };
 

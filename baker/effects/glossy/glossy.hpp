@@ -1,5 +1,5 @@
-// The baker's room of the glossy effect: does the scene call for it? Matrices are computed in
-// glossy_direct.hpp and glossy_bounces.hpp.
+// Decides whether a scene needs the glossy effect. glossy_direct.hpp and glossy_bounces.hpp compute its
+// transfer matrices.
 #pragma once
 
 #include "baker/plan/effect_plan.hpp"

@@ -24,16 +24,17 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kMostOutputs = sh::coefficientCount(sh::kMaxFactoredOrder);
-// Hits whose radiance is added to a matrix at once.
+// Number of hits whose radiance is added to a matrix at once.
 constexpr std::size_t kBlock = 8;
 
-// Rays in a row that share what leaves one of the points that they met: the fewer, the more of all light the
-// pass carries. V needs many rays for its edges; what leaves a glossy point costs a matrix to read. Each hit
-// keeps its own weight, so a white furnace stays white in every output. Noise goes like share
-// x rays^0.75, so every pass may have rays like 1 / share, with caution: in white rooms late passes add up.
+// The rays of a row share the exit radiance of one of their hits; the larger the share of all light that a
+// pass carries, the shorter its rows. V needs many rays for its edges, while exit radiance at a glossy point
+// costs reading a matrix. Each hit keeps its own weight, so a white furnace stays white in every output.
+// Noise is proportional to share x rays^0.75, so every pass may have rows of 1 / share rays; kCaution
+// shortens them, since late passes add up in white rooms.
 constexpr std::uint32_t kMostTogether = 32;
-constexpr double kCaution = 64.0;       // 2 rays below 0.8 %, 4 below 0.4 %
-constexpr std::size_t kLeastRows = 64;  // over the hemisphere
+constexpr double kCaution = 64.0;       // rows have 2 rays up to a share of 1.6 %, 4 up to 0.8 %
+constexpr std::size_t kLeastRows = 64;  // rows over the hemisphere
 
 std::uint32_t raysTogether(double share, std::size_t rays) {
   std::uint32_t together = 1;
@@ -43,9 +44,9 @@ std::uint32_t raysTogether(double share, std::size_t rays) {
   return together;
 }
 
-// For each of `Kernels` kernels of `outputs` values, one after the other:
+// Computes for each of `Kernels` kernels of `outputs` values, stored one after the other:
 //   out[n * out_stride + i] += weight Σ_k kernel_n[k] matrix[k * Columns + i].
-// In vectors by hand: left alone, the sums go through memory.
+// Vectors are written by hand, since the compiler leaves the sums in memory.
 template <std::size_t Columns, std::size_t Kernels>
 void contract(const float* kernels, std::size_t outputs, const float* matrix, float weight, float* out,
               std::size_t out_stride) {
@@ -96,18 +97,18 @@ void contract(const float* kernels, const MatrixView& matrix, float weight, floa
 
 }  // namespace
 
-// One thread's way through a range of samples.
+// A Walk is one thread's way through a range of samples.
 class GlossyBounces::Walk {
  public:
-  // Both outlive it.
+  // Both arguments must outlive this.
   Walk(const GlossyPass& pass, const Bounce& bounce)
       : pass_(pass),
         bounce_(bounce),
         outputs_from_local_(glm::dmat3(1.0), pass.shape().order_out),
         exits_(kBlock * bounce.before.vectorSize()) {}
 
-  // Gathers at sample `s` of the pass. Hits of rays in a row of `together` (raysTogether) share what leaves
-  // one of them.
+  // Gathers at sample `s` of the pass. Hits in a row of `together` rays (raysTogether) share the exit
+  // radiance of one of them.
   void gather(std::size_t s, std::span<const GatherHit> hits, std::uint32_t together,
               const GlossyHemisphere& hemisphere, State& now) {
     if (hits.empty()) return;
@@ -126,7 +127,7 @@ class GlossyBounces::Walk {
         for (std::size_t e = 0; e < even; ++e) weights[e] += own[e];
       }
       for (std::size_t e = 0; e < even; ++e) weights_[e][filled] = weights[e];
-      // Another one in each row and each pass: a golden-ratio sequence.
+      // A golden-ratio sequence picks another hit in each row and each pass.
       const std::uint32_t dealt = (row + static_cast<std::uint32_t>(bounce_.number) * 5u) * 2654435769u;
       const auto pick = static_cast<std::size_t>(std::uint64_t{dealt} * (last - first) >> 32);
       exit.add(hits[first + pick], 1.0f, std::span(exits_).subspan(filled * stride, stride));
@@ -151,7 +152,7 @@ class GlossyBounces::Walk {
   }
 
  private:
-  // Adds the block's radiance to the matrix, and clears it.
+  // Adds the block's radiance to the matrix, and clears the block.
   void addBlock(std::size_t even) {
     const std::size_t stride = bounce_.before.vectorSize();
     for (std::size_t e = 0; e < even; ++e) {
@@ -171,7 +172,7 @@ class GlossyBounces::Walk {
   const Bounce& bounce_;
   sh::Rotation outputs_from_local_;
   std::vector<float> exits_, local_;
-  std::array<std::array<float, kBlock>, kMostOutputs> weights_{};  // of each output: of the block's hits
+  std::array<std::array<float, kBlock>, kMostOutputs> weights_{};  // [output][hit of the block]
 };
 
 GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels, const DirectResult& plain,
@@ -184,7 +185,7 @@ GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels,
   if (std::find(first, plain.looks.valid.end(), std::uint8_t{0}) != plain.looks.valid.end())
     edges_ = sampleEdges(pass.scene().geometry, pass.scene().samples);
   now_ = zero(field.order_out, 0);
-  now_.environment.channels = 1;  // what is not reflected has no colour
+  now_.environment.channels = 1;  // direct light of the environment has no colour
   now_.environment.values.assign(pass.size() * now_.environment.sampleSize(), 0.0f);
   now_.lights.values = field.lights_shadowed;
   parallelRanges(pass.size(), kSamplesPerRange, {}, [&](std::size_t begin, std::size_t end) {
@@ -219,7 +220,7 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
               v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
   const std::size_t outputs = before_.environment.outputs, columns = before_.environment.columns;
   const std::uint32_t picked = chance < u ? corners.y : chance < u + v ? corners.z : corners.x;
-  // On its way while the kernel is made.
+  // The matrix is fetched while the kernel is computed.
   if (const auto matrix = before_.environment.at(picked - pass_.first()); chance >= 0.0f)
     for (std::size_t i = 0; i < matrix.size(); i += 16) __builtin_prefetch(matrix.data() + i);
   std::array<float, 3 * kMostOutputs> kernel;
@@ -227,7 +228,7 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
   const std::size_t channels = direct_.field.channels, lights = before_.lights.columns;
   const auto of = [&](const GlossyMatrices& matrices, std::size_t s, float share, std::size_t first) {
     float* out = sum.data() + first;
-    if (matrices.channels < channels)  // one for all: read once
+    if (matrices.channels < channels)  // one matrix for all channels is read once
       return contract<3>(kernel.data(), {matrices.at(s).data(), outputs, matrices.columns}, share, out,
                          columns + lights);
     for (std::size_t c = 0; c < channels; ++c, out += columns + lights)
@@ -317,8 +318,9 @@ bool GlossyBounces::gather(const Bounce& bounce, TransferField& now, const BakeC
 }
 
 bool GlossyBounces::take(const State& state, TransferField* plain, const std::stop_token& stop) {
+  // Only outputs of order_out_ bands count.
   const std::size_t columns = state.environment.columns, lights = state.lights.columns,
-                    outputs = static_cast<std::size_t>(sh::coefficientCount(order_out_));  // that count
+                    outputs = static_cast<std::size_t>(sh::coefficientCount(order_out_));
   std::vector<float> power(columns);
   for (std::size_t i = 0; i < columns; ++i)
     power[i] = static_cast<float>(kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)))]);

@@ -17,7 +17,7 @@ namespace lambent::baker {
 
 namespace {
 
-// l' of the lights of a group as it arrives at one sample: even outputs, local frame;
+// Receives l' of the lights of a group as it arrives at one sample, in even outputs and the local frame:
 // values[(channel * outputs + output) * lights + light].
 class GlossyReceiver : public LightReceiver {
  public:
@@ -57,7 +57,8 @@ std::size_t squared(int order) {
   return static_cast<std::size_t>(sh::coefficientCount(order));
 }
 
-// Rows of `width` values of which the first `kept` say all: those after them repeat them.
+// Returns an output with rows of `width` values, of which only the first `kept` are stored, since the others
+// repeat them.
 Output repeatingRows(std::vector<float>& values, std::size_t width, std::size_t kept) {
   return {[&values, width, kept](std::size_t begin, std::size_t end, ByteWriter& out) {
             for (std::size_t s = begin; s < end; ++s)
@@ -75,7 +76,7 @@ Output repeatingRows(std::vector<float>& values, std::size_t width, std::size_t 
 
 }  // namespace
 
-// One thread's way through a range of samples.
+// A Walk is one thread's way through a range of samples.
 class GlossyPass::Walk {
  public:
   explicit Walk(const GlossyPass& pass)
@@ -101,7 +102,7 @@ class GlossyPass::Walk {
     visibility_from_local_.apply(std::span<const float>(local_), visibility);
   }
 
-  // values: [channel][output][light]
+  // Fills in `values`, [channel][output][light].
   void receiveLights(std::size_t channels, std::size_t lights, std::span<float> values) {
     std::fill(values.begin(), values.end(), 0.0f);
     if (look_.origins().empty()) return;
@@ -218,7 +219,7 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
   const bool keep_hits = pass.plain().settings().keep_hits;
   GlossyDirect result{.field = pass.shape(), .hits = HitStore(count, keep_hits ? hit_memory : 0)};
   GlossyField& field = result.field;
-  // Of grey lamps the first channel stands for all (field_bytes.hpp).
+  // For grey lamps the first channel stands for all (field_bytes.hpp).
   const std::size_t lights = field.light_columns, channel = squared(field.order_out) * lights,
                     per_sample = field.channels * channel,
                     kept_lights = pass.scene().colors.greyEmission() ? channel : per_sample;

@@ -22,10 +22,10 @@ std::vector<std::uint16_t> evenHarmonics(int order) {
   return even;
 }
 
-// The smallest relative change (least squares) of equal weights that makes the quadrature of every even
-// harmonic exact: 1/sqrt(4 pi) for the first, 0 for the others, as means over the hemisphere. Even harmonics
-// are orthogonal there, so the normal equations are as good as they can be. With too few rays weights may
-// turn negative; then the highest bands are left to the rays as they are, until none is.
+// Returns weights with the smallest relative change (least squares) of equal weights that makes the
+// quadrature of every even harmonic exact: as means over the hemisphere, 1/sqrt(4 pi) for the first and 0 for
+// the others. Even harmonics are orthogonal there, so the normal equations are well conditioned. With too few
+// rays weights may turn negative; then the highest bands are left inexact, until no weight is negative.
 std::vector<double> exactWeights(const Eigen::MatrixXd& even, int order) {
   const Eigen::Index rays = even.cols();
   const double each = 1.0 / static_cast<double>(rays);
@@ -64,7 +64,8 @@ GlossyHemisphere::GlossyHemisphere(std::size_t rays, int visibility_bands, int o
   for (std::size_t r = 0; r < table_.size(); ++r)
     for (std::size_t e = 0; e < even_.size(); ++e) {
       const double harmonic = even(static_cast<Eigen::Index>(e), static_cast<Eigen::Index>(r));
-      rows_.push_back(static_cast<float>(2.0 * kTwoPi * weights_[r] * harmonic));  // it and its mirror image
+      // The factor 2 stands for the ray and its mirror image.
+      rows_.push_back(static_cast<float>(2.0 * kTwoPi * weights_[r] * harmonic));
       packet_sums_[r / kPacketWidth * even_.size() + e] += rows_.back();
     }
 }
@@ -82,7 +83,7 @@ void GlossyHemisphere::incident(glm::vec3 local, std::span<float> out) const {
 void GlossyHemisphere::project(std::span<const std::uint16_t> blocked, std::span<float> out) const {
   int blocked_rays = 0;
   for (const std::uint16_t mask : blocked) blocked_rays += std::popcount(mask);
-  // Sum the smaller side: what is blocked off 1, or what is open on nothing.
+  // The smaller side is summed: blocked rays are taken off 1, or open rays are added to nothing.
   const bool subtract = blocked_rays * 2 <= static_cast<int>(blocked.size() * kPacketWidth);
   std::vector<float> sum(even_.size(), 0.0f);
   const auto add = [&](const float* values) {

@@ -1,8 +1,8 @@
-// The directions in which glossy samples look, uniform over the hemisphere, with their spherical harmonics.
-// Functions continue below the horizon as their mirror image (glossy_transport.hpp), so in the sample's frame
-// only harmonics with l + m even are left: n(n+1)/2 of n² ("even" ones here, in rising order of their index;
-// those of a lower order come first). They are orthogonal over the hemisphere, which makes exact weights
-// easy (docs/decisions/glossy.md, "Visibility").
+// Holds the directions of a glossy sample's rays, uniform over the hemisphere, with their spherical
+// harmonics. Functions continue below the horizon as their mirror image (glossy_transport.hpp), so in the
+// sample's frame only harmonics with even l + m are left: n(n+1)/2 of n². They are called "even" here, and
+// listed by ascending index, so those of a lower order come first. They are orthogonal over the hemisphere,
+// which makes exact weights easy (docs/decisions/glossy.md, "Visibility").
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace lambent::baker {
 
-// Of so many bands.
+// Returns the number of even harmonics in so many bands.
 constexpr std::size_t evenHarmonicCount(int order) {
   return static_cast<std::size_t>(order * (order + 1) / 2);
 }
@@ -25,28 +25,29 @@ constexpr std::size_t evenHarmonicCount(int order) {
 class GlossyHemisphere {
  public:
   // The weights integrate all harmonics of visibility_bands bands exactly and are positive: with nothing
-  // blocked V is 1, with everything blocked 0, to rounding, and matrices made from V have eigenvalues in [0,
-  // 1]. With too few rays for that many bands, as many as they can.
+  // blocked V is 1 and with everything blocked 0, to rounding, and matrices made from V have eigenvalues in
+  // [0, 1]. With too few rays for that many bands, they integrate as many bands as they can.
   GlossyHemisphere(std::size_t rays, int visibility_bands, int order_out);
 
   const DirectionTable& table() const { return table_; }
   glm::vec3 direction(std::size_t ray) const { return {table_.x[ray], table_.y[ray], table_.z[ray]}; }
   float raysPerSteradian() const;
-  // Share of the hemisphere that a ray stands for; they sum to 1.
+  // Returns the share of the hemisphere that a ray stands for; all shares sum to 1.
   double weight(std::size_t ray) const { return weights_[ray]; }
 
-  std::size_t evenCount() const { return even_.size(); }                // of V
-  std::size_t evenOutputs() const { return even_outputs_; }             // of l'
-  std::span<const std::uint16_t> evenIndices() const { return even_; }  // place among all harmonics
-  // What unit radiance along a ray, and along its mirror image, adds: even harmonics times solid angle,
-  // evenCount() of them, evenOutputs() of which belong to l'.
+  std::size_t evenCount() const { return even_.size(); }                // number of even harmonics in V
+  std::size_t evenOutputs() const { return even_outputs_; }             // number of even harmonics in l'
+  std::span<const std::uint16_t> evenIndices() const { return even_; }  // index of each among all harmonics
+  // Returns what unit radiance along a ray and along its mirror image adds: even harmonics times solid angle.
+  // There are evenCount() of them, of which the first evenOutputs() belong to l'.
   std::span<const float> row(std::size_t ray) const {
     return std::span(rows_).subspan(ray * even_.size(), even_.size());
   }
-  // The same of any local direction, per steradian; out: evenOutputs().
+  // Computes the same for any local direction, per steradian; `out` has evenOutputs() values.
   void incident(glm::vec3 local, std::span<float> out) const;
 
-  // V in the local frame from the blocked masks of RayScene::trace; all visibility_bands² coefficients.
+  // Computes V in the local frame, all visibility_bands² coefficients, from the blocked masks of
+  // RayScene::trace.
   void project(std::span<const std::uint16_t> blocked, std::span<float> out) const;
 
  private:
@@ -59,15 +60,15 @@ class GlossyHemisphere {
   std::vector<float> packet_sums_;
 };
 
-// Rows of columns, `stride` values from row to row.
+// Rows are rows of columns, with `stride` values from row to row.
 template <typename Value>
 struct Rows {
   std::span<Value> values;
   std::size_t stride;
 };
 
-// Turns even outputs in a sample's frame (rows of `local`) into all outputs in the group's (rows of `out`),
-// of the first `columns` columns. The order is that of `group_from_local`.
+// Rotates even outputs in a sample's frame (rows of `local`) to all outputs in the group's frame (rows of
+// `out`), for the first `columns` columns. The order is that of `group_from_local`.
 void turnOutputs(const sh::Rotation& group_from_local, std::span<const std::uint16_t> even,
                  std::size_t columns, Rows<const float> local, Rows<float> out);
 

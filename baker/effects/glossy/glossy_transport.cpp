@@ -7,7 +7,7 @@ namespace lambent::baker {
 
 namespace {
 
-// Of each `from` values in a row only the first `to`; in place.
+// Keeps the first `to` of each `from` values in a row, in place.
 void keepFirst(std::size_t from, std::size_t to, std::vector<float>& values) {
   assert(to <= from);
   if (values.empty() || from == to) return;

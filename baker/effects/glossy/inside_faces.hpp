@@ -1,6 +1,5 @@
-// Glossy samples inside the faces over which direct light changes, beside those of the vertices: what arrives
-// there, directly and in every pass of bounces, is what the values at vertices are fitted to
-// (trace/vertex_fit.hpp).
+// Holds glossy samples inside the faces over which direct light changes. The values at vertices are fitted to
+// what arrives there, directly and in every pass of bounces (trace/vertex_fit.hpp).
 #pragma once
 
 #include <cstdint>
@@ -17,22 +16,23 @@ namespace lambent::baker {
 
 class GlossyInsideFaces {
  public:
-  // One sample in each triangle, all of glossy draws. Rays and orders are those of `vertices`, which outlives
-  // this.
+  // Places one sample in each triangle; all triangles must belong to glossy draws. Rays and orders are those
+  // of `vertices`, which must outlive this.
   GlossyInsideFaces(const GlossyPass& vertices, std::span<const std::uint32_t> triangles);
   GlossyInsideFaces(const GlossyInsideFaces&) = delete;  // its passes refer to its points
   GlossyInsideFaces& operator=(const GlossyInsideFaces&) = delete;
 
-  // Direct light at the points, before anything is fitted; what was met stays here. As bakeGlossyDirect.
+  // Traces direct light at the points, before anything is fitted, as bakeGlossyDirect does; the hits stay
+  // here.
   std::optional<GlossyDirect> look(std::size_t hit_memory, const BakeContext& context);
 
-  const GlossyPass& pass() const { return pass_; }  // its samples are the points, from 0 on
+  const GlossyPass& pass() const { return pass_; }  // its samples are the points, starting at 0
   const SampleVisibilities& looks() const { return looks_; }
   const HitStore& hits() const { return hits_; }
   std::size_t size() const { return pass_.size(); }
 
-  // Changes values at vertices by what interpolation between them is off at the points, both as many for each
-  // sample; there may be none. False if stopped.
+  // Corrects values at vertices by how far interpolation between them is off at the points. Both have the
+  // same number of values for each sample, possibly none. Returns false if stopped.
   bool fit(std::span<const float> at_points, std::span<float> at_vertices, const std::stop_token& stop) const;
 
  private:

@@ -7,7 +7,7 @@ namespace lambent::baker {
 
 namespace {
 
-// The cell's part of values of `size` for each sample.
+// Returns the cell's part of a list with `size` values for each sample.
 std::span<const float> partOf(const std::vector<float>& values, std::size_t size, std::size_t first,
                               std::size_t count) {
   return std::span(values).subspan(first * size, count * size);

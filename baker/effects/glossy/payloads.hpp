@@ -1,5 +1,6 @@
-// From transfer matrices at samples to the vectors that the payloads of a glossy cell hold: visibility,
-// bounced light, light of the group's own lights, each coded by itself (runtime/transfer/codebook.hpp).
+// Arranges the transfer matrices at samples into the vectors that the payloads of a glossy cell hold:
+// visibility, bounced light, and light of the group's own lights, each coded by itself
+// (runtime/transfer/codebook.hpp).
 #pragma once
 
 #include <vector>
@@ -10,8 +11,8 @@
 
 namespace lambent::baker {
 
-// Visibility first; bounced light where some reaches the cell; the lights last. grey_emission: direct light
-// of the lights has no colour.
+// Returns visibility first, then bounced light if some reaches the cell, then the lights. `grey_emission`
+// says that direct light of the lights has no colour.
 std::vector<CellVectors> glossyCellVectors(const SampleCell& cell, const GlossyField& field,
                                            bool grey_emission);
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kProbeRays = 256;
 constexpr int kDiffuseBands = 3, kLeastMatrixBands = 4;
 
-// Grid, and what changes on it; the grid has no points where nothing is to be baked.
+// Changed holds a grid and the change at its points. The grid is empty if nothing is to be baked.
 struct Changed {
   std::optional<GridPlacement> grid;
   std::optional<GridChange> change;

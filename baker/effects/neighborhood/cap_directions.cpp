@@ -12,7 +12,7 @@ namespace lambent::baker {
 
 namespace {
 
-// So that no rounding leaves part of the body out.
+// The cap is a little wider, so that rounding leaves no part of the body out.
 constexpr double kWider = 1.0 + 1e-3;
 
 }  // namespace
@@ -31,7 +31,7 @@ Cap capOf(const glm::vec3& point, const glm::vec3& centre, float radius) {
 }
 
 CapDirections::CapDirections(std::size_t rays) {
-  // The table's points have z = 1 - r² over Lambert's equal-area map of the disc.
+  // The table's points have z = 1 - r² under Lambert's equal-area map of the disc.
   const DirectionTable table = uniformTable(rays);
   for (std::size_t r = 0; r < table.size(); ++r) {
     const double stretch = std::sqrt(1.0 + double{table.z[r]});
@@ -42,7 +42,8 @@ CapDirections::CapDirections(std::size_t rays) {
 void CapDirections::packet(std::size_t p, const Cap& cap, DirectionPacket& out) const {
   for (std::size_t k = 0; k < kPacketWidth; ++k) {
     const glm::dvec2 at = disc_[p * kPacketWidth + k];
-    // Equal areas again: 1 - z = r² past, and sin = r sqrt(past (2 - r² past)).
+    // The map from the disc to the cap is equal-area too: 1 - z = r² past, and sin = r sqrt(past (2 - r²
+    // past)).
     const double below = glm::dot(at, at) * cap.past;
     const double stretch = std::sqrt(std::max(0.0, cap.past * (2.0 - below)));
     out[k] = cap.frame * glm::vec3(static_cast<float>(stretch * at.x), static_cast<float>(stretch * at.y),

@@ -1,6 +1,6 @@
-// The directions in which a point in free space looks at a body: low-discrepancy and evenly spread over the
-// cap of the sphere that the body's bounding sphere fills, or over all of it from within. Far away as near by
-// the body itself gets all rays, so what it changes is known to the same share of itself everywhere.
+// Chooses the directions in which a point in free space looks at a body: low-discrepancy and evenly spread
+// over the cap of the sphere that the body's bounding sphere fills, or over all of it from within. At any
+// distance the body gets all rays, so the relative accuracy of its change is the same everywhere.
 #pragma once
 
 #include <array>
@@ -22,22 +22,22 @@ struct Cap {
   double steradians() const;
 };
 
-// The cap that a sphere fills as seen from `point`.
+// Returns the cap that a sphere fills as seen from `point`.
 Cap capOf(const glm::vec3& point, const glm::vec3& centre, float radius);
 
 using DirectionPacket = std::array<glm::vec3, kPacketWidth>;
 
 class CapDirections {
  public:
-  explicit CapDirections(std::size_t rays);  // rounded up to whole packets
+  explicit CapDirections(std::size_t rays);  // the number is rounded up to whole packets
 
   std::size_t size() const { return disc_.size(); }
   std::size_t packets() const { return disc_.size() / kPacketWidth; }
-  // Sixteen neighbours, unit; pdf = 1 / cap.steradians().
+  // Returns sixteen neighbouring unit directions; pdf = 1 / cap.steradians().
   void packet(std::size_t p, const Cap& cap, DirectionPacket& out) const;
 
  private:
-  std::vector<glm::dvec2> disc_;  // of the unit disc, along a Hilbert curve
+  std::vector<glm::dvec2> disc_;  // points in the unit disc, along a Hilbert curve
 };
 
 }  // namespace lambent::baker

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 constexpr int kMostAttempts = 4;
-constexpr double kFiner = 0.6, kLooser = 2.0;  // at least, from one attempt to the next
-constexpr int kQuickLevel = 3;                 // of zstd: files are packed with more care
+constexpr double kFiner = 0.6, kLooser = 2.0;  // least factors from one attempt to the next
+constexpr int kQuickLevel = 3;                 // of zstd; the bundle's payloads are compressed better
 
 std::vector<float> decode(const CodedTransfer& coded) {
   std::vector<std::vector<std::uint32_t>> codes;
@@ -39,7 +39,7 @@ double bytesOf(const std::vector<CodedTransfer>& coded) {
   return static_cast<double>(bytes);
 }
 
-// Samples [first, first + count) of the grid.
+// Codes samples [first, first + count) of the grid.
 class CellCoder {
  public:
   CellCoder(const GridChange& change, std::size_t first, std::size_t count, const ChangeMeter& meter)
@@ -52,7 +52,7 @@ class CellCoder {
     sends_ = std::any_of(bounced_.begin(), bounced_.end(), [](float value) { return value != 0.0f; });
   }
 
-  // Each part has half of the square error; bounced light so many times as much.
+  // Each part has half of the square error; that of bounced light is `looser` times as large.
   std::vector<CodedTransfer> code(double bound, double looser, CachedCoding& coding) const {
     const double energy = meter_.lightEnergy() * static_cast<double>(count_);
     const auto order = static_cast<std::uint32_t>(shape_.order),
@@ -75,7 +75,8 @@ class CellCoder {
     return coded;
   }
 
-  // Error over change that `share` of the points with more change than `where` keep; 0 where there are none.
+  // Returns the error relative to the change that this share of the points with more change than `where` stay
+  // below, or 0 if there are no such points.
   double changeError(const std::vector<CodedTransfer>& coded, double where, double share) const {
     std::vector<float> wrong_visibility = decode(coded[0]), wrong_bounced;
     for (std::size_t i = 0; i < wrong_visibility.size(); ++i) wrong_visibility[i] -= visibility_[i];
@@ -136,7 +137,7 @@ std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacem
       if (coding.stopped()) return std::nullopt;
       const double bytes = bytesOf(coded);
       const bool fits = bytes <= most_bytes;
-      if (!fits && attempt > 0 && looser == 1.0) break;  // finer than the bytes allow: the one before stays
+      if (!fits && attempt > 0 && looser == 1.0) break;  // the previous attempt stays
       change_error = coder.changeError(coded, settings.where_changed, settings.points_within);
       cell.transfers = std::move(coded);
       if (fits && (looser > 1.0 || change_error <= settings.of_change)) break;

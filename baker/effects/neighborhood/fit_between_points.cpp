@@ -10,11 +10,11 @@ namespace lambent::baker {
 void fitBetweenPoints(const GridPlacement& grid, std::span<const std::uint8_t> outside, std::size_t width,
                       std::span<float> values) {
   assert(outside.size() == grid.count() && values.size() == width * grid.count());
-  // Of parabolas: x (h - x) f''/2 between points h apart, h² f''/12 in the mean.
+  // A parabola differs from its chord by x (h - x) f''/2 between points h apart, and by h² f''/12 on average.
   constexpr float kMeanOfBend = 1.0f / 12.0f;
   const std::size_t strides[3] = {1, grid.size.x, std::size_t{grid.size.x} * grid.size.y};
   const auto of = [&](std::size_t point) { return values.subspan(point * width, width); };
-  // What the last point held, and this one, before they were changed.
+  // These are the values of the previous point and of this one before they were changed.
   std::vector<float> last(width), here(width);
   for (int axis = 0; axis < 3; ++axis) {
     if (grid.on_layer[axis]) continue;

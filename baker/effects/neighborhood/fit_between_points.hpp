@@ -1,7 +1,7 @@
-// Points of a grid take what interpolates best, in place of what is at them. Linear interpolation of a curve
-// lies to one side of it: by δ²/12 in the mean over a cell, δ² the second difference from point to point.
-// With that taken from the points the mean is right, and the RMS error of a parabola falls to 0.41 of what it
-// was along each axis. Costs no ray and no byte.
+// Gives grid points the values that interpolate best, in place of the values at the points. Linear
+// interpolation of a curve lies to one side of it: by δ²/12 on average over a cell, with δ² the second
+// difference from point to point. After subtracting that from the points the mean is right, and the RMS error
+// of a parabola falls to 0.41 of what it was along each axis. This costs no rays and no bytes.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,9 @@
 
 namespace lambent::baker {
 
-// values: `width` a point. Not along axes on whose layers the receivers stand (GridPlacement::on_layer), nor
-// where a point or a neighbour along the axis is not `outside`: their values are no samples of one curve.
+// `values` has `width` values per point. Skips axes along which receivers lie on a layer of points
+// (GridPlacement::on_layer), and points that are not `outside` or have a neighbour along the axis that is
+// not, since their values are not samples of one curve.
 void fitBetweenPoints(const GridPlacement& grid, std::span<const std::uint8_t> outside, std::size_t width,
                       std::span<float> values);
 

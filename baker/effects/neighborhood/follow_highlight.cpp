@@ -11,7 +11,7 @@ namespace lambent::baker {
 
 namespace {
 
-// |x| in the space where the surface has roughness 1.
+// Returns |x| in the space where the surface has roughness 1.
 float stretched(const PointReflection& at, const glm::vec3& x) {
   return glm::length(glm::vec3(at.alpha_t * x.x, at.alpha_b * x.y, x.z));
 }
@@ -42,7 +42,7 @@ HighlightSample sampleHighlight(const PointReflection& at, const glm::vec3& to, 
   if (!(s.z > 0.0f)) return {};
   const float past = std::clamp(1.0f - along, 0.0f, 1.0f), squared = past * past;
   const float fresnel = squared * squared * past;
-  // G2/G1 of the height-correlated Smith term.
+  // This is G2/G1 of the height-correlated Smith term.
   const float of_v = stretched(at, v);
   const float shadowing = s.z * (v.z + of_v) / (s.z * of_v + v.z * stretched(at, s));
   const glm::vec3 direction = glm::normalize(s.x * at.tangent + s.y * bitangent + s.z * at.normal);
@@ -53,7 +53,8 @@ HighlightSample sampleHighlight(const PointReflection& at, const glm::vec3& to, 
 }
 
 glm::vec2 choices(std::uint32_t number, std::uint32_t step) {
-  // frac(n / g) and frac(n / g²) with g³ = g + 1, in units of 2^-32; the shift is by a hash of the step.
+  // The result is frac(n / g) and frac(n / g²) with g³ = g + 1, in units of 2^-32; the shift is a hash of the
+  // step.
   std::uint32_t shift = (step + 1u) * 0x9E3779B9u;
   shift = (shift ^ shift >> 16) * 0x7FEB352Du;
   const std::uint32_t x = number * 3242174889u + shift, y = number * 2447445414u + (shift ^ shift << 13);

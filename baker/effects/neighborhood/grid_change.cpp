@@ -15,7 +15,7 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kGrain = 64;
-// What counts as on the surface, of the spacing of points.
+// Distance from the surface, relative to the spacing of points, that counts as on the surface.
 constexpr float kOnSurface = 1e-3f;
 
 struct Back {
@@ -34,7 +34,7 @@ class Filler {
   Filler(const Body& body, const CapDirections& directions, const GridPlacement& grid, GridChange& change)
       : body_(body), directions_(directions), grid_(grid), change_(change) {}
 
-  // Looks from each point by itself; `backs` get what those inside saw nearest.
+  // Traces rays from each point; `backs` receives the nearest back for points inside.
   std::optional<StageFigures> look(std::vector<Back>& backs, const BakeContext& context) {
     const auto compute = [&](std::size_t begin, std::size_t end) {
       PointChange point(body_, directions_, change_.shape);
@@ -57,7 +57,8 @@ class Filler {
                     context);
   }
 
-  // Points inside beside points outside. known[p] becomes 1 where that could be done.
+  // Continues the values to points inside that are beside points outside. Sets known[p] to 1 if that was
+  // possible.
   bool continueInside(const std::vector<Back>& backs, std::vector<std::uint8_t>& known,
                       const std::stop_token& stop) {
     std::vector<std::size_t> border;

@@ -1,8 +1,8 @@
-// How a body changes the light at all points of a grid. Points inside the body take values that continue what
-// is outside through the surface: twice the value on the surface less the one as far before it as the point
-// lies behind it. Between the last point outside and the first one inside, interpolation is then right where
-// it meets the surface; darkness does not bleed, and no halo stands around the body. Points deeper inside
-// take the mean of their neighbours.
+// Computes how a body changes the light at all points of a grid. Points inside the body take values that
+// continue the values outside through the surface: twice the value on the surface, less the value as far in
+// front of it as the point lies behind it. So interpolation between the last point outside and the first one
+// inside is right where it meets the surface: darkness does not bleed, and no halo surrounds the body. Points
+// deeper inside take the mean of their neighbours.
 #pragma once
 
 #include <optional>
@@ -15,9 +15,9 @@ namespace lambent::baker {
 
 struct GridChange {
   ChangeShape shape;
-  std::vector<float> visibility, bounced;  // point after point, as PointChange has them
-  std::vector<std::uint8_t> outside;       // per point: 1, or 0 for one whose values were continued
-  std::uint64_t rays = 0;                  // from the points, traced in this run; paths come on top
+  std::vector<float> visibility, bounced;  // [point], each as in PointChange
+  std::vector<std::uint8_t> outside;       // 1 per point, or 0 if its values were continued
+  std::uint64_t rays = 0;  // from the points, traced in this run; rays of paths are not counted
   std::uint64_t rays_kept = 0;
 
   std::size_t insidePoints() const;
@@ -26,7 +26,7 @@ struct GridChange {
 // Returns nothing if stopped. The result does not depend on the number of threads.
 std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& grid, const ChangeShape& shape,
                                        std::size_t rays, const BakeContext& context);
-// Removes what it kept.
+// Removes what changeOnGrid() kept.
 void dropChange(const BakeContext& context, std::size_t points);
 
 }  // namespace lambent::baker

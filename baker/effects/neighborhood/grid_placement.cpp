@@ -14,15 +14,15 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr int kProbes = 5;      // each way over a face
-constexpr int kBisections = 7;  // of how far a face stands out: to a hundredth of kMostReach
-constexpr float kFlat = 0.5f;   // of the middle side: shorter makes a slab
-// Between where receivers come and a face that they set, in points: readers fade grids out over the last
+constexpr int kProbes = 5;      // along each axis of a face
+constexpr int kBisections = 7;  // for the distance of a face, to a hundredth of kMostReach
+constexpr float kFlat = 0.5f;   // a box whose shortest side is below this share of the middle one is a slab
+// Distance between receivers and a face that they limit, in points: readers fade grids out over the last
 // point, and interpolation takes one more.
 constexpr float kBesideReceivers = 1.5f;
-constexpr float kLeastThickness = 0.1f;  // of the body's radius
-constexpr std::uint32_t kFlatLayers =
-    5;  // a cell to either side of the receivers' plane, and one to fade out
+constexpr float kLeastThickness = 0.1f;  // relative to the body's radius
+// To either side of the receivers' plane there is a cell, and beyond it another to fade out.
+constexpr std::uint32_t kFlatLayers = 5;
 constexpr glm::uvec3 kSlab{64, 64, 8}, kAround{32, 32, 32};
 constexpr glm::uvec3 kCoarseSlab{32, 32, 8}, kCoarseAround{20, 20, 20};
 
@@ -50,7 +50,7 @@ class Placer {
   }
 
  private:
-  // The box that the change reaches, cut to where receivers come. False where that leaves nothing.
+  // Finds the box that the change reaches, cut to where receivers come. Returns false if nothing is left.
   bool reach(Box3& box) {
     const glm::vec3 most(kMostReach * radius_);
     Box3 within{wish_.body.low - most, wish_.body.high + most};
@@ -70,11 +70,11 @@ class Placer {
         face = by_receivers ? cut : reached;
         (high ? by_receivers_high_ : by_receivers_low_)[static_cast<std::size_t>(axis)] = by_receivers;
       }
-    // Receivers that stand beyond what a face reaches are out of reach.
+    // If receivers lie beyond the reach of a face, nothing is left.
     return glm::all(glm::lessThanEqual(box.low, box.high));
   }
 
-  // How far from the body's bounds the face must stand, so that the change on it is under the bound.
+  // Returns the distance from the body's bounds at which the change on the face is below the bound.
   float marginOf(int axis, bool high, const Box3& within) const {
     float near = 0.0f, far = kMostReach * radius_;
     for (int step = 0; step < kBisections; ++step) {
@@ -103,7 +103,7 @@ class Placer {
   static bool isSlab(const glm::vec3& length, const std::array<int, 3>& by_length) {
     return length[by_length[2]] < kFlat * length[by_length[1]];
   }
-  // About so many points, as far apart along each axis.
+  // Returns a size with about this many points, equally far apart along each axis.
   static glm::uvec3 evenly(const glm::vec3& length, float points) {
     const float per_metre = std::cbrt(points / (length.x * length.y * length.z));
     return glm::uvec3(glm::max(glm::round(per_metre * length), glm::vec3(2.0f)));
@@ -113,7 +113,7 @@ class Placer {
     return wish_.receivers &&
            wish_.receivers->high[axis] - wish_.receivers->low[axis] <= kLeastThickness * radius_;
   }
-  // As many points, in layers of which the middle one lies in the plane of the receivers.
+  // Returns a size with as many points, in layers of which the middle one lies in the plane of the receivers.
   static glm::uvec3 inFewLayers(glm::uvec3 size) {
     std::uint32_t* const counts[] = {&size.x, &size.y, &size.z};
     std::uint32_t& layers = **std::min_element(std::begin(counts), std::end(counts),
@@ -126,7 +126,7 @@ class Placer {
     return size;
   }
 
-  // How many points stand where in the box.
+  // Decides how many points lie along each axis of the box.
   GridPlacement dealt(const Box3& box) const {
     const glm::vec3 length = box.high - box.low;
     std::array<int, 3> by_length;
@@ -148,18 +148,18 @@ class Placer {
     if (wish_.size != glm::uvec3(0u) && wish_.extent == glm::vec3(0.0f) && !isSlab(length, by_length))
       grid.size = evenly(length, static_cast<float>(wanted.x) * static_cast<float>(wanted.y * wanted.z));
     for (int axis = 0; axis < 3; ++axis) grid.size[axis] = std::clamp(grid.size[axis], 2u, kMostGridPoints);
-    // An odd number of layers has one in the middle, where the receivers are.
+    // An odd number of layers has a middle one, in the plane of the receivers.
     if (few_layers) grid.on_layer[by_length[2]] = grid.size[by_length[2]] % 2 == 1;
     return grid;
   }
 
-  // Moves faces that receivers set off from them.
+  // Moves faces that receivers limit away from them.
   void standOff(GridPlacement& grid) const {
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
       const float sides = (by_receivers_low_[a] ? 1.0f : 0.0f) + (by_receivers_high_[a] ? 1.0f : 0.0f);
       const float cells = static_cast<float>(grid.size[axis] - 1);
-      // At least half of the side is left to the receivers.
+      // The receivers keep at least half of the side.
       const float points = std::min(kBesideReceivers, 0.25f * cells);
       const float length = grid.box.high[axis] - grid.box.low[axis];
       const float off = points * length / (cells - sides * points);

@@ -1,5 +1,5 @@
-// Where the points of a neighborhood grid stand: around the body as far as it changes the light by more than
-// a bound, and no further than receivers come. Where they are only below, that is a slab below.
+// Places the points of a neighborhood grid: around the body as far as it changes the light by more than a
+// bound, and no farther than receivers come. If receivers are only below, the grid is a slab below the body.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ struct Box3 {
   glm::vec3 low{0.0f}, high{0.0f};
 };
 
-// Points x fastest, then y, then z; the first at box.low, the last at box.high.
+// Points are ordered with x fastest, then y, then z; the first is at box.low, the last at box.high.
 struct GridPlacement {
   glm::uvec3 size{2};
   Box3 box;
-  // Receivers stand on a layer of points: nothing is interpolated along this axis.
+  // If true, receivers lie on a layer of points, so nothing is interpolated along this axis.
   glm::bvec3 on_layer{false};
 
   std::size_t count() const { return std::size_t{size.x} * size.y * size.z; }
@@ -32,25 +32,26 @@ struct GridPlacement {
 };
 
 struct PlacementWish {
-  Box3 body;                      // its bounds
-  std::optional<Box3> receivers;  // where receivers come; none: all around
-  // Points that the scene asks for: with an extent along x, y and z; else in a slab by length, for only here
-  // it is known which side is the short one, and all around as many of them, evenly spread; 0: `by_length`.
+  Box3 body;                      // bounds of the body
+  std::optional<Box3> receivers;  // where receivers come; empty: all around
+  // Number of points that the scene asks for; 0: `by_length`. With an extent they are along x, y and z.
+  // Otherwise a slab takes them by length, since only here it is known which side is the short one, and other
+  // boxes take as many in all, evenly spread.
   glm::uvec3 size{0};
-  // Points along the longest, the middle and the shortest side; 0: 64, 64, 8 in a slab, else 32 each; with
-  // few_points 32, 32, 8 and 20 each. Where receivers are flat and no extent is given, slabs have their
-  // points in five layers, closer together.
+  // Points along the longest, the middle and the shortest side. 0: 64, 64, 8 in a slab, else 32 each; with
+  // few_points 32, 32, 8 and 20 each. If receivers are flat and no extent is given, slabs have the same
+  // number of points in five layers, closer together.
   glm::uvec3 by_length{0};
   bool few_points = false;
-  glm::vec3 extent{0.0f};  // of the box, about the body's middle; 0: by reach and receivers
-  double bound = 0.01;     // change of irradiance, relative, under which a face may cut the rest off
+  glm::vec3 extent{0.0f};  // of the box, around the body's middle; 0: by reach and receivers
+  double bound = 0.01;     // relative change of irradiance below which a face may cut off the rest
 };
 
-inline constexpr std::uint32_t kMostGridPoints = 256;  // each way
-inline constexpr float kMostReach = 12.0f;             // of the body's radius (half its box's diagonal)
+inline constexpr std::uint32_t kMostGridPoints = 256;  // along each axis
+inline constexpr float kMostReach = 12.0f;  // relative to the body's radius (half its box's diagonal)
 
-// changeAt: ChangeMeter::measure at a point. Nothing where no receiver comes within reach, or the body has no
-// size.
+// `changeAt` is ReceiverMeter::measure() of the change at a point. Returns nothing if no receiver comes
+// within reach, or the body has no size.
 std::optional<GridPlacement> placeGrid(const PlacementWish& wish,
                                        const std::function<double(const glm::vec3&)>& changeAt);
 

@@ -1,5 +1,5 @@
-// The baker's room of the neighborhood effect: does the scene call for it? Which groups: baker/plan/
-// neighborhoods.hpp; what is computed: bake_neighborhood.hpp.
+// Decides whether a scene needs the neighborhood effect. baker/plan/neighborhoods.hpp chooses the groups, and
+// bake_neighborhood.hpp computes their transfer.
 #pragma once
 
 #include "baker/plan/effect_plan.hpp"

@@ -1,9 +1,9 @@
-// How a body changes the light at a point in free space: M - I, with no normal and no cosine (Sloan, Kautz,
-// Snyder 2002, section 6). In two parts, as the bundle has them:
+// Computes how a body changes the light at a point in free space: M - I, without normal or cosine (Sloan,
+// Kautz, Snyder 2002, section 6). It has two parts, as in the bundle:
 //   visibility: V - 1 in order + order_out - 1 bands, from which the shadow follows without loss,
 //               (M - I)_ij = Σ_k Γ_ijk (V - 1)_k (runtime/sh/gaunt.hpp);
-//   bounced:    B_ij = ∫ y_i(s) r_j(s) ds, r_j the radiance that the body sends towards the point from where
-//               direction s leads, under light y_j.
+//   bounced:    B_ij = ∫ y_i(s) r_j(s) ds, where r_j is the radiance that the body sends towards the point
+//               from direction s, under light y_j.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ namespace lambent::baker {
 
 struct ChangeShape {
   int order = 5, order_out = 3;
-  std::uint32_t channels = 0;  // of the bounced part: 0 (none), 1 or 3
+  std::uint32_t channels = 0;  // of the bounced part: 0 (there is none), 1 or 3
 
   std::size_t columns() const { return static_cast<std::size_t>(order * order); }
   std::size_t outputs() const { return static_cast<std::size_t>(order_out * order_out); }
@@ -32,19 +32,19 @@ struct ChangeShape {
   std::size_t bouncedSize() const { return channels * outputs() * columns(); }  // [channel][output][column]
 };
 
-// One per thread.
+// One object serves one thread.
 class PointChange {
  public:
-  // Both outlive this. shape.channels is 0 or the body's.
+  // Body and directions must outlive this. shape.channels is 0 or the body's.
   PointChange(const Body& body, const CapDirections& directions, const ChangeShape& shape);
 
   void look(const glm::vec3& point);
 
   std::span<const float> visibility() const { return visibility_; }
   std::span<const float> bounced() const { return bounced_; }
-  // More than half of all directions show the backs of surfaces: the point lies inside the body.
+  // Returns whether the point lies inside the body: more than half of all directions show backs of surfaces.
   bool inside() const;
-  // The nearest back that was met: where, and the normal of its front. Of points inside.
+  // Return the nearest back that was hit and the normal of its front, for points inside.
   const glm::vec3& nearestPoint() const { return nearest_point_; }
   const glm::vec3& nearestNormal() const { return nearest_normal_; }
 
@@ -56,32 +56,33 @@ class PointChange {
   const CapDirections& directions_;
   ChangeShape shape_;
   Cap cap_;
-  double weight_ = 0.0;  // steradians of a ray
+  double weight_ = 0.0;  // steradians per ray
   DirectionPacket along_{};
   BodyLook look_;
-  std::vector<float> harmonics_;             // [coefficient][ray] of a packet
-  std::vector<float> visibility_, bounced_;  // as the accessors
+  std::vector<float> harmonics_;             // [coefficient][ray], for one packet
+  std::vector<float> visibility_, bounced_;  // see the functions of these names
   std::vector<float> sums_;                  // [output][channel * columns]
-  double backs_ = 0.0;                       // steradians
+  double backs_ = 0.0;                       // solid angle of hits on backs, steradians
   float nearest_back_ = std::numeric_limits<float>::infinity();
   glm::vec3 nearest_point_{0.0f}, nearest_normal_{0.0f};
 };
 
-// How much errors of transferred light show at a receiver, per coefficient of each band: at a plain diffuse
-// one (A_l/pi)²; at one with transfer of its own, which applies it to all bands, the power of a transfer
-// vector half of whose sky a wall takes away.
+// Returns how much errors of transferred light show at a receiver, per coefficient of each band: (A_l/pi)² at
+// a plain diffuse receiver. A receiver with transfer of its own applies it to all bands; there it is the
+// power of a transfer vector for which a wall hides half of the sky.
 const BandPower& receiverPower(const ChangeShape& shape);
 
-// What real lights and a diffuse receiver make of a change: RMS over lights with the band power of real ones,
-// turned at random, over normals and over red, green and blue, of the change of irradiance, relative to that
-// of the light without the body.
+// A ChangeMeter measures what real lights and a diffuse receiver make of a change: the change of irradiance
+// relative to the irradiance without the body. It is the RMS over lights with the band power of real ones at
+// any rotation, over normals, and over red, green and blue.
 class ChangeMeter {
  public:
   explicit ChangeMeter(const ChangeShape& shape);
 
-  // bounced may be empty. From any thread.
+  // `bounced` may be empty. May be called from any thread.
   double measure(std::span<const float> visibility, std::span<const float> bounced) const;
-  // Σ_ij W_ij I_ij² over red, green and blue: what codeTransfer takes for the energy of one point's light.
+  // Returns Σ_ij W_ij I_ij² over red, green and blue, which codeTransfer takes as the energy of one point's
+  // light.
   double lightEnergy() const;
 
  private:

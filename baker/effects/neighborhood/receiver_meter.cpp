@@ -30,7 +30,7 @@ ReceiverMeter::ReceiverMeter(const ChangeShape& shape, const FacingArea& facing)
   for (std::size_t j = 0; j < columns; ++j)
     light_power_.push_back(kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(j)))]);
 
-  // The product of two of three bands has five: facing holds all that is asked of it.
+  // The product of two functions of three bands has five, which is what `facing` has.
   constexpr double kY0 = 0.28209479177387814;
   const double area = double{facing[0]} / kY0;
   for (auto& row : seen_) row.fill(0.0);

@@ -1,6 +1,6 @@
-// What receivers see of a change, by how their surfaces face: a grid's reach. A floor takes little from a
-// body that stands low over it far off, however much of its sky the body fills; ChangeMeter, which takes all
-// normals, would have the grid as long as the floor.
+// Measures what receivers see of a change, given how their surfaces face; this decides how far a grid
+// reaches. A floor loses little light to a body that stands on it far away, however much of its sky the body
+// fills; ChangeMeter, which takes all normals, would make the grid as long as the floor.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@ namespace lambent::baker {
 
 class ReceiverMeter {
  public:
-  // facing: no area at all counts as everywhere.
+  // If `facing` has no area, receivers may face anywhere.
   ReceiverMeter(const ChangeShape& shape, const FacingArea& facing);
 
-  // As ChangeMeter::measure, over the normals of the receivers and for their cosine in three bands. From any
-  // thread.
+  // Does what ChangeMeter::measure does, over the normals of the receivers and for their cosine in three
+  // bands. May be called from any thread.
   double measure(std::span<const float> visibility, std::span<const float> bounced) const;
 
  private:
@@ -30,7 +30,7 @@ class ReceiverMeter {
   };
   ChangeShape shape_;
   std::vector<Term> terms_;
-  std::vector<double> light_power_;                          // of each column
+  std::vector<double> light_power_;                          // one per column
   std::array<std::array<double, kOutputs>, kOutputs> seen_;  // mean over normals of A_i y_i A_j y_j
   double light_ = 0.0;
 };

@@ -16,14 +16,15 @@ namespace lambent::baker {
 
 namespace {
 
-// From here on five bands carry nine tenths of a highlight (docs/measurements/glossy.md), and matrices of few
-// bands say what it shows.
+// From this roughness on, five bands represent nine tenths of a highlight (docs/measurements/glossy.md), so
+// matrices of few bands are enough.
 constexpr float kRoughEnough = 0.5f;
-// Paths of a ray that meets a highlight: a mirror needs one, and neighbouring rays share the rest.
+// Paths per ray that hits a highlight: a mirror needs one, and with rougher surfaces neighbouring rays share
+// the sampling.
 constexpr float kMirrorRoughness = 0.1f;
 constexpr std::size_t kRoughPaths = 2;
 constexpr int kMostReflections = 32;
-// Of the body's radius: how far from a surface paths go on.
+// Offset from a surface at which paths continue, relative to the body's radius.
 constexpr float kClear = 1e-5f;
 
 std::size_t pathsFor(float roughness) {
@@ -120,13 +121,14 @@ void SurfaceBody::addKernel(const FirstHit& hit, const glm::vec3& along, float c
   }
 }
 
-// What rays of a packet that met highlights find at the ends of their paths.
+// Follows the paths of a packet's rays that hit highlights, and adds the light at their ends.
 class SurfaceBody::Paths {
  public:
   explicit Paths(const SurfaceBody& body)
       : body_(body), columns_(static_cast<std::size_t>(sh::coefficientCount(body.order_))) {}
 
-  // From `hit`, met along `along` from `from`; what it finds is added to row `row` of the packet.
+  // Starts paths at `hit`, which a ray along `along` from `from` has found. Their light is added to row `row`
+  // of the packet.
   void start(const FirstHit& hit, const glm::vec3& from, const glm::vec3& along, std::size_t ray,
              std::size_t row) {
     const std::size_t count = pathsFor(body_.brdfs_->roughness(hit.triangle, hit.u, hit.v));
@@ -139,7 +141,7 @@ class SurfaceBody::Paths {
                         .number = static_cast<std::uint32_t>(ray * kRoughPaths + p)});
   }
 
-  // sent: [row][channel][order²].
+  // `sent` is [row][channel][order²].
   void follow(std::span<float> sent) {
     const std::size_t row_size = body_.channels_ * columns_;
     std::vector<RaySegment> rays;
@@ -165,12 +167,13 @@ class SurfaceBody::Paths {
   struct Path {
     FirstHit hit;
     glm::vec3 from, along, scale;
-    glm::vec3 towards{0.0f};  // what the last highlight took `along` for
+    glm::vec3 towards{0.0f};  // direction of incident light at the last highlight
     std::size_t row;
     std::uint32_t number;
   };
 
-  // At a highlight: adds the diffuse part, and turns the path into the highlight. False where that ends it.
+  // Adds the diffuse part at a highlight, and directs the path into the highlight. Returns false if the path
+  // ends there.
   bool reflect(Path& path, std::uint32_t reflection, std::span<float> out) const {
     const FirstHit& hit = path.hit;
     const PointReflection at = body_.brdfs_->reflection(hit.triangle, hit.u, hit.v, -path.along);
@@ -182,7 +185,7 @@ class SurfaceBody::Paths {
     return path.scale != glm::vec3(0.0f);
   }
 
-  // Where the path leads: adds what it finds. True at another highlight.
+  // Adds the light that the path finds. Returns true if it is at another highlight.
   bool goesOn(const Path& path, std::uint32_t reflection, std::span<float> out) const {
     const FirstHit& hit = path.hit;
     if (!hit.any()) {

@@ -1,10 +1,9 @@
-// The surfaces of a rigid group as a body. What leaves a point that a ray met, towards where the ray came
-// from: of diffuse surfaces their albedo times their baked transfer (all light, bounces included); of rough
-// glossy ones and measured BRDFs the exit kernel times the transferred light of their baked matrices; of
-// smoother ones, whose highlights few bands would blur, the light at the end of paths that follow the
-// highlight until they leave the body or meet something rougher (caustics), plus their diffuse part as of
-// diffuse ones. Backs of single-sided surfaces send nothing. Light of the group's own lamps is not part of
-// it.
+// Presents the surfaces of a rigid group as a body. The light that leaves a hit towards the ray's origin is,
+// for diffuse surfaces, their albedo times their baked transfer (all light, bounces included); for rough
+// glossy surfaces and measured BRDFs, the exit kernel times the light transferred by their baked matrices.
+// Few bands would blur the highlights of smoother surfaces; there it is the light at the end of paths that
+// follow the highlight until they leave the body or hit something rougher (caustics), plus the diffuse part.
+// Backs of single-sided surfaces send nothing, and light of the group's own lamps is not included.
 #pragma once
 
 #include <cstdint>
@@ -18,17 +17,17 @@
 
 namespace lambent::baker {
 
-// What was baked for the group.
+// BakedSurfaces are the results of the group's bake.
 struct BakedSurfaces {
-  const TransferField& direct;   // of all samples, outputs 1
-  const TransferField* bounced;  // null: without bounces nothing sends light
-  const SurfaceBrdfs* brdfs;     // null: all is diffuse
-  const GlossyField* glossy;     // as brdfs
+  const TransferField& direct;   // of all samples, with 1 output
+  const TransferField* bounced;  // null: without bounces no light is sent
+  const SurfaceBrdfs* brdfs;     // null: all surfaces are diffuse
+  const GlossyField* glossy;     // null if `brdfs` is
 };
 
 class SurfaceBody : public Body {
  public:
-  // `scene` and the BRDFs outlive this; transfer is copied.
+  // `scene` and the BRDFs must outlive this; transfer is copied.
   SurfaceBody(const TracedScene& scene, const BakedSurfaces& baked);
 
   int order() const override { return order_; }
@@ -42,10 +41,10 @@ class SurfaceBody : public Body {
   class Paths;
   enum class Way : std::uint8_t { Matte, Kernel, Path };
   Way wayOf(const FirstHit& hit) const;
-  // scale * what leaves the hit against `along`, added to out: [channel][order²].
+  // Adds scale * the light that leaves the hit against `along` to `out`, [channel][order²].
   void addDiffuse(const FirstHit& hit, const glm::vec3& scale, std::span<float> out) const;
   void addPlain(const FirstHit& hit, const glm::vec3& scale, std::span<float> out) const;
-  // chance: from [0, 1), picks the corner whose matrix stands for the hit's.
+  // `chance` in [0, 1) picks the corner whose matrix stands for the hit's.
   void addKernel(const FirstHit& hit, const glm::vec3& along, float chance, const glm::vec3& scale,
                  std::span<float> out) const;
 
@@ -55,8 +54,8 @@ class SurfaceBody : public Body {
   std::uint32_t channels_ = 0;
   glm::vec3 centre_{0.0f};
   float radius_ = 0.0f;
-  std::vector<float> diffuse_;   // of all light: [sample][channel][order²]
-  std::vector<float> matrices_;  // of glossy samples, where some are rough: [sample][channel][output][column]
+  std::vector<float> diffuse_;   // [sample][channel][order²], of all light
+  std::vector<float> matrices_;  // [sample][channel][output][column], of glossy samples
   std::size_t matrix_outputs_ = 0, matrix_channels_ = 0;
 };
 

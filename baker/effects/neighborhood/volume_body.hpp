@@ -1,4 +1,4 @@
-// A baked volume as a body: what it lets through, and what it scatters
+// Presents a baked volume as a body: the light that it lets through, and the light that it scatters
 // (baker/effects/volume/volume_light.hpp).
 #pragma once
 
@@ -9,7 +9,8 @@ namespace lambent::baker {
 
 class VolumeBody : public Body {
  public:
-  // light outlives this. bounds: of the volume, in its group's frame. scatters: else it only stops light.
+  // `light` must outlive this. The bounds are those of the volume, in its group's frame. Without `scatters`
+  // it only stops light.
   VolumeBody(const VolumeLight& light, const glm::vec3& bounds_min, const glm::vec3& bounds_max,
              bool scatters);
 

@@ -41,7 +41,7 @@ DensityField::DensityField(const glm::uvec3& size, std::span<const float> densit
       }
 }
 
-// The box runs from 1/2 to size + 1/2 of the lattice.
+// The box reaches from 1/2 to size + 1/2 in the lattice.
 bool DensityField::clip(const LatticeRay& ray, float& begin, float& end) const {
   for (int axis = 0; axis < 3; ++axis) {
     const float low = 0.5f, high = static_cast<float>(size_[axis]) + 0.5f;

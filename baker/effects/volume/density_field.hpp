@@ -1,7 +1,7 @@
-// The density of a volume along rays. Optical depth is exact for the density as it is defined (linear between
-// voxel centres, constant in the half voxel towards the faces of the box, 0 outside): within the cell between
-// eight voxel centres it is a cubic of the distance, which Simpson's rule integrates without error. Blocks of
-// 8 x 8 x 8 cells that hold nothing are stepped over at once. Read from any thread.
+// Looks up the density of a volume along rays. Density is linear between voxel centres, constant in the half
+// voxel towards the faces of the box, and 0 outside. Optical depth is exact for it: within the cell between
+// eight voxel centres density is a cubic of the distance, which Simpson's rule integrates without error.
+// Blocks of 8 x 8 x 8 empty cells are skipped at once. May be read from any thread.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,13 @@
 
 namespace lambent::baker {
 
-// Depth beyond which nothing is left: e^-40 is 4e-18.
+// Optical depth beyond which no light is left: e^-40 is 4e-18.
 inline constexpr float kOpaqueDepth = 40.0f;
 
 class DensityField {
  public:
-  // density: m^-1, finite, not negative; x fastest. group_from_grid: affine, of voxel coordinates.
+  // `density` is in m^-1, finite and not negative, with x fastest. `group_from_grid` is affine and maps voxel
+  // coordinates.
   DensityField(const glm::uvec3& size, std::span<const float> density, const glm::mat4& group_from_grid);
 
   const glm::uvec3& size() const { return size_; }
@@ -32,16 +33,16 @@ class DensityField {
     return glm::vec3(grid_from_group_ * glm::vec4(p, 1.0f));
   }
 
-  // At a place of the grid, m^-1.
+  // Returns the density at a place of the grid, m^-1.
   float atGrid(const glm::vec3& grid) const;
 
-  // From `origin` on, metres along the unit `direction`, both in the group's frame. At most kOpaqueDepth or
-  // a little more: the rest is not looked at.
+  // Returns the optical depth along the unit `direction` from `origin`, both in the group's frame, over t_max
+  // metres. Stops at kOpaqueDepth or a little more.
   float opticalDepth(const glm::vec3& origin, const glm::vec3& direction, float t_max) const;
 
-  // Calls visit(begin, end, depth) for stretches of the ray in rising order: from where to where, metres, at
-  // most longest(begin), and the optical depth of the stretch, over 0. What lies between is empty. Ends when
-  // visit gives false.
+  // Calls visit(begin, end, depth) for stretches of the ray, in ascending order: their ends in metres, at
+  // most longest(begin) apart, and their optical depth, which is above 0. The ray is empty between them. Ends
+  // when visit returns false.
   template <typename Longest, typename Visit>
   void march(const glm::vec3& origin, const glm::vec3& direction, float t_max, const Longest& longest,
              const Visit& visit) const;
@@ -49,16 +50,16 @@ class DensityField {
  private:
   static constexpr int kBlock = 8;
 
-  // A ray in lattice coordinates: voxel (i, j, k) of the grid stands at (i + 1, j + 1, k + 1), around it a
-  // layer that repeats the outermost voxels.
+  // A LatticeRay is a ray in lattice coordinates: voxel (i, j, k) of the grid is at (i + 1, j + 1, k + 1),
+  // and around the grid a layer repeats the outermost voxels.
   struct LatticeRay {
     glm::vec3 origin, direction, inverse;
     glm::vec3 at(float t) const { return origin + t * direction; }
   };
-  // Steps through the unit cells (scaled by `side`) that a ray crosses.
+  // A Walk steps through the unit cells (scaled by `side`) that a ray crosses.
   struct Walk {
     glm::ivec3 cell, step;
-    glm::vec3 next, delta;  // where the ray leaves along each axis
+    glm::vec3 next, delta;  // distance at which the ray leaves the cell along each axis; from cell to cell
     Walk(const LatticeRay& ray, float t, float side, const glm::ivec3& low, const glm::ivec3& high);
     int axis() const { return next.x <= next.y ? (next.x <= next.z ? 0 : 2) : (next.y <= next.z ? 1 : 2); }
   };
@@ -83,7 +84,7 @@ class DensityField {
       return ab + f.z * (cd - ab);
     }
   };
-  // `inside`: the cell from its block's first.
+  // `inside` is the cell, relative to its block's first.
   Corners corners(const float* brick, const glm::ivec3& inside) const;
 
   template <typename Longest, typename Visit>
@@ -92,11 +93,11 @@ class DensityField {
 
   glm::uvec3 size_;
   glm::mat4 group_from_grid_, grid_from_group_;
-  glm::ivec3 points_, blocks_;  // of the lattice; cells are one fewer
-  // Of each block that holds anything, the 9 x 9 x 9 points of its cells side by side: rays stay in it for a
-  // while.
+  glm::ivec3 points_, blocks_;  // size of the lattice; there is one cell less along each axis
+  // For each block that is not empty, this has the 9 x 9 x 9 points of its cells side by side, since rays
+  // stay in a block for a while.
   std::vector<float> bricks_;
-  std::vector<std::int32_t> brick_of_;  // by block; -1: empty
+  std::vector<std::int32_t> brick_of_;  // one per block; -1: empty
 };
 
 inline DensityField::Walk::Walk(const LatticeRay& ray, float t, float side, const glm::ivec3& low,
@@ -132,11 +133,11 @@ bool DensityField::marchBlock(const LatticeRay& ray, const glm::ivec3& block_at,
     float leave = walk.next[axis];
     walk.cell[axis] += walk.step[axis];
     walk.next[axis] += walk.delta[axis];
-    // The last cell takes what rounding leaves.
+    // The last cell takes what rounding leaves of the ray.
     if (leave >= end || walk.cell[axis] < low[axis] || walk.cell[axis] > high[axis]) leave = end;
     if (leave <= t) continue;
     if (const Corners values = corners(brick, cell - low); !values.empty()) {
-      // Rounding may put a place a hair outside its cell; the line goes on there.
+      // Rounding may put a place a hair outside its cell, where the interpolation simply continues.
       const glm::vec3 start = ray.origin - glm::vec3(cell);
       const auto density = [&](float at) { return values.at(start + at * ray.direction); };
       for (float from = t, first = density(t); from < leave;) {

@@ -28,8 +28,8 @@ Arrival FirstLight::look(const glm::vec3& place, const SphereTable& table, std::
     for (std::size_t i = 0; i < columns; ++i) lost_[i] += missing * double{y[i]};
   }
   const double share = 1.0 / static_cast<double>(table.size());
-  // Off the closed form of an open sky (y_0, then zeros), so that thin air is exact; the sums of y_i over the
-  // table, nearly 0, are put right for thick air.
+  // Losses are taken off the closed form of an open sky (y_0, then zeros), so that thin air is exact. The
+  // sums of y_i over the table, which are nearly 0, are corrected for thick air.
   open *= share;
   for (std::size_t i = 0; i < columns; ++i)
     transfer[i] = static_cast<float>(i == 0 ? kY0 * open : (1.0 - open) * table.mean(i) - lost_[i] * share);

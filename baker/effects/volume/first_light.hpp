@@ -1,4 +1,4 @@
-// What arrives at places of a medium without having been scattered.
+// Computes the light that arrives at places of a medium without having been scattered.
 #pragma once
 
 #include <span>
@@ -12,19 +12,20 @@
 
 namespace lambent::baker {
 
-// Share of the directions whose light the medium meets, and of those from which it comes through, or from a
-// surface.
+// Shares of the directions from a place: `met` is the part of a ray that the medium takes before the ray
+// ends, `out` the part that reaches the outside or a surface. Both are means over the rays, and their sum is
+// 1.
 struct Arrival {
   double met = 0.0, out = 0.0;
 };
 
-// One per thread. All that is passed outlives it.
+// One object serves one thread. Both arguments must outlive it.
 class FirstLight {
  public:
   FirstLight(const DensityField& density, const Occluders& occluders)
       : density_(density), occluders_(occluders) {}
 
-  // transfer: mean radiance by coefficient of the light, as many as the table has.
+  // Traces the table's rays from `place`. `transfer` receives the mean radiance per coefficient of the light.
   Arrival look(const glm::vec3& place, const SphereTable& table, std::span<float> transfer);
 
  private:

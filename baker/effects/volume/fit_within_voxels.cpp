@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kPlacesPerVoxel = 8;
 constexpr std::size_t kLeastRays = 16;
-constexpr float kThin = 0.25f;  // optical depth of a voxel whose centre tells enough
+constexpr float kThin = 0.25f;  // optical depth of a voxel whose centre is accurate enough
 constexpr std::size_t kGrain = 64;
 constexpr std::size_t kTogether = 1u << 13;  // places whose light is kept at a time
 
@@ -25,15 +25,15 @@ struct Place {
   float density = 0.0f;
 };
 
-// In [0, 1): the fractions of n times the roots of x^4 = x + 1, evenly spread in three dimensions (Roberts
-// 2018).
+// Returns a point in [0, 1)³: the fractions of n divided by powers of the root of x^4 = x + 1, which are
+// evenly spread in three dimensions (Roberts 2018).
 glm::dvec3 spread(std::size_t n) {
   constexpr double kRoot = 1.2207440846057596;
   const double k = static_cast<double>(n) + 0.5;
   return glm::fract(k * glm::dvec3(1.0 / kRoot, 1.0 / (kRoot * kRoot), 1.0 / (kRoot * kRoot * kRoot)));
 }
 
-// One in each eighth of each voxel that is not thin, where there is density.
+// Returns one place with density in each eighth of each voxel that is not thin.
 std::vector<Place> placesIn(const DensityField& density, const TransferGrid& grid) {
   std::vector<Place> out;
   const glm::dvec3 scale = glm::dvec3(density.size()) / glm::dvec3(grid.size());
@@ -56,7 +56,8 @@ std::vector<Place> placesIn(const DensityField& density, const TransferGrid& gri
   return out;
 }
 
-// Tables of few rays, each turned otherwise: a voxel's places look everywhere together.
+// Makes tables of few rays, rotated against each other, so that together a voxel's places look in all
+// directions.
 std::vector<SphereTable> turnedTables(std::size_t rays, int order) {
   std::vector<SphereTable> out;
   for (std::size_t k = 0; k < kPlacesPerVoxel; ++k) {
@@ -70,7 +71,7 @@ std::vector<SphereTable> turnedTables(std::size_t rays, int order) {
   return out;
 }
 
-// All scatterings at the nodes, in blocks of columns, a channel's after the other's.
+// Returns all scatterings at the nodes, in blocks of columns, one channel after the other.
 std::vector<std::vector<float>> blocksOf(const VolumeTransfer& transfer) {
   std::vector<std::vector<float>> out;
   const std::size_t columns = transfer.columns(), width = transfer.vectorSize();

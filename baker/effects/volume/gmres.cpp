@@ -14,7 +14,7 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kC = kBlockColumns;
-constexpr std::size_t kGrain = 512;  // rows whose sums are one number
+constexpr std::size_t kGrain = 512;  // rows that are summed up together
 using Columns = std::array<double, kC>;
 using Vector = std::vector<float>;
 
@@ -38,7 +38,7 @@ Columns dots(std::span<const float> a, std::span<const float> b) {
   return sum;
 }
 
-// to += factor * from, column by column.
+// Adds factor * from to `to`, column by column.
 void add(std::span<float> to, std::span<const float> from, const Columns& factor) {
   std::array<float, kC> f;
   for (std::size_t c = 0; c < kC; ++c) f[c] = static_cast<float>(factor[c]);
@@ -54,7 +54,7 @@ double lengthOf(const Columns& squares) {
   return std::sqrt(sum);
 }
 
-// Divides by its length; columns without any become 0.
+// Divides each column by its length; columns of length 0 become 0. Returns the lengths.
 Columns normalize(std::span<float> v) {
   Columns length = dots(v, v), inverse;
   for (std::size_t c = 0; c < kC; ++c) {
@@ -92,7 +92,7 @@ GmresResult solveGmres(std::span<const float> b, std::span<float> x,
   Vector image(b.size());
   while (true) {
     if (basis.empty()) {
-      // r = b - (x - G x)
+      // The residual is r = b - (x - G x).
       if (!apply(x, image)) return stopped();
       ++state.iterations;
       basis.assign(1, Vector(b.size()));
@@ -104,7 +104,7 @@ GmresResult solveGmres(std::span<const float> b, std::span<float> x,
       for (std::size_t c = 0; c < kC; ++c)
         state.small[c].begin(length[c]), squares[c] = length[c] * length[c];
       state.residual = lengthOf(squares) / wanted;
-      // Rounding sets a floor: what a whole round hardly betters is as good as it gets.
+      // Rounding sets a floor: a residual that a whole round hardly improves will not get better.
       const bool stuck = state.before > 0.0 && state.residual > 0.7 * state.before && state.residual < 1e-3;
       if (state.residual <= settings.tolerance || state.iterations >= settings.most_iterations || stuck) {
         checkpoints.drop(state.round);

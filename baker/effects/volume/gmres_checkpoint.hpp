@@ -1,6 +1,6 @@
-// Where a run of the solver stands (gmres.cpp), for a later run to go on from: kept when a checkpoint is due
-// and when it is stopped. The vectors of a round are kept one by one as they come, the rest with each
-// checkpoint.
+// Keeps the state of a running solver (gmres.cpp), for a later run to continue from. It is written when a
+// checkpoint is due and when the bake stops. Basis vectors of a round are written one by one as they come,
+// all else with each checkpoint.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace lambent::baker {
 
-// The least-squares problem of one column, by Givens rotations.
+// LeastSquares is the least-squares problem of one column, solved by Givens rotations.
 struct LeastSquares {
-  std::vector<std::vector<double>> h;  // columns of the triangle
+  std::vector<std::vector<double>> h;  // columns of the triangular matrix
   std::vector<double> cosine, sine, g;
 
   void begin(double length);
@@ -25,8 +25,8 @@ struct LeastSquares {
 struct GmresState {
   int round = 0, iterations = 0;
   double residual = 0.0;                  // of x
-  double before = 0.0;                    // of the round before; 0: none
-  std::vector<std::vector<float>> basis;  // of this round; empty before it
+  double before = 0.0;                    // residual of the previous round; 0: none
+  std::vector<std::vector<float>> basis;  // vectors of this round; empty before it begins
   std::array<LeastSquares, kBlockColumns> small;
 };
 
@@ -34,11 +34,11 @@ class GmresCheckpoints {
  public:
   GmresCheckpoints(const BakeContext& context, int restart) : context_(context), restart_(restart) {}
 
-  // False, and nothing changed, where nothing whole is kept.
+  // Returns false and changes nothing if no complete state is kept.
   bool restore(GmresState& state, std::span<float> x) const;
   void save(const GmresState& state, std::span<const float> x);
   void saveIfDue(const GmresState& state, std::span<const float> x);
-  // The result is there: checkpoints go.
+  // Removes the checkpoints, once the result is there.
   void drop(int last_round) const;
 
  private:
@@ -47,7 +47,7 @@ class GmresCheckpoints {
   BakeContext context_;
   int restart_;
   int saved_round_ = -1;
-  std::size_t saved_ = 0;  // vectors of that round
+  std::size_t saved_ = 0;  // number of vectors of that round that are written
 };
 
 }  // namespace lambent::baker

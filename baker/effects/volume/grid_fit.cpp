@@ -10,10 +10,10 @@ namespace lambent::baker {
 
 namespace {
 
-// h, of the typical voxel's weight: what a few places at a voxel's rim say does not throw it far off.
+// This is h relative to a typical voxel's weight: a few places at a voxel's rim do not move it far.
 constexpr double kHold = 0.01;
 constexpr int kMostSteps = 200;
-constexpr double kTolerance = 1e-5;  // of the residual
+constexpr double kTolerance = 1e-5;  // relative residual
 
 }  // namespace
 
@@ -72,7 +72,8 @@ void GridFit::add(const glm::vec3& place, double weight, std::span<const float> 
 }
 
 std::vector<float> GridFit::solve() const {
-  // The mean of the diagonal, by itself: most voxels are in the dark or in thin air.
+  // The typical weight is the mean of the diagonal weighted by itself, since most voxels are dark or in thin
+  // air.
   double sum = 0.0, square = 0.0;
   for (const auto& row : matrix_) sum += row[kAround / 2], square += row[kAround / 2] * row[kAround / 2];
   std::vector<float> out(samples_.size(), 0.0f);
@@ -84,7 +85,7 @@ std::vector<float> GridFit::solve() const {
   return out;
 }
 
-// Conjugate gradients, on the diagonal's scale.
+// Runs conjugate gradients, scaled by the diagonal.
 void GridFit::solveColumn(std::size_t column, double hold, std::vector<float>& out) const {
   const std::size_t n = matrix_.size();
   std::vector<double> x(n, 0.0), rest(n), along(n), image(n);

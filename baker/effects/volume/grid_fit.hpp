@@ -1,9 +1,9 @@
-// The values at the voxels of a transfer grid with which linear interpolation comes closest to what is wanted
+// Fits the values at the voxels of a transfer grid so that linear interpolation comes closest to given values
 // at many places of the medium, by weighted least squares:
 //   minimise  sum_p w_p |sum_q phi_q(p) c_q - v_p|²  +  h sum_q |c_q - s_q|²,
-// phi_q the interpolation's share of voxel q, s what the samples have to begin with: what no place of weight
-// is near stays as it is. Constants go through exactly, for shares sum to 1. One thread adds; sums run in the
-// order of that.
+// where phi_q is the interpolation weight of voxel q, and s are the samples before the fit, so voxels without
+// a weighted place nearby keep their values. Constants are reproduced exactly, since the weights sum to 1.
+// One thread adds places; sums run in the order in which they are added.
 #pragma once
 
 #include <array>
@@ -19,17 +19,18 @@ namespace lambent::baker {
 
 class GridFit {
  public:
-  // width: values at a place. samples: [sample][width], s above. Both outlive this.
+  // `width` is the number of values at a place; `samples` is [sample][width], s above. Grid and samples must
+  // outlive this.
   GridFit(const TransferGrid& grid, std::size_t width, std::span<const float> samples);
 
-  // place: group frame. weight: not negative.
+  // `place` is in the group's frame; `weight` must not be negative.
   void add(const glm::vec3& place, double weight, std::span<const float> wanted);
 
-  // What is to be added to the samples, [sample][width].
+  // Returns the correction to add to the samples, [sample][width].
   std::vector<float> solve() const;
 
  private:
-  // Voxels that share in places with a voxel: within one of it each way.
+  // A voxel shares places with those at most one step away along each axis.
   static constexpr std::size_t kAround = 27;
   static std::size_t slotOf(const glm::ivec3& step) {
     return static_cast<std::size_t>(step.x + 1 + 3 * (step.y + 1 + 3 * (step.z + 1)));
@@ -40,9 +41,9 @@ class GridFit {
   const TransferGrid& grid_;
   std::size_t width_;
   std::span<const float> samples_;
-  std::vector<std::array<double, kAround>> matrix_;          // sum of w phi_q phi_r, r by its step from q
-  std::vector<std::array<std::uint32_t, kAround>> columns_;  // that r; q itself where there is none
-  std::vector<double> right_;                                // sum of w phi_q (v - what the samples give)
+  std::vector<std::array<double, kAround>> matrix_;          // sum of w phi_q phi_r; r by its step from q
+  std::vector<std::array<std::uint32_t, kAround>> columns_;  // sample of that r, or q itself if there is none
+  std::vector<double> right_;                                // sum of w phi_q (v - interpolated samples)
   std::vector<float> lacks_;
 };
 

@@ -1,7 +1,7 @@
-// What rays of chunks of samples met, kept in memory up to a limit, whichever comes first; the others are
-// traced again each time that they are asked for. As an output of the stage that traces, a chunk without room
-// is written empty. A chunk has bytes(), shrink(), write() and read() (baker/jobs/stage.hpp); by default it
-// is empty.
+// Keeps the traced results of chunks of samples in memory up to a limit, whichever come first; other chunks
+// are traced again each time they are needed. In the output of the stage that traces, a chunk without room is
+// written as an empty one. A chunk type has bytes(), shrink(), write() and read() (baker/jobs/stage.hpp), and
+// is empty by default.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ class KeptChunks {
   KeptChunks(KeptChunks&& other) noexcept
       : chunks_(std::move(other.chunks_)), most_bytes_(other.most_bytes_), bytes_(other.bytes_.load()) {}
 
-  // From any thread, each chunk once.
+  // Keeps the chunk if there is room. May be called from any thread, once for each chunk.
   void offer(std::size_t index, Chunk&& chunk) {
     const std::uint64_t size = chunk.bytes();
     if (bytes_.fetch_add(size) + size > most_bytes_) {
@@ -34,8 +34,8 @@ class KeptChunks {
   const Chunk& operator[](std::size_t index) const { return chunks_[index]; }
   std::uint64_t bytes() const { return bytes_; }
 
-  // The output of a stage whose ranges are the chunks, `grain` items each. fits: whether a chunk that was
-  // read is one of so many items.
+  // Returns the output of a stage whose ranges are the chunks, of `grain` items each. `fits` says whether a
+  // chunk that was read is valid for that many items.
   Output output(std::size_t grain, std::function<bool(const Chunk&, std::size_t items)> fits) {
     return {[this, grain](std::size_t begin, std::size_t, ByteWriter& out) {
               write(chunks_[begin / grain], out);

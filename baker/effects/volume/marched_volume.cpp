@@ -11,7 +11,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr float kLongestStretch = 0.5f;  // of the shortest edge of a voxel of the transfer
+constexpr float kLongestStretch = 0.5f;  // relative to the shortest edge of a voxel of the transfer
 constexpr float kNothingLeft = 1e-6f;
 
 }  // namespace
@@ -25,8 +25,8 @@ float MarchedVolume::look(const glm::vec3& origin, const glm::vec3& direction, f
   const TransferGrid& grid = transfer_.grid;
   const glm::dvec3 from = grid.gridFromGroup(glm::dvec3(origin)),
                    along = grid.gridDirection(glm::dvec3(direction));
-  // Share of each output that goes on to the ray's origin: light that arrives from along the ray goes
-  // straight on.
+  // These are the shares of each output that continue to the ray's origin: light that arrives from along the
+  // ray goes straight on.
   std::vector<float> shares(outputs, 1.0f);
   if (outputs > 1) {
     sh::evaluate(transfer_.bands, direction, shares);
@@ -40,7 +40,8 @@ float MarchedVolume::look(const glm::vec3& origin, const glm::vec3& direction, f
     for (int k = 0; k < at.count; ++k) {
       const float* vector = &transfer_.vectors[at.node[static_cast<std::size_t>(k)] * transfer_.vectorSize()];
       const auto weight = static_cast<float>(share * at.weight[static_cast<std::size_t>(k)]);
-      // Single scattering where that is all there is, else all scatterings, of one channel or of three.
+      // This is the block of single scattering if there is no other, else that of all scatterings, in one
+      // channel or three.
       for (std::size_t c = 0; c < 3; ++c) {
         const float* block = vector + (channels == 0 ? 0 : channels == 1 ? 1 : 1 + c) * outputs * columns;
         for (std::size_t j = 0; j < outputs; ++j) {

@@ -1,4 +1,4 @@
-// VolumeLight by marching through the density with the volume's uncoded transfer.
+// Implements VolumeLight by marching through the density with the volume's uncoded transfer.
 #pragma once
 
 #include "baker/effects/volume/volume_light.hpp"
@@ -6,8 +6,9 @@
 
 namespace lambent::baker {
 
-// look(): three channels; radiance = sum over stretches of tau (1 - exp(-depth)) albedo T, T with all
-// scatterings where they were baked; of more than one band sum_lm g^l T_lm y_lm(direction) in place of T.
+// look() has three channels. Radiance is the sum over stretches of tau (1 - exp(-depth)) albedo T, where T
+// includes all scatterings if they were baked. With more than one band, sum_lm g^l T_lm y_lm(direction) takes
+// the place of T.
 class MarchedVolume : public VolumeLight {
  public:
   explicit MarchedVolume(VolumeTransfer transfer) : transfer_(std::move(transfer)) {}

@@ -1,4 +1,4 @@
-// The surfaces that a volume never moves against, as its rays meet them.
+// Holds the surfaces that a volume never moves against, for its rays to hit.
 #pragma once
 
 #include <limits>
@@ -14,13 +14,14 @@ namespace lambent::baker {
 class Occluders {
  public:
   Occluders() = default;  // none
-  // scene_from_group: from the volume's frame to that of the rays' scene; a rotation and a shift.
+  // `scene_from_group` maps the volume's frame to that of the rays' scene; it is a rotation and a
+  // translation.
   Occluders(const RayScene& rays, const glm::mat4& scene_from_group)
       : rays_(&rays), scene_from_group_(scene_from_group) {}
 
   bool any() const { return rays_ != nullptr; }
 
-  // How far each ray from `origin` gets, metres; infinity where it meets nothing.
+  // Computes how far each ray from `origin` gets, in metres; infinity if it hits nothing.
   void reach(const glm::vec3& origin, std::span<const glm::vec3> directions,
              std::span<float> distances) const {
     constexpr float kFar = std::numeric_limits<float>::infinity();

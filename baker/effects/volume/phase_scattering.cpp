@@ -18,12 +18,12 @@ constexpr double kY0 = 0.28209479177387814;
 constexpr std::size_t kNodeGrain = 256;
 using Columns = std::array<float, kC>;
 
-// to += factor * from
+// Adds factor * from to `to`.
 void add(float* to, const float* from, float factor) {
   for (std::size_t c = 0; c < kC; ++c) to[c] += factor * from[c];
 }
 
-// What is seen of coefficients [output][kC] along a ray.
+// Computes the radiance along a ray from coefficients [output][kC].
 void look(const float* coefficients, std::span<const float> as, float* out) {
   Columns sum{};
   for (std::size_t i = 0; i < as.size(); ++i) add(sum.data(), coefficients + i * kC, as[i]);
@@ -52,8 +52,8 @@ PhaseScattering::PhaseScattering(const VolumeScene& scene, const SphereTable& ta
   findDuals();
 }
 
-// Sums over rays are not quite integrals: y_i and y_j are not quite orthogonal on them. With the dual basis
-// light that stays where it is comes out as it was.
+// Sums over rays are not quite integrals, since y_i and y_j are not quite orthogonal on them. With the dual
+// basis, light that stays where it is comes out unchanged.
 void PhaseScattering::findDuals() {
   const auto n = static_cast<Eigen::Index>(outputs()), rays = static_cast<Eigen::Index>(table_->size());
   Eigen::MatrixXd y(n, rays);
@@ -116,7 +116,7 @@ void PhaseScattering::sumUp(std::span<const float> clear, const Chunk& chunk, st
   }
 }
 
-// As trace() makes them, or empty.
+// Returns whether the chunk has the form that trace() gives it, or is empty.
 bool PhaseScattering::fits(const Chunk& chunk, std::size_t samples) const {
   if (chunk.begins.empty()) return chunk.steps.empty() && chunk.left.empty();
   const std::size_t rays = samples * table_->size();
@@ -148,9 +148,10 @@ std::optional<PhaseScattering> PhaseScattering::build(const VolumeScene& scene, 
   return out;
 }
 
-// Linear interpolation of a curve lies above it (ScatterRows::Row::add), on average over where it is looked
-// up by 1/12 of the second difference, and a node of level l, a mean of 2^l voxels, by (1 - 4^-l) / 24: the
-// nodes over the samples are moved by that. Rays see the samples themselves from near, and not all over.
+// Linear interpolation of a curve lies above it (ScatterRows::Row::add): by 1/12 of the second difference on
+// average over the places that are read. A node of level l, as a mean of 2^l voxels, does so by (1 - 4^-l) /
+// 24, taken as 1/24. The nodes above the samples are corrected by both. Samples themselves are not, since
+// rays read them from near, at a few places only.
 void PhaseScattering::bend(std::span<const float> nodes, std::span<float> bent) const {
   const std::size_t width = outputs() * kC, above = scene_.grid.nodes() - samples();
   parallelRanges(above, kNodeGrain, {}, [&](std::size_t begin, std::size_t end) {
@@ -172,8 +173,8 @@ void PhaseScattering::bend(std::span<const float> nodes, std::span<float> bent) 
   });
 }
 
-// Three nodes side by side of which the second difference counts at a node; at the rim as it bends one node
-// further in.
+// Returns the three adjacent nodes whose second difference counts at a node. At the rim, these are the ones
+// one node further in.
 std::optional<std::array<std::size_t, 3>> PhaseScattering::curveAt(std::size_t node, int axis) const {
   auto middle = static_cast<std::uint32_t>(node);
   const auto beside = scene_.grid.neighbors(middle, axis);
@@ -184,8 +185,8 @@ std::optional<std::array<std::size_t, 3>> PhaseScattering::curveAt(std::size_t n
   return std::array{static_cast<std::size_t>(before), std::size_t{middle}, static_cast<std::size_t>(after)};
 }
 
-// Of a ray: near: [sample][kNear][kC], as it sees the samples, then their second differences along the axes.
-// far: [node over the samples][kC].
+// Evaluates one ray direction. `near` is [sample][kNear][kC]: the radiance at the samples, then its second
+// differences along the axes. `far` is [node above the samples][kC].
 bool PhaseScattering::see(std::size_t ray, std::span<const float> x, std::span<const float> bent,
                           std::span<float> near, std::span<float> far, const std::stop_token& stop) const {
   const std::size_t n = outputs();
@@ -268,7 +269,7 @@ bool PhaseScattering::apply(std::span<const float> x, std::span<float> out, cons
   std::copy(x.begin(), x.end(), values.begin());
   scene_.grid.raise(values, n * kC);
   bend(values, bent);
-  // What many rays say of uniform light, where few miss it.
+  // Uniform light is corrected to the result of many rays.
   for (std::size_t p = 0; p < samples(); ++p)
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t c = 0; c < kC; ++c) out[(p * n + i) * kC + c] = -amiss_[p * n + i] * x[p * n * kC + c];

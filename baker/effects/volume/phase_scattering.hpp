@@ -1,13 +1,14 @@
-// What a medium with a phase function of g other than 0 scatters once more. Of the radiance that arrives at
-// each sample, coefficients x_i in bands, g^l x_i goes on, so that
+// Computes one more scattering in a medium whose phase function has g other than 0. Of the radiance that
+// arrives at each sample, with coefficients x_i in bands, g^l x_i continues, so that
 //   (K x)_i(p) = int y_i(s) int sigma(x_t) tau(p, x_t) sum_j g^l(j) y_j(s) x_j(x_t) dt ds
-// arrives after one scattering that absorbs nothing (light from s travels along -s before and after: the
-// cosine of the phase function is s . s'). Rays are the same for all samples, so for each ray the medium is
-// first seen along it, one number per node, and then gathered. As in scatter_rows.hpp stretches of depth e
-// count tau (1 - exp(-e)), and come from coarser levels where rays are far apart.
+// arrives after one scattering without absorption (light from s travels along -s before and after, so the
+// cosine of the phase function is s . s'). Rays are the same for all samples. So for each ray direction the
+// radiance along it is first evaluated, one number per node, and then gathered. As in scatter_rows.hpp,
+// stretches of depth e have the weight tau (1 - exp(-e)) and read coarser levels where rays are far apart.
 //
-// Everything is kept as differences from "all light stays and goes on": K x = g^l x + (what apply() gives),
-// which are as small as what a free path changes, so that no precision is lost in thick media.
+// Everything is stored as differences from the state in which all light stays and continues: K x = g^l x +
+// (the result of apply()). These are as small as what a free path changes, so that no precision is lost in
+// thick media.
 #pragma once
 
 #include <array>
@@ -27,7 +28,8 @@
 
 namespace lambent::baker {
 
-// Of stretches side by side on a ray: where on average, metres, and what share of the ray they scatter.
+// A RayStep stands for adjacent stretches of a ray: their mean distance in metres, and the share of the ray
+// that they scatter.
 struct RayStep {
   float t, share;
 };
@@ -35,44 +37,45 @@ template <>
 inline constexpr bool kPlainBytes<RayStep> = true;
 
 struct PhaseSettings {
-  int bands = 3;             // of what arrives
+  int bands = 3;             // of arriving light
   float g = 0.0f;            // mean cosine of the phase function
-  std::uint64_t memory = 0;  // bytes for what rays meet
+  std::uint64_t memory = 0;  // bytes for the steps of rays
 };
 
 class PhaseScattering {
  public:
-  // clear: [sample][bands²], int tau y_i ds up to the outside or to surfaces, by many rays
-  // (phased_light.hpp): uniform light comes out as that says. table: of as many bands, at least 2 bands²
-  // rays. What does not fit into the memory is traced again each time, with the same result. Nothing if
-  // stopped. Scene and table must outlive it.
+  // `clear` is [sample][bands²], int tau y_i ds up to the outside or to surfaces, from many rays
+  // (phased_light.hpp); uniform light is corrected to agree with it. `table` has as many bands, and at least
+  // 2 bands² rays. Steps that do not fit into the memory are traced again each time, with the same result.
+  // Returns nothing if stopped. Scene and table must outlive this.
   static std::optional<PhaseScattering> build(const VolumeScene& scene, const SphereTable& table,
                                               std::span<const float> clear, const PhaseSettings& settings,
                                               const BakeContext& context);
   // Removes what build() kept.
   static void drop(const BakeContext& context, std::size_t samples) { dropStage(context, samples, kChunk); }
-  // Samples whose rays were traced in this run; the others were kept.
+  // Returns the number of samples whose rays were traced in this run; the others were found in the cache.
   std::size_t samplesTraced() const { return samples_traced_; }
 
   std::size_t samples() const { return scene_.grid.samples(); }
   std::size_t outputs() const { return factors_.size(); }
-  // g^l of output i.
+  // Returns g^l of output i.
   double factor(std::size_t i) const { return factors_[i]; }
-  // Of what sets out from a sample, the share that does not come back to itself: to others and out.
+  // Returns the share of the light leaving a sample that does not come back to it: it reaches other samples,
+  // the outside or a surface.
   double away(std::size_t p) const { return away_[p]; }
 
-  // out = K x - g^l x. x, out: [sample][outputs][kBlockColumns]. False if stopped.
+  // Computes out = K x - g^l x. `x` and `out` are [sample][outputs][kBlockColumns]. Returns false if stopped.
   bool apply(std::span<const float> x, std::span<float> out, const std::stop_token& stop);
 
   std::uint64_t bytes() const { return chunks_.bytes(); }
 
  private:
   static constexpr std::size_t kChunk = 64;  // samples
-  static constexpr std::size_t kRays = 2;    // at once
+  static constexpr std::size_t kRays = 2;    // rays that are handled at a time
   struct Chunk {
-    std::vector<std::uint32_t> begins;  // [sample][ray], and one more
+    std::vector<std::uint32_t> begins;  // [sample][ray], then the number of steps
     std::vector<RayStep> steps;
-    std::vector<float> left;  // [sample][ray]: gets out, or to a surface
+    std::vector<float> left;  // [sample][ray]: share that reaches the outside or a surface
     std::uint64_t bytes() const { return 4 * (begins.size() + left.size()) + 8 * steps.size(); }
     void shrink() { steps.shrink_to_fit(); }
     friend void write(const Chunk& chunk, ByteWriter& out) {
@@ -84,13 +87,13 @@ class PhaseScattering {
   };
 
   PhaseScattering(const VolumeScene& scene, const SphereTable& table, const PhaseSettings& settings);
-  // Rays [first, end) of the samples of a chunk.
+  // Traces rays [first, end) of the samples of a chunk.
   Chunk trace(std::size_t chunk, std::size_t first, std::size_t end) const;
-  // Of one chunk, from what its rays met.
+  // Computes away_ and amiss_ for the samples of one chunk from its rays.
   void sumUp(std::span<const float> clear, const Chunk& chunk, std::size_t begin, std::size_t end);
   bool fits(const Chunk& chunk, std::size_t samples) const;
   void findDuals();
-  // What a ray sees of the samples and of the nodes over them.
+  // Seen is the radiance along one ray direction at the samples and at the nodes above them.
   struct Seen {
     std::vector<float> near, far;
   };
@@ -106,11 +109,12 @@ class PhaseScattering {
   const SphereTable* table_;
   RaySteps steps_;
   std::vector<double> factors_;
-  // Of each ray: g^l y_i, and what makes coefficients of a sum over rays, orthonormal to y_i on these rays.
+  // For each ray these hold g^l y_i, and the dual basis, which turns sums over rays into coefficients: it is
+  // orthonormal to y_i on these rays.
   std::vector<float> seen_as_, duals_;
-  std::vector<float> resolved_;  // of nodes: 1 where a free path is not shorter than a voxel, 0 where far
+  std::vector<float> resolved_;  // 1 where a free path is at least a voxel, 0 where it is much shorter
   std::vector<double> away_;
-  std::vector<float> amiss_;  // [sample][outputs]: by how much few rays miss `clear`, times y_0
+  std::vector<float> amiss_;  // [sample][outputs]: error of few rays against `clear`, times y_0
   KeptChunks<Chunk> chunks_;
   std::size_t samples_traced_ = 0;
 };

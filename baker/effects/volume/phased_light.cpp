@@ -13,9 +13,9 @@ namespace {
 constexpr std::size_t kGrain = 16;
 constexpr double kY0 = 0.28209479177387814;
 
-// int f y_i ds of a function f of which the mean is `mean` and the sums of (1 - f) y_i over the table `lost`:
-// off the closed form of f = 1, so that thin air is exact; the sums of y_i over the table, nearly 0, are put
-// right for thick air.
+// Computes int f y_i ds of a function f with the mean `mean`, where `lost` are the sums of (1 - f) y_i over
+// the table. Losses are taken off the closed form of f = 1, so that thin air is exact; the sums of y_i over
+// the table, which are nearly 0, are corrected for thick air.
 void project(const SphereTable& table, double mean, std::span<const double> lost, std::span<float> out) {
   const double share = 1.0 / static_cast<double>(table.size());
   for (std::size_t i = 0; i < out.size(); ++i)

@@ -1,7 +1,7 @@
-// Light that reaches a volume's samples unscattered, direction by direction: the share tau(s) that comes
-// through the medium and past the surfaces, as spherical harmonics. Of light l the coefficients
+// Computes the light that reaches a volume's samples unscattered, by direction: the transmittance tau(s)
+// through the medium and past the surfaces, as spherical harmonics. With incident light l, the coefficients
 //   L_i = sum_jk Gamma_ijk tau_k l_j
-// arrive, exactly, with tau in order + bands - 1 bands (literature 1.9).
+// arrive. This is exact with tau in order + bands - 1 bands (literature 1.9).
 #pragma once
 
 #include <cstddef>
@@ -17,14 +17,14 @@ namespace lambent::baker {
 struct PhasedLight {
   std::size_t visibility_size = 0;
   std::vector<float> visibility;   // [sample][visibility_size]: tau_k = int tau y_k ds
-  std::vector<float> clear;        // [sample][bands²]: the same of the medium alone, up to the surfaces
-  std::size_t samples_traced = 0;  // in this run; the others were kept
+  std::vector<float> clear;        // [sample][bands²]: the same through the medium alone, up to the surfaces
+  std::size_t samples_traced = 0;  // in this run; the others were found in the cache
 };
 
-// table: of order + bands - 1 bands. Returns nothing if stopped.
+// `table` has order + bands - 1 bands. Returns nothing if stopped.
 std::optional<PhasedLight> findPhasedLight(const VolumeScene& scene, const SphereTable& table, int bands,
                                            const BakeContext& context);
-// Removes what it kept.
+// Removes what findPhasedLight() kept.
 void dropPhasedLight(const BakeContext& context, std::size_t samples);
 
 }  // namespace lambent::baker

@@ -18,12 +18,12 @@ namespace {
 constexpr std::size_t kLeastScatteringRays = 64, kRaysPerOutput = 6;
 constexpr std::size_t kGrain = 64;
 constexpr double kTolerance = 1e-5;
-// Vectors of the solver: by the size of the system, not by the memory of the machine, so that results do not
-// hang on that.
+// The number of the solver's vectors depends on the size of the system, not on the machine's memory, so that
+// results do not either.
 constexpr std::uint64_t kSolverBytes = std::uint64_t{1} << 30, kLeastKept = 6, kMostKept = 24;
 
-// x = b + w K x for a block of columns, [sample][output][kBlockColumns], on the scale of what leaves each
-// sample.
+// Solves x = b + w K x for a block of columns, [sample][output][kBlockColumns], scaled by how much light
+// leaves each sample.
 class PhasedSystem {
  public:
   // The key of the context is that of the block.
@@ -35,7 +35,7 @@ class PhasedSystem {
     const std::size_t n = scattering.outputs();
     for (std::size_t p = 0; p < scattering.samples(); ++p)
       for (std::size_t i = 0; i < n; ++i) {
-        // 1 - w g^l k_pp without the difference of two numbers near 1.
+        // This computes 1 - w g^l k_pp without subtracting two numbers near 1.
         const double stays = albedo * scattering.factor(i);
         const double kept = 1.0 - stays + stays * scattering.away(p);
         scale_[p * n + i] = 1.0 / std::max(kept, 1e-30);
@@ -66,7 +66,7 @@ class PhasedSystem {
         {.tolerance = kTolerance, .restart = kept_vectors_}, context_);
   }
 
-  // So many scatterings one after the other.
+  // Computes so many scatterings one after the other.
   GmresResult repeat(std::span<const float> first, std::span<float> result, int times) {
     std::copy(first.begin(), first.end(), result.begin());
     std::vector<float> change(first.size());
@@ -95,7 +95,7 @@ bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, Volume
   context.progress.begin("scattered light", out.columns() * out.full_channels, "columns");
   const std::size_t columns = out.columns(), block_size = out.outputs() * columns,
                     rows = out.grid.samples() * out.outputs();
-  // Row: an output of a sample. Where its columns stand in the vectors.
+  // A row is one output of a sample; this returns where its columns start in the vectors.
   const auto at = [&](std::size_t row, std::size_t block) {
     return &out.vectors[row / out.outputs() * out.vectorSize() + block * block_size +
                         row % out.outputs() * columns];

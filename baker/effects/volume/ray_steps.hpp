@@ -1,6 +1,6 @@
-// How rays through a medium see its transfer grid: stretches of the density's own resolution, gathered over
-// less than a voxel of the level that is looked up at their distance. Rays spread: where they stand a voxel
-// apart, coarser levels tell enough.
+// Steps along rays through a medium as they read its transfer grid: stretches at the density's own resolution
+// are combined over less than a voxel of the level that is read at their distance. Rays diverge; once they
+// are a voxel apart, a coarser level is enough.
 #pragma once
 
 #include <algorithm>
@@ -17,27 +17,28 @@ namespace lambent::baker {
 
 class RaySteps {
  public:
-  // rays: over the sphere, from each sample. Density and grid outlive this.
+  // `rays` is the number of rays from each sample over the sphere. Density and grid must outlive this.
   RaySteps(const DensityField& density, const TransferGrid& grid, std::size_t rays)
       : density_(&density),
         grid_(&grid),
         voxels_per_metre_(std::sqrt(4.0 * std::numbers::pi / static_cast<double>(rays)) /
                           double{grid.meanEdge()}) {}
 
-  // Of the grid, at a distance of t metres.
+  // Returns the level of the grid to read at a distance of t metres.
   int levelAt(double t) const {
     const double spread = t * voxels_per_metre_;
     return spread < 1.0 ? 0 : std::min(std::ilogb(spread) + 1, grid_->levels() - 1);
   }
 
-  // Calls give(t, share) along the ray, up to `reach` metres: the share of what passes there that the medium
-  // takes, and where on average it does. Returns what is left; with the shares 1.
+  // Calls give(t, share) along the ray up to `reach` metres: the share of the light starting at `origin` that
+  // the medium takes there, and the mean distance at which it does. Returns the share that is left; together
+  // with the others it sums to 1.
   template <typename Give>
   double gather(const glm::vec3& origin, const glm::vec3& direction, float reach, const Give& give) const {
     const auto longest = [&](float t) {
       return kLongestStretch * grid_->shortestEdge() * static_cast<float>(1 << levelAt(double{t}));
     };
-    double left = 1.0, share = 0.0, moment = 0.0, window = 0.0;  // of what is gathered; where it ends
+    double left = 1.0, share = 0.0, moment = 0.0, window = 0.0;  // metres; end of the window
     density_->march(origin, direction, reach, longest, [&](float from, float to, float depth) {
       if (share > 0.0 && double{to} > window) {
         give(moment / share, share);
@@ -56,11 +57,11 @@ class RaySteps {
   }
 
  private:
-  static constexpr float kLongestStretch = 0.5f;  // of the shortest edge of a voxel
-  static constexpr double kWindow = 0.75;         // stretches are gathered over so many voxels of their level
+  static constexpr float kLongestStretch = 0.5f;  // relative to the shortest edge of a voxel
+  static constexpr double kWindow = 0.75;         // length of a window in voxels of its level
   static constexpr double kNothingLeft = 1e-7;
 
-  // Where on average a stretch of optical depth e takes what passes it, as a share of its length.
+  // Returns the mean place at which a stretch of optical depth e takes light, as a share of its length.
   static double middleOf(double e) {
     if (e < 0.05) return 0.5 - e / 12.0 + e * e * e / 720.0;
     return 1.0 / e - 1.0 / std::expm1(e);
@@ -68,7 +69,7 @@ class RaySteps {
 
   const DensityField* density_;
   const TransferGrid* grid_;
-  double voxels_per_metre_;  // over the angle between rays: distance over size of a voxel at level 0
+  double voxels_per_metre_;  // distance between rays in voxels of level 0, per metre
 };
 
 }  // namespace lambent::baker

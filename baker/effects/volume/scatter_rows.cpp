@@ -19,19 +19,21 @@ ScatterRows::ScatterRows(const VolumeScene& scene, const SphereTable& table, std
       chunks_((met.size() + kChunk - 1) / kChunk, memory),
       steps_(scene.density, scene.grid, table.size()) {}
 
-// The row of one sample as it grows: weights of nodes, and weights of what interpolation leaves out.
+// A Row accumulates the weights of one sample: those of nodes, and those that correct for the curvature
+// between nodes.
 class ScatterRows::Row {
  public:
   explicit Row(const TransferGrid& grid) : grid_(grid), weights_(grid.nodes(), Entry{}) {}
 
-  // resolved: 1 where a free path is not shorter than a voxel, 0 where it is much shorter. Then T changes by
-  // more than curves can follow, and only weights that are all positive keep it in range.
+  // `resolved` is 1 where a free path is at least a voxel, and 0 where it is much shorter. There T changes
+  // faster than curves can follow, and only weights that are all positive keep it in range.
   void begin(double resolved) { resolved_ = resolved; }
 
   void add(const glm::dvec3& place, int level, double share) {
     const TransferGrid::Stencil at = grid_.stencil(place, level, /*beyond=*/resolved_ > 0.5);
-    // Between two nodes at f a curve T lies under its chord by f (1 - f) / 2 T'', and a node of level l, the
-    // mean of 2^l voxels, over T by (1 - 4^-l) / 24 T''; T'' in nodes of the level.
+    // Between two nodes at fraction f, a curve T lies below its chord by f (1 - f) / 2 T'', and a node of
+    // level l, as the mean of 2^l voxels, lies above T by (1 - 4^-l) / 24 T''; T'' is measured in nodes of
+    // the level.
     const glm::dvec3 bend =
         resolved_ * (0.5 * at.fraction * (1.0 - at.fraction) + (1.0 - std::ldexp(1.0, -2 * level)) / 24.0);
     for (int i = 0; i < at.count; ++i) {
@@ -46,7 +48,7 @@ class ScatterRows::Row {
 
   double sum() const { return sum_; }
 
-  // Calls give(node, weight) by rising nodes, and is empty again.
+  // Calls give(node, weight) by ascending nodes, and empties the row.
   template <typename Give>
   void finish(const Give& give) {
     const std::size_t touched = touched_.size();
@@ -54,7 +56,7 @@ class ScatterRows::Row {
       const std::uint32_t node = touched_[i];
       const glm::dvec3 bend = weights_[node].bend;
       for (int axis = 0; axis < 3; ++axis) {
-        // At the rim as it bends one node further in.
+        // At the rim, the curvature is that one node further in.
         auto [before, after] = grid_.neighbors(node, axis);
         std::int32_t middle = static_cast<std::int32_t>(node);
         if (before < 0 && after >= 0)
@@ -176,7 +178,7 @@ std::optional<ScatterRows> ScatterRows::build(const VolumeScene& scene, const Sp
   return rows;
 }
 
-// As trace() makes them, or empty.
+// Returns whether the chunk has the form that trace() gives it, or is empty.
 bool ScatterRows::Chunk::fits(std::size_t rows, std::size_t nodes_there) const {
   if (begins.empty()) return nodes.empty() && weights.empty();
   return begins.size() == rows + 1 && begins.front() == 0 && begins.back() == nodes.size() &&

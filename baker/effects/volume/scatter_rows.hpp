@@ -1,12 +1,12 @@
-// What the medium scatters once more: the mean radiance that arrives at each sample after one scattering is a
-// weighted sum of what arrived at all samples before it,
+// Computes one more scattering in a medium with an isotropic phase function: the mean radiance that arrives
+// at each sample after one scattering is a weighted sum of what arrived at all samples before it,
 //   T^k(p) = sum_q w k_pq T^{k-1}(q),
-// w the albedo, k_pq from rays of p that pass near q:
+// where w is the albedo and k_pq comes from rays of p that pass near q:
 //   T^k(p) = (1/4pi) int ds int sigma(x_t) tau(p, x_t) w T^{k-1}(x_t) dt      (literature 1.8)
 // with T linear between the samples. A stretch of a ray of optical depth e scatters tau (1 - exp(-e)), so
-// that all stretches and what gets out sum to one whatever their lengths: under uniform light a medium that
-// absorbs nothing is not seen. Rays spread; what they meet far off is taken from coarser levels of the grid,
-// of voxels as large as the distance between rays.
+// that all stretches and the rest sum to one whatever their lengths: under uniform light a medium without
+// absorption is invisible. Rays diverge, so far away they read coarser levels of the grid, with voxels as
+// large as the distance between rays.
 #pragma once
 
 #include <atomic>
@@ -25,40 +25,42 @@
 
 namespace lambent::baker {
 
-// Columns are handled in blocks of so many, each sample's side by side: [sample][kBlockColumns].
+// Columns are handled in blocks of this size, with those of a sample side by side: [sample][kBlockColumns].
 inline constexpr std::size_t kBlockColumns = 32;
 
 class ScatterRows {
   class Row;
 
  public:
-  // met: of each sample, the share of light going out (or coming in) that the medium meets before it gets out
-  // or to a surface: rows sum to that. Rows are kept in at most `memory` bytes; those that do not fit are
-  // traced again each time, with the same result. Nothing if stopped. All that is passed must outlive it.
+  // `met` has for each sample the mean share of a ray that the medium takes before the ray reaches the
+  // outside or a surface; rows sum to it. Rows are kept in at most `memory` bytes; those that do not fit are
+  // traced again each time, with the same result. Returns nothing if stopped. Scene and table must outlive
+  // this.
   static std::optional<ScatterRows> build(const VolumeScene& scene, const SphereTable& table,
                                           std::span<const double> met, std::uint64_t memory,
                                           const BakeContext& context);
-  // Samples of which rows were traced in this run; the others were kept.
+  // Returns the number of samples whose rows were traced in this run; the others were found in the cache.
   std::size_t samplesTraced() const { return samples_traced_; }
   // Removes what build() kept.
   static void drop(const BakeContext& context, std::size_t samples) { dropStage(context, samples, kChunk); }
 
   std::size_t samples() const { return self_.size(); }
-  // Of a sample: k_pp, the sum of the others, what reaches the outside or a surface.
+  // Returns k_pp of a sample, or the sum of its other weights.
   double self(std::size_t p) const { return self_[p]; }
   double others(std::size_t p) const { return others_[p]; }
 
-  // out_p = sum over q != p of k_pq x_q. nodes: [grid.nodes()][kBlockColumns], samples first; its upper
-  // levels are filled here. False if stopped.
+  // Computes out_p = sum over q != p of k_pq x_q. `nodes` is [grid.nodes()][kBlockColumns], samples first;
+  // its upper levels are filled in here. Returns false if stopped.
   bool apply(std::span<float> nodes, std::span<float> out, const std::stop_token& stop) const;
 
-  // Scattered light at places that are no samples. One per thread.
+  // A Gather computes scattered light at places that are no samples. One object serves one thread.
   class Gather {
    public:
     explicit Gather(const ScatterRows& rows);
     ~Gather();
-    // One scattering: what comes along the table's rays, which meet `met` of the medium. nodes: blocks of
-    // columns as for apply(), their upper levels filled (TransferGrid::raise); out: a block after the other.
+    // Computes one scattering: the light that comes along the table's rays, of which the medium takes the
+    // share `met`. `nodes` holds blocks of columns as for apply(), with their upper levels filled in
+    // (TransferGrid::raise); `out` has one block after the other.
     void look(const glm::vec3& place, const SphereTable& table, double met,
               std::span<const std::vector<float>> nodes, std::span<float> out);
 
@@ -71,7 +73,7 @@ class ScatterRows {
   std::uint64_t bytes() const { return chunks_.bytes(); }
 
  private:
-  static constexpr std::size_t kChunk = 64;  // samples whose rows lie together
+  static constexpr std::size_t kChunk = 64;  // samples whose rows are stored together
   struct Chunk {
     std::vector<std::uint32_t> begins, nodes;
     std::vector<float> weights;
@@ -89,7 +91,7 @@ class ScatterRows {
   ScatterRows(const VolumeScene& scene, const SphereTable& table, std::span<const double> met,
               std::uint64_t memory);
   void traceRow(const glm::vec3& origin, const SphereTable& table, std::vector<float>& reach, Row& row) const;
-  // Adds the rows of some samples; self and others get their sums where given.
+  // Traces the rows of some samples. If `self` and `others` are not empty, stores their sums there.
   Chunk trace(std::size_t begin, std::size_t end, std::span<double> self, std::span<double> others) const;
 
   VolumeScene scene_;

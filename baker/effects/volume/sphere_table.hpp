@@ -1,5 +1,5 @@
-// Directions spread evenly over the whole sphere (spherical Fibonacci lattice), all of the same weight, with
-// their spherical harmonics.
+// Holds directions spread evenly over the whole sphere (spherical Fibonacci lattice), all of the same weight,
+// with their spherical harmonics.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,17 @@ namespace lambent::baker {
 
 class SphereTable {
  public:
-  // rays > 0; order 1..sh::kMaxBasisOrder. Turned, so that tables beside each other look elsewhere.
+  // rays > 0; order 1..sh::kMaxBasisOrder. `turn` rotates the directions, so that neighbouring tables differ.
   SphereTable(std::size_t rays, int order, const glm::dquat& turn = glm::dquat(1.0, 0.0, 0.0, 0.0));
 
   std::size_t size() const { return directions_.size(); }
   const glm::vec3& direction(std::size_t ray) const { return directions_[ray]; }
   std::span<const glm::vec3> directions() const { return directions_; }
-  // y_i, unweighted; order² values.
+  // Returns y_i in the direction of a ray, unweighted; order² values.
   std::span<const float> harmonics(std::size_t ray) const {
     return std::span(harmonics_).subspan(ray * columns_, columns_);
   }
-  // Of y_i over all directions: nearly 0 but for y_0.
+  // Returns the mean of y_i over all directions, which is nearly 0 except for y_0.
   double mean(std::size_t i) const { return means_[i]; }
 
  private:

@@ -11,8 +11,9 @@ namespace lambent::baker {
 
 namespace {
 
-// The voxels of the density that reach into the box of one voxel to every side of the centre of voxel i:
-// first and one past the last. (A voxel of the density reaches one voxel to either side of its centre too.)
+// Returns the voxels of the density that reach into the box of one voxel to every side of the centre of voxel
+// i: the first, and one past the last. (A voxel of the density reaches one voxel to either side of its
+// centre, too.)
 std::pair<std::uint32_t, std::uint32_t> reachOf(std::uint32_t i, std::uint32_t size,
                                                 std::uint32_t density_size) {
   const double ratio = static_cast<double>(density_size) / static_cast<double>(size);
@@ -23,7 +24,7 @@ std::pair<std::uint32_t, std::uint32_t> reachOf(std::uint32_t i, std::uint32_t s
           static_cast<std::uint32_t>(std::clamp(end, 1.0, most))};
 }
 
-// Along one axis after the other: whether anything lies in reach.
+// Computes along one axis whether anything lies in reach; the axes follow one after the other.
 std::vector<std::uint8_t> reduced(std::span<const std::uint8_t> filled, const glm::uvec3& from, int axis,
                                   std::uint32_t size) {
   glm::uvec3 to = from;
@@ -76,7 +77,7 @@ TransferGrid::TransferGrid(const DensityField& density, std::span<const float> v
       sum += double{density.atGrid(scale * (low + 0.25f + 0.5f * glm::vec3(k & 1, k >> 1 & 1, k >> 2)))};
     mass.push_back(sum);
   }
-  // Voxels that only reach into density count a little, so that every mean is one.
+  // Voxels that only reach into density have a small weight, so that every mean is defined.
   const double most = mass.empty() ? 0.0 : *std::max_element(mass.begin(), mass.end());
   for (double& m : mass) m += 1e-6 * most + 1e-30;
   nodes_ = voxels_.size();
@@ -139,7 +140,7 @@ TransferGrid::Stencil TransferGrid::stencil(const glm::dvec3& grid, int level, b
   const glm::dvec3 last(glm::ivec3(l.size) - 1);
   glm::dvec3 at = grid * std::ldexp(1.0, -level) - 0.5;
   const glm::dvec3 inside = glm::clamp(at, glm::dvec3(0.0), last);
-  // In the half voxel towards a face a line through the two voxels beside it, if asked for.
+  // In the half voxel towards a face, `beyond` extends the line through the two voxels beside it.
   for (int axis = 0; axis < 3; ++axis)
     if (!beyond || last[axis] == 0.0) at[axis] = inside[axis];
   const glm::dvec3 base = glm::clamp(glm::floor(at), glm::dvec3(0.0), glm::max(last - 1.0, 0.0)),
@@ -160,7 +161,7 @@ TransferGrid::Stencil TransferGrid::stencil(const glm::dvec3& grid, int level, b
     out.weight[static_cast<std::size_t>(out.count++)] = weight;
     sum += weight;
   }
-  // Where nodes are missing the others stand in; beyond a face no line then.
+  // If nodes are missing, the others stand in for them; beyond a face there is no line then.
   if (beyond && out.count < 8 && sum < 0.1) return stencil(grid, level, /*beyond=*/false);
   if (out.count < 8)
     for (int i = 0; i < out.count; ++i) out.weight[static_cast<std::size_t>(i)] /= sum;

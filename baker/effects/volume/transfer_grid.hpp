@@ -1,7 +1,7 @@
-// The grid of a volume's transfer: over the same box as the density, coarser or finer. Voxels with density
-// anywhere in the reach of their interpolation (their centre and one voxel to every side) are samples, the
-// others hold nothing. Over the samples lie coarser levels, each of half the resolution, for light that comes
-// from afar: a node is the mean of what stands below it, weighted by density.
+// The grid of a volume's transfer covers the same box as the density, coarser or finer. Samples are the
+// voxels with density anywhere in the reach of their interpolation (one voxel to every side of their centre);
+// other voxels hold nothing. Above the samples are coarser levels, each with half the resolution, for light
+// that comes from afar: a node is the mean of the nodes below it, weighted by density.
 #pragma once
 
 #include <array>
@@ -22,50 +22,51 @@ class TransferGrid {
   TransferGrid(const DensityField& density, std::span<const float> values, const glm::uvec3& size);
 
   const glm::uvec3& size() const { return levels_.front().size; }
-  // Samples: voxels of the grid, x fastest, rising.
+  // Returns the samples as voxels of the grid, with x fastest, ascending.
   const std::vector<std::uint32_t>& voxels() const { return voxels_; }
   std::size_t samples() const { return voxels_.size(); }
-  // Samples, then the nodes of level 1, 2, ...
+  // Counts the samples and the nodes of levels 1, 2, ... that follow them.
   std::size_t nodes() const { return nodes_; }
   int levels() const { return static_cast<int>(levels_.size()); }
 
-  // Centre of a sample, group frame.
+  // Returns the centre of a sample in the group's frame.
   glm::vec3 place(std::size_t sample) const;
-  // Voxel coordinates of the transfer grid.
+  // Returns voxel coordinates of the transfer grid.
   glm::dvec3 gridFromGroup(const glm::dvec3& p) const {
     return glm::dvec3(grid_from_group_ * glm::dvec4(p, 1.0));
   }
   glm::dvec3 gridDirection(const glm::dvec3& d) const {
     return glm::dvec3(grid_from_group_ * glm::dvec4(d, 0.0));
   }
-  // Edges of a voxel in metres: the shortest, and that of a cube of the same volume.
+  // Return the edge of a voxel in metres: the shortest one, and that of a cube of the same volume.
   float shortestEdge() const { return shortest_edge_; }
   float meanEdge() const { return mean_edge_; }
 
-  // Linear interpolation at a place of the grid, at a level: nodes and weights that sum to 1. Nodes without
-  // density below them are left out; 0 entries where none is near. In the half voxel towards the faces of the
-  // grid constant, as all readers have it, or, `beyond`, on the line through the outermost two nodes.
+  // A Stencil is the linear interpolation at a place of the grid, at one level: nodes and weights that sum to
+  // 1. Nodes without density below them are left out; there are 0 entries if none is near. In the half voxel
+  // towards the faces of the grid it is constant, as in all readers, or with `beyond` it continues the line
+  // through the outermost two nodes.
   struct Stencil {
     int count = 0;
     std::array<std::uint32_t, 8> node;
     std::array<double, 8> weight;
-    glm::dvec3 fraction{0.0};  // between the lower and the upper nodes
+    glm::dvec3 fraction{0.0};  // position between the lower and the upper nodes, 0..1
   };
   Stencil stencil(const glm::dvec3& grid, int level, bool beyond = false) const;
 
-  // The nodes beside one of the same level; -1: none.
+  // Returns the neighbours of a node on the same level; -1: none.
   std::pair<std::int32_t, std::int32_t> neighbors(std::uint32_t node, int axis) const {
     return {neighbors_[node][static_cast<std::size_t>(2 * axis)],
             neighbors_[node][static_cast<std::size_t>(2 * axis + 1)]};
   }
 
-  // values: [node][width]. Fills the levels above the samples.
+  // Fills in the levels above the samples; `values` is [node][width].
   void raise(std::span<float> values, std::size_t width) const;
 
  private:
   struct Level {
     glm::uvec3 size;
-    std::vector<std::int32_t> node;  // of each voxel; -1: none
+    std::vector<std::int32_t> node;  // one per voxel; -1: none
   };
   struct Child {
     std::uint32_t parent, child;
@@ -76,7 +77,7 @@ class TransferGrid {
 
   std::vector<Level> levels_;
   std::vector<std::uint32_t> voxels_;
-  std::vector<Child> children_;  // by level
+  std::vector<Child> children_;  // in ascending order of levels
   std::vector<std::array<std::int32_t, 6>> neighbors_;
   std::size_t nodes_ = 0;
   glm::dmat4 group_from_grid_, grid_from_group_;

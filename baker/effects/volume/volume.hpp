@@ -1,12 +1,11 @@
-// The baker's room of the volume effect: does the scene call for it? Transfer is computed in
-// volume_transfer.hpp.
+// Decides whether a scene needs the volume effect; volume_transfer.hpp computes its transfer.
 #pragma once
 
 #include "baker/plan/effect_plan.hpp"
 
 namespace lambent::baker {
 
-// Every scene with a volume calls for it.
+// The effect is chosen for every scene with a volume.
 EffectChoice chooseVolume(const Scene& scene, const std::vector<RigidGroup>& groups);
 
 }  // namespace lambent::baker

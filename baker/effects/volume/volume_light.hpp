@@ -1,6 +1,6 @@
-// A baked volume as others see it: how much of a ray's light it lets through, and what it scatters along the
-// ray towards where the ray starts. For neighborhoods (what a cloud does to the ground below it), and for
-// whatever else looks through it.
+// Defines a baked volume as others see it: how much of a ray's light it lets through, and how much light it
+// scatters along the ray towards the ray's origin. Neighborhoods read it (for what a cloud does to the ground
+// below it), and so may all else that looks through a volume.
 #pragma once
 
 #include <span>
@@ -12,12 +12,12 @@ namespace lambent::baker {
 class VolumeLight {
  public:
   virtual ~VolumeLight() = default;
-  // Bands of the light that the volume's transfer answers.
+  // Returns the number of bands of incident light that the volume's transfer covers.
   virtual int order() const = 0;
-  // Light from the surroundings that comes down the ray from its far end is multiplied by the returned
-  // transmittance (0..1); `scattered` receives the radiance that the volume adds, per light coefficient:
-  // [channel][order²], orthonormal basis, group frame. Points and directions in the volume's group frame,
-  // direction of unit length, from 0 to t_max metres. Deterministic, from any thread.
+  // Traces a ray over 0..t_max metres. Returns the transmittance (0..1) by which light from beyond the ray's
+  // far end is multiplied. `scattered` receives the radiance that the volume adds, per light coefficient:
+  // [channel][order²], orthonormal basis, group frame. Points and directions are in the volume's group frame,
+  // and the direction is unit. May be called from any thread; the result is deterministic.
   virtual float look(const glm::vec3& origin, const glm::vec3& direction, float t_max,
                      std::span<float> scattered) const = 0;
 };

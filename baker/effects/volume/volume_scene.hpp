@@ -1,4 +1,4 @@
-// A medium, its grid and the surfaces around it, as everything that looks through the volume reads them.
+// Holds a medium, its grid and the surfaces around it, for everything that traces rays through the volume.
 #pragma once
 
 #include "baker/effects/volume/density_field.hpp"
@@ -7,7 +7,7 @@
 
 namespace lambent::baker {
 
-// All of it outlives whoever holds this.
+// The referenced objects must outlive every holder of a VolumeScene.
 struct VolumeScene {
   const DensityField& density;
   const TransferGrid& grid;

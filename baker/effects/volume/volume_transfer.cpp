@@ -20,11 +20,11 @@ constexpr std::size_t kLeastScatteringRays = 64;
 constexpr std::size_t kGrain = 16;
 constexpr double kTolerance = 1e-5;
 
-// What arrives unscattered, and what stands in its way.
+// FirstLights hold the light that arrives unscattered, and how much the medium takes.
 struct FirstLights {
   std::vector<float> transfer;     // [sample][order²]
-  std::vector<double> met, out;    // share of the directions whose light the medium meets, and the rest
-  std::size_t samples_traced = 0;  // in this run; the others were kept
+  std::vector<double> met, out;    // [sample], as in Arrival
+  std::size_t samples_traced = 0;  // in this run; the others were found in the cache
 };
 
 std::optional<FirstLights> lightIn(const VolumeScene& scene, const SphereTable& table, std::size_t columns,
@@ -54,8 +54,9 @@ std::optional<FirstLights> lightIn(const VolumeScene& scene, const SphereTable& 
   return light;
 }
 
-// T = T0 + w K T for a block of columns, on the diagonal's scale: what a sample keeps to itself is taken out
-// of the iteration, so that thick media converge too. result, first: [sample][kBlockColumns].
+// Solves T = T0 + w K T for a block of columns, scaled by the diagonal: the light that a sample sends to
+// itself is taken out of the iteration, so that thick media converge too. `result` and `first` are
+// [sample][kBlockColumns].
 class Scattering {
  public:
   // The key of the context is that of the block.
@@ -67,7 +68,7 @@ class Scattering {
         nodes_(grid.nodes() * kBlockColumns),
         scale_(rows.samples()) {
     for (std::size_t p = 0; p < scale_.size(); ++p) {
-      // 1 - w k_pp without the difference of two numbers near 1.
+      // This computes 1 - w k_pp without subtracting two numbers near 1.
       const double kept = 1.0 - albedo + albedo * (rows.others(p) + light.out[p]);
       scale_[p] = kept > 1e-30 ? 1.0 / kept : 0.0;
     }
@@ -90,7 +91,7 @@ class Scattering {
         {.tolerance = kTolerance}, context_);
   }
 
-  // So many scatterings one after the other.
+  // Computes so many scatterings one after the other.
   GmresResult repeat(std::span<const float> first, std::span<float> result, int times) {
     std::copy(first.begin(), first.end(), result.begin());
     std::vector<float> others(first.size());
@@ -145,7 +146,7 @@ bool scatter(const ScatterRows& rows, const FirstLights& light, const VolumeSett
   return true;
 }
 
-// Removes the checkpoints of what is all there now.
+// Removes the checkpoints, once all parts are complete.
 void dropParts(const BakeContext& context, const VolumeTransfer& transfer) {
   if (!context.keeps()) return;
   const std::size_t samples = transfer.grid.samples();
