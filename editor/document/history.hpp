@@ -37,8 +37,8 @@ struct Replay {
   std::vector<std::string> missing;
 };
 
-// Is a change of something that the document does not hold, such as which scenes are open. Its owner
-// implements undo.
+// An OutsideChange is a change of something that the document does not hold, such as which scenes are open.
+// Its owner implements undo.
 class OutsideChange {
  public:
   virtual ~OutsideChange() = default;

@@ -26,11 +26,11 @@ Json numberJson(float value);
 // Writes a value; rotations become [x, y, z, w], as in glTF. Error: a number is not finite.
 Result<Json> valueJson(const scene::Value& value);
 
-// Is a JSON value with its path in the document. Wrong input throws a JsonFault, which stays inside this
-// room: public functions turn it into an Error.
+// A JsonFault is wrong input. It is thrown inside this room only; public functions turn it into an Error.
 struct JsonFault {
   std::string place, problem, hint;
 };
+// A Place is a JSON value with its path in the document.
 
 class Place {
  public:

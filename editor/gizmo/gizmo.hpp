@@ -104,7 +104,7 @@ class Gizmo {
     glm::dvec3 turn_axis{0.0, 1.0, 0.0};
     bool edge_on = false;  // the ring is seen edge-on and turned by moving along its line
   };
-  // Is the outline of a handle on the screen: a line, or a filled polygon.
+  // A Shape is the outline of a handle on the screen: a line, or a filled polygon.
   struct Shape {
     std::vector<glm::dvec2> points;
     bool filled = false;

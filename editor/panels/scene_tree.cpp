@@ -9,7 +9,7 @@ namespace lambent::editor {
 
 namespace {
 
-// Is the letter and colour that mark a kind of entity.
+// A KindLook is the letter and colour that mark a kind of entity.
 struct KindLook {
   std::string_view kind;
   const char* sign;

@@ -17,7 +17,7 @@
 
 namespace lambent::editor {
 
-// Is a script's input for one frame. The user's input is used for whatever it leaves unset.
+// A ScriptedInput is a script's input for one frame. The user's input is used for whatever it leaves unset.
 struct ScriptedInput {
   std::optional<glm::vec2> pointer;  // in window pixels
   bool left = false, right = false, middle = false;
