@@ -39,8 +39,8 @@ class Film {
   spec::RgbaImage image() const;
   // Writes a row into a picture of the same size, and its depths if the picture has depths.
   void putRow(std::uint32_t y, spec::RgbaImage& image) const;
-  // Returns the mean of replica 0 or 1 alone. The two pictures have independent noise, and their mean is
-  // image() if they have equally many samples. Every row must have two samples.
+  // Returns the mean of replica 0 or 1. The two have independent noise; if they have equally many samples,
+  // their mean is image(). Every row must have at least two samples.
   spec::RgbaImage half(std::size_t replica) const;
 
   // Returns the relative standard error of the pixels, estimated from the difference of the two replicas:

@@ -30,8 +30,8 @@ Result<Json> valueJson(const scene::Value& value);
 struct JsonFault {
   std::string place, problem, hint;
 };
-// A Place is a JSON value with its path in the document.
 
+// A Place is a JSON value with its path in the document.
 class Place {
  public:
   Place(const ReadJson& value, std::string way) : value_(&value), way_(std::move(way)) {}
