@@ -23,9 +23,9 @@ constexpr float kSunAzimuthDeg = 34.0f, kSunElevationDeg = 44.0f;
 // The disc is wider than the sun's 0.27 degrees, at the same irradiance, so that small images and low orders
 // can show it.
 constexpr double kSunRadius = 2.6 * kPi / 180;
-// The ratio of the sun's irradiance, on a surface that faces it, to the sky's irradiance on a horizontal
-// plane. It is about 6 in clear air; 2.5 is a sun behind thin haze, which keeps shadows readable in low
-// orders.
+// This is the ratio of the sun's irradiance, on a surface that faces it, to the sky's irradiance on a
+// horizontal plane. It is about 6 in clear air; 2.5 is a sun behind thin haze, which keeps shadows readable
+// in low orders.
 constexpr double kSunToSky = 2.5;
 const glm::dvec3 kSunColour(1.0, 0.90, 0.76);
 const glm::dvec3 kGroundAlbedo(0.26, 0.23, 0.19);
