@@ -1,4 +1,4 @@
-// lambent-demo as a user meets it: exit codes, one-line errors, pictures, the report.
+// Tests lambent-demo as a user sees it: exit codes, one-line errors, pictures, the report.
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -53,7 +53,7 @@ class DemoProgram : public ::testing::Test {
     return quoted(path);
   }
 
-  // As one word of a shell command.
+  // Quotes it as one word of a shell command.
   static std::string quoted(const std::filesystem::path& path) { return fmt::format("'{}'", path.string()); }
 
   std::filesystem::path folder;

@@ -1,4 +1,4 @@
-// What ships: the runtime alone, with its libraries, in a folder that may stand anywhere.
+// Tests the package: the runtime alone, with its libraries, in a folder that can be anywhere.
 #include <algorithm>
 #include <regex>
 #include <sstream>
@@ -17,7 +17,7 @@ struct Library {
   std::string name, path;  // path: empty where it is not to be found
 };
 
-// Lines of ldd: "libfmt.so.9 => /lib/libfmt.so.9 (0x...)", "libdraco.so.7 => not found".
+// Parses lines of ldd: "libfmt.so.9 => /lib/libfmt.so.9 (0x...)", "libdraco.so.7 => not found".
 std::vector<Library> librariesOf(const std::string& ldd) {
   static const std::regex kLine(R"(^\s*(\S+) => (?:(/\S+)|not found))");
   std::vector<Library> out;
@@ -27,7 +27,7 @@ std::vector<Library> librariesOf(const std::string& ldd) {
   return out;
 }
 
-// What a baker links and the runtime must not; static libraries leave their symbols' names.
+// Lists what a baker links and the runtime must not; static libraries leave their symbols' names.
 std::vector<std::string> bakerPartsOf(const std::string& ldd, const fs::path& program) {
   static const std::regex kBakerLibrary("OpenImageIO|embree|tbb|opencv|gdal|meshoptimizer");
   std::vector<std::string> out;

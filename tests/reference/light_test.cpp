@@ -1,4 +1,4 @@
-// Light from infinity, and light between surfaces, against closed forms.
+// Compares distant light, and light between surfaces, with closed forms.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -14,14 +14,14 @@ using testing::rendered;
 using testing::samples;
 using testing::sceneOf;
 
-// A box that floats over a floor: corners, contact and open sky.
+// Makes a box that floats over a floor, which has corners, contact and open sky.
 Scene boxOverFloor() {
   return sceneOf({testing::grid({0, 0, 0}, 4.0f, 1), testing::box({0.2f, 0.6f, 0}, {1, 1, 1}, 1)});
 }
 
 TEST(Reference, InAWhiteFurnaceShowsNothing) {
-  // Every path of a white scene brings the light's radiance: without noise, whatever the mesh. The few that
-  // roulette or 64 bounces end early are in the rounding.
+  // Every path of a white scene returns the light's radiance: there is no noise, for any mesh. The few paths
+  // that end early by roulette or after 64 bounces are within the rounding.
   const auto report = rendered(boxOverFloor(), {.lights = {testing::uniform(1.0f)},
                                                 .camera = spec::OrbitCamera{30, 20, 2, 40},
                                                 .options = {.size = {48, 48}, .spp = 8}});
@@ -35,7 +35,7 @@ TEST(Reference, InAWhiteFurnaceShowsNothing) {
 }
 
 TEST(Reference, InAWhiteFurnaceOfADiscThatIsTheWholeSkyShowsOneWithinItsNoise) {
-  // The same light, by next-event estimation weighed against the cosine.
+  // Tests the same light by next-event estimation combined with cosine sampling.
   const spec::SunLight whole{
       .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 180, .radiance = glm::vec3(1)};
   const auto corner = measured(boxOverFloor(), {3, 3, 3}, {0.75f, 0, 0.1f}, {whole}, samples(256));
@@ -80,9 +80,10 @@ TEST(Reference, TurnsTheLightAsTheRuntimeDoes) {
 }
 
 TEST(Reference, InASphereWithAnOpeningHasTheRadianceOfEachBounce) {
-  // Between any two places inside a sphere the form factor is the same: with f the share that is cut off,
+  // Between any two places inside a sphere the form factor is the same. With f the fraction that is cut off,
   // bounce k adds rho f (rho (1 - f))^k to the exit radiance under uniform light of 1 (literature:
-  // integrating spheres). A mesh of 5120 faces scatters by 1.3 %, the mean of eight places by well under 1 %.
+  // integrating spheres). On a mesh of 5120 faces it varies by 1.3 %, the mean of eight places by well under
+  // 1 %.
   const bundle::MeshData whole = testing::icosphere({0, 0, 0}, 1.0f, 4);
   bundle::MeshData cut = whole;
   cut.indices.clear();

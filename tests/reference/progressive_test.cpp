@@ -1,4 +1,4 @@
-// The picture that refines in the background is the one that `lambent reference` draws.
+// Tests that the picture refined in the background equals that of `lambent reference`.
 #include "reference/progressive.hpp"
 
 #include <chrono>
@@ -22,7 +22,7 @@ void waitABit() {
   std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-// Waits until it is done or has failed.
+// Waits until the picture is finished or has failed.
 ProgressiveStatus ended(const ProgressiveReference& reference) {
   for (;;) {
     auto status = reference.status();
@@ -105,7 +105,7 @@ TEST_F(Progressive, GivesTwoIndependentHalvesWhoseMeanIsThePicture) {
     const glm::dvec3 difference(a.texels[i] - b.texels[i]);
     apart += glm::dot(difference, difference), energy += glm::dot(mean, mean);
   }
-  // Half of their difference is the error of the mean.
+  // Half of their difference estimates the error of the mean.
   ASSERT_TRUE(snapshot->noise);
   EXPECT_NEAR(0.5 * std::sqrt(apart / energy), *snapshot->noise, 1e-4 * *snapshot->noise);
 }
@@ -236,7 +236,7 @@ TEST(LightCache, LightsAreAsStrongAsTheirFactorsSay) {
   EXPECT_EQ(sky({}), glm::vec3(1.5f, 2.0f, 3.0f));
   EXPECT_EQ(sky({9.0f, 0.5f, 2.0f}), glm::vec3(1.5f, 2.5f, 4.5f));
   EXPECT_EQ(sky({9.0f, 0.0f}), glm::vec3(0.5f, 1.0f, 2.0f));
-  // The file is read once: it may go meanwhile.
+  // The file is read only once, so it may be deleted meanwhile.
   std::filesystem::remove(file);
   EXPECT_EQ(sky({9.0f, 0.0f, 4.0f}), glm::vec3(2.0f, 4.0f, 8.0f));
 }

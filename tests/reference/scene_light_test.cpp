@@ -1,4 +1,4 @@
-// Lights that stand in the scene: emissive surfaces and KHR_lights_punctual.
+// Tests lights within the scene: emissive surfaces and KHR_lights_punctual.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -35,8 +35,8 @@ TEST(EmissiveSurface, OfAClosedBoxIsTheGeometricSeries) {
   expectMean(seen({}), 2.0);
 }
 
-// Lambert's formula: the form factor of a polygon seen from `p` with normal n, wound counter-clockwise as p
-// sees it.
+// Returns Lambert's form factor of a polygon as seen from `p` with normal n. The polygon is counter-clockwise
+// as seen from p.
 double formFactor(const std::vector<glm::dvec3>& corners, const glm::dvec3& p, const glm::dvec3& n) {
   double sum = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -85,7 +85,7 @@ Scene floorWithLight(const gltf::Light& light, const glm::mat4& place) {
   return scene;
 }
 
-// From above; the node shines along its -Z.
+// Returns the matrix of a light at this height that shines straight down, along its -Z.
 glm::mat4 above(float height) {
   return glm::rotate(glm::translate(glm::mat4(1), {0, height, 0}), -glm::half_pi<float>(), {1, 0, 0});
 }

@@ -1,4 +1,5 @@
-// Spheres and discs of light that words put into the scene, against closed forms; and the scene at a time.
+// Compares sphere and disc lights, which light words add to a scene, with closed forms; and tests the scene
+// at a given time.
 #include <gtest/gtest.h>
 
 #include "reference/digest.hpp"
@@ -13,7 +14,7 @@ using testing::measured;
 using testing::samples;
 using testing::sceneOf;
 
-// Rays start 2^-19 of the floor's 20 m off it, nearer to the light by as much.
+// Rays start above the floor by 2^-19 of its 20 m, and are nearer to the light by as much.
 constexpr double kOffset = 2e-4;
 
 spec::Light sphere(glm::vec3 place, float radius, float radiance) {
@@ -29,7 +30,7 @@ Scene whiteFloor() {
   return sceneOf({testing::grid({0, 0, 0}, 20.0f, 1)});
 }
 
-// E/pi of a sphere that is wholly above the horizon: L r²/d² cos.
+// Returns E/pi of a sphere entirely above the horizon: L r²/d² cos.
 TEST(SphereLight, LightsAFloorAsAPointOfItsPowerWould) {
   for (const float x : {0.0f, 0.8f, 3.0f})
     for (const float radius : {0.001f, 0.3f, 0.999f}) {
@@ -95,7 +96,7 @@ TEST(SphereLight, FillsAWhiteBallByTheGeometricSeries) {
   expectMean(seen({}), once / 0.4, 6e-3);
 }
 
-// On the axis: L r²/(r² + h²).
+// Returns E/pi on the axis: L r²/(r² + h²).
 TEST(DiscLight, LightsWhatLiesOnItsAxisInClosedForm) {
   for (const float height : {0.002f, 0.5f, 2.0f, 30.0f}) {
     const double expected = 7.0 / (1.0 + double{height} * double{height});
@@ -155,7 +156,7 @@ TEST(ShapeLights, DensitiesOfBothStrategiesAgree) {
 }
 
 TEST(Time, PutsTheSceneWhereItsAnimationsHaveIt) {
-  // A ceiling that leaves the sky after half a second.
+  // A ceiling reveals the sky after half a second.
   Scene scene =
       sceneOf({testing::grid({0, 0, 0}, 8.0f, 1), testing::flipped(testing::grid({0, 0, 0}, 8.0f, 1))});
   gltf::Node& ceiling = scene.nodes[1];
@@ -183,7 +184,7 @@ TEST(Time, PutsTheSceneWhereItsAnimationsHaveIt) {
   poseAt(still, 1.0f);
   EXPECT_EQ(still.warnings.size(), 1u);
 
-  // Checkpoints of another time or another light are other pictures.
+  // A checkpoint of another time or another light belongs to another picture.
   const auto digest = [&](float time, const std::vector<spec::LocalLight>& shapes) {
     Scene posed = scene;
     poseAt(posed, time);

@@ -1,4 +1,4 @@
-// Walks through media against integrals along the ray.
+// Compares random walks through media with integrals along the ray.
 #include <gtest/gtest.h>
 
 #include "reference/eye_depth.hpp"
@@ -31,7 +31,7 @@ Estimate estimated(int count, const Draw& draw) {
   return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count)};
 }
 
-// Both trackers against the transmittance that is expected.
+// Compares both trackers with the expected transmittance.
 void expectTransmittance(const Volumes& volumes, const Ray& ray, double far, double expected) {
   constexpr int kCount = 40000;
   const Estimate ratio = estimated(kCount, [&](Stream& r) { return volumes.transmittance(ray, far, r); });
@@ -45,7 +45,7 @@ void expectTransmittance(const Volumes& volumes, const Ray& ray, double far, dou
 const glm::mat4 kWildNode =
     glm::rotate(glm::translate(glm::mat4(1), {0.2f, -0.1f, 0.3f}), 0.7f, glm::vec3(0.3f, 1, 0.2f));
 
-// A wild field of 21 x 10 x 17 voxels, empty in parts, whose blocks differ.
+// Makes an irregular field of 21 x 10 x 17 voxels, partly empty, whose blocks differ.
 Scene wild() {
   Scene scene = sceneOf({});
   std::uint32_t state = 1;
@@ -58,7 +58,8 @@ Scene wild() {
   return scene;
 }
 
-// Through its box of 1.05 x 1 x 1.02 metres: along two diagonals, nearly along an axis, and from inside.
+// Lists rays through its box of 1.05 x 1 x 1.02 metres: along two diagonals, nearly along an axis, and from
+// inside.
 std::vector<Ray> raysThroughWild() {
   const auto ray = [](glm::vec3 from, glm::vec3 to, float length) {
     const glm::vec3 a(kWildNode * glm::vec4(from, 1)), b(kWildNode * glm::vec4(to, 1));
@@ -175,7 +176,7 @@ TEST(Tracking, OfTwoVolumesAddsTheirExtinctions) {
   EXPECT_GT(b.to(kFar), 0.5);
   EXPECT_NEAR(eye.to(kFar), a.to(kFar) + b.to(kFar), 1e-6);
   expectTransmittance(volumes, ray, kFar, std::exp(-eye.to(kFar)));
-  // Whose the collision is goes by the extinctions there, in both ways to find one.
+  // A collision belongs to a volume in proportion to its extinction there, for both ways of finding one.
   double expected = 0.0, picked = 0.0;
   constexpr int kSteps = 200000;
   const double share = -std::expm1(-eye.to(kFar));

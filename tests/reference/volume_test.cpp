@@ -1,4 +1,4 @@
-// Pictures of media against closed forms.
+// Compares pictures of media with closed forms.
 #include <gtest/gtest.h>
 
 #include "runtime/sh/zonal.hpp"
@@ -24,7 +24,7 @@ Scene cloud(float density, glm::vec3 albedo = glm::vec3(1), float g = 0.0f) {
   return scene;
 }
 
-// A directional light of the scene: `lux` on what faces it, shining along `along`.
+// Makes a directional light of the scene, shining along `along`, with `lux` on a surface that faces it.
 void shine(Scene& scene, glm::vec3 along, float lux) {
   gltf::Light light;
   light.type = gltf::Light::Type::Directional;
@@ -79,8 +79,8 @@ TEST(VolumePicture, OfABlackVolumeIsTheSkyThroughIt) {
 }
 
 TEST(VolumePicture, InAWhiteFurnaceShowsNothing) {
-  // Every path of an albedo of 1 brings the light's radiance, whatever the density, the phase function and
-  // the surfaces about: without noise.
+  // Every path with albedo 1 returns the light's radiance without noise, for any density, phase function and
+  // surfaces.
   for (const float density : {1.0f, 4.0f, 16.0f})
     for (const float g : {0.0f, 0.8f}) {
       Scene scene =
@@ -100,7 +100,7 @@ TEST(VolumePicture, InAWhiteFurnaceShowsNothing) {
 }
 
 TEST(VolumePicture, InAWhiteFurnaceOfADiscThatIsTheWholeSkyShowsOneWithinItsNoise) {
-  // The same light by next-event estimation through the medium, weighed against the phase function.
+  // Tests the same light by next-event estimation through the medium, combined with phase function sampling.
   const spec::SunLight whole{
       .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 180, .radiance = glm::vec3(1)};
   const int spp[] = {256, 128, 64};
@@ -124,8 +124,8 @@ TEST(VolumePicture, CutToOneBandIsAFurnaceToo) {
   EXPECT_NEAR(seen.mean.g, 1.0, 2e-5);
 }
 
-// Radiance that arrives in the middle of the cube, the mean over all directions: by symmetry that over one
-// face of a cube map. The camera stands inside the volume.
+// Returns the mean over all directions of the radiance that arrives in the middle of the cube: by symmetry,
+// that over one face of a cube map. The camera is inside the volume.
 glm::dvec3 meanInTheMiddle(const Scene& medium, std::uint32_t spp) {
   Scene scene = medium;
   testing::lookAt(scene, {0, 0, 0}, {0, 0, -1}, 90.0f);
@@ -212,8 +212,8 @@ TEST(VolumePicture, ThinIsTheLightConvolvedWithThePhaseFunction) {
 }
 
 TEST(VolumePicture, CutToFiveBandsIsSignedInsideAVolume) {
-  // Single scattering in a dense cube under a small sun, against a sum over directions and places with the
-  // cube's chords.
+  // Compares single scattering in a dense cube under a small sun with a sum over directions and places, which
+  // uses the cube's chords.
   const spec::SunLight sun{.azimuth_deg = 0, .elevation_deg = 90, .angle_deg = 5, .radiance = glm::vec3(100)};
   const auto light = spec::loadDistantLights({sun})->lightVector().truncated(4);
   const double density = 3.0, y = -0.3;
@@ -239,7 +239,7 @@ TEST(VolumePicture, CutToFiveBandsIsSignedInsideAVolume) {
 }
 
 TEST(VolumePicture, UnderASphereOfLightIsThatUnderAPointOfTheSameStrength) {
-  // Small and near, so both are the same light; one by its area, one by itself.
+  // The two lights are small and near, so they are equivalent; one is sampled by area, the other as a whole.
   const glm::vec3 there(0.9f, 1.0f, 0.3f);
   const float radius = 0.02f, candela = 5.0f;
   Scene pointed = cloud(2.0f, glm::vec3(0.8f), 0.3f);
@@ -337,7 +337,7 @@ TEST(VolumePicture, OfOneHiddenInAMeshIsThatOfTheMesh) {
 }
 
 TEST(VolumePicture, OfTwoThatOverlapIsThatOfTheirSum) {
-  // Where one of albedo 1 and one twice as dense of albedo 0.4 fill the same place, the albedo is 0.6.
+  // If a medium of albedo 1 and one twice as dense of albedo 0.4 overlap, the albedo is 0.6.
   Scene two = cloud(1.0f, glm::vec3(1));
   place(two, even(2.0f, glm::vec3(0.4f)));
   const spec::SunLight sun{.azimuth_deg = 60, .elevation_deg = 40, .angle_deg = 30, .radiance = glm::vec3(1)};

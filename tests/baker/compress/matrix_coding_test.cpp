@@ -1,4 +1,4 @@
-// Coding of what glossy surfaces need: visibility, and matrices of bounced light.
+// Tests the coding of what glossy surfaces need: visibility, and matrices of bounced light.
 #include <array>
 #include <cmath>
 #include <random>
@@ -22,14 +22,15 @@ constexpr transfer::TransferShape kVisibility{.order = 5, .outputs = 25, .visibi
 constexpr transfer::TransferShape kBounced{
     .order = 5, .shadowed_channels = 0, .full_channels = 3, .outputs = 25};
 
-// Of means and axes, decoded.
+// Returns the decoded means and axes.
 std::size_t expandedBytes(const CodedTransfer& coded) {
   std::size_t count = coded.codebook.axis_counts.size();
   for (const auto axes : coded.codebook.axis_counts) count += axes;
   return count * coded.shape.size() * sizeof(float);
 }
 
-// Open sky but for a few round blockers that move over it: smooth in a path of samples, never twice the same.
+// Makes an open sky with a few round blockers that move over it: smooth along a path of samples, but never
+// the same twice.
 std::vector<float> wanderingVisibility(std::size_t count, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
@@ -55,7 +56,7 @@ std::vector<float> wanderingVisibility(std::size_t count, unsigned seed) {
   return out;
 }
 
-// Heaps, each with directions of its own whose variances fall slowly.
+// Makes clusters, each with its own directions, whose variances fall slowly.
 std::vector<float> slowlyFalling(std::size_t count, std::size_t size) {
   std::mt19937 random(3);
   std::normal_distribution<float> normal;
@@ -74,7 +75,7 @@ std::vector<float> slowlyFalling(std::size_t count, std::size_t size) {
   return out;
 }
 
-// Reflections of low rank with a little of everything.
+// Makes reflections of low rank plus a little noise.
 std::vector<float> bouncedMatrices(std::size_t count, unsigned seed, float noise) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
@@ -124,7 +125,8 @@ TEST(MatrixCoding, KeepsItsBoundOnVisibility) {
 }
 
 TEST(MatrixCoding, WeighsVisibilityByTheErrorsThatItMakesInReflectedLight) {
-  // A lobe and a light, each turned at random, so of independent coefficients with the power of their bands.
+  // A lobe and a light are rotated randomly, so their coefficients are independent and have the power of
+  // their bands.
   const auto visibility = wanderingVisibility(1, 7);
   const sh::GauntTable table = sh::makeGauntTable(5, 5);
   std::vector<float> matrix(625, 0.0f);

@@ -1,4 +1,4 @@
-// What importScene() understands, on small files written here.
+// Tests what importScene() supports, on small files written here.
 #include "baker/import/gltf.hpp"
 
 #include <cmath>

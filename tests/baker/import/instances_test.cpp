@@ -1,4 +1,4 @@
-// EXT_mesh_gpu_instancing: an instance is a node.
+// Tests EXT_mesh_gpu_instancing, whose instances become nodes.
 #include <limits>
 
 #include <gtest/gtest.h>

@@ -29,7 +29,7 @@ Planned plan(const Scene& scene) {
   return out;
 }
 
-// A ball of radius 1 (half its box's diagonal: √3) and a point light that moves by itself.
+// Makes a ball of radius 1 (half its box's diagonal: √3) and a point light that moves by itself.
 Scene ballAndLamp(float distance) {
   Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 3)});
   scene.nodes[0].name = "ball";

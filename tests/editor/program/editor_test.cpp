@@ -1,4 +1,4 @@
-// The editor as a user meets it, driven by scripts through the same widgets, under Xvfb.
+// Tests the editor as a user sees it, driven by scripts through the same widgets, under Xvfb.
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 using testing::Outcome;
 
-// For a message: all that is known of a run.
+// Returns everything known about a run, for messages.
 std::string told(const Outcome& outcome) {
   return fmt::format("exit code {}\n--- stderr\n{}--- stdout\n{}", outcome.exit_code, outcome.err,
                      outcome.out);
@@ -29,14 +29,14 @@ struct Played {
   Outcome outcome;
   std::vector<json> answers;  // a line each
 
-  // Of the last line with this command.
+  // Returns the last answer to this command.
   const json& answer(const std::string& command) const {
     for (auto line = answers.rbegin(); line != answers.rend(); ++line)
       if ((*line)["command"].get<std::string>().starts_with(command)) return (*line)["answer"];
     static const json kNone;
     return kNone;
   }
-  // Of all lines with this command, in their order.
+  // Returns all answers to this command, in order.
   std::vector<json> all(const std::string& command) const {
     std::vector<json> found;
     for (const json& line : answers)
@@ -50,7 +50,7 @@ class EditorProgram : public testing::ProgramTest {
   void SetUp() override {
     ProgramTest::SetUp();
     ::setenv("XDG_CONFIG_HOME", (folder / "config").c_str(), 1);
-    // On a display of its own; only where there is no Xvfb, on the user's.
+    // Each run uses its own display; without Xvfb it uses the user's.
     std::string why;
     display = testing::XServer::start(why);
     if (display)
@@ -286,7 +286,7 @@ expect /errors 0
 }
 
 TEST_F(EditorProgram, TurnsSunsThatAreDraggedOverTheSky) {
-  // The eye looks towards azimuth 35, elevation 25; its back is turned to the light that is made by hand.
+  // The camera looks towards azimuth 35, elevation 25; its back faces the light that is added by hand.
   const Played played = play(fmt::format(R"(
 open {0}
 lights constant:0.3,0.3,0.3 sun:45,30,6,30,28,25
@@ -330,7 +330,8 @@ state
   EXPECT_EQ(states[3]["undo"], "Undo turn of directional");
 }
 
-// The studio's soft boxes are found in its picture, and each of their discs can be moved and dimmed.
+// The studio's soft boxes are found as key lights in its image, and each of their discs can be moved and
+// dimmed.
 TEST_F(EditorProgram, MovesDimsAndResetsAKeyLightOfAnEnvironmentMap) {
   constexpr std::string_view script = R"(
 open {0}
@@ -556,7 +557,7 @@ expect /errors 0
   ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
 }
 
-// What the reference has of it must be as strong, as turned and in the same places.
+// The reference's lights must be as strong, and as rotated and placed, as the runtime's.
 TEST_F(EditorProgram, HoldsItsPictureAgainstTheReference) {
   std::filesystem::copy(path("hello.glb"), path("again.glb"));
   size = "600x400";
@@ -596,8 +597,8 @@ heat
   EXPECT_GT(figures["pixels"].get<int>(), 1000);
 }
 
-// The reference traces the edited light, too: without its disc, or with the old one besides, it would be off
-// by the key light's share of 40 %.
+// The reference traces the edited light, too. Without its disc, or with the old one in addition, the error
+// would be the key light's share of 40 %.
 TEST_F(EditorProgram, HoldsAMovedKeyLightAgainstTheReference) {
   size = "600x400";
   const Played played = play(fmt::format(R"(

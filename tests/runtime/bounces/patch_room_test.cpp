@@ -1,4 +1,4 @@
-// Rooms with lamps in them, on the CPU: known answers, and what costs nothing.
+// Tests lamps in rooms on the CPU: known answers, and what costs nothing.
 #include "runtime/bounces/patch_room.hpp"
 
 #include <cmath>
@@ -43,7 +43,7 @@ bool sameBytes(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b)
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(glm::vec3)) == 0;
 }
 
-// Flux that arrives at all patches, over that of the lamp.
+// Returns the flux that arrives at all patches, relative to that of the lamp.
 double received(const lighting::Patches& patches, const std::vector<float>& direct, double flux) {
   double sum = 0.0;
   for (std::size_t i = 0; i < patches.size(); ++i)
@@ -221,14 +221,14 @@ spec::Disc sunAt(const glm::vec3& direction, float radius_rad = 0.05f) {
           .radiance = glm::vec3(10.0f, 5.0f, 2.0f)};
 }
 
-// What transfer takes for the key lights at an open light environment map.
+// Returns the part that transfer gets from key lights at an unoccluded light probe.
 KeyBands bandsOf(const std::vector<spec::Disc>& keys, const glm::vec3& position) {
   KeyBands bands{.position = position, .light = {}};
   for (const glm::vec3& c : spec::discVector(keys).c) bands.light.emplace_back(c, 0.0f);
   return bands;
 }
 
-// What the patches give off of what their own bands say of a light.
+// Returns what the patches emit by the first bands of a light.
 std::vector<glm::vec3> givenOffByBands(const PatchTransport& transport, const KeyBands& bands) {
   std::vector<glm::vec3> direct;
   for (std::size_t i = 0; i < transport.patches().size(); ++i)
@@ -236,7 +236,7 @@ std::vector<glm::vec3> givenOffByBands(const PatchTransport& transport, const Ke
   return transport.bounce(direct);
 }
 
-// Closed but for one of its sides, and lit through it.
+// Makes a room that is open on one side and lit through it.
 PatchRoom openRoom() {
   RoomBuilder builder;
   builder.box({0, 0, 0}, {2, 2, 2}, glm::vec3(0.5f));

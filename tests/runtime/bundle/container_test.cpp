@@ -1,4 +1,4 @@
-// The container: what is written comes back, and nothing damaged gets through.
+// Tests the container: what is written is read back, and nothing damaged is accepted.
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -21,7 +21,8 @@ Blob blobOf(std::size_t size, unsigned first) {
 const std::vector<transfer::LightWeights> kWeights = {
     transfer::kOneLight, {{1, 2, 0, 0}, {200, 55, 0, 0}}, {{2, 1, 0, 0}, {128, 127, 0, 0}}};
 
-// A description that uses every list but meshes (mesh_test.cpp has those), with values that are easy to lose.
+// Makes a description that uses every list except meshes (mesh_test.cpp has those), with values that are
+// easily lost.
 Sample sampleBundle() {
   Sample s;
   Description& d = s.description;
@@ -267,7 +268,7 @@ TEST_F(BundleFile, AnOlderVersionIsToBeBakedAgain) {
   }
 }
 
-// Valid checksums around nonsense: what a hostile or buggy writer could make.
+// Surrounds nonsense with valid checksums, as a hostile or buggy writer could.
 TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   const auto refused = [&](auto spoil, const char* place) {
     Sample sample = sampleBundle();

@@ -1,4 +1,4 @@
-// Animations at a point in time, against closed forms.
+// Compares animations at a point in time with closed forms.
 #include "runtime/bundle/keyframes.hpp"
 
 #include <cmath>
@@ -25,7 +25,7 @@ AnimationChannel channel(Path path, Interpolation interpolation, std::vector<flo
           .values = std::move(values)};
 }
 
-// About +Y.
+// Returns a rotation about +Y.
 std::vector<float> turn(float degrees, float sign = 1.0f) {
   const float half = glm::radians(degrees) / 2.0f;
   return {0.0f, sign * std::sin(half), 0.0f, sign * std::cos(half)};
@@ -35,7 +35,7 @@ std::vector<float> operator+(std::vector<float> a, const std::vector<float>& b) 
   return a;
 }
 
-// Where a turn takes +Z, as degrees about +Y.
+// Returns the direction to which a rotation takes +Z, in degrees about +Y.
 float degreesOf(const glm::quat& q) {
   EXPECT_NEAR(glm::length(q), 1.0f, 1e-6f);
   const glm::vec3 there = q * glm::vec3(0, 0, 1);
@@ -72,7 +72,7 @@ TEST(Keyframes, RotationsTurnEvenlyTheShorterWay) {
   EXPECT_NEAR(degreesOf(rotationAt(little, 0.5f)), 20.0f, 1e-4f);
 }
 
-// A cubic through its keys with its own slopes is reproduced by a cubic spline, whatever the intervals are.
+// A cubic spline reproduces a cubic through its keys and slopes, for any interval lengths.
 TEST(Keyframes, CubicSplinesReproduceCubics) {
   const auto value = [](double t) { return 1.0 + t * (2.0 + t * (-3.0 + 0.5 * t)); };
   const auto slope = [](double t) { return 2.0 + t * (-6.0 + 1.5 * t); };

@@ -1,4 +1,4 @@
-// No field of a material is forgotten on its way through JSON, or between the material and its live values.
+// Checks that every field of a material survives JSON, and the copy between the material and its live values.
 #include "runtime/bundle/material_fields.hpp"
 
 #include <gtest/gtest.h>

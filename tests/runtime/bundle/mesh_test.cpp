@@ -22,7 +22,7 @@ using baker::latticeStep;
 
 constexpr float kStep = 1.0f / 4096.0f;
 
-// An n x n grid of quads over [x0, x0 + 1] x [0, 1], bent into a bump so that normals differ.
+// Makes an n x n grid of quads over [x0, x0 + 1] x [0, 1], bent into a bump so that normals differ.
 MeshData bump(int n, float x0 = 0.0f) {
   MeshData mesh;
   for (int j = 0; j <= n; ++j) {

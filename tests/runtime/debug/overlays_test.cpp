@@ -1,4 +1,4 @@
-// Overlays: their words, what they draw where, and that they leave the rest of the picture alone.
+// Tests overlays: their words, what they draw where, and that the rest of the picture stays the same.
 #include "runtime/debug/overlays.hpp"
 
 #include <glm/geometric.hpp>
@@ -19,7 +19,7 @@ using testing::quadMesh;
 using testing::sphereMesh;
 using testing::ViewStage;
 
-// Pixels that the two pictures differ in.
+// Returns the pixels in which the two pictures differ.
 std::vector<std::size_t> changes(const spec::RgbaImage& a, const spec::RgbaImage& b) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < a.texels.size(); ++i)

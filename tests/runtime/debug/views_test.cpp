@@ -1,4 +1,5 @@
-// Views of surfaces: their words, their numbers in pictures, and that a picture without them stays as it is.
+// Tests views of surfaces: their words, their numbers in pictures, and that a picture without them stays the
+// same.
 #include "runtime/surface/views.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +21,7 @@ using testing::ViewStage;
 
 const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
 
-// What a normal map is shaded from where nothing is hidden: the light itself.
+// Returns the unoccluded input of a normal-mapped surface: the light itself.
 BundleBuilder& openMapped(BundleBuilder& builder) {
   std::vector<float> same(81, 0.0f);
   for (std::size_t j = 0; j < 9; ++j) same[9 * j + j] = 1.0f;

@@ -1,4 +1,4 @@
-// Visibility and matrices of glossy samples against closed forms (literature 1.9, 7.2, 7.3).
+// Compares visibility and matrices of glossy samples with closed forms (literature 1.9, 7.2, 7.3).
 #include "baker/effects/glossy/glossy_direct.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -35,7 +35,7 @@ float largestDifference(std::span<const float> a, std::span<const float> b) {
   return largest;
 }
 
-// A cone of half angle `a` about `axis`, in as many bands as `bands`.
+// Returns the SH of a cone of half angle `a` about `axis`, in this many bands.
 std::vector<float> cone(int bands, glm::vec3 axis, double a) {
   std::vector<float> out(static_cast<std::size_t>(sh::coefficientCount(bands)));
   sh::evaluate(bands, axis, out);
@@ -74,7 +74,7 @@ TEST(GlossyDirect, IsTheIdentityOnAConvexBody) {
   const auto baked = bakeGlossy(t, lambertKernels(t), {});
   std::vector<float> open(25);
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
-    // Not a ray of the smooth normal's hemisphere is lost below the facets' horizons.
+    // No ray of the smooth normal's hemisphere is lost below the facets' horizons.
     expectIdentity(shadowMatrix(baked.glossy.field, s), 25, 1e-4f);
     sh::unoccludedTransfer(5, t.samples.normals[s], std::span<float>(open));
     EXPECT_LT(largestDifference(open, baked.direct.field.at(s)), 1e-4f);

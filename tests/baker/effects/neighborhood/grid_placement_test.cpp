@@ -1,4 +1,4 @@
-// Where grids stand.
+// Tests where grids are placed.
 #include "baker/effects/neighborhood/grid_placement.hpp"
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace lambent::baker {
 namespace {
 
-// The far field of a ball of radius 1 at the origin.
+// Returns the far field of a ball of radius 1 at the origin.
 double farField(const glm::vec3& p) {
   const double d = double{glm::length(p)};
   return d > 0.0 ? std::min(1.0, 1.0 / (d * d)) : 1.0;

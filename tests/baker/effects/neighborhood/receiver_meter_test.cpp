@@ -1,4 +1,4 @@
-// What receivers see of a change, by how they face.
+// Tests how strongly receivers see a change, depending on their normals.
 #include "baker/effects/neighborhood/receiver_meter.hpp"
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace lambent::baker {
 namespace {
 
-// A small black body in one direction: V - 1 there.
+// Returns V - 1 of a small black body in one direction.
 std::vector<float> blackIn(const glm::vec3& direction, const ChangeShape& shape, float steradians) {
   std::vector<float> visibility(shape.visibilitySize());
   sh::evaluate(shape.visibilityBands(), direction, visibility);
