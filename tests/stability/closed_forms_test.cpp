@@ -1,4 +1,4 @@
-// Answers known beforehand, from the scene through Draco and the codes and back.
+// Compares whole bakes, from the scene through Draco and the codes and back, with known answers.
 #include "tests/stability/end_to_end_bake.hpp"
 
 namespace lambent {
@@ -34,8 +34,8 @@ TEST_F(ClosedForm, AnOpenPlaneSeesAllLight) {
       EXPECT_NEAR(draw.uniformRadiance(v), 1.0f, kCodingTolerance) << v;
 }
 
-// At height h over a disc of radius r the cosine-weighted share that the disc hides is r²/(r² + h²); seen
-// from the plane's middle under a ball of radius r with its centre at d, it is (r/d)².
+// At height h over a disc of radius r, the disc hides the cosine-weighted fraction r²/(r² + h²). In the
+// middle of the plane under a ball of radius r with its centre at d, it is (r/d)².
 TEST_F(ClosedForm, UnderABallTheFloorLosesTheSquareOfItsSine) {
   const auto draws = bakeAndDecode(sceneOf({grid({0, 0, 0}, 4.0f, 16), icosphere({0, 1.25f, 0}, 1.0f, 4)}));
   ASSERT_EQ(draws.size(), 2u);

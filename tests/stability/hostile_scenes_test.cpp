@@ -1,4 +1,4 @@
-// Scenes that tools do produce and bakers trip over, from the scene to the bytes and back.
+// Tests, from the scene to the bytes and back, scenes that tools produce and bakers stumble over.
 #include <random>
 
 #include "baker/import/gltf.hpp"
@@ -19,7 +19,7 @@ using testing::sceneOf;
 
 using HostileScene = testing::EndToEndBake;
 
-// A floor with a ball on it.
+// Makes a floor with a ball on it.
 baker::Scene ballOnFloor(float scale, glm::vec3 place) {
   return sceneOf(
       {grid(place, 4.0f * scale, 16), icosphere(place + glm::vec3(0, 0.6f * scale, 0), 0.5f * scale, 2)});

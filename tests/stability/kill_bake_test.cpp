@@ -1,5 +1,5 @@
-// kill -9 in the middle of a bake, again and again at random moments: the bundle comes out as of one that
-// nobody touched, byte for byte, nothing broken is ever left under its name, and little work is done twice.
+// Kills a bake with kill -9 at random moments: the bundle is byte for byte that of an undisturbed bake, no
+// broken file ever has its name, and little work is done twice.
 #include <array>
 #include <chrono>
 #include <random>
@@ -97,7 +97,7 @@ class KilledBake : public testing::ProgramTest {
             "--json"};
   }
 
-  // Ends it after so many seconds, unless it ends before.
+  // Kills it after this many seconds, unless it ends before.
   struct Ended {
     bool killed = false;
     int exit_code = -1;

@@ -1,4 +1,4 @@
-// Materials that are changed while they are shown, against scenes baked with them.
+// Compares materials that are changed while they are shown with scenes baked with them.
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ struct Look {
   float roughness = 1.0f, metallic = 0.0f;
 };
 
-// A ball that shadows the floor that it lies on.
+// Makes a ball that shadows the floor on which it lies.
 Show show(const Look& look, int bounces) {
   assets::Scene scene = named("ball on a floor");
   add(scene, "floor", assets::box({-3.0f, -1.2f, -3.0f}, {3.0f, -1.0f, 3.0f}, 0.5f), glm::vec3(0.7f),

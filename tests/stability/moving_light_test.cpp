@@ -1,5 +1,5 @@
-// Bodies that light and shadow each other, and lights that stand where they should not: from the scene
-// through the baker to the frame, in pictures of a few pixels with known answers.
+// Tests bodies that light and shadow each other, and lights in awkward places, from the scene through the
+// baker to the frame, in pictures of a few pixels with known answers.
 #include <cmath>
 #include <numbers>
 #include <optional>

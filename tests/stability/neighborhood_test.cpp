@@ -1,4 +1,4 @@
-// Neighborhoods from the scene to the file and back: right where a closed form says so, finite always.
+// Tests neighborhoods from the scene to the file and back: they match closed forms, and are always finite.
 #include "tests/support/neighborhood.hpp"
 
 #include "baker/bake/bake.hpp"
@@ -13,7 +13,7 @@ using testing::grid;
 using testing::icosphere;
 using testing::sceneOf;
 
-// A grid as it stands in a file.
+// Holds a grid as stored in a file.
 struct Stored {
   bundle::NeighborhoodGrid grid;
   baker::ChangeShape shape;

@@ -1,4 +1,4 @@
-// Baked bundles in worlds without room for all of them: what stands in for those that are not here.
+// Tests what is shown in place of baked bundles that do not fit into memory.
 #include <algorithm>
 #include <cstdint>
 #include <thread>
@@ -20,7 +20,7 @@ using frame::Shown;
 constexpr std::uint32_t kSide = 160;
 constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
-// A box that the camera is near to, on the left; to the right and farther away, what has more vertices.
+// Makes a box near the camera, on the left; the other scene, farther away to the right, has more vertices.
 assets::Scene localScene() {
   assets::Scene scene = testing::named("near");
   testing::add(scene, "box", assets::box({-1.5f, -1.0f, 1.0f}, {-0.5f, 1.0f, 2.0f}, 0.5f), glm::vec3(0.7f),
@@ -81,7 +81,7 @@ struct Place {
   Shown shown(std::size_t bundle) const { return world.streaming().bundles[bundle].shown; }
 };
 
-// Of the right half of a picture, where the far bundle is.
+// Describes the right half of a picture, where the far bundle is.
 struct Right {
   std::vector<bool> covered;
   std::size_t pixels = 0;

@@ -1,5 +1,5 @@
-// Depths of linear pictures: metres along the view axis, of what is not blended, infinite where there is
-// none.
+// Tests the depths of linear pictures: metres along the view axis, of opaque surfaces, infinite where there
+// is none.
 #include <limits>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -16,7 +16,7 @@ using testing::ViewStage;
 constexpr float kNone = std::numeric_limits<float>::infinity();
 const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
 
-// A square of 2 m times `scale` that faces the eye, at this z.
+// Makes a square of 2 m times `scale` that faces the camera, at this z.
 testing::BuiltMesh square(float z, float scale = 1.0f, gltf::AlphaMode alpha_mode = gltf::AlphaMode::Opaque,
                           float alpha = 1.0f) {
   gltf::Material material;
@@ -26,7 +26,7 @@ testing::BuiltMesh square(float z, float scale = 1.0f, gltf::AlphaMode alpha_mod
           glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, z)), glm::vec3(scale))};
 }
 
-// From 10 m away on +Z.
+// Returns depths seen from 10 m away on +Z.
 std::vector<float> depthsOf(ViewStage& stage, const glm::mat4& clip_from_view) {
   const glm::vec3 eye(0, 0, 10);
   const spec::View view{.view_from_world = glm::lookAt(eye, glm::vec3(0.0f), glm::vec3(0, 1, 0)),

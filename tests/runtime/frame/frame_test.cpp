@@ -1,4 +1,4 @@
-// Pictures with known answers, and what a frame may and may not do.
+// Tests pictures with known answers, and what a frame may and may not do.
 #include "runtime/frame/frame.hpp"
 
 #include <numeric>
@@ -28,14 +28,14 @@ gltf::Material colored(glm::vec4 color) {
   return material;
 }
 
-// Tests of several builds may run side by side.
+// Several builds may run their tests at the same time.
 std::filesystem::path temporary(const std::string& name) {
   return std::filesystem::path(::testing::TempDir()) /
          fmt::format("{}-{}-{}", getpid(), ::testing::UnitTest::GetInstance()->current_test_info()->name(),
                      name);
 }
 
-// A world with one bundle, a light and a frame of 64 x 64.
+// Shows one bundle in a world with a light and a frame of 64 x 64.
 struct Stage {
   std::filesystem::path path;
   World world;

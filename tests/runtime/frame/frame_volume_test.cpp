@@ -1,4 +1,4 @@
-// Volumes in pictures with known answers, and what a frame does for them and does not.
+// Tests volumes in pictures with known answers, and what a frame does for them.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ FrameOptions linearOptions(const std::function<void(FrameOptions&)>& change = {}
   return options;
 }
 
-// A cube of 2 m, the same everywhere.
+// Makes a homogeneous cube of 2 m.
 BuiltVolume mist(float extinction, float albedo = 1.0f) {
   BuiltVolume volume;
   volume.density_max = extinction;
@@ -49,7 +49,7 @@ BuiltVolume mist(float extinction, float albedo = 1.0f) {
   return volume;
 }
 
-// A world with one bundle, seen straight on by an orthographic camera of 3 m, 10 m away on +Z.
+// Shows one bundle in a world, by an orthographic camera of 3 m, 10 m away on +Z.
 struct Stage {
   std::filesystem::path path;
   World world;

@@ -1,4 +1,4 @@
-// What the light capture decides without a GPU: tiles, pages, and which bodies are closed.
+// Tests what the light capture decides without a GPU: tiles, pages, and which bodies are closed.
 #include "runtime/lighting/capture_plan.hpp"
 
 #include <array>

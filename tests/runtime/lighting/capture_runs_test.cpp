@@ -1,4 +1,4 @@
-// How captures run: one at a time, in pages, and shader for shader as their CPU twin.
+// Tests how captures run: one at a time, in pages, and each shader like its CPU twin.
 #include <random>
 
 #include <gtest/gtest.h>

@@ -46,7 +46,7 @@ TEST(Environment, TurnsAsASunOfTheTurnedAzimuth) {
   for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(turned.light().c[i], sun(20).light().c[i]);
 }
 
-// Two sets with a sun each, to tell them apart.
+// Makes two sets with one sun each, so that they can be distinguished.
 Result<Environment> twoSets() {
   return Environment::create(
       {spec::ConstantLight{.radiance = {1, 2, 3}},
@@ -137,7 +137,7 @@ TEST(Environment, ProjectsAProbeToItsMeanRadiance) {
   EXPECT_NEAR(glm::dot(mean, glm::vec3(0.2126f, 0.7152f, 0.0722f)), 0.885f, 0.004f);
 }
 
-// A picture of one radiance.
+// Makes an image of one radiance.
 void writeEnvironmentMap(const std::filesystem::path& file, float radiance) {
   const spec::RgbaImage image{
       .width = 8, .height = 4, .texels = std::vector<glm::vec4>(32, glm::vec4(radiance))};

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kBodies = 40;
 const CaptureOptions kOptions{.size = 8, .subsamples = 2, .order = 3};
 
-// What a walk over all bodies finds, from what a sample's surroundings were drawn with.
+// Finds by a walk over all bodies what has changed since a sample's surroundings were drawn.
 struct Walk {
   std::vector<BodyPose> poses;  // by body, as drawn
   std::vector<bool> seen;

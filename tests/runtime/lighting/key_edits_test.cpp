@@ -1,4 +1,5 @@
-// Key lights of an environment map that are moved, dimmed and coloured: their discs change, and nothing else.
+// Tests key lights of an environment map that are moved, dimmed and tinted: their discs change, and nothing
+// else.
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -20,7 +21,7 @@ namespace {
 const glm::dvec3 kHigh = glm::normalize(glm::dvec3(0.4, 0.7, -0.3));
 const glm::dvec3 kLow = glm::normalize(glm::dvec3(-0.6, 0.2, 0.5));
 
-// A soft sky with two suns of 1.7 degrees.
+// Makes a soft sky with two suns of 1.7 degrees.
 class KeyEdits : public ::testing::Test {
  protected:
   KeyEdits() : file_(std::filesystem::path(::testing::TempDir()) / (std::to_string(getpid()) + "-suns.hdr")) {
@@ -41,7 +42,7 @@ class KeyEdits : public ::testing::Test {
   }
   ~KeyEdits() override { std::filesystem::remove(file_); }
 
-  // What an eye sees, as bands 0 and 1.
+  // Returns what the eye sees, as bands 0 and 1.
   sh::LightVector seen() const {
     const Environment::Shown shown = environment_->shownOf(0);
     sh::LightVector light = sh::constantLight(2, shown.constant);

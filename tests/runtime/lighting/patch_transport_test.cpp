@@ -18,7 +18,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// E/pi straight from a point light of one candela, nothing in its way.
+// Returns E/pi from an unoccluded point light of one candela.
 std::vector<float> litFrom(const Patches& patches, const glm::vec3& light) {
   std::vector<float> direct;
   for (const Patch& patch : patches.all()) {
@@ -39,7 +39,7 @@ double wholeOf(const Patches& patches, const std::vector<float>& received) {
   return sum;
 }
 
-// What arrives at all patches after bounces, by the light that they give off: E/pi.
+// Returns E/pi at all patches after bounces, from the light that they emit.
 std::vector<float> receivedAll(const Patches& patches, const std::vector<glm::vec3>& given_off) {
   std::vector<float> received;
   for (std::size_t i = 0; i < patches.size(); ++i)

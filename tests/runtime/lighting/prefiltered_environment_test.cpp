@@ -1,4 +1,4 @@
-// The sky as rough mirrors show it, against the lobe's own integrals.
+// Compares the prefiltered sky for rough mirrors with the lobe's own integrals.
 #include "runtime/lighting/prefiltered_environment.hpp"
 
 #include <cmath>
@@ -28,8 +28,8 @@ std::vector<glm::vec4> levelOf(const gpu::Texture& cube, std::uint32_t level) {
   return texels;
 }
 
-// Share of the lobe about `direction` that falls into a disc, by midpoints over the half sphere; small discs
-// by their solid angle.
+// Returns the part of the lobe about `direction` that falls into a disc, by midpoints over the hemisphere;
+// small discs use their solid angle.
 double shareOfDisc(const ReflectedLobe& lobe, const glm::dvec3& direction, const Disc& disc) {
   const double least = std::cos(static_cast<double>(disc.radius_rad));
   if (disc.radius_rad < 0.02f)
@@ -156,8 +156,8 @@ TEST_F(PrefilteredEnvironmentTest, LightOfFewBandsLeavesNothing) {
   }
 }
 
-// Lamps along the edges of cube faces, in an environment map that asks for cubes of 125 texels: blurred, all
-// of their light is still there.
+// Lamps are along the edges of cube faces, in an environment map that needs cubes of 125 texels. After
+// prefiltering all of their light is still there.
 TEST_F(PrefilteredEnvironmentTest, LampsInAProbeOfAnySizeKeepTheirPower) {
   const std::filesystem::path path =
       std::filesystem::path(::testing::TempDir()) / (std::to_string(::getpid()) + "-lamps.exr");

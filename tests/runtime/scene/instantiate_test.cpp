@@ -56,7 +56,7 @@ void addGroup(bundle::Description& d, std::int32_t node, glm::vec3 translation, 
   d.groups.push_back(group);
 }
 
-// A hall with two chairs of one mesh, and a mirrored, stretched top that moves: a group of its own.
+// Makes a hall with two chairs of one mesh, and a mirrored, stretched top that moves: a group of its own.
 struct Hall {
   Hall() {
     hall = addNode(d, "hall", -1, glm::mat4(1.0f));

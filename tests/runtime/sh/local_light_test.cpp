@@ -1,5 +1,4 @@
-// Local lights against quadrature over the solid angle that they fill, against suns, and where they are
-// hardest.
+// Compares local lights with quadrature over their solid angle and with suns, also in the hardest cases.
 #include "runtime/sh/local_light.hpp"
 
 #include <algorithm>
@@ -49,8 +48,8 @@ bool dark(const LightVector& light) {
   return std::all_of(light.c.begin(), light.c.end(), [](const glm::vec3& c) { return c == glm::vec3(0.0f); });
 }
 
-// y_i over the disc of radius 1 whose centre lies `aside` beside and `height` ahead of the point, by polar
-// angles about the normal through the point: nothing in it is steep, however near the disc is.
+// Integrates y_i over the disc of radius 1 whose centre is `aside` beside and `height` ahead of the point, in
+// polar angles about the normal through the point. The integrand is smooth, however near the disc is.
 Coefficients discByQuadrature(double aside, double height, const glm::dquat& turn) {
   Coefficients sum{}, y;
   const auto ray = [&](double psi, double weight, double from_radius, double to_radius) {
@@ -141,7 +140,7 @@ TEST(ShLocalLight, ASphereIsASunOfItsAngle) {
   }
 }
 
-// Lambert's cosine law through the harmonics: irradiance of bands 0..2 is known for a point light overhead.
+// Tests Lambert's cosine law in harmonics: irradiance of bands 0..2 is known for a point light overhead.
 TEST(ShLocalLight, PointsShineByTheInverseSquareAndOneDirection) {
   Random random(32);
   for (int k = 0; k < 20; ++k) {
@@ -178,7 +177,7 @@ TEST(ShLocalLight, SpotsFadeFromTheInnerConeToTheOuter) {
   EXPECT_TRUE(std::isfinite(coneFade(0.5, 0.8, 0.8))) << "no cone between";
 }
 
-// Through the light itself: no jump in any coefficient, measured by what one step changes.
+// Moves a point through the light: no coefficient jumps, measured by the largest change in one step.
 TEST(ShLocalLight, APointLightPassesThroughThePointWithoutAJump) {
   const double step = kLeastPointDistance / 200;
   LightVector before = pointLight(kMaxOrder, {-2 * kLeastPointDistance, 0.0, 0.0}, kWhite);

@@ -1,5 +1,5 @@
-// Measured light probes, which the project does not ship: two pictures of one place in different layouts, and
-// numbers that were printed in a paper.
+// Tests measured light probes, which the project does not ship: two images of one place in different layouts,
+// and figures printed in a paper.
 #include <array>
 #include <memory>
 #include <vector>

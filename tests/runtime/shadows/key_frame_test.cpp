@@ -1,5 +1,5 @@
-// Pictures under key lights with known answers, what of the light goes which way, and what a frame draws
-// again.
+// Tests pictures under key lights with known answers, how the light is divided between methods, and what a
+// frame draws again.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -40,7 +40,7 @@ gltf::Material grey(float albedo) {
   return material;
 }
 
-// A square of 2 `half` about a point, with this normal.
+// Makes a square of 2 `half` about a point, with this normal.
 BuiltMesh square(glm::vec3 center, glm::vec3 normal, glm::vec2 half, float albedo = 1.0f) {
   const glm::vec3 beside = std::abs(normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, -1);
   const glm::vec3 right = glm::normalize(glm::cross(beside, normal)), up = glm::cross(normal, right);
@@ -49,7 +49,7 @@ BuiltMesh square(glm::vec3 center, glm::vec3 normal, glm::vec2 half, float albed
                     glm::vec4(center, 1))};
 }
 
-// Six squares, their fronts out or in.
+// Adds a box of six squares that face outwards or inwards.
 void addBox(BundleBuilder& builder, glm::vec3 min, glm::vec3 max, bool inside, float albedo = 1.0f) {
   const glm::vec3 center = 0.5f * (min + max), half = 0.5f * (max - min);
   for (int axis = 0; axis < 3; ++axis)
@@ -57,7 +57,7 @@ void addBox(BundleBuilder& builder, glm::vec3 min, glm::vec3 max, bool inside, f
       glm::vec3 at = center, normal(0.0f);
       at[axis] += side * half[axis];
       normal[axis] = inside ? -side : side;
-      // As square() lays its axes.
+      // The axes are those of square().
       const glm::vec2 size = axis == 0   ? glm::vec2(half.z, half.y)
                              : axis == 1 ? glm::vec2(half.x, half.z)
                                          : glm::vec2(half.x, half.y);
@@ -65,7 +65,7 @@ void addBox(BundleBuilder& builder, glm::vec3 min, glm::vec3 max, bool inside, f
     }
 }
 
-// Reflects nothing that comes by harmonics: what is left is the direct light of key lights.
+// Reflects nothing by harmonics, so that only the direct light of key lights is left.
 testing::TransferOf noTransfer() {
   return [](const glm::vec3&) { return std::vector<float>(kOrder * kOrder, 0.0f); };
 }
@@ -79,7 +79,7 @@ spec::SunLight sun(float azimuth, float elevation, float radius_deg, float radia
           .radiance = glm::vec3(radiance / (sine * sine))};
 }
 
-// From straight above, 2 `half` wide; x to the right, z downwards.
+// Looks straight down, 2 `half` wide; x to the right, z downwards.
 spec::View above(float half, float from = 5.0f) {
   return {.view_from_world = glm::lookAt(glm::vec3(0, from, 0), glm::vec3(0), glm::vec3(0, 0, -1)),
           .clip_from_view = glm::ortho(-half, half, -half, half, 0.0f, 20.0f),
@@ -132,7 +132,7 @@ struct KeyStage {
 glm::vec4 at(const spec::RgbaImage& image, std::uint32_t x, std::uint32_t y) {
   return image.texels[y * image.width + x];
 }
-// In the world, of what a perspective shows.
+// Returns the place in world space that a pixel of a perspective picture shows.
 glm::vec3 placeAt(const spec::RgbaImage& image, const spec::View& view, std::uint32_t x, std::uint32_t y) {
   const glm::vec2 size(image.width, image.height);
   const glm::vec2 ndc = 2.0f * (glm::vec2(x, static_cast<float>(image.height - 1 - y)) + 0.5f) / size - 1.0f;
@@ -154,7 +154,7 @@ double brightest(const spec::RgbaImage& image) {
   return most;
 }
 
-// Floor, box and wall, lit from anywhere.
+// Makes a floor, a box and a wall, for light from any direction.
 BundleBuilder court(bool bounces = false) {
   BundleBuilder builder(kOrder);
   builder.add(square({0, 0, 0}, {0, 1, 0}, {3, 3}, 0.8f)).add(square({0, 1, -1.5f}, {0, 0, 1}, {2, 1}, 0.6f));

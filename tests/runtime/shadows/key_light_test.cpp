@@ -1,5 +1,5 @@
-// What a shadow map says of a key light, on the CPU: closed forms, and sums over the disc that know nothing
-// of maps.
+// Compares the visibility of key lights by shadow maps, on the CPU, with closed forms and with sums over the
+// disc that do not use maps.
 #include <array>
 #include <limits>
 #include <numbers>
@@ -31,7 +31,7 @@ struct Random {
   }
 };
 
-// Distances along rays; none: less than 0.
+// Distances along rays are negative if there is no hit.
 constexpr double kMiss = -1.0;
 double nearer(double a, double b) {
   return a < 0.0 ? b : b < 0.0 ? a : std::min(a, b);
@@ -67,14 +67,14 @@ double toSphere(const KeyRay& ray, glm::dvec3 center, double radius) {
   return root < 0.0 || -b < 0.0 ? kMiss : -b - std::sqrt(root);
 }
 
-// The share of a disc on the far side of a line at s radii from its middle.
+// Returns the fraction of a disc beyond a line at s radii from its centre.
 double beyondChord(double s) {
   s = std::clamp(s, -1.0, 1.0);
   return (std::acos(s) - s * std::sqrt(1.0 - s * s)) / kPi;
 }
 
-// The share of the disc that rays from a point reach, each weighed by its cosine, over many more rays than
-// the shader takes; blocked(ray): whether something is in the way.
+// Returns the fraction of the disc that is visible from a point, weighted by the cosine, with many more rays
+// than the shader uses. blocked(ray) tells whether a ray is occluded.
 template <typename Blocked>
 double visibleByRays(const KeyRecord& key, glm::vec3 position, glm::vec3 normal, const Blocked& blocked) {
   constexpr int kRays = 3000;

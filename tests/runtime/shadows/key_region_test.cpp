@@ -1,4 +1,4 @@
-// Which part of the world a key light's shadow map shows.
+// Tests which part of the world a key light's shadow map covers.
 #include "runtime/shadows/key_region.hpp"
 
 #include <cmath>
@@ -39,7 +39,7 @@ bool sees(const glm::mat4& clip_from_world, glm::dvec3 p) {
   return std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && std::abs(clip.z) <= clip.w;
 }
 
-// By how much, in metres, a point lies outside of the region with the cone from it up to the top.
+// Returns by how many metres a point, with the cone from it up to the top, exceeds the region.
 double outside(const KeyRegion& region, glm::dvec3 p, double tan_radius) {
   const glm::dvec2 place(glm::dot(region.right, p), glm::dot(region.up, p));
   const double along = glm::dot(region.towards, p), reach = tan_radius * (region.top - along);

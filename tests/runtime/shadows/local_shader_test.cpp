@@ -1,5 +1,5 @@
-// shadowed_light.glsl and local_shadow.glsl against their CPU twins, on random lights, places and normals in
-// a world of blocks and a floor.
+// Compares shadowed_light.glsl and local_shadow.glsl with their CPU twins, on random lights, places and
+// normals in a world of blocks and a floor.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ struct Case {
 };
 static_assert(sizeof(Case) == 128);
 
-// As local_probe.comp.
+// This is the same world as in local_probe.comp.
 float distanceAt(int face, glm::ivec2 texel) {
   if (((texel.x / 8 + texel.y / 8 + face) & 1) == 0 && face != 3)
     return 0.5f + 0.01f * static_cast<float>(face);

@@ -1,4 +1,4 @@
-// Pictures under local lights with known answers: small bundles in the dark, lit by one light.
+// Tests pictures under local lights with known answers: small bundles in the dark, lit by one light.
 #include "runtime/shadows/local_shadows.hpp"
 
 #include <cmath>

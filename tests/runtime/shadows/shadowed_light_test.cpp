@@ -1,5 +1,5 @@
-// Light of local lights where nothing is in the way, and what their shadow cubes say, on the CPU: closed
-// forms and a quadrature that knows nothing of the formulas.
+// Compares unoccluded local lights, and the visibility by their shadow cubes, on the CPU, with closed forms
+// and with quadrature that does not use these formulas.
 #include <array>
 #include <numbers>
 #include <random>
@@ -26,7 +26,8 @@ struct Random {
   }
 };
 
-// (1/pi) times the integral of the clamped cosine over a cone about +Z, the normal tilted in the xz plane.
+// Returns (1/pi) times the integral of the clamped cosine over a cone about +Z, with the normal tilted in the
+// xz plane.
 double coneShare(double normal_cosine, double cone_sine) {
   const double normal_sine = std::sqrt(1.0 - normal_cosine * normal_cosine);
   constexpr int kRings = 600, kTurns = 600;
@@ -40,7 +41,7 @@ double coneShare(double normal_cosine, double cone_sine) {
   return sum * 2.0 * kPi * (1.0 - least) / (kRings * kTurns) / kPi;
 }
 
-// The same for a disc by points on its area.
+// Returns the same for a disc, by points on its area.
 double discSum(glm::dvec3 normal, glm::dvec3 to_light, glm::dvec3 direction, double radius) {
   glm::vec3 s, t;
   ref::localBasis(glm::vec3(direction), s, t);

@@ -1,4 +1,4 @@
-// Looking a direction up gives the same environment whatever the picture's layout, without seams.
+// Tests that looking up a direction gives the same environment for every image layout, without seams.
 #include <filesystem>
 #include <limits>
 #include <random>
@@ -22,7 +22,7 @@ constexpr Shape kShapes[] = {{ImageLayout::LatLong, 128, 64},
                              {ImageLayout::AngularMap, 128, 128},
                              {ImageLayout::VerticalCross, 96, 128}};
 
-// A picture of f; texels that show no direction hold a value that no look-up may return.
+// Makes an image of f; texels outside the layout hold a value that no look-up may return.
 template <typename Function>
 EnvironmentMap picture(const Shape& shape, const Function& f) {
   constexpr float kPoison = 1e6f;

@@ -1,4 +1,4 @@
-// Each pair of bodies has one carrier, grid or capture, and nothing pops where it changes.
+// Tests that each pair of bodies uses one carrier, grid or capture, and that nothing pops when it changes.
 
 #include "runtime/shadows/lit_scene.hpp"
 #include "tests/support/frame/neighborhood_checks.hpp"

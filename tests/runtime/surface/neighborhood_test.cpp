@@ -1,4 +1,4 @@
-// Neighborhoods in whole frames: black spheres over floors, of which the light is known in closed form.
+// Tests neighborhoods in whole frames: black spheres over floors, with light known in closed form.
 
 #include "tests/support/frame/neighborhood_checks.hpp"
 

@@ -1,5 +1,5 @@
-// The surface shaders of glossy draws by themselves: a rectangle in two draws that fills the picture, with
-// random rows, samples and tables, held against the kernel's CPU twin and closed forms.
+// Tests the surface shaders of glossy draws alone: a rectangle in two draws fills the picture, with random
+// rows, samples and tables, and is compared with the kernel's CPU twin and closed forms.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -24,7 +24,8 @@ namespace kernel = effects::glossy::ref;
 constexpr std::uint32_t kSize = 16;
 using Picture = std::vector<glm::vec4>;
 
-// Words of the geometry page: positions, normals, tangents, TEXCOORD_0, indices, four vertices each.
+// These are the words of the geometry page: positions, normals, tangents, TEXCOORD_0 and indices, for four
+// vertices.
 constexpr std::uint32_t kNormals = 12, kTangents = 24, kTexcoords = 40, kIndices = 48;
 
 struct Scene {
@@ -114,7 +115,7 @@ gpu::Texture oneTexel(const glm::vec4& value) {
   return texture;
 }
 
-// The pixel's colour from the twin, at a place of the rectangle.
+// Returns the pixel's colour by the twin, at a place of the rectangle.
 glm::vec3 expectedAt(const Scene& scene, const glm::vec3& place) {
   const std::size_t n = std::size_t{scene.kind.bands} * scene.kind.bands;
   const std::size_t triangle = place.x >= place.y ? 0 : 3;

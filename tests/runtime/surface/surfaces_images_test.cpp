@@ -1,4 +1,4 @@
-// In which colour spaces the images of a bundle lie on the GPU, by what its materials look for in them.
+// Tests in which colour space each image of a bundle is stored on the GPU, depending on how materials use it.
 #include <gtest/gtest.h>
 
 #include "runtime/streaming/residency.hpp"

@@ -1,4 +1,4 @@
-// Normal maps on the CPU: light received at a normal, and the frame in which a normal map stands.
+// Tests normal maps on the CPU: light received at a normal, and the tangent frame.
 #include <algorithm>
 #include <random>
 
@@ -23,7 +23,8 @@ struct Random {
   }
 };
 
-// A patch of a plane as a camera sees it: how position and texture coordinates change over the picture.
+// Describes a patch of a plane as a camera sees it: how position and texture coordinates change over the
+// picture.
 struct Patch {
   glm::vec3 normal, rising_u, rising_v;  // rising_u, rising_v: dp/du, dp/dv
   glm::vec2 t_dx{0.3f, -0.1f}, t_dy{0.05f, 0.2f};

@@ -1,5 +1,5 @@
-// The surface shaders by themselves: one rectangle that fills the picture, with a record, vertices, light and
-// textures that each test writes, held against closed forms and surface_normal_ref.hpp.
+// Tests the surface shaders alone: one rectangle fills the picture, with a record, vertices, light and
+// textures that each test writes, and is compared with closed forms and surface_normal_ref.hpp.
 #include <array>
 #include <cstring>
 #include <functional>
@@ -35,8 +35,8 @@ glm::mat3x2 transformed(const gltf::TextureRef& reference) {
   return {reference.apply({1, 0}) - origin, reference.apply({0, 1}) - origin, origin};
 }
 
-// What the vertices of the rectangle carry. TEXCOORD_0 as glTF has it, (0, 0) at the top left; TEXCOORD_1 all
-// at one place.
+// Holds the rectangle's vertex attributes. TEXCOORD_0 is as in glTF, (0, 0) at the top left; TEXCOORD_1 is
+// the same at all vertices.
 struct Vertices {
   std::array<glm::vec3, 4> positions = {glm::vec3(-1, -1, 0), {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   glm::vec3 normal{0, 0, 1};
@@ -140,7 +140,7 @@ class SurfaceShader : public testing::GpuTest {
     for (int i = 0; i < 4; ++i) words.insert(words.end(), {radiance.r, radiance.g, radiance.b});
     return draw(record, {}, words, 3);
   }
-  // The same light at every vertex.
+  // Sets the same light at every vertex.
   Picture drawLight(const SurfaceDraw& record, const Vertices& vertices, const Light& light) {
     std::vector<float> words;
     for (int i = 0; i < 4; ++i)
@@ -154,7 +154,7 @@ class SurfaceShader : public testing::GpuTest {
 
 namespace {
 
-// From the left and from the top, in pixels.
+// Reads a pixel, counted from the left and from the top.
 glm::vec4 at(const std::vector<glm::vec4>& picture, std::uint32_t x, std::uint32_t y) {
   return picture[(kSize - 1 - y) * kSize + x];
 }

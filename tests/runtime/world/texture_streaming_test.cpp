@@ -1,4 +1,4 @@
-// Sheets with large textures, in memory that does not hold all levels of them.
+// Tests surfaces with large textures in memory that cannot hold all their levels.
 #include <cmath>
 #include <random>
 #include <thread>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kTexels = 512;
 constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
-// Broad waves with fine grain on them.
+// Makes broad waves with fine grain.
 std::vector<std::uint8_t> waves(std::uint32_t seed) {
   std::mt19937 engine(seed);
   std::vector<std::uint8_t> rgba;

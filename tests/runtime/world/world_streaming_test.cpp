@@ -1,4 +1,4 @@
-// A row of bundles that take three times the memory there is, and a camera that flies along it.
+// Tests a row of bundles that need three times the available memory, with a camera that flies along it.
 #include <chrono>
 #include <thread>
 
@@ -149,7 +149,7 @@ TEST(FrameTimesTest, UploadsShrinkWhereFramesTakeLongerAndGrowAgain) {
   EXPECT_GT(pacer.budget(kMost), 0u) << "something always comes";
 }
 
-// A scene that has arrived in part takes far longer to draw than the empty world before it.
+// A scene that has partly arrived takes far longer to draw than the empty world before it.
 TEST(FrameTimesTest, SlowFramesDoNotStarveWhatLoads) {
   UploadPacer pacer;
   constexpr std::uint64_t kMost = 16 << 20;

@@ -1,5 +1,5 @@
-// Bundles come, go and take each other's place while the world is shown: what is left shows the same picture
-// as a world that never had the others, and nothing of them stays behind.
+// Tests that bundles are opened, closed and replaced while the world is shown: the rest shows the same
+// picture as a world that never had the others, and nothing of them remains.
 #include "runtime/world/world.hpp"
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// Kernels against their CPU twin on random codes and lights, and what makes them run.
+// Compares kernels with their CPU twin on random codes and lights, and tests what makes them run.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ struct Bench : testing::ShadingBench<Diffuse> {
         if (place.incident[k].light != nullptr) place.incident[k].key = &incident[(k + 1) % incident.size()];
   }
 
-  // Largest difference to the twin relative to the largest value there is, of vertices and of samples.
+  // Returns the largest difference from the twin over vertices and samples, relative to the largest value.
   double differenceToTwin() {
     const Pages transfer = pagesOf(residency.transfer()), rows = pagesOf(residency.rows()),
                 geometry = pagesOf(residency.geometry()), radiance = pagesOf(residency.radiance());

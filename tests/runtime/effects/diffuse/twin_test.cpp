@@ -1,4 +1,4 @@
-// The CPU twin against closed forms and against the plain way of decoding: always runs.
+// Compares the CPU twin with closed forms and with plain decoding; needs no GPU.
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(DiffuseTwin, ShadesUnshadowedAsTheClosedFormOfOpenTransfer) {
 
 namespace {
 
-// A transfer as residency lays it out, alone in its page.
+// Lays out a transfer in GPU memory as residency does, alone in its page.
 struct Page {
   std::vector<uint> words, places;
   transfer::TransferRecord record{};
@@ -149,7 +149,7 @@ std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
     const std::vector<float> vectors =
         transfer::decodeTransfer(shape, made.codebooks[0][t].codebook, cluster_of, codesOf(made, t));
     if (out.empty()) out.resize(positions.size() * shape.outputs, glm::vec4(0, 0, 0, 1));
-    // Coefficient i of what arrives at a sample, of the block that begins so far behind the first.
+    // Returns coefficient i of what arrives at a sample, from the block at this offset from the first.
     const auto arriving = [&](std::size_t s, std::uint32_t block, std::uint32_t i) {
       if (shape.order == 0) return block == 0 ? glm::vec3(light[Page::lampsOf(made) + i]) : glm::vec3(0.0f);
       if (made.light_weights.empty()) return glm::vec3(light[block + i]);
@@ -237,7 +237,7 @@ TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
 }
 
 TEST(DiffuseTwin, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirOwnAlone) {
-  // As the plain sum above, by hand: one column, one vector, no codes.
+  // The result is the plain sum above, computed by hand: one column, one vector, no codes.
   std::vector<glm::vec4> light(transfer::kLightStride, glm::vec4(0.0f));
   light[0] = {1.0f, 2.0f, 3.0f, 0.0f};
   light[transfer::kKeyBlock] = {10.0f, 20.0f, 40.0f, 0.0f};

@@ -1,4 +1,4 @@
-// Shaded points into the texture and out of it again, against the CPU twin on random data.
+// Writes shaded points into the texture and reads them back, and compares with the CPU twin on random data.
 
 #include <random>
 

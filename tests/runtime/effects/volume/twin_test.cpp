@@ -1,4 +1,4 @@
-// Rays through media with closed forms, on the CPU twin; gpu_test.cpp holds the shaders against it.
+// Compares rays through media on the CPU twin with closed forms; gpu_test.cpp compares the shaders with it.
 #include <numbers>
 
 #include <glm/gtc/quaternion.hpp>
@@ -23,7 +23,7 @@ BuiltVolume homogeneous(float extinction) {
   return built;
 }
 
-// From outside or inside, in all directions, some of them along axes and faces of blocks.
+// Makes rays from outside or inside, in all directions, some of them along axes and faces of blocks.
 struct Aim {
   glm::vec3 origin, direction;
 };
@@ -53,7 +53,7 @@ std::vector<Aim> someAims(int count) {
   return aims;
 }
 
-// Of a ray in a box of 2 m about the origin.
+// Returns the length of a ray in a box of 2 m about the origin.
 float chord(const Aim& aim) {
   float enter = 0.0f, leave = 1e30f;
   for (int axis = 0; axis < 3; ++axis) {
