@@ -236,7 +236,7 @@ TEST_F(DemoProgram, MovesAndDimsAKeyLightOfAProbe) {
     const double was = found["radiance"][channel];
     EXPECT_NEAR(edited["radiance"][channel].get<double>(), factor * was, 1e-3 * was);
   }
-  // One that means nothing there is told, and changes nothing.
+  // An edit of no existing key light is reported, and changes nothing.
   const Outcome told =
       run(bundle() + " --light constant:1,1,1 --edit-key key:0,0,0,0,1 --size 32x32 --headless " +
           quoted(folder / "a.png"));

@@ -189,7 +189,7 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   EXPECT_FALSE(plan["groups"][0]["lightSamplesReason"].get<std::string>().empty());
   EXPECT_GT(info["groups"][0]["proxyTriangles"][0], 0);
   EXPECT_EQ(info["groups"][0]["proxyTriangles"], report["groups"][0]["proxyTriangles"]);
-  // The same in words.
+  // The text output has the same figures.
   for (const auto& arguments : {std::vector<std::string>{"plan", kHello}, {"info", path("hello.lmb.glb")}}) {
     const Outcome words = lambent(arguments);
     EXPECT_EQ(words.exit_code, 0);

@@ -41,7 +41,7 @@ std::vector<std::string> bakerPartsOf(const std::string& ldd, const fs::path& pr
 
 class Package : public testing::ProgramTest {
  protected:
-  // Nothing of this process's environment.
+  // Runs the program without this process's environment.
   Outcome bare(const fs::path& program, std::vector<std::string> arguments) const {
     std::vector<std::string> words = {"-i", "PATH=/usr/bin:/bin", program.string()};
     words.insert(words.end(), arguments.begin(), arguments.end());
@@ -123,7 +123,7 @@ TEST_F(Package, OfTheRuntimeRunsWhereItIsPutWithItsOwnLibraries) {
 TEST_F(Package, OfTheRuntimeHasNothingOfTheBakerOrTheEditor) {
   const auto parts = bakerPartsOf(ldd(LAMBENT_DEMO), LAMBENT_DEMO);
   EXPECT_TRUE(parts.empty()) << parts[0];
-  // The same eyes see it where it is.
+  // The same check does find these parts in the baker.
   const auto of_lambent = bakerPartsOf(ldd(LAMBENT_PROGRAM), LAMBENT_PROGRAM);
   for (const char* part : {"libOpenImageIO.so", "libembree", "libtbb", "7lambent5baker"})
     EXPECT_TRUE(std::any_of(of_lambent.begin(), of_lambent.end(), [&](const std::string& name) {

@@ -192,8 +192,8 @@ Scene underCeiling(const gltf::Material& floor, const gltf::Material& ceiling) {
 }
 
 TEST(Glossy, LimitedKernelsSeeAClosedSkyAboveAndBelow) {
-  // The mirror image below the floor hides the sky there too: nothing is left of it, though the kernel rings
-  // there. And a ceiling that shines stands all around: uniform light.
+  // The ceiling hides the sky, also for the mirrored directions below the floor, although the kernel is not
+  // zero there. An emissive ceiling is uniform light.
   gltf::Material black = testing::matte();
   black.base_color = glm::vec4(0, 0, 0, 1);
   gltf::Material shining = black;
@@ -244,7 +244,7 @@ double received(const sh::LightVector& kernel, const Open& open) {
 }
 
 TEST(Glossy, LimitedKernelsSeeAWallInFrontOfHalfTheSky) {
-  // And its image below.
+  // The wall also hides its image below the floor.
   Scene scene = floorOf(glossy(1.0f, 0.5f));
   addWall(scene);
   const glm::vec3 eye = kPlace + glm::vec3(1.0f, 0.6f, 0.2f);
@@ -257,14 +257,14 @@ TEST(Glossy, LimitedKernelsSeeAWallInFrontOfHalfTheSky) {
 }
 
 TEST(Glossy, LimitedKernelsMirrorWhatLiesBelowSmoothNormalsInThem) {
-  // As the surfaces of a bundle do. Above a normal that leans away from the wall all is open that does not
-  // point to the wall, what dips below the floor too: its mirror image in the floor does not, either.
+  // Bundles' surfaces may have such normals. Above a tilted normal, all directions that do not point to the
+  // wall are open, also those below the floor, whose mirror images do not point to it either.
   for (const float lean : {0.4f, -0.4f}) {
     Scene scene = floorOf(glossy(1.0f, 0.5f));
     const glm::vec3 normal = glm::normalize(glm::vec3(lean, 1.0f, 0.0f));
     for (glm::vec3& n : scene.meshes[0].primitives[0].mesh.normals) n = normal;
     addWall(scene);
-    // Near where the sun is mirrored.
+    // The camera is near the sun's mirror image.
     const glm::vec3 eye = kPlace + glm::vec3(0.4f, 1.0f, 1.0f);
     SurfacePoint point;
     point.shading = normal;

@@ -132,7 +132,7 @@ TEST_F(Progressive, GoesFromCoarseToFineAndNeverBack) {
   }
   ASSERT_TRUE(coarse);
   ASSERT_EQ(coarse->image.texels.size(), fine.image.texels.size());
-  // What is seen lies where it will: the same light in each quarter of the picture.
+  // The coarse picture shows everything in its place: each quarter of the picture has the same light.
   for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
     double seen = 0.0, expected = 0.0;
     for (std::uint32_t y = quarter / 2 * 120; y < quarter / 2 * 120 + 120; ++y)
@@ -242,7 +242,7 @@ TEST(LightCache, LightsAreAsStrongAsTheirFactorsSay) {
 }
 
 TEST(Enlarged, LiesWhereThePictureDid) {
-  // A slope stays one between the outer pixels' centres; 3 pixels cover what 10 do.
+  // A linear gradient stays linear between the outer pixels' centres; 3 pixels cover the width of 10.
   const spec::RgbaImage slope{3,
                               2,
                               {glm::vec4(0.5f), glm::vec4(1.5f), glm::vec4(2.5f),  //

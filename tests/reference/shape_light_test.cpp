@@ -48,7 +48,7 @@ TEST(SphereLight, IsNotSeenAndStandsInNobodysWay) {
   const auto sky = measured(whiteFloor(), {0, 1, 4}, {0, 1, 0}, {light}, samples(4));
   EXPECT_EQ(sky.mean.g, 0.0);
   EXPECT_EQ(sky.alpha, 0.0);
-  // Through one sphere the light of another arrives whole: 10 * 0.1² / 3² more.
+  // The light of another sphere passes through this one unchanged: 10 * 0.1² / 3² more.
   const auto both = measured(whiteFloor(), {0, 0.2f, 4}, {0, 0, 0}, {light, sphere({0, 3, 0}, 0.1f, 10.0f)},
                              samples(64, 0));
   expectMean(both, 10.0 * 0.25 + 10.0 * 0.01 / 9.0);
@@ -58,7 +58,7 @@ TEST(SphereLight, FromInsideComesFromEverywhereThatNothingBlocks) {
   Scene scene = whiteFloor();
   const auto around = sphere({1, -2, 0.5f}, 50.0f, 3.0f);
   expectMean(measured(scene, {0, 1, 3}, {0, 0, 0}, {around}, samples(16, 0)), 3.0);
-  // A half plane upright on the floor takes half of it.
+  // A half plane that is upright on the floor hides half of it.
   scene = sceneOf({testing::grid({0, 0, 0}, 20.0f, 1),
                    testing::turned(testing::grid({0, 0, 0}, 4000.0f, 1), -90.0f, {0, 0, 1})});
   gltf::Material black = testing::matte();
@@ -100,7 +100,7 @@ TEST(SphereLight, FillsAWhiteBallByTheGeometricSeries) {
 TEST(DiscLight, LightsWhatLiesOnItsAxisInClosedForm) {
   for (const float height : {0.002f, 0.5f, 2.0f, 30.0f}) {
     const double expected = 7.0 / (1.0 + double{height} * double{height});
-    // From below the floor's own height over the point, between disc and floor.
+    // The camera is between disc and floor.
     const auto floor = measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0},
                                 {disc({0, height, 0}, {0, -1, 0}, 1.0f, 7.0f)}, samples(128, 0));
     expectMean(floor, expected, 1e-4 * expected);
@@ -134,7 +134,7 @@ TEST(ShapeLights, HardPlacesStayFinite) {
           measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0},
                    {sphere(place, radius, 1e8f), disc(place, {0, -1, 0}, radius, 1e8f)}, samples(16, 1));
       EXPECT_TRUE(std::isfinite(report.mean.g)) << place.y << " " << radius;
-      // Not more than two lights around give a white floor, in the mean over all that is not noise.
+      // Two lights around a white floor give no more than this, in the mean over everything but noise.
       EXPECT_LE(report.mean.g, 2.1e8) << place.y << " " << radius;
     }
 }

@@ -107,7 +107,7 @@ TEST(EyeDepth, IsTheIntegralOfTheDensityAlongTheRay) {
     }
     EXPECT_NEAR(eye.to(kFar), sum, 2e-5);
     EXPECT_EQ(eye.to(inside->begin), 0.0);
-    // And back.
+    // place() is the inverse of to().
     for (const double share : {1e-9, 0.01, 0.3, 0.77, 1.0})
       EXPECT_NEAR(eye.to(eye.place(share * sum)), share * sum, 1e-6 * sum + 1e-6) << share;
   }
@@ -253,7 +253,7 @@ TEST(Tracking, InASphereLetsThroughWhatTheTableSays) {
       const Ray ray{glm::vec3(0, radius, 0), glm::vec3(testing::evenDirection(i, kCount)), 0};
       sum += std::exp(-EyeDepth(volumes, ray, 0.0, kFar).to(kFar)) / kCount;
     }
-    // The rim is as soft as a voxel: 1/31 of the radius, whose square and density are what is lost.
+    // The rim is as soft as a voxel, 1/31 of the radius. The error is of its square and of the density.
     EXPECT_NEAR(sum, mean, 0.002 * mean * (1.0 + sigma)) << sigma << " " << radius;
   }
 }

@@ -267,12 +267,12 @@ TEST(VolumePicture, UnderASphereOfLightIsThatUnderAPointOfTheSameStrength) {
 }
 
 TEST(VolumePicture, FromInsideALightSphereIsAFurnace) {
-  // The sphere stands within the medium and around it.
+  // The sphere surrounds the medium.
   const spec::SphereLight around{.position_ws = {0, 0, 0}, .radius_m = 5, .radiance = glm::vec3(1)};
   const auto seen = measured(cloud(4.0f), kFront, kBack, {around}, samples(64));
   // Unseen by the eye: what it sends is what is scattered.
   EXPECT_NEAR(seen.mean.g, 1.0 - transmittanceOf(4.0f), 1e-5);
-  // One inside the medium sends to what is about it.
+  // A sphere inside the medium lights what is around it.
   const spec::SphereLight within{.position_ws = {0, 0, 0}, .radius_m = 0.2f, .radiance = glm::vec3(1)};
   const auto lit = measured(cloud(4.0f), kFront, kBack, {within}, samples(64));
   EXPECT_GT(lit.mean.g, 0.01);
@@ -280,7 +280,7 @@ TEST(VolumePicture, FromInsideALightSphereIsAFurnace) {
 }
 
 TEST(VolumePicture, ShadesTheGroundByItsOpticalDepth) {
-  // A sheet over the ground, the sun straight above: exp(-depth) of its light is left.
+  // The sun is straight above a sheet over the ground: exp(-depth) of its light passes.
   for (const float density : {0.5f, 3.0f}) {
     Scene scene = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
     place(scene, even(density, glm::vec3(0), 0, {0, 1, 0}, {3, 1, 3}));
@@ -289,7 +289,7 @@ TEST(VolumePicture, ShadesTheGroundByItsOpticalDepth) {
     const auto seen = measured(scene, {0, 0.3f, 0.8f}, {0.1f, 0, 0.1f}, {sun}, samples(256));
     expectMean(seen, open * transmittanceOf(density), 1e-3);
     EXPECT_EQ(seen.alpha, 1.0);
-    // And a lamp in it, a metre up.
+    // A lamp is in it, too, a metre above the ground.
     shine(scene, {0, -1, 0}, 3.0f);
     expectMean(measured(scene, {0, 0.3f, 0.8f}, {0.1f, 0, 0.1f}, kDark, samples(256)),
                3.0 / std::numbers::pi * transmittanceOf(density));
@@ -297,7 +297,7 @@ TEST(VolumePicture, ShadesTheGroundByItsOpticalDepth) {
 }
 
 TEST(VolumePicture, ShowsSurfacesThroughItAndFromWithin) {
-  // An emissive wall behind half a metre of a black medium.
+  // An emissive wall is behind half a metre of a black medium.
   Scene scene = sceneOf({testing::box({0, 0, -1}, {3, 3, 2}, 1)});
   scene.materials[0].emissive = glm::vec3(2);
   scene.materials[0].base_color = glm::vec4(0, 0, 0, 1);
@@ -305,7 +305,7 @@ TEST(VolumePicture, ShowsSurfacesThroughItAndFromWithin) {
   const auto from_outside = measured(scene, kFront, kBack, kDark, samples(4));
   EXPECT_NEAR(from_outside.mean.g, 2.0 * std::exp(-1.0), 1e-5);
   EXPECT_EQ(from_outside.alpha, 1.0);
-  // The near plane stands a millimetre or so before an eye that is within.
+  // The near plane is a millimetre or so in front of a camera that is inside.
   const auto from_within = measured(scene, {0, 0, 0.25f}, {0, 0, -1}, kDark, samples(4));
   EXPECT_NEAR(from_within.mean.g, 2.0 * std::exp(-0.5), 3e-3);
   const auto away = measured(scene, {0, 0, 0.25f}, {0, 0, 3}, kDark, samples(4));
@@ -349,8 +349,8 @@ TEST(VolumePicture, OfTwoThatOverlapIsThatOfTheirSum) {
 }
 
 TEST(VolumePicture, CountsReflectionsBySurfacesOnly) {
-  // Over a white ground, all of it under uniform light: without a bounce the ground does not light the
-  // medium; with one it does, and what the medium scatters is whole.
+  // The medium is over a white ground under uniform light. Without a bounce the ground does not light the
+  // medium; with one it does, and scattering in the medium is complete.
   Scene scene = sceneOf({testing::grid({0, -0.6f, 0}, 40.0f, 1)});
   place(scene, even(1.0f));
   const auto seen = [&](std::uint32_t bounces) {
@@ -361,7 +361,7 @@ TEST(VolumePicture, CountsReflectionsBySurfacesOnly) {
   EXPECT_LT(seen(0), through + 0.6 * (1.0 - through));
   EXPECT_GT(seen(1), through + 0.85 * (1.0 - through));
   EXPECT_NEAR(seen(60), 1.0, 1e-3);
-  // Without surfaces one bounce is all that there is.
+  // Without surfaces one bounce is complete.
   const auto open = [&](std::optional<std::uint32_t> bounces) {
     return measured(cloud(16.0f), kFront, kBack, {uniform(1.0f)}, samples(16, bounces)).mean.g;
   };

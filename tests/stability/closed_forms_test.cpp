@@ -17,7 +17,7 @@ TEST_F(ClosedForm, AClosedBoxIsDarkInside) {
   for (const auto& draw : bakeAndDecode(sceneOf({flipped(outer)})))
     for (std::size_t v = 0; v < draw.mesh.positions.size(); ++v)
       EXPECT_LT(std::abs(draw.uniformRadiance(v)), kCodingTolerance) << v;
-  // With a wall of some thickness, and something inside.
+  // The walls now have a thickness, and there is a ball inside.
   const auto draws = bakeAndDecode(
       sceneOf({outer, flipped(box({0, 0, 0}, {1.9f, 1.9f, 1.9f}, 8)), icosphere({0.2f, 0, 0}, 0.4f, 2)}));
   ASSERT_EQ(draws.size(), 3u);

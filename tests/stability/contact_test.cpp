@@ -61,7 +61,7 @@ TEST_F(Contact, ABoxTakesTheSkysLightFromWhatItStandsOnWhereverItWasBaked) {
         EXPECT_NEAR(seenBeside(show, place, distance), openBeside(distance), 0.03f)
             << distance << " m beside it, baked at " << baked.x << ", standing at " << place.x;
     }
-    // What it took it gives back.
+    // When the body leaves, the floor gets its light back.
     show.move("body", kElsewhere);
     EXPECT_NEAR(seenBeside(show, kHere, kNear), 1.0f, 0.01f);
   }
@@ -82,7 +82,7 @@ TEST_F(Contact, InTheSunNothingIsDarkenedTwice) {
   constexpr float kSky = 0.3f, kRadius = 2.0f, kRadiance = 700.0f, kElevation = 45.0f;
   const float sine = std::sin(glm::radians(kRadius));
   const float sun = kRadiance * sine * sine * std::sin(glm::radians(kElevation));
-  // From behind the box, so that its shadow falls on the side towards +X; and from the front.
+  // The sun comes from behind the box, so that the shadow falls on the side towards +X, or from the front.
   for (const bool lit : {false, true}) {
     Show show(boxAt(kElsewhere), {constantLight(kSky), spec::SunLight{.azimuth_deg = lit ? 90.0f : -90.0f,
                                                                       .elevation_deg = kElevation,

@@ -33,7 +33,7 @@ TEST_F(HostileLight, TexelsThatAreNotFiniteCountAsBlackAndAreTold) {
     EXPECT_TRUE(isFinite(sky->light()));
     ASSERT_EQ(sky->notices().size(), 1u);
     EXPECT_NE(sky->notices()[0].find("2 texels"), std::string::npos) << sky->notices()[0];
-    // Two of 512 texels are missing: less than the share of two texels at the equator.
+    // Two of 512 texels are missing, which is less than the fraction of two texels at the equator.
     EXPECT_NEAR(sky->light().c[0].x, 3.5449077f, 3.5449077f * 2.0f / 512.0f * 1.6f);
     sky->setTurn(33.0f);
     EXPECT_TRUE(isFinite(sky->light()));

@@ -90,7 +90,7 @@ TEST_F(LiveMaterials, ARoughnessOnDirectLightIsThatOfARebake) {
   Show baked = show(shiny, /*bounces=*/0);
   const glm::vec3 expected = ballOf(baked);
   EXPECT_GT(glm::distance(before, expected), 0.05f * glm::length(expected));
-  // Both are coded, each to what its own lobes show.
+  // Each of the two is coded for what its own lobes show.
   EXPECT_LT(glm::distance(ball, expected), 0.02f * glm::length(expected));
 }
 

@@ -186,7 +186,7 @@ TEST(ClusteredCoding, OneClusterIsPrincipalComponents) {
   for (std::size_t i = 0; i < 25; ++i) {
     double mean = 0.0;
     for (std::size_t s = 0; s < 600; ++s) mean += double{vectors[s * 25 + i]} / 600.0;
-    // On a grid; well under the error that is allowed.
+    // The values are quantized; the tolerance is well below the allowed error.
     EXPECT_NEAR(book.vectors[i], mean, 1e-3);
   }
   // The variance along the first axis is large.

@@ -147,7 +147,8 @@ TEST(MatrixCoding, WeighsVisibilityByTheErrorsThatItMakesInReflectedLight) {
       for (std::size_t j = 0; j < 25; ++j) reflected += lobe[i] * double{matrix[25 * i + j]} * light[j];
     sum += reflected * reflected;
   }
-  // For a single function V the diagonal is not the whole form; its mean over turned V is: bands 0..8 add up.
+  // For a single function V the diagonal is not the whole quadratic form; for its mean over rotations of V it
+  // is, and bands 0..8 add up.
   double turned = 0.0;
   std::vector<double> powers(81, 0.0);
   for (std::size_t i = 0; i < 25; ++i)
@@ -173,7 +174,7 @@ TEST(MatrixCoding, BoundsBouncedLightRelativeToAllThatIsShown) {
   }
 }
 
-// On the GPU all of a cell lies in one page: a bundle that is larger is one that nobody can show.
+// On the GPU a cell must fit into one page; a larger bundle could not be shown.
 TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
   // Sixteen heaps, of the same three directions each: as clusters 16 x (1 + 3) vectors, as one about 1 + 18.
   constexpr std::size_t kCount = 16000, kHeaps = 16;
@@ -189,7 +190,7 @@ TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
 }
 
 TEST(MatrixCoding, KeepsItsBoundWithFewerClustersWhereMemoryEndsOnTheWayThere) {
-  // Four clusters were planned to take less than this, and turn out to take more; one takes 451.
+  // Four clusters are estimated to need less than this but need more; one needs 451.
   constexpr std::size_t kCount = 3000;
   transfer::TransferShape grey = kBounced;
   grey.full_channels = 1;
@@ -280,7 +281,8 @@ TEST(MatrixCoding, KeepsABoundWithoutLeadingComponentsWhereAllOfThemMayBeTaken) 
   const float few = error(kUsualComponents, 0.0f);
   EXPECT_GT(few, 0.5f);
   EXPECT_LE(error(kAllComponents, 0.0f), 0.1f);
-  // All of them, told roughly, where few leave out more than that; few where they leave out less.
+  // At 0.4 all components are coded coarsely, because few would leave out more than that; at 0.99 few
+  // suffice.
   const float loose = error(kUsualComponents, 0.4f);
   EXPECT_LE(loose, 0.4f);
   EXPECT_GT(loose, 0.35f);

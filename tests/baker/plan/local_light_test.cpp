@@ -135,7 +135,7 @@ TEST(LightsInside, AreThoseWhoseWayMeetsAGroupsBounds) {
   EXPECT_EQ(sentences()[0],
             "The light of torch can stand among the surfaces of static: direct light per pixel by a shadow "
             "cube map, its bounces by patches.");
-  // One that is fixed to the group is baked, not near.
+  // A light that is fixed to the group is baked.
   scene.animations.clear();
   scene.nodes[1].animated = scene.nodes[1].movable = false;
   scene.nodes[1].parent_from_node = glm::mat4(1.0f);

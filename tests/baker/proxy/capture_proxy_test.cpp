@@ -103,7 +103,7 @@ void expectAsLarge(const bundle::MeshData& mesh, const std::vector<double>& tole
   }
 }
 
-// Which vertices stay is a matter of last bits on a body this even; with 16 triangles that shows.
+// On such a regular body rounding decides which vertices are kept; with 16 triangles this is visible.
 TEST(CaptureProxyShape, OfASphereLooksAsLarge) {
   expectAsLarge(icosphere({2, 0, 0}, 1.0f, 4), {0.015, 0.03, 0.15});
 }

@@ -68,7 +68,7 @@ TEST(Refinement, BringsTheErrorUnderTheBoundWithVerticesWhereTheShadowFalls) {
     return std::count_if(floor.positions.begin(), floor.positions.end(),
                          [&](const glm::vec3& p) { return std::max(std::abs(p.x), std::abs(p.z)) < reach; });
   };
-  // A quarter of the floor.
+  // A quarter of the floor's area has more than half of its vertices.
   EXPECT_GT(within(1.0f), static_cast<std::ptrdiff_t>(floor.positions.size()) / 2);
 }
 

@@ -78,7 +78,7 @@ TEST(SeenOrigins, LeaveOutWhatSomethingLiesOn) {
   EXPECT_EQ(found.origins[0].weight, 1.0f);
   findSeenOrigins(std::span(&covered, 1), upright(), t.rays, glances, found);
   EXPECT_FALSE(found.valid);
-  // What is as far off as the ceiling of a room does not.
+  // A surface as far off as the ceiling of a room does not hide it.
   const SampleOrigin indoors{{0.5f, 1e-4f, 0}, {0, 1, 0}, 1.0f, 1e-5f};
   findSeenOrigins(std::span(&indoors, 1), upright(), t.rays, glances, found);
   EXPECT_TRUE(found.valid);

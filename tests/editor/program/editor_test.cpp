@@ -322,7 +322,7 @@ state
   EXPECT_NEAR(elevation, 25.0f, 1.0f);
   EXPECT_EQ(states[1]["undo"], "Undo turn of sun");
   EXPECT_EQ(states[2]["lights"], before) << "one step for the whole drag";
-  // A lamp that shines along its -Z stands where its +Z points.
+  // The lamp shines along its -Z, so its +Z points to where it is.
   const json turn = played.answer("get Transform");
   const double x = turn[0], y = turn[1], z = turn[2], w = turn[3];
   EXPECT_NEAR(2.0 * (x * z + w * y), std::cos(0.436) * std::sin(0.611), 0.03);
@@ -389,18 +389,18 @@ expect /1/edited true
   }
   EXPECT_GT(share, 0.2);
   EXPECT_LT(share, 1.0);
-  // By command, in angles of the world, which the environment's turn does not change.
+  // The command takes angles in world space, which the environment's rotation does not change.
   EXPECT_NEAR(keys[1][0]["azimuth"].get<double>(), 35.0, 0.01);
   EXPECT_NEAR(keys[1][0]["elevation"].get<double>(), 25.0, 0.01);
   EXPECT_NEAR(keys[1][0]["share"].get<double>(), keys[0][0]["share"].get<double>(), 1e-3)
       << "as strong as before";
   EXPECT_EQ(keys[1][1], keys[0][1]) << "the others stay";
-  // By its handle: the eye looks towards azimuth 35, elevation 10.
+  // The handle was dragged to the middle: the camera looks towards azimuth 35, elevation 10.
   EXPECT_NEAR(keys[2][0]["azimuth"].get<double>(), 35.0, 1.0);
   EXPECT_NEAR(keys[2][0]["elevation"].get<double>(), 10.0, 1.0);
   EXPECT_EQ(played.answer("state")["undo"], "Undo turn of key light");
   EXPECT_EQ(keys[3], keys[1]) << "one step for the whole drag";
-  // Half, a quarter and all of what was found.
+  // The factors of the channels are 1/2, 1/4 and 1.
   for (int channel = 0; channel < 3; ++channel)
     EXPECT_NEAR(keys[4][0]["radiance"][channel].get<double>(),
                 keys[0][0]["radiance"][channel].get<double>() * (channel == 0   ? 0.5

@@ -152,7 +152,7 @@ TEST(PatchRoom, WhatStandsStillIsNewOnlyOnce) {
   shine(room, lamps);
   EXPECT_EQ(room.version(), version);
   EXPECT_EQ(room.bouncedLast(), 0u);
-  // The other is switched off: what stays is not bounced anew.
+  // When the other lamp is switched off, the remaining one is not computed again.
   shine(room, {lamps[1]});
   EXPECT_EQ(room.bouncedLast(), 0u);
   EXPECT_GT(room.version(), version);
@@ -181,7 +181,7 @@ TEST(PatchRoom, WhatElseStandsInTheLightTakesItAway) {
   PatchRoom room = boxRoom();
   shine(room, {pointLamp({1, 2.3f, 1.5f})});
   const std::vector<glm::vec3> open = room.givenOff();
-  // A lid right below the lamp.
+  // A lid is right below the lamp.
   const std::vector<lighting::RayTriangle> lid = {
       {.corners = {glm::vec3(-3, 2.2f, -3), glm::vec3(-3, 2.2f, 9), glm::vec3(9, 2.2f, -3)}}};
   shine(room, {pointLamp({1, 2.3f, 1.5f})}, lid);
@@ -201,7 +201,7 @@ TEST(PatchRoom, WhatElseStandsInTheLightTakesItAway) {
 TEST(PatchRoom, ATurnedAndScaledRoomTakesTheSameShareOfLight) {
   PatchRoom plain = boxRoom(), placed = boxRoom();
   shine(plain, {pointLamp({1, 2, 1})});
-  // Twice the size: a quarter of the irradiance.
+  // At twice the size the irradiance is a quarter.
   const glm::mat4 world_from_group = glm::translate(glm::mat4(1.0f), glm::vec3(3, -1, 2)) *
                                      glm::rotate(glm::mat4(1.0f), 0.7f, glm::normalize(glm::vec3(1, 2, 3))) *
                                      glm::scale(glm::mat4(1.0f), glm::vec3(2.0f));
@@ -267,7 +267,7 @@ TEST(PatchRoom, WithTheirBandsKeyLightsFallWhereTheirRaysDo) {
     else
       EXPECT_LT(by_rays[0][i], 1e-4f) << "a wall that the sun does not reach";
   }
-  // What comes through the opening: 4 m² under a cosine of 0.8, E/pi = sin² cos.
+  // The light comes through an opening of 4 m² at a cosine of 0.8; E/pi = sin² cos.
   const double sine = std::sin(0.05);
   EXPECT_NEAR(straight / (4.0 * 0.8 * sine * sine), 1.0, 0.01);
 }

@@ -106,7 +106,7 @@ TEST(Keyframes, CubicRotationsComeOutUnit) {
       channel(Path::Rotation, Interpolation::Cubic, {0, 1}, none + turn(0) + none + none + turn(90) + none);
   EXPECT_NEAR(degreesOf(rotationAt(c, 0.5f)), 45.0f, 1e-4f) << "half and half";
   EXPECT_NEAR(degreesOf(rotationAt(c, 1.0f)), 90.0f, 1e-4f);
-  // Through zero: from q to -q.
+  // The interpolation from q to -q passes through zero.
   const auto zero = channel(Path::Rotation, Interpolation::Cubic, {0, 1},
                             none + turn(30) + none + none + turn(30, -1.0f) + none);
   EXPECT_NEAR(degreesOf(rotationAt(zero, 0.5f)), 30.0f, 1e-4f);

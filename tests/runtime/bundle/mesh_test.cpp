@@ -77,7 +77,7 @@ TEST(DracoMesh, DecodesToLatticePointsWithinHalfAStep) {
 }
 
 TEST(DracoMesh, PrimitivesThatShareAnEdgeStillShareItToTheBit) {
-  // The same plane x = 1 seen from two meshes with different boxes.
+  // Two meshes with different boxes share the plane x = 1.
   const EncodedMesh left = encoded(bump(17, 0.0f)), right = encoded(bump(17, 1.0f));
   std::set<Key> right_edge;
   for (const glm::vec3& p : right.decoded.positions)
@@ -207,7 +207,7 @@ TEST(DracoMesh, TangentsAreUnitWithinAThirtiethOfADegreeAndKeepTheirSign) {
     worst = std::max(worst, glm::length(glm::cross(glm::dvec3(decoded), glm::dvec3(mesh.tangents[i]))));
   }
   RecordProperty("worst_degrees", std::to_string(std::asin(worst) * 180.0 / std::numbers::pi));
-  // Half a step of 2/4095 on two of the axes.
+  // The tolerance is half a step of 2/4095 on two of the axes.
   EXPECT_LT(std::asin(worst) * 180.0 / std::numbers::pi, 0.03);
 }
 

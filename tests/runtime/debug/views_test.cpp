@@ -107,7 +107,7 @@ TEST_F(ViewTest, IrradianceIsTheLightWithoutTheAlbedo) {
 }
 
 TEST_F(ViewTest, NormalsAreThoseOfTheWorldHoweverTheMeshStands) {
-  // A quad towards +Z, turned to face +X, in a group that lies otherwise still.
+  // A quad that faces +Z is turned to face +X, in a group that has another rotation.
   const glm::mat4 turned(glm::vec4(0, 0, -1, 0), glm::vec4(0, 1, 0, 0), glm::vec4(1, 0, 0, 0),
                          glm::vec4(0, 0, 0, 1));
   for (const bool mapped : {false, true}) {
@@ -137,7 +137,7 @@ TEST_F(ViewTest, FalseColoursAreShownAsTheyAreWhateverTheExposure) {
   };
   const auto dark = shown(-6.0f);
   EXPECT_EQ(dark, shown(6.0f));
-  // The middle: the end of viridis (253, 231, 37).
+  // The maximum is at the end of viridis, (253, 231, 37).
   const std::size_t middle = 4 * (32 * 64 + 32);
   EXPECT_NEAR(dark[middle], 253, 4);
   EXPECT_NEAR(dark[middle + 1], 231, 4);
@@ -181,7 +181,7 @@ TEST_F(ViewTest, WiresKeepTheCoverageAndLieOnTheSurface) {
     ++changed;
     EXPECT_GT(before.texels[i].a, 0.0f) << "only on surfaces";
   }
-  // Four edges and a diagonal of a quad that is about 30 pixels wide, a pixel or three thick.
+  // Four edges and a diagonal belong to a quad about 30 pixels wide, and are one to three pixels thick.
   EXPECT_GT(changed, 60u);
   EXPECT_LT(changed, 700u);
 }

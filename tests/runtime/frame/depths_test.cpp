@@ -46,7 +46,8 @@ const glm::mat4 kWide = glm::perspective(glm::radians(90.0f), 1.0f, 1.0f, 30.0f)
 using FrameDepths = testing::GpuTest;
 
 TEST_F(FrameDepths, AreMetresAlongTheAxisInPerspectivesAndParallelProjections) {
-  // A wall behind all pixels, and a square before its middle; the corners' rays are 1.7 times as long.
+  // A wall is behind all pixels, and a square is in front of its middle; rays in the corners are 1.7 times as
+  // long.
   ViewStage stage(BundleBuilder().add(square(-2.0f, 13.0f)).add(square(4.0f, 3.0f)), {kWhite},
                   testing::linearOptions());
   for (const glm::mat4& clip_from_view : {kWide, glm::ortho(-6.0f, 6.0f, -6.0f, 6.0f, 1.0f, 30.0f)}) {
@@ -55,7 +56,7 @@ TEST_F(FrameDepths, AreMetresAlongTheAxisInPerspectivesAndParallelProjections) {
     for (const std::size_t y : {1u, 20u, 31u, 32u, 43u, 62u})
       for (const std::size_t x : {1u, 20u, 31u, 32u, 43u, 62u}) {
         const bool before = x >= 20 && x <= 43 && y >= 20 && y <= 43;
-        // Half floats do not come near it: 24 bits over 30 m.
+        // Half floats would not be this exact: depths have 24 bits over 30 m.
         EXPECT_NEAR(depths[y * 64 + x], before ? 6.0f : 12.0f, 2e-5f) << x << ", " << y;
       }
   }

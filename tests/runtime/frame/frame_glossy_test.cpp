@@ -84,7 +84,7 @@ struct Stage {
   }
 };
 
-// Where the pixel's ray meets the true sphere of radius 1 about the origin.
+// A Hit is where the pixel's ray meets the true sphere of radius 1 about the origin.
 struct Hit {
   glm::vec3 normal, to_eye;
   float rim;  // 0 in its middle, 1 at its rim

@@ -186,7 +186,7 @@ TEST_F(FrameTest, CullsBackFacesOfSingleSidedMaterialsOnly) {
 }
 
 TEST_F(FrameTest, LightsEachSideOfATwoSidedCardForItself) {
-  // The sun stands before the card; its back is turned away, with transfer of its own and unshadowed alike.
+  // The sun is in front of the card, and its back is turned away, with its own transfer or unshadowed.
   gltf::Material both = colored(glm::vec4(1.0f));
   both.double_sided = true;
   for (const auto transfer : {evaluate::TransferMode::Full, evaluate::TransferMode::Unshadowed}) {
@@ -248,7 +248,7 @@ TEST_F(FrameTest, BlendsOverWhatStandsBehind) {
   Stage stage(builder, {kWhite}, kLinear);
   const spec::RgbaImage image = stage.picture();
   EXPECT_LT(glm::distance(at(image, 32, 32), glm::vec4(0.25f, 0.75f, 0.0f, 1.0f)), 2e-3f);
-  // Beside the green quad the sky shines through the glass.
+  // Next to the green quad the sky is visible through the glass.
   EXPECT_LT(glm::distance(at(image, 12, 32), glm::vec4(1.0f, 0.75f, 0.75f, 0.25f)), 2e-3f);
 }
 
@@ -287,7 +287,7 @@ TEST_F(FrameTest, DisplayPicturesAreExposedAndOpaque) {
 }
 
 TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
-  // A smooth picture of the sphere with a colour for each axis.
+  // The environment map is smooth, with a colour for each axis.
   spec::RgbImage environment_map{.width = 128, .height = 64, .texels = {}};
   for (std::uint32_t y = 0; y < environment_map.height; ++y)
     for (std::uint32_t x = 0; x < environment_map.width; ++x)
@@ -306,7 +306,7 @@ TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
       const scene::Box bounds = scene::worldBounds(stage.world.registry());
       const spec::View view = spec::orbitView(stage.camera, bounds.min, bounds.max, 1.0f);
       const spec::RgbaImage image = stage.picture();
-      // The ray through the centre of the top left pixel.
+      // This is the ray through the centre of the top left pixel.
       const glm::vec4 far_clip(-63.0f / 64.0f, 63.0f / 64.0f, 1.0f, 1.0f);
       const glm::vec4 far_ws = glm::inverse(view.clip_from_view * view.view_from_world) * far_clip;
       const glm::vec3 dir_ws = glm::normalize(glm::vec3(far_ws) / far_ws.w - view.eye_ws);
@@ -341,7 +341,8 @@ TEST_F(FrameTest, ABundleThatStreamsInIsLitFromTheFirstMeshOnAndEndsAtTheSamePic
 }
 
 TEST_F(FrameTest, TheWordsOfTransferChooseTheBlock) {
-  // A quarter of the light without bounces, three quarters with them, all of it where nothing shadows.
+  // The transfer gives a quarter of the light without bounces, three quarters with them, and all light
+  // unshadowed.
   const auto transfer = [](const glm::vec3& normal) {
     const std::vector<float> open = testing::openTransfer(3)(normal);
     std::vector<float> blocks;
@@ -365,7 +366,8 @@ TEST_F(FrameTest, TheWordsOfTransferChooseTheBlock) {
 TEST_F(FrameTest, LampsShineAndLightTheirGroupAndDimTogether) {
   gltf::Material glowing = colored({0.5f, 0.5f, 0.5f, 1.0f});
   glowing.emissive = {2.0f, 1.0f, 0.5f};
-  // Of a material that is a lamp the lamp says what it gives off: here it was baked with another colour.
+  // The radiance of an emissive material that is a lamp comes from the lamp, which was baked with another
+  // colour.
   const auto builder =
       BundleBuilder()
           .lamp({.kind = bundle::GroupLight::Kind::Material, .index = 0, .color = {4.0f, 1.0f, 0.0f}}, 0.5f)
@@ -408,7 +410,7 @@ TEST_F(FrameTest, NormalMappedDrawsWithoutAMapLookAsPlainOnes) {
                lights, kLinear);
   const spec::RgbaImage expected = plain.picture(), found = mapped.picture();
   for (std::size_t i = 0; i < found.texels.size(); ++i)
-    // The plain one interpolates E between vertices, the other one the normal.
+    // One surface interpolates E between vertices, the other one the normal.
     ASSERT_LT(glm::distance(found.texels[i], expected.texels[i]), 0.02f) << i;
 }
 

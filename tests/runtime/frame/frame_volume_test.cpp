@@ -136,7 +136,7 @@ TEST_F(FrameVolume, ATurnedGroupIsBoundedByItsCorners) {
 }
 
 TEST_F(FrameVolume, EverythingWhiteUnderWhiteLightIsWhite) {
-  // A sphere half in the mist, a quad behind it, the sky: furnace.
+  // A sphere is half in the mist, a quad is behind it, then the sky. All light is uniform.
   BundleBuilder builder;
   builder.add({sphereMesh(16, 32), colored(glm::vec4(1.0f)),
                glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-0.3f, 0.2f, 0.9f)), glm::vec3(0.5f))});
@@ -318,7 +318,7 @@ TEST_F(FrameVolume, DisplayPicturesShowTheSameThing) {
       if (edge) continue;
       ++compared;
       for (int c = 0; c < 3; ++c) {
-        // The curve of resolve.frag below its shoulder: less the specular part.
+        // This is the tone curve of resolve.frag below its shoulder.
         const glm::vec3 texel(at(wanted, x, y));
         const float low = std::min({texel.r, texel.g, texel.b});
         float value = texel[c] - (low < 0.08f ? low - 6.25f * low * low : 0.04f);

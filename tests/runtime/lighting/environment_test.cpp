@@ -157,7 +157,8 @@ TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
   ASSERT_TRUE(environment) << environment.error().line();
   environment->setFade(0.25f);
   environment->setTurn(30.0f);
-  // What is there now cannot be read, but seems the same: whoever needs no look does not notice.
+  // The file's contents are now unreadable, but its size and time are unchanged: setLights() uses what it has
+  // loaded.
   const auto bytes = std::filesystem::file_size(file);
   std::filesystem::resize_file(file, 0);
   std::filesystem::resize_file(file, bytes);
@@ -167,7 +168,7 @@ TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
   EXPECT_EQ(environment->fade(), 0.25f);
   EXPECT_EQ(environment->turnDegrees(), 30.0f);
 
-  // The same light as of one that was made of these.
+  // The light equals that of an environment created with these lights.
   writeEnvironmentMap(file, 1.0f);
   auto made = Environment::create(withSun(21), withSun(-21));
   ASSERT_TRUE(made);

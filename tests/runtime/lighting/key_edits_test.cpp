@@ -148,7 +148,7 @@ TEST_F(KeyEdits, AKeyLightThatIsMovedAndDimmedIsThatDiscAndTheRestStays) {
   const Disc other = environment_->foundKeys()[1].now;
   keys += sh::discLight(8, other.direction, static_cast<double>(other.radius_rad), other.radiance);
   expectSameLight(environment_->keyLight(), keys, 1e-5f, 64);
-  // The eye's light is that of rest and keys, as before the edit.
+  // The eye sees the rest and the keys, as before the edit.
   sh::LightVector all = environment_->light().truncated(2);
   expectSameLight(seen(), all, 2e-3f, 4);
 }
@@ -179,7 +179,7 @@ TEST_F(KeyEdits, AnEditWaitsWhereItsKeyLightIsNotFound) {
   EXPECT_EQ(environment_->shownOf(0).environment_maps[0], &environment_->set(0).environment_maps[0]);
   environment_->setMostKeys(16);
   for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(environment_->light().c[i], edited.c[i]) << i;
-  // One that means no key light at all, one of the other set.
+  // The first edit belongs to no key light, the second to the other set.
   edit.found = glm::vec3(0, -1, 0);
   environment_->setKeyEdits({edit});
   EXPECT_FALSE(environment_->foundKeys()[1].edit);

@@ -146,7 +146,7 @@ TEST(KeyLights, FindsTheSunOfAPictureInEveryLayout) {
     const spec::Disc& key = parted.keys[0];
     EXPECT_LT(glm::distance(glm::dvec3(key.direction), kSun), texel_rad);
     EXPECT_NEAR(static_cast<double>(key.radius_rad), kSunRadius, texel_rad);
-    // What was painted, without the rim of the last texels: the sun is about 7 across.
+    // The painted flux is measured without the rim's texels: the sun is about 7 texels wide.
     double painted_flux = 0.0;
     ASSERT_TRUE(parted.environment_maps[0]);
     for (int y = 0; y < height; ++y)
@@ -156,7 +156,7 @@ TEST(KeyLights, FindsTheSunOfAPictureInEveryLayout) {
         if (dir == glm::dvec3(0.0)) continue;
         painted_flux +=
             sh::texelSolidAngle(layout, width, height, x, y) * luminance(skyWithSun(dir) - smoothSky(dir));
-        // The rest is the sky, with a dim patch at most where the sun was.
+        // The rest is the sky, with at most a dim patch where the sun was.
         if (glm::distance(dir, kSun) >= kSunRadius) {
           ASSERT_EQ(parted.environment_maps[0]->image.texels[i], lights.environment_maps[0].image.texels[i]);
         } else {
@@ -251,7 +251,7 @@ TEST(KeyLights, ThereAreNeverMoreThanAskedFor) {
 TEST(KeyLights, AnalyticSunsAreKeysAsTheyAreAndWideOnesAreDivided) {
   for (const double radius_deg : {0.27, 2.0, 10.0, 30.0}) {
     SCOPED_TRACE(radius_deg);
-    // The same flux of all.
+    // All discs have the same flux.
     const double sr = 2 * kPi * (1 - std::cos(radius_deg * kPi / 180));
     const spec::DistantLights lights = skyAndDisc(radius_deg, static_cast<float>(30.0 / sr));
     const PartedLights parted = partLights(lights);

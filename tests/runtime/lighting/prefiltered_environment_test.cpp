@@ -109,7 +109,7 @@ TEST_F(PrefilteredEnvironmentTest, ASunIsBlurredToTheLobesShareOfIt) {
 }
 
 TEST_F(PrefilteredEnvironmentTest, LightOfFewBandsLeavesNothing) {
-  // An environment map of bands 0 to 2: what is reflected is each band times the lobe's.
+  // The environment map has bands 0 to 2, so the reflection is each band times the lobe's.
   const std::filesystem::path path =
       std::filesystem::path(::testing::TempDir()) / (std::to_string(::getpid()) + "-bands.exr");
   constexpr std::uint32_t kWidth = 256, kHeight = 128;
@@ -191,7 +191,7 @@ TEST_F(PrefilteredEnvironmentTest, LampsInAProbeOfAnySizeKeepTheirPower) {
     const auto side = static_cast<int>(reflected->cube(0).desc().width >> level);
     double sum = 0.0, whole = 0.0;
     for (int i = 0; i < 6 * side * side; ++i) {
-      // A point of the cube's face lies so far from the centre: the angle of a texel falls with its cube.
+      // The solid angle of a texel falls with the cube of the distance of its point from the cube's centre.
       const double u = (2.0 * (i % side) + 1.0) / side - 1.0,
                    v = (2.0 * (i / side % side) + 1.0) / side - 1.0;
       const double angle = std::pow(1.0 + u * u + v * v, -1.5);

@@ -133,7 +133,7 @@ TEST(ShBasis, EvaluatesBatchesAsSingleDirections) {
       evaluateBatch(order, x.data(), y.data(), z.data(), count, batch.data(), stride);
       for (std::size_t k = 0; k < count; ++k) {
         evaluate(order, glm::vec3(x[k], y[k], z[k]), one);
-        // The same operations; only fused multiply-adds may fall differently.
+        // The operations are the same; only fused multiply-adds may differ.
         for (std::size_t i = 0; i < entries; ++i) EXPECT_NEAR(batch[i * stride + k], one[i], 3e-6f);
       }
       for (std::size_t i = 0; i < entries; ++i)

@@ -88,7 +88,7 @@ TEST(ShLocalLight, DiscsAreWhatTheirSolidAngleHolds) {
       const double solid_angle = expected[0] * std::sqrt(4 * kPi);
       const double error =
           largestDifference(discAreaLight(kMaxOrder, center, normal, radius, kWhite), expected, kMaxOrder);
-      // Seen edge on, the rim's two sides cancel but for roundings of its length.
+      // Seen edge-on, the rim's two sides cancel up to the rounding of its length.
       const double edge_on = 2 * kPi / std::max(1.0, aside) * 1e-16;
       EXPECT_LT(error, 4 * kRounding * solid_angle + edge_on)
           << "aside " << aside << " radii, " << height << " before the plane";
@@ -231,7 +231,7 @@ TEST(ShLocalLight, HardCasesStayFinite) {
         const glm::dvec3 place = scale * glm::dvec3(x, y, 0);
         const LightVector disc = discAreaLight(8, place, down, scale, bright);
         EXPECT_TRUE(allFinite(disc)) << x << " " << y << " " << scale;
-        // No more than half the sky: sqrt(pi) in band 0, as much times the largest y in others.
+        // The bound is half the sky: sqrt(pi) in band 0, and as much times the largest y in others.
         for (const glm::vec3& c : disc.c) EXPECT_LT(std::abs(c.r), 1.01e8f * 2 * 3.1416f * 1.2f);
         EXPECT_TRUE(allFinite(sphereLight(8, place, scale, bright)));
         EXPECT_TRUE(allFinite(pointLight(8, place, bright)));

@@ -48,7 +48,7 @@ double largestDifference(std::span<const double> a, std::span<const double> b) {
   return largest;
 }
 
-// As far as the functions themselves go: visibility is turned in 6 + 6 - 1 bands.
+// Visibility is rotated in 6 + 6 - 1 bands, the most that the basis functions support.
 TEST(ShRotation, TurnsTheBasisIn11Bands) {
   Random random(60);
   for (const glm::dquat& q : rotations()) {

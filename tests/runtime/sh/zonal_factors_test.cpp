@@ -92,7 +92,7 @@ TEST(ZonalFactors, AreWellConditionedInEveryBand) {
       }
       const double condition = norm(forward, n) * norm(inverse, n);
       RecordProperty((isotropic ? "plane" : "sphere") + std::to_string(l), std::to_string(condition));
-      // The last bands stand on axes that were chosen for the others.
+      // The last bands use axes that were chosen for the others.
       const double most = l < 6    ? (isotropic ? 2.1 : 3.6)
                           : l == 6 ? (isotropic ? 2.7 : 11.7)
                                    : (isotropic ? 3.8 : 8.5);

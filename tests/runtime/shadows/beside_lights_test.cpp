@@ -111,8 +111,8 @@ TEST_F(BesideLights, TheLightDoesNotJumpWhereItsCarrierChanges) {
   for (float radii = 4.5f; radii < 6.5f; radii += 0.05f) {
     const glm::vec3 lamp = radii * radius * glm::normalize(glm::vec3(0.4f, 1.0f, 0.1f));
     stage.moveLamp(lamp);
-    // In the corner, where bands tell a fifth more of it; times the squared distance nothing else changes it
-    // much.
+    // This is the corner, where bands give a fifth more. Times the squared distance, the light changes little
+    // otherwise.
     const float now = radii * radii * stage.picture().texels[0].r;
     if (before > 0.0f) {
       EXPECT_NEAR(now, before, 0.02f * before) << radii << " radii away";
@@ -124,7 +124,7 @@ TEST_F(BesideLights, TheLightDoesNotJumpWhereItsCarrierChanges) {
 TEST_F(BesideLights, AGridTakesNothingOfWhatShadowCubesBring) {
   NeighborhoodScene scene;
   scene.receivers = {floorOf(4.0f)};
-  // A grid and a capture proxy, but no surface that a cube could hold.
+  // The body has a grid and a capture proxy, but no surface to draw into a shadow cube.
   scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, kFine, kFineHalf)};
   scene.bodies[0].sphere_radius = 1.0f;
   BesideStage stage(scene);

@@ -59,7 +59,7 @@ BundleBuilder roomWithWindow() {
   const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   builder.add(rectangle(-y, z, x)).add(rectangle(y, x, z));
   builder.add(rectangle(-z, x, y)).add(rectangle(z, y, x)).add(rectangle(-x, y, z));
-  // Around the window: below, above, to both sides.
+  // These are the parts of the wall around the window: below, above, and at both sides.
   const auto part = [&](float low, float high, float from, float to) {
     builder.add(rectangle({1, 0.5f * (low + high), 0.5f * (from + to)}, 0.5f * (to - from) * z,
                           0.5f * (high - low) * y));
@@ -226,7 +226,8 @@ TEST_F(KeyClosedForms, ASkyThatTurnsAllTheWayRoundChangesPixelsAsItsShadowsMove)
   const DiscByAzimuth disc(key.direction, key.radius_rad);
   const double sine = std::sin(double{key.radius_rad});
   const double of_sun = double{key.radiance.r} * sine * sine * double{key.direction.y};  // E/pi on the floor
-  // The same however it turns, for the floor is level. It keeps what no disc takes of the sun's ragged rim.
+  // The rest is the same for all rotations, because the floor is level. It includes the sun's ragged rim,
+  // which the disc does not cover.
   const sh::LightVector rest = stage.environment.restLight();
   std::vector<float> open(kOrder * kOrder);
   sh::unoccludedTransfer(kOrder, glm::vec3(0, 1, 0), open);
@@ -258,8 +259,8 @@ TEST_F(KeyClosedForms, ASkyThatTurnsAllTheWayRoundChangesPixelsAsItsShadowsMove)
   }
   EXPECT_EQ(changes.count, 360 * before.size());
   EXPECT_LT(changes.rms(), 0.012);
-  // A penumbra of the sun is as wide as seven steps. Where less of the disc is hidden than the search for
-  // blockers finds, a pixel takes a step of up to a third of the sun's light at once.
+  // The sun's penumbra is seven steps wide. Where less of the disc is hidden than the blocker search
+  // resolves, a pixel may change by up to a third of the sun's light in one step.
   EXPECT_NEAR(changes.expected_largest, 0.16, 0.01);
   EXPECT_LT(changes.largest, 2.2 * changes.expected_largest);
   EXPECT_LT(static_cast<double>(changes.far_off), 0.001 * static_cast<double>(changes.count));

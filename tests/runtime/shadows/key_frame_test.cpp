@@ -191,8 +191,8 @@ TEST_F(KeyFrame, NoSunComesIntoAClosedRoom) {
   addBox(builder.transfer(noTransfer()), {-1, -1, -1}, {1, 1, 1}, /*inside=*/true);
   KeyStage stage(builder, {sun(20, 35, 0.27f), sun(140, 15, 5.0f)});
   ASSERT_EQ(stage.environment.keys().size(), 2u);
-  // Where walls without thickness meet, what stands as near as a few texels of the map is not told from the
-  // receiver.
+  // Where walls without thickness meet, a surface within a few texels of the map cannot be distinguished from
+  // the receiver.
   constexpr float kNear = 0.03f;
   std::size_t inside = 0, all = 0;
   for (const float turn : {0.0f, 77.0f, 201.0f})
@@ -322,7 +322,7 @@ TEST_F(KeyFrame, AStillSceneDrawsNoMapAgain) {
   EXPECT_EQ(stage.mapsDrawn(), 2u) << "the lights turned";
   stage.environment.setTurn(0.0f);
   stage.render(view);
-  // The box's top rises.
+  // The top of the box is raised.
   ecs::Registry& registry = stage.world.registry();
   ecs::Entity top;
   for (auto [entity, name] : registry.view<const scene::Name>())
@@ -447,7 +447,7 @@ TEST_F(KeyFrame, GroupsHaveAllOfTheLightInTheirTwoBlocks) {
 }
 
 TEST_F(KeyFrame, ATurningProbeMovesShadowsWithoutJumps) {
-  // A sun, a lamp and a window in a picture of the sky, over a court.
+  // The sky map has a sun, a lamp and a window, and lights a court.
   spec::RgbImage environment_map{.width = 128, .height = 64, .texels = {}};
   const glm::vec3 sun_at = glm::normalize(glm::vec3(1, 1, 0.6f)),
                   lamp_at = glm::normalize(glm::vec3(-1, 0.7f, 0.2f));
@@ -493,8 +493,8 @@ TEST_F(KeyFrame, ATurningProbeMovesShadowsWithoutJumps) {
     light_before = light;
     before = image;
   }
-  // No step is other than its neighbours; where the edge of a shadow passes, a pixel takes all of one light
-  // at most.
+  // No step differs much from its neighbours; where a shadow's edge passes, a pixel changes by the light of
+  // one source at most.
   for (std::size_t i = 1; i < means.size(); ++i)
     EXPECT_NEAR(means[i], means[i - 1], 0.4 * means[i - 1]) << "step " << i;
   for (const double mean : means) EXPECT_LT(mean, 0.004 * light_before);

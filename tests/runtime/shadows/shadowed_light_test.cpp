@@ -76,11 +76,11 @@ ShadowedLightRecord lightOf(uint kind) {
 
 TEST(ShadowedLight, ASphereGivesWhatAQuadratureOfItsConeGivesAlsoAcrossTheHorizon) {
   for (const float h : {1.01f, 1.3f, 2.0f, 5.0f, 20.0f, 63.0f, 65.0f, 500.0f})
-    // From below the horizon to above it in steps of the sphere's own size, and straight on.
+    // The heights go from below the horizon to above it in steps of the sphere's size, and to straight above.
     for (const double above : {-1.2, -0.9, -0.5, -0.1, 0.0, 0.3, 0.7, 0.99, 1.0, 1.5, 1e9}) {
       const double cosine = std::clamp(above / double{h}, -1.0, 1.0);
       const double expected = coneShare(cosine, 1.0 / double{h});
-      // The quadrature's own error is 1e-5 of the sphere's largest share; so is the cancellation's.
+      // The quadrature's error is 1e-5 of the largest result, and so is that of the cancellation.
       EXPECT_NEAR(ref::sphereShare(static_cast<float>(cosine), h), expected, 2e-4 / (h * h) + 2e-3 * expected)
           << "h " << h << " above " << above;
     }
@@ -147,7 +147,7 @@ TEST(ShadowedLight, StaysFiniteAtTheLightItself) {
       for (const glm::vec3 normal : {glm::vec3(0, 0, 1), {0, 0, -1}, {1, 0, 0}}) {
         const glm::vec3 radiance =
             ref::localRadiance(lit, light, {place, normal, normal, normal}, {64, 16, 0.3f});
-        // Of 1e8 cd at no less than a centimetre.
+        // The maximum is 1e8 cd at a distance of at least a centimetre.
         EXPECT_TRUE(radiance.x >= 0.0f && radiance.x <= 1e8f * 1e4f) << kind << " " << radiance.x;
       }
   }
@@ -196,12 +196,12 @@ TEST(LocalShadow, BoxesMeetTheFacesThatTheirPointsFall) {
 }
 
 TEST(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
-  // A floor 0.05 below the light; what each texel sees is the floor, out to the horizon.
+  // A floor is 0.05 below the light; each texel sees the floor, out to the horizon.
   const auto floor_only = [](int face, glm::ivec2 texel) {
     const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, 512);
     return direction.y < 0.0f ? -0.05f / direction.y : ref::kNothing;
   };
-  // And a wall at x = 1 that stands on it, 0.5 high: the floor behind is dark.
+  // A wall at x = 1 is on it, 0.5 high: the floor behind is dark.
   const auto with_wall = [&](int face, glm::ivec2 texel) {
     const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, 512);
     const float wall = direction.x > 0.0f ? 1.0f / direction.x : ref::kNothing;

@@ -312,7 +312,7 @@ TEST_F(GlossySurface, UniformLightShowsTheSameAlbedoAllOver) {
   scene.record.glossy.metallic = 1.0f;
   for (const glm::vec4& pixel : draw(scene))
     EXPECT_LT(glm::distance(glm::vec3(pixel), 0.7f * glm::vec3(0.8f, 0.5f, 0.3f) + 0.1f), 1e-5f);
-  // And white plastic that takes nothing gives all back in the channel that reflects most.
+  // White plastic without losses reflects everything.
   scene.record.glossy.metallic = 0.0f;
   scene.record.surface.base_color = glm::vec4(1.0f);
   scene.record.glossy.dielectric = glm::vec4(0.04f, 0.04f, 0.04f, 1.0f);

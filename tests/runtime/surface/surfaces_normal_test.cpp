@@ -81,7 +81,7 @@ TEST(SurfaceNormal, FindsTheFrameFromThePictureAlsoUnderMirroredCoordinates) {
 
 TEST(SurfaceNormal, StaysWhereThereIsNoFrameAndWhereTheMapIsFlat) {
   const glm::vec3 z(0, 0, 1), texel(0.9f, 0.2f, 0.7f);
-  // All texture coordinates the same, and coordinates that change along a line only.
+  // All texture coordinates are equal, or they change only along a line.
   const Patch patches[] = {
       {.normal = z, .rising_u = {1, 0, 0}, .rising_v = {0, 1, 0}, .t_dx = {0, 0}, .t_dy = {0, 0}},
       {.normal = z, .rising_u = {1, 0, 0}, .rising_v = {0, 1, 0}, .t_dx = {1, 0}, .t_dy = {2, 0}}};

@@ -169,8 +169,7 @@ const Light kLight = [] {
 }  // namespace
 
 TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordinates) {
-  // A base colour of one grey texel; an emissive picture of four colours, red green / blue white from the
-  // top.
+  // The base colour is one grey texel; the emissive texture has four: red green / blue white from the top.
   textures[kUnitBaseColor] = picture(1, 1, {255, 128, 0, 255}, GL_RGBA8);
   textures[kUnitEmissive] =
       picture(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}, GL_SRGB8_ALPHA8);
@@ -187,10 +186,10 @@ TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordi
       {{}, {5, 0, 0}, {0, 6, 0}},
       // Shifted by half a picture to the right and downwards, repeated.
       {{.texture = 0, .texcoord = 0, .offset = {0.5f, 0.5f}}, {5, 6, 7}, {0, 0, 7}},
-      // Half of the picture's width over the whole rectangle.
+      // The rectangle shows half of the texture's width.
       {{.texture = 0, .texcoord = 0, .offset = {0.0f, 0.0f}, .scale = {0.5f, 1.0f}}, {5, 0, 0}, {5, 0, 0}},
-      // A quarter turn: u' = v, v' = -u; the top right corner (1, 0) looks at (0, -1), the top row's start
-      // at the bottom of the picture's left side.
+      // The texture is turned by 90 degrees: u' = v, v' = -u. The top right corner (1, 0) samples (0, -1),
+      // and the beginning of the top row samples the bottom of the texture's left side.
       {{.texture = 0,
         .texcoord = 0,
         .offset = {0.0f, 0.0f},
@@ -227,7 +226,7 @@ TEST_F(SurfaceShader, ShowsTheBaseColourOfUnlitSurfacesWhateverTheLight) {
 TEST_F(SurfaceShader, ReceivesLightAtThePixelsNormalAsTheReferenceDoes) {
   const glm::vec3 texel = glm::vec3(220, 70, 200) / 255.0f;
   textures[kUnitNormal] = picture(1, 1, {220, 70, 200, 255}, GL_RGBA8);
-  // A mesh that stands in its group turned and stretched, and mirrored besides.
+  // The mesh is rotated and stretched in its group, and also mirrored.
   for (const float mirrored : {1.0f, -1.0f}) {
     const glm::mat3 group_from_mesh =
         glm::mat3(glm::rotate(glm::mat4(1.0f), 1.2f, glm::normalize(glm::vec3(1, -2, 0.5f)))) *

@@ -65,7 +65,7 @@ struct TextureStreaming : testing::WorldTest {
             .clip_from_view = glm::perspective(0.9f, 1.0f, 0.1f, 100.0f),
             .eye_ws = eye};
   }
-  // All that there is room for, seen from there.
+  // Loads everything that fits for a camera at x, and renders it.
   spec::RgbaImage look(WorldStage& stage, float x) {
     stage.world.look(view(x));
     gpu::Counters counters;

@@ -101,7 +101,7 @@ TEST_F(WorldTest, ADamagedReplacementLeavesTheOldBundleAndIsReported) {
   EXPECT_EQ(stage.world.residency().bytesResident(), bytes);
   EXPECT_FALSE(stage.world.replace(ball, file("missing.lmb.glb")));
   EXPECT_EQ(stage.world.errors().size(), 1u);
-  // The next one that is whole takes its place, and the error with it.
+  // The next valid bundle replaces it, and clears the error.
   ASSERT_TRUE(stage.world.replace(ball, damaged));
   ASSERT_TRUE(stage.world.replace(ball, ballFile(0.4f))) << "supersedes the other";
   stage.picture();

@@ -162,7 +162,7 @@ TEST(GlossyDirect, FillsWhatStandsUnderABodyFromItsNeighbours) {
   EXPECT_GT(baked.glossy.filled_samples, 0u);
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
     if (std::abs(t.samples.positions[s].y) > 1e-4f) continue;
-    // Beside the body half of the sky is left at least; under it, the mean of such.
+    // Beside the body at least half of the sky is visible; samples under it get the mean of such ones.
     EXPECT_GT(visibilityOf(baked.glossy.field, s)[0], 0.4f * kUniform);
     EXPECT_GT(baked.direct.field.at(s)[0], 0.4f * 0.282095f);
   }
@@ -181,7 +181,7 @@ TEST(GlossyDirect, LeavesMatteSamplesAsTheyAre) {
   const auto alone = matte.direct();
   for (std::size_t s = 0; s < mixed.samples.first_glossy; ++s)
     EXPECT_EQ(largestDifference(baked.direct.field.at(s), alone.at(s)), 0.0f);
-  // Seen through 5 bands of the cosine instead of the whole of it, at samples that nothing hides.
+  // Unoccluded samples see the light through 5 bands of the cosine instead of the whole cosine.
   for (std::size_t s = mixed.samples.first_glossy; s < mixed.samples.size(); ++s)
     EXPECT_LT(largestDifference(baked.direct.field.at(s), alone.at(s)), 0.02f);
   EXPECT_EQ(baked.glossy.field.size(), mixed.samples.size() - 121u);

@@ -68,7 +68,7 @@ TEST(GlossyInsideFaces, ABounceFittedThereIsThatOfAFinerMeshMoreThanWhatTheVerti
 }
 
 TEST(GlossyInsideFaces, OfAWhiteFurnaceLeaveUniformLightAsItIs) {
-  // All is white, above a white floor and beside it: of uniform light nothing is lost.
+  // Everything is white, beside and above a white floor: no uniform light is lost.
   const Transport t(glossyScene({icosphere({0.3f, 0.1f, 0.1f}, 0.3f, 2), grid({0, -0.5f, 0}, 2.0f, 8)}),
                     true);
   const auto baked = bakeGlossy(t, lambertKernels(t),

@@ -92,7 +92,8 @@ TEST(Caustics, TakeTheColourOfTheMetal) {
   const CapDirections directions(1024);
   PointChange of_white(white.body, directions, {.order = 5, .order_out = 3, .channels = 1});
   PointChange of_colored(colored.body, directions, {.order = 5, .order_out = 3, .channels = 3});
-  // From outside, of the outer side: one reflection, at angles where Fresnel's rise towards white is small.
+  // The point sees the ring's outer side: one reflection, at angles where Fresnel's rise towards white is
+  // small.
   of_white.look({3.0f, 0.0f, 0.5f}), of_colored.look({3.0f, 0.0f, 0.5f});
   const auto uniform = [](const PointChange& point, std::size_t c) {
     return double{point.bounced()[c * 225]};

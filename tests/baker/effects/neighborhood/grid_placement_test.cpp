@@ -44,7 +44,7 @@ TEST(GridPlacements, AreASlabBelowWhereReceiversAreOnlyBelow) {
   const auto grid = placeGrid(wish, farField);
   ASSERT_TRUE(grid.has_value());
   EXPECT_EQ(grid->size, glm::uvec3(64, 8, 64));
-  // With a point and more between the receivers and the faces that they set.
+  // The box extends beyond the receivers by one to two points.
   EXPECT_LE(grid->box.low.y, -4.0f - grid->spacing().y);
   EXPECT_GE(grid->box.high.y, -2.0f + grid->spacing().y);
   EXPECT_GE(grid->box.low.y, -4.0f - 2.0f * grid->spacing().y);

@@ -148,7 +148,7 @@ void expectWalks(const Fog& fog, float largest, float g, const VolumeSettings& s
           EXPECT_NEAR(is, wanted[i][c], tolerance * wanted[0][0]) << g << " " << c << " " << place.x;
         }
       }
-    // Over the bands, as they go on.
+    // The error is measured over all bands together.
     EXPECT_LT(std::sqrt(off / all), tolerance + 0.01) << g << " " << place.x;
   }
 }

@@ -11,7 +11,7 @@
 namespace lambent::effects::diffuse {
 namespace {
 
-// Of one light probe: without key lights, and of key lights alone, if there are any.
+// Makes the light at one light probe: without key lights, and of key lights alone if `keys`.
 std::vector<glm::vec4> randomLight(testing::BundleMaker& maker, int order, bool keys = false) {
   std::vector<glm::vec4> light(transfer::kLightStride, glm::vec4(0.0f));
   for (const uint first : keys ? std::vector{0u, transfer::kKeyBlock} : std::vector{0u})
@@ -136,8 +136,8 @@ std::vector<std::vector<std::uint32_t>> codesOf(const testing::RandomBundle& mad
   return all;
 }
 
-// What all transfers of the cell give, decoded the plain way: [sample][output]. Of key lights the bounces
-// alone, full less shadowed; w: 1 and the luminance of what they give straight.
+// Returns what all transfers of the cell give, decoded directly: [sample][output]. Of key lights it has only
+// the bounces, full minus shadowed; w is 1 plus the luminance of their direct light.
 std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
                                          const std::vector<glm::vec4>& light, bool full) {
   std::vector<glm::vec4> out;

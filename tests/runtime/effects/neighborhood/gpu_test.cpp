@@ -44,7 +44,7 @@ struct Bench : lambent::testing::ShadingBench<glossy::Glossy> {
                       static_cast<GLsizei>(result.texels.size() * sizeof(glm::vec4)), result.texels.data());
     return result;
   }
-  // The same texels by the twin, from the samples as they are.
+  // Computes the same texels by the twin, from the same samples.
   ref::Atlas twin() const {
     const glm::uvec3 size = neighborhood.atlasSize();
     ref::Atlas result(size.x, size.y, size.z);

@@ -218,7 +218,7 @@ TEST_F(VolumeGpu, AnEmptyVolumeLeavesEveryPixelToTheLastBit) {
     for (const glm::vec4& texel : bench.picture(orbit(30.0f), before)) ASSERT_EQ(texel, before);
     EXPECT_EQ(bench.march.drawnLast(), 0u);
   }
-  // Beside a full one too, in the pixels where only the empty blocks of it are.
+  // The volume is next to a full one, too, in pixels that only see its empty blocks.
   BuiltVolume corner = cloud(1);
   corner.density = [](const glm::vec3& at) { return glm::length(at) < 5.0f ? 3.0f : 0.0f; };
   Bench bench({corner});
@@ -277,7 +277,8 @@ TEST_F(VolumeGpu, MoreVolumesThanOnePassTakesAreDrawnAll) {
 }
 
 TEST_F(VolumeGpu, SamplesOfAPixelEachEndAtTheirOwnSurface) {
-  // A wall's slanting edge before a homogeneous medium: every sample sees all of it or none, nothing between.
+  // A wall's slanted edge is in front of a homogeneous medium: every sample sees either all of the medium or
+  // none.
   BuiltVolume built;
   built.transfer = nullptr;
   built.density_max = 1.5f;

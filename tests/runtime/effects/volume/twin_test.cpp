@@ -138,7 +138,7 @@ TEST(VolumeTwin, ABallTransmitsTheExponentialOfItsChord) {
       glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.2f)), glm::vec3(2.4f / 96.0f));
   constexpr float kExtinction = 1.5f;
   built.density_max = kExtinction;
-  // As a mean over each voxel the edge falls off within a voxel.
+  // The density is averaged over each voxel, so the edge falls off within a voxel.
   built.density = [&](const glm::vec3& grid) {
     const glm::vec3 place(built.group_from_grid * glm::vec4(grid, 1.0f));
     return kExtinction * std::clamp(0.5f + (1.0f - glm::length(place)) * 40.0f, 0.0f, 1.0f);
@@ -208,7 +208,7 @@ TEST(VolumeTwin, JitterChangesNothingThatCanBeSeen) {
 }
 
 TEST(VolumeTwin, OverlappingVolumesAddTheirExtinctions) {
-  // Two boxes, one turned and moved; only the first one's light is 1.
+  // There are two boxes, one of them rotated and moved; only the first one's light is 1.
   BuiltVolume first = homogeneous(0.7f), second = homogeneous(1.3f);
   second.size = {5, 9, 16};
   second.group_from_grid =
@@ -227,7 +227,7 @@ TEST(VolumeTwin, OverlappingVolumesAddTheirExtinctions) {
     EXPECT_NEAR(found.a, 0.7f * chord(aim) + 1.3f * chord(turned), 1e-4f);
     EXPECT_NEAR(found.r + std::exp(-found.a), 1.0f, 1e-4f);
   }
-  // Where both are, the ray starts and ends: light is shared by extinction.
+  // The ray starts and ends where both are: light is shared in proportion to extinction.
   const glm::vec3 origin(0.3f, 0.2f, 0.0f), along = glm::normalize(glm::vec3(1, 0.2f, 0.1f));
   const glm::vec4 found = ref::march(lit, {origin, along, 0.0f, 0.3f});
   EXPECT_NEAR(found.r, 0.35f * (1.0f - std::exp(-2.0f * 0.3f)), 1e-5f);
