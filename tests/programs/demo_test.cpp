@@ -213,7 +213,7 @@ TEST_F(DemoProgram, FadesFromOneLightToAnother) {
 
 TEST_F(DemoProgram, MovesAndDimsAKeyLightOfAProbe) {
   if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
-  // One bright texel at azimuth -40, elevation 40 in a grey sky.
+  // The sky is grey, with one bright texel at azimuth -40, elevation 40.
   spec::RgbImage sky{.width = 128, .height = 64, .texels = std::vector<glm::vec3>(128 * 64, glm::vec3(0.5f))};
   sky.texels[18 * 128 + 50] = glm::vec3(9000.0f);
   ASSERT_TRUE(spec::writeHdr(folder / "sky.hdr", sky));

@@ -79,7 +79,7 @@ TEST(Environment, TurnsItsProbes) {
 }
 
 TEST(Environment, FindsSmallSunsToTheDigit) {
-  // 0.01 degrees: its rim's cosine differs from 1 by a tenth of a float's rounding.
+  // At 0.01 degrees the cosine of the radius differs from 1 by a tenth of a float's rounding.
   spec::DistantLights lights;
   lights.discs = {
       {.direction = glm::normalize(glm::vec3(1, 2, 3)), .radius_rad = 1.7e-4f, .radiance = glm::vec3(1e7f)}};

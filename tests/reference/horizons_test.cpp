@@ -127,7 +127,7 @@ TEST(LeaningNormals, ShowTheSkyOfTheHiddenDirectionItself) {
 TEST(LeaningNormals, ShowWhatStandsInTheMirrorImage) {
   Scene lit = floorThatLeans(metal(0.0f), kLean);
   add(lit, wall(), shining(3.0f));
-  // Neither the sun behind the wall nor that in front of the mirror image.
+  // Neither the sun behind the wall nor the one in front of the mirror image is visible.
   const auto seen = measured(lit, eye(), kPlace, {sunAt(-kHidden), sunAt(kHidden)}, samples(64, 0));
   EXPECT_NEAR(seen.mean.g, 3.0, 0.01);
 }

@@ -62,14 +62,14 @@ TEST(Reference, OfAConvexBodyIsItsUnshadowedIrradiance) {
     for (int k = 1; k < 3; ++k)
       if (std::abs(texel.g - facing * dir[k]) < std::abs(texel.g - facing * dir[nearest])) nearest = k;
     ++seen[static_cast<std::size_t>(nearest)];
-    // 64 stratified points in the disc, over which the cosine varies by 10 %.
+    // The disc is sampled by 64 stratified points, over which the cosine varies by 10 %.
     EXPECT_NEAR(texel.g, facing * dir[nearest], 0.01f * facing * dir[nearest]);
   }
   for (const int pixels : seen) EXPECT_GT(pixels, 20);
 }
 
 TEST(Reference, TurnsTheLightAsTheRuntimeDoes) {
-  // A sun at azimuth 20 turned by 70 stands on +X.
+  // A sun at azimuth 20 that is rotated by 70 degrees is at +X.
   const spec::SunLight sun{.azimuth_deg = 20, .elevation_deg = 0, .angle_deg = 5, .radiance = glm::vec3(100)};
   Options options = samples(16);
   options.rotate_light_deg = 70.0f;

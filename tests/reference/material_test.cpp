@@ -116,7 +116,7 @@ TEST(Material, OfOneSideIsCulledForTheEyeAndBlackForTheLight) {
   const Measured dark = measured(one, {0, 0.5f, 4}, {0, 0, 0}, light, samples(64));
   const Measured bright = measured(two, {0, 0.5f, 4}, {0, 0, 0}, light, samples(64));
   expectMean(bright, 1.0, 1e-3);  // some paths go to and fro until roulette ends them
-  // Form factor of the card over the point: 4/pi * (a / sqrt(1 + a²)) atan(a / sqrt(1 + a²)) at a = 1.
+  // The form factor of the card over the point is 4/pi * (a / sqrt(1 + a²)) atan(a / sqrt(1 + a²)) at a = 1.
   const double a = std::sqrt(0.5);
   expectMean(dark, 1.0 - 4.0 / double{kPi} * a * std::atan(a));
 }

@@ -148,14 +148,14 @@ TEST_F(Progressive, BeginsAnewWithWhatChanged) {
   auto first = shared();
   const std::weak_ptr<const Scene> watch = first;
   ProgressiveReference reference(std::move(first), request);
-  // another view and another light while it works
+  // The view and the light change while it works.
   request.camera.reset();
   request.view = spec::orbitView({70, 35, 1.5f, 50}, glm::vec3(-1), glm::vec3(1), 61.0f / 43.0f);
   request.lights.push_back(spec::SphereLight{.position_ws = {0, 2, 1}, .radius_m = 0.2f});
   EXPECT_EQ(reference.restart(request), 2u);
   expectTheReference(reference);
   EXPECT_FALSE(watch.expired());
-  // a node moved, another material
+  // A node is moved, and a material is changed.
   scene.nodes[1].parent_from_node = glm::translate(glm::mat4(1), glm::vec3(0.3f, 0.1f, 0));
   scene.materials[0].base_color = glm::vec4(0.2f, 0.6f, 0.1f, 1);
   reference.restart(shared(), request);

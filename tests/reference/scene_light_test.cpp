@@ -23,7 +23,7 @@ gltf::Material lamp(float radiance) {
 }
 
 TEST(EmissiveSurface, OfAClosedBoxIsTheGeometricSeries) {
-  // Radiance e everywhere, albedo rho: e (1 + rho + rho² + ...).
+  // With radiance e and albedo rho everywhere, the result is e (1 + rho + rho² + ...).
   Scene scene = sceneOf({testing::flipped(testing::box({0, 0, 0}, {2, 1, 3}, 2))});
   scene.materials[0].base_color = glm::vec4(0.5f, 0.5f, 0.5f, 1);
   scene.materials[0].emissive = glm::vec3(1.0f);
@@ -140,7 +140,7 @@ TEST(PunctualLight, CastsShadowsAndAddsUp) {
   scene.nodes.push_back(node);
   const double both = 7.0 / kPi / 4.0 + 3.0 / kPi;
   expectMean(measured(scene, {0, 3, 4}, {0, 0, 0}, {}, samples(64, 0)), both, 1e-4);
-  // A card between the two lights, wider than the floor's point needs.
+  // A card is between the two lights, wider than it has to be for the floor's point.
   Scene shaded = sceneOf({testing::grid({0, 0, 0}, 20.0f, 1), testing::grid({0, 3, 0}, 1.0f, 1)});
   for (std::size_t i = 1; i < scene.nodes.size(); ++i) shaded.nodes.push_back(scene.nodes[i]);
   shaded.lights = scene.lights;

@@ -120,7 +120,8 @@ TEST(DiscLight, ShinesToOneSideAndNotAlongItsPlane) {
 }
 
 TEST(DiscLight, TiltedLightsByItsFormFactor) {
-  // Far enough for one direction: L A cos cos / d² / pi, 1e-4 right at a hundred radii.
+  // The distance is large enough for one direction: L A cos cos / d² / pi, with an error of 1e-4 at a hundred
+  // radii.
   const auto light = disc({60, 80, 0}, {-1, -1, 0}, 1.0f, 1e4f);
   const double cosine = (0.6 + 0.8) / std::sqrt(2.0);
   expectMean(measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0}, {light}, samples(64, 0)), cosine * 0.8, 3e-4);

@@ -137,7 +137,7 @@ TEST(Tracking, ThroughALinearRampIsTheExponentialOfItsIntegral) {
   EXPECT_NEAR(EyeDepth(volumes, along, 0.0, 13.0).to(13.0), integral(10.0), 1e-5);
   EXPECT_NEAR(EyeDepth(volumes, along, 0.0, kFar).to(kFar), 25.6, 1e-4);
   for (const double x : {0.4, 3.0, 9.5}) expectTransmittance(volumes, along, x + 3.0, std::exp(-integral(x)));
-  // Slanted, and backwards.
+  // The ray is slanted, or reversed.
   const glm::vec3 dir = glm::normalize(glm::vec3(-1, 0.2f, -0.1f));
   const Ray back{glm::vec3(12, 1, 3), dir, 0};
   const double length = 10.0 / double{-dir.x};
@@ -205,7 +205,7 @@ TEST(Tracking, CountsMetresOfTheWorldWhateverTheNodesScaleAndTheRaysLength) {
 }
 
 TEST(Tracking, FromTheMiddleOfACubeLetsThroughWhatTheTableSays) {
-  // Literature 7.8: mean transmittance over all directions.
+  // Literature 7.8 gives the mean transmittance over all directions.
   const double expected[][2] = {{1.0, 0.5445496}, {4.0, 0.0908467}, {16.0, 0.0001013}};
   for (const auto& [sigma, mean] : expected) {
     Scene scene = sceneOf({});
@@ -228,7 +228,7 @@ TEST(Tracking, FromTheMiddleOfACubeLetsThroughWhatTheTableSays) {
 }
 
 TEST(Tracking, InASphereLetsThroughWhatTheTableSays) {
-  // Literature 7.8, radius 1. Voxels at the rim hold the share of them that lies inside.
+  // The values are from literature 7.8, for radius 1. Voxels at the rim have the fraction that lies inside.
   const auto ball = medium({64, 64, 64}, [](glm::vec3 p) {
     int inside = 0;
     for (int k = 0; k < 64; ++k) {

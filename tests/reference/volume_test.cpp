@@ -144,12 +144,12 @@ glm::dvec3 meanInTheMiddle(const Scene& medium, std::uint32_t spp) {
 }
 
 TEST(VolumePicture, ScattersInACubeAsTheTableSays) {
-  // Literature 7.8, albedo 0.5, 0.9 and 1, good to 0.001.
+  // The values are from literature 7.8, for albedo 0.5, 0.9 and 1, exact to 0.001.
   const std::pair<float, glm::dvec3> table[] = {
       {1.0f, {0.716, 0.930, 1.0}}, {4.0f, {0.210, 0.651, 1.0}}, {16.0f, {0.0007, 0.052, 1.0}}};
   for (const auto& [density, expected] : table) {
     const glm::dvec3 seen = meanInTheMiddle(cloud(density, {0.5f, 0.9f, 1.0f}), density > 10.0f ? 32 : 128);
-    // 30,000 and 130,000 paths.
+    // These are 30,000 and 130,000 paths.
     const double noise = density > 10.0f ? 0.003 : 0.0025;
     EXPECT_NEAR(seen.r, expected.r, noise) << density;
     EXPECT_NEAR(seen.g, expected.g, noise) << density;

@@ -43,7 +43,8 @@ TEST_F(ClosedForm, UnderABallTheFloorLosesTheSquareOfItsSine) {
   for (std::size_t v = 0; v < draws[0].mesh.positions.size(); ++v)
     if (glm::length(draws[0].mesh.positions[v]) < 1e-3f) {
       met = true;
-      // 256 stratified rays leave 1 %; chords of the ball hide a little less.
+      // 256 stratified rays have an error of 1 %, and the facets of the ball hide a little less than the
+      // ball.
       EXPECT_NEAR(draws[0].uniformRadiance(v), 1.0f - 0.64f, 0.01f);
     }
   EXPECT_TRUE(met);

@@ -60,7 +60,7 @@ class HostileVolume : public testing::ProgramTest {
     return {};
   }
 
-  // Uniform light of radiance 1 gives between nothing and 1.
+  // Uniform light of radiance 1 gives values in 0..1.
   static void expectInRange(const Baked& baked) {
     const double root = std::sqrt(4.0 * std::numbers::pi);
     for (std::size_t i = 0; i < baked.vectors.size(); ++i) {

@@ -111,7 +111,7 @@ TEST_F(NeighborhoodBundle, OfABlackBallHoldsItsClosedForm) {
       auto wrong =
           testing::matrixOf(stored->shape, std::span(stored->visibility).subspan(p * size, size), {});
       for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] -= truth[p * kMatrix + i];
-      // Draft: 512 rays, and codes within a third of a percent.
+      // A draft uses 512 rays, and codes are exact to a third of a percent.
       EXPECT_LT(testing::irradianceOf(wrong, 5, 3), 0.02) << p;
     }
     EXPECT_GT(looked_at, 600);
@@ -142,7 +142,7 @@ TEST_F(NeighborhoodBundle, OfHostileBodiesIsFiniteOrNone) {
   EXPECT_TRUE(bake(over(icosphere({0, 0, 0}, 0.5f, 2), {0, 0, 0})).has_value());
   EXPECT_TRUE(bake(over(icosphere({0, 0, 0}, 1e-4f, 2), {0, 1e-4f, 0})).has_value());
   EXPECT_TRUE(bake(over(icosphere({0, 0, 0}, 50.0f, 2), {0, 51, 0})).has_value());
-  // Out of everyone's reach.
+  // The body is out of everyone's reach.
   EXPECT_FALSE(bake(over(icosphere({0, 0, 0}, 0.1f, 2), {0, 500, 0})).has_value());
 }
 

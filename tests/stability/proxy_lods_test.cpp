@@ -128,7 +128,7 @@ class ProxyLods : public testing::GpuTest {
     EXPECT_TRUE(report) << report.error().line();
     return path;
   }
-  // Room for the near one and the proxy level of detail of the far one.
+  // There is room for the near bundle and for the proxy level of detail of the far one.
   std::uint64_t tight() const {
     Place alone({near}, kNoLimit);
     alone.picture();
@@ -166,7 +166,7 @@ TEST_F(ProxyLods, CoverWhatTheBundleCoversInAboutItsLight) {
   EXPECT_NEAR(static_cast<double>(found.pixels), static_cast<double>(expected.pixels),
               0.02 * static_cast<double>(expected.pixels));
   EXPECT_LT(others, expected.pixels / 15) << "and the same ones";
-  // Unshadowed, but for what bodies of this scene hide from each other.
+  // The proxy is unshadowed; bodies of this scene hide only a little from each other.
   for (int channel = 0; channel < 3; ++channel)
     EXPECT_NEAR(found.mean[channel] / expected.mean[channel], 1.0, 0.06) << channel;
 }
@@ -179,7 +179,7 @@ TEST_F(ProxyLods, GiveWayInOneFrameAndAreNeverSeenTogetherWithTheSurfaces) {
   const std::vector<bool> after = Right(expected).covered;
   ASSERT_NE(before, after);
 
-  // Room for all of it, and one item a frame.
+  // There is room for everything, and one item is uploaded per frame.
   const std::uint64_t ample = std::uint64_t{1} << 30;
   Place place({near, far}, ample, /*upload_bytes=*/1);
   int with_proxy_lod = 0, with_surfaces = 0;

@@ -125,7 +125,7 @@ TEST(BrdfTables, ProjectTheLobeOnEveryFunction) {
         std::array<double, 3> f{};
         std::array<double, 25> y;
         ggx->value(at, v, s, f);
-        // Into the frame of the view.
+        // This transforms the direction into the frame of the view.
         sh::evaluate(5, glm::dvec3(0.8 * s.x + 0.6 * s.y, 0.8 * s.y - 0.6 * s.x, s.z), y);
         return f[lobe] * s.z * y[static_cast<std::size_t>(i)];
       });

@@ -195,7 +195,7 @@ TEST(ClusteredCoding, OneClusterIsPrincipalComponents) {
 }
 
 TEST(ClusteredCoding, FindsTheClustersOfAWorldThatHasSome) {
-  // Eight directions, little noise: one line about each of eight points.
+  // The samples have eight directions and little noise: each of eight points has one line about it.
   const auto shape = shapeOf(5);
   std::mt19937 random(13);
   std::normal_distribution<float> normal;

@@ -176,7 +176,8 @@ TEST(MatrixCoding, BoundsBouncedLightRelativeToAllThatIsShown) {
 
 // On the GPU a cell must fit into one page; a larger bundle could not be shown.
 TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
-  // Sixteen heaps, of the same three directions each: as clusters 16 x (1 + 3) vectors, as one about 1 + 18.
+  // There are sixteen clusters with the same three directions: coded apart they need 16 x (1 + 3) vectors, as
+  // one about 1 + 18.
   constexpr std::size_t kCount = 16000, kHeaps = 16;
   const std::uint32_t size = kVisibility.size();
   const std::vector<float> vectors = testing::heaps(kCount, kHeaps, size, 29);

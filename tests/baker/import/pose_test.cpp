@@ -53,7 +53,7 @@ TEST(MorphTargets, MoveVerticesByTheWeightsOfTheNodeOrElseOfTheMesh) {
   expectNear(worldPositions(scene, 1), {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}});
   EXPECT_EQ(scene.meshes.size(), 2u);  // nodes that stand alike share
   EXPECT_EQ(scene.nodes[2].mesh, scene.nodes[0].mesh);
-  // (0, 0, 1) + 0.5 (2, 0, 0), made unit.
+  // The normal is (0, 0, 1) + 0.5 (2, 0, 0), normalized.
   EXPECT_NEAR(scene.meshes[0].primitives[0].mesh.normals[1].x, 0.70710678f, 1e-6f);
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_NE(scene.warnings[0].find("do not move"), std::string::npos);

@@ -69,7 +69,8 @@ TEST(SharedScenes, AreAllReadOrRefusedInOneLine) {
         EXPECT_FALSE(scene.error().hint.empty());
       }
     }
-  // Those of scenes/ but two of Compatibility/, one node with two parents, and the points and lines.
+  // All files of scenes/ are read, except two of Compatibility/, one node with two parents, and the points
+  // and lines.
   EXPECT_GE(read, 95u);
 }
 

@@ -62,7 +62,7 @@ TEST(NeighborhoodPlans, AreForBodiesOnGroupsOfMoreThanTwiceTheirSize) {
   EXPECT_FALSE(planned.of("static").baked);
   EXPECT_TRUE(planned.of("ball 0").carries(planned.indexOf("static")));
   EXPECT_NE(planned.of("ball 0").reason.find("bounds of static"), std::string::npos);
-  // High above, no one asked for it.
+  // Nothing requests a neighborhood high above.
   EXPECT_FALSE(plan(rolling(ballsOver(1, 3.0f))).of("ball 0").baked);
 }
 

@@ -120,7 +120,7 @@ class RandomEditor {
       const auto& field = component.fields[below(static_cast<unsigned>(component.fields.size()))];
       edits.push_back({entity, component.name, field.name, valueFor(field)});
     }
-    // May be out of range: then nothing happens.
+    // The value may be out of range, and then nothing happens.
     static_cast<void>(history_.setFields(edits));
   }
   bool create() {

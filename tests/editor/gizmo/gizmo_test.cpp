@@ -254,7 +254,7 @@ TEST(Gizmo, AnAxisThatPointsAtTheViewerHasNoHandleAndNothingLeavesTheScene) {
     EXPECT_TRUE(gizmo.handleScreenPoint(Handle::X));
     EXPECT_FALSE(gizmo.press(Handle::Z, *gizmo.pivotScreenPoint()));
   }
-  // Steeply away: dragged towards and beyond its vanishing point it stays finite.
+  // The axis points steeply away: a drag towards and beyond its vanishing point stays finite.
   gizmo.setView(lookAt({1.0f, 1.0f, 5.0f}, {0.0f, 0.0f, 0.0f}, true), kViewport);
   const auto grab = gizmo.handleScreenPoint(Handle::Z);
   ASSERT_TRUE(grab);

@@ -56,7 +56,8 @@ Sample sampleBundle() {
   d.lights = {lamp};
   d.nodes[1].light = 0;
 
-  // Cell 0 plain, two clusters of two and no axes; cell 1 normal-mapped, of one cluster; lamps in both.
+  // Cell 0 is plain, with two clusters of two axes and none; cell 1 is normal-mapped, with one cluster. Both
+  // have lamps.
   const auto add = [&](PayloadType type, const Blob& bytes) { return s.add(type, bytes); };
   const auto codebook = [&](const transfer::TransferShape& shape,
                             const std::vector<std::uint32_t>& axis_counts) {

@@ -93,8 +93,8 @@ TEST(Keyframes, CubicSplinesReproduceCubics) {
 }
 
 TEST(Keyframes, TangentsOfEachSideAreTheirOwn) {
-  // Value 0 at both keys; out-tangent 4 at the first, in-tangent -8 at the second, over half a second. At the
-  // middle: 0.5 * (4 / 8) - 0.5 * (-8 / 8) = 0.75.
+  // The value is 0 at both keys; the out-tangent is 4 at the first and the in-tangent -8 at the second, over
+  // half a second. At the middle it is 0.5 * (4 / 8) - 0.5 * (-8 / 8) = 0.75.
   const auto c = channel(Path::Translation, Interpolation::Cubic, {1.0f, 1.5f},
                          {99, 0, 0, 0, 0, 0, 4, 0, 0, -8, 0, 0, 0, 0, 0, 99, 0, 0});
   EXPECT_FLOAT_EQ(vectorAt(c, 1.25f).x, 0.75f);

@@ -305,8 +305,8 @@ TEST(DecodeDraco, RefusesEveryTruncation) {
 }
 
 TEST(DecodeDraco, SurvivesFlippedBytes) {
-  // Without texture coordinates: a forged orientation count there makes Draco 1.5.5 loop for seconds, though
-  // safely.
+  // The mesh has no texture coordinates: a forged orientation count there makes Draco 1.5.5 loop for seconds,
+  // though safely.
   MeshData mesh = bump(8);
   mesh.texcoords0.clear();
   const EncodedMesh out = encoded(mesh);

@@ -291,7 +291,7 @@ TEST_F(OverlayTest, LinesAreHiddenByWhatStandsBeforeThemButForATrace) {
 }
 
 TEST_F(OverlayTest, KeyLightsAreMarkedWhereTheSkyShowsThem) {
-  // Beside the sphere, as the eye looks along -Z.
+  // The place is beside the sphere, for an eye that looks along -Z.
   const auto lights = std::vector<spec::Light>{
       spec::ConstantLight{.radiance = glm::vec3(0.5f)},
       spec::SunLight{

@@ -111,7 +111,7 @@ TEST_F(FrameTest, UniformLightShowsTheAlbedoOfAnOpenSphere) {
   std::size_t count = 0;
   for (const glm::vec4& texel : image.texels) {
     if (texel.a == 0.0f) {
-      // Filtered, so equal up to rounding.
+      // The texels are filtered, so they are equal up to rounding.
       EXPECT_LT(glm::distance(texel, glm::vec4(1.0f, 1.0f, 1.0f, 0.0f)), 1e-6f) << "the sky covers nothing";
       continue;
     }
@@ -162,7 +162,7 @@ TEST_F(FrameTest, TheSunLightsTheSideThatFacesItAlsoInTurnedGroupsAndUnderATurne
   // Seen from +Z, +X is on the right.
   EXPECT_GT(brightness(43, 32), 0.3f);
   EXPECT_LT(brightness(21, 32), 0.1f);
-  // Turned by 90 degrees, +X goes to -Z: behind. By 180 to the left. By -90 to the front.
+  // Turned by 90 degrees, +X goes to -Z, behind the camera; by 180 it goes to the left, by -90 to the front.
   stage.environment.setTurn(180.0f);
   EXPECT_GT(brightness(21, 32), 0.3f);
   EXPECT_LT(brightness(43, 32), 0.1f);
@@ -280,7 +280,7 @@ TEST_F(FrameTest, DisplayPicturesAreExposedAndOpaque) {
   stage.render();
   const spec::Rgba8Image image = stage.frame->readDisplay();
   const std::size_t centre = 4 * (32 * 64 + 32);
-  // 0.5 - 0.04, coded: 1.055 * 0.46^(1/2.4) - 0.055 = 0.708.
+  // The value is 0.5 - 0.04, coded: 1.055 * 0.46^(1/2.4) - 0.055 = 0.708.
   EXPECT_NEAR(image.texels[centre], 181, 2);
   EXPECT_EQ(image.texels[centre + 3], 255);
   EXPECT_EQ(image.texels[3], 255) << "the sky too";

@@ -152,7 +152,7 @@ TEST_F(FrameVolume, EverythingWhiteUnderWhiteLightIsWhite) {
 }
 
 TEST_F(FrameVolume, DimsSurfacesByWhatLiesBeforeThem) {
-  // Black mist: a white quad shows exp(-extinction x way through).
+  // In black mist a white quad shows exp(-extinction * distance through it).
   for (const auto& [z, way] : {std::pair{-2.0f, 2.0f}, {-0.5f, 1.5f}, {0.75f, 0.25f}, {2.0f, 0.0f}}) {
     BundleBuilder builder;
     builder.add({quadMesh(), colored(glm::vec4(1.0f)), glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, z))});

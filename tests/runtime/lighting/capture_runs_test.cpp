@@ -63,7 +63,7 @@ TEST_F(CaptureRuns, ProxiesThatAreKnownAgainAreDrawnAsIfTheyWereNew) {
   using Proxies = std::vector<const bundle::CaptureProxy*>;
   auto known = Capture::create({.size = 8, .order = 4}, environment);
   ASSERT_TRUE(known);
-  // They come one by one, change places and go.
+  // Bodies are added one by one, change places and are removed.
   const std::vector<std::pair<Proxies, std::vector<std::uint64_t>>> steps = {
       {{&cube}, {1}},
       {{&square, &cube}, {2, 1}},

@@ -312,7 +312,8 @@ TEST_F(CaptureTest, SmallBodiesAreLeftOutUnlessTheyAreBright) {
 }
 
 TEST_F(CaptureTest, ASunOfOneTexelInAProbeKeepsItsPlaceAndPower) {
-  // 128 x 64 texels of 2.8 degrees, one of them 10000 times brighter: half a texel of the capture's cube.
+  // The image has 128 x 64 texels of 2.8 degrees, one of them 10000 times brighter: half a texel of the
+  // capture's cube.
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "capture_sun.hdr";
   {
     std::ofstream out(file, std::ios::binary);

@@ -40,7 +40,7 @@ TEST(Environment, TurnsAsASunOfTheTurnedAzimuth) {
   const Environment placed = sun(90);
   for (std::size_t i = 0; i < 64; ++i)
     EXPECT_LT(glm::distance(turned.light().c[i], placed.light().c[i]), 1e-5f) << "coefficient " << i;
-  // A thousand turns leave no trace.
+  // After a thousand turns there is no trace of them.
   for (int i = 0; i < 1000; ++i) turned.setTurn(static_cast<float>(i) * 0.37f);
   turned.setTurn(0.0f);
   for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(turned.light().c[i], sun(20).light().c[i]);
@@ -69,7 +69,7 @@ TEST(Environment, MixesTwoSetsTurnedTogether) {
   environment->setTurn(30.0f);
   environment->setFade(0.25f);
   environment->setIntensity(2.0f);
-  // 1.5 of the first set and 0.5 of the second, whose suns stand 30 degrees farther round.
+  // The light is 1.5 of the first set and 0.5 of the second, whose suns are 30 degrees further round.
   constexpr double kDegree = 3.14159265358979 / 180.0;
   const sh::LightVector sky = sh::constantLight(8, {1.5f, 3.0f, 8.5f});
   const glm::vec3 first = spec::directionFromAzimuthElevation(50, 25),

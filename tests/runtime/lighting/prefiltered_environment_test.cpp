@@ -151,7 +151,8 @@ TEST_F(PrefilteredEnvironmentTest, LightOfFewBandsLeavesNothing) {
       difference =
           std::max<double>(difference, glm::distance(known, glm::vec3(texels[static_cast<std::size_t>(i)])));
     }
-    // Radiance up to 3, a few looks through half floats at an environment map of 64 texels a face.
+    // The radiance goes up to 3, and passes several half-float look-ups in an environment map of 64 texels
+    // per face.
     EXPECT_LT(difference, 0.02) << "level " << level;
   }
 }

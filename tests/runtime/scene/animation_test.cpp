@@ -163,7 +163,7 @@ TEST(Animation, AGroupThatGrowsEvenlyStaysRigid) {
     EXPECT_NEAR(std::abs(glm::dot(top.rotation, turn)), 1.0f, 1e-6f) << time;
     EXPECT_NEAR(std::abs(glm::dot(top.turn_since_rest, turn)), 1.0f, 1e-6f) << time;
     EXPECT_LT(glm::distance(top.translation, glm::vec3(9, 1, 0)), kRounding) << "it grows about its place";
-    // From 2 at rest to 1 + 2 t.
+    // The scale is 2 at rest and then 1 + 2 t.
     const glm::vec3 grown(top.world_from_rest * glm::vec4(0, 1, 0, 0));
     EXPECT_LT(glm::distance(grown, glm::vec3(0, (1 + 2 * time) / 2, 0)), kRounding);
   }

@@ -78,7 +78,7 @@ TEST(ShBasis, DiffersFromCondonShortleyByMinusOneToTheM) {
   }
 }
 
-// sum_m y_lm² = (2l+1)/4pi in every direction, the poles and their neighbourhood included.
+// sum_m y_lm² is (2l+1)/4pi in every direction, also at and near the poles.
 TEST(ShBasis, KeepsTheEnergyOfEachBandEverywhere) {
   std::vector<glm::dvec3> dirs = {{0, 0, 1},       {0, 0, -1}, {1e-20, 0, 1},
                                   {0, -1e-20, -1}, {1, 0, 0},  {0, -1, 0}};

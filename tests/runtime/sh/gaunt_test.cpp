@@ -47,7 +47,7 @@ TEST(Gaunt, HasTheKnownNumberOfTermsInEqualBands) {
   }
 }
 
-// Selection rules: l_k between |l_i - l_j| and l_i + l_j, even sum.
+// The selection rules are that l_k is between |l_i - l_j| and l_i + l_j, and that the sum is even.
 TEST(Gaunt, IsOrderedSymmetricAndObeysTheTriangleRule) {
   for (const auto& [in, out] : {std::pair{5, 5}, {6, 6}, {5, 4}, {4, 6}, {1, 3}, {5, 9}}) {
     const GauntTable table = makeGauntTable(in, out);

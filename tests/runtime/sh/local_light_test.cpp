@@ -193,7 +193,7 @@ TEST(ShLocalLight, APointLightPassesThroughThePointWithoutAJump) {
 }
 
 TEST(ShLocalLight, NothingJumpsWhileADiscPassesBeforeThePoint) {
-  // 0.02 radii before the plane, across the rim and back out.
+  // The point moves 0.02 radii before the plane, across the rim and back.
   LightVector before = discAreaLight(kMaxOrder, {-2.0, 0, 0.02}, {0, 0, -1}, 1.0, kWhite);
   for (double x = -2.0; x <= 2.0; x += 0.001) {
     const LightVector now = discAreaLight(kMaxOrder, {x, 0, 0.02}, {0, 0, -1}, 1.0, kWhite);

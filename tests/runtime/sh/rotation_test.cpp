@@ -180,7 +180,7 @@ TEST(ShRotation, AgreesInFloatWithDouble) {
     }
     rotation.apply(in, std::span<double>(out));
     rotation.apply(in_float, std::span<float>(out_float));
-    // 15 products of numbers up to 1, each rounded at 2^-24.
+    // The error is that of 15 products of numbers up to 1, each rounded at 2^-24.
     for (std::size_t i = 0; i < in.size(); ++i) EXPECT_NEAR(static_cast<double>(out_float[i]), out[i], 1e-5);
   }
 }

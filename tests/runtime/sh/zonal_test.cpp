@@ -41,7 +41,7 @@ TEST(ShZonal, TransfersAllLightToAnOpenPoint) {
   unoccludedTransfer(kMaxOrder, glm::dvec3(0, 0, 1), transfer);
   for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(transfer[i], expected[i], 1e-12) << i;
 
-  // Uniform light gives exactly the albedo, left out here, whatever the normal.
+  // Uniform light gives exactly 1 (the albedo is left out), for any normal.
   Random random(11);
   std::array<float, kMaxCoefficients> transfer_float;
   for (int k = 0; k < 20; ++k) {

@@ -139,7 +139,8 @@ TEST_F(BesideLights, AGridTakesNothingOfWhatShadowCubesBring) {
 }
 
 TEST_F(BesideLights, WhatABodyHidesIsNotSentOnEither) {
-  // It stands between the lamp and the floor, and reaches the floor by its grid. No cube holds it.
+  // The body is between the lamp and the floor and reaches the floor by its grid, but it is in no shadow
+  // cube.
   NeighborhoodScene scene;
   scene.receivers = {floorOf(0.3f)};
   scene.receivers[0].full = glm::vec3(kFull);

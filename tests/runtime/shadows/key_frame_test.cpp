@@ -251,8 +251,8 @@ TEST_F(KeyFrame, WhereThereAreNoKeyLightsNothingIsDrawnAndNothingChanges) {
 }
 
 TEST_F(KeyFrame, UnderAWhiteSkyAndSunsAnOpenSphereHasEachLightOnce) {
-  // E/pi: 1 of the sky, of each sun what a sphere of its size gives; seen along -z, so that pixels tell the
-  // normal.
+  // E/pi is 1 from the sky, and from each sun what a sphere of its size gives. The view is along -z, so that
+  // pixels determine the normal.
   const std::vector<spec::Light> lights = {spec::ConstantLight{.radiance = glm::vec3(1.0f)},
                                            sun(60, 40, 4.0f, 3.0f), sun(-20, -10, 1.0f, 0.5f)};
   for (const bool bounces : {false, true}) {

@@ -141,7 +141,7 @@ TEST(KeyLight, AnEdgeCastsThePenumbraOfADiscThatALineCuts) {
           EXPECT_EQ(ref::keyVisible(map, key, {-x, 0.01f, 0.0f}, kUp, kUp), 0.0f);
         }
       }
-      // So finely so many points tell how much of a disc lies beyond a line.
+      // This is how finely the sample points resolve the part of a disc beyond a line.
       const bool few = rays == 32;
       EXPECT_LT(errors.largest, few ? 0.08 : 0.035) << c.degrees << " degrees, " << c.height << " high";
       EXPECT_LT(errors.mean(), few ? 0.02 : 0.0075) << c.degrees << " degrees, " << c.height << " high";

@@ -62,7 +62,7 @@ std::vector<Case> someCases() {
                .range = i % 3 == 0 ? number(1.0f, 4.0f) : 0.0f,
                .pad = 0.0f};
     c.turns = number(0, 1);
-    // Half of them on the floor below the light.
+    // Half of the places are on the floor below the light.
     const bool on_floor = i % 8 < 4;
     c.normal = on_floor ? glm::vec3(0, 1, 0) : direction();
     c.position = c.light.position + (on_floor ? glm::vec3(number(-2, 2), -1.0f, number(-2, 2))

@@ -133,7 +133,7 @@ TEST_F(LocalShadowsTest, AnEdgeCastsAPenumbraOfTheRightWidthAndShape) {
           whole +=
               10.0f * kRadius * kRadius / d2 * cosine * (kind == ShadowedLight::Kind::Disc ? cosine : 1.0f);
         }
-        // The share of a disc beyond a line at s radii from its middle.
+        // This is the fraction of a disc beyond a line at s radii from its centre.
         const float s = std::clamp(placeOf(x, kHalf) / kRadius, -1.0f, 1.0f);
         const float expected = (std::acos(-s) + s * std::sqrt(1.0f - s * s)) / kPi;
         EXPECT_NEAR(mean / whole, expected, samples == 64 ? 0.02f : 0.04f) << "x " << placeOf(x, kHalf);
@@ -253,7 +253,7 @@ TEST_F(LocalShadowsTest, ALightWithoutExtentCastsEdgesAsSharpAsItsTexels) {
 }
 
 TEST_F(LocalShadowsTest, AClosedRoomIsLitEverywhereWithoutLinesInItsCorners) {
-  // Six inner walls of a cube from -1 to 1.
+  // The scene has the six inner walls of a cube from -1 to 1.
   BundleBuilder builder;
   const glm::mat4 out = glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, -1));  // faces +Z, behind the origin
   const glm::vec3 y(0, 1, 0), x(1, 0, 0);
@@ -306,7 +306,7 @@ TEST_F(LocalShadowsTest, ASphereInACurvedRoomIsLitEverywhere) {
       .view_from_world = glm::lookAt(glm::vec3(0, 0, 0.3f), glm::vec3(0.3f, 0.2f, -1), {0, 1, 0}),
       .clip_from_view = glm::perspective(1.5f, 1.0f, 0.01f, 10.0f),
       .eye_ws = {0, 0, 0.3f}};
-  // E = pi L (r/d)^2 at d = 1; facets lie up to 0.2 % nearer.
+  // E = pi L (r/d)^2 at d = 1; the mesh's facets are up to 0.2 % nearer.
   for (const glm::vec4& pixel : stage.picture(view, sphereLight({0, 0, 0}, 0.1f, glm::vec3(100.0f))))
     ASSERT_NEAR(pixel.r, 1.0f, 0.01f);
 }
@@ -410,7 +410,7 @@ TEST_F(LocalShadowsTest, DrawsACubeOnlyWhenItsLightOrWhatItSeesMoved) {
 TEST_F(LocalShadowsTest, MasksLetLightThroughWhereTheirAlphaIsLow) {
   BundleBuilder builder;
   BuiltMesh blocker = level(1.0f, 1.0f);
-  // Left half there, right half a hole.
+  // The left half is solid there, the right half is a hole.
   gltf::Sampler nearest{.wrap_s = GL_CLAMP_TO_EDGE,
                         .wrap_t = GL_CLAMP_TO_EDGE,
                         .mag_filter = GL_NEAREST,

@@ -100,14 +100,14 @@ TEST(ShadowedLight, ADiscGivesWhatAQuadratureOfItsAreaGivesAlsoAcrossTheHorizon)
     const float radius = random.number(0.05f, 1.0f);
     const double expected = discSum(normal, to_light, direction, radius);
     const bool shines = glm::dot(direction, to_light) < 0.0f;
-    // A polygon of 24 corners for the circle.
+    // A polygon of 24 corners replaces the circle.
     EXPECT_NEAR(ref::discShare(normal, to_light, direction, radius), shines ? expected : 0.0,
                 3e-3 * expected + 1e-4);
   }
 }
 
 TEST(ShadowedLight, ADiscOverheadHasItsKnownFormFactor) {
-  // r^2 / (r^2 + d^2) for a point on its axis that faces it.
+  // A point on the disc's axis that faces it gets r^2 / (r^2 + d^2).
   for (const float radius : {0.01f, 0.049f, 0.051f, 0.3f, 1.0f, 10.0f, 1000.0f}) {
     const float expected = radius * radius / (radius * radius + 1.0f);
     EXPECT_NEAR(ref::discShare({0, 1, 0}, {0, 1, 0}, {0, -1, 0}, radius), expected, 3e-3f * expected);
@@ -218,7 +218,8 @@ TEST(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
     EXPECT_NEAR(ref::pointVisible(floor_only, receiver, 512), 1.0f, kRounding);
     EXPECT_NEAR(ref::discVisible(floor_only, sphere, receiver, up, {512, 16, random.number(0, 1)}), 1.0f,
                 kRounding);
-    // Contact: from 1 % of the distance behind the wall on; before it, all the way to its foot, light.
+    // The shadow begins within 1 % of the distance behind the wall; before the wall it is light up to the
+    // foot.
     const bool behind = place.x > 1.012f * 1.02f, before = place.x < 0.98f;
     if (!behind && !before) continue;
     EXPECT_NEAR(ref::pointVisible(with_wall, receiver, 512), before ? 1.0f : 0.0f, kRounding)

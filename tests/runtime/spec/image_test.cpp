@@ -276,7 +276,7 @@ TEST_F(SpecImage, BrokenExrFilesGiveErrors) {
 }
 
 TEST_F(SpecImage, SharedProbesHaveTheirKnownExtremes) {
-  // Luminance maxima from the data's own table, printed to four digits.
+  // The luminance maxima are from the data's own table, printed to four digits.
   for (const auto& [name, maximum] : {std::pair{"probes/grace_probe.hdr", 520.6f},
                                       {"probes/uffizi_latlong_small.hdr", 13.8f},
                                       {"probes/grace_latlong.exr", 14.82f}}) {

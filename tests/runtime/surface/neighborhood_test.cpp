@@ -10,8 +10,8 @@ TEST_F(NeighborhoodFrame, ABlackSphereOverAFloorUnderConstantLightIsTheClosedFor
   scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, kFine, kFineHalf)};
   NeighborhoodStage stage(scene, {kWhite});
   const spec::RgbaImage image = stage.picture();
-  // literature 7.2: E/pi = 1 - (R/d)^2 cos t, of the open floor's light. Straight below, bands 0..2 of the
-  // light, all that a diffuse receiver takes, leave 0.86 % of that out.
+  // By literature 7.2, E/pi = 1 - (R/d)^2 cos t of the unoccluded floor's light. Straight below, bands 0..2
+  // of the light, which are all that a diffuse receiver uses, miss 0.86 % of it.
   const auto closedForm = [](const glm::vec3& place) {
     const float squared = 1.5f * 1.5f + glm::dot(place, place);
     return glm::vec3(1.0f - 1.5f / (squared * std::sqrt(squared)));

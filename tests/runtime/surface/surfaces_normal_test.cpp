@@ -93,7 +93,7 @@ TEST(SurfaceNormal, StaysWhereThereIsNoFrameAndWhereTheMapIsFlat) {
 
 TEST(SurfaceNormal, TheScaleBendsXAndYOnly) {
   const ref::TangentFrame frame = ref::frameFromTangent({0, 0, 1}, {1, 0, 0, -1});
-  // (0.5, 0.5, 0.5) scaled by 2 on x and y, y turned by the handedness.
+  // The value is (0.5, 0.5, 0.5) scaled by 2 on x and y, with y multiplied by the handedness.
   const glm::vec3 bent = ref::perturbedNormal(frame, glm::vec3(0.75f), 2.0f);
   EXPECT_LT(glm::distance(bent, glm::normalize(glm::vec3(2, -2, 1))), 1e-6f);
 }

@@ -184,7 +184,7 @@ TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordi
   };
   const Case cases[] = {
       {{}, {5, 0, 0}, {0, 6, 0}},
-      // Shifted by half a picture to the right and downwards, repeated.
+      // The texture is shifted by half its size to the right and downwards, and repeats.
       {{.texture = 0, .texcoord = 0, .offset = {0.5f, 0.5f}}, {5, 6, 7}, {0, 0, 7}},
       // The rectangle shows half of the texture's width.
       {{.texture = 0, .texcoord = 0, .offset = {0.0f, 0.0f}, .scale = {0.5f, 1.0f}}, {5, 0, 0}, {5, 0, 0}},

@@ -77,8 +77,8 @@ TEST_F(SurfacesWorld, EmissionIsAddedOnBothSidesOfACard) {
 }
 
 TEST_F(SurfacesWorld, EachTextureHasItsOwnCoordinatesAndTransform) {
-  // Base colour: red, green from the left, by TEXCOORD_0. Emission: black, 188 = 0.5029 from the left, by
-  // TEXCOORD_1, which runs the other way, turned back by scale -1.
+  // The base colour is red, then green, from the left, by TEXCOORD_0. The emission is black, then 188 =
+  // 0.5029, from the left, by TEXCOORD_1, which runs the other way and is mirrored by scale -1.
   BundleBuilder builder;
   gltf::Material material;
   material.base_color_texture.texture = builder.addTexture(2, 1, {255, 0, 0, 255, 0, 255, 0, 255}, kNearest);

@@ -196,7 +196,7 @@ TEST(SharedCodebook, WithFlippedBitsIsRefusedOrDecodesToFiniteVectors) {
 }
 
 TEST(SharedCodebook, OfTooManyVectorsIsRefusedBeforeTheyAreMade) {
-  // 70,000 clusters of 3,072 values from a payload of 140 kB.
+  // A payload of 140 kB claims to have 70,000 clusters of 3,072 values.
   SharedCodebook codebook;
   codebook.axis_counts.assign(70000, 0);
   TransferShape shape;

@@ -159,7 +159,7 @@ TEST_F(TextureStreaming, WhatReplacesABundleComesOverSeveralFramesToo) {
     const std::uint32_t slot = stage.open(sheet(0));
     look(stage, 2.2f);
     const std::uint64_t bytes = stage.world.residency().bytesResident();
-    // Given up in the middle of a texture, it leaves nothing behind.
+    // An upload that is cancelled in the middle of a texture leaves nothing behind.
     for (const bool give_up : {true, false}) {
       ASSERT_TRUE(stage.world.replace(slot, sheet(1)));
       int frames = 0;

@@ -55,7 +55,7 @@ Cavity cavity(glm::vec3 axis, float alpha_deg) {
   return cavity;
 }
 
-// Mean over the surface of every column of channel 0.
+// Returns the mean over the surface of every column of channel 0.
 std::vector<double> surfaceMean(const Transport& t, const TransferField& field) {
   std::vector<double> sum(field.columns, 0.0);
   double area = 0.0;
@@ -124,7 +124,8 @@ TEST(Bounces, InAWhiteFurnaceAddUpToOne) {
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
     if (t.samples.originsOf(s).empty()) continue;
     const float sum = uniformRadiance(baked.direct.field.at(s)) + uniformRadiance(baked.bounced.field.at(s));
-    // Exact but for the passes with less than 1 % of the light, whose every fourth ray errs by some percent.
+    // The result is exact except for the passes with less than 1 % of the light, whose rays (every fourth)
+    // err by a few percent.
     EXPECT_NEAR(sum, 1.0f, 1e-3f);
   }
 }
@@ -157,7 +158,7 @@ TEST(Bounces, AreNoneOnAConvexBody) {
 }
 
 TEST(Bounces, CarryTheColourOfTheWallAndOfItsTexture) {
-  // Floor beside a red wall; then the same red from a texture.
+  // A floor is beside a red wall; then the same red comes from a texture.
   Scene scene =
       sceneOf({grid({0, 0, 0}, 1.0f, 4), transformed(turned(grid({0, 0, 0}, 1.0f, 4), -90.0f, {0, 0, 1}),
                                                      glm::translate(glm::mat4(1.0f), {-0.5f, 0.5f, 0}))});

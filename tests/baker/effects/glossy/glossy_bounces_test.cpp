@@ -152,8 +152,8 @@ TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
 }
 
 TEST(GlossyBounces, InASphereSpreadALampEvenly) {
-  // A lamp of 1 cd in the centre of a closed sphere of radius 2 and albedo 1/2: the wall sends out albedo
-  // E/pi, and all bounces together albedo / (1 - albedo) E/pi, the same everywhere. The lamp stands on every
+  // A lamp of 1 cd is in the centre of a closed sphere of radius 2 and albedo 1/2. The wall emits albedo
+  // E/pi, and all bounces together albedo / (1 - albedo) E/pi, the same everywhere. The lamp is on every
   // normal, so of its E/pi = 1 / (pi r²) five bands of the cosine and the mirror image see 2 (1 + 5/4 - 9/24)
   // / 4 instead of 1 (the odd bands cancel).
   Scene scene = glossyScene({flipped(icosphere({0, 0, 0}, 2.0f, 4))});
@@ -339,14 +339,15 @@ TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
     double largest = 0.0, most = 0.0;
     for (std::size_t s = 0; s < field.size(); ++s) {
       if (t.samples.originsOf(s).empty()) continue;
-      // l' of uniform light, as a function: its mean over the sphere, and E/pi on the sample's own plane.
+      // l' of uniform light is a function whose mean over the sphere is checked, and its E/pi on the sample's
+      // own plane.
       const double mean = double{shadowMatrix(field, s)[0]} + double{field.bounced[s * 625]};
       largest = std::max(largest, mean);
       most = std::max(most, double{uniformRadiance(baked.direct.field.at(s)) +
                                    uniformRadiance(baked.bounced.field.at(s))});
       EXPECT_GT(field.bounced[s * 625], -1e-6f);
     }
-    // 2 % for what five bands make of narrow lobes and sharp edges.
+    // The tolerance is 2 % for what five bands lose of narrow lobes and sharp edges.
     EXPECT_LT(largest, 1.02) << roughness;
     EXPECT_LT(most, 1.02) << roughness;
     for (std::size_t b = 1; b < baked.bounced.energy.size(); ++b)

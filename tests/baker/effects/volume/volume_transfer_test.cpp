@@ -54,7 +54,7 @@ TEST(VolumeTransfer, OfABallHasTheCoefficientsOfItsChords) {
   for (const Case& c : {Case{1, 0.0, {1.3040987, 0, 0, 0, 0}},
                         Case{1, 0.5, {1.4832176, .4066322, -.0063963, -.0097848, .0005781}},
                         Case{4, 0.5, {.1583801, .1333539, .0405853, .0019360, -.0017221}}}) {
-    // Nine voxels of a quarter: one stands at each multiple of it.
+    // There are nine voxels of a quarter each, and one is at each multiple of a quarter.
     const VolumeTransfer t = transferOf(c.sigma == 1.0f ? thin : thick, singly(gridOf(9)));
     for (std::size_t l = 0; l < 5; ++l)
       EXPECT_NEAR(uniformAt(t, {0, 0, c.r}, 0, l * (l + 1)) * kRoot4Pi, c.wanted[l], 6e-3 * c.wanted[0])

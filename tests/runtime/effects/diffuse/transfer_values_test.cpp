@@ -178,7 +178,7 @@ TEST(TransferMeasures, OpenSurfacesOfEveryKindHaveTheSameNumbers) {
   const transfer::TransferShape plain{.order = kOrder}, mapped{.order = kOrder, .outputs = 9},
       visibility{.order = kOrder, .outputs = 25, .visibility_bands = 9};
   std::vector<float> row(plain.size(), 0.0f), matrix(mapped.size(), 0.0f), open(visibility.size(), 0.0f);
-  // E/pi at the normal z: (A_l/pi) y_l0.
+  // E/pi at the normal z is (A_l/pi) y_l0.
   for (std::uint32_t l = 0; l < kOrder; ++l)
     row[l * l + l] = transfer::kCosineOverPi[l] *
                      std::sqrt(static_cast<float>(2 * l + 1) / (4.0f * std::numbers::pi_v<float>));

@@ -35,7 +35,7 @@ TEST(DiffuseTwin, ShadesUnshadowedAsTheClosedFormOfOpenTransfer) {
       glm::vec3 expected(0.0f);
       for (std::size_t k = 0; k < transfer.size(); ++k) expected += transfer[k] * glm::vec3(light[k]);
       const glm::vec3 got = ref::unshadowedRadiance(memory, normal, 0, order);
-      // Float recurrences on coefficients of size 1, up to 64 of them.
+      // The tolerance is for float recurrences on up to 64 coefficients of size 1.
       EXPECT_LT(glm::distance(got, expected), 1e-5f * static_cast<float>(order)) << "order " << order;
     }
   }

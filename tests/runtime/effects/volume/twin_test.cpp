@@ -89,7 +89,8 @@ TEST(VolumeTwin, AHomogeneousBoxTransmitsTheExponentialOfItsChord) {
 }
 
 TEST(VolumeTwin, AtAnyDensityScattersNoMoreThanItTakesAway) {
-  // White medium, light 1 in it and behind it: 1 everywhere, up to the tenth of a per mille where rays end.
+  // The medium is white, with light 1 in it and behind it: the result is 1 everywhere, up to the 1e-4 at
+  // which rays end.
   for (const float density_max : {0.0f, 1e-6f, 0.3f, 10.0f, 300.0f, 1e6f}) {
     BuiltVolume built;
     built.size = {24, 20, 28};
@@ -111,7 +112,7 @@ TEST(VolumeTwin, AtAnyDensityScattersNoMoreThanItTakesAway) {
 }
 
 TEST(VolumeTwin, AStepIsExactWhereDensityIsConstantAndLightLinear) {
-  // Light x along a ray along x: int s exp(-s u) (x0 + u) du, whatever the step, thick or thin.
+  // The light is x, on a ray along x: the result is int s exp(-s u) (x0 + u) du for any step, thick or thin.
   for (const float extinction : {1e-3f, 1.0f, 50.0f, 1e4f}) {
     BuiltVolume built = homogeneous(extinction);
     built.transfer_size = glm::uvec3(8);
@@ -303,7 +304,7 @@ TEST(VolumeTwin, AVolumeThatIsScaledKeepsItsOpticalDepth) {
 }
 
 TEST(VolumeTwin, ForwardScatteringIsBrightTowardsTheLight) {
-  // A beam from s0 in n bands: S(d) = sum_l g^l (2l + 1)/4pi P_l(s0 . d).
+  // For a beam from s0 in n bands, S(d) = sum_l g^l (2l + 1)/4pi P_l(s0 . d).
   const glm::vec3 towards_light = glm::normalize(glm::vec3(0.3f, 0.8f, -0.5f));
   for (const float g : {-0.6f, 0.0f, 0.5f, 0.8f})
     for (const uint outputs : {9u, 16u, 25u, 36u}) {
