@@ -44,8 +44,8 @@ class FirstHit {
   float pdf(const glm::vec3& ray) const;  // per steradian; 0 below the triangle
 
  private:
-  static constexpr std::size_t kRows = 16,
-                               kColumns = 32;  // cells of equal solid angle, uniform in height and azimuth
+  // The cells have equal solid angles, because they are uniform in height and azimuth.
+  static constexpr std::size_t kRows = 16, kColumns = 32;
   static constexpr float kCells = kRows * kColumns;
 
   // These use directions in the frame of the smooth normal.

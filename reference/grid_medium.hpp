@@ -82,8 +82,7 @@ void GridMedium::visitBlocks(const GridRay& ray, Visit&& visit) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const glm::dvec3 start = ray.at(ray.begin) / double{kBlock};
   glm::ivec3 block = glm::clamp(glm::ivec3(glm::floor(start)), glm::ivec3(0), blocks_ - 1), step(0);
-  glm::dvec3 next(kInfinity),
-      apart(kInfinity);  // t of the next block face on each axis, and its distance to the one after
+  glm::dvec3 next(kInfinity), apart(kInfinity);  // t of the next block face per axis, and between faces
   for (int a = 0; a < 3; ++a) {
     if (ray.dir[a] == 0.0) continue;
     step[a] = ray.dir[a] > 0.0 ? 1 : -1;

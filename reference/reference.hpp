@@ -44,11 +44,10 @@ struct Request {
 struct Report {
   spec::RgbaImage image;
   std::uint64_t rays = 0;
-  double seconds = 0.0;               // tracing time, including resumed runs
-  std::uint32_t resumed_samples = 0;  // samples per pixel of earlier runs
-  std::optional<double>
-      standard_error;                // of the pixels, relative to the picture; none for one sample per pixel
-  std::vector<std::string> notices;  // what was repaired or left out, one sentence each
+  double seconds = 0.0;                  // tracing time, including resumed runs
+  std::uint32_t resumed_samples = 0;     // samples per pixel of earlier runs
+  std::optional<double> standard_error;  // of the pixels, relative; none for one sample per pixel
+  std::vector<std::string> notices;      // what was repaired or left out, one sentence each
 };
 
 // Applies the scene's animations at time_s to its nodes, which must be at rest. Adds a warning to the scene

@@ -26,7 +26,7 @@ struct Surface {
   std::shared_ptr<const WholeBrdf> whole;  // null: GGX or diffuse
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
-  float handedness = 1.0f;  // -1 in mirrored nodes; the bitangent is cross(t, n) * w * handedness
+  float handedness = 1.0f;  // -1 in mirrored nodes; the bitangent is cross(n, t) * w * handedness
 };
 
 // A Hit is where a ray meets a triangle. The barycentric coordinates u and v belong to the triangle's second

@@ -55,8 +55,8 @@ struct Path {
   // The BRDF is evaluated for this direction: dir, or a direction that is mirrored to dir (horizons.hpp).
   glm::vec3 towards{0.0f};
   float pdf = 0.0f;  // density of `towards` by the BRDF sampling
-  float ray_pdf =
-      0.0f;  // density of `dir`, summed over all directions that it stands for; set only if findsLights()
+  // The density of `dir`, summed over all directions that it stands for. It is set only if findsLights().
+  float ray_pdf = 0.0f;
   bool alive = true;
   bool in_medium = false;         // the current vertex is in a medium
   float g = 0.0f;                 // of that medium

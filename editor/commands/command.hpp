@@ -29,8 +29,7 @@ struct Command {
   std::size_t least_words = 0, most_words = 0;
   Result<nlohmann::json> (*run)(Session& session, Words words) = nullptr;
   bool (*enabled)(const Session& session) = nullptr;  // null: always enabled
-  bool (*checked)(const Session& session) =
-      nullptr;              // the state of a switch; null: the command is not a switch
+  bool (*checked)(const Session& session) = nullptr;  // state of a switch; null: no switch
   const char* former = "";  // the id before 0.11, which is still accepted but not shown; empty: none
 };
 

@@ -170,8 +170,7 @@ void History::push(std::string name, std::vector<Change> changes) {
   });
   if (changes.empty()) return;
   for (; steps_.size() > done_; steps_.pop_back()) bytes_ -= steps_.back().bytes;
-  if (saved_ && *saved_ > forgotten_ + done_)
-    saved_.reset();  // the saved state was among the steps that could be redone
+  if (saved_ && *saved_ > forgotten_ + done_) saved_.reset();  // the saved state could be redone
   Step step{std::move(name), std::move(changes), 0};
   for (const Change& change : step.changes) step.bytes += bytesOf(change);
   bytes_ += step.bytes;

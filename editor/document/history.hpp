@@ -176,8 +176,8 @@ class History {
   std::deque<Step> steps_;
   std::size_t done_ = 0;         // number of steps_ that are done
   std::uint64_t forgotten_ = 0;  // number of steps that were dropped from the front of steps_
-  std::optional<std::uint64_t> saved_ =
-      0;  // forgotten_ + done_ at markSaved(); none: no undo or redo leads there
+  // The value of forgotten_ + done_ at markSaved(); none: no undo or redo leads there.
+  std::optional<std::uint64_t> saved_ = 0;
   std::uint64_t version_ = 0;
 
   std::vector<Scope> scopes_;

@@ -14,8 +14,7 @@
 namespace lambent::editor {
 namespace {
 
-constexpr float kDegreesPerHeight =
-    180.0f;  // a drag across the whole height of the picture turns by 180 degrees
+constexpr float kDegreesPerHeight = 180.0f;  // turn by a drag over the whole height
 constexpr float kZoomPerNotch = 0.88f;
 constexpr float kRadiiPerSecond = 0.7f;
 constexpr float kFilled = 0.9f;  // fraction of the picture that a framed box fills

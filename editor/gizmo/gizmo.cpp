@@ -15,8 +15,8 @@
 namespace lambent::editor {
 namespace {
 
-constexpr double kFarthest =
-    100.0;  // limit of one drag near vanishing points, in multiples of the distance to the eye
+// A drag is limited to this multiple of the distance to the eye, near vanishing points.
+constexpr double kFarthest = 100.0;
 constexpr double kLeastFactor = 1e-3;
 
 int axisIndex(Handle handle) {
@@ -97,8 +97,8 @@ std::optional<glm::dvec2> Gizmo::screenDirection(const glm::dvec3& direction) co
 }
 
 bool Gizmo::shown(Handle handle) const {
-  constexpr double kLeast =
-      0.15;  // limits how foreshortened an axis or plane may be, as a fraction of its size
+  // Shorter axes and narrower planes, as a fraction of their size, are hidden.
+  constexpr double kLeast = 0.15;
   if (handle == Handle::None || targets_.empty() || !(sizeMetres() > 0.0)) return false;
   if (dragging()) return handle == active_;
   if (isPlane(handle)) {

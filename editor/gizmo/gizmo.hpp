@@ -118,8 +118,7 @@ class Gizmo {
   std::vector<Shape> shapes(Handle handle) const;
   std::vector<Shape> ring(Handle handle) const;
   std::optional<glm::dvec2> screenDirection(const glm::dvec3& direction) const;
-  double distance(Handle handle,
-                  const glm::dvec2& pixel) const;  // in pixels; infinite if the handle is not shown
+  double distance(Handle handle, const glm::dvec2& pixel) const;  // in pixels; infinite if hidden
 
   void dragMove(const glm::dvec2& pixel, bool free);
   void dragTurn(const glm::dvec2& pixel, bool free);

@@ -189,8 +189,7 @@ scene::LocalLightComponent LightGizmo::drag(glm::vec2 pixel) {
   }
   const auto value = valueAt(active_, at);
   if (!value) return light_;
-  const double by =
-      *value - start_value_;  // relative to where it was grabbed, so that a press alone changes nothing
+  const double by = *value - start_value_;  // a press alone changes nothing
   switch (active_) {
     case LightHandle::Radius:
       light_.radius_m = fitted("radius", start_.radius_m + by);

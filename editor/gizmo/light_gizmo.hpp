@@ -21,8 +21,8 @@ namespace lambent::editor {
 enum class LightHandle : std::uint8_t { None, Radius, Range, InnerCone, OuterCone, Strength };
 inline constexpr std::array kLightHandles = {LightHandle::Radius, LightHandle::Range, LightHandle::InnerCone,
                                              LightHandle::OuterCone, LightHandle::Strength};
-std::string_view lightHandleWord(
-    LightHandle handle);  // the field that the handle sets: "radius", "inner_cone"
+// Returns the field that the handle sets: "radius", "inner_cone".
+std::string_view lightHandleWord(LightHandle handle);
 
 class LightGizmo {
  public:

@@ -15,8 +15,8 @@ namespace lambent::editor {
 class PictureClock {
  public:
   struct Time {
-    double milliseconds =
-        0.0;            // from the first command to the last on the GPU, or the CPU's time if that was longer
+    // From the first command to the last on the GPU, or the CPU's time if that was longer.
+    double milliseconds = 0.0;
     bool whole = true;  // the argument of end()
   };
 

@@ -37,9 +37,9 @@ class EnvironmentMapShelf {
   static Thumbnail read(const std::filesystem::path& file);
   void look();
 
-  // Tells when the folders must be found again.
-  ChangeGate<std::vector<std::string>, std::uint64_t, std::size_t>
-      changed_;  // light words, version of the scenes, number of added folders
+  // Tells when the folders must be found again: it compares the light words, the version of the scenes and
+  // the number of added folders.
+  ChangeGate<std::vector<std::string>, std::uint64_t, std::size_t> changed_;
   std::vector<std::filesystem::path> added_, folders_;
   std::vector<EnvironmentMap> environment_maps_;
   std::future<Thumbnail> coming_;

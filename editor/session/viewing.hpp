@@ -27,8 +27,8 @@ class Viewing {
   CameraPose pose, goal;  // the camera eases from `pose` to `goal`
   frame::ViewChoice surfaces;
   frame::OverlayOptions overlays;
-  std::optional<std::size_t>
-      key_at_hand;  // index into Environment::keys() of the key light whose fields are shown
+  // The index into Environment::keys() of the key light whose fields are shown.
+  std::optional<std::size_t> key_at_hand;
   PictureScale scale;
 
   bool frame_when_loaded = true;  // place the camera when the first bundle is loaded

@@ -25,9 +25,7 @@ struct BuiltVolume {
   glm::uvec3 size{8};
   // The default is a cube of 2 m about the group's origin.
   glm::mat4 group_from_grid = glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), glm::vec3(0.25f));
-  std::function<float(const glm::vec3& grid)> density = [](const glm::vec3&) {
-    return 1.0f;
-  };  // in m^-1, of voxel coordinates
+  std::function<float(const glm::vec3& grid)> density = [](const glm::vec3&) { return 1.0f; };  // m^-1
   float density_max = 1.0f;
   std::uint32_t bits = 16;
   glm::vec3 albedo{1.0f};
