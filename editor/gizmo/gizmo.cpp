@@ -15,7 +15,7 @@
 namespace lambent::editor {
 namespace {
 
-// A drag is limited to this multiple of the distance to the eye, near vanishing points.
+// A drag is limited to this many heights of the picture, measured at the pivot, near vanishing points.
 constexpr double kFarthest = 100.0;
 constexpr double kLeastFactor = 1e-3;
 
