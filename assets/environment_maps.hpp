@@ -1,7 +1,7 @@
-// These are the environment maps that ship. They are lat-long (row 0 is +Y, the image centre looks along +X):
-// a clear sky with a hazy sun, and a studio with three soft boxes. Both have a mean luminance of 1 over the
+// Makes the environment maps that ship: a clear sky with a hazy sun, and a studio with three soft boxes. They
+// are lat-long (row 0 is +Y, the image centre looks along +X). Both have a mean luminance of 1 over the
 // sphere, so that pictures under either need about the same exposure. Nothing in them is narrower than 2
-// degrees, so small images can hold them.
+// degrees, so small images can represent them.
 #pragma once
 
 #include <cstdint>

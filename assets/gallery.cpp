@@ -14,7 +14,7 @@ namespace {
 
 // The room has inner faces at x = +-kHalfWidth and z = kBack, and is open at z = kFront and above kHeight.
 constexpr float kHalfWidth = 2.5f, kBack = -2.2f, kFront = 2.4f, kHeight = 2.6f, kThick = 0.14f;
-constexpr float kFine = 0.045f, kCoarse = 0.4f;  // cell sizes in light and out of sight
+constexpr float kFine = 0.045f, kCoarse = 0.4f;  // cell sizes in metres: where light falls, and out of sight
 
 enum MaterialIndex { kStone, kRed, kTeal, kPlaster, kLimestone, kPorcelain, kBronze, kCobalt, kOchre };
 

@@ -1,7 +1,6 @@
-// This is a generated scene and its writer. Files are binary glTF 2.0 with one buffer, and the same scene
-// gives the same bytes. Materials are pure Lambert (metallic 0, roughness 1, KHR_materials_specular with
-// factor 0) unless they say otherwise. Every node has translation, rotation and scale, so that editors can
-// move things.
+// Describes a generated scene and writes it as binary glTF 2.0 with one buffer; the same scene gives the same
+// bytes. Materials are pure Lambert (metallic 0, roughness 1, KHR_materials_specular with factor 0) unless
+// they say otherwise. Every node has translation, rotation and scale, so that editors can move it.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +21,11 @@ struct Material {
   std::string name;
   glm::vec3 base_color{0.8f};  // linear; multiplies the texture
   glm::vec3 emission{0.0f};    // radiance
-  int image = -1;              // into Scene::images
+  int image = -1;              // index into Scene::images; -1: none
   bool double_sided = false;
   float roughness = 1.0f, metallic = 0.0f;
   float specular = 0.0f;    // KHR_materials_specular
-  float anisotropy = 0.0f;  // strength; along the tangent, which follows the texture coordinates
+  float anisotropy = 0.0f;  // strength; the direction is the tangent's, which follows the texture coordinates
 };
 
 struct Image {
@@ -58,26 +57,26 @@ struct Motion {
 // A Volume becomes extras.lambent.volume: a medium in a box of `size` about the node's origin.
 struct Volume {
   std::string file;
-  float density_scale = 1.0f;  // m^-1 where the file's value is 1
+  float density_scale = 1.0f;  // density in m^-1 where the file's value is 1
   glm::vec3 albedo{1.0f};
-  glm::vec3 size{1.0f};  // m
+  glm::vec3 size{1.0f};  // in metres
 };
 
-// A Neighborhood becomes extras.lambent.neighborhood: the points of the grid around the body, and its extent.
+// A Neighborhood becomes extras.lambent.neighborhood: the grid's points around the body, and its extent.
 struct Neighborhood {
   glm::ivec3 size{64, 8, 64};
-  glm::vec3 extent{1.0f};  // m
+  glm::vec3 extent{1.0f};  // in metres
 };
 
 struct Node {
   std::string name;
-  int mesh = 0;  // into Scene::meshes, -1 for none; several nodes may show one mesh
+  int mesh = 0;  // index into Scene::meshes, -1 for none; several nodes may show one mesh
   glm::vec3 translation{0.0f};
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
   float scale = 1.0f;
   int parent = -1;       // index of an earlier node
-  int spot = -1;         // into Scene::spots
-  bool movable = false;  // makes a rigid group of its own, though nothing moves it yet
+  int spot = -1;         // index into Scene::spots, -1 for none
+  bool movable = false;  // makes a rigid group of its own even without animation
   Motion motion{};       // empty if the node does not move
   std::optional<Volume> volume{};
   std::optional<Neighborhood> neighborhood{};

@@ -1,5 +1,5 @@
-// The scene generator builds these triangle meshes in metres, +Y up, counter-clockwise seen from outside.
-// Only the generator uses them; the programs read the glTF files that it writes.
+// Declares the triangle mesh of the scene generator: in metres, +Y up, counter-clockwise seen from outside.
+// Only the generator uses it; the programs read the glTF files that it writes.
 #pragma once
 
 #include <cstdint>

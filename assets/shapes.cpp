@@ -16,7 +16,7 @@ int cellsFor(float length, float cell) {
   return std::max(1, static_cast<int>(std::ceil(length / cell - 0.01f)));
 }
 
-// Vertex (i, j) is j * (cells_u + 1) + i.
+// The index of vertex (i, j) is j * (cells_u + 1) + i.
 void appendCells(Mesh& mesh, int cells_u, int cells_v) {
   const auto index = [&](int i, int j) { return static_cast<std::uint32_t>(j * (cells_u + 1) + i); };
   for (int j = 0; j < cells_v; ++j)

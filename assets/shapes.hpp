@@ -1,5 +1,5 @@
-// These are the simple shapes of the scenes. Transfer per vertex needs vertices where shadows change, so
-// every shape takes the length of an edge. Edges of neighbouring faces are divided alike, so that boxes and
+// Makes the simple shapes of the scenes. Transfer per vertex needs vertices where shadows change, so every
+// shape takes an edge length. Adjacent faces have equal vertices along their common edge, so boxes and
 // spheres are closed.
 #pragma once
 
@@ -27,8 +27,8 @@ Mesh sphere(float radius, int cells);
 // is closed if the profile starts and ends on the axis.
 Mesh lathe(std::span<const glm::vec2> profile, int segments, float cell);
 
-// Makes every vertex by a function of (u, v) in [0, 1]²; du x dv must point outside. The curved shapes use
-// it.
+// Evaluates a function of (u, v) in [0, 1]² at every vertex of a grid; du x dv must point outside. The curved
+// shapes use it.
 struct SurfacePoint {
   glm::vec3 position, normal;
 };

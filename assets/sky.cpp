@@ -23,7 +23,7 @@ constexpr float kSunAzimuthDeg = 34.0f, kSunElevationDeg = 44.0f;
 // The disc is wider than the sun's 0.27 degrees, at the same irradiance, so that small images and low orders
 // can show it.
 constexpr double kSunRadius = 2.6 * kPi / 180;
-// This is the irradiance by the sun of a surface that faces it, over the irradiance by the sky of a
+// This is the ratio of the sun's irradiance, on a surface that faces it, to the sky's irradiance on a
 // horizontal plane. It is about 6 in clear air; 2.5 is a sun behind thin haze, which keeps shadows readable
 // in low orders.
 constexpr double kSunToSky = 2.5;
@@ -116,7 +116,7 @@ spec::RgbImage skyMap(std::uint32_t width) {
   spec::RgbImage image = latLongImage(width, 2, [&](glm::dvec3 dir) { return sky(dir); });
   const glm::dvec3 sky_irradiance = irradianceFromAbove(image);
 
-  // Texels get their coverage by the disc, then a scale so that they add up to the energy asked for.
+  // Texels get their coverage by the disc, and are then scaled so that the irradiance is exact.
   spec::RgbImage sun = latLongImage(width, 8, [&](glm::dvec3 dir) {
     return glm::dot(dir, to_sun) > std::cos(kSunRadius) ? kSunColour : glm::dvec3(0.0);
   });

@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t kPoints = 512, kAnisotropicPoints = 256;
 
 glm::vec2 albedo(const glm::vec2& alpha, const glm::vec3& view, std::uint32_t points) {
-  // The same points are used everywhere, so that the remaining error is smooth.
+  // All entries use the same points, so that the remaining error is smooth.
   const Sampler sampler(/*seed=*/2, 0, 0);
   glm::dvec2 sum(0.0);
   for (std::uint32_t i = 0; i < points; ++i) {

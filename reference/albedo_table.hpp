@@ -1,6 +1,6 @@
-// Tabulates the directional albedo of the GGX lobe by view, roughness and anisotropy, in the two parts that
-// F0 and F90 multiply. The diffuse part of a material must leave this much to the specular one. The reference
-// integrates the table itself, to 0.1 % (anisotropic: 0.5 %).
+// Tabulates the directional albedo of the GGX lobe by view direction, roughness and anisotropy, as the two
+// factors of F0 and F90. The diffuse part of a material is reduced by this albedo. The reference integrates
+// the table itself, with an error of 0.1 % (anisotropic: 0.5 %).
 #pragma once
 
 #include <vector>
@@ -12,11 +12,12 @@ namespace lambent::baker::reference {
 
 class AlbedoTable {
  public:
-  AlbedoTable() = default;  // an empty table
+  AlbedoTable() = default;
   static AlbedoTable build(bool anisotropic);
 
   bool empty() const { return values_.empty(); }
-  // Returns the factors of F0 and F90. `view` is local and unit with z > 0; roughness and strength are 0..1.
+  // Returns the factors of F0 and F90. `view` is a unit vector in local space with z > 0; roughness and
+  // strength are 0..1.
   glm::vec2 at(const glm::vec3& view, float roughness, float strength) const;
 
  private:

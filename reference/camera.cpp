@@ -24,9 +24,8 @@ struct Box {
   }
 };
 
-// Returns the union of the boxes of primitives and volumes moved to their nodes, as in the runtime
-// (runtime/scene/bounds.hpp). This is not the tightest box, but the one that any reader of the file's min and
-// max gets.
+// Returns the union of the boxes of primitives and volumes, transformed by their nodes, as in the runtime
+// (runtime/scene/bounds.hpp). It is not the tightest box, but any reader gets it from the file's min and max.
 Box boundsOf(const Scene& scene, const std::vector<gltf::Node>& nodes) {
   Box all;
   const std::vector<glm::mat4> world = gltf::worldTransforms(nodes);
@@ -44,7 +43,7 @@ Box boundsOf(const Scene& scene, const std::vector<gltf::Node>& nodes) {
   return all;
 }
 
-// Sums the normals of single-sided surfaces; double-sided ones are open to both sides.
+// Returns the summed area vectors of single-sided surfaces; double-sided ones have no open side.
 glm::vec3 openSide(const Surfaces& surfaces) {
   glm::dvec3 sum(0.0);
   for (const Surface& surface : surfaces.surfaces())

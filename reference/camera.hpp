@@ -1,5 +1,5 @@
-// Places the eye exactly as lambent-demo does: with the same bounds, the same default and the same View, and
-// rays through pixel centres between its near and far planes.
+// Finds the view of a picture exactly as lambent-demo does, with the same bounds, default camera and
+// projection, and makes rays through pixel centres.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@
 
 namespace lambent::baker::reference {
 
-// `nodes_at_rest` give the bounds that orbits use, so that animated nodes do not move the camera. Errors: no
-// camera has that name, or one cannot be looked through.
+// Orbit cameras use the bounds of `nodes_at_rest`, so that animated nodes do not move the camera. Errors: no
+// camera has that name, or its node or projection is unusable.
 Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces,
                           const std::vector<gltf::Node>& nodes_at_rest,
                           const std::optional<spec::Camera>& camera, float aspect);
@@ -21,11 +21,13 @@ Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces,
 class EyeRays {
  public:
   EyeRays(const spec::View& view, const spec::Size& size);
-  // Row 0 is the top. The far plane is at ray length 1.
+  // Returns the ray through a pixel's centre. Row 0 is the top. The ray starts on the near plane; the far
+  // plane is at ray length 1.
   Ray through(std::uint32_t x, std::uint32_t y) const;
-  // Returns the depth of a point in the world along the camera's axis, metres.
+  // Returns the depth of a point along the camera's axis, in metres.
   double depthOf(const glm::dvec3& point_ws) const;
-  // Returns the radians that a pixel spans in the centre, as the runtime's sky uses them.
+  // Returns the angle of a pixel at the centre of the picture, in radians, as the runtime computes it for its
+  // sky.
   float pixelAngle() const { return pixel_angle_rad_; }
 
  private:

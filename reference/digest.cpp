@@ -13,7 +13,8 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Lists include their length, so that no two inputs read alike. Only types without padding are allowed.
+// The length of a list is hashed, too, so that different inputs differ. Only types without padding are
+// allowed.
 class Digest {
  public:
   template <typename... T>
@@ -41,7 +42,7 @@ void add(const gltf::TextureRef& ref, Digest& digest) {
   digest.add(ref.texture, ref.texcoord, ref.offset, ref.scale, ref.rotation_rad);
 }
 
-// The fields of reflection are added together, between the other values and the other textures.
+// The fields for reflection are hashed between the other values and the other textures.
 void add(const gltf::Material& material, Digest& digest) {
   const auto addValues = [&](bool reflection) {
     gltf::forEachMaterialValue([&](const auto& field) {

@@ -1,5 +1,5 @@
-// Computes one number from everything that decides a picture's bytes: scene, light, view, options and
-// program. Work may be resumed from a checkpoint with the same digest.
+// Computes a hash of everything that decides a picture's bytes: scene, light, view, options and program. A
+// checkpoint with the same digest can be resumed.
 #pragma once
 
 #include <cstdint>

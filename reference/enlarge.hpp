@@ -1,5 +1,5 @@
-// Enlarges a small picture, bilinearly between its pixels' centres, so that a coarse picture lies where the
-// fine one will. The result has no depths, since there are none between two surfaces.
+// Enlarges a small picture by bilinear interpolation between pixel centres, for previews. The result has no
+// depths, because they cannot be interpolated across edges.
 #pragma once
 
 #include "runtime/spec/image.hpp"

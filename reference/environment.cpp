@@ -10,8 +10,8 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Texels are divided this finely when a direction inside one is asked for, since the layouts of runtime/sh
-// are defined on whole texels.
+// A texel is divided this finely to sample a direction inside it, because the layouts of runtime/sh map whole
+// texels.
 constexpr int kFine = 1024;
 
 glm::dvec3 directionAt(const spec::EnvironmentMap& environment_map, double x, double y) {
@@ -22,7 +22,7 @@ glm::dvec3 directionAt(const spec::EnvironmentMap& environment_map, double x, do
                             std::clamp(static_cast<int>(y * kFine), 0, height - 1));
 }
 
-// Returns the steradians per texel area in a unit direction that lies at (x, y) of the picture.
+// Returns the solid angle per texel area in a unit direction at (x, y) of the picture.
 double densityAt(const spec::EnvironmentMap& environment_map, const glm::dvec3& dir, const glm::dvec2& at) {
   constexpr double kFull = std::numbers::pi;
   const double width = environment_map.image.width, height = environment_map.image.height;
@@ -115,7 +115,7 @@ void Environment::addEnvironmentMap(std::size_t index) {
   }
   const double power = rows[height];
   for (const double value : rows) out.rows.push_back(power > 0.0 ? static_cast<float>(value / power) : 0.0f);
-  // Probabilities follow the rounded sums, because texels are drawn by those.
+  // Probabilities are taken from the rounded sums, because these are used for sampling.
   for (std::size_t i = 0; i < width * height; ++i) {
     const std::size_t y = i / width, column = y * (width + 1) + i % width;
     out.texels.emplace_back(
@@ -139,7 +139,7 @@ Environment::Look Environment::lookAtEnvironmentMap(std::size_t index, const glm
 }
 
 bool Environment::inside(const Cone& cone, const glm::vec3& dir) const {
-  // This compares chords, because the cosine of a small disc's rim has no significant digits left.
+  // Chords are compared, because the cosine of a small disc's radius has no significant digits left.
   if (cone.cap > 1.0f) return glm::dot(dir, cone.frame[2]) >= 1.0f - cone.cap;
   const glm::vec3 away = dir - cone.frame[2];
   return glm::dot(away, away) <= 2.0f * cone.cap;
@@ -149,7 +149,7 @@ Environment::Look Environment::look(const glm::vec3& dir) const {
   if (band_limit_ > 0) return {vector_.evaluate(dir), 0.0f};
   Look sum{lights_.constant, 0.0f};
   if (parts_.empty()) return sum;
-  const glm::vec3 local = dir * world_from_light_;  // multiplies by the transpose
+  const glm::vec3 local = dir * world_from_light_;  // the transpose is the inverse
   for (const Part& part : parts_) {
     Look one;
     if (!part.is_disc)

@@ -14,9 +14,9 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Assumed brightness of what stands in the way, relative to the sky.
+// Assumed radiance of occluders, relative to the sky.
 constexpr float kReflected = 0.3f;
-// Directions are drawn from this height on; nearer to the horizon, rounding decides on which side they are.
+// The least height of sampled directions; nearer to the horizon, rounding decides on which side they are.
 constexpr float kLeastHeight = 1e-5f;
 
 float total(const glm::vec3& v) {
@@ -29,7 +29,7 @@ void addDiffuse(const glm::vec3& albedo, const glm::vec3& normal, sh::LightVecto
   for (std::size_t k = 0; k < kernel.coefficients().size(); ++k) kernel.c[k] += albedo * transfer[k];
 }
 
-// A measured BRDF is sampled by two strategies in turn, whose mixture is the density.
+// A measured BRDF is sampled by two strategies alternately; the density is that of the mixture.
 void addSpecular(const Reflector& reflector, std::uint32_t seed, std::uint32_t points,
                  sh::LightVector& kernel) {
   const Sampler sampler(/*seed=*/3, seed, 0);
@@ -51,7 +51,7 @@ void addSpecular(const Reflector& reflector, std::uint32_t seed, std::uint32_t p
     kernel.c[k] += glm::vec3(sums[k] / static_cast<double>(points));
 }
 
-// Returns the cell of the cumulated `edges` that u falls into, and where in it.
+// Returns the cell of the cumulative `edges` that u falls into, and the position within it.
 template <std::size_t N>
 std::pair<std::size_t, float> cellOf(const std::array<float, N>& edges, float u) {
   const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, u);
@@ -89,7 +89,7 @@ FirstHit::FirstHit(const SurfacePoint& point, int order, const sh::LightVector& 
   float energy = 0.0f;
   for (const glm::vec3& l : light_.c) energy += glm::dot(l, l) / 3.0f;
   const float brightness =
-      energy > 0.0f ? std::sqrt(energy / (4.0f * kPi)) : 1.0f;  // root of the mean square
+      energy > 0.0f ? std::sqrt(energy / (4.0f * kPi)) : 1.0f;  // root mean square radiance
   std::array<std::array<float, kColumns>, kRows> weights{};
   float mean = 0.0f;
   for (std::size_t r = 0; r < kRows; ++r)
@@ -101,7 +101,7 @@ FirstHit::FirstHit(const SurfacePoint& point, int order, const sh::LightVector& 
     }
   std::array<float, kRows> row_weights{};
   for (std::size_t r = 0; r < kRows; ++r) {
-    for (float& weight : weights[r]) row_weights[r] += weight += 0.1f * mean;  // nowhere 0
+    for (float& weight : weights[r]) row_weights[r] += weight += 0.1f * mean;  // no weight is 0
     cumulate(weights[r], columns_[r]);
   }
   cumulate(row_weights, rows_);
@@ -149,7 +149,7 @@ float FirstHit::pdf(const glm::vec3& ray) const {
 }
 
 float FirstHit::pdfOfPair(const glm::vec3& dir) const {
-  const glm::vec3 local = dir * frame_;  // multiplies by the transpose
+  const glm::vec3 local = dir * frame_;  // the transpose is the inverse
   float turn = std::atan2(local.y, local.x) / (2.0f * kPi);
   if (turn < 0.0f) turn += 1.0f;
   const auto r = std::min(static_cast<std::size_t>(std::max(local.z, 0.0f) * kRows), kRows - 1);

@@ -64,7 +64,7 @@ double EyeDepth::place(double depth) const {
                                 [](double at, const Segment& s) { return at < s.depth; });
   if (after != segments_.begin()) --after;
   const Segment& segment = *after;
-  // This is Newton's method, kept within the interval that bisection knows.
+  // Newton's method is safeguarded by bisection.
   const double wanted = depth - segment.depth, middle = 0.5 * (segment.begin + segment.end);
   const double all = (after + 1 == segments_.end() ? whole_ : (after + 1)->depth) - segment.depth;
   double low = segment.begin, high = segment.end;

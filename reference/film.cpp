@@ -130,7 +130,7 @@ spec::RgbaImage Film::half(std::size_t replica) const {
   image.texels.reserve(pixels_.size());
   image.depths.reserve(pixels_.size());
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    // Samples go to the first and the second replica in turn.
+    // Samples go alternately to the first and the second replica.
     const double samples = (done_[i / size_.width] + (replica == 0 ? 1 : 0)) / 2;
     image.texels.emplace_back(glm::vec3(pixels_[i].replicas[replica] / samples),
                               static_cast<float>(pixels_[i].alpha));

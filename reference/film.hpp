@@ -1,8 +1,8 @@
-// A Film holds sums of samples per pixel, in double, and their checkpoint on disk. Rows fill pass by pass,
-// each always in the same order, so that a picture that was interrupted and resumed has the same bytes as one
-// that was not. The checkpoint carries a digest of everything that decides the picture; a file with another
-// digest, or a damaged or truncated one, is refused. Layout: header, samples done per row, pixels, XXH3-64 of
-// all before; native (little) endian, for this machine.
+// Accumulates the samples of a picture per pixel, in double precision, and saves them as a checkpoint. Rows
+// are filled pass by pass in a fixed order, so that a resumed picture has the same bytes as an uninterrupted
+// one. The checkpoint stores a digest of everything that decides the picture; a file with another digest, or
+// a damaged one, is refused. Layout: header, samples per row, pixels, XXH3-64 of all before, in native
+// (little) endian.
 #pragma once
 
 #include <cstdint>
@@ -22,30 +22,30 @@ class Film {
   Film(const spec::Size& size, std::uint64_t digest);
 
   const spec::Size& size() const { return size_; }
-  // Returns the samples per pixel of row y.
+  // Returns the samples per pixel that row y has.
   std::uint32_t done(std::uint32_t y) const { return done_[y]; }
   // Adds `count` more samples to row y. Different threads may add different rows.
   void addRow(std::uint32_t y, std::uint32_t count, std::span<const PixelSum> pixels);
   std::uint64_t rays() const;
 
-  // Seconds of work behind the sums; the checkpoint stores them.
+  // Time spent on the samples so far, which the checkpoint stores.
   double seconds = 0.0;
 
   Result<void> save(const std::filesystem::path& path) const;
-  // Loads what `path` holds. Returns false, and changes nothing, if that is damaged or has another digest.
+  // Loads a checkpoint. Returns false, and changes nothing, if it is missing, damaged or has another digest.
   bool restore(const std::filesystem::path& path);
 
-  // Returns mean radiance, coverage and depths. Every row must have samples.
+  // Returns the mean radiance, coverage and depths. Every row must have at least one sample.
   spec::RgbaImage image() const;
-  // Copies a row into a picture of the same size, with depths only if that has any.
+  // Writes a row into a picture of the same size, and its depths if the picture has depths.
   void putRow(std::uint32_t y, spec::RgbaImage& image) const;
-  // Returns the mean of replica 0 or 1 alone. The two pictures have independent noise, and their mean is
-  // image() if they have equally many samples. Every row must have two samples.
+  // Returns the mean of replica 0 or 1. The two have independent noise; if they have equally many samples,
+  // their mean is image(). Every row must have at least two samples.
   spec::RgbaImage half(std::size_t replica) const;
 
-  // Returns the standard error of the pixels, relative as in `compare`: sqrt(sum of variances / sum of
-  // squares) over the pixels that it counts, from the difference of the two replicas. Returns nothing if a
-  // pixel has one sample.
+  // Returns the relative standard error of the pixels, estimated from the difference of the two replicas:
+  // sqrt(sum of variances / sum of squares), over the same pixels as `compare`. Returns nothing if a pixel
+  // has only one sample.
   std::optional<double> standardError() const;
 
  private:

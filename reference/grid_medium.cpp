@@ -11,7 +11,7 @@ GridMedium::GridMedium(const SceneVolume& volume, const glm::dmat4& world_from_g
   linear_ = glm::dmat3(inverse);
   shift_ = glm::dvec3(inverse[3]);
   blocks_ = (glm::ivec3(size_) + (kBlock - 1)) / kBlock;
-  // Points of a block lie between the centres of its own voxels and of those beside it.
+  // Points of a block lie between centres of its own voxels and of the adjacent ones.
   for (int z = 0; z < blocks_.z; ++z)
     for (int y = 0; y < blocks_.y; ++y)
       for (int x = 0; x < blocks_.x; ++x) {
@@ -28,7 +28,7 @@ GridMedium::GridMedium(const SceneVolume& volume, const glm::dmat4& world_from_g
             }
           }
         most_ = std::max(most_, most);
-        // Leaves room for rounding in interpolation.
+        // The bounds are widened for rounding errors of the interpolation.
         bounds_.emplace_back(least * (1.0f - 1e-6f), most * (1.0f + 1e-6f));
       }
 }

@@ -1,7 +1,7 @@
-// A GridMedium is one volume as rays meet it. Import's SceneVolume comes in, with its node in place. The
-// density at a point goes out, as SceneVolume defines it (voxel centres, trilinear, constant in the half
-// voxel at the faces), and the part of a ray that lies in the box, with coarse blocks along it whose density
-// bounds serve tracking. The scene must outlive this.
+// A GridMedium is one volume as rays see it. The importer's SceneVolume and its node's matrix come in. It
+// returns the density at a point, as SceneVolume defines it (trilinear between voxel centres, constant in the
+// half voxel at the faces), the part of a ray inside the box, and the coarse blocks along it with density
+// bounds for tracking. The scene must outlive this.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,8 @@
 
 namespace lambent::baker::reference {
 
-// A GridRay is the part of a ray inside the box, in voxels. t is that of the ray.
+// A GridRay is the part of a ray inside the box, in voxel coordinates. t is the same as for the ray in world
+// space.
 struct GridRay {
   glm::dvec3 origin{0.0}, dir{0.0};
   double metres = 1.0;  // per t
@@ -40,25 +41,26 @@ class GridMedium {
   // Returns the part within [begin, end] of the ray, or nothing if it misses the box.
   std::optional<GridRay> clipped(const Ray& ray, double begin, double end) const;
 
-  // Returns the density, m^-1, at a point in voxels; outside the box that of its nearest face.
+  // Returns the density in m^-1 at a point in voxel coordinates. Points outside the box get the density of
+  // the nearest face.
   float at(const glm::dvec3& place) const;
 
-  // Calls visit(begin, end, least, most) for one block after the other, with the bounds of its density in
-  // 1/t, until it returns false.
+  // Calls visit(begin, end, least, most) for each block along the ray until it returns false. least and most
+  // bound the density per unit of t.
   template <typename Visit>
   void visitBlocks(const GridRay& ray, Visit&& visit) const;
 
  private:
-  static constexpr int kBlock = 8;  // voxels
+  static constexpr int kBlock = 8;  // edge of a block in voxels
 
   const SceneVolume* volume_;
   std::span<const float> density_;
   glm::uvec3 size_;
-  glm::vec3 last_;  // centre of the last voxel, from that of the first
+  glm::vec3 last_;  // centre of the last voxel, relative to the centre of the first
   glm::dmat3 linear_;
   glm::dvec3 shift_;
   glm::ivec3 blocks_;
-  std::vector<glm::vec2> bounds_;  // least and most density per block, x fastest
+  std::vector<glm::vec2> bounds_;  // minimum and maximum density per block, x fastest
   float most_ = 0.0f;
 };
 
@@ -80,7 +82,7 @@ void GridMedium::visitBlocks(const GridRay& ray, Visit&& visit) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const glm::dvec3 start = ray.at(ray.begin) / double{kBlock};
   glm::ivec3 block = glm::clamp(glm::ivec3(glm::floor(start)), glm::ivec3(0), blocks_ - 1), step(0);
-  glm::dvec3 next(kInfinity), apart(kInfinity);  // t of the next face on each axis, and between faces
+  glm::dvec3 next(kInfinity), apart(kInfinity);  // t of the next block face per axis, and between faces
   for (int a = 0; a < 3; ++a) {
     if (ray.dir[a] == 0.0) continue;
     step[a] = ray.dir[a] > 0.0 ? 1 : -1;

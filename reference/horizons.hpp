@@ -1,6 +1,6 @@
-// Decides what a glossy surface receives from directions that it would hide itself (docs/conventions.md,
-// "Materials"). Its lobes follow the smooth normal and normal maps, so some of their directions lie below its
-// plane. Such a direction sees what its mirror image sees.
+// Decides which light a glossy surface gets from directions below its own plane (docs/conventions.md,
+// "Materials"). Lobes follow the smooth normal and normal maps, so parts of them can lie below the triangle.
+// Such a direction gets the light of its mirror image.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -8,10 +8,9 @@
 
 namespace lambent::baker::reference {
 
-// Horizons are two planes, given by unit normals. Directions below the plane of the smooth normal (before
-// normal maps) are mirrored to above it; of these, directions that the triangle itself would hide are
-// mirrored at the plane of the triangle. Rays start above the triangle, and each stands for all directions
-// that see what it sees.
+// Holds two planes by their unit normals. A direction below the plane of the smooth normal (before normal
+// maps) is mirrored at it; if the result is below the triangle, it is mirrored at the triangle. Rays start
+// above the triangle, and each stands for all directions that are mirrored to it.
 struct Horizons {
   glm::vec3 smooth{0.0f, 0.0f, 1.0f}, triangle{0.0f, 0.0f, 1.0f};
 
@@ -22,11 +21,11 @@ struct Horizons {
     return glm::dot(dir, normal) < 0.0f ? mirrored(dir, normal) : dir;
   }
 
-  // Returns the ray that shows what a direction sees; it has the same length.
+  // Returns the ray direction for a direction, with the same length.
   glm::vec3 rayFor(const glm::vec3& dir) const { return above(above(dir, smooth), triangle); }
 
-  // Calls visit(dir) with the directions above the smooth plane that a ray above the triangle stands for. The
-  // ray also stands for their mirror images in that plane.
+  // Calls visit(dir) for the directions above the smooth plane that a ray stands for. The ray also stands for
+  // their mirror images in that plane.
   template <typename Visit>
   void forAbove(const glm::vec3& ray, const Visit& visit) const {
     if (glm::dot(ray, smooth) > 0.0f) visit(ray);

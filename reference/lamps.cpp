@@ -12,8 +12,8 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Returns the mean over the triangle by seven points. It is never 0, since a texture may shine just between
-// them.
+// Returns the mean over the triangle from seven points. It is never 0, because a texture may emit only
+// between them.
 double meanBrightness(const Surfaces& surfaces, std::uint32_t surface, std::uint32_t triangle) {
   constexpr glm::vec2 kPlaces[] = {{1.0f / 3.0f, 1.0f / 3.0f},
                                    {0.05f, 0.05f},

@@ -35,8 +35,8 @@ bool standsInScene(const spec::Light& light) {
   return std::holds_alternative<spec::SphereLight>(light) || std::holds_alternative<spec::DiscLight>(light);
 }
 
-// Returns lights from infinity only, so that dragging a sphere or disc through the scene leaves the sky as it
-// is.
+// Returns the distant lights only, so that dragging a sphere or disc through the scene does not change the
+// sky.
 std::vector<LightCache::FromInfinity> fromInfinity(const std::vector<spec::Light>& lights) {
   std::vector<LightCache::FromInfinity> out;
   for (const spec::Light& light : lights)
@@ -64,7 +64,7 @@ Result<std::shared_ptr<const Environment>> LightCache::environment(
     loaded_ = std::move(*loaded);
     lights_ = std::move(wanted);
   }
-  // Spheres and discs in the list shift the factors of the other lights.
+  // Sphere and disc lights in the list shift the indices of the factors.
   std::vector<float> of_loaded;
   for (std::size_t i = 0; i < lights.size(); ++i)
     if (!standsInScene(lights[i])) of_loaded.push_back(i < factors.size() ? factors[i] : 1.0f);

@@ -1,5 +1,5 @@
-// Keeps the light from infinity that was loaded last, since loading environment maps and preparing them for
-// sampling takes long, and successive pictures mostly have the same light. It must be used from one thread.
+// Caches the last distant light, because loading environment maps and preparing them for sampling is slow and
+// successive pictures mostly have the same light. Use it from one thread.
 #pragma once
 
 #include <memory>
@@ -19,23 +19,24 @@ class LightCache {
  public:
   using FromInfinity = std::variant<spec::EnvironmentMapLight, spec::ConstantLight, spec::SunLight>;
 
-  // Compares lights by their words, so an environment map that changed on disk is not loaded again. `factors`
-  // and `more` are those of Request. Errors: those of loading an environment map.
+  // Returns the environment of these lights. Lights are compared by their words, so an environment map that
+  // changed on disk is not loaded again. `factors` and `more` are as in Request. Errors: an environment map
+  // cannot be loaded.
   Result<std::shared_ptr<const Environment>> environment(
       const std::vector<spec::Light>& lights, const std::vector<float>& factors, const Options& options,
       const std::shared_ptr<const spec::DistantLights>& more = {});
-  // Says what was repaired in the environment maps.
+  // Returns what was repaired in the environment maps, one sentence each.
   const std::vector<std::string>& notices() const { return notices_; }
 
  private:
-  std::optional<std::vector<FromInfinity>> lights_;  // the lights of loaded_; nothing if it is not loaded
+  std::optional<std::vector<FromInfinity>> lights_;  // the lights of loaded_; none if nothing is loaded
   std::vector<spec::DistantLights> loaded_;          // one per light, not band-limited
   std::vector<std::string> notices_;
   std::vector<float> factors_;
   std::shared_ptr<const spec::DistantLights> more_;
   float turn_deg_ = 0.0f;
   int band_limit_ = 0;
-  std::shared_ptr<const Environment> environment_;  // made from all of these; null if there is none yet
+  std::shared_ptr<const Environment> environment_;  // built from the members above; null if there is none yet
 };
 
 }  // namespace lambent::baker::reference

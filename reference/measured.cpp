@@ -18,10 +18,10 @@ namespace {
 
 constexpr std::size_t kHalves = 257, kDifferences = 129;  // nodes of the table
 constexpr std::size_t kAngles = 65;                       // nodes of the scale
-constexpr std::uint32_t kPoints = 2048;                   // points of each of its integrals
-constexpr double kSharpness = 400.0;                      // sharpness of the weights, 1/(2 sigma²)
+constexpr std::uint32_t kPoints = 2048;                   // sample points of each integral
+constexpr double kSharpness = 400.0;                      // of the interpolation weights: 1/(2 sigma²)
 
-// Returns half vector and difference as coordinates 0..1 (Rusinkiewicz 1998).
+// Returns half-vector and difference angles as coordinates 0..1 (Rusinkiewicz 1998).
 glm::dvec2 placeOf(const glm::dvec3& v, const glm::dvec3& s) {
   const glm::dvec3 sum = v + s;
   // This uses atan2, because the arc cosine of a small angle has no significant digits.
@@ -46,7 +46,7 @@ glm::vec3 meanAt(const std::vector<Weighed>& all, const glm::dvec2& place) {
     const glm::dvec2 away = one.place - place;
     return glm::dot(away, away);
   };
-  // Weights are relative to the nearest, since they would vanish far from all measurements.
+  // Weights are relative to the nearest measurement, or they would underflow far from all of them.
   double nearest = distance2(all.front());
   for (const Weighed& one : all) nearest = std::min(nearest, distance2(one));
   double weights = 0.0;
@@ -61,7 +61,7 @@ glm::vec3 meanAt(const std::vector<Weighed>& all, const glm::dvec2& place) {
   return glm::vec3(sum / weights);
 }
 
-// Returns the node below a place 0..1 among `nodes`, and the fraction of the way to the next.
+// Returns the node below a coordinate 0..1 among `nodes`, and the fraction of the way to the next.
 std::pair<std::size_t, float> between(double at, std::size_t nodes) {
   const double scaled = std::clamp(at, 0.0, 1.0) * static_cast<double>(nodes - 1);
   const auto below = std::min(static_cast<std::size_t>(scaled), nodes - 2);
@@ -93,7 +93,7 @@ MeasuredReflection::MeasuredReflection(const MeasuredBrdf& measured) {
   while (h + 1 < kHalves && largest(row[h]) > half) ++h;
   const float root = static_cast<float>(h) / (kHalves - 1);
   alpha_ = std::clamp(std::tan(std::min(kPi / 2 * root * root, 1.2f)) / 0.644f, 0.02f, 1.0f);
-  // What would be reflected of uniform light.
+  // Computes the reflection of uniform light.
   scales_.resize(kAngles);
   parallelRanges(kAngles, 1, {}, [&](std::size_t first, std::size_t last) {
     for (std::size_t a = first; a < last; ++a) {

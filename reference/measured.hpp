@@ -1,6 +1,6 @@
-// Interpolates a measured BRDF between its measurements for the reference (docs/conventions.md, "Materials"):
-// by a weighted mean over the angles of half vector and difference, tabulated once, and scaled down where it
-// would reflect more than it receives.
+// Interpolates a measured BRDF for the reference (docs/conventions.md, "Materials") by a weighted mean over
+// the half-vector and difference angles, tabulated once. It is scaled down where it would reflect more energy
+// than it receives.
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ class MeasuredReflection final : public WholeBrdf {
   float scale(float cosine) const;
 
   std::vector<glm::vec3> values_;  // [theta_d][sqrt of theta_h]
-  std::vector<float> scales_;      // by the root of the cosine
+  std::vector<float> scales_;      // by the square root of the cosine
   float alpha_ = 0.2f;
 };
 

@@ -6,7 +6,7 @@ namespace lambent::baker::reference {
 
 std::uint32_t samplesInPass(const Options& options, const Volumes& volumes) {
   if (options.band_limit && options.band_limit->out) return 256;  // each pass integrates its kernels again
-  return volumes.empty() ? 16 : 64;  // in volumes most paths end long before the last
+  return volumes.empty() ? 16 : 64;  // in volumes most paths end long before the longest
 }
 
 bool addSamples(const Integrator& integrator, Film& film, std::uint32_t first, std::uint32_t last,

@@ -1,7 +1,7 @@
-// This is Henyey and Greenstein's phase function of scattering in a medium, Astrophysical Journal 93, 1941.
-// It is per steradian, and a function of the cosine between the directions in which light travels before and
-// after; its mean cosine is g. A path from the eye that travels along d and looks towards s sees light that
-// came along -s and left along -d, so the cosine is dot(d, s).
+// Evaluates and samples the phase function of Henyey and Greenstein, Astrophysical Journal 93, 1941, per
+// steradian. Its argument is the cosine between the directions of propagation before and after scattering;
+// its mean cosine is g. A path from the eye that travels along d and looks towards s sees light that came
+// along -s and left along -d, so the cosine is dot(d, s).
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@ inline float phaseValue(float g, float cosine) {
   return static_cast<float>((1.0 - k * k) / (4.0 * std::numbers::pi * base * std::sqrt(base)));
 }
 
-// Returns the first bands of the function, as runtime and baker use it: Σ_(l < bands) g^l (2l + 1)/(4π) P_l.
-// Signed.
+// Returns the first SH bands of the function, as runtime and baker use it: Σ_(l < bands) g^l (2l + 1)/(4π)
+// P_l. The result can be negative.
 inline float phaseValue(float g, float cosine, int bands) {
   const double c = double{cosine};
   double below = 0.0, legendre = 1.0, power = 1.0, sum = 0.0;
@@ -33,7 +33,7 @@ inline float phaseValue(float g, float cosine, int bands) {
   return static_cast<float>(sum / (4.0 * std::numbers::pi));
 }
 
-// pdf = phaseValue(g, dot(along, result)); `along` is unit.
+// Samples a direction with pdf = phaseValue(g, dot(along, result)); `along` is unit.
 inline glm::vec3 samplePhase(float g, const glm::vec3& along, const glm::vec2& u) {
   const double k = double{g}, even = 1.0 - 2.0 * double{u.x};
   double cosine = even;
@@ -41,7 +41,7 @@ inline glm::vec3 samplePhase(float g, const glm::vec3& along, const glm::vec2& u
     const double share = (1.0 - k * k) / (1.0 + k * even);
     cosine = (1.0 + k * k - share * share) / (2.0 * k);
   } else {
-    cosine += 1.5 * k * (1.0 - even * even);  // the first term in g
+    cosine += 1.5 * k * (1.0 - even * even);  // first-order term in g
   }
   cosine = std::clamp(cosine, -1.0, 1.0);
   const auto sine = static_cast<float>(std::sqrt(1.0 - cosine * cosine));

@@ -21,13 +21,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A Coarse picture has a factor and a number of samples per pixel. The first comes at once, so that there is
-// one while a view is dragged; all together cost 1.14 samples of every whole pixel.
+// Each coarse picture has a block size and a number of samples per block. The first appears at once, also
+// while a view is dragged; together they cost 1.14 samples per full pixel.
 struct Coarse {
   std::uint32_t by, samples;
 };
 constexpr std::array<Coarse, 3> kCoarse = {{{8, 1}, {4, 2}, {2, 4}}};
-// How often to publish rows while the first whole pass comes in from the top.
+// How often rows are published while the first full pass proceeds from the top.
 constexpr auto kPublishEvery = std::chrono::milliseconds(250);
 
 struct Job {
@@ -120,7 +120,7 @@ class ProgressiveReference::Worker {
     }
   }
 
-  // Everything from here on runs on the thread. It ends early, without an error, when stopped.
+  // The rest runs on the worker thread. A job ends early, without an error, when it is stopped.
   Result<void> trace(const Job& job) {
     const Request& request = job.request;
     const Options& options = request.options;
@@ -134,7 +134,7 @@ class ProgressiveReference::Worker {
     const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
     enter(job, ProgressivePhase::Tracing);
 
-    spec::RgbaImage shown;  // a coarse picture, and over it the rows of the first pass as they come in
+    spec::RgbaImage shown;  // a coarse picture, overwritten by the finished rows of the first pass
     for (const auto& [by, samples] : kCoarse) {
       Options coarse = options;
       coarse.size = coarser(options.size, by);
@@ -224,15 +224,15 @@ class ProgressiveReference::Worker {
     status_.error = std::move(error);
   }
 
-  // Only the thread uses these. The scene stays as long as what was built from it.
+  // These are used by the worker thread only. The scene must outlive what was built from it.
   LightCache lights_;
   std::shared_ptr<const Scene> traced_scene_;
   std::unique_ptr<const TracedScene> traced_;
-  Clock::time_point begin_;  // of the job, moved later by the time that it was paused
+  Clock::time_point begin_;  // start of the job, moved later by pauses
 
   Progress progress_;
 
-  mutable std::mutex lock_;  // guards what follows
+  mutable std::mutex lock_;  // guards the members below
   std::condition_variable_any changed_;
   std::shared_ptr<const Scene> scene_;
   std::optional<Job> wanted_;

@@ -1,10 +1,10 @@
-// ProgressiveReference refines a reference picture while the user looks on, for a view beside the runtime's.
-// A scene and the request that `lambent reference` would get come in. Snapshots go out, first of coarse
-// pictures, then of whole ones, pass by pass; at N samples per pixel they have the bits of render() with
-// options.spp = N, for every N where a pass ends and for options.spp itself. The work is done on a thread of
-// its own and on TBB, and gives way to other parallel loops of the program. Any change restarts the picture:
-// new lights and views at once, a new scene after it was built in the background; what did not change is
-// kept. Call it from one thread. Only the destructor waits, for a few pixels or for the scene being built.
+// Refines a reference picture in the background, for a view beside the runtime's. A scene and a request as
+// for render() come in. Snapshots go out, first of coarse pictures, then after every pass. A snapshot with N
+// samples per pixel has the bits of render() with options.spp = N, for every N at which a pass ends and for
+// options.spp itself. The work runs on its own thread and on TBB, and yields to other parallel loops of the
+// program. Any change restarts the picture: new lights and views at once, a new scene after it was built in
+// the background; unchanged parts are kept. Call it from one thread. Only the destructor waits, for a few
+// pixels or for the scene being built.
 #pragma once
 
 #include <memory>
@@ -18,24 +18,24 @@
 
 namespace lambent::baker::reference {
 
-// A Snapshot is the picture so far, always of the requested size.
+// A Snapshot is the picture so far, always at the requested size.
 struct Snapshot {
-  std::uint64_t generation = 0;  // of the restart() that it belongs to
+  std::uint64_t generation = 0;  // number of the restart() that it belongs to
   spec::RgbaImage image;         // mean radiance and coverage, as from render()
-  // These are means over every other sample, with independent noise: two references for comparePictures().
-  // They are empty in coarse pictures and with one sample.
+  // Means over every other sample, with independent noise, as two references for comparePictures(). They are
+  // empty for coarse pictures and for one sample.
   spec::RgbaImage halves[2];
-  std::uint32_t spp = 0;         // samples that all pixels have; 0 in coarse pictures
-  std::uint32_t coarseness = 1;  // edge length of the blocks of pixels traced as one; 1 if nothing is coarse
-  double seconds = 0.0;          // work since the restart
+  std::uint32_t spp = 0;         // samples per pixel; 0 in coarse pictures
+  std::uint32_t coarseness = 1;  // edge length in pixels of the blocks traced as one; 1 if nothing is coarse
+  double seconds = 0.0;          // working time since the restart
   std::optional<double> noise;  // standard error of the pixels, relative to the picture (Film::standardError)
   std::vector<std::string> notices;  // what was repaired or left out, one sentence each
 };
 
 enum class ProgressivePhase {
-  Preparing,  // loads lights and builds the scene's hierarchy
+  Preparing,  // loading lights and building the scene's ray-tracing hierarchy
   Tracing,
-  Finished,  // has options.spp samples
+  Finished,  // options.spp samples are done
   Failed,
 };
 
@@ -44,13 +44,13 @@ struct ProgressiveStatus {
   ProgressivePhase phase = ProgressivePhase::Preparing;
   bool paused = false;
   std::optional<Error> error = {};  // what failed: an environment map, a texture, a camera, options, memory
-  double share = 0.0;               // share done of the current pass, or of the coarse picture
+  double share = 0.0;               // fraction done of the current pass or coarse picture
 };
 
 class ProgressiveReference {
  public:
-  // Stops at options.spp (never, if that is kMaxSpp); options.threads is as for inBackground(). The scene
-  // must not change any more: to edit it, pass a changed copy to restart().
+  // Stops at options.spp samples (never, if that is kMaxSpp); options.threads is as for inBackground(). The
+  // scene must not change; to edit it, pass a changed copy to restart().
   ProgressiveReference(std::shared_ptr<const Scene> scene, Request request);
   // Stops the work.
   ~ProgressiveReference();
@@ -61,10 +61,10 @@ class ProgressiveReference {
   std::uint64_t restart(Request request);
   std::uint64_t restart(std::shared_ptr<const Scene> scene, Request request);
 
-  // Pauses the work, keeping everything done, until it may continue. A restart does not end the pause.
+  // Pauses or resumes the work; nothing done is lost. A restart does not end a pause.
   void pause(bool paused);
 
-  // Returns the newest snapshot, or null before the first coarse picture. It costs nothing.
+  // Returns the newest snapshot, or null before the first coarse picture. Does not wait.
   std::shared_ptr<const Snapshot> snapshot() const;
   ProgressiveStatus status() const;
 

@@ -42,7 +42,7 @@ class FlushDenormals {
 #endif
 };
 
-// A Record is the user data of a geometry.
+// A Record is the user data of an Embree geometry.
 struct Record {
   const Surfaces* surfaces;
   std::uint32_t surface;
@@ -82,7 +82,7 @@ void filterBacks(const RTCFilterFunctionNArguments* args) {
     if (args->valid[i] == -1 && isCulled(args, i)) args->valid[i] = 0;
 }
 
-// Records every hit and lets the ray go on.
+// Records every hit and lets the ray continue.
 struct LayerContext {
   RTCIntersectContext embree;
   std::vector<Hit>* layers;
@@ -116,9 +116,9 @@ bool addGeometry(RTCDevice device, RTCScene scene, const Record& record) {
       rtcSetGeometryOccludedFilterFunction(geometry, filterCutOut);
     }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, record.surface);  // so that geomID is the surface
+    rtcAttachGeometryByID(scene, geometry, record.surface);  // geomID becomes the index of the surface
   }
-  rtcReleaseGeometry(geometry);  // the scene keeps its own reference
+  rtcReleaseGeometry(geometry);  // the scene holds its own reference
   return room;
 }
 
@@ -156,7 +156,7 @@ Result<RayTracer> RayTracer::build(const Surfaces& surfaces) {
   const auto newScene = [&](RTCBuildQuality quality) {
     EmbreeScene scene(rtcNewScene(state->device.get()));
     rtcSetSceneBuildQuality(scene.get(), quality);
-    // ROBUST lets no ray through edges that two triangles share.
+    // ROBUST prevents rays from passing through edges that two triangles share.
     rtcSetSceneFlags(scene.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
                                                              RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
     return scene;
@@ -209,7 +209,7 @@ void RayTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> bloc
     const auto some = rays.subspan(first, std::min(kWidth, rays.size() - first));
     fill(packet, some, valid);
     rtcOccluded16(valid, state_->solid.get(), &context, &packet);
-    // Embree sets tfar to -inf if something is in the way.
+    // Embree sets tfar to -inf if the ray is occluded.
     for (std::size_t k = 0; k < some.size(); ++k) blocked[first + k] = packet.tfar[k] < 0.0f;
   }
 }
@@ -234,7 +234,7 @@ void RayTracer::visible(const Ray& ray, std::vector<Hit>& layers) const {
     trace(state_->blended.get(), filterLayers, solid.ray.tfar);
     std::sort(layers.begin(), layers.end(),
               [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
-    // A ray may meet both triangles at an edge that they share.
+    // A ray may hit both triangles at an edge that they share.
     const auto same = [](const Hit& a, const Hit& b) {
       return a.surface == b.surface && b.t - a.t <= 1e-6f * b.t;
     };

@@ -1,7 +1,7 @@
-// Finds what rays meet, by Embree. This is the reference's own wrapper, so that it shares no ray code with
-// the bake. Rays come in lists and travel 16 at a time. Cut-outs (alphaMode MASK) let rays through by their
-// texture. Blended surfaces are kept apart, since only rays from the eye see them, as layers. Calls are safe
-// from any thread; the Surfaces must outlive this.
+// Finds ray hits with Embree. The baker has its own wrapper, so that the two share no ray code. Rays are
+// passed in lists and traced 16 at a time. Cut-outs (alphaMode MASK) are tested by their texture. Blended
+// surfaces are kept in a separate scene, because only eye rays see them, as layers. Calls are thread-safe;
+// the Surfaces must outlive this.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace lambent::baker::reference {
 
 struct Ray {
   glm::vec3 origin{0.0f}, dir{0.0f};
-  float far = 0.0f;  // in lengths of dir; rays begin at 0
+  float far = 0.0f;  // in units of dir's length; rays begin at 0
 };
 
 class RayTracer {
@@ -30,8 +30,8 @@ class RayTracer {
   void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
   // Sets blocked[i] to 1 if something lies on the ray, else to 0.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;
-  // Finds what the eye sees along a ray, nearest first: blended layers, then the solid surface, if any. Backs
-  // of single-sided surfaces are left out, because the runtime culls them.
+  // Finds what an eye ray sees, nearest first: blended layers, then the opaque surface, if any. Backs of
+  // single-sided surfaces are skipped, because the runtime culls them.
   void visible(const Ray& ray, std::vector<Hit>& layers) const;
 
  private:

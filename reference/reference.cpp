@@ -26,7 +26,7 @@ double secondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// Draws pass by pass over the picture, with a checkpoint every few seconds and when stopped.
+// Renders the picture pass by pass, and writes a checkpoint every few seconds and when stopped.
 Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t spp, std::uint32_t together,
                        const fs::path& checkpoint, Progress& progress, const std::stop_token& stop) {
   const double seconds_before = film.seconds;
@@ -97,7 +97,7 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   Film film(options.size, digestOf(scene, lights, shapes, *view, options));
   const Environment environment(std::move(lights), options.rotate_light_deg,
                                 options.band_limit ? options.band_limit->in : 0);
-  // Resume what an earlier run has done.
+  // Resume an earlier run.
   const fs::path checkpoint = checkpointOf(output);
   takeUp(film, checkpoint, force, report);
   std::uint64_t left = 0;

@@ -1,9 +1,9 @@
-// The room reference draws path-traced pictures of glTF scenes, to measure the runtime against: with the same
-// scene, lights, camera and conventions, but an integrator, a sampler and rays of its own, so that no mistake
-// of the bake can hide in both. The scene, parsed lights and camera, and options come in. OUT.exr goes out:
-// linear float32 RGBA, signed, where alpha is coverage (of volumes, the share of what is behind that they
-// take away), and depths. While it works, OUT.exr.partial holds what is done; the same command resumes it and
-// ends with the same bytes. They are also the same for any number of threads.
+// Path-traces pictures of glTF scenes as a ground truth for the runtime. Scene, lights, camera and
+// conventions are the same, but integrator, sampler and ray tracing are independent of the baker's, so that a
+// mistake cannot hide in both. The scene, parsed lights and camera, and options come in. OUT.exr goes out:
+// linear float32 RGBA, possibly negative, where alpha is coverage (for volumes, one minus transmittance), and
+// depths. Work in progress is in OUT.exr.partial; running the same command again resumes it and gives the
+// same bytes, for any number of threads.
 #pragma once
 
 #include <filesystem>
@@ -28,40 +28,41 @@ class Surfaces;
 
 struct Request {
   std::vector<spec::Light> lights = {};
-  // Without it, the file's first camera is used, else an orbit that frames the scene.
+  // If empty, the file's first camera is used, or else an orbit that frames the scene.
   std::optional<spec::Camera> camera = {};
   Options options = {};
-  // Orbits use these places of the nodes before poseAt; if empty, their present places are used.
+  // The nodes before poseAt, whose bounds orbits use; if empty, the scene's nodes.
   std::vector<gltf::Node> nodes_at_rest = {};
-  std::optional<spec::View> view = {};  // used instead of a camera, for an eye that moves freely
-  // These multiply the radiance of each light from infinity; lights beyond the list have 1.
+  std::optional<spec::View> view = {};  // used instead of `camera`, for a view that no camera describes
+  // Factors on the radiance of each distant light; missing ones are 1.
   std::vector<float> light_factors = {};
-  // This is more light from infinity, in the frame of the lights, for light that no word describes, such as
-  // key lights that were moved.
+  // More distant light, in the frame of the lights, for light that no word describes, such as edited key
+  // lights.
   std::shared_ptr<const spec::DistantLights> more_light = {};
 };
 
 struct Report {
   spec::RgbaImage image;
   std::uint64_t rays = 0;
-  double seconds = 0.0;                  // time of tracing, over all runs that it took
-  std::uint32_t resumed_samples = 0;     // samples per pixel that an earlier run had done
-  std::optional<double> standard_error;  // of the pixels, relative to the picture; nothing for one sample
+  double seconds = 0.0;                  // tracing time, including resumed runs
+  std::uint32_t resumed_samples = 0;     // samples per pixel of earlier runs
+  std::optional<double> standard_error;  // of the pixels, relative; none for one sample per pixel
   std::vector<std::string> notices;      // what was repaired or left out, one sentence each
 };
 
-// Moves the nodes, which must be at rest, to where the scene's animations have them at time_s. Adds a warning
-// to the scene if there is nothing to move.
+// Applies the scene's animations at time_s to its nodes, which must be at rest. Adds a warning to the scene
+// if nothing is animated.
 void poseAt(Scene& scene, float time_s);
 
 std::filesystem::path checkpointOf(const std::filesystem::path& output);
 
-// Returns the request's eye; the picture's size gives the aspect of a camera.
+// Returns the view of the request. The picture's size gives a camera's aspect ratio.
 Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces, const Request& request);
 
-// Draws the scene with its nodes as they are. Without `output` it writes neither a checkpoint nor a picture.
-// `force` ignores an earlier checkpoint. Errors: options, an environment map, a texture, no such camera, an
-// output that cannot be written; or stopped, in which case the checkpoint keeps what is done.
+// Renders the scene with its nodes as they are. If `output` is empty, neither a checkpoint nor a picture is
+// written. `force` ignores an existing checkpoint. Errors: invalid options; an environment map or texture
+// cannot be loaded; there is no such camera; the output cannot be written; the run was stopped (the
+// checkpoint keeps what is done).
 Result<Report> render(const Scene& scene, const Request& request, const std::filesystem::path& output,
                       bool force, Progress& progress, const std::stop_token& stop);
 

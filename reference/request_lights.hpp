@@ -1,5 +1,5 @@
-// Loads the light from infinity of a request: each light once, and all of them together, each multiplied by
-// its factor. With factors of 1 the result equals that of loadDistantLights() to the bit.
+// Loads the distant lights of a request, each separately, and combines them with their factors. With factors
+// of 1 the result is bit-identical to that of loadDistantLights().
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace lambent::baker::reference {
 
-// Returns one entry per light; those of lights in the scene are empty. Errors: those of loading an
-// environment map.
+// Returns one entry per light; entries of lights within the scene are empty. Errors: an environment map
+// cannot be loaded.
 Result<std::vector<spec::DistantLights>> loadEach(const std::vector<spec::Light>& lights);
 
-// `factors` holds one per light; 1 is used beyond the list.
+// Combines the lights. `factors` has one factor per light; missing ones are 1.
 spec::DistantLights together(const std::vector<spec::DistantLights>& each, const std::vector<float>& factors);
 
 // Adds the lights in `more`, which may be null.

@@ -1,9 +1,9 @@
-// These are the reference's random numbers: padded Owen-scrambled Sobol points, two dimensions at a time.
+// Generates the reference's random numbers: padded Owen-scrambled Sobol points, two dimensions at a time.
 // Every number is a function of (seed, pixel, replica, dimension, index) alone, so pictures do not depend on
-// threads or interruptions. Points of one pixel fill the square evenly in every power-of-two prefix; pixels
-// and dimensions are independent of each other. Scrambling is by hash: Burley, "Practical Hash-based Owen
+// threads or interruptions. The points of a pixel are well stratified in every power-of-two prefix; pixels
+// and dimensions are independent of each other. Scrambling is hash-based: Burley, "Practical Hash-based Owen
 // Scrambling", JCGT 9(4), 2020, with Vegdahl's constants (psychopath.io, "Building a Better LK Hash", 2021).
-// Walks through media draw from separate streams of independent numbers.
+// Tracking through media uses separate streams of independent numbers.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace lambent::baker::reference {
 
-// This is an avalanching hash of 32 bits ("lowbias32", Wellons).
+// Hashes 32 bits with full avalanche ("lowbias32", Wellons).
 constexpr std::uint32_t hash32(std::uint32_t x) {
   x ^= x >> 16;
   x *= 0x7feb352du;
@@ -50,7 +50,7 @@ constexpr std::uint32_t owenScrambled(std::uint32_t x, std::uint32_t seed) {
   return reversedBits(laineKarras(reversedBits(x), seed));
 }
 
-// Returns the second dimension of Sobol's sequence with its bits reversed: Pascal's triangle modulo 2 times
+// Returns the second dimension of the Sobol sequence with its bits reversed: the Pascal matrix modulo 2 times
 // the index. The first dimension with its bits reversed is the index itself.
 constexpr std::uint32_t sobolSecondReversed(std::uint32_t index) {
   index ^= index >> 16;
@@ -65,15 +65,15 @@ constexpr float unitFloat(std::uint32_t x) {
   return static_cast<float>(x >> 8) * 0x1p-24f;
 }
 
-// This is an avalanching hash of 64 bits (the finalizer of SplitMix64).
+// Hashes 64 bits with full avalanche (the finalizer of SplitMix64).
 constexpr std::uint64_t hash64(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
   return x ^ (x >> 31);
 }
 
-// A Stream gives independent numbers one after the other, for uses whose count is not known in advance:
-// SplitMix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014).
+// Generates a sequence of independent numbers, for uses whose count is not known in advance: SplitMix64
+// (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014).
 class Stream {
  public:
   explicit Stream(std::uint64_t key) : state_(key) {}
@@ -90,20 +90,20 @@ class Stream {
 
 class Sampler {
  public:
-  // Replicas of a pixel are independent of each other, as pixels and seeds are.
+  // Pixels, seeds and the replicas of a pixel are independent of each other.
   Sampler(std::uint32_t seed, std::uint32_t pixel, std::uint32_t replica)
       : key_(combine(combine(combine(0x4c4d4272u, seed), pixel), replica)) {}
 
-  // Returns point `index` in the pair of dimensions `dimension`.
+  // Returns point `index` of the pair of dimensions `dimension`, in [0, 1)².
   glm::vec2 pair(std::uint32_t dimension, std::uint32_t index) const {
     const std::uint32_t key = combine(key_, dimension);
-    // The index is shuffled per pair, so that pairs are padded independently.
+    // The index is shuffled differently for each pair, so that pairs are independent.
     const std::uint32_t shuffled = owenScrambled(index, key);
     return {unitFloat(reversedBits(laineKarras(shuffled, hash32(key ^ 0x68bc21ebu)))),
             unitFloat(reversedBits(laineKarras(sobolSecondReversed(shuffled), hash32(key ^ 0x02e5be93u))))};
   }
 
-  // Returns a stream that is independent of the pairs: one for each use (`which`) at a vertex.
+  // Returns a stream that is independent of the pairs. `which` distinguishes its uses at a vertex.
   Stream stream(std::uint32_t dimension, std::uint32_t index, std::uint32_t which) const {
     const std::uint64_t place = hash64((std::uint64_t{key_} << 32) | dimension);
     return Stream(hash64(place ^ hash64((std::uint64_t{which} << 32) | index)));

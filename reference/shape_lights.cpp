@@ -12,7 +12,7 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Returns 1 - cos of the half angle that a sphere fills, without cancellation if it is far away.
+// Returns 1 - cos of the half angle of a sphere, without cancellation if it is far away.
 double capOf(double radius, double distance) {
   const double sine = radius / distance, sine2 = sine * sine;
   return sine2 / (1.0 + std::sqrt(std::max(0.0, 1.0 - sine2)));
@@ -25,7 +25,7 @@ std::optional<WayToLight> sample(const spec::SphereLight& light, const glm::vec3
   const auto cap = static_cast<float>(capOf(radius, distance));
   if (!(cap > 0.0f)) return std::nullopt;
   const glm::vec3 local = coneDirection(u, cap);
-  // This is the distance along the axis, less half the chord.
+  // The distance is that of the centre along the ray, minus half the chord.
   const double aside2 =
       distance * distance * (double{local.x} * double{local.x} + double{local.y} * double{local.y});
   const double near = distance * double{local.z} - std::sqrt(std::max(0.0, radius * radius - aside2));
@@ -52,7 +52,7 @@ std::optional<WayToLight> look(const spec::SphereLight& light, const glm::vec3& 
   return way;
 }
 
-// Converts density per area to solid angle; returns nothing in the disc's plane and behind it.
+// Converts density per area to solid angle. Returns nothing in the disc's plane and behind it.
 std::optional<WayToLight> towards(const spec::DiscLight& light, const glm::dvec3& to) {
   const double distance = glm::length(to), radius = double{light.radius_m};
   if (!(distance > 0.0)) return std::nullopt;
@@ -68,7 +68,7 @@ std::optional<WayToLight> towards(const spec::DiscLight& light, const glm::dvec3
 
 std::optional<WayToLight> sample(const spec::DiscLight& light, const glm::vec3& point, const glm::vec2& u) {
   if (!(light.radius_m > 0.0f)) return std::nullopt;
-  // A cosine-distributed hemisphere, seen from above, is a uniform disc.
+  // Cosine-distributed directions, projected onto the plane, are uniform over a disc.
   const glm::vec3 on = cosineDirection(u);
   const glm::vec3 offset = light.radius_m * (frameAbout(light.normal_ws) * glm::vec3(on.x, on.y, 0.0f));
   return towards(light, glm::dvec3(light.position_ws) + glm::dvec3(offset) - glm::dvec3(point));

@@ -1,9 +1,9 @@
-// These are the spheres and discs of uniform radiance that light words put into the scene, as paths meet
-// them. They are no surfaces: eye rays pass through them and they cast no shadow, but surfaces in front of
-// them block them. A light, a point, and two numbers or a direction come in. A direction to the light with
-// its density per steradian goes out: uniform over the cone that a sphere fills, or uniform over the area of
-// a disc. Inside a sphere there is no such density, since it fills all directions. A light of radius 0 is
-// never met.
+// Samples the sphere and disc lights of uniform radiance that light words add to a scene. They are no
+// surfaces: eye rays pass through them and they cast no shadow, but surfaces in front of them block their
+// light. A light, a point, and two random numbers or a direction come in. A direction to the light with its
+// density per steradian goes out: uniform over the cone of a sphere, or uniform over the area of a disc.
+// Inside a sphere there is no such density, because it fills all directions. A light of radius 0 is never
+// hit.
 #pragma once
 
 #include <optional>
@@ -16,24 +16,23 @@
 
 namespace lambent::baker::reference {
 
-// WayToLight is a direction from a point in which a light is seen.
+// A WayToLight is a direction from a point towards a light.
 struct WayToLight {
   glm::vec3 dir{0.0f};  // unit
   float distance = 0.0f;
   glm::vec3 radiance{0.0f};
-  float pdf = 0.0f;  // density with which sampleShape() draws dir; 0 if it never does
+  float pdf = 0.0f;  // density with which sampleShape() draws dir; 0 if it cannot
 };
 
-// Returns nothing if no light arrives, and inside a sphere.
+// Samples a direction towards the light. Returns nothing if no light arrives, and inside a sphere.
 std::optional<WayToLight> sampleShape(const spec::LocalLight& light, const glm::vec3& point,
                                       const glm::vec2& u);
 
-// Returns what the unit direction dir sees; nothing if it misses the light or meets a disc from behind.
+// Returns what the unit direction dir sees, or nothing if it misses the light or hits the back of a disc.
 std::optional<WayToLight> lookAtShape(const spec::LocalLight& light, const glm::vec3& point,
                                       const glm::vec3& dir);
 
-// Returns the first bands of what arrives at the point if nothing is in the way, as a light probe there would
-// have it.
+// Returns the first SH bands of the unoccluded light at the point, as a light probe there would store it.
 sh::LightVector shapeLight(const spec::LocalLight& light, int order, const glm::vec3& point);
 
 }  // namespace lambent::baker::reference

@@ -14,8 +14,8 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Rays start off the surface by this share of the coordinates and of the triangle's size: some thirty
-// roundings of a float, and about as far below anything visible.
+// Rays start off the surface by this fraction of the coordinates and of the triangle's size: some thirty
+// float roundings, which is still invisible.
 constexpr float kOffset = 0x1p-19f;
 
 float largest(const glm::vec3& v) {
@@ -49,7 +49,7 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
     const glm::dmat4 matrix(world[n]);
     const double determinant = glm::determinant(glm::dmat3(matrix));
     const bool mirrored = determinant < 0.0;
-    // The cofactors are the inverse transpose up to scale, and exist for flat matrices too.
+    // The cofactor matrix equals the inverse transpose up to scale, and also exists for singular matrices.
     const glm::dmat3 linear(matrix);
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                glm::cross(linear[0], linear[1]));
@@ -141,8 +141,8 @@ glm::vec3 Surfaces::emittedAt(const Hit& hit) const {
   return material.emissive * glm::vec3(textures_.color(ref, texcoord(hit, ref.texcoord)));
 }
 
-// Returns the file's tangent, or one from the texture coordinates over this triangle. glTF's textures have v
-// pointing down and normals' +Y pointing up, so a triangle's bitangent is -dp/dv.
+// Returns the file's tangent, or one computed from the texture coordinates of this triangle. In glTF the
+// texture coordinate v points down and +Y of normal maps points up, so the bitangent is -dp/dv.
 glm::vec4 Surfaces::tangent(const Hit& hit, const glm::vec3& normal) const {
   const glm::vec4 given = interpolated(tangents_, hit);
   if (tangents_[triangles_[hit.triangle].x].w != 0.0f)

@@ -1,7 +1,7 @@
-// Surfaces are the scene as triangles in world space, with what a path needs to know where it meets one.
-// Import's Scene comes in, with all nodes in place. One Surface per node and primitive goes out, and for a
-// hit the point on it: both normals, how it reflects (docs/conventions.md, "Materials") and the radiance that
-// it emits. Triangles of mirrored nodes are turned, so that counter-clockwise is the front everywhere.
+// Holds the scene as triangles in world space, with what a path needs at a hit. The importer's Scene comes
+// in, with all nodes in place. Each node and primitive becomes one Surface. For a hit it returns the point
+// with both normals, its reflection (docs/conventions.md, "Materials") and its emitted radiance. Triangles of
+// mirrored nodes are flipped, so that counter-clockwise is the front everywhere.
 #pragma once
 
 #include <cstdint>
@@ -23,35 +23,37 @@ namespace lambent::baker::reference {
 
 struct Surface {
   gltf::Material material;
-  std::shared_ptr<const WholeBrdf> whole;  // null: GGX, or matte
+  std::shared_ptr<const WholeBrdf> whole;  // null: GGX or diffuse
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
-  float handedness = 1.0f;  // -1 in mirrored nodes; a bitangent is cross(t, n) w there
+  float handedness = 1.0f;  // -1 in mirrored nodes; the bitangent is cross(n, t) * w * handedness
 };
 
-// The barycentric coordinates u and v belong to the triangle's second and third corner.
+// A Hit is where a ray meets a triangle. The barycentric coordinates u and v belong to the triangle's second
+// and third corner.
 struct Hit {
   static constexpr std::uint32_t kNothing = ~0u;
   std::uint32_t surface = kNothing;
-  std::uint32_t triangle = 0;  // index among those of all surfaces
+  std::uint32_t triangle = 0;  // index among the triangles of all surfaces
   float u = 0.0f, v = 0.0f, t = 0.0f;
   bool any() const { return surface != kNothing; }
 };
 
-// A SurfacePoint is on the side of a surface that a ray met. Normals are turned on the back of a double-sided
-// surface. On the back of a single-sided one they are not, and `blocked` says that no light comes from there.
+// A SurfacePoint is a point on the side of a surface that the ray hit. On the back of a double-sided surface
+// the normals are flipped. On the back of a single-sided one they are not, and `blocked` says that no light
+// comes from there.
 struct SurfacePoint {
   glm::vec3 position{0.0f};
-  glm::vec3 geometric{0.0f};  // unit; decides which directions are above the horizon
-  glm::vec3 shading{0.0f};    // unit; used in the cosine only
+  glm::vec3 geometric{0.0f};  // unit; directions below it are below the horizon
+  glm::vec3 shading{0.0f};    // unit; used for the cosine only
   glm::vec3 smooth{0.0f};     // the shading normal before normal maps
-  glm::vec3 albedo{0.0f};     // base colour; all that a diffuse surface reflects
-  bool glossy = false;        // reflects by `reflector`
-  Reflector reflector;        // towards the origin of the ray
-  glm::vec3 emitted{0.0f};    // radiance, the same in all directions
+  glm::vec3 albedo{0.0f};     // base colour; the whole reflectance of a diffuse surface
+  bool glossy = false;        // reflects by `reflector` instead of `albedo`
+  Reflector reflector;        // for the direction to the ray's origin
+  glm::vec3 emitted{0.0f};    // radiance, equal in all directions
   float alpha = 1.0f;
-  float offset = 0.0f;  // how far rays start off the surface
-  bool unlit = false;   // shows `albedo` as radiance
+  float offset = 0.0f;  // distance at which rays start off the surface
+  bool unlit = false;   // shows `albedo` as its radiance
   bool blocked = false;
 
   glm::vec3 origin() const { return position + offset * geometric; }
@@ -68,10 +70,10 @@ class Surfaces {
   const std::vector<glm::uvec3>& triangles() const { return triangles_; }
 
   SurfacePoint pointAt(const Hit& hit, const glm::vec3& dir) const;
-  // Returns alpha of the front, for cut-outs (in the filter of rays) and blended surfaces.
+  // Returns the alpha of the front side, for cut-outs (in the ray filter) and blended surfaces.
   float alphaAt(const Hit& hit) const;
   glm::vec3 emittedAt(const Hit& hit) const;
-  // Returns twice the area, along the front's geometric normal.
+  // Returns the triangle's geometric normal on the front side, with twice its area as length.
   glm::dvec3 areaVector(std::uint32_t triangle) const;
 
  private:
@@ -83,8 +85,7 @@ class Surfaces {
   glm::vec4 tangent(const Hit& hit, const glm::vec3& normal) const;
   Reflector reflectorAt(const Hit& hit, const SurfacePoint& point, const glm::vec3& normal,
                         const glm::vec3& to_eye) const;
-  // Returns the direction of the longer lobe, unit and orthogonal to the shading normal, and the strength,
-  // 0..1.
+  // Returns the direction of the longer lobe (unit, orthogonal to the shading normal) and the strength, 0..1.
   std::pair<glm::vec3, float> anisotropy(const Hit& hit, const glm::vec3& normal,
                                          const glm::vec3& shading) const;
   void buildTables();

@@ -1,5 +1,5 @@
-// Looks up textures as a ray sees them: bilinear at full resolution under the sampler's wrap modes, from the
-// decoded images. Colours come out linear, data (normals) as stored. Texel centres lie at half-integers; v =
+// Samples textures for rays: bilinear at full resolution with the sampler's wrap modes, from the decoded
+// images. Colours are returned linear, data (normals) as stored. Texel centres are at half-integers, and v =
 // 0 is the top.
 #pragma once
 
@@ -19,7 +19,7 @@ class Textures {
   // Decodes the images that materials of `scene` use. Errors name the image.
   static Result<Textures> load(const Scene& scene);
 
-  // Returns the sRGB-coded colour made linear, with alpha; white if there is no such texture.
+  // Returns the sRGB colour converted to linear, with alpha, or white if there is no such texture.
   glm::vec4 color(const gltf::TextureRef& ref, const glm::vec2& uv) const;
   // Returns the values as stored, 0..1.
   glm::vec4 data(const gltf::TextureRef& ref, const glm::vec2& uv) const;

@@ -1,7 +1,7 @@
-// A TracedScene is a scene as paths meet it, independent of light from infinity and view: surfaces, the
-// hierarchy over them, the lights in the file, and volumes. Import's Scene comes in, with all nodes in place.
-// It is slow to build, but any number of threads may trace pictures of it at the same time. The Scene must
-// outlive it.
+// A TracedScene is a scene prepared for path tracing, independent of distant light and view: surfaces, their
+// ray-tracing hierarchy, the lights of the file, and volumes. The importer's Scene comes in, with all nodes
+// in place. It is slow to build, but any number of threads may trace pictures of it at the same time. The
+// Scene must outlive it.
 #pragma once
 
 #include <memory>
@@ -20,10 +20,10 @@ class TracedScene {
 
   const Surfaces& surfaces() const { return surfaces_; }
   const Volumes& volumes() const { return volumes_; }
-  // Says what was left out, one sentence each.
+  // Returns what was left out, one sentence each.
   const std::vector<std::string>& notices() const { return notices_; }
 
-  // This object and all arguments must outlive the world.
+  // Combines the scene with a light and a view. This object and all arguments must outlive the result.
   World under(const Environment& environment, const std::vector<spec::LocalLight>& shapes,
               const EyeRays& eye) const;
 

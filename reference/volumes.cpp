@@ -16,8 +16,7 @@ double collideWith(const GridMedium& grid, const Ray& ray, double far, Stream& r
   double found = far, depth = random.exponential();
   grid.visitBlocks(*inside, [&](double t, double end, double /*least*/, double bound) {
     while (bound > 0.0) {
-      // Collisions are drawn for a medium of the bound's density; those that the real one does not have are
-      // skipped.
+      // Delta tracking: collisions are sampled for the bound's density, and null collisions are skipped.
       const double step = depth / bound;
       if (t + step >= end) {
         depth -= (end - t) * bound;
@@ -36,7 +35,7 @@ double collideWith(const GridMedium& grid, const Ray& ray, double far, Stream& r
 }
 
 double transmittanceOf(const GridMedium& grid, const Ray& ray, double far, Stream& random) {
-  // Below this, roulette saves work and keeps the expected value.
+  // Below this transmittance, Russian roulette saves work without bias.
   constexpr double kLittle = 0.1;
   const auto inside = grid.clipped(ray, 0.0, far);
   if (!inside) return 1.0;
@@ -46,7 +45,7 @@ double transmittanceOf(const GridMedium& grid, const Ray& ray, double far, Strea
     return through > 0.0;
   };
   grid.visitBlocks(*inside, [&](double t, double end, double least, double most) {
-    // The least density dims exactly; ratio tracking handles what exceeds it.
+    // The minimum density attenuates exactly; ratio tracking handles the rest.
     through *= std::exp(-least * (end - t));
     if (!playRoulette()) return false;
     const double above = most - least;
@@ -87,8 +86,8 @@ Volumes Volumes::build(const Scene& scene, std::vector<std::string>& notices) {
 }
 
 std::optional<Volumes::Collision> Volumes::collide(const Ray& ray, double far, Stream& random) const {
-  // The first of independent collisions has the distribution of the summed media, and falls on each by its
-  // share.
+  // The earliest of independent collisions has the distribution of the summed media, and belongs to each in
+  // proportion to its extinction.
   std::optional<Collision> first;
   for (std::uint32_t v = 0; v < grids_.size(); ++v) {
     const double limit = first ? first->t : far, t = collideWith(grids_[v], ray, limit, random);

@@ -1,9 +1,8 @@
-// Volumes are the media of a scene, as paths meet them; where several overlap, their extinctions add. The
-// scene comes in, with all nodes in place. It answers where a ray scatters next, by delta tracking (Woodcock
-// et al. 1965), and how much light gets through, by residual ratio tracking (Novák, Selle and Jarosz,
-// "Residual Ratio Tracking", SIGGRAPH Asia 2014). Both are unbiased for any density and use blocks with
-// bounds of their own. Volumes without density are left out, so that a scene with them gives the same picture
-// as one without. Calls are safe from any thread.
+// Holds the participating media of a scene; where several overlap, their extinctions add. The scene comes in,
+// with all nodes in place. It samples collisions by delta tracking (Woodcock et al. 1965) and estimates
+// transmittance by residual ratio tracking (Novák, Selle and Jarosz, "Residual Ratio Tracking", SIGGRAPH Asia
+// 2014). Both are unbiased for any density and use density bounds per block. Volumes without density are
+// skipped, so that they do not change a picture. Calls are thread-safe.
 #pragma once
 
 #include <optional>
@@ -18,7 +17,7 @@ namespace lambent::baker::reference {
 
 class Volumes {
  public:
-  // `notices` receives the names of volumes that are left out because their node is flat.
+  // Adds a notice for each volume that is skipped because its node is flat.
   static Volumes build(const Scene& scene, std::vector<std::string>& notices);
 
   bool empty() const { return grids_.empty(); }
@@ -29,9 +28,9 @@ class Volumes {
     double t = 0.0;
     std::uint32_t volume = 0;
   };
-  // Returns the first collision before `far`, in lengths of the ray's direction; Ray::far is ignored.
+  // Samples the first collision before `far`, in units of the ray direction's length. Ray::far is ignored.
   std::optional<Collision> collide(const Ray& ray, double far, Stream& random) const;
-  // Returns an unbiased estimate in 0..1 of exp(-optical depth); exactly 1 if nothing is met.
+  // Returns an unbiased estimate of exp(-optical depth), in 0..1; exactly 1 if the ray meets no medium.
   double transmittance(const Ray& ray, double far, Stream& random) const;
 
  private:

@@ -9,9 +9,9 @@ namespace lambent::baker::reference {
 
 namespace {
 
-constexpr std::uint32_t kFirstRoulette = 4;  // bounces before roulette begins
+constexpr std::uint32_t kFirstRoulette = 4;  // bounces before Russian roulette begins
 constexpr std::uint32_t kPerLayer = kPerVertex * (kMostVertices + 1);
-// Vertices beyond the first ones draw from samplers of their own, this many from each.
+// Vertices beyond kMostVertices use additional samplers, one for this many vertices.
 constexpr std::uint32_t kPage = 1024;
 
 }  // namespace

@@ -1,6 +1,5 @@
-// A Walk advances the paths of one pixel in step. Every living path stands at a vertex, on a surface or in a
-// medium. Lights are sampled from there, a direction is drawn, and all rays travel together to the next
-// vertex.
+// Advances all paths of one pixel together. Every living path is at a vertex, on a surface or in a medium.
+// Each step samples the lights from there, draws a direction, and traces all rays to the next vertex.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +18,13 @@
 namespace lambent::baker::reference {
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
-inline constexpr std::uint32_t kMostVertices = 64;  // limit of vertices without --bounces
-// The same limit in scenes with volumes, where light goes to and fro between a volume and a white floor. If
-// any matter absorbs one in a hundred, no path comes near it; only a closed room of perfect white does.
+inline constexpr std::uint32_t kMostVertices = 64;  // maximum number of vertices without --bounces
+// The same limit in scenes with volumes, where light can bounce between a volume and a white floor many
+// times. If anything absorbs one percent, no path comes near it; only a closed room of perfect white does.
 inline constexpr std::uint32_t kMostReflections = 4096;
 inline constexpr float kShadowReach = 1.0f - 1e-4f;  // shadow rays end before the light's own surface
 
-// These are the pairs of dimensions that one vertex draws from.
+// Number the pairs of dimensions that one vertex draws from.
 enum Dimension : std::uint32_t {
   kDirection,
   kSkyPlace,
@@ -34,13 +33,13 @@ enum Dimension : std::uint32_t {
   kRouletteAndLamp,
   kPerVertex
 };
-// Light shape i draws from dimensions of its own, beyond those of all layers.
+// Light shape i draws from its own dimensions, beyond those of all layers.
 inline constexpr std::uint32_t kPerShape = 1u << 20;
-// So do the choice of a glossy surface's lobe, and the place where a volume scatters towards the eye.
+// The choice of a glossy lobe, and the point where a volume scatters towards the eye, have their own, too.
 inline constexpr std::uint32_t kLobe = 1u << 31, kPlaceInVolume = 1u << 30;
 
-// These are the streams of a vertex for walks through media: one for its own path, and one towards each
-// light.
+// Number the streams of a vertex for tracking through media: one for its own path, and one towards each kind
+// of light.
 enum Way : std::uint32_t { kOnward, kToSky, kToEmissive, kToPunctual, kToShapes };
 
 inline float largest(const glm::vec3& v) {
@@ -48,41 +47,41 @@ inline float largest(const glm::vec3& v) {
 }
 
 struct Path {
-  SurfacePoint at;  // in a medium: no normals, and the medium's albedo
+  SurfacePoint at;  // in a medium: without normals, and with the medium's albedo
   glm::vec3 throughput{1.0f}, sum{0.0f};
-  std::uint32_t index = 0, replica = 0;  // index of its point, in its replica
-  // In a medium, this is the direction that led here; once drawn, it is the one that leads on.
+  std::uint32_t index = 0, replica = 0;  // index of the sample within its replica, and the replica
+  // In a medium, this is first the direction that led here; after sampling, it is the next one.
   glm::vec3 dir{0.0f};
-  // The BRDF is evaluated for this direction: dir, or its mirror image if the surface would hide that
-  // (horizons.hpp).
+  // The BRDF is evaluated for this direction: dir, or a direction that is mirrored to dir (horizons.hpp).
   glm::vec3 towards{0.0f};
-  float pdf = 0.0f;      // of towards, by the BRDF's own strategy
-  float ray_pdf = 0.0f;  // of dir, summed over all directions that it stands for; only if findsLights()
+  float pdf = 0.0f;  // density of `towards` by the BRDF sampling
+  // The density of `dir`, summed over all directions that it stands for. It is set only if findsLights().
+  float ray_pdf = 0.0f;
   bool alive = true;
-  bool in_medium = false;         // at its present vertex
-  float g = 0.0f;                 // of the medium
-  bool scattered = false;         // in a medium, at any vertex so far
-  std::uint32_t reflections = 0;  // surfaces that it has met since its first vertex
+  bool in_medium = false;         // the current vertex is in a medium
+  float g = 0.0f;                 // of that medium
+  bool scattered = false;         // any vertex so far was in a medium
+  std::uint32_t reflections = 0;  // number of surface vertices after the first vertex
 
   void go(const glm::vec3& where, float density) {
     dir = towards = where;
     pdf = ray_pdf = density;
   }
 };
-// A Shadow is a light's contribution that counts if nothing is in the way.
+// A Shadow is a light's contribution, which counts if its shadow ray is not blocked.
 struct Shadow {
   Ray ray;
   std::size_t path;
   glm::vec3 radiance;
-  std::uint32_t light;  // index of the path's stream
+  std::uint32_t light;  // kind of light (Way), which selects the stream
 };
 
 struct Walk {
   const World& world;
   const Options& options;
-  std::uint32_t number;  // number of the pixel
+  std::uint32_t number;  // index of the pixel in the picture
   std::uint32_t pixel = combine(options.seed, number);
-  std::array<Sampler, 2> firsts = samplersOf(options.seed);  // for first vertices of layers
+  std::array<Sampler, 2> firsts = samplersOf(options.seed);  // for the first vertices of layers
   std::array<Sampler, 2> samplers = firsts;                  // for the current vertex
   std::uint32_t dimension = 0;                               // first dimension of the current vertex
   std::vector<Path> paths = {};
@@ -92,16 +91,16 @@ struct Walk {
   std::vector<Hit> hits = {};
   std::vector<std::optional<Volumes::Collision>> collisions = {};
   std::vector<std::uint8_t> blocked = {};
-  sh::LightVector first_shapes = {};     // light of shapes as sky, at the first vertex, where all paths stand
-  std::optional<FirstHit> limited = {};  // with --band-limit IN,OUT: the first vertex, where all paths stand
+  sh::LightVector first_shapes = {};     // light of shapes as SH at the first vertex, where all paths are
+  std::optional<FirstHit> limited = {};  // with --band-limit IN,OUT: the first vertex, where all paths are
   std::uint64_t traced = 0;
 
   std::array<Sampler, 2> samplersOf(std::uint32_t seed) const {
     return {Sampler(seed, number, 0), Sampler(seed, number, 1)};
   }
-  // The first vertices of layers draw from one sampler, so that its first few dimensions, which are spread
-  // best, go to them. The other vertices, and those of paths that begin in a volume, use one sampler for each
-  // `kPage`.
+  // Selects the sampler and dimensions of a vertex. The first vertices of layers use one sampler, so that
+  // they get its first dimensions, which are stratified best. Other vertices, and those of paths that begin
+  // in a volume, use one sampler for each `kPage` vertices.
   void turnTo(bool in_volume, std::uint32_t layer, std::uint32_t vertex);
   std::uint32_t pageSeed(bool in_volume, std::uint32_t layer, std::uint32_t page) const;
 
@@ -112,26 +111,27 @@ struct Walk {
     return samplers[path.replica].stream(dimension, path.index, way);
   }
 
-  // The share of the light from dir that is reflected, times the cosine (for diffuse surfaces without the
-  // albedo), and the density of dir by the BRDF's own strategy.
+  // A Scattering is the BRDF times the cosine (for diffuse surfaces without the albedo), and the density of
+  // the direction by BRDF sampling.
   struct Scattering {
     glm::vec3 value{0.0f};
     float pdf = 0.0f;
   };
-  // Evaluates the whole BRDF for one direction.
+  // Evaluates the BRDF without band limit for one direction.
   Scattering scattering(const Path& path, const glm::vec3& dir, bool first) const;
-  // Sums over all directions that a ray stands for. At the first vertex this uses what --band-limit leaves of
-  // the BRDF.
+  // Sums the BRDF over all directions that a ray stands for. At the first vertex the BRDF may be
+  // band-limited.
   Scattering ofRay(const Path& path, const glm::vec3& ray, bool first) const;
-  // Returns the ray that shows what a direction sees; it has the same length.
+  // Returns the ray direction for a direction (horizons.hpp), with the same length.
   glm::vec3 rayFor(const Path& path, const glm::vec3& dir, bool first) const;
-  // Returns whether paths can find light sources that are at a finite distance.
+  // Returns whether paths can hit lights at a finite distance.
   bool findsLights() const { return !world.emissive.empty() || !(world.shapes.empty() || shapesAreSky()); }
-  // The first OUT bands of the phase function are a kernel just like those of a BRDF; directions are then
-  // drawn half from the whole phase function and half evenly.
+  // Returns whether the first OUT bands replace the phase function at this vertex, as they replace the BRDF.
+  // Directions are then drawn half from the phase function and half uniformly.
   bool phaseIsLimited(bool first) const { return first && options.band_limit && options.band_limit->out; }
   Scattering phase(const Path& path, float cosine, bool first) const;
-  // With a band limit, spheres and discs shine from all over the sky, as seen from each point, and signed.
+  // Returns whether spheres and discs are evaluated as band-limited (signed) light at each point, as the sky
+  // is.
   bool shapesAreSky() const { return options.band_limit.has_value() && !world.shapes.empty(); }
   std::uint32_t mostReflections() const {
     return options.bounces.value_or(world.volumes.empty() ? kMostVertices : kMostReflections);
@@ -141,43 +141,44 @@ struct Walk {
   }
 
   // These are in walk_lights.cpp: next-event estimation towards discs and environment maps, an emissive
-  // triangle, shapes and a punctual light; and light that a path's own direction finds.
+  // triangle, shapes and a punctual light, and the light that a path's own direction hits.
   void gatherLights(bool first);
   void addShadow(std::size_t p, const glm::vec3& dir, float far, const glm::vec3& radiance,
                  std::uint32_t light);
   void lightFromSky(std::size_t p, bool first);
   void lightFromEmissive(std::size_t p, bool first);
   void lightFromShapes(std::size_t p, bool first);
-  // Samples one punctual light by what each would give without shadows.
+  // Samples one punctual light in proportion to the unoccluded light of each.
   void lightFromPunctual(std::size_t p, bool first);
   glm::vec3 throughVolumes(const Shadow& shadow) const;
   void traceOccluded();
-  // Returns the light of shapes that count as sky, as seen from a point.
+  // Returns the SH of all shapes as seen from a point.
   sh::LightVector shapesFrom(const glm::vec3& point) const;
-  // Subtracts the sky that a path of the first vertex finds blocked, since FirstHit::open() has counted it.
+  // Subtracts the sky that a path of the first vertex finds blocked, because FirstHit::open() has counted it.
   void takeSky(Path& path) const;
   void addSky(Path& path, bool first);
-  // Adds shapes that the ray passes before it meets a surface at `far`.
+  // Adds the shapes that the ray hits before the surface at `far`.
   void addShapes(Path& path, float far) const;
   void addEmitted(Path& path, const Hit& hit, const SurfacePoint& there) const;
 
-  // The steps are in walk.cpp. This one adds the reflected light of `layer`, one sum per replica.
+  // The steps are in walk.cpp. This one adds the light that the surface of `layer` reflects to the paths'
+  // sums.
   void reflect(std::uint32_t layer);
-  // Adds light that volumes scatter towards the eye between two depths along its ray. Paths begin in
-  // proportion to the extinction of the view there.
+  // Adds the light that volumes scatter towards the eye between two optical depths along its ray. Paths begin
+  // in proportion to the extinction as seen from the eye.
   void scatterToEye(const EyeDepth& eye, const Ray& ray, std::uint32_t layer, double begin, double end);
   void walk(bool in_volume, std::uint32_t layer);
-  // Draws a direction for each path; paths end if it is below the horizon.
+  // Samples a direction for each path. Paths end if it is below the horizon.
   void scatter(bool first);
   void scatterInMedium(Path& path, const glm::vec2& u, bool first) const;
-  // Follows the directions, adds the light that they find, and moves the paths to the next vertex.
+  // Traces the directions, adds the light that they hit, and moves the paths to the next vertex.
   void advance(bool first);
-  // Ends rays where a volume scatters.
+  // Shortens rays to where a volume scatters.
   void collide();
   void arrive(Path& path, const Hit& hit) const;
   void enterMedium(Path& path, const Ray& ray, const Volumes::Collision& collision) const;
   static void standInMedium(Path& path, const glm::vec3& position, const SceneVolume& medium);
-  // Only tests whether rays reach the sky, when nothing else can be at their end.
+  // Only tests whether rays reach the sky, for when they can hit no other light.
   void lookAtSky(bool first);
   void playRoulette();
 };

@@ -12,12 +12,12 @@ namespace {
 using gltf::Material;
 
 struct Kind {
-  bool (*serves)(const Material&);                     // asked of materials that are not matte
-  bool (*same)(const Material& a, const Material& b);  // whether two that it serves reflect alike
+  bool (*serves)(const Material&);                     // not called for diffuse materials
+  bool (*same)(const Material& a, const Material& b);  // whether two such materials reflect alike
   std::shared_ptr<const WholeBrdf> (*make)(const Scene&, const Material&);
 };
 
-// Earlier rows go before later ones.
+// Earlier rows have priority.
 constexpr std::array kKinds = {
     Kind{[](const Material& m) { return m.brdf >= 0; },
          [](const Material& a, const Material& b) { return a.brdf == b.brdf; },

@@ -1,5 +1,5 @@
-// BRDFs that are one function of a whole material, in place of GGX over a diffuse part, and the list of them.
-// A lobe that is added is a class of this kind in a file of its own and a row in whole_brdf.cpp.
+// Declares BRDFs that describe a whole material, instead of GGX over a diffuse part. To add one, derive a
+// class in a file of its own and add a row in whole_brdf.cpp.
 #pragma once
 
 #include <memory>
@@ -14,13 +14,13 @@ namespace lambent::baker::reference {
 class WholeBrdf {
  public:
   virtual ~WholeBrdf() = default;
-  // f, local; v and s above the surface.
+  // Returns the BRDF; v and s are in local space, above the surface.
   virtual glm::vec3 value(const glm::vec3& v, const glm::vec3& s) const = 0;
-  // The GGX lobe about as wide as the highlight, to draw directions by.
+  // Returns the alpha of a GGX lobe that is about as wide as the highlight, for sampling.
   virtual float alpha() const = 0;
 };
 
-// One for each material; null where it is GGX or matte.
+// Returns one BRDF per material, or null for GGX and diffuse materials.
 std::vector<std::shared_ptr<const WholeBrdf>> wholeBrdfs(const Scene& scene);
 
 }  // namespace lambent::baker::reference

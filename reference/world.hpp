@@ -1,4 +1,4 @@
-// A World is everything that light and rays meet.
+// Bundles references to everything that paths of one picture need.
 #pragma once
 
 #include <vector>

@@ -11,7 +11,7 @@ namespace lambent::editor {
 
 namespace {
 
-constexpr float kEdge = 5.0f;  // pixels that can be grabbed
+constexpr float kEdge = 5.0f;  // width in pixels of the edges between areas
 constexpr float kLeastShare = 0.08f, kMostShare = 0.6f;
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
@@ -44,7 +44,7 @@ void drawDock(const char* id, Dock dock, const Area& area, std::string& tab, Ses
   ImGui::End();
 }
 
-// An edge between two areas; returns by how many pixels it was dragged.
+// Draws an edge between two areas and returns by how many pixels it was dragged.
 float drawEdge(const char* id, const Area& area, bool upright) {
   ImGui::SetNextWindowPos(area.at);
   ImGui::SetNextWindowSize(area.size);
@@ -62,7 +62,7 @@ float drawEdge(const char* id, const Area& area, bool upright) {
   return upright ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
 }
 
-// What was asked for comes up, and its dock with it.
+// Brings the panel to the front and shows its dock.
 void raisePanel(Session& session, const std::string& wanted) {
   Preferences& p = session.preferences;
   for (const Panel& panel : panelList()) {

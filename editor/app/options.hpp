@@ -13,10 +13,10 @@ namespace lambent::editor {
 struct Options {
   SessionOptions session;
   std::optional<std::filesystem::path> script;
-  bool json = false;          // the script's answers on stdout
-  bool remember = true;       // layout and recent files
-  int width = 0, height = 0;  // 0: as it was
-  float scale = 0.0f;         // 0: as it was
+  bool json = false;          // --json: writes the script's answers to stdout
+  bool remember = true;       // whether to load and save the layout and the recent files
+  int width = 0, height = 0;  // in pixels; 0: as remembered
+  float scale = 0.0f;         // of text and widgets; 0: as remembered
 };
 
 std::variant<Options, int> parseOptions(int argc, const char* const* argv);

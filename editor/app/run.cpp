@@ -19,8 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kRestWaitSeconds = 0.1;  // between looks at files and bakes while nothing moves
-constexpr double kActiveSeconds = 0.5;    // after input, for widgets that move on their own
+// The longest sleep while nothing moves, after which files and bakes are checked.
+constexpr double kRestWaitSeconds = 0.1;
+// The loop does not sleep for this long after an input, because widgets may still animate.
+constexpr double kActiveSeconds = 0.5;
 
 Result<std::optional<Script>> loadScript(const Options& options) {
   if (!options.script) return std::nullopt;

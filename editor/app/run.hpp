@@ -1,5 +1,6 @@
-// Runs the editor's loop: input, what has changed outside (files, bakes), the world's step, the picture,
-// panels. It rests while nothing moves. Errors: no window, a script that cannot be read or that failed.
+// Runs the editor's loop: it takes input and outside changes (files, bakes), steps the world, and draws the
+// picture and the panels. It sleeps while nothing moves. Errors: no window can be opened; the script cannot
+// be read, or one of its lines failed.
 #pragma once
 
 #include "editor/app/options.hpp"

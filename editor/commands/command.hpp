@@ -1,6 +1,6 @@
-// Lists everything that the editor can do as rows: menus, shortcuts, tooltips and scripts all go by
-// it. A command takes words and gives an answer, a JSON value, or an error that says what to do; from the
-// menu it has no words, and those that need some ask for them in a dialog.
+// Lists everything that the editor can do as commands; menus, shortcuts, tooltips and scripts all use this
+// list. A command takes words and returns a JSON value, or an error that says what to do. The menu passes no
+// words, and a command that needs some then opens a dialog to ask for them.
 #pragma once
 
 #include <functional>
@@ -20,31 +20,31 @@ class Session;
 using Words = std::span<const std::string>;
 
 struct Command {
-  const char* id;         // of scripts: "save"
-  const char* title;      // of menus: "Save world"; empty: for scripts only
-  const char* menu;       // "File"
+  const char* id;         // the name in scripts: "save"
+  const char* title;      // the text in menus: "Save world"; empty: the command is for scripts only
+  const char* menu;       // the menu that shows it: "File"
   const char* shortcut;   // "Ctrl+Shift+S"; empty: none
-  const char* help;       // a sentence
+  const char* help;       // a sentence for tooltips and lists
   const char* arguments;  // "FILE [OPTION]"; empty: none
   std::size_t least_words = 0, most_words = 0;
   Result<nlohmann::json> (*run)(Session& session, Words words) = nullptr;
-  bool (*enabled)(const Session& session) = nullptr;  // null: always
-  bool (*checked)(const Session& session) = nullptr;  // null: no switch
-  const char* former = "";  // the id before 0.11, which is still understood but not shown; may be empty
+  bool (*enabled)(const Session& session) = nullptr;  // null: always enabled
+  bool (*checked)(const Session& session) = nullptr;  // state of a switch; null: no switch
+  const char* former = "";  // the id before 0.11, which is still accepted but not shown; empty: none
 };
 
-// Returns the rows in the order of menus.
+// Returns the commands in the order in which menus show them.
 std::span<const Command> commandList();
-// Finds a command by its id or its former one; null: there is none.
+// Finds a command by its id or its former id. Returns null if there is none.
 const Command* findCommand(std::string_view id);
 
-// Runs it if it is enabled and has as many words as it takes; what goes wrong is an error here, and nothing
-// is thrown.
+// Runs the command. Errors: it does not exist, is not enabled, takes another number of words, or failed.
+// Nothing is thrown.
 Result<nlohmann::json> runCommand(Session& session, std::string_view id, Words words);
 
-// Holds "Ctrl+Shift+S" as keys.
+// Holds a shortcut such as "Ctrl+Shift+S".
 struct Shortcut {
-  int key = -1;  // of GLFW
+  int key = -1;  // a GLFW key code
   bool ctrl = false, shift = false, alt = false;
   bool operator==(const Shortcut&) const = default;
 };

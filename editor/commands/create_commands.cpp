@@ -8,7 +8,7 @@ namespace lambent::editor {
 
 namespace {
 
-// Where the eye looks, on what it sees there.
+// Creates the entity at the place that the words give, by default at the camera's target.
 Answer put(Session& session, EntitySnapshot snapshot, Words words) {
   glm::vec3 at = session.viewing.goal.target_ws;
   for (int axis = 0; axis < 3 && !words.empty(); ++axis) {

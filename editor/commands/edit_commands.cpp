@@ -106,7 +106,7 @@ Answer nothing(Session& session, Words) {
   return nullptr;
 }
 
-// Names, ids, or what the tree's search understands; the first match is last, and so the primary one.
+// Takes names, ids or filters of the tree. The first match comes last, so that it is the primary one.
 Answer select(Session& session, Words words) {
   std::vector<ecs::Entity> found;
   for (const std::string& word : words) {

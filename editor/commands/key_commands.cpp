@@ -1,4 +1,4 @@
-// Key lights, and the qualities that say how many there are and how finely they shadow.
+// Implements the commands for key lights, and the command "quality".
 #include <array>
 
 #include "editor/commands/rows.hpp"
@@ -85,7 +85,7 @@ Answer quality(Session& session, Words words) {
     for (const std::string_view name : frame::qualitySettings()) {
       const frame::SettingRow* row = frame::findSetting(name);
       const std::string word = frame::settingWord(*row, settings);
-      // What is the default is not written down.
+      // Settings with default values are not stored.
       if (word == frame::settingWord(*row, {}))
         world.settings.erase(std::string(name));
       else

@@ -41,7 +41,7 @@ Answer removeLight(Session& session, Words words) {
   return nullptr;
 }
 
-// Replaces the environment map there is, else all lights: an environment map brings its own sun.
+// Replaces the present environment map, or else all lights, because an environment map has its own sun.
 Answer environmentMap(Session& session, Words words) {
   if (words.empty()) {
     Dialog ask;

@@ -1,4 +1,4 @@
-// Declares the rows of the command list by subject: one file each, joined in command_list.cpp.
+// Declares the parts of the command list. Each part has a file of its own; command_list.cpp joins them.
 #pragma once
 
 #include <string>
@@ -20,16 +20,16 @@ std::span<const Command> lightCommands();
 std::span<const Command> keyCommands();
 std::span<const Command> bakeCommands();
 std::span<const Command> helpCommands();
-std::span<const Command> stateCommands();  // for scripts: what is there
+std::span<const Command> stateCommands();  // commands by which scripts ask about the editor's state
 
 using Answer = Result<nlohmann::json>;
 
-// Makes a line between items of a menu.
+// Makes a separator line in a menu.
 constexpr Command separator(const char* menu) {
   return {.id = "", .title = "-", .menu = menu, .shortcut = "", .help = "", .arguments = ""};
 }
 
-// Makes a command for scripts alone: no item in a menu, no key.
+// Makes a command for scripts only, without menu item and shortcut.
 constexpr Command scripted(const char* id, const char* help, const char* arguments, std::size_t least,
                            std::size_t most, Answer (*run)(Session&, Words)) {
   return {.id = id,
@@ -43,7 +43,7 @@ constexpr Command scripted(const char* id, const char* help, const char* argumen
           .run = run};
 }
 
-// Lets a command be known by its id before 0.11, too.
+// Also accepts the id that the command had before version 0.11.
 constexpr Command formerly(const char* id, Command command) {
   command.former = id;
   return command;

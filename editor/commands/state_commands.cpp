@@ -1,4 +1,4 @@
-// What scripts ask and set: the state as JSON, fields by name.
+// Implements the commands by which scripts query the state as JSON and set fields by name.
 #include <array>
 
 #include "editor/commands/rows.hpp"
@@ -22,7 +22,7 @@ json valueJson(const scene::Value& value) {
   return std::get<scene::Word>(value).text;
 }
 
-// Numbers, one word each.
+// Reads the words as numbers.
 Result<scene::Value> readValue(const scene::FieldInfo& field, Words words) {
   const auto wrong = [&](const char* wanted) {
     return fail(std::string(field.name), fmt::format("\"{}\" is no value of it", fmt::join(words, " ")),
@@ -58,7 +58,7 @@ Result<scene::Value> readValue(const scene::FieldInfo& field, Words words) {
   return wrong("give a value");
 }
 
-// "Light.strength" or "ball:Light.strength": of the selection, or of what is named.
+// Takes "Light.strength", a field of the selection, or "ball:Light.strength", a field of a named entity.
 struct Place {
   std::vector<ecs::Entity> entities;
   const scene::FieldInfo* field = nullptr;

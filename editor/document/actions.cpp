@@ -35,7 +35,7 @@ Result<std::vector<EntitySnapshot>> copiesOf(const Document& document,
 
 Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history,
                                             std::vector<EntitySnapshot> copies, std::string name) {
-  // New ids, and parents among the copies by them.
+  // Every copy gets a new id, and its parent is renamed if it is a copy, too.
   std::map<StableId, StableId> renamed;
   for (const EntitySnapshot& copy : copies) renamed[copy.id] = document.newId();
   std::vector<StableId> tops;
@@ -60,7 +60,7 @@ Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history
 
 namespace {
 
-// "ball 2" after "ball" or "ball 1".
+// Returns "ball 2" for "ball" and "ball 1", or the next free number.
 std::string nextName(const Document& document, const std::string& name) {
   std::string stem = name;
   while (!stem.empty() && stem.back() >= '0' && stem.back() <= '9') stem.pop_back();
@@ -132,7 +132,7 @@ Result<void> resetToDefault(Document& document, History& history, const Baseline
         edits.push_back({entity, info->name, row.name, defaultValue(document, baseline, entity, row)});
     }
   }
-  // What a bundle brings may lie outside the range of the field: it is its default all the same.
+  // A value of a bundle may lie outside the field's range and is still its default.
   return history.restoreFields(
       edits, fmt::format("reset of {} of {}", field.empty() ? component : field, what(document, entities)));
 }

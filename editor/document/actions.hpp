@@ -1,6 +1,6 @@
-// Duplicates, resets, copies and pastes entities, as menus do, each as one step of the history. Copies are
-// JSON text for the system's clipboard, so they go from one program to another (docs/world-file.md).
-// Errors say what does not fit; nothing has changed then.
+// Implements the edit commands of menus: duplicate, reset, copy and paste, each as one step of the history. A
+// copy is JSON text for the system's clipboard, so it can be pasted into another program
+// (docs/world-file.md). An error says what is wrong and changes nothing.
 #pragma once
 
 #include <span>
@@ -14,43 +14,43 @@
 
 namespace lambent::editor {
 
-// Puts a copy of each entity, with all below it, beside its original and returns the copies. Takes Created
-// entities, and those of bundles that consist of what a person could make (lights, cameras, empty nodes).
-// Errors: one that shows a mesh of its bundle.
+// Copies each entity with its descendants, places the copy beside its original and returns the copies. Takes
+// Created entities, and those entities of bundles that a person could have made (lights, cameras, empty
+// nodes). Errors: an entity that shows a mesh of its bundle.
 Result<std::vector<ecs::Entity>> duplicate(Document& document, History& history,
                                            std::span<const ecs::Entity> entities);
 
-// Returns the value to which "reset" goes back: the bundle's, or the field's default for what a person has
-// made.
+// Returns the value that "reset" restores: the bundle's value, or the field's default for a Created entity.
 scene::Value defaultValue(const Document& document, const Baseline& baseline, ecs::Entity entity,
                           const scene::FieldInfo& field);
 bool isDefault(const Document& document, const Baseline& baseline, ecs::Entity entity,
                const scene::FieldInfo& field);
-// Resets one field, or with an empty name all fields of the component, of all entities that have it.
+// Resets a field of every given entity that has it; an empty field name resets all fields of the component.
 Result<void> resetToDefault(Document& document, History& history, const Baseline& baseline,
                             std::span<const ecs::Entity> entities, std::string_view component,
                             std::string_view field = {});
 
 // ---- clipboard
 
-// Returns one component of an entity as text. Error: it has none.
+// Returns one component of an entity as JSON text. Error: the entity does not have it.
 Result<std::string> copyComponent(const Document& document, ecs::Entity entity, std::string_view component);
-// Returns entities with all below them as text; takes those that duplicate() takes.
+// Returns the entities with their descendants as JSON text. Takes the same entities as duplicate().
 Result<std::string> copyEntities(const Document& document, std::span<const ecs::Entity> entities);
 
 enum class Pasted { Nothing, Component, Entities };
-// Tells what a text holds, so that menus can say "Paste Light".
+// Describes what a clipboard text holds, so that menus can say "Paste Light".
 struct Clip {
   Pasted kind = Pasted::Nothing;
-  std::string component;  // of Pasted::Component
+  std::string component;  // its name, for Pasted::Component
 };
 Clip peekClip(std::string_view text);
 
-// Pastes a component onto all of the entities. One that a Created entity lacks is added where it may be.
-// Errors: the text is no copy of ours, or damaged (names the JSON path); an entity that cannot take it.
+// Pastes a component onto all given entities. A Created entity that lacks the component gets it if the
+// component may be added. Errors: the text was not copied by the editor; it is damaged (names the JSON path);
+// an entity cannot take the component.
 Result<void> pasteComponent(Document& document, History& history, std::span<const ecs::Entity> entities,
                             std::string_view text);
-// Makes the copied entities below `parent` (none: the world) and returns the topmost of them.
+// Creates the copied entities below `parent` (none: at the top of the world) and returns the topmost ones.
 Result<std::vector<ecs::Entity>> pasteEntities(Document& document, History& history, ecs::Entity parent,
                                                std::string_view text);
 

@@ -1,6 +1,6 @@
-// Knows how a world's bundles stand before anybody edits them: it makes the same entities once more in a
-// registry of its own and finds them by StableId. World files keep only what differs from it, and "reset to
-// default" goes back to it. It is made of the bundles' descriptions, and must be made again when they change.
+// Keeps the state of a world's bundles before any edit: it creates their entities a second time in a registry
+// of its own and finds them by StableId. World files store only what differs from this state, and "reset to
+// default" returns to it. It is built from the bundles' descriptions and must be rebuilt when they change.
 #pragma once
 
 #include <cstdint>
@@ -27,17 +27,17 @@ struct BaselineBundle {
 class Baseline {
  public:
   Baseline() = default;
-  // Errors: two bundles of one id and instance.
+  // Errors: two bundles have the same id and instance.
   static Result<Baseline> create(std::span<const BaselineBundle> bundles);
 
   const ecs::Registry& registry() const { return registry_; }
-  // Returns the entity, or none where it is not of these bundles.
+  // Returns the entity, or none if it does not belong to these bundles.
   ecs::Entity find(scene::StableId id) const;
-  // Returns the field's value, or none where the bundles have no such entity or component.
+  // Returns the field's value, or none if the bundles have no such entity or component.
   std::optional<scene::Value> value(scene::StableId id, const scene::FieldInfo& field) const;
   scene::StableId parent(scene::StableId id) const;
-  // Returns whether an animation moves the node's translation, rotation or scale: then it stands where the
-  // animation says, and that is not an edit.
+  // Returns whether an animation drives this field of the node's Transform (translation, rotation or scale).
+  // A difference in such a field is not an edit.
   bool animated(scene::StableId id, std::string_view transform_field) const;
 
  private:

@@ -31,7 +31,7 @@ const scene::ComponentInfo& componentAt(const Place& place, const std::string& n
   return *info;
 }
 
-// Fields that the text leaves out have their defaults.
+// A field that the text omits gets its default.
 ComponentValues readComponent(const Place& place, const scene::ComponentInfo& info) {
   for (const auto& [name, value] : place.members()) {
     if (!info.field(name)) value.fault("is a field that this version does not know");
@@ -165,7 +165,7 @@ Result<std::vector<ecs::Entity>> pasteEntities(Document& document, History& hist
   } catch (const JsonFault& fault) {
     return asError(fault);
   }
-  // Parents that were not copied along are where it is pasted to.
+  // A copy whose parent was not copied goes below the entity that it is pasted to.
   const StableId below = parent ? document.adopt(parent) : kNoId;
   for (std::size_t i = 0; i < copies.size(); ++i) {
     const bool inside = std::any_of(copies.begin(), copies.begin() + static_cast<std::ptrdiff_t>(i),

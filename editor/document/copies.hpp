@@ -1,5 +1,4 @@
-// Takes entities as snapshots and makes them again under new ids, for duplicate and paste. Only this room
-// uses it.
+// Snapshots entities and creates them again under new ids, for duplicate and paste. Only this room uses it.
 #pragma once
 
 #include <span>
@@ -10,10 +9,11 @@
 
 namespace lambent::editor {
 
-// Returns snapshots of the entities and all below them, parents first. Errors: those of duplicate().
+// Returns snapshots of the entities and their descendants, parents first. Errors: those of duplicate().
 Result<std::vector<EntitySnapshot>> copiesOf(const Document& document, std::span<const ecs::Entity> entities);
 
-// Makes them as one step of the history, and returns those whose parent is not among them.
+// Creates entities from the snapshots as one step of the history. Returns those whose parent is not among
+// them.
 Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history,
                                             std::vector<EntitySnapshot> copies, std::string name);
 

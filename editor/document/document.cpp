@@ -133,7 +133,7 @@ std::vector<ecs::Entity> withDescendants(const ecs::Registry& registry,
   }
   std::unordered_map<std::uint32_t, bool> seen;
   std::vector<ecs::Entity> all;
-  // Those that hang below others of the list come with these.
+  // Entities below others of the list are added with those.
   for (const ecs::Entity start : entities) {
     const bool below = std::any_of(entities.begin(), entities.end(), [&](ecs::Entity other) {
       return other != start && isBelow(registry, start, other);

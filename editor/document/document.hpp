@@ -1,7 +1,8 @@
-// Holds the world that is edited: a registry that belongs to somebody else (frame::World), the rest of the
-// world as a WorldState, and the names by which both are meant. Entities are known by StableId: bundles bring
-// theirs; what a person makes gets one of its own and the mark Created. Handles may change (undo makes
-// entities anew, a bundle is loaded again), ids do not, so selection, history and files keep ids. One thread.
+// Holds the world that is edited: a registry that frame::World owns, the rest of the world as a WorldState,
+// and the ids of its entities. Entities are identified by StableId. Bundles bring the ids of their entities;
+// an entity that a person makes gets a new id and the component Created. Entity handles may change (undo
+// creates entities anew, bundles are reloaded) but ids do not, so selection, history and files store ids. One
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -21,50 +22,51 @@ namespace lambent::editor {
 
 using scene::StableId;
 
-// The id of no entity.
+// This id belongs to no entity.
 inline constexpr StableId kNoId{};
 
-// Marks what a person has made: it is saved whole, may be destroyed, and gains and loses components.
+// Marks an entity that a person has made. It is saved completely, can be destroyed, and can gain and lose
+// components.
 struct Created {};
 
-// Returns the id of the one entity that says how the environment stands.
+// Returns the id of the one entity that holds the EnvironmentComponent.
 StableId environmentId();
 
-// Writes an id as 16 hexadecimal digits, and reads it back.
+// Convert an id to 16 hexadecimal digits and back.
 std::string idText(StableId id);
 std::optional<StableId> parseId(std::string_view text);
 
 class Document {
  public:
-  // seed: makes the ids that are given; by default it is another one each time, so that worlds of two people
-  // can be merged. The registry outlives the document, or another is attached.
+  // seed: determines the ids of new entities. By default it differs each time, so that the worlds of two
+  // people can be merged. The registry must outlive the document, unless attach() replaces it.
   explicit Document(ecs::Registry& registry, std::optional<std::uint64_t> seed = {});
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
   ecs::Registry& registry() const { return *registry_; }
-  // Edits this registry from now on, after the program made its world anew.
+  // Edits this registry from now on. The program calls it after it has created its world anew.
   void attach(ecs::Registry& registry);
 
   const WorldState& world() const { return world_; }
-  // Sets it without a step in the history, for what is opened. Raises worldVersion() if it differs.
+  // Sets the state without a step in the history, as when a file is opened. Raises worldVersion() if the
+  // state differs.
   void setWorld(WorldState world);
   std::uint64_t worldVersion() const { return world_version_; }
 
-  // Returns the entity, or none if it is not there now.
+  // Returns the entity, or none if it does not exist at present.
   ecs::Entity find(StableId id) const;
-  // Returns its id, or kNoId if it has none.
+  // Returns the entity's id, or kNoId if it has none.
   StableId idOf(ecs::Entity entity) const;
-  // Returns its id; an entity that has none gets one and becomes Created (the environment gets
+  // Returns the entity's id. An entity without id gets one and becomes Created (the environment gets
   // environmentId()).
   StableId adopt(ecs::Entity entity);
-  // Adopts all that lack an id and have a component that is described: lights that the command line put
-  // there.
+  // Adopts all entities that have a described component but no id, such as lights from the command line.
   void adoptAll();
   StableId newId();
   bool created(ecs::Entity entity) const { return registry_->has<Created>(entity); }
 
-  // Returns "ball", or "entity 0123456789abcdef" where it has no name.
+  // Returns the entity's name, or "entity 0123456789abcdef" if it has none.
   std::string nameOf(ecs::Entity entity) const;
   std::string nameOf(StableId id) const;
 
@@ -76,22 +78,22 @@ class Document {
   std::uint64_t world_version_ = 1;
   std::uint64_t seed_ = 0;
   std::uint32_t given_ = 0;
-  // Ids to entities; looked through again when an id is missed and the ids have changed.
+  // Maps ids to entities. It is rebuilt when an id is not found and the ids have changed.
   mutable std::unordered_map<std::uint64_t, ecs::Entity> entities_;
   mutable std::uint64_t indexed_version_ = 0;
 };
 
-// ---- the hierarchy of Transforms
+// ---- The hierarchy of Transforms.
 
-// Returns the parent, or none where it is no longer alive.
+// Returns the parent, or none if it is no longer alive.
 ecs::Entity parentOf(const ecs::Registry& registry, ecs::Entity entity);
-// Returns whether `entity` is `ancestor` or hangs below it.
+// Returns whether `entity` is `ancestor` or one of its descendants.
 bool isBelow(const ecs::Registry& registry, ecs::Entity entity, ecs::Entity ancestor);
-// Returns those given and all below them, each once, parents before children.
+// Returns the entities and their descendants, each once, parents before children.
 std::vector<ecs::Entity> withDescendants(const ecs::Registry& registry,
                                          const std::vector<ecs::Entity>& entities);
-// Computes the matrix from the Transforms themselves, so that it is up to date between two updateTransforms
-// too.
+// Computes the matrix from the Transforms themselves, so that it is also current between two calls of
+// updateTransforms.
 glm::mat4 worldFromNode(const ecs::Registry& registry, ecs::Entity entity);
 
 }  // namespace lambent::editor

@@ -19,7 +19,7 @@ struct Overloaded : Ts... {
 
 History::History(Document& document, std::size_t max_bytes) : document_(document), max_bytes_(max_bytes) {}
 
-// ---- carrying out
+// ---- Carrying out changes.
 
 void History::run(Change change) {
   std::vector<std::string> missing;
@@ -45,14 +45,14 @@ void History::keep(Change change) {
       return;
     }
   } else if (!std::holds_alternative<ParentChange>(change)) {
-    joinable_.clear();  // values before and after an entity or component was made anew do not mix
+    joinable_.clear();  // values before and after an entity or component was created anew must not be joined
   }
   current_.push_back(std::move(change));
 }
 
 void History::apply(const Change& change, bool forth, std::vector<std::string>& missing) {
   ecs::Registry& registry = document_.registry();
-  // The entity, or its name among the missing.
+  // Finds the entity, or adds its name to `missing`.
   const auto there = [&](StableId id) {
     const ecs::Entity entity = document_.find(id);
     if (!entity) missing.push_back(document_.nameOf(id));
@@ -97,11 +97,11 @@ void History::apply(const Change& change, bool forth, std::vector<std::string>& 
       change);
 }
 
-// ---- steps
+// ---- Steps.
 
 void History::begin(std::string name) {
   scopes_.push_back({std::move(name), current_.size(), /*single=*/false});
-  joinable_.clear();  // what may yet be cancelled does not join what stays
+  joinable_.clear();  // an edit inside the scope may be cancelled and must not join an earlier one
 }
 
 void History::beginEdit(std::string name) {
@@ -161,7 +161,7 @@ std::size_t History::bytesOf(const Change& change) {
 }
 
 void History::push(std::string name, std::vector<Change> changes) {
-  // A drag that came back to where it began is no step.
+  // A value that returned to where it began is no change.
   std::erase_if(changes, [](const Change& change) {
     if (const auto* field = std::get_if<FieldChange>(&change))
       return scene::sameBits(field->before, field->after);
@@ -170,7 +170,7 @@ void History::push(std::string name, std::vector<Change> changes) {
   });
   if (changes.empty()) return;
   for (; steps_.size() > done_; steps_.pop_back()) bytes_ -= steps_.back().bytes;
-  if (saved_ && *saved_ > forgotten_ + done_) saved_.reset();  // it was among what could be redone
+  if (saved_ && *saved_ > forgotten_ + done_) saved_.reset();  // the saved state could be redone
   Step step{std::move(name), std::move(changes), 0};
   for (const Change& change : step.changes) step.bytes += bytesOf(change);
   bytes_ += step.bytes;

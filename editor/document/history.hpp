@@ -1,8 +1,7 @@
-// Undoes and redoes everything that is edited. Every edit goes through here: it is checked, carried out and
-// kept as values before and after, by StableId, component and field, so that steps outlive the entities they
-// speak of: made anew by undo, or gone and back with a bundle that was loaded again. Edits between begin()
-// and commit() are one step, in which a field that is set a hundred times (a drag) is one pair of values.
-// Errors change nothing. One thread.
+// Undoes and redoes all edits of a document. Every edit goes through this class, which checks it, carries it
+// out and stores the values before and after by StableId, component and field. Steps therefore stay valid
+// when undo creates an entity anew or a bundle is reloaded. Edits between begin() and commit() form one step;
+// a field that is set many times in it (a drag) is stored once. An error changes nothing. One thread.
 #pragma once
 
 #include <cstddef>
@@ -30,21 +29,22 @@ struct FieldEdit {
   scene::Value value;
 };
 
-// Tells what undo and redo did. An entity or component that is not there now (its bundle was taken away, or
-// came back without it) is passed over and named.
+// Describes what undo or redo did. Entities and components that do not exist at present (their bundle was
+// closed, or came back without them) are skipped and named in `missing`.
 struct Replay {
-  bool done = false;  // there was a step
-  std::string name;   // its name
+  bool done = false;  // false: there was no step
+  std::string name;   // of the step
   std::vector<std::string> missing;
 };
 
-// A change of something that the document does not hold (which scenes are open); whoever holds it undoes it.
+// An OutsideChange is a change of something that the document does not hold, such as which scenes are open.
+// Its owner implements undo.
 class OutsideChange {
  public:
   virtual ~OutsideChange() = default;
-  // Does it again if `forth`, else takes it back. What cannot be done any more is named among the missing.
+  // Redoes the change if `forth`, else undoes it. Appends what is no longer possible to `missing`.
   virtual void carryOut(bool forth, std::vector<std::string>& missing) = 0;
-  // Returns about how much memory it takes.
+  // Returns the approximate memory use in bytes.
   virtual std::size_t bytes() const = 0;
 };
 
@@ -52,74 +52,75 @@ class History {
  public:
   static constexpr std::size_t kDefaultBytes = std::size_t{64} << 20;
 
-  // The document outlives the history. Beyond max_bytes the oldest steps are forgotten.
+  // The document must outlive the history. When the steps take more than max_bytes, the oldest are dropped.
   explicit History(Document& document, std::size_t max_bytes = kDefaultBytes);
 
   // ---- Each of these edits is one step, unless a step is open.
   Result<void> setField(ecs::Entity entity, std::string_view component, std::string_view field,
                         scene::Value value);
-  // Sets all of them or none.
+  // Sets all fields or, on an error, none.
   Result<void> setFields(std::span<const FieldEdit> edits, std::string name = {});
-  // Does the same with values that stood there before (a bundle's), which ranges do not bind: only kinds
-  // count.
+  // Sets fields to values that they had before (a bundle's). The fields' ranges are not checked, only their
+  // kinds.
   Result<void> restoreFields(std::span<const FieldEdit> edits, std::string name = {});
-  // Makes an entity as the snapshot says. Errors: the parent has no Transform.
+  // Creates an entity from a snapshot. Errors: the parent has no Transform.
   Result<ecs::Entity> create(const EntitySnapshot& snapshot, std::string name = {});
-  // Destroys them with what hangs below; bundles' nodes below stay where they are, in the world. Errors: one
-  // that a person has not made.
+  // Destroys the entities and their descendants. Descendants that belong to bundles stay, at the same place,
+  // below the world. Errors: an entity that is not Created.
   Result<void> destroy(std::span<const ecs::Entity> entities, std::string name = {});
   Result<void> destroy(ecs::Entity entity) { return destroy(std::span(&entity, 1)); }
-  // Hangs them below `parent`, or in the world where that is none. keep_place: each stays where it is, and
-  // its Transform changes. Errors: no Transform, a parent that is the entity or below it; a flat parent, if
-  // the place is to be kept.
+  // Moves the entities below `parent`, or to the top of the world if it is none. keep_place: an entity keeps
+  // its place in the world and its Transform changes. Errors: an entity has no Transform; the parent is the
+  // entity or a descendant of it; the parent's matrix has no inverse although the place is to be kept.
   Result<void> reparent(std::span<const ecs::Entity> entities, ecs::Entity parent, bool keep_place,
                         std::string name = {});
   Result<void> reparent(ecs::Entity entity, ecs::Entity parent, bool keep_place) {
     return reparent(std::span(&entity, 1), parent, keep_place);
   }
-  // Work on what a person has made, where the component allows it.
+  // Add or remove a component of a Created entity, if the component allows it.
   Result<void> addComponent(ecs::Entity entity, std::string_view component);
   Result<void> removeComponent(ecs::Entity entity, std::string_view component);
-  // Replaces the environment, settings, camera and list of bundles. The program follows
+  // Replaces the environment, the settings, the camera and the list of bundles. The program sees it by
   // Document::worldVersion().
   void setWorld(WorldState world, std::string name);
-  // Lets `change` edit a copy of the world's state, and sets that.
+  // Lets `change` edit a copy of the world's state, and sets the result.
   template <typename Change>
   void editWorld(std::string name, const Change& change) {
     WorldState world = document_.world();
     change(world);
     setWorld(std::move(world), std::move(name));
   }
-  // Notes what has been done outside just now.
+  // Records a change that has just been made outside the document.
   void did(std::shared_ptr<OutsideChange> change, std::string name);
 
-  // ---- Steps of several edits nest, and the outermost is the step.
+  // ---- begin() and commit() nest; the outermost pair makes the step.
   void begin(std::string name);
   void commit();
-  void cancel();  // takes back what was edited since its begin()
+  void cancel();  // undoes the edits since the matching begin()
   bool open() const { return !scopes_.empty(); }
-  // A widget's drag is one step, from its first pixel to its end. Beginning one ends the one before; ending
-  // none does nothing.
+  // Make one step of a widget's drag, from press to release. beginDrag() ends a drag that is still open;
+  // endDrag() without a drag does nothing.
   void beginDrag(std::string name);
   void endDrag();
 
-  // ---- Undo and redo commit a step that is open first.
+  // ---- Undo and redo first commit a step that is open.
   Replay undo();
   Replay redo();
   bool canUndo() const { return done_ > 0 || !current_.empty(); }
   bool canRedo() const { return current_.empty() && done_ < steps_.size(); }
-  std::string undoName() const;  // "Undo move of ball"; "Undo" where there is nothing
+  std::string undoName() const;  // "Undo move of ball"; "Undo" if there is nothing to undo
   std::string redoName() const;
-  // Return all steps, the oldest first, and how many of them are done: for a list of steps.
+  // Return the names of all steps, oldest first, and how many of them are done.
   std::vector<std::string> stepNames() const;
   std::size_t stepsDone() const { return done_; }
 
-  bool modified() const;        // since markSaved()
-  bool modifiedInside() const;  // by more than changes outside
+  // Return whether anything was edited since markSaved(), and whether by more than OutsideChanges.
+  bool modified() const;
+  bool modifiedInside() const;
   void markSaved();
-  void clear();  // forgets all steps; what is there counts as saved
+  void clear();  // drops all steps; the present state counts as saved
   std::size_t bytes() const { return bytes_; }
-  // Rises with every edit, undo and redo.
+  // Increases with every edit, undo and redo.
   std::uint64_t version() const { return version_; }
 
  private:
@@ -133,12 +134,12 @@ class History {
   };
   struct EntityChange {
     EntitySnapshot snapshot;
-    bool made;  // else destroyed
+    bool made;  // false: destroyed
   };
   struct ComponentChange {
     StableId entity;
     ComponentValues values;
-    bool added;  // else removed
+    bool added;  // false: removed
   };
   struct WorldChange {
     WorldState before, after;
@@ -152,18 +153,19 @@ class History {
   };
   struct Scope {
     std::string name;
-    std::size_t first;  // change
-    bool single;        // of one edit; joins the step around it
+    std::size_t first;  // index of its first change in current_
+    bool single;        // opened by beginEdit(): joins an enclosing step
   };
 
   static std::size_t bytesOf(const Change& change);
-  void beginEdit(std::string name);  // begin() and commit() of a single edit
+  // Enclose a single edit, as begin() and commit() do.
+  void beginEdit(std::string name);
   void endEdit();
   Result<void> editFields(std::span<const FieldEdit> edits, std::string name, bool in_range);
-  void run(Change change);   // carries it out and puts it into the open step
-  void keep(Change change);  // puts it there
+  void run(Change change);   // carries the change out and keeps it
+  void keep(Change change);  // adds the change to the open step
   void apply(const Change& change, bool forth, std::vector<std::string>& missing);
-  // Changes that hang an entity elsewhere; the Transform's where the place is kept.
+  // Returns the changes that reparent an entity: of its parent and, if the place is kept, of its Transform.
   Result<std::vector<Change>> moves(ecs::Entity entity, ecs::Entity parent, bool keep_place);
   void push(std::string name, std::vector<Change> changes);
   void forgetOldest();
@@ -172,19 +174,20 @@ class History {
   Document& document_;
   std::size_t max_bytes_, bytes_ = 0;
   std::deque<Step> steps_;
-  std::size_t done_ = 0;                    // of steps_
-  std::uint64_t forgotten_ = 0;             // steps before the first of steps_
-  std::optional<std::uint64_t> saved_ = 0;  // forgotten_ + done_ when it was saved; none: out of reach
+  std::size_t done_ = 0;         // number of steps_ that are done
+  std::uint64_t forgotten_ = 0;  // number of steps that were dropped from the front of steps_
+  // The value of forgotten_ + done_ at markSaved(); none: no undo or redo leads there.
+  std::optional<std::uint64_t> saved_ = 0;
   std::uint64_t version_ = 0;
 
   std::vector<Scope> scopes_;
   bool dragging_ = false;
   std::vector<Change> current_;
-  // Where a field's change stands in current_: later ones join it.
+  // The index in current_ of a field's change; later edits of the field join it.
   std::map<std::pair<StableId, const scene::FieldInfo*>, std::size_t> joinable_;
 };
 
-// Returns a name for the step: "move of ball", "strength of 3 entities".
+// Returns the name of a step: "move of ball", "strength of 3 entities".
 std::string editName(const Document& document, std::span<const FieldEdit> edits);
 
 }  // namespace lambent::editor

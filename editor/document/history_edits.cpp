@@ -80,7 +80,7 @@ Result<void> History::editFields(std::span<const FieldEdit> edits, std::string n
   beginEdit(name.empty() ? editName(document_, edits) : std::move(name));
   for (std::size_t i = 0; i < edits.size(); ++i) {
     scene::Value before = infos[i]->get(registry, edits[i].entity);
-    if (scene::sameBits(before, edits[i].value)) continue;  // nothing is shaded again for nothing
+    if (scene::sameBits(before, edits[i].value)) continue;  // an unchanged value must not cause work
     run(FieldChange{document_.adopt(edits[i].entity), infos[i], std::move(before), edits[i].value});
   }
   endEdit();
@@ -130,14 +130,14 @@ Result<void> History::destroy(std::span<const ecs::Entity> entities, std::string
   if (entities.empty()) return {};
   const std::vector<ecs::Entity> all = withDescendants(registry, {entities.begin(), entities.end()});
   beginEdit(name.empty() ? "removal of " + entitiesName(document_, entities) : std::move(name));
-  // What belongs to bundles stays: the topmost of them leave the hierarchy first.
+  // Entities of bundles are not destroyed: the topmost of them are first moved to the top of the world.
   for (const ecs::Entity entity : all) {
     if (document_.created(entity) || !document_.created(parentOf(registry, entity))) continue;
     Result<std::vector<Change>> changes = moves(entity, {}, true);
     if (!changes) changes = moves(entity, {}, false);
     for (Change& change : *changes) run(std::move(change));
   }
-  // Children first, so that parents are there when they are made again.
+  // Children are destroyed first, so that undo creates their parents first.
   std::vector<ecs::Entity> doomed;
   for (const ecs::Entity entity : withDescendants(registry, {entities.begin(), entities.end()}))
     if (document_.created(entity) || document_.idOf(entity) == kNoId) doomed.push_back(entity);
@@ -197,7 +197,7 @@ Result<void> History::reparent(std::span<const ecs::Entity> entities, ecs::Entit
   }
   std::vector<Change> all;
   for (const ecs::Entity entity : entities) {
-    // What hangs below another of the list moves with that one.
+    // An entity below another of the list moves with that one.
     const bool below = std::any_of(entities.begin(), entities.end(), [&](ecs::Entity other) {
       return other != entity && isBelow(registry, entity, other);
     });

@@ -11,7 +11,7 @@
 namespace lambent::editor {
 namespace {
 
-// Where an animation puts it, now and not by hand.
+// Returns whether an animation sets this field at present. Such a value is not an edit.
 bool follows(const ecs::Registry& registry, ecs::Entity entity, StableId id, const Baseline& baseline,
              const scene::FieldInfo& field) {
   if (field.component == "Transform") return baseline.animated(id, field.name);
@@ -95,7 +95,8 @@ ApplyReport applyOverrides(Document& document, const Overrides& overrides) {
         report.missing.push_back(fmt::format("{} of {}", field.field->component, entry.name));
     }
   }
-  // Parents last, when all are there. Files may be wrong: nothing is hung below itself.
+  // Parents are set last, when all entities exist. A file may be wrong, so an entity is never put below
+  // itself.
   for (const EntityOverride& entry : overrides) {
     const ecs::Entity entity = document.find(entry.id);
     auto* place = registry.tryGet<scene::Transform>(entity);

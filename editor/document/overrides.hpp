@@ -1,7 +1,6 @@
-// Holds what a person has changed, as values: the fields of bundles' entities that differ from the baseline,
-// and all of what was created. World files take overrides out of a document and put them back; so does the
-// reload of a bundle, whose entities go and come back. They are sorted by id, so that two of the same
-// document are equal.
+// Holds what a person has changed, as values: those fields of bundles' entities that differ from the
+// baseline, and all fields of Created entities. World files store overrides; the reload of a bundle saves and
+// restores them. They are sorted by id, so equal documents have equal overrides.
 #pragma once
 
 #include <map>
@@ -25,31 +24,32 @@ struct FieldOverride {
 struct EntityOverride {
   StableId id;
   bool created = false;
-  std::string name;                // for readers of the file; of the bundle's entity or its own
-  std::optional<StableId> parent;  // kNoId: the world. None: the baseline's
-  // Components that a Created entity has (those without fields too), and fields in the table's order.
+  std::string name;                // of the entity, for people who read the file
+  std::optional<StableId> parent;  // kNoId: the world. None: as in the baseline
+  // The components of a Created entity (also those without fields), and fields in the order of the component
+  // table.
   std::vector<const scene::ComponentInfo*> components;
   std::vector<FieldOverride> fields;
-  UnknownFields unknown;  // "Component", "Component/field" and others, as JSON text
+  UnknownFields unknown;  // by "Component", "Component/field" or another key, as JSON text
 };
 
 using Overrides = std::vector<EntityOverride>;
 
-// Returns the overrides of the document, after it has adopted entities without an id.
+// Adopts entities without an id, then returns the overrides of the document.
 Overrides captureOverrides(Document& document, const Baseline& baseline);
 
 struct ApplyReport {
-  std::vector<std::string> missing;  // entities and components that are not there, by name and id
+  std::vector<std::string> missing;  // entities and components that do not exist, by name and id
 };
 
-// Sets the fields and makes the Created entities that are not there, then hangs all where they belong. What
-// bundles do not have any more is passed over and reported: their files may have changed since. Values were
-// checked when they were read.
+// Sets the fields, creates the Created entities that do not exist, then sets the parents. What a bundle no
+// longer has (its file may have changed) is skipped and reported. Values are not checked again: the reader of
+// the file has done so.
 ApplyReport applyOverrides(Document& document, const Overrides& overrides);
 
-// ---- a bundle that is closed and opened again (World::replace keeps edits itself): keep = keepForReload(),
-// then close and open, by undo of its removal too, then restoreAfterReload(). Selection and history need
-// nothing.
+// ---- Keep the edits of a bundle that is closed and opened again, also by undo of its removal: call
+// keepForReload() before it is closed and restoreAfterReload() after it was opened. (World::replace keeps
+// edits itself.) Selection and history need no such care.
 struct Kept {
   Overrides overrides;
 };

@@ -21,7 +21,7 @@ void Selection::set(StableId id) {
 void Selection::set(std::span<const StableId> ids) {
   std::vector<StableId> wanted;
   for (const StableId id : ids) {
-    std::erase(wanted, id);  // picked twice: the later place counts
+    std::erase(wanted, id);  // for an id that occurs twice, the later place counts
     if (id != kNoId) wanted.push_back(id);
   }
   anchor_ = wanted.empty() ? kNoId : wanted.back();
@@ -54,7 +54,7 @@ void Selection::range(std::span<const StableId> rows, StableId to) {
   auto from = std::find(rows.begin(), rows.end(), anchor);
   auto last = std::find(rows.begin(), rows.end(), to);
   if (last == rows.end()) return;
-  if (from == rows.end()) from = last;  // what was clicked first is not shown any more
+  if (from == rows.end()) from = last;  // the row that was clicked first is not shown any more
   std::vector<StableId> wanted;
   for (auto at = from;; from < last ? ++at : --at) {
     wanted.push_back(*at);

@@ -1,6 +1,7 @@
-// Holds what is selected, by StableId: several entities in the order in which they were picked, the last of
-// them the primary one, about which panels and gizmos speak. Ids that are not there now (their bundle is
-// being loaded again, or undo took them) stay and count again when they are back. No registry is changed.
+// Holds the selected entities as StableIds, in the order in which they were selected. The last is the primary
+// one, which panels show and gizmos use. An id whose entity does not exist at present (its bundle is being
+// reloaded, or undo removed it) stays and counts again once the entity is back. It does not change the
+// registry.
 #pragma once
 
 #include <cstdint>
@@ -15,27 +16,27 @@ namespace lambent::editor {
 class Selection {
  public:
   void clear();
-  void set(StableId id);                    // it alone
-  void set(std::span<const StableId> ids);  // the last is primary
-  void add(StableId id);                    // and makes it primary
+  void set(StableId id);                    // selects this one only
+  void set(std::span<const StableId> ids);  // the last becomes primary
+  void add(StableId id);                    // makes it primary
   void remove(StableId id);
-  void toggle(StableId id);  // Ctrl-click
-  // Selects, on Shift-click, all from where the last set, add or toggle was to `to`, in the order of `rows`
-  // (what the tree shows). Other ids leave the selection.
+  void toggle(StableId id);  // as Ctrl-click does
+  // Selects as Shift-click does: all of `rows` (the rows of the tree, in order) between the last set, add or
+  // toggle and `to`. All other ids are deselected.
   void range(std::span<const StableId> rows, StableId to);
 
   bool contains(StableId id) const;
   bool empty() const { return ids_.empty(); }
   std::span<const StableId> ids() const { return ids_; }
   StableId primary() const { return ids_.empty() ? kNoId : ids_.back(); }
-  // Returns those that are there now, the primary last.
+  // Returns the selected entities that exist at present, the primary last.
   std::vector<ecs::Entity> entities(const Document& document) const;
   ecs::Entity primaryEntity(const Document& document) const;
-  // Returns them without those that hang below others of the selection: what a gizmo moves.
+  // Returns the selected entities without those that have a selected ancestor. These are what a gizmo moves.
   std::vector<ecs::Entity> topmost(const Document& document) const;
-  // Forgets those that are not there.
+  // Removes the ids whose entities do not exist.
   void prune(const Document& document);
-  // Rises with every change.
+  // Increases with every change.
   std::uint64_t version() const { return version_; }
 
  private:
@@ -44,8 +45,8 @@ class Selection {
   std::uint64_t version_ = 0;
 };
 
-// Returns a box around what is selected, in world space: bounds of draws and groups, and a small box around
-// what has only a place. It is empty where nothing of that is selected.
+// Returns a box around the selection in world space: the bounds of draws and groups, and a small box around
+// an entity that only has a position. The box is empty if nothing selected has a position.
 scene::Box selectionBounds(const Document& document, const Selection& selection);
 
 }  // namespace lambent::editor

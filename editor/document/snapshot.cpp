@@ -62,7 +62,7 @@ std::size_t bytesOf(const EntitySnapshot& snapshot) {
 
 namespace {
 
-// Its defaults, but for one field.
+// Returns the defaults of a component, with another value for one field.
 ComponentValues defaults(std::string_view component, std::string_view field = {}, scene::Value value = {}) {
   ComponentValues part{scene::findComponent(component), {}};
   for (const scene::FieldInfo& info : part.component->fields)
@@ -79,7 +79,7 @@ EntitySnapshot emptyEntity(std::string name) {
 EntitySnapshot lightEntity(std::string_view kind, std::string name) {
   EntitySnapshot snapshot = emptyEntity(std::move(name));
   ComponentValues light = defaults("Light", "kind", scene::Word{std::string(kind)});
-  // Without a size, spheres and discs give nothing.
+  // Spheres and discs of radius 0 emit nothing.
   for (std::size_t i = 0; i < light.values.size(); ++i) {
     if (light.component->fields[i].name == "radius" && (kind == "sphere" || kind == "disc"))
       light.values[i] = 0.1f;

@@ -1,5 +1,5 @@
-// Holds entities as values: what a person may have set of one, taken out of a registry and put back. History
-// keeps snapshots of what was destroyed, the clipboard and duplicates are made of them.
+// Copies the editable state of an entity out of a registry as plain values, and creates an entity from it.
+// The history, the clipboard and duplicate use these snapshots.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@
 
 namespace lambent::editor {
 
-// All fields of one component, in the order of ComponentInfo::fields.
+// Holds all fields of one component, in the order of ComponentInfo::fields.
 struct ComponentValues {
   const scene::ComponentInfo* component = nullptr;
   std::vector<scene::Value> values;
 };
 
 struct EntitySnapshot {
-  StableId id;      // kNoId: gets a new one
+  StableId id;      // kNoId: a new id is given
   StableId parent;  // kNoId: the world
   std::vector<ComponentValues> components;
 
@@ -27,17 +27,17 @@ struct EntitySnapshot {
 
 ComponentValues componentValues(const ecs::Registry& registry, ecs::Entity entity,
                                 const scene::ComponentInfo& component);
-// Takes an entity that has an id (Document::adopt).
+// Takes a snapshot of an entity that has an id (Document::adopt).
 EntitySnapshot takeSnapshot(const Document& document, ecs::Entity entity);
-// Makes a Created entity with these components, in the world if its parent is not there.
+// Creates a Created entity with these components, below the world if its parent does not exist.
 ecs::Entity makeEntity(Document& document, const EntitySnapshot& snapshot);
-// Return about how much memory they take.
+// Return the approximate memory use in bytes.
 std::size_t bytesOf(const EntitySnapshot& snapshot);
 std::size_t bytesOf(const scene::Value& value);
 
-// Return what the menus make. Each has a Name and a Transform.
+// Return what the Create menu makes. Each has a Name and a Transform.
 EntitySnapshot emptyEntity(std::string name);
-EntitySnapshot lightEntity(std::string_view kind, std::string name);  // a word of Light.kind
+EntitySnapshot lightEntity(std::string_view kind, std::string name);  // kind: a word of Light.kind
 EntitySnapshot cameraEntity(std::string name);
 
 }  // namespace lambent::editor

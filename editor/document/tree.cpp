@@ -16,16 +16,16 @@ namespace {
 
 std::string lower(std::string_view text) {
   std::string low(text);
-  // Letters of ASCII; others count as they are.
+  // Only ASCII letters are converted.
   for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return low;
 }
 
-// Which bundle an entity belongs to while the program runs.
+// Returns the bundle that an entity belongs to, by its number in the running program.
 std::optional<std::uint32_t> bundleOf(const ecs::Registry& registry, ecs::Entity entity) {
   if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(entity)) return group->bundle;
   if (const auto* draw = registry.tryGet<scene::DrawItem>(entity)) return draw->bundle;
-  if (registry.has<Created>(entity)) return std::nullopt;  // its camera's bundle says nothing
+  if (registry.has<Created>(entity)) return std::nullopt;  // a Created camera belongs to no bundle
   for (const scene::ComponentInfo& component : scene::components()) {
     if (const auto bundle = component.bundle(registry, entity)) return bundle;
   }
@@ -45,7 +45,7 @@ class TreeBuilder {
       const ecs::Entity parent = parentRow(entity);
       (parent ? children_[parent.index] : tops).push_back(entity);
     }
-    // Depth first, without recursion: hierarchies may be of any depth.
+    // The tree is walked depth first without recursion, because it may be arbitrarily deep.
     std::vector<std::pair<ecs::Entity, std::uint32_t>> open;
     for (auto top = tops.rbegin(); top != tops.rend(); ++top) open.emplace_back(*top, 0u);
     while (!open.empty()) {
@@ -68,10 +68,10 @@ class TreeBuilder {
     return std::any_of(all.begin(), all.end(), [&](const auto& row) { return row.has(registry_, entity); });
   }
 
-  // The entities that place whole bundles; groups by bundle and number.
+  // Finds each bundle's root, and the groups by bundle and number.
   void findRoots() {
     const auto take = [&](std::uint32_t bundle, ecs::Entity node) {
-      // Up to the highest that nobody made by hand: roots may hang below other things.
+      // The root is the topmost ancestor that is not Created: a bundle may stand below Created entities.
       ecs::Entity root;
       for (ecs::Entity at = node; at && !registry_.has<Created>(at); at = parentOf(registry_, at)) root = at;
       if (root) roots_.try_emplace(bundle, root);
@@ -91,7 +91,7 @@ class TreeBuilder {
     if (const auto* lamp = registry_.tryGet<scene::LampComponent>(entity)) {
       const auto group = groups_.find({lamp->bundle, lamp->group});
       if (group != groups_.end()) {
-        // Below the group where groups are shown, else below its node.
+        // A lamp stands below its group if groups are shown, else below the group's node.
         parent = listed(group->second) ? group->second
                                        : registry_.get<scene::RigidGroupComponent>(group->second).node;
       }
@@ -136,10 +136,10 @@ class TreeBuilder {
     return fmt::format("({})", kind_word);
   }
 
-  // From the last row up: what matches keeps those above it.
+  // Keeps the rows that match and their ancestors. It walks upwards from the last row.
   void keepMatches() {
     std::vector<TreeRow> kept;
-    std::uint32_t wanted_depth = 0;  // rows of less depth than this stand above one that is kept
+    std::uint32_t wanted_depth = 0;  // a row of smaller depth is an ancestor of a kept row
     for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) {
       const bool above = row->depth < wanted_depth;
       if (!row->matches && !above) continue;
@@ -170,7 +170,7 @@ std::vector<TreeRow> treeRows(const Document& document, const TreeQuery& query) 
 }
 
 std::uint64_t treeVersion(const ecs::Registry& registry) {
-  // Not the version of Transforms, which rises with every step of an animation: who hangs below whom.
+  // The version of Transforms would rise with every step of an animation, so the parents are hashed instead.
   std::uint64_t sum = registry.version<StableId>() + registry.version<Created>() +
                       registry.version<scene::Name>() + registry.version<scene::DrawItem>();
   const auto mix = [&](std::uint64_t part) { sum = (sum ^ part) * 0x9e3779b97f4a7c15u + (sum >> 29); };
@@ -187,7 +187,7 @@ std::string_view kindWordOf(const ecs::Registry& registry, ecs::Entity entity) {
   if (registry.has<scene::DrawItem>(entity)) return "draw";
   if (registry.has<scene::VolumeItem>(entity)) return "volume";
   if (registry.has<scene::RigidGroupComponent>(entity)) return "group";
-  // In the order in which the more telling comes first.
+  // The first component that the entity has decides.
   constexpr std::pair<std::string_view, std::string_view> kKinds[] = {
       {"Light", "light"},         {"Lamp", "lamp"},         {"Camera", "camera"},
       {"Animation", "animation"}, {"Material", "material"}, {"Environment", "environment"},

@@ -1,7 +1,7 @@
-// Lists the entities of a registry as rows of a tree, flat, so that a list clipper can show the few that are
-// visible: nodes by Transform::parent, bundles by their roots, and what has no place of its own (draws,
-// groups, lamps, materials, animations) below its node, group or bundle. Rows are made again when
-// treeVersion() has changed. A filter keeps rows that match and those above them.
+// Lists the entities of a registry as the flat rows of a tree, so that a list clipper can draw only the
+// visible ones. Nodes are ordered by Transform::parent and bundles by their roots; entities without a place
+// (draws, groups, lamps, materials, animations) stand below their node, group or bundle. Rows are rebuilt
+// when treeVersion() has changed. A filter keeps matching rows and their ancestors.
 #pragma once
 
 #include <cstdint>
@@ -20,44 +20,46 @@ struct TreeRow {
   StableId id;
   std::uint32_t depth = 0;
   std::string name;
-  std::string_view kind;  // of the icon: bundle, node, light, lamp, camera, draw, group, volume, animation,
-                          // material, environment, entity
+  // One of the words bundle, node, light, lamp, camera, draw, group, volume, animation, material, environment
+  // and entity; the icon depends on it.
+  std::string_view kind;
   bool has_children = false;
   bool open = true;
-  bool matches = true;  // false: stands here for what is below it
+  bool matches = true;  // false: shown only because a descendant matches
 };
 
 struct TreeQuery {
-  // Words that must all hold: "ball" (part of the name, any case), "type:light" (kind), "has:Lamp" (a
-  // component), "id:0123" (how the id begins), "-type:draw" (not). "two words" in quotes are one.
+  // A row has to match all words: "ball" (part of the name, in any case), "type:light" (its kind), "has:Lamp"
+  // (a component), "id:0123" (a prefix of its id), "-type:draw" (not this kind). "two words" in quotes count
+  // as one.
   std::string filter;
-  std::set<StableId> closed;  // rows whose children are not shown; a filter shows them all the same
-  bool show_parts = true;     // draws and groups, which nobody edits
+  std::set<StableId> closed;  // rows whose children are hidden; a filter shows them anyway
+  bool show_parts = true;     // whether to list draws and groups, which cannot be edited
   bool operator==(const TreeQuery&) const = default;
 };
 
 std::vector<TreeRow> treeRows(const Document& document, const TreeQuery& query);
-// Returns another number whenever rows may be others, but not while things only move. Walks over the
-// Transforms.
+// Returns a number that changes whenever rows may have changed, but not when entities merely move. It visits
+// all Transforms.
 std::uint64_t treeVersion(const ecs::Registry& registry);
 
-// Keeps the rows of a query, and makes them again only when the query or the tree has changed.
+// Caches the rows of a query and rebuilds them only when the query or the tree has changed.
 class TreeRows {
  public:
   TreeQuery query;
-  // Returns the rows of the query; they are valid until the next call.
+  // Returns the rows of the query. They are valid until the next call.
   const std::vector<TreeRow>& of(const Document& document);
 
  private:
   std::vector<TreeRow> rows_;
   TreeQuery made_by_;
-  std::uint64_t made_of_ = ~std::uint64_t{0};  // tree version
+  std::uint64_t made_of_ = ~std::uint64_t{0};  // treeVersion() of rows_
 };
 
-// Returns the word for the kind of an entity.
+// Returns the word of TreeRow::kind for an entity.
 std::string_view kindWordOf(const ecs::Registry& registry, ecs::Entity entity);
 
-// Matches entities against the text of a filter; other lists use it, too.
+// Matches entities against the text of a filter, as TreeQuery::filter. Other lists use it, too.
 class TreeFilter {
  public:
   explicit TreeFilter(std::string_view text);

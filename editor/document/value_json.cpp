@@ -166,15 +166,15 @@ UnknownFields Place::unknown(const std::set<std::string>& known, std::vector<std
 
 namespace {
 
-// Brackets outside of texts. (The parser could count for us, but with a callback it takes the square of
-// time.)
+// Returns the deepest nesting of brackets outside of strings. (With a callback that counts, the parser would
+// take quadratic time.)
 int depthOf(std::string_view text) {
   int depth = 0, deepest = 0;
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '"') quoted = !quoted;
-    if (quoted && c == '\\') ++i;  // what follows is no end of the text
+    if (quoted && c == '\\') ++i;  // skips the escaped character
     if (quoted) continue;
     if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
     if (c == ']' || c == '}') --depth;
@@ -185,7 +185,7 @@ int depthOf(std::string_view text) {
 }  // namespace
 
 Result<ReadJson> parseJson(std::string_view text, const std::string& subject) {
-  // Deeper than anything of ours; what is deeper could exhaust the stack when it is written.
+  // No valid file is as deep as this. Deeper ones could overflow the stack when they are written.
   constexpr int kMaxDepth = 64;
   if (depthOf(text) > kMaxDepth) return fail(subject, "is nested too deeply", "take an older copy");
   try {

@@ -1,5 +1,5 @@
-// Turns values of fields into JSON and back, for world files and the clipboard, and walks JSON with the way
-// to each place, so that errors name it. Only this room uses it.
+// Converts field values to JSON and back, for world files and the clipboard. Its reader knows the path to
+// each JSON value, so that errors can name it. Only this room uses it.
 #pragma once
 
 #include <array>
@@ -18,21 +18,20 @@
 
 namespace lambent::editor {
 
-using Json = nlohmann::ordered_json;  // to write: keys stay as they were put
-using ReadJson =
-    nlohmann::json;  // to read: looks keys up by a tree, so that large files take no square of time
+using Json = nlohmann::ordered_json;  // for writing: keys keep their order
+using ReadJson = nlohmann::json;      // for reading: finds a key in logarithmic time, which large files need
 
-// Writes the shortest decimal that reads back as the same float, so that 0.1 is written 0.1.
+// Writes the shortest decimal number that reads back as the same float.
 Json numberJson(float value);
-// Writes rotations as [x, y, z, w], as glTF has them. Error: not finite.
+// Writes a value; rotations become [x, y, z, w], as in glTF. Error: a number is not finite.
 Result<Json> valueJson(const scene::Value& value);
 
-// A place in a document: a value and the way to it. Faults are thrown as JsonFault inside the room and become
-// Errors at its border.
+// A JsonFault is wrong input. It is thrown inside this room only; public functions turn it into an Error.
 struct JsonFault {
   std::string place, problem, hint;
 };
 
+// A Place is a JSON value with its path in the document.
 class Place {
  public:
   Place(const ReadJson& value, std::string way) : value_(&value), way_(std::move(way)) {}
@@ -43,20 +42,20 @@ class Place {
     throw JsonFault{way_, std::move(problem), std::move(hint)};
   }
   bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
-  Place at(const std::string& key) const;                      // faults where it is missing
-  std::vector<std::pair<std::string, Place>> members() const;  // of an object
-  std::vector<Place> items() const;                            // of a list
+  Place at(const std::string& key) const;                      // faults if the key is missing
+  std::vector<std::pair<std::string, Place>> members() const;  // faults if this is no object
+  std::vector<Place> items() const;                            // faults if this is no list
 
   std::string text() const;
   bool flag() const;
   float number() const;
   std::uint64_t count(std::uint64_t largest) const;
-  std::map<std::string, std::string> table() const;  // of texts
+  std::map<std::string, std::string> table() const;  // an object whose values are strings
   std::vector<std::string> texts() const;
-  // Returns the value as the field takes it: kind and range are checked.
+  // Returns the value of a field. Faults if its kind or range is wrong.
   scene::Value value(const scene::FieldInfo& field) const;
 
-  // Returns what is not among the known keys, as JSON texts; each is told in `notices`.
+  // Returns the members whose keys are not known, as JSON text, and adds a notice for each.
   UnknownFields unknown(const std::set<std::string>& known, std::vector<std::string>& notices) const;
 
  private:
@@ -64,7 +63,7 @@ class Place {
   std::string way_;
 };
 
-// Parses a text. Errors name line and column.
+// Parses a text. An error names the line and column.
 Result<ReadJson> parseJson(std::string_view text, const std::string& subject);
 void putUnknown(Json& object, const UnknownFields& unknown);
 

@@ -25,7 +25,7 @@ const scene::ComponentInfo& environmentInfo() {
   return *scene::findComponent("Environment");
 }
 
-// ---- reading
+// ---- Reading.
 
 class WorldReader {
  public:
@@ -107,7 +107,7 @@ class WorldReader {
         world_.state.key_edits.push_back(word);
       }
     std::set<std::string> known{"lights", "fade_lights", "key_edits", "exposure"};
-    // Through the table, so that fields of the component need no mention here.
+    // The table of components is used, so that a new field needs no change here.
     ecs::Registry scratch;
     const ecs::Entity entity = scratch.create();
     scratch.emplace<scene::EnvironmentComponent>(entity);
@@ -165,7 +165,7 @@ class WorldReader {
       if (entry.created && !info->addable) place.fault("cannot be made by hand: it comes with a bundle");
       known.emplace_back(info, place);
     }
-    // In the table's order, whatever the file's is.
+    // The order is that of the table, whatever the file's is.
     std::sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [info, place] : known) {
       if (entry.created) entry.components.push_back(info);
@@ -183,9 +183,9 @@ class WorldReader {
   WorldFile world_;
 };
 
-// ---- writing
+// ---- Writing.
 
-// Lists of numbers and words on one line, everything else on lines of its own.
+// Writes lists of numbers, and single values, on one line and everything else on several lines.
 void write(std::string& out, const Json& value, std::size_t depth) {
   const bool flat = value.is_primitive() || value.empty() ||
                     (value.is_array() && std::all_of(value.begin(), value.end(),
@@ -251,7 +251,7 @@ Result<Json> entityJson(const EntityOverride& entry) {
   for (const scene::ComponentInfo* component : entry.components)
     components[std::string(component->name)] = Json::object();
   for (const FieldOverride& field : entry.fields) {
-    // What a file would be refused for is not written.
+    // A value that the reader would refuse is not written.
     Result<Json> value = valueJson(field.value);
     const Result<void> good = field.field->check(field.value);
     if (!value || !good) {
@@ -318,7 +318,8 @@ Result<std::string> worldText(const WorldFile& world) {
   if (!world.state.camera.empty()) json["camera"] = world.state.camera;
   json["settings"] = table(world.state.settings);
   if (!world.state.view.empty()) json["view"] = table(world.state.view);
-  // By id: the object is made at once, since look-ups in one that keeps its order walk it.
+  // The entities are sorted by id already. They are appended, because a look-up in an ordered object is
+  // linear.
   Json::object_t entities;
   for (const EntityOverride& entry : world.entities) {
     Result<Json> entity = entityJson(entry);
@@ -389,7 +390,7 @@ WorldFile captureWorld(Document& document, const Baseline& baseline, const World
     if (found != world.entities.end() && found->id == old.id) {
       found->unknown = old.unknown;
     } else if (!old.created && !document.find(old.id)) {
-      // Its bundle came without it this time; the edit waits, as long as the bundles are the same.
+      // The bundle came without this entity this time. The edit is kept as long as the bundles are the same.
       if (kept->state.bundles == world.state.bundles) more.push_back(old);
     } else if (!old.created && !old.unknown.empty()) {
       EntityOverride& rest = more.emplace_back();

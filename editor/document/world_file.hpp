@@ -1,8 +1,9 @@
-// Reads and writes world files: what stands in a world and how it was edited, as JSON (docs/world-file.md). A
-// text or a path comes in, a checked value goes out. Nothing of a file that has an error is used, and errors
-// name the place in it ("entities.0f3a….fields.Light.strength"). What this version does not know is kept and
-// written back, and told. Writing is atomic and in a stable order: a small change is a small difference. The
-// order of use: loadWorldFile, open the bundles with the ids and instances that it names, applyWorld.
+// Reads and writes world files: which bundles a world has and how they were edited, as JSON
+// (docs/world-file.md). A text or a path comes in and a checked WorldFile goes out. A file with an error is
+// not used at all, and the error names the JSON path ("entities.0f3a….fields.Light.strength"). What this
+// version does not know is reported, kept and written back. Files are written atomically and in a stable
+// order, so a small edit makes a small diff. To open a world: call loadWorldFile, open the bundles with the
+// ids and instances that it names, call applyWorld.
 #pragma once
 
 #include <cstdint>
@@ -26,29 +27,29 @@ struct WorldFile {
   WorldState state;
   scene::EnvironmentComponent environment;
   Overrides entities;
-  UnknownFields unknown;             // by key at the top, and "environment/KEY"
-  std::vector<std::string> notices;  // what was not understood but kept, a sentence each
+  UnknownFields unknown;             // top-level keys, and "environment/KEY"
+  std::vector<std::string> notices;  // a sentence for each part that was not understood but kept
 };
 
-// subject: what errors call it, e.g. the path.
+// subject: the name for error messages, e.g. the path.
 Result<WorldFile> parseWorld(std::string_view text, const std::string& subject);
-// Writes a world as text. Errors: a value that is not finite.
+// Returns the text of the file. Errors: a value is not finite.
 Result<std::string> worldText(const WorldFile& world);
 
-// Reads the file and checks it, and that every bundle is there.
+// Reads and checks the file. Errors: also a bundle that does not exist.
 Result<WorldFile> loadWorldFile(const std::filesystem::path& path);
 Result<void> saveWorldFile(const std::filesystem::path& path, const WorldFile& world);
 
-// Return the file that a bundle's path means in a world file at `world_path`, and the path that a world file
-// there has for a bundle.
+// Convert a bundle's path: from a world file at `world_path` to a file on disk, and back.
 std::filesystem::path resolvePath(const std::filesystem::path& world_path, std::string_view path);
 std::string pathInWorld(const std::filesystem::path& world_path, const std::filesystem::path& file);
-// Returns a light word with its environment map's path resolved likewise.
+// Resolves the environment map's path in a light word in the same way.
 std::string resolveLight(const std::filesystem::path& world_path, const std::string& word);
 
-// Takes the document as it is now. `kept` is what was loaded: its unknown parts are carried on.
+// Captures the document as it is now. `kept` is the file that was loaded; its unknown parts are carried over.
 WorldFile captureWorld(Document& document, const Baseline& baseline, const WorldFile* kept = nullptr);
-// Applies a world file whose bundles stand in the registry. The document's history is not touched: clear it.
+// Applies a world file, whose bundles must be in the registry already. It does not use the history; the
+// caller clears it.
 ApplyReport applyWorld(Document& document, const WorldFile& world);
 
 }  // namespace lambent::editor

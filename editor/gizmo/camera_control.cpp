@@ -14,10 +14,10 @@
 namespace lambent::editor {
 namespace {
 
-constexpr float kDegreesPerHeight = 180.0f;  // a drag over the whole picture goes half around
+constexpr float kDegreesPerHeight = 180.0f;  // turn by a drag over the whole height
 constexpr float kZoomPerNotch = 0.88f;
 constexpr float kRadiiPerSecond = 0.7f;
-constexpr float kFilled = 0.9f;  // of the picture, when something is framed
+constexpr float kFilled = 0.9f;  // fraction of the picture that a framed box fills
 constexpr float kNearestRadii = 1e-4f, kFarthestRadii = 1e4f;
 
 float sizeOf(const scene::Box& bounds) {
@@ -29,7 +29,7 @@ struct Frame {
   glm::vec3 right, up, back;
 };
 
-// Up follows the elevation beyond the poles, so that straight down needs no special case.
+// The up vector follows the elevation beyond the poles, so that looking straight down needs no special case.
 Frame frameOf(const CameraPose& pose) {
   const glm::vec3 back = spec::directionFromAzimuthElevation(pose.azimuth_deg, pose.elevation_deg);
   const glm::vec3 up = spec::directionFromAzimuthElevation(pose.azimuth_deg, pose.elevation_deg + 90.0f);
@@ -62,7 +62,7 @@ CameraPose moved(const CameraPose& pose, const CameraInput& input, const scene::
   turn(next, -orbit * input.orbit_px.x, orbit * input.orbit_px.y);
   if (input.look_px != glm::vec2(0.0f)) {
     const glm::vec3 eye = next.eye();
-    const float look = next.fov_deg / height;  // what is looked at follows the pointer
+    const float look = next.fov_deg / height;  // what the camera looks at follows the pointer
     turn(next, -look * input.look_px.x, look * input.look_px.y);
     next.target_ws += eye - next.eye();
   }
@@ -71,7 +71,7 @@ CameraPose moved(const CameraPose& pose, const CameraInput& input, const scene::
   next.target_ws += metres * (input.pan_px.y * frame.up - input.pan_px.x * frame.right);
   next.distance_m = std::clamp(next.distance_m * std::pow(kZoomPerNotch, input.dolly), kNearestRadii * size,
                                kFarthestRadii * size);
-  // Up by keys is the world's up, as on a lift.
+  // The keys for up and down move along the world's up, not the camera's.
   const glm::vec3 way =
       input.fly.x * frame.right + input.fly.y * glm::vec3(0.0f, 1.0f, 0.0f) - input.fly.z * frame.back;
   next.target_ws += kRadiiPerSecond * size * input.fly_speed * input.seconds * way;
@@ -83,7 +83,7 @@ CameraPose eased(const CameraPose& pose, const CameraPose& goal, float seconds, 
   const float turn_deg = std::remainder(pose.azimuth_deg - goal.azimuth_deg, 360.0f);
   const float ratio = std::log(std::max(pose.distance_m, 1e-12f) / std::max(goal.distance_m, 1e-12f));
   const float away = glm::length(pose.target_ws - goal.target_ws) / std::max(goal.halfHeight(), 1e-12f);
-  // A picture of 4000 lines: half a line, and as many degrees and shares of the distance.
+  // The limits are half a line in a picture of 4000 lines for the position, and as little for the others.
   const float rest =
       left * std::max({std::abs(turn_deg) / 90.0f, std::abs(pose.elevation_deg - goal.elevation_deg) / 90.0f,
                        std::abs(ratio), away, std::abs(pose.fov_deg - goal.fov_deg) / 90.0f});
@@ -112,10 +112,10 @@ CameraPose framed(const CameraPose& pose, const scene::Box& box, float aspect) {
                                  std::abs(glm::dot(place, frame.right)) / std::max(aspect, 1e-3f)) /
                         fitting;
     const float depth = glm::dot(place, frame.back);
-    // Without perspective nearer corners are no larger; the eye only has to stand before them.
+    // Without perspective nearer corners look no larger, so the eye only has to be in front of them.
     distance = std::max(distance, pose.orthographic ? std::max(reach, 1.01f * depth) : depth + reach);
   }
-  if (distance > 0.0f) next.distance_m = distance;  // a point fills no picture: as near as before
+  if (distance > 0.0f) next.distance_m = distance;  // a point keeps the present distance
   return next;
 }
 
@@ -130,7 +130,7 @@ spec::View viewOf(const CameraPose& pose, const scene::Box& bounds, float aspect
   return spec::cameraView(camera, nodeMatrix(pose), seen.min, seen.max, aspect).value_or(spec::View{});
 }
 
-// ---- words
+// ---- Words.
 
 CameraPose fromOrbit(const spec::OrbitCamera& orbit, const scene::Box& bounds) {
   CameraPose pose;
@@ -179,7 +179,7 @@ CameraPose fromNode(const glm::mat4& world_from_node, const scene::CameraCompone
   if (!(glm::length(back) > 0.0f)) return pose;
   back = glm::normalize(back);
   pose.elevation_deg = glm::degrees(std::asin(std::clamp(back.y, -1.0f, 1.0f)));
-  // Straight up or down the azimuth is in what is up in the picture.
+  // When the camera looks straight up or down, the azimuth is that of its up vector.
   const bool pole = std::abs(back.y) > 0.99999f;
   const glm::vec3 across = !pole ? back : back.y > 0.0f ? -up : up;
   pose.azimuth_deg = glm::degrees(std::atan2(across.x, across.z));

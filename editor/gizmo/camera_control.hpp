@@ -1,7 +1,7 @@
-// Moves the editor's own camera: around a point (orbit, pan, dolly), on foot (look, fly), and onto a
-// selection (frame). All functions are pure: a pose and a movement of the pointer give a pose, so that
-// scripts and tests move it as a hand does. Speeds count in the size of the scene, so that a teacup and a
-// city feel alike. A pose goes to and from orbit words, and makes a spec::View like any other camera's.
+// Moves the editor's own camera: around a point (orbit, pan, dolly), freely (look, fly), and onto a selection
+// (frame). All functions are pure: they take a pose and an input and return a pose, so scripts and tests can
+// drive them. Speeds scale with the size of the scene. A pose converts to and from orbit words, and to a
+// spec::View.
 #pragma once
 
 #include <optional>
@@ -18,61 +18,62 @@
 
 namespace lambent::editor {
 
-// Looks from the eye, which stands at `distance_m` in the direction (azimuth, elevation), at the target. Up
-// is +Y, or follows the elevation beyond the poles.
+// Describes a camera that looks at a target from `distance_m` in the direction (azimuth, elevation). Its up
+// vector is +Y, and follows the elevation beyond the poles.
 struct CameraPose {
   glm::vec3 target_ws{0.0f};
   float azimuth_deg = 30.0f, elevation_deg = 15.0f;  // as spec::OrbitCamera; -90..90
   float distance_m = 5.0f;                           // > 0
   float fov_deg = 40.0f;                             // vertical
-  // The picture's half height is then what the perspective view shows at the target.
+  // Sets an orthographic projection, whose half height is what the perspective view shows at the target's
+  // distance.
   bool orthographic = false;
   bool operator==(const CameraPose&) const = default;
 
   glm::vec3 eye() const;
-  float halfHeight() const;  // metres at the target
+  float halfHeight() const;  // in metres, at the target
 };
 
-// Tells what the hand did since the last time.
+// Describes the user's input since the last call.
 struct CameraInput {
-  glm::vec2 orbit_px{0.0f};  // pointer, right and down: about the target
-  glm::vec2 look_px{0.0f};   // about the eye
-  glm::vec2 pan_px{0.0f};    // the target's plane follows the pointer to the pixel
-  float dolly = 0.0f;        // notches of the wheel, positive: nearer
-  glm::vec3 fly{0.0f};       // right, up, forward, each -1..1: keys that are held
-  float fly_speed = 1.0f;    // factor: a modifier key, the wheel
-  float seconds = 0.0f;      // that the keys were held
+  glm::vec2 orbit_px{0.0f};  // pointer movement to the right and down, which orbits the target
+  glm::vec2 look_px{0.0f};   // pointer movement that turns the camera about the eye
+  glm::vec2 pan_px{0.0f};    // pointer movement that pans; the target's plane follows the pointer exactly
+  float dolly = 0.0f;        // notches of the wheel; positive moves nearer
+  glm::vec3 fly{0.0f};       // held keys: right, up, forward, each -1..1
+  float fly_speed = 1.0f;    // a factor, from a modifier key or the wheel
+  float seconds = 0.0f;      // how long the keys were held
   float height_px = 1.0f;    // of the viewport
 };
 
-// Returns the pose after the movement. bounds: the scene's; empty ones count as a metre.
+// Returns the pose after the input. bounds: those of the scene; empty ones count as one metre.
 CameraPose moved(const CameraPose& pose, const CameraInput& input, const scene::Box& bounds);
 
-// Moves nearer to the goal by half in every half_s, and to it once no pixel would tell. Turns by the shorter
-// way.
+// Halves the difference to the goal every half_s seconds and returns the goal once the rest is below a pixel.
+// Angles take the shorter way round.
 CameraPose eased(const CameraPose& pose, const CameraPose& goal, float seconds, float half_s = 0.06f);
 
-// Lets the box fill the picture, seen from the same direction. Empty boxes change nothing.
+// Returns a pose that fits the box into the picture without turning. An empty box changes nothing.
 CameraPose framed(const CameraPose& pose, const scene::Box& box, float aspect);
 
-// Makes a view whose depth is fitted to the bounds.
+// Returns a view whose near and far plane fit the bounds.
 spec::View viewOf(const CameraPose& pose, const scene::Box& bounds, float aspect);
 
-// ---- words
+// ---- Conversions.
 CameraPose fromOrbit(const spec::OrbitCamera& orbit, const scene::Box& bounds);
-// Returns the orbit that stands at the same place and looks at the bounds' centre: the same picture if the
-// pose looks there.
+// Returns the orbit with the same eye that looks at the bounds' centre. It gives the same picture if the pose
+// looks there, too.
 spec::OrbitCamera toOrbit(const CameraPose& pose, const scene::Box& bounds);
 bool isOrbit(const CameraPose& pose, const scene::Box& bounds);
 std::string orbitWord(const spec::OrbitCamera& orbit);  // "orbit:30,15,2.5,40"
-// Takes a camera of a file: its place and direction (its roll is lost), looking at the depth of the bounds'
+// Converts a camera node of a file. The roll is lost, and the target is put at the depth of the bounds'
 // centre.
 CameraPose fromNode(const glm::mat4& world_from_node, const scene::CameraComponent& camera,
                     const scene::Box& bounds);
-// Returns the matrix of a node that looks as the pose does: "camera from view".
+// Returns the world matrix of a camera node with this pose.
 glm::mat4 nodeMatrix(const CameraPose& pose);
 
-// Writes "pose:X,Y,Z,AZ,EL,DISTANCE,FOV[,ortho]", for WorldState::view, and reads it back.
+// Convert a pose to "pose:X,Y,Z,AZ,EL,DISTANCE,FOV[,ortho]", for WorldState::view, and back.
 std::string poseWord(const CameraPose& pose);
 Result<CameraPose> parsePose(std::string_view word);
 

@@ -15,7 +15,8 @@
 namespace lambent::editor {
 namespace {
 
-constexpr double kFarthest = 100.0;  // distances to the eye that one drag may go, near vanishing points
+// A drag is limited to this many heights of the picture, measured at the pivot, near vanishing points.
+constexpr double kFarthest = 100.0;
 constexpr double kLeastFactor = 1e-3;
 
 int axisIndex(Handle handle) {
@@ -27,14 +28,14 @@ bool isAxis(Handle handle) {
 bool isPlane(Handle handle) {
   return handle == Handle::YZ || handle == Handle::ZX || handle == Handle::XY;
 }
-// The axis that a plane's handle stands across: YZ has X.
+// Returns the axis that is perpendicular to the plane of a handle: X for YZ.
 int planeAxis(Handle handle) {
   return static_cast<int>(handle) - static_cast<int>(Handle::YZ);
 }
 double snapped(double value, double step) {
   return step > 0.0 ? std::round(value / step) * step : value;
 }
-// Orthonormal, e1 x e2 = axis.
+// Returns e1 and e2, orthonormal, with e1 x e2 = axis.
 std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3& axis) {
   const glm::dvec3 other = std::abs(axis.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
   const glm::dvec3 e1 = glm::normalize(glm::cross(other, axis));
@@ -62,7 +63,7 @@ void Gizmo::setView(const spec::View& view, const Viewport& viewport) {
   projection_ = Projection(view, viewport);
 }
 
-// ---- where the handles stand
+// ---- Where the handles are.
 
 glm::dvec3 Gizmo::pivot() const {
   if (dragging()) return start_.pivot + moved_;
@@ -96,7 +97,8 @@ std::optional<glm::dvec2> Gizmo::screenDirection(const glm::dvec3& direction) co
 }
 
 bool Gizmo::shown(Handle handle) const {
-  constexpr double kLeast = 0.15;  // of its size: an axis from its end, a plane edge on
+  // Shorter axes and narrower planes, as a fraction of their size, are hidden.
+  constexpr double kLeast = 0.15;
   if (handle == Handle::None || targets_.empty() || !(sizeMetres() > 0.0)) return false;
   if (dragging()) return handle == active_;
   if (isPlane(handle)) {
@@ -119,7 +121,7 @@ std::vector<Gizmo::Shape> Gizmo::ring(Handle handle) const {
   const glm::dvec3 center = pivot(), axis = turnAxis(handle), to_eye = projection_.toEye(center);
   const auto [e1, e2] = across(axis);
   const double radius = sizeMetres() * (handle == Handle::Screen ? 1.25 : 1.0);
-  // The half that faces the viewer, or all of it where it lies in the picture.
+  // Only the half that faces the viewer is drawn, or the whole ring if it lies in the picture's plane.
   const bool whole = std::abs(glm::dot(axis, to_eye)) > 0.98 || dragging();
   std::vector<Shape> shapes(1);
   for (int i = 0; i <= kParts; ++i) {
@@ -174,10 +176,10 @@ double Gizmo::distance(Handle handle, const glm::dvec2& pixel) const {
   return nearest;
 }
 
-// ---- what the pointer is over
+// ---- Which handle is under the pointer.
 
 Handle Gizmo::hit(glm::vec2 pixel) const {
-  // What is small comes first where several are as near.
+  // At equal distance the smaller handle wins, so it comes first.
   constexpr Handle kOrder[] = {Handle::Screen, Handle::X,  Handle::Y, Handle::Z,
                                Handle::XY,     Handle::YZ, Handle::ZX};
   Handle best = Handle::None;
@@ -219,7 +221,7 @@ std::optional<glm::vec2> Gizmo::handleScreenPoint(Handle handle) const {
   return best;
 }
 
-// ---- dragging
+// ---- Dragging.
 
 bool Gizmo::press(glm::vec2 pixel) {
   return press(hit(pixel), pixel);
@@ -271,7 +273,7 @@ void Gizmo::dragMove(const glm::dvec2& pixel, bool free) {
       isPlane(active_) ? glm::cross(start_.axes[(n + 1) % 3], start_.axes[(n + 2) % 3]) : projection_.back();
   const Ray ray = projection_.ray(pixel);
   const auto t = Projection::hitPlane(ray, start_.point, normal);
-  if (!t) return;  // beyond the plane's horizon: where it was last
+  if (!t) return;  // beyond the plane's horizon: keep the last position
   const glm::dvec3 delta = ray.origin + *t * ray.direction - start_.point;
   if (glm::length(delta) > limit) return;
   glm::dvec3 steps = glm::inverse(start_.axes) * delta;
@@ -286,7 +288,7 @@ std::optional<double> Gizmo::angleAt(const glm::dvec2& pixel) const {
     return std::atan2(center->y - pixel.y, pixel.x - center->x);
   }
   if (start_.edge_on) {
-    // What stands before the pivot moves along axis x line of sight.
+    // The ring's near side moves along axis x line of sight.
     const auto tangent = screenDirection(glm::cross(start_.turn_axis, projection_.toEye(start_.pivot)));
     if (!tangent) return std::nullopt;
     return glm::dot(*tangent, pixel - start_.pixel) / options.size_px;
@@ -302,7 +304,7 @@ std::optional<double> Gizmo::angleAt(const glm::dvec2& pixel) const {
 void Gizmo::dragTurn(const glm::dvec2& pixel, bool free) {
   if (const auto angle = angleAt(pixel)) {
     const double step = *angle - last_angle_;
-    // Turns add up beyond a full one.
+    // Steps are added up, so that a drag can turn by more than a full circle.
     turn_rad_ += start_.edge_on ? step : std::remainder(step, 2.0 * std::numbers::pi);
     last_angle_ = *angle;
   }
@@ -319,7 +321,7 @@ void Gizmo::dragScale(const glm::dvec2& pixel, bool free) {
     factor = *t / start_.along;
   } else {
     const glm::dvec2 way = pixel - start_.pixel;
-    factor = std::exp2((way.x - way.y) / options.size_px);  // right and up: larger
+    factor = std::exp2((way.x - way.y) / options.size_px);  // to the right and up is larger
   }
   const double step = free ? 0.0 : options.snap_scale;
   factor = std::clamp(snapped(factor, step), std::max(step, kLeastFactor), 1.0 / kLeastFactor);
@@ -349,7 +351,7 @@ std::vector<scene::Transform> Gizmo::drag(glm::vec2 pixel, bool free) {
             turned_rad_));
         break;
       case GizmoMode::Scale:
-        // Evenly is the same in all axes, and needs no shear.
+        // Uniform scaling is the same along all axes and needs no shear.
         result.push_back(options.space == GizmoSpace::Local || active_ == Handle::Screen
                              ? scaledLocally(target, about, axes_ws, factors_)
                              : scaledInWorld(target, about, factors_));
@@ -388,13 +390,13 @@ std::string Gizmo::readout() const {
   return {};
 }
 
-// ---- painting
+// ---- Painting.
 
 Painting Gizmo::paint() const {
   constexpr std::uint32_t kColors[] = {rgba(230, 70, 70), rgba(100, 190, 70), rgba(70, 120, 235)};
   constexpr std::uint32_t kLit = rgba(255, 215, 60), kNeutral = rgba(220, 220, 220);
   Painting painting;
-  // Planes first: axes lie over them.
+  // Planes are painted first, below the axes.
   constexpr Handle kOrder[] = {Handle::XY, Handle::YZ, Handle::ZX,    Handle::X,
                                Handle::Y,  Handle::Z,  Handle::Screen};
   for (const Handle handle : kOrder) {

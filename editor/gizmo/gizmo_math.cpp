@@ -1,4 +1,4 @@
-// What drags do to one target.
+// Computes what a drag does to one target.
 #include <cmath>
 
 #include <glm/ext/matrix_transform.hpp>
@@ -11,7 +11,7 @@
 namespace lambent::editor {
 namespace {
 
-// Whether the parent turns, mirrors and scales evenly, so that a turn of the world is a turn in it.
+// Returns whether the parent only rotates, mirrors and scales uniformly, so that a rotation stays a rotation.
 bool isSimilarity(const glm::dmat3& linear) {
   const glm::dmat3 square = glm::transpose(linear) * linear;
   const double size = (square[0][0] + square[1][1] + square[2][2]) / 3.0;
@@ -44,14 +44,14 @@ glm::dmat3 axesOf(const GizmoTarget& target) {
     if (!(length > 0.0)) return glm::dmat3(1.0);
     axes[i] /= length;
   }
-  // Nearly flat by its shear: its axes say nothing.
+  // A node that is nearly flat by its shear has no usable axes.
   return std::abs(glm::determinant(axes)) > 1e-3 ? axes : glm::dmat3(1.0);
 }
 
 scene::Transform movedBy(const GizmoTarget& target, const glm::dvec3& delta_ws) {
   scene::Transform moved = target.local;
   const glm::dmat3 linear{glm::mat3(target.world_from_parent)};
-  if (!invertible(linear)) return moved;  // a flat parent: there is no way to follow
+  if (!invertible(linear)) return moved;  // a flat parent has no inverse
   moved.translation = glm::vec3(glm::dvec3(target.local.translation) + glm::inverse(linear) * delta_ws);
   return moved;
 }
@@ -65,7 +65,7 @@ scene::Transform turnedBy(const GizmoTarget& target, const glm::dvec3& pivot_ws,
   scene::Transform turned = movedBy(target, pivot_ws + turn * (origin - pivot_ws) - origin);
   const glm::dmat3 parent_turn = glm::inverse(linear) * turn * linear;
   if (isSimilarity(linear)) {
-    // A rotation again; scale and shear are not touched.
+    // The result is a rotation again; scale and shear stay.
     turned.rotation = glm::quat(
         glm::normalize(glm::quat_cast(parent_turn) * glm::normalize(glm::dquat(target.local.rotation))));
     return turned;
@@ -85,7 +85,7 @@ scene::Transform scaledLocally(const GizmoTarget& target, const glm::dvec3& pivo
   const glm::dvec3 place = pivot_ws + axes * (factors * (glm::inverse(axes) * (origin - pivot_ws)));
   scene::Transform scaled = movedBy(target, place - origin);
   scaled.scale = glm::vec3(glm::dvec3(target.local.scale) * factors);
-  // Columns are scaled, so that shears of one by another keep their look.
+  // The columns are scaled, so the shear terms change by the ratio of two factors.
   const glm::dvec3 f = factors;
   if (f.x != 0.0 && f.y != 0.0) {
     scaled.shear.x = static_cast<float>(target.local.shear.x * f.y / f.x);

@@ -16,10 +16,10 @@ namespace {
 
 using Kind = scene::LocalLightComponent::Kind;
 constexpr double kHalfPi = 0.5 * std::numbers::pi;
-constexpr double kPixelsPerStop = 40.0;  // of strength
-constexpr float kFaintest = 0.01f;       // where a light that is off begins
+constexpr double kPixelsPerStop = 40.0;  // of Strength; a stop is a factor of two
+constexpr float kFaintest = 0.01f;       // strength from which a light that is off is dragged up
 
-// Into the field's range.
+// Clamps the value to the field's range.
 float fitted(std::string_view field, double value) {
   const auto info = scene::findField("Light", field);
   const auto range = info ? (*info)->range : std::nullopt;
@@ -44,7 +44,7 @@ bool hasHandle(Kind kind, LightHandle handle) {
   return false;
 }
 
-// Unit, across `axis`, in the picture as far as may be.
+// Returns a unit vector perpendicular to `axis` that lies as much in the picture's plane as possible.
 glm::dvec3 acrossInPicture(const glm::dvec3& axis, const Projection& projection) {
   for (const glm::dvec3& candidate : {projection.right(), projection.up()}) {
     const glm::dvec3 side = candidate - glm::dot(candidate, axis) * axis;
@@ -78,7 +78,7 @@ double LightGizmo::coneLength() const {
   return pixels > 0.0 ? 1.4 * size_px / pixels : 0.0;
 }
 
-// So that forward and side span the plane that faces the viewer best.
+// The vector is chosen so that it and forward_ span the plane that faces the viewer best.
 glm::dvec3 LightGizmo::coneSide() const {
   const glm::dvec3 side = glm::cross(forward_, projection_.toEye(center_));
   const double length = glm::length(side);
@@ -95,13 +95,13 @@ std::optional<glm::dvec3> LightGizmo::handlePoint(LightHandle handle) const {
           light_.kind == Kind::Disc ? acrossInPicture(forward_, projection_) : projection_.right();
       return center_ + std::max(double{light_.radius_m}, 0.25 * size) * side;
     }
-    case LightHandle::Range:  // without one, ready to be given one
+    case LightHandle::Range:  // a light without a range has its handle at a default place
       return center_ - (light_.range_m > 0.0f ? double{light_.range_m} : 1.5 * size) * projection_.right();
     case LightHandle::InnerCone:
     case LightHandle::OuterCone: {
       const bool inner = handle == LightHandle::InnerCone;
       const double angle = inner ? light_.inner_cone_rad : light_.outer_cone_rad;
-      // On both sides, so that they never lie on each other.
+      // The handles are on different sides, so that they never coincide.
       const glm::dvec3 side = inner ? -coneSide() : coneSide();
       return center_ + coneLength() * (std::cos(angle) * forward_ + std::sin(angle) * side);
     }
@@ -135,7 +135,7 @@ bool LightGizmo::press(glm::vec2 pixel) {
   return press(hit(pixel), pixel);
 }
 
-// What the pointer's place stands for: metres from the centre, or radians from the axis.
+// Returns the value at the pointer: metres from the centre, or radians from the axis.
 std::optional<double> LightGizmo::valueAt(LightHandle handle, const glm::dvec2& pixel) const {
   const Ray ray = projection_.ray(pixel);
   const auto onPlane = [&](const glm::dvec3& point, const glm::dvec3& normal) -> std::optional<glm::dvec3> {
@@ -155,10 +155,11 @@ std::optional<double> LightGizmo::valueAt(LightHandle handle, const glm::dvec2& 
   if (std::abs(glm::dot(normal, projection_.toEye(center_))) > 0.2) {
     const auto offset = onPlane(center_, normal);
     if (!offset) return std::nullopt;
-    // Beyond the axis the cone is closed, not open on the other side.
+    // Across the axis the angle is 0, not an angle on the other side.
     return std::atan2(std::max(glm::dot(*offset, side), 0.0), glm::dot(*offset, forward_));
   }
-  // Seen along its axis: by the distance from it, across the plane in which the cone ends.
+  // The cone is seen along its axis, so the distance from the axis counts, in the plane at which the cone
+  // ends.
   const double angle = inner ? start_.inner_cone_rad : start_.outer_cone_rad;
   const double depth = coneLength() * std::max(std::cos(angle), 0.05);
   const auto offset = onPlane(center_ + depth * forward_, forward_);
@@ -188,7 +189,7 @@ scene::LocalLightComponent LightGizmo::drag(glm::vec2 pixel) {
   }
   const auto value = valueAt(active_, at);
   if (!value) return light_;
-  const double by = *value - start_value_;  // from where it was taken: no jump at the press
+  const double by = *value - start_value_;  // a press alone changes nothing
   switch (active_) {
     case LightHandle::Radius:
       light_.radius_m = fitted("radius", start_.radius_m + by);
@@ -228,7 +229,7 @@ Painting LightGizmo::paint() const {
       if (pixel)
         painting.back().points.emplace_back(*pixel);
       else
-        painting.push_back({{}, color, 1.5f, false, false});  // behind the eye: goes on beyond
+        painting.push_back({{}, color, 1.5f, false, false});  // points behind the eye interrupt the line
     }
   };
   if (!(projection_.pixelsPerMetre(center_) > 0.0)) return painting;

@@ -1,7 +1,6 @@
-// Changes the radius, range, cones and strength of one light by handles that are dragged in the picture. The
-// light, where its node stands (its scale changes nothing), a view and pixels come in; the light as it is to
-// be now goes out, inside the ranges of its fields. Gizmo moves and turns lights, SunGizmo drags suns over
-// the sky.
+// Changes the radius, range, cones and strength of one light by handles in the picture. The light, its node's
+// matrix (whose scale is ignored), a view and pixels come in; the changed light goes out, clamped to the
+// ranges of its fields. Gizmo moves and turns lights, SunGizmo drags suns.
 #pragma once
 
 #include <array>
@@ -22,14 +21,15 @@ namespace lambent::editor {
 enum class LightHandle : std::uint8_t { None, Radius, Range, InnerCone, OuterCone, Strength };
 inline constexpr std::array kLightHandles = {LightHandle::Radius, LightHandle::Range, LightHandle::InnerCone,
                                              LightHandle::OuterCone, LightHandle::Strength};
-std::string_view lightHandleWord(LightHandle handle);  // the field that it sets: "radius", "inner_cone"
+// Returns the field that the handle sets: "radius", "inner_cone".
+std::string_view lightHandleWord(LightHandle handle);
 
 class LightGizmo {
  public:
   float hit_px = 8.0f;
-  float size_px = 70.0f;  // of cones and stalks that have no size in metres
+  float size_px = 70.0f;  // length of cones and stalks that have no size in metres
 
-  // Call both every frame. The light is not taken over while dragging.
+  // Call both every frame. During a drag a new light is ignored.
   void setLight(const scene::LocalLightComponent& light, const glm::mat4& world_from_node);
   void setView(const spec::View& view, const Viewport& viewport);
 
@@ -43,7 +43,7 @@ class LightGizmo {
   void release() { active_ = LightHandle::None; }
   scene::LocalLightComponent cancel();
 
-  // Returns where the handle is taken, or none if this kind of light has none, or it is not seen.
+  // Returns the pixel of the handle, or none if this kind of light does not have it or it is not visible.
   std::optional<glm::vec2> handleScreenPoint(LightHandle handle) const;
   Painting paint() const;
 
@@ -52,14 +52,14 @@ class LightGizmo {
   std::optional<double> valueAt(LightHandle handle, const glm::dvec2& pixel) const;
   std::vector<glm::dvec3> circle(const glm::dvec3& center, const glm::dvec3& normal, double radius) const;
   double coneLength() const;
-  glm::dvec3 coneSide() const;  // unit, across the cone, the way its handles stand
+  glm::dvec3 coneSide() const;  // unit vector across the cone, towards its handles
 
   Projection projection_;
   scene::LocalLightComponent light_, start_;
   glm::dvec3 center_{0.0}, forward_{0.0, 0.0, -1.0};
   LightHandle hovered_ = LightHandle::None, active_ = LightHandle::None;
   glm::dvec2 start_pixel_{0.0};
-  double start_value_ = 0.0;  // what the pointer's place stood for when it was taken
+  double start_value_ = 0.0;  // the value under the pointer when the drag began
 };
 
 }  // namespace lambent::editor

@@ -1,5 +1,5 @@
-// Holds what gizmos want painted: lines and filled polygons in pixels, back to front, for ImDrawList or any
-// other canvas.
+// Describes what gizmos paint: lines and filled polygons in pixels, back to front, for ImDrawList or another
+// canvas.
 #pragma once
 
 #include <cstdint>

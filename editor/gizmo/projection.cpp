@@ -41,7 +41,7 @@ Ray Projection::ray(const glm::dvec2& pixel) const {
   const glm::dvec4 far_h = world_from_clip_ * glm::dvec4(x, y, 1.0, 1.0);
   const glm::dvec3 near_ws = glm::dvec3(near_h) / near_h.w, far_ws = glm::dvec3(far_h) / far_h.w;
   if (perspective_) return {eye_, glm::normalize(far_ws - eye_)};
-  // From the eye's plane: what stands before the near plane is in front, too.
+  // The ray starts in the eye's plane, because points before the near plane are in front of the eye, too.
   const glm::dvec3 direction = -back_;
   return {near_ws + direction * glm::dot(eye_ - near_ws, direction), direction};
 }
@@ -56,7 +56,7 @@ glm::dvec3 Projection::toEye(const glm::dvec3& point_ws) const {
 double Projection::pixelsPerMetre(const glm::dvec3& point_ws) const {
   const glm::dvec3 here = pixelHomogeneous(glm::dvec4(point_ws, 1.0));
   if (!(here.z > 1e-9)) return 0.0;
-  // Along the camera's up: the same depth, so the same w.
+  // A step along the camera's up keeps the depth and so w.
   const glm::dvec3 step = pixelHomogeneous(glm::dvec4(up_, 0.0));
   return std::abs(step.y) / here.z;
 }
@@ -70,7 +70,7 @@ std::optional<double> Projection::alongLine(const glm::dvec3& p, const glm::dvec
   const double rest = coordinate * at.z - glm::dot(u, glm::dvec2(at));
   if (std::abs(slope) < 1e-9 * (std::abs(rest) + at.z)) return std::nullopt;
   const double t = rest / slope;
-  // At the vanishing point and beyond it the pixel means no place on the line.
+  // A pixel at or beyond the vanishing point corresponds to no point of the line.
   if (!(at.z + t * along.z > 1e-4 * at.z)) return std::nullopt;
   return t;
 }

@@ -1,8 +1,6 @@
-// Maps between the world and the pixels of one view: tells where a point is seen, and which ray a pixel looks
-// along.
-// Pixels count from the top left corner of the window that the viewport lies in, y down, as windows and Dear
-// ImGui have them. It takes perspective and orthographic views alike, and computes in double precision:
-// handles are dragged by single pixels far from the origin, too.
+// Maps world points to pixels of one view, and pixels to rays. Pixels count from the top left corner of the
+// window, y down, as in Dear ImGui. Views can be perspective or orthographic. It computes in double
+// precision, because handles are dragged by single pixels even far from the origin.
 #pragma once
 
 #include <optional>
@@ -16,7 +14,7 @@
 namespace lambent::editor {
 
 struct Viewport {
-  float x = 0.0f, y = 0.0f;  // its top left corner
+  float x = 0.0f, y = 0.0f;  // the top left corner
   float width = 1.0f, height = 1.0f;
 };
 
@@ -32,7 +30,7 @@ class Projection {
 
   const Viewport& viewport() const { return viewport_; }
   bool perspective() const { return perspective_; }
-  // Returns none behind the eye. Points beyond the picture's edges are given.
+  // Returns the point's pixel, which may lie outside the viewport, or none if the point is behind the eye.
   std::optional<glm::dvec2> toScreen(const glm::dvec3& point_ws) const;
   Ray ray(const glm::dvec2& pixel) const;
   // Returns the unit direction from the point to the eye.
@@ -41,20 +39,19 @@ class Projection {
   glm::dvec3 right() const { return right_; }
   glm::dvec3 up() const { return up_; }
   glm::dvec3 back() const { return back_; }
-  // Returns how many pixels a metre across the view takes at the point's depth; 0 behind the eye.
+  // Returns how many pixels a metre perpendicular to the view covers at the point's depth; 0 behind the eye.
   double pixelsPerMetre(const glm::dvec3& point_ws) const;
 
-  // Returns the t at which p + t d is seen at `coordinate` along the screen direction u (both in pixels):
-  // where a line is dragged to. Returns none where the line is seen from its end, or the place lies behind
-  // the eye.
+  // Returns the t for which p + t d appears at `coordinate` (in pixels) along the screen direction u. Use it
+  // to drag along a line. Returns none if the line is seen end-on, or the result lies behind the eye.
   std::optional<double> alongLine(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec2& u,
                                   double coordinate) const;
-  // Returns the t at which the ray meets the plane, or none where they run along each other or it lies
-  // behind.
+  // Returns the t at which the ray hits the plane, or none if they are parallel or the hit lies behind the
+  // origin.
   static std::optional<double> hitPlane(const Ray& ray, const glm::dvec3& point, const glm::dvec3& normal);
 
  private:
-  // In pixels times w.
+  // Returns the pixel in homogeneous coordinates, multiplied by w.
   glm::dvec3 pixelHomogeneous(const glm::dvec4& point) const;
 
   Viewport viewport_;

@@ -34,7 +34,7 @@ double distanceToPolygon(const std::vector<glm::dvec2>& points, const glm::dvec2
   for (std::size_t i = 0, last = points.size() - 1; i < points.size(); last = i++) {
     const glm::dvec2 a = points[i], b = points[last];
     nearest = std::min(nearest, distanceToSegment(a, b, pixel));
-    // Edges that a line to the right crosses: an odd number from inside.
+    // A pixel is inside if a line to its right crosses an odd number of edges.
     if ((a.y > pixel.y) != (b.y > pixel.y) && pixel.x < a.x + (b.x - a.x) * (pixel.y - a.y) / (b.y - a.y))
       inside = !inside;
   }
@@ -62,7 +62,7 @@ Stroke tip(const glm::dvec2& from, const glm::dvec2& to, bool arrow, std::uint32
   const glm::dvec2 way = to - from;
   const double length = glm::length(way);
   const glm::dvec2 along = length > 0.0 ? way / length : glm::dvec2(1.0, 0.0), side(-along.y, along.x);
-  // Foreshortened axes have smaller tips.
+  // Foreshortened axes get smaller tips.
   const double size = std::min(8.0, 0.3 * length);
   Stroke stroke;
   stroke.color = color;

@@ -1,5 +1,4 @@
-// Measures and makes lines and polygons in pixels: how far away they are, places on them, tips of axes. Only
-// this room uses it.
+// Measures and draws lines and polygons in pixels. Only this room uses it.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +11,11 @@
 namespace lambent::editor {
 
 double distanceToLine(const std::vector<glm::dvec2>& points, const glm::dvec2& pixel);
-// Returns 0 inside.
+// Returns the distance in pixels, 0 inside the polygon.
 double distanceToPolygon(const std::vector<glm::dvec2>& points, const glm::dvec2& pixel);
-// Returns some dozen places along the line, or inside the polygon.
+// Returns some dozen points on the line, or inside the polygon.
 std::vector<glm::dvec2> samplesOf(const std::vector<glm::dvec2>& points, bool filled);
-// Draws an arrow's head, or a box, at the end of an axis.
+// Draws the end of an axis: an arrow head, or a box.
 Stroke tip(const glm::dvec2& from, const glm::dvec2& to, bool arrow, std::uint32_t color);
 // Draws a small filled disc.
 Stroke dot(const glm::dvec2& center, double radius, std::uint32_t color);

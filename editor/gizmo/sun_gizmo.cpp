@@ -16,11 +16,11 @@
 namespace lambent::editor {
 namespace {
 
-constexpr float kBorder = 14.0f;  // pixels between a handle and the picture's edge
+constexpr float kBorder = 14.0f;  // distance from a handle at the border to the picture's edge, in pixels
 
-// From the centre of the box towards `way`, to its rim.
+// Returns the point where the ray from the box's centre along `way` leaves the box.
 glm::vec2 onRim(const glm::vec2& center, const glm::vec2& half, glm::vec2 way) {
-  if (glm::length(way) < 1e-4f) way = {0.0f, -1.0f};  // right behind the eye: up
+  if (glm::length(way) < 1e-4f) way = {0.0f, -1.0f};  // the sun is right behind the eye
   float reach = std::numeric_limits<float>::max();
   for (int axis = 0; axis < 2; ++axis)
     if (way[axis] != 0.0f) reach = std::min(reach, half[axis] / std::abs(way[axis]));
@@ -111,7 +111,7 @@ Painting SunGizmo::paint() const {
       }
       painting.push_back(dot(center, kDisc, color));
     } else {
-      // Hollow: it stands further on, beyond the edge.
+      // A hollow ring marks a sun that is out of view.
       painting.push_back(ring(center, kDisc, color));
     }
   }
@@ -134,7 +134,7 @@ Result<std::string> withSunDirection(std::string_view word, const SkyDirection& 
   if (!light) return failAgain(light.error());
   if (!std::holds_alternative<spec::SunLight>(*light))
     return fail(fmt::format("light \"{}\"", word), "is no sun", "write sun:AZ,EL,ANGLE,R[,G,B]");
-  // All but the first two numbers stays as it is written.
+  // Everything but the first two numbers stays as it was written.
   const std::size_t second = word.find(','), rest = word.find(',', second + 1);
   const auto rounded = [](float degrees) { return std::round(degrees * 1000.0f) / 1000.0f; };
   return fmt::format("sun:{},{}{}", rounded(direction.azimuth_deg), rounded(direction.elevation_deg),

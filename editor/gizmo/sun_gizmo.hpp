@@ -1,7 +1,7 @@
-// Drags suns over the sky: each has a handle where it is seen, or at the picture's border where it stands
-// beyond it or behind the eye. The directions in which suns stand, a view and pixels come in; the direction
-// in which the one that is dragged is to stand now goes out. Who holds the sun (a light word, a directional
-// light) follows. Orthographic views see one direction only: there are no handles.
+// Drags suns over the sky. A sun's handle is where the sun is seen, or at the picture's border if the sun is
+// out of view. The directions towards the suns, a view and pixels come in; the new direction of the dragged
+// sun goes out, and the caller sets it (in a light word or a directional light). Orthographic views show one
+// direction only and have no handles.
 #pragma once
 
 #include <cstddef>
@@ -23,8 +23,8 @@ class SunGizmo {
  public:
   float hit_px = 10.0f;
 
-  // Call both every frame, with unit directions of the world towards each sun. The one that is dragged may
-  // have moved by then.
+  // Call both every frame, with unit directions towards each sun in world space. The dragged sun may have
+  // moved.
   void setSuns(std::vector<glm::vec3> towards);
   void setView(const spec::View& view, const Viewport& viewport);
 
@@ -33,14 +33,14 @@ class SunGizmo {
   bool press(glm::vec2 pixel);
   bool dragging() const { return active_.has_value(); }
   std::optional<std::size_t> active() const { return active_; }
-  // Returns the direction towards the sun that is dragged, as it is to stand. One that was taken at the
-  // border comes to the pointer; another keeps its distance from it, so that nothing jumps at the press.
+  // Returns the new direction towards the dragged sun. A sun that was grabbed at the border jumps to the
+  // pointer; any other keeps its offset from the pointer.
   glm::vec3 drag(glm::vec2 pixel) const;
   void release() { active_.reset(); }
 
   struct Place {
     glm::vec2 pixel{0.0f};
-    bool seen = false;  // else it is at the border, on the side on which the sun stands
+    bool seen = false;  // false: at the border, on the side where the sun is
   };
   std::optional<Place> place(std::size_t sun) const;
   std::size_t count() const { return towards_.size(); }
@@ -50,19 +50,19 @@ class SunGizmo {
   Projection projection_;
   std::vector<glm::vec3> towards_;
   std::optional<std::size_t> hovered_, active_;
-  glm::vec2 offset_{0.0f};  // from the pointer to the sun when it was taken
+  glm::vec2 offset_{0.0f};  // from the pointer to the sun at press()
 };
 
-// ---- the words of suns
+// ---- Words of suns.
 
 struct SkyDirection {
   float azimuth_deg = 0.0f, elevation_deg = 0.0f;
 };
-// Converts a direction of the world to that of sun: words, and back. rotation_deg: the environment's; the sun
-// of a turned environment has the azimuth of its word plus that.
+// Convert a direction in world space to the angles of a sun: word, and back. rotation_deg: the environment's
+// rotation, which is added to the azimuth of the word.
 SkyDirection skyDirection(const glm::vec3& towards, float rotation_deg);
 glm::vec3 towardsSun(const SkyDirection& direction, float rotation_deg);
-// Returns "sun:AZ,EL,..." with other angles, all else as it was written. Error: the word is no sun.
+// Returns the sun: word with other angles and everything else unchanged. Error: the word is no sun.
 Result<std::string> withSunDirection(std::string_view word, const SkyDirection& direction);
 
 }  // namespace lambent::editor

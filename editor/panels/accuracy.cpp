@@ -22,7 +22,7 @@ std::string errorText(double error) {
   return error <= 0.0 ? "none" : fmt::format("{:.2g} %", 100.0 * error);
 }
 
-// Error over values, drawn small; time in the tooltip.
+// Plots error over value; the tooltip shows the times.
 void drawSweep(const frame::SettingRow& row, const std::vector<frame::SettingPoint>& points) {
   std::vector<float> errors;
   std::string table = fmt::format("{:>10}  {:>10}  {:>8}\n", row.name, "error", "ms");
@@ -36,7 +36,7 @@ void drawSweep(const frame::SettingRow& row, const std::vector<frame::SettingPoi
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", table.c_str());
 }
 
-// The setting itself beside its cost.
+// Draws the widget of the setting itself.
 void drawSetting(Session& session, Marks& marks, const frame::SettingRow& row) {
   frame::FrameSettings settings = session.stage.settings();
   const double value = row.get(settings);

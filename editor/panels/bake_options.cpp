@@ -1,4 +1,4 @@
-// The options of a scene's bake, a widget for each row of their table (baker/bake/option_rows.hpp).
+// Draws the options of a scene's bake, with a widget for each row of the table (baker/bake/option_rows.hpp).
 #include <array>
 #include <string>
 
@@ -14,7 +14,7 @@ namespace lambent::editor {
 
 namespace {
 
-// Shown where the pointer rests on the last widget.
+// Shows a tooltip for the last widget.
 void tellHelp(const baker::OptionRow& row) {
   if (!ImGui::IsItemHovered()) return;
   ImGui::BeginTooltip();
@@ -24,7 +24,7 @@ void tellHelp(const baker::OptionRow& row) {
   ImGui::EndTooltip();
 }
 
-// True once another word was chosen or typed.
+// Returns true when another word was chosen or typed.
 bool editWord(Marks& marks, const baker::OptionRow& row, const std::string& mark, std::string& word) {
   ImGui::SetNextItemWidth(160.0f);
   if (!row.only_words) {

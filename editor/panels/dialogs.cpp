@@ -83,7 +83,7 @@ std::string answerOf(const Dialog& dialog) {
 
 void drawDialogs(Session& session, Marks& marks) {
   if (!session.window.dialog) return;
-  // What is asked may ask again: the dialog at hand is a copy from here on.
+  // The answer may open another dialog, so the present one is copied first.
   Dialog& dialog = *session.window.dialog;
   const std::string title = dialog.title + "###dialog";
   if (!ImGui::IsPopupOpen(title.c_str())) ImGui::OpenPopup(title.c_str());

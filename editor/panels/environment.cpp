@@ -34,13 +34,13 @@ std::string constantWord(const glm::vec3& radiance) {
   return fmt::format("constant:{:.7g},{:.7g},{:.7g}", radiance.r, radiance.g, radiance.b);
 }
 
-// A drag of a widget is one step of the history.
+// Makes one step of the history from a drag of a widget.
 void asOneStep(Session& session, const char* name) {
   if (ImGui::IsItemActivated()) session.history.beginDrag(name);
   if (ImGui::IsItemDeactivated()) session.history.endDrag();
 }
 
-// Radiance as a colour and a strength: suns are far brighter than a colour picker goes.
+// Edits radiance as a colour and a strength, because suns are far brighter than a colour picker's range.
 bool editRadiance(Session& session, Marks& marks, const std::string& mark, glm::vec3& radiance) {
   float strength = std::max({radiance.r, radiance.g, radiance.b, 1e-6f});
   glm::vec3 color = radiance / strength;

@@ -30,7 +30,7 @@ void checked(Session& session, const Result<void>& done) {
   if (!done) session.log.error(done.error());
 }
 
-// An angle is shown in degrees whatever its unit.
+// Edits an angle in degrees, whatever unit the field has.
 constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
 
 Edited editNumber(const FieldInfo& field, float& value) {
@@ -53,7 +53,7 @@ Edited editNumber(const FieldInfo& field, float& value) {
   return edited;
 }
 
-// Turns are shown as degrees about x, y and z, in the order in which they are made: y, x, z.
+// Edits a rotation as Euler angles in degrees: the rotation about x is applied first, then y, then z.
 Edited editRotation(glm::quat& rotation) {
   glm::vec3 degrees = glm::degrees(glm::eulerAngles(rotation));
   Edited edited;
@@ -94,7 +94,7 @@ Edited editValue(const FieldInfo& field, Value& value) {
   return edited;
 }
 
-// What several entities are edited as: the component of the primary one, and the same field of the others.
+// Draws a field of the primary entity. An edit sets it for all the given entities.
 void drawField(Session& session, Marks& marks, const FieldInfo& field,
                std::span<const ecs::Entity> entities) {
   const ecs::Entity primary = entities.back();
@@ -114,7 +114,7 @@ void drawField(Session& session, Marks& marks, const FieldInfo& field,
   ImGui::TableNextColumn();
   const Edited edited = editValue(field, value);
   marks.put("inspector." + name);
-  // From the first pixel of a drag to its end is one step.
+  // A drag is one step, from its first pixel to its end.
   if (ImGui::IsItemActivated())
     session.history.beginDrag(fmt::format("{} of {}", field.name, session.document.nameOf(primary)));
   if (edited.changed) {
@@ -191,7 +191,7 @@ void drawAdd(Session& session, Marks& marks, std::span<const ecs::Entity> select
   ImGui::EndPopup();
 }
 
-// What the picture only approximates since the bundle was baked, with one button to bake it anew.
+// Lists what the picture only approximates since the bundle was baked, with a button to bake it again.
 void drawRebake(Session& session, Marks& marks) {
   const auto entry = sceneAtHand(session);
   if (!entry) return;

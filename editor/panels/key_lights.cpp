@@ -1,4 +1,4 @@
-// The key lights that were found in the light from outside: a table, and the fields of the one at hand.
+// Draws the key lights found in the environment: a table, and the fields of the chosen one.
 #include "editor/session/key_lights.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace lambent::editor {
 
 namespace {
 
-// A drag of a widget is one step of the history.
+// Makes one step of the history from a drag of a widget.
 void asOneStep(Session& session, const char* name) {
   if (ImGui::IsItemActivated()) session.history.beginDrag(name);
   if (ImGui::IsItemDeactivated()) session.history.endDrag();
@@ -83,7 +83,7 @@ void drawFields(Session& session, Marks& marks, std::size_t index, const KeyLigh
     ImGui::TextDisabled("Strength and colour are those of %s, above.", key.source().c_str());
     return;
   }
-  // A factor as a colour and a strength, as radiance is edited.
+  // The factor is edited as a colour and a strength, like radiance.
   float strength = std::max({key.factor.r, key.factor.g, key.factor.b});
   glm::vec3 tint = strength > 0.0f ? key.factor / strength : glm::vec3(1.0f);
   bool changed =

@@ -27,7 +27,7 @@ void paint(const Painting& painting, const Viewport& viewport) {
   canvas->PopClipRect();
 }
 
-// The Transform's fields of one entity.
+// Returns edits of one entity's Transform fields.
 void addEdits(ecs::Entity entity, const scene::Transform& to, std::vector<FieldEdit>& edits) {
   edits.push_back({entity, "Transform", "translation", to.translation});
   edits.push_back({entity, "Transform", "rotation", to.rotation});
@@ -145,7 +145,7 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
       session.history.cancel();
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
       if (sun_gizmo.dragging()) {
-        // A click alone does not fetch one from beyond the border.
+        // A click without a drag does not move a sun that is at the border.
         if (io.MouseDragMaxDistanceSqr[0] > 0.0f) moveSun(session, *handles.sun_taken, sun_gizmo.drag(pixel));
       } else if (light_gizmo.dragging()) {
         setLight(session, primary, light_gizmo.drag(pixel));

@@ -1,6 +1,5 @@
-// Follows what a hand does in the view beside moving the camera: it picks what is under the pointer, drags
-// the handles of what is selected and of lights, and turns suns on the sky. Every drag is one step of the
-// history.
+// Handles the pointer in the view, except for the camera: it picks entities, drags the handles of the
+// selection and of lights, and drags suns over the sky. Every drag is one step of the history.
 #pragma once
 
 #include <optional>
@@ -11,8 +10,8 @@
 
 namespace lambent::editor {
 
-// Call it right after the view's own widget. Returns the pixel of the view that was clicked to pick what is
-// there, from its top left corner; nothing: no click.
+// Call it right after the view's own widget. Returns the pixel at which the user clicked to pick something,
+// from the view's top left corner, or none if there was no such click.
 std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewport& viewport, bool hovered);
 
 }  // namespace lambent::editor

@@ -25,10 +25,10 @@ void drawItem(Session& session, Marks& marks, const Command& command) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", command.help);
 }
 
-// Shortcuts hold wherever no text is being typed.
+// Runs shortcuts, except while text is being typed.
 void runShortcuts(Session& session) {
   const ImGuiIO& io = ImGui::GetIO();
-  // W, A, S and D move the eye while the right button is held.
+  // W, A, S and D fly the camera while the right button is held.
   if (io.WantTextInput || ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
       ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId))
     return;

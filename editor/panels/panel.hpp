@@ -1,7 +1,6 @@
-// Draws what the window is made of: panels in three docks around the view, each a row of one list with its
-// name and the function that draws it. Panels show the session and change it through commands and the
-// document's history, never on their own. They need a Dear ImGui context, and but for the view neither window
-// nor OpenGL.
+// Draws the contents of the window: panels in three docks around the view. One list names each panel and its
+// draw function. Panels show the session and change it only through commands and the document's history. They
+// need a Dear ImGui context; only the view also needs a window and OpenGL.
 #pragma once
 
 #include <span>
@@ -24,21 +23,21 @@ struct Panel {
 
 std::span<const Panel> panelList();
 
-// Each in a file of its own.
+// Each is defined in a file of its own.
 void drawSceneTree(Session& session, Marks& marks);
 void drawInspector(Session& session, Marks& marks);
 void drawEnvironment(Session& session, Marks& marks);
-void drawKeyLights(Session& session, Marks& marks);  // a part of the environment's
+void drawKeyLights(Session& session, Marks& marks);  // part of drawEnvironment
 void drawSettings(Session& session, Marks& marks);
 void drawPlan(Session& session, Marks& marks);
 void drawBakes(Session& session, Marks& marks);
-void drawBakeOptions(Session& session, Marks& marks, std::size_t scene);  // a part of the bakes'
+void drawBakeOptions(Session& session, Marks& marks, std::size_t scene);  // part of drawBakes
 void drawCost(Session& session, Marks& marks);
 void drawAccuracy(Session& session, Marks& marks);
 void drawStreaming(Session& session, Marks& marks);
 void drawLog(Session& session, Marks& marks);
 
-// These stand in no dock: the menu bar, the view in the middle, and what comes up over all.
+// These are not in a dock: the menu bar, the view in the middle, and what is drawn above everything.
 void drawMenus(Session& session, Marks& marks);
 void drawViewport(Session& session, Renderer& renderer, Marks& marks);
 void drawToasts(Session& session, Marks& marks);

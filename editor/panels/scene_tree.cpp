@@ -9,7 +9,7 @@ namespace lambent::editor {
 
 namespace {
 
-// A letter stands for a picture; colours tell kinds apart at a glance.
+// A KindLook is the letter and colour that mark a kind of entity.
 struct KindLook {
   std::string_view kind;
   const char* sign;

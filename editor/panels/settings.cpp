@@ -45,7 +45,7 @@ void drawRow(Session& session, Marks& marks, const frame::SettingRow& row) {
         ImGui::SliderInt(label.c_str(), &whole, static_cast<int>(row.least), static_cast<int>(row.greatest),
                          frame::settingWord(row, settings).c_str(), ImGuiSliderFlags_AlwaysClamp);
     to = whole;
-  } else if (row.name != "exposure") {  // stands in the environment's panel
+  } else if (row.name != "exposure") {  // the environment's panel shows the exposure
     ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
     float real = static_cast<float>(value);
     changed = ImGui::SliderFloat(label.c_str(), &real, static_cast<float>(row.least),
@@ -66,7 +66,8 @@ void drawRow(Session& session, Marks& marks, const frame::SettingRow& row) {
   ImGui::PopID();
 }
 
-// How many key lights there are and how finely they shadow, by one word; what that costs and loses here.
+// Draws the choice of quality, which sets the number of key lights and their shadow resolution, and its
+// costs.
 void drawQuality(Session& session, Marks& marks) {
   const std::string now(frame::qualityOf(session.stage.settings()));
   ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
@@ -120,7 +121,7 @@ void drawQuality(Session& session, Marks& marks) {
   ImGui::TextDisabled("milliseconds at %u x %u%s", size.width, size.height, here ? "" : ", in another view");
 }
 
-// Where the slice through neighborhoods lies, while it is shown.
+// Draws the axis and position of the slice through neighborhoods.
 void drawSlice(Session& session, Marks& marks) {
   constexpr std::array kAxes = {"x", "y", "z"};
   frame::NeighborhoodSlice& slice = session.viewing.overlays.slice;

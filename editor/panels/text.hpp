@@ -1,4 +1,4 @@
-// Writes figures as people read them.
+// Formats numbers for people to read.
 #pragma once
 
 #include <string>

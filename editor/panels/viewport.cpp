@@ -19,7 +19,7 @@ ImTextureID handleOf(const gpu::Texture& texture) {
   return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.id()));
 }
 
-// What the pointer and the keys do to the eye.
+// Applies the pointer and the keys to the camera.
 void moveEye(Session& session, const Viewport& viewport, bool hovered) {
   const ImGuiIO& io = ImGui::GetIO();
   CameraInput input;
@@ -47,7 +47,7 @@ void moveEye(Session& session, const Viewport& viewport, bool hovered) {
 
 void drawPicture(const Session& session, const Renderer& renderer, const ImVec2& low, const ImVec2& high) {
   ImDrawList* canvas = ImGui::GetWindowDrawList();
-  // The frame's pictures begin at the bottom.
+  // Row 0 of the frame's pictures is the bottom.
   canvas->AddImage(handleOf(renderer.picture()), low, high, ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
   const ReferenceView& reference = session.reference;
   const gpu::Texture& beside = renderer.reference(reference.split);
@@ -58,7 +58,7 @@ void drawPicture(const Session& session, const Renderer& renderer, const ImVec2&
   canvas->AddLine(ImVec2(at, low.y), ImVec2(at, high.y), IM_COL32(255, 255, 255, 200), kBarWidth);
 }
 
-// The edge between both pictures can be dragged.
+// Draws the edge between both pictures, which can be dragged.
 bool dragSplit(Session& session, Marks& marks, const ImVec2& low, const ImVec2& high) {
   if (!session.reference.on()) return false;
   const float width = high.x - low.x, at = low.x + session.reference.split_at * width;
@@ -110,7 +110,7 @@ void drawLegends(Session& session, Marks& marks, const ImVec2& low, const ImVec2
   }
 }
 
-// Selects what is at a pixel of the picture; with Ctrl or Shift beside what is selected.
+// Selects what is at a pixel of the picture, or adds it to the selection with Ctrl or Shift.
 void pick(Session& session, Renderer& renderer, const glm::vec2& pixel) {
   const auto picked = renderer.pick(session, pixel.x, pixel.y);
   if (!picked) return session.log.error(picked.error());

@@ -48,7 +48,7 @@ frame::OverlayOptions overlaysOf(const Session& session) {
   return overlays;
 }
 
-// Rises with all that edits and picks change in the picture.
+// Returns a number that rises with every edit and selection that changes the picture.
 std::uint64_t editsVersion(const Session& session) {
   return session.history.version() + session.selection.version();
 }
@@ -66,7 +66,7 @@ Result<std::optional<frame::Picked>> Picture::pick(Session& session, float x, fl
   return frame_.pick(session.stage.world(), session.viewing.shown_view, x, y);
 }
 
-// What takes waiting for is read when the GPU has finished, so that it costs none.
+// Reads what is known only once the GPU has finished, so that nothing waits for it.
 void Picture::readFinished(Session& session) {
   PictureFacts& facts = session.picture;
   while (const auto time = clock_.take()) {
@@ -107,8 +107,8 @@ void Picture::update(Session& session, spec::Size size) {
   if (!view) return session.log.error(view.error());
   viewing.shown_view = *view;
   const bool resized = !(size == drawn_.size);
-  // Another size has another aspect, by a pixel at least. That is no movement: where whole pictures take
-  // long, the next would be drawn coarse for it, at another size again, and so on for ever.
+  // Another size changes the aspect, which does not count as movement: otherwise slow pictures would be drawn
+  // coarse, that is at another size, and so on for ever.
   const bool moved = view->view_from_world != drawn_.view.view_from_world ||
                      (!resized && view->clip_from_view != drawn_.view.clip_from_view) ||
                      drawn_.edits != editsVersion(session);

@@ -1,8 +1,7 @@
-// Draws the runtime's picture of the world as the editor looks at it, anew when anything that it shows has
-// changed, and only then. The session comes in; a texture goes out, and PictureFacts for commands and panels.
-// Nothing here waits for the GPU but pick(): times, exposure and negative pixels are read once a picture is
-// finished. Main thread, with a current OpenGL context. Errors: no OpenGL 4.5; what goes wrong later is
-// logged.
+// Renders the runtime's picture of the world from the editor's camera, whenever something that it shows has
+// changed. The session comes in; a texture goes out, and PictureFacts for commands and panels. Only pick()
+// waits for the GPU: times, exposure and negative pixels are read once a picture is finished. Main thread,
+// with a current OpenGL context. Errors: no OpenGL 4.5; later errors are logged.
 #pragma once
 
 #include <optional>
@@ -17,12 +16,12 @@ class Picture {
  public:
   static Result<Picture> create(const Session& session);
 
-  // Draws in this size if anything has changed; call it once a frame.
+  // Renders at this size if anything has changed. Call it once a frame.
   void update(Session& session, spec::Size size);
-  // Returns what is seen at a point of the last picture, in its pixels from the top left corner; nothing: the
+  // Returns what is visible at a pixel of the last picture, counted from the top left corner, or none for the
   // sky. Waits for the GPU.
   Result<std::optional<frame::Picked>> pick(Session& session, float x, float y);
-  // Row 0 is the bottom.
+  // Row 0 of the texture is the bottom.
   const gpu::Texture& texture() const { return frame_.picture(); }
 
  private:
@@ -32,14 +31,14 @@ class Picture {
 
   frame::Frame frame_;
   PictureClock clock_;
-  // What the last picture was of.
+  // Identifies what the last picture showed.
   struct Drawn {
     std::uint64_t edits = 0;  // sum of the versions of history and selection
     spec::View view;
     spec::Size size;
   };
   Drawn drawn_;
-  bool unread_ = false;  // exposure and negative pixels of the last picture
+  bool unread_ = false;  // exposure and negative pixels of the last picture are still to be read
 };
 
 }  // namespace lambent::editor

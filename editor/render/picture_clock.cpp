@@ -26,7 +26,7 @@ void PictureClock::end(bool whole) {
   const std::chrono::duration<double, std::milli> cpu = std::chrono::steady_clock::now() - begun_;
   Query last = timestamp();
   pictures_.push_back({std::move(first_), std::move(last), cpu.count(), whole});
-  glFlush();  // or a driver may keep the commands until something else is drawn
+  glFlush();  // otherwise a driver may hold the commands back until something else is drawn
 }
 
 std::optional<PictureClock::Time> PictureClock::take() {

@@ -1,6 +1,6 @@
-// Measures how long the GPU and the CPU take for pictures without waiting for either: timestamp queries
-// around each picture, which are read in a later frame, when they are there. Tells, too, whether a picture is
-// still being drawn. Milliseconds. Main thread, with a current OpenGL context.
+// Measures how long the GPU and the CPU take for pictures, without waiting for either: it puts timestamp
+// queries around each picture and reads them in a later frame, once they are available. It also tells whether
+// the GPU still works on a picture. Times are in milliseconds. Main thread, with a current OpenGL context.
 #pragma once
 
 #include <chrono>
@@ -15,14 +15,15 @@ namespace lambent::editor {
 class PictureClock {
  public:
   struct Time {
-    double milliseconds = 0.0;  // from the first command to the last, or the CPU's if that took longer
-    bool whole = true;          // as end() was told
+    // From the first command to the last on the GPU, or the CPU's time if that was longer.
+    double milliseconds = 0.0;
+    bool whole = true;  // the argument of end()
   };
 
-  // Encloses the commands of a picture. whole: at full resolution.
+  // Call these before and after the commands of a picture. whole: it has full resolution.
   void begin();
   void end(bool whole);
-  // Returns the time of the oldest picture that is finished and was not returned before.
+  // Returns the time of the oldest finished picture that was not returned before.
   std::optional<Time> take();
   bool inFlight() const { return !pictures_.empty(); }
 
@@ -38,7 +39,7 @@ class PictureClock {
   };
   Query timestamp();
 
-  std::deque<Picture> pictures_;  // the oldest first
+  std::deque<Picture> pictures_;  // oldest first
   std::vector<Query> free_;
   Query first_;
   std::chrono::steady_clock::time_point begun_;

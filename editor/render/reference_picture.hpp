@@ -1,7 +1,7 @@
-// Shows the reference on the GPU: its newest snapshot with the exposure of the runtime's picture, and a heat
-// map of how it differs from a linear picture that the runtime draws for the same view. Goes out: a texture
-// to show; figures go to the session's ReferenceView. Main thread, with a current OpenGL context; comparing
-// waits for the GPU, once for each snapshot. What goes wrong is logged.
+// Shows the path-traced reference on the GPU: its newest snapshot with the exposure of the runtime's picture,
+// or a heat map of its difference from a linear picture that the runtime renders for the same view. A texture
+// goes out; error figures go to the session's ReferenceView. Main thread, with a current OpenGL context. A
+// comparison waits for the GPU, once for each snapshot. Errors are logged.
 #pragma once
 
 #include <optional>
@@ -15,9 +15,9 @@ namespace lambent::editor {
 
 class ReferencePicture {
  public:
-  // Follows the session's reference; call it once a frame, after the runtime's picture was drawn.
+  // Follows the session's reference. Call it once a frame, after the runtime's picture was rendered.
   void update(Session& session);
-  // Returns what to show, row 0 at the top; no handle: nothing yet.
+  // Returns the texture to show, row 0 at the top. It has no handle while there is nothing to show.
   const gpu::Texture& texture(SplitView split) const { return split == SplitView::Heat ? heat_ : shown_; }
 
  private:

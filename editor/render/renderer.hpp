@@ -1,7 +1,6 @@
-// Does everything that the editor does with OpenGL beside its widgets: the runtime's picture, the
-// reference's, thumbnails, and the studies of what settings cost, one step a frame. Reads the session and
-// writes what came of it there. Main thread; it lives as long as the window's context is current. Errors: no
-// OpenGL 4.5.
+// Does all OpenGL work of the editor except its widgets: the runtime's picture, the reference's, thumbnails,
+// and the studies of what settings cost, one step a frame. It reads the session and writes its results there.
+// Main thread; it must not outlive the window's OpenGL context. Errors: no OpenGL 4.5.
 #pragma once
 
 #include "editor/render/picture.hpp"
@@ -14,15 +13,16 @@ class Renderer {
  public:
   static Result<Renderer> create(const Session& session);
 
-  // Draws the view in this size if anything moved, and all else that is due; call it once a frame.
+  // Renders the view at this size if anything changed, and does all other pending work. Call it once a frame.
   void update(Session& session, spec::Size size);
-  // Returns what is seen at a point of the last picture, as Picture::pick().
+  // Returns what is visible at a pixel of the last picture, as Picture::pick().
   Result<std::optional<frame::Picked>> pick(Session& session, float x, float y) {
     return picture_.pick(session, x, y);
   }
-  // The runtime's picture; row 0 is the bottom.
+  // Returns the runtime's picture; row 0 is the bottom.
   const gpu::Texture& picture() const { return picture_.texture(); }
-  // The reference or the heat map, as `split` says; row 0 is the top. No handle: nothing yet.
+  // Returns the reference or the heat map, as `split` says; row 0 is the top. It has no handle while there is
+  // none.
   const gpu::Texture& reference(SplitView split) const { return reference_.texture(split); }
 
  private:

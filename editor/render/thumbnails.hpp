@@ -1,5 +1,5 @@
-// Owns textures of the small pictures that the session reads on the CPU: thumbnails of environment maps. Main
-// thread, with a current OpenGL context.
+// Owns the textures of the environment maps' thumbnails, which the session reads on the CPU. Main thread,
+// with a current OpenGL context.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@ namespace lambent::editor {
 
 class Thumbnails {
  public:
-  // Brings thumbnails that are new onto the GPU, tells the shelf their textures, and drops those of files
-  // that are not on the shelf any more. Call it once a frame.
+  // Uploads new thumbnails, tells the shelf their textures, and deletes textures of files that are no longer
+  // on the shelf. Call it once a frame.
   void update(EnvironmentMapShelf& shelf);
 
  private:

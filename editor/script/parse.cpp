@@ -6,7 +6,7 @@ namespace lambent::editor {
 
 namespace {
 
-// The words of one line; an error where a quote is not closed.
+// Returns the words of one line, or an error if a quote is not closed.
 Result<std::vector<std::string>> wordsOf(const std::string& line, const std::string& place) {
   std::vector<std::string> words;
   std::string word;

@@ -19,8 +19,8 @@ namespace lambent::editor {
 
 namespace {
 
-constexpr int kGlideFrames = 6;                // of a drag: widgets take several moves as a hand's
-constexpr std::uint32_t kPatienceFrames = 20;  // for a mark that the line before brings up
+constexpr int kGlideFrames = 6;                // frames of a drag, because widgets expect several moves
+constexpr std::uint32_t kPatienceFrames = 20;  // frames to wait for a mark that the last line brings up
 constexpr double kMostWaitSeconds = 600.0;
 
 struct Waiting {
@@ -43,7 +43,7 @@ Result<nlohmann::json> screenshot(const std::filesystem::path& file, const spec:
   return nlohmann::json{{"file", file.string()}, {"width", image.width}, {"height", image.height}};
 }
 
-// expect POINTER VALUE, of the last answer; numbers agree to a part in 10^4.
+// Implements "expect POINTER VALUE", which checks the last answer. Numbers must agree to a part in 10^4.
 Result<void> expect(const ScriptLine& line, const nlohmann::json& last) {
   if (line.words.size() != 3)
     return fail("expect", "takes a place in the last answer and a value", "expect /selected/0 ball");
@@ -71,7 +71,7 @@ Script::Script(std::filesystem::path name, std::vector<ScriptLine> lines,
       since_(std::chrono::steady_clock::now()) {}
 
 Result<glm::vec2> Script::placeOf(const std::string& mark, const Ui& ui) const {
-  // A mark, with a place within it where one is asked for: viewport@0.25,0.5.
+  // A mark may be followed by a place within it: viewport@0.25,0.5.
   const std::size_t at = mark.rfind('@');
   const auto where = ui.marks().find(mark.substr(0, at));
   if (!where)
@@ -94,7 +94,8 @@ void Script::glide(glm::vec2 to, const ScriptedInput& held) {
   pointer_ = to;
 }
 
-// Held for two frames and let go for two: Dear ImGui takes a click in the one and answers in the next.
+// The input is held for two frames and released for two: Dear ImGui reads a click in one and reacts in the
+// next.
 void Script::tap(const ScriptedInput& pressed) {
   queue_.insert(queue_.end(), 2, pressed);
   ScriptedInput released;
@@ -124,7 +125,7 @@ Result<Script::Progress> Script::wait(const ScriptLine& line, Session& session) 
     if (!given) return failAgain(given.error());
     most = double{*given};
   }
-  // What a line before has set going shows after a frame or two.
+  // The effect of an earlier line may take a frame or two to show.
   if (frames_ >= 3 && found->reached(session)) return Progress::Done;
   if (seconds > most) return fail("wait " + kind, fmt::format("not reached in {} s", most));
   return Progress::Waits;
@@ -201,7 +202,7 @@ Result<Script::Progress> Script::run(const ScriptLine& line, Session& session, U
   if (word == "screenshot") {
     const auto image = ui.takePicture();
     if (!image) {
-      // What the line before did is drawn by then.
+      // By then the effect of the last line is drawn.
       if (frames_ % 4 == 2) ui.askForPicture();
       return Progress::Waits;
     }

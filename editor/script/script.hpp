@@ -1,8 +1,7 @@
-// Runs scripts that drive the editor (--script FILE): a line is a command of the command list with its words,
-// or one of those that act on the window as a hand would: click and drag at marks, keys, text, wheel, files
-// dropped onto the window, screenshots; or waits. Each frame takes the script on until a line has to wait.
-// Answers are JSON, a line each; a line that fails ends the script unless it begins with "try".
-// docs/editor.md lists the lines.
+// Runs scripts that drive the editor (--script FILE). A line is a command of the command list with its words,
+// an input to the window (click or drag at a mark, key, text, wheel, dropped file), a screenshot, or a wait.
+// Each frame runs lines until one has to wait. Each answer is a line of JSON. A line that fails ends the
+// script, unless it begins with "try". docs/editor.md lists the lines.
 #pragma once
 
 #include <chrono>
@@ -23,24 +22,25 @@ namespace lambent::editor {
 class Session;
 
 struct ScriptLine {
-  std::size_t number = 0;  // in the file, from 1
+  std::size_t number = 0;  // in the file, counted from 1
   bool may_fail = false;
   std::vector<std::string> words;  // the first is the command
 };
 
-// Parses a script. Words are parted by blanks; "..." keeps blanks, and \" and \\ inside; # begins a comment.
+// Parses a script. Blanks separate words; "..." keeps blanks, with \" and \\ for quotes and backslashes; #
+// begins a comment.
 Result<std::vector<ScriptLine>> parseScript(const std::filesystem::path& name, const std::string& text);
 
 class Script {
  public:
   Script(std::filesystem::path name, std::vector<ScriptLine> lines, std::function<void(std::string)> answer);
 
-  // Goes on before a frame, and returns what is held and typed in it: null where the script is over or does
-  // not touch the window.
+  // Runs lines before a frame. Returns the input of that frame, or null if the script is over or leaves the
+  // window to the user.
   const ScriptedInput* step(Session& session, Ui& ui);
   bool done() const { return at_ >= lines_.size() && queue_.empty(); }
   bool failed() const { return error_.has_value(); }
-  // The error of the line that failed.
+  // Returns the error of the line that failed. Requires failed().
   const Error& error() const { return *error_; }
 
  private:
@@ -57,13 +57,13 @@ class Script {
   std::function<void(std::string)> answer_;
   std::size_t at_ = 0;
   std::optional<Error> error_;
-  bool started_ = false;  // the line at hand has queued its input, or begun to wait
+  bool started_ = false;  // the current line has queued its input or begun to wait
   std::uint32_t frames_ = 0;
   std::chrono::steady_clock::time_point since_;
-  std::deque<ScriptedInput> queue_;  // one a frame
+  std::deque<ScriptedInput> queue_;  // one for each frame
   std::optional<glm::vec2> pointer_;
   ScriptedInput now_;
-  nlohmann::json last_;  // answer
+  nlohmann::json last_;  // the last answer
 };
 
 }  // namespace lambent::editor

@@ -1,4 +1,4 @@
-// Options of `lambent bake` by name, for scenes of the editor.
+// Sets options of `lambent bake` by name, for scenes of the editor.
 #include "baker/bake/bake.hpp"
 #include "baker/bake/option_rows.hpp"
 #include "editor/session/scenes.hpp"

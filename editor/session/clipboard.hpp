@@ -1,5 +1,5 @@
-// Keeps the text that was copied last: the system's clipboard where functions for it are set, as a window
-// does, and a text of its own until then.
+// Holds the text that was copied last: in the system's clipboard if a window has set its functions, else in
+// `text`.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// Asks the user something: which file, or whether to go on. panels/dialogs.cpp draws it; the rest of the
-// editor goes on meanwhile.
+// Describes a question to the user: which file, which text, or whether to go on. panels/dialogs.cpp draws it,
+// and the rest of the editor keeps running.
 #pragma once
 
 #include <filesystem>
@@ -15,10 +15,10 @@ struct Dialog {
   enum class Kind : std::uint8_t { OpenFile, SaveFile, Folder, Confirm, Text };
   Kind kind = Kind::Confirm;
   std::string title, question;
-  std::vector<std::string> endings;              // of files; empty: all
-  std::filesystem::path folder;                  // where it looks
-  std::string name;                              // typed so far
-  std::string yes = "OK", no = "Cancel", third;  // third: a way between, no button where empty
+  std::vector<std::string> endings;              // file name endings to list; empty: all files
+  std::filesystem::path folder;                  // the folder that is shown
+  std::string name;                              // the text typed so far
+  std::string yes = "OK", no = "Cancel", third;  // button texts; an empty third one has no button
   std::function<void(Session&, const std::string& answer)> answered;
   std::function<void(Session&)> third_chosen;
 };

@@ -47,7 +47,7 @@ void EnvironmentMapShelf::addFolder(const std::filesystem::path& folder) {
   if (std::find(added_.begin(), added_.end(), folder) == added_.end()) added_.push_back(folder);
 }
 
-// Nearest texels, exposed so that their median shows as middle grey: a likeness, for finding one again.
+// Samples nearest texels and exposes them so that the median becomes middle grey.
 EnvironmentMapShelf::Thumbnail EnvironmentMapShelf::read(const std::filesystem::path& file) {
   try {
     const auto image = spec::readLightImage(file);

@@ -1,6 +1,6 @@
-// Lists environment maps to choose from: the .hdr and .exr files beside those in use, beside the open scenes
-// and in folders that were added, each with a small picture of it. Files are read on a thread beside the
-// editor's, one at a time. Main thread. A file that cannot be read stays in the list with its error.
+// Lists environment maps to choose from: the .hdr and .exr files in the folders of those in use, of the open
+// scenes, and in folders that were added, each with a thumbnail. Files are read one at a time on another
+// thread. Main thread. A file that cannot be read stays in the list with its error.
 #pragma once
 
 #include <filesystem>
@@ -18,13 +18,13 @@ class EnvironmentMapShelf {
  public:
   struct EnvironmentMap {
     std::filesystem::path file;
-    spec::Rgba8Image thumbnail;  // empty: not read yet
+    spec::Rgba8Image thumbnail;  // empty: not loaded yet
     std::string error;
-    std::uint32_t texture = 0;  // the thumbnail's, as the renderer names it; 0: none yet
+    std::uint32_t texture = 0;  // OpenGL name of the thumbnail's texture; 0: none yet
   };
 
   void addFolder(const std::filesystem::path& folder);
-  // Looks for files again where something has changed, and reads one thumbnail at a time.
+  // Lists the files again if the folders may have changed, and loads one thumbnail at a time.
   void update(const std::vector<std::string>& light_words, const Scenes& scenes);
   const std::vector<EnvironmentMap>& environment_maps() const { return environment_maps_; }
   std::vector<EnvironmentMap>& environment_maps() { return environment_maps_; }
@@ -37,8 +37,9 @@ class EnvironmentMapShelf {
   static Thumbnail read(const std::filesystem::path& file);
   void look();
 
-  // What the folders were found from.
-  ChangeGate<std::vector<std::string>, std::uint64_t, std::size_t> changed_;  // words, scenes, what is added
+  // Tells when the folders must be found again: it compares the light words, the version of the scenes and
+  // the number of added folders.
+  ChangeGate<std::vector<std::string>, std::uint64_t, std::size_t> changed_;
   std::vector<std::filesystem::path> added_, folders_;
   std::vector<EnvironmentMap> environment_maps_;
   std::future<Thumbnail> coming_;

@@ -38,7 +38,7 @@ Result<void> Files::openWorld(const std::filesystem::path& path) {
   return {};
 }
 
-// Puts into the document what only scenes and camera know, before it is saved.
+// Stores the state of the scenes and the camera in the document before it is saved.
 void Files::keepWorldState() {
   WorldState world = session_.document.world();
   world.bundles = session_.scenes.state(world_.parent_path());

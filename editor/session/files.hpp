@@ -1,7 +1,6 @@
-// Opens and saves the files of the world: scenes, bundles, folders of them, and the world file that says how
-// they stand and what was edited. Knows the world file that is open, and whether it would lose anything.
-// Main thread. Errors name the file and change nothing; what is wrong with a single bundle of a world file is
-// logged, and the others are opened.
+// Opens and saves scenes, bundles, folders of them, and the world file that records how they are placed and
+// edited. Knows which world file is open and whether it has unsaved changes. Main thread. Errors name the
+// file and change nothing, except that a bundle of a world file that cannot be opened is logged and skipped.
 #pragma once
 
 #include <filesystem>
@@ -18,24 +17,25 @@ class Session;
 
 class Files {
  public:
-  // The session outlives it.
+  // The session must outlive it.
   explicit Files(Session& session) : session_(session) {}
 
   // Opens a scene, a bundle, a folder of them, or a world.
   Result<void> open(const std::filesystem::path& path);
   void openLogged(const std::filesystem::path& path);
-  // Saves the world to this file, which is the world's file from then on.
+  // Saves the world to this file, which becomes the world's file.
   Result<void> save(const std::filesystem::path& path);
   // Closes everything and begins an empty world, without asking.
   void closeAll();
 
-  // Returns the world's file; empty: it has none yet.
+  // Returns the world's file, or an empty path if it has none yet.
   const std::filesystem::path& world() const { return world_; }
-  // Returns whether something would be lost. What is merely open in a world that has no file would not.
+  // Returns whether closing would lose edits. Scenes that are merely open do not count while the world has no
+  // file.
   bool modified() const;
-  // Calls `then`, after a dialog has asked whether edits may be lost if there are any.
+  // Calls `then`. If there are unsaved edits, a dialog asks first.
   void unlessUnsaved(std::string question, std::function<void(Session&)> then);
-  // Makes the editor quit, after the same question.
+  // Quits the editor, after the same question.
   void askToQuit();
 
  private:
@@ -44,7 +44,7 @@ class Files {
 
   Session& session_;
   std::filesystem::path world_;
-  std::optional<WorldFile> loaded_;  // parts of it that this version does not know are saved again
+  std::optional<WorldFile> loaded_;  // the file as it was loaded: its unknown parts are saved again
 };
 
 }  // namespace lambent::editor

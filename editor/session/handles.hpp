@@ -1,6 +1,5 @@
-// Holds the handles in the picture by which a pointer moves, turns and scales what is selected, shapes
-// lights, and drags suns over the sky. This is state between frames; editor/panels/manipulate.cpp drives
-// them.
+// Holds the state of the gizmos between frames: the handles that move, turn and scale the selection, shape
+// lights, and drag suns. editor/panels/manipulate.cpp drives them.
 #pragma once
 
 #include <optional>
@@ -17,7 +16,7 @@ struct Handles {
   Gizmo gizmo;
   LightGizmo light_gizmo;
   SunGizmo sun_gizmo;
-  std::optional<SunOnSky> sun_taken;  // as it stood when its drag began
+  std::optional<SunOnSky> sun_taken;  // the sun as it was when its drag began
 };
 
 }  // namespace lambent::editor

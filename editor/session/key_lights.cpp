@@ -27,7 +27,7 @@ double fluxOf(const spec::Disc& disc) {
   return lighting::solidAngle(double{disc.radius_rad}) * lighting::luminance(disc.radiance);
 }
 
-// Places among the lights of those that environment maps, or suns, came from, in their order.
+// Returns the indices of the lights that are environment maps, or of those that are suns.
 std::vector<std::size_t> placesOf(const std::vector<spec::Light>& lights, bool environment_maps) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < lights.size(); ++i)
@@ -50,7 +50,7 @@ Result<FoundKey> findKey(const Session& session, std::size_t key) {
   return found[key];
 }
 
-// The words without that of this edit.
+// Returns the words without that of this edit.
 std::vector<std::string> without(const std::vector<std::string>& words, const spec::KeyEdit& edit) {
   std::vector<std::string> kept;
   for (const std::string& word : words)
@@ -71,7 +71,7 @@ spec::KeyEdit editOf(const FoundKey& found) {
 }
 
 struct FoundSun {
-  std::size_t place = 0;  // among the words of its set
+  std::size_t place = 0;  // index among the words of its set
   spec::SunLight light;
 };
 
@@ -206,7 +206,7 @@ void replaceLights(const Session& session, WorldState& world, std::vector<std::s
       if (!edit || edit->set != 0) return !edit;
       for (std::size_t i = 0; i < found.size(); ++i)
         if (found[i].edit == *edit) return !stays(keys[i].word);
-      return true;  // it waits for a key light of an environment map that may be the one that goes
+      return true;  // an edit of no known key light may belong to an environment map that is removed
     });
   }
   world.lights = std::move(lights);

@@ -1,5 +1,5 @@
-// Keeps what the editor has to say: notices and errors, each a line that says what to do, for the log panel
-// and for toasts. It is safe from any thread, because bakes and loaders report from theirs.
+// Stores notices and errors for the log panel and for toasts. It is safe to use from any thread, because
+// bakes and loaders report from theirs.
 #pragma once
 
 #include <chrono>
@@ -17,14 +17,14 @@ enum class Severity : std::uint8_t { Note, Warning, Error };
 struct LogEntry {
   Severity severity = Severity::Note;
   std::string text;
-  std::chrono::system_clock::time_point when;  // of the latest, where it came several times
-  std::uint32_t times = 1;                     // in a row
-  std::uint64_t number = 0;                    // rises
+  std::chrono::system_clock::time_point when;  // of the latest, if it was repeated
+  std::uint32_t times = 1;                     // how often it was added in a row
+  std::uint64_t number = 0;                    // increases from entry to entry
 };
 
 class Log {
  public:
-  static constexpr std::size_t kMostEntries = 2000;  // the oldest go
+  static constexpr std::size_t kMostEntries = 2000;  // beyond this the oldest entries are dropped
 
   void note(std::string text) { add(Severity::Note, std::move(text)); }
   void warn(std::string text) { add(Severity::Warning, std::move(text)); }
@@ -33,9 +33,9 @@ class Log {
   void clear();
 
   std::vector<LogEntry> entries() const;
-  // Returns those that are newer than `age`, the latest last.
+  // Returns the entries newer than `age`, the latest last.
   std::vector<LogEntry> recent(std::chrono::milliseconds age) const;
-  // Counts errors since the start; clear() does not take them back.
+  // Returns the number of errors since the start, which clear() does not reset.
   std::uint64_t errors() const;
 
  private:

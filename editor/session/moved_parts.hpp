@@ -1,5 +1,5 @@
-// Finds what moved within a rigid group since it was baked: the group's transfer still has it in its old
-// place.
+// Finds nodes that moved within their rigid group since the bake. The group's transfer still has them in the
+// old place.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace lambent::editor {
 
-// Adds a sentence for each node that no longer stands where its group has it. Groups that moved as a whole
-// are right.
+// Adds a sentence for each node that has moved relative to its group. A group that moved as a whole needs
+// none.
 void addMovedParts(const ecs::Registry& registry, const bundle::Description& description,
                    const scene::SceneInstance& instance, std::vector<std::string>& sentences);
 

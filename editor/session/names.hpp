@@ -1,4 +1,4 @@
-// Finds what scripts and menus mean by a word: entities by name, id or search, scenes by id or number.
+// Resolves words of scripts and menus: entities by name, id or search, scenes by id or number.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,13 @@ namespace lambent::editor {
 
 class Session;
 
-// Returns all that match, or an error where none does. A whole name wins over parts of names.
+// Returns all matches, or an error if there is none. A match of the whole name wins over matches of parts.
 Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std::string& word);
-// Returns the scene of the primary selected entity, else the only or first one; none is open: nothing.
+// Returns the scene of the primary selected entity, else the first scene, or none if no scene is open.
 std::optional<std::size_t> sceneAtHand(const Session& session);
-// Finds a scene by its id or number, or the scene at hand where the word is empty.
+// Finds a scene by its id or number. An empty word means sceneAtHand().
 Result<std::size_t> findScene(const Session& session, const std::string& word);
-// Returns a name that no entity has: "point", "point 2", ...
+// Returns an unused name: "point", "point 2", ...
 std::string freshName(const Session& session, const std::string& stem);
 
 }  // namespace lambent::editor

@@ -34,7 +34,7 @@ void addNodeEdits(const ecs::Registry& registry, const bundle::Description& desc
     if (transform->parent != parent)
       now = glm::mat4(glm::inverse(glm::dmat4(worldFromNode(registry, parent))) *
                       glm::dmat4(worldFromNode(registry, instance.nodes[i])));
-    // Below a flat parent it has no such place: it stays where the scene has it.
+    // Below a flat parent no Transform gives it that place; it stays where the scene has it.
     if (finite(now) && !samePlace(now, node.parent_from_node)) edits.nodes.push_back({i, node.name, now});
   }
 }

@@ -1,6 +1,7 @@
-// Writes where the nodes of a bundle stand now as edits of the scene that it is baked from. A node that was
-// hung elsewhere stays in the scene's own tree, whose paths its StableId is made from, and keeps its place in
-// the world: a bake moves it there. That it follows its new parent is the editor's and the world file's.
+// Converts the present Transforms of a bundle's nodes to edits of the scene that it is baked from. A node
+// that was reparented stays in its place in the scene's own tree, because its StableId is made from that
+// path, and the bake moves it to its place in the world. That it follows its new parent is known to the
+// editor and the world file only.
 #pragma once
 
 #include "baker/import/scene_edits.hpp"

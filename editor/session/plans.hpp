@@ -1,5 +1,5 @@
-// Makes the plans of scenes (`lambent plan`) on a thread beside the editor's: what a bake simulates, what
-// not, and why. The panel that shows a plan asks for it; it is kept until the scene's file or options change.
+// Computes the plans of scenes (as `lambent plan` does) on another thread: what a bake simulates, what not,
+// and why. A plan is computed when a panel asks for it and kept until the scene's file or options change.
 #pragma once
 
 #include <filesystem>
@@ -15,12 +15,12 @@ namespace lambent::editor {
 
 struct ScenePlan {
   baker::EffectPlan plan;
-  std::vector<std::string> warnings;  // of the import
+  std::vector<std::string> warnings;  // of the importer
 };
 
 class Plans {
  public:
-  // Returns the plan, or null while it is being made.
+  // Returns the plan, or null while it is being computed.
   const Result<ScenePlan>* find(const std::filesystem::path& scene, const baker::BakeOptions& options);
 
  private:

@@ -1,4 +1,4 @@
-// Holds whether the animations of the world run, and how long they have run.
+// Holds whether the world's animations are playing, and their time.
 #pragma once
 
 namespace lambent::editor {

@@ -1,6 +1,6 @@
-// Keeps what the editor remembers from one day to the next: the layout, recent files, panel switches. It is a
-// small JSON file, $XDG_CONFIG_HOME/lambent/editor.json; a damaged or missing one means defaults, and saving
-// never fails loudly: the layout is not worth an error.
+// Loads and saves what the editor remembers between runs: layout, recent files, visible panels. The file is
+// $XDG_CONFIG_HOME/lambent/editor.json. If it is missing or damaged, defaults are used; errors while saving
+// are ignored.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace lambent::editor {
 
 struct Preferences {
   int width = 1600, height = 950;  // of the window
-  // Shares of the window that the side columns and the bottom row take.
+  // Fractions of the window that the side columns and the bottom row take.
   float left = 0.17f, right = 0.24f, bottom = 0.24f;
   std::string left_tab = "Scene", right_tab = "Inspector", bottom_tab = "Bakes";
   bool show_left = true, show_right = true, show_bottom = true;
@@ -21,8 +21,8 @@ struct Preferences {
   void addRecent(const std::filesystem::path& file);
 };
 
-// Returns the file's path, or an empty one where neither XDG_CONFIG_HOME nor HOME is set: nothing is
-// remembered then.
+// Returns the file's path. It is empty if neither XDG_CONFIG_HOME nor HOME is set; then nothing is
+// remembered.
 std::filesystem::path preferencesFile();
 Preferences loadPreferences(const std::filesystem::path& file);
 void savePreferences(const std::filesystem::path& file, const Preferences& preferences);

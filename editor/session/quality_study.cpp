@@ -32,7 +32,7 @@ void QualityStudy::update(Session& session) {
   const std::string name = std::move(waiting_.back());
   waiting_.pop_back();
   frame::FrameSettings settings = stage.settings();
-  // How many key lights there are is the environment's to follow.
+  // The environment decides the number of key lights, so it must follow.
   lighting::Environment environment = stage.environment();
   const auto measured = [&]() -> Result<Row> {
     if (auto put = frame::putQuality(settings, name); !put) return failAgain(put.error());

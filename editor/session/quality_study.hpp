@@ -1,8 +1,7 @@
-// Measures what each quality (frame/quality.hpp) costs in time and in error in the present view, when asked
-// for: one quality a frame, the highest first, so that the editor stays alive between. The error is the
-// relative RMS of linear radiance against the picture at high quality, which has errors of its own: the
-// reference beside tells these. Main thread; update() needs a
-// current OpenGL context, and the renderer calls it.
+// Measures on request what each quality (frame/quality.hpp) costs in time and in error in the present view.
+// It measures one quality a frame, the highest first, so that the editor stays responsive. The error is the
+// relative RMS of linear radiance against the picture at high quality, whose own errors only the reference
+// shows. Main thread; update() needs a current OpenGL context, and the renderer calls it.
 #pragma once
 
 #include <optional>
@@ -20,25 +19,25 @@ class Session;
 
 class QualityStudy {
  public:
-  // Begins to measure, with the view, the light and the settings that there are at the next update.
+  // Starts measuring, with the view, light and settings at the next update().
   void measure();
-  // Measures one quality if all is at rest; call it once a frame.
+  // Measures one quality if everything is loaded and at rest. Call it once a frame.
   void update(Session& session);
   bool busy() const { return !waiting_.empty(); }
 
   struct Row {
     std::string quality;
-    double error = 0.0;  // against the highest: 0 there
+    double error = 0.0;  // relative to the highest quality, where it is 0
     frame::FrameCost cost;
   };
-  // What is measured so far, from the lowest quality to the highest.
+  // Returns the results so far, from the lowest quality to the highest.
   const std::vector<Row>& rows() const { return rows_; }
-  // The size of the pictures: the view's, or smaller where that is large.
+  // Returns the size of the measured pictures: the view's, or smaller if the view is large.
   const spec::Size& size() const { return size_; }
   const spec::View& view() const { return view_; }
 
  private:
-  std::vector<std::string> waiting_;  // the next last
+  std::vector<std::string> waiting_;  // the last is the next
   std::vector<Row> rows_;
   spec::RgbaImage highest_;
   spec::Size size_{};

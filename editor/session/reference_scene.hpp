@@ -1,5 +1,5 @@
-// Makes the scene that the reference traces out of the world: its scenes as they are edited and where they
-// stand, and the lights that a person has put there.
+// Builds the scene that the reference traces: the world's scenes as they are edited and placed, and the
+// lights that a person has added.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace lambent::editor {
 
-// Says which scene is shown, and how.
+// Identifies a scene that is shown, and its edits and placement.
 struct ReferencePart {
   std::filesystem::path source;
   std::filesystem::file_time_type time;
@@ -30,19 +30,19 @@ struct ReferenceLamps {
   };
   std::vector<Lamp> lamps;
 
-  std::string text() const;  // equal texts: equal lamps
+  std::string text() const;  // equal texts mean equal lamps
 };
 
 // Returns the point, spot and directional lights of the world that belong to no bundle.
 ReferenceLamps lampsOf(const ecs::Registry& registry, const Document& document);
 void addLamps(const ReferenceLamps& lamps, baker::Scene& scene);
 
-// Joins all of them into one scene, as the animations have them at this time. Takes a while; any thread.
-// Errors: those of importing one.
+// Joins all parts into one scene, with animations at this time in seconds. It is slow and may run on any
+// thread. Errors: those of importing a part.
 Result<baker::Scene> makeReferenceScene(const std::vector<ReferencePart>& parts, const ReferenceLamps& lamps,
                                         float animation_s);
 
-// Returns the spheres and discs of light that a person has put into the world.
+// Returns the spherical and disc lights that a person has added to the world.
 std::vector<spec::Light> shapesOf(const ecs::Registry& registry, const Document& document);
 
 }  // namespace lambent::editor

@@ -14,7 +14,7 @@ bool sameView(const spec::View& a, const spec::View& b) {
   return a.view_from_world == b.view_from_world && a.clip_from_view == b.clip_from_view;
 }
 
-// All that is shown, or why that cannot be traced.
+// Returns the scenes that are shown, or an error that says why one cannot be traced.
 Result<std::vector<ReferencePart>> partsOf(const Session& session) {
   std::vector<ReferencePart> parts;
   const auto& entries = session.scenes.entries();
@@ -34,7 +34,7 @@ Result<std::vector<ReferencePart>> partsOf(const Session& session) {
   return parts;
 }
 
-// Where key lights are edited, no words say what there is.
+// Words cannot describe the light if key lights are edited.
 bool hasEditedKeys(const lighting::Environment& environment) {
   return std::ranges::any_of(environment.foundKeys(),
                              [](const lighting::Environment::FoundKey& key) { return key.edit.has_value(); });
@@ -59,7 +59,7 @@ std::shared_ptr<const spec::DistantLights> editedLight(const lighting::Environme
   return light;
 }
 
-// Each light from outside, and how strong it is now.
+// Holds each distant light and its present strength.
 struct Sky {
   std::vector<spec::Light> lights;
   std::vector<float> factors;
@@ -102,12 +102,12 @@ std::string ReferenceView::notice() const {
                     : fmt::format("{} samples a pixel", now->spp);
 }
 
-// The scenes are read and edited on another thread; until they are there the old ones are traced.
+// The scenes are imported and edited on another thread. Until that is done, the old ones are traced.
 void ReferenceView::followScene(const Session& session) {
   auto parts = partsOf(session);
   if (!parts) {
     error_ = parts.error();
-    scene_key_.reset();  // once it can be traced again, it is read anew, and the error goes
+    scene_key_.reset();  // once tracing is possible again, the scenes are read anew and the error is cleared
     return;
   }
   if (parts->empty()) return;  // nothing is shown yet

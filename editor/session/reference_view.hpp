@@ -1,8 +1,8 @@
-// Owns the path-traced reference beside the runtime's picture: traced in the background from all scenes that
-// are shown, as the world has them (where they stand, moved nodes, edited materials, lights and camera),
-// finer pass by pass. Anything that changes begins it anew. What cannot be traced says so in notice(). The
-// renderer (editor/render) shows its snapshots and tells how they differ from the runtime's own linear
-// picture. Main thread; tracing happens elsewhere.
+// Owns the path-traced reference beside the runtime's picture. It is traced in the background from all scenes
+// that are shown, as the world has them (placement, moved nodes, edited materials, lights, camera), pass by
+// pass, and starts anew when anything changes. notice() says why a scene cannot be traced. The renderer
+// (editor/render) shows its snapshots and reports how they differ from the runtime's own linear picture. Main
+// thread; tracing runs on others.
 #pragma once
 
 #include <cstdint>
@@ -29,35 +29,37 @@ enum class SplitView : std::uint8_t { Off, Beside, Heat };
 class ReferenceView {
  public:
   SplitView split = SplitView::Off;
-  float split_at = 0.5f;  // share of the width that the runtime's picture has
+  float split_at = 0.5f;  // fraction of the width that the runtime's picture takes
   std::uint32_t spp = 256;
-  std::optional<int> band_limit;  // of the light: what an ideal runtime of that order would show
+  std::optional<int> band_limit;  // SH order to which the light is limited, to show what an exact runtime of
+                                  // that order would show
   baker::HeatMap heat_map = baker::HeatMap::Signed;
 
   bool on() const { return split != SplitView::Off; }
-  // Returns whether it shows the samples that were asked for, or cannot go on.
+  // Returns whether all requested samples are shown, or tracing cannot go on.
   bool done() const;
-  // Says what keeps it from being traced, or what it does.
+  // Says why the reference cannot be traced, or else what it is doing.
   std::string notice() const;
   std::shared_ptr<const baker::reference::Snapshot> snapshot() const;
-  // How the snapshot that is shown differs from the runtime's picture; nothing: not known yet.
+  // Returns how the snapshot that is shown differs from the runtime's picture, or none if not yet known.
   const std::optional<baker::Difference>& difference() const { return difference_; }
 
-  // The rest is for the renderer. Follows the world; call it once a frame, after the runtime's picture was
-  // drawn. Returns whether there is a picture to show. Lets go of everything while it is off.
+  // The rest is for the renderer. update() follows the world; call it once a frame, after the runtime's
+  // picture was rendered. It returns whether there is a snapshot to show, and releases everything while the
+  // view is off.
   bool update(const Session& session);
-  // The view that is traced.
+  // Returns the view that is traced.
   const spec::View& view() const { return eye_key_->view; }
-  // The snapshot that shown() was told of last.
+  // Returns the snapshot that was last passed to shown().
   const std::shared_ptr<const baker::reference::Snapshot>& seen() const { return seen_; }
   void shown(std::shared_ptr<const baker::reference::Snapshot> snapshot) { seen_ = std::move(snapshot); }
   void compared(Result<baker::Difference> difference);
 
  private:
-  // What the scene that is traced was made of.
+  // Identifies what the traced scene was built from.
   struct SceneKey {
     std::vector<ReferencePart> parts;
-    std::string lamps;  // what else was put into it, as text
+    std::string lamps;  // ReferenceLamps::text()
     float animation_s = 0.0f;
     bool operator==(const SceneKey&) const = default;
   };
@@ -76,7 +78,8 @@ class ReferenceView {
   std::optional<EyeKey> eye_key_;
   std::future<Result<ScenePointer>> coming_;
   ScenePointer scene_;
-  // The light with edited key lights, and the version that it is of: an eye that moves needs it again.
+  // The light with edited key lights, and the version it belongs to. It is kept because a new view needs it
+  // again.
   std::shared_ptr<const spec::DistantLights> edited_light_;
   std::uint64_t edited_light_of_ = 0;
   std::optional<Error> error_;

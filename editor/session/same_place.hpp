@@ -1,6 +1,6 @@
-// Decides whether two matrices stand for the same place, up to the rounding of matrices that were taken apart
-// and put together again. One rule for all that asks: what counts as moved is an edit of the next bake, and
-// the other way round.
+// Decides whether two matrices describe the same placement, up to the rounding of matrices that were
+// decomposed and composed again. All callers use this one rule, so that what is shown as moved is also an
+// edit of the next bake.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace lambent::editor {
 
-// Places may differ by 10 um, or in 10^-5 of their distance from the origin; turns and scales in 10^-5 of the
-// largest number of theirs.
+// Translations may differ by 10 um, or by 10^-5 of the largest coordinate if that is beyond 1 m; the other
+// entries may differ by 10^-5 of the largest of them.
 inline bool samePlace(const glm::mat4& a, const glm::mat4& b) {
   constexpr float kRounding = 1e-5f, kMetre = 1.0f;
   float axes = 0.0f, place = kMetre;

@@ -64,7 +64,7 @@ void keepMaterials(const std::vector<baker::SceneEdits::Material>& baked,
 
 const Baseline& SceneChanges::baseline() {
   std::vector<BaselineBundle> bundles;
-  // A bundle that takes another's place does so some frames after the scenes' version has risen.
+  // A bundle that replaces another does so some frames after the scenes' version has risen.
   std::pair<std::uint64_t, std::vector<const void*>> of{scenes_.version(), {}};
   for (const SceneEntry& entry : scenes_.entries())
     if (entry.slot) {
@@ -91,7 +91,7 @@ baker::SceneEdits SceneChanges::editsOf(std::size_t entry) const {
   addNodeEdits(registry, description, instance, edits);
   addLights(registry, description, instance, edits);
   addMaterials(registry, description, instance, edits);
-  // What is shown may have been baked with edits itself: those that were not edited again still hold.
+  // The bundle may itself have been baked with edits. Those that were not changed since still apply.
   keepOthers(scene.shown_edits.nodes, edits.nodes, &baker::SceneEdits::Node::index);
   keepOthers(scene.shown_edits.lights, edits.lights, &baker::SceneEdits::Light::node);
   keepMaterials(scene.shown_edits.materials, edits.materials);
@@ -118,7 +118,7 @@ std::vector<std::string> SceneChanges::needsRebake(std::size_t entry) const {
 }
 
 const std::vector<std::string>& SceneChanges::needsRebakeNow(std::size_t entry) {
-  // Until all is loaded, a bundle may take another's place in any frame.
+  // Until all is loaded, a bundle may replace another in any frame.
   const Asked now{entry, history_.version(), scenes_.version()};
   if (rebake_of_ == now && world_.loaded()) return rebake_;
   rebake_ = needsRebake(entry);

@@ -1,7 +1,7 @@
-// Tells how the scenes of the world differ from the bundles that are shown of them: as edits that a bake
-// takes over, as sentences about what the picture only approximates until then, and as the baseline that
-// "reset" goes back to. Reads the document and the scenes and changes neither. Main thread. Bundles that
-// cannot stand beside each other are logged.
+// Compares the scenes of the world with the bundles that are shown: it returns the edits for the next bake,
+// sentences about what the picture only approximates until then, and the baseline for "reset". It reads the
+// document and the scenes and changes neither. Main thread. Bundles that cannot be in one world (same id and
+// instance) are logged.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +19,17 @@ namespace lambent::editor {
 
 class SceneChanges {
  public:
-  // All of them outlive it.
+  // All arguments must outlive it.
   SceneChanges(const frame::World& world, const Scenes& scenes, const History& history, Log& log)
       : world_(world), scenes_(scenes), history_(history), log_(log) {}
 
-  // Returns how the bundles stand unedited.
+  // Returns the unedited state of the bundles.
   const Baseline& baseline();
-  // Returns what of the entry's bundle differs from its scene's file, with the edits that it was baked with.
+  // Returns the edits of the entry's scene: those that its bundle was baked with, and the new ones.
   baker::SceneEdits editsOf(std::size_t entry) const;
-  // Returns a sentence for each edit of the entry that the picture only approximates until it is baked.
+  // Returns a sentence for each edit of the entry that the picture only approximates until the next bake.
   std::vector<std::string> needsRebake(std::size_t entry) const;
-  // Returns the same, but looks again only when edits or scenes have changed: for panels, which ask in every
-  // frame.
+  // Returns the same, but recomputes it only when edits or scenes have changed. Panels call it every frame.
   const std::vector<std::string>& needsRebakeNow(std::size_t entry);
 
  private:
@@ -39,7 +38,7 @@ class SceneChanges {
   const History& history_;
   Log& log_;
   Baseline baseline_;
-  // Version of the scenes, and the descriptions, that the baseline was made of.
+  // The version of the scenes and the descriptions that the baseline was built from.
   std::pair<std::uint64_t, std::vector<const void*>> baseline_of_{0, {}};
   struct Asked {
     std::size_t entry = 0;

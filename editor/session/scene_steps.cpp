@@ -23,7 +23,7 @@ class SceneChange : public OutsideChange {
     }
   }
   std::size_t bytes() const override {
-    std::size_t bytes = sizeof *this + 1024;  // paths, options
+    std::size_t bytes = sizeof *this + 1024;  // an estimate of paths and options
     for (const EntityOverride& edit : scene_.kept) {
       bytes += sizeof edit + edit.name.size();
       for (const FieldOverride& field : edit.fields) bytes += sizeof field + editor::bytesOf(field.value);
@@ -44,7 +44,8 @@ std::optional<std::size_t> placeOf(const Scenes& scenes, const std::string& id) 
   return static_cast<std::size_t>(found - entries.begin());
 }
 
-// Of all edits those that went with the scene: of its own entities, and that others hung below them.
+// Returns the edits that were lost with the scene: those of its entities, and the parents of others below
+// them.
 Overrides goneWith(const Document& document, Overrides all) {
   Overrides gone;
   for (EntityOverride& edit : all) {
@@ -113,7 +114,7 @@ bool SceneSteps::take(ClosedScene& scene) {
   const auto waits = std::find_if(waiting_.begin(), waiting_.end(),
                                   [&](const Waiting& waiting) { return waiting.id == scene.entry.id; });
   if (waits != waiting_.end()) {
-    // It never was whole: what it waited for is still what there is to keep.
+    // Its edits were never restored, so they are what is kept.
     scene.kept = std::move(waits->kept);
     waiting_.erase(waits);
     session_.scenes.close(*place);

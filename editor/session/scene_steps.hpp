@@ -1,7 +1,6 @@
-// Opens and closes scenes as steps of the history. A scene that is closed leaves behind what was edited of
-// it, and undo brings it back from its files with these edits; what was opened is closed by undo. History
-// speaks by StableIds, which are the same when a scene comes back, so earlier steps go on working. Edits of a
-// scene of which no bundle is there yet are put back when its first one comes. Main thread.
+// Opens and closes scenes as steps of the history. Undoing a close opens the scene's files again and restores
+// its edits; undoing an open closes the scene. A reopened scene has the same StableIds, so earlier steps stay
+// valid. If it has no bundle yet, its edits are restored when the first one is shown. Main thread.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +15,11 @@ namespace lambent::editor {
 
 class Session;
 
-// Holds a scene that is not in the world now, or a folder that is not watched.
+// Holds a scene that was closed, or a folder that is no longer watched.
 struct ClosedScene {
   SceneEntry entry;
-  std::size_t place = 0;  // among the entries
-  Overrides kept;         // what differed from its bundle
+  std::size_t place = 0;  // index among the entries
+  Overrides kept;         // edits of its bundle
   std::filesystem::path folder;
 };
 
@@ -28,16 +27,16 @@ class SceneSteps {
  public:
   explicit SceneSteps(Session& session) : session_(session) {}
 
-  // Opens as one step all that comes with the path. Errors: nothing there that can be opened.
+  // Opens everything that belongs to the path as one step. Errors: there is nothing that can be opened.
   Result<void> open(const std::filesystem::path& path);
   void close(std::size_t entry);
-  // Puts back edits of scenes whose bundle has come; call it once a frame.
+  // Restores the edits of scenes whose bundle is now shown. Call it once a frame.
   void update();
   void clear() { waiting_.clear(); }
 
-  // The rest is for the steps themselves. Brings the scene back.
+  // The rest is for the steps themselves. bring() opens the scene again.
   Result<void> bring(const ClosedScene& scene);
-  // Takes the scene out of the world and keeps it as it was. Returns false where it is not there.
+  // Closes the scene and stores its state in `scene`. Returns false if it is not open.
   bool take(ClosedScene& scene);
 
  private:

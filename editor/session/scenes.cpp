@@ -12,7 +12,7 @@ namespace lambent::editor {
 namespace {
 
 constexpr const char* kBundleEnd = ".lmb.glb";
-constexpr const char* kEditsOption = "edits";  // of world files
+constexpr const char* kEditsOption = "edits";  // the key in world files
 
 bool isBundle(const std::filesystem::path& path) {
   return path.filename().string().ends_with(kBundleEnd);
@@ -83,7 +83,7 @@ std::optional<baker::JobState> Scenes::jobOf(std::size_t entry) const {
   return std::nullopt;
 }
 
-// The file's name without its ends; counted where another bundle has it.
+// Returns the file's name without its suffix, with a number if another bundle has that id.
 std::string Scenes::idFor(const std::filesystem::path& bundle) const {
   std::string stem = bundle.filename().string();
   if (stem.ends_with(kBundleEnd)) stem.resize(stem.size() - std::string_view(kBundleEnd).size());
@@ -142,8 +142,8 @@ Result<void> Scenes::openBundle(const std::filesystem::path& bundle, std::string
   return {};
 }
 
-// As the world was saved with; how this machine bakes is no part of it. What cannot be read, as of a version
-// with other options, is said, and baked as any other scene.
+// Returns the options that the world was saved with; threads and memory are this machine's. Options of
+// another version cannot be read: this is logged, and the defaults are used.
 baker::BakeOptions Scenes::optionsOf(const BundleEntry& entry) {
   std::map<std::string, std::string> words = entry.bake_options;
   words.erase(kEditsOption);
@@ -169,7 +169,7 @@ Result<void> Scenes::openScene(const std::filesystem::path& scene, std::string i
                    .edits = edits,
                    .shown_edits = std::move(edits)};
   std::error_code ignored;
-  // What is there already is shown meanwhile, of today's content or not.
+  // A bundle that exists is shown meanwhile, even if it is out of date.
   if (std::filesystem::exists(entry.bundle, ignored)) {
     if (const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id}))
       entry.slot = *slot, entry.shown = entry.bundle;
@@ -186,7 +186,7 @@ Result<void> Scenes::openFolder(const std::filesystem::path& folder) {
   if (files.empty()) log_.note(folder.string() + ": no scenes yet; what comes is opened");
   for (const std::filesystem::path& file : files) {
     if (find(file)) continue;
-    // The bundle of a scene of the folder comes with the scene.
+    // The bundle of a scene in this folder is opened with the scene.
     const bool of_scene = isBundle(file) && std::any_of(files.begin(), files.end(), [&](const auto& other) {
                             return baker::isSceneFile(other) && bundleFor(other) == file;
                           });
@@ -252,7 +252,7 @@ void Scenes::take(const baker::BakeEvent& event) {
   if (job && event.preview_level == baker::PreviewLevel::Final)
     for (const std::string& warning : job->warnings)
       log_.warn(found->source.filename().string() + ": " + warning);
-  // A bundle with transfer is not given up for one without.
+  // An unshadowed preview does not replace a final bundle.
   if (event.preview_level == baker::PreviewLevel::Unshadowed && found->slot && found->shown == found->bundle)
     return;
   if (job) found->shown_edits = job->request.edits;
@@ -262,7 +262,7 @@ void Scenes::take(const baker::BakeEvent& event) {
         fmt::format("{}: baked in {:.0f} s", found->bundle.filename().string(), job ? job->seconds : 0.0));
 }
 
-// Of a folder, and not by itself: one that was closed meanwhile stays closed.
+// Returns whether a watched folder contains the scene.
 bool Scenes::isWatched(const std::filesystem::path& scene) const {
   return std::any_of(watched_.begin(), watched_.end(), [&](const std::filesystem::path& folder) {
     const std::filesystem::path way = scene.lexically_relative(folder);

@@ -1,8 +1,7 @@
-// Owns the scenes and bundles of the world: what was opened, what is baked of it, and where it is shown. A
-// scene (.gltf, .glb) is baked by a queue on threads of its own and shown as soon as its first preview is
-// whole; each better one takes the place of the one before. Sources are watched: a file that changes is baked
-// again, and the old state stays until then. Main thread; update() once a frame brings over what happened
-// elsewhere.
+// Owns the scenes and bundles of the world: what was opened, what is being baked, and where it is shown. A
+// queue bakes scenes (.gltf, .glb) on its own threads; a scene is shown from its first complete preview on,
+// and each better one replaces it. Source files are watched: a changed file is baked again, and the old
+// bundle stays until then. Main thread; call update() once a frame.
 #pragma once
 
 #include <filesystem>
@@ -22,22 +21,22 @@
 namespace lambent::editor {
 
 struct SceneEntry {
-  std::filesystem::path source{};       // the glTF file; empty: a bundle alone
-  std::filesystem::path bundle{};       // where the final bundle is, or will be
-  std::string id{};                     // of StableIds and world files
-  std::optional<std::uint32_t> slot{};  // in the world
-  std::filesystem::path shown{};        // the bundle that is in that slot, or on its way there
+  std::filesystem::path source{};       // the glTF file; empty: only a bundle
+  std::filesystem::path bundle{};       // path of the final bundle, which may not exist yet
+  std::string id{};                     // its part of StableIds and world files
+  std::optional<std::uint32_t> slot{};  // its slot in frame::World
+  std::filesystem::path shown{};        // the bundle that is in that slot or being loaded into it
   std::optional<baker::JobId> job{};
   baker::BakeOptions options{};
-  baker::SceneEdits edits{};        // of the world, that its bundle was last asked to be baked with
-  baker::SceneEdits shown_edits{};  // that what is shown was baked with
+  baker::SceneEdits edits{};        // the edits that the last bake was asked for
+  baker::SceneEdits shown_edits{};  // the edits that the shown bundle was baked with
 };
 
 struct SceneSettings {
-  std::filesystem::path output_folder;  // of bundles; empty: beside their scenes
-  std::filesystem::path cache_folder;   // empty: the usual one
+  std::filesystem::path output_folder;  // for bundles; empty: beside their scenes
+  std::filesystem::path cache_folder;   // empty: the default folder
   std::uint64_t cache_bytes = baker::kCacheBytes;
-  bool bake = true;  // scenes at once when they are opened; else only their first, unshadowed preview
+  bool bake = true;  // bake scenes when they are opened; false: only make the first, unshadowed preview
   baker::BakeOptions options;
 };
 
@@ -46,29 +45,29 @@ class Scenes {
   Scenes(frame::World& world, Log& log, SceneSettings settings);
   ~Scenes();
 
-  // Opens a scene, a bundle, or a folder of them, which is watched then. Errors: nothing there that can be
+  // Opens a scene, a bundle, or a folder of them, which is then watched. Errors: there is nothing that can be
   // opened.
   Result<void> open(const std::filesystem::path& path);
-  // Opens a bundle, or its scene, as a world file has it, under the id that it has there.
+  // Opens a bundle of a world file, or its scene, under the id in that file.
   Result<void> open(const BundleEntry& entry, const std::filesystem::path& folder);
   void close(std::size_t entry);
   void closeAll();
-  // Opens what was closed, at its place again: what is on disk is shown, and baked with what it was baked
-  // with. Errors: neither its bundle nor its scene is there any more.
+  // Opens a closed entry again, at its index `place`. It shows the bundle on disk and bakes with the options
+  // and edits of the entry. Errors: neither the bundle nor the scene exists any more.
   Result<void> reopen(SceneEntry entry, std::size_t place);
   void watchFolder(const std::filesystem::path& folder);
   void unwatchFolder(const std::filesystem::path& folder);
 
-  // Takes over what bakes and files did since the last call. Returns whether anything changed.
+  // Applies what bakes and file changes did since the last call. Returns whether anything changed.
   bool update();
 
-  // Bakes it with the edits that the world makes to it; a bundle without a source is an error.
+  // Bakes the entry with these edits. Error: the entry is a bundle without a source.
   Result<void> bake(std::size_t entry, baker::SceneEdits edits);
   Result<void> setOption(std::size_t entry, std::string_view name, std::string_view word);
   void cancel(std::size_t entry);
-  // Returns true until what was baked has been brought over, too.
+  // Returns whether bakes are running or have results that update() has not applied yet.
   bool busy() const;
-  // Opens the scenes of bakes that an earlier session left unfinished, and returns how many there were.
+  // Opens the scenes whose bakes an earlier session left unfinished, and returns their number.
   std::size_t resume();
 
   const std::vector<SceneEntry>& entries() const { return entries_; }
@@ -76,9 +75,9 @@ class Scenes {
   std::optional<baker::JobState> jobOf(std::size_t entry) const;
   std::optional<std::size_t> entryOf(std::uint32_t slot) const;
   const std::vector<std::filesystem::path>& watched() const { return watched_; }
-  // Returns the entries as a world file is to have them, with paths relative to `folder`.
+  // Returns the entries for a world file, with paths relative to `folder`.
   std::vector<BundleEntry> state(const std::filesystem::path& folder) const;
-  // Rises when entries come, go, or show another bundle.
+  // Increases when an entry is added or removed, or shows another bundle.
   std::uint64_t version() const { return version_; }
 
  private:
@@ -106,7 +105,7 @@ class Scenes {
   std::vector<std::filesystem::path> watched_;  // folders
   std::vector<SceneEntry> entries_;
   std::uint64_t version_ = 1;
-  std::uint64_t idle_updates_ = 0;  // in a row, with nothing to bake
+  std::uint64_t idle_updates_ = 0;  // consecutive calls of update() with nothing to bake
 };
 
 }  // namespace lambent::editor

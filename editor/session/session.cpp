@@ -64,7 +64,7 @@ void Session::followDocument() {
   viewing.follow(document.world());
 }
 
-// Logs each error once, and again when it comes back.
+// Logs each error once, and again when it recurs.
 void Session::logBundleErrors() {
   std::vector<std::string> wrong;
   for (const auto& [bundle, error] : stage.world().errors()) {

@@ -1,8 +1,7 @@
-// Holds all of the editor's state and nothing that it draws with: the document and its history, the scenes
-// and their bakes, the lit world, how it is looked at, the reference beside it. Commands and panels work on
-// the parts; update() brings over, once a frame, what bakes, files and edits did. There is no window and no
-// OpenGL in it: a renderer (editor/render) draws what it says and writes down what came of it in `picture`.
-// Main thread. What goes wrong is logged, and the session goes on.
+// Holds the editor's whole state except for windows and OpenGL: the document and its history, the scenes and
+// their bakes, the lit world, the camera, and the reference. Commands and panels work on its parts; update()
+// applies, once a frame, what bakes, files and edits did. A renderer (editor/render) draws it and writes its
+// results to `picture`. Main thread. Errors are logged, and the session goes on.
 #pragma once
 
 #include <filesystem>
@@ -37,33 +36,33 @@ namespace lambent::editor {
 
 struct SessionOptions {
   std::vector<std::filesystem::path> files;
-  std::vector<std::string> light_words;  // empty: the usual ones
+  std::vector<std::string> light_words;  // empty: spec::kDefaultLights
   std::filesystem::path output_folder, cache_folder;
   std::uint64_t cache_bytes = baker::kCacheBytes;
   std::uint64_t max_memory_bytes = ~std::uint64_t{0};
-  unsigned threads = 0;  // of bakes; 0: all but one
+  unsigned threads = 0;  // for bakes; 0: all but one
   bool bake = true;
   baker::Quality quality = baker::Quality::Standard;
 };
 
 class Session {
  public:
-  // Opens the files; those that cannot be opened are logged. Errors: those of Stage.
+  // Opens the files and logs those that cannot be opened. Errors: those of Stage.
   static Result<std::unique_ptr<Session>> create(const SessionOptions& options, Preferences preferences);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  // Takes over what bakes, files, animations and edits did since the last call; call it once a frame.
+  // Applies what bakes, files, animations and edits did since the last call. Call it once a frame.
   void update(double seconds);
-  // Puts what the document says on stage: for commands that ask about the stage right after an edit.
+  // Applies the document to the stage at once, for commands that query the stage right after an edit.
   void followDocument();
 
-  // Conditions that scripts wait for.
+  // Scripts wait for these conditions.
   bool loaded() const { return stage.world().loaded() && !viewing.frame_when_loaded; }
   bool baked() const { return !scenes.busy() && loaded(); }
   bool atRest() const { return loaded() && picture.settled && !picture.in_flight; }
   bool measured() const { return !settings.busy() && !qualities.busy(); }
-  // Returns whether frames have to go on without input.
+  // Returns whether frames must be drawn even without input.
   bool moving() const;
 
   Log log;
@@ -93,7 +92,7 @@ class Session {
   Session(const SessionOptions& options, Preferences preferences, Stage stage);
   void logBundleErrors();
 
-  std::vector<std::string> told_;  // errors of bundles that are in the log
+  std::vector<std::string> told_;  // bundle errors that are already in the log
   std::uint64_t world_followed_ = 0;
 };
 

@@ -9,7 +9,7 @@ namespace lambent::editor {
 
 namespace {
 
-// About so many, in equal steps of a whole number or of a logarithm.
+// A sweep has about this many values, in equal steps of an integer or of a logarithm.
 constexpr int kMostValues = 6;
 
 std::vector<double> valuesOf(const frame::SettingRow& row) {

@@ -1,6 +1,6 @@
-// Measures what each setting of the frame costs in time and in error in the present view, when asked for: one
-// setting a frame, so that the editor stays alive between. Main thread; update() needs a current OpenGL
-// context, and the renderer calls it.
+// Measures on request what each setting of the frame costs in time and in error in the present view. It
+// measures one setting a frame, so that the editor stays responsive. Main thread; update() needs a current
+// OpenGL context, and the renderer calls it.
 #pragma once
 
 #include <map>
@@ -15,17 +15,17 @@ class Session;
 
 class SettingStudy {
  public:
-  // Begins to measure every setting at the value that it has.
+  // Starts measuring every setting at its present value.
   void measureAll();
-  // Begins to measure one setting at values from its coarsest to its finest.
+  // Starts measuring one setting at values from its coarsest to its finest.
   void sweep(std::string name);
-  // Measures one setting if all is at rest; call it once a frame.
+  // Measures one setting if everything is loaded and at rest. Call it once a frame.
   void update(Session& session);
   bool busy() const { return !waiting_.empty(); }
 
   struct Row {
     frame::SettingCost cost;
-    std::vector<frame::SettingPoint> sweep;  // by rising value; empty: not asked for
+    std::vector<frame::SettingPoint> sweep;  // by increasing value; empty: not requested
   };
   const std::map<std::string, Row, std::less<>>& rows() const { return rows_; }
 
@@ -34,7 +34,7 @@ class SettingStudy {
     std::string name;
     bool sweep = false;
   };
-  std::vector<Task> waiting_;  // the next last
+  std::vector<Task> waiting_;  // the last is the next
   std::map<std::string, Row, std::less<>> rows_;
 };
 

@@ -35,7 +35,7 @@ Result<Stage> Stage::create(std::uint64_t max_memory_bytes) {
 
 Result<void> Stage::followLights(const WorldState& state) {
   if (state.lights == words_ && state.fade_lights == fade_words_) return {};
-  // Tried once: words that fail are not read again in every frame.
+  // The words are stored even if they fail, so that they are not loaded again in every frame.
   words_ = state.lights, fade_words_ = state.fade_lights;
   auto lights = parseLights(state.lights);
   if (!lights) return failAgain(lights.error());

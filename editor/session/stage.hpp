@@ -1,8 +1,8 @@
-// Owns the lit world: the bundles' entities, the light from infinity, and the settings by which a frame draws
-// them, kept in step with the document. Light words are loaded when they change; an environment map that
-// cannot be read leaves the light as it was. Main thread. Where max_memory_bytes limits them, bundles go
-// to the GPU with the first picture; without a limit, and when one takes another's place, they need a current
-// OpenGL context at once. Errors: those of lighting::Environment.
+// Owns the lit world: the bundles' entities, the distant light, and the frame settings, all kept in step with
+// the document. Light words are loaded when they change; if an environment map cannot be read, the light
+// stays as it was. Main thread. With a limit in max_memory_bytes, bundles are uploaded with the first
+// picture. Without a limit, and when one bundle replaces another, loading needs a current OpenGL context.
+// Errors: those of lighting::Environment.
 #pragma once
 
 #include <optional>
@@ -25,15 +25,14 @@ class Stage {
   const lighting::Environment& environment() const { return environment_; }
   ecs::Entity environmentEntity() const { return environment_entity_; }
   const frame::FrameSettings& settings() const { return settings_; }
-  // The lights from infinity as they are now: what the document says, or what was there before if that
-  // cannot be loaded.
+  // Returns the distant lights: those of the document, or the previous ones if these could not be loaded.
   const std::vector<spec::Light>& lights() const { return lights_; }
   const std::vector<spec::Light>& fadeLights() const { return fade_lights_; }
 
-  // Takes lights, edits of key lights, settings and exposure from `state`. Errors: words that are not known,
-  // environment maps that cannot be read; all the others are followed.
+  // Applies lights, edits of key lights, settings and exposure of `state`. Errors: unknown words and
+  // environment maps that cannot be read; everything else is applied.
   std::vector<Error> follow(const WorldState& state);
-  // Takes turn, fade and intensity from the environment's entity.
+  // Applies rotation, fade and intensity of the environment's entity.
   void followEnvironment();
 
  private:

@@ -1,5 +1,4 @@
-// Writes the lines that tell at a glance what the editor has open and what it does: the window's title and
-// the status at the right end of the menu bar.
+// Formats the editor's status: the window's title and the text at the right end of the menu bar.
 #pragma once
 
 #include <string>
@@ -8,9 +7,9 @@ namespace lambent::editor {
 
 class Session;
 
-// Returns "hello* - Lambent"; the asterisk means that something is not saved.
+// Returns for example "hello* - Lambent"; the asterisk means unsaved changes.
 std::string titleOf(const Session& session);
-// Returns "bakes: 1   light settles   12.3 ms", of which only the time is always there.
+// Returns for example "bakes: 1   light settles   12.3 ms"; only the time is always present.
 std::string statusOf(const Session& session);
 
 }  // namespace lambent::editor

@@ -65,7 +65,7 @@ std::vector<SunOnSky> sunsOf(const Session& session) {
     if (!light || light->kind != scene::LocalLightComponent::Kind::Directional) continue;
     if (!registry.has<scene::Transform>(entity)) continue;
     const glm::mat4 place = worldFromNode(registry, entity);
-    // It shines along its -Z.
+    // A directional light shines along its -Z.
     if (const glm::vec3 back(place[2]); glm::length(back) > 0.0f)
       suns.push_back({.name = session.document.nameOf(entity),
                       .light = {},

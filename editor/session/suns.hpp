@@ -1,6 +1,6 @@
-// Finds the suns of what is selected and drags them over the sky: those of the environment's light words, key
-// lights that were found in its environment maps, and lights from one direction that stand in the tree. A sun
-// that moves is an edit like any other.
+// Finds the suns that can be dragged over the sky: suns of the environment's light words, key lights that
+// were found in its environment maps, and directional lights of the scene. Moving one is an edit like any
+// other.
 #pragma once
 
 #include <optional>
@@ -18,18 +18,20 @@ class Session;
 
 struct SunOnSky {
   std::string name;
-  std::optional<std::size_t> light;  // of WorldState::lights; else
-  std::optional<std::size_t> key;    // of Environment::keys(), found in an environment map; else
-  ecs::Entity entity;                // with a directional light
+  // Exactly one of these three is set: an index into WorldState::lights, an index into Environment::keys() (a
+  // key light of an environment map), or an entity with a directional light.
+  std::optional<std::size_t> light;
+  std::optional<std::size_t> key;
+  ecs::Entity entity;
   glm::vec3 towards_ws{0.0f, 1.0f, 0.0f};
-  glm::mat4 world_from_node{1.0f};  // of the entity
+  glm::mat4 world_from_node{1.0f};  // of `entity`
 };
 
 std::vector<SunOnSky> sunsOf(const Session& session);
-// Moves a sun from where it stood at the press (`start`), so that a drag that comes back brings back what was
-// there.
+// Moves a sun. `start` is the sun at the press, so a drag back to its start restores the exact value.
 void moveSun(Session& session, const SunOnSky& start, const glm::vec3& towards_ws);
-// Returns "azimuth 35.0, elevation 45.0": the angles of its word, or of a key light in the world.
+// Returns for example "azimuth 35.0, elevation 45.0": the angles of the sun's word, or those of a key light
+// in world space.
 std::string sunReadout(const Session& session, const SunOnSky& sun);
 
 }  // namespace lambent::editor

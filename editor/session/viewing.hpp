@@ -1,6 +1,6 @@
-// Holds how the world is looked at: the camera and where it is going, what surfaces show, and what is drawn
-// over them. Movements of the pointer and words of commands come in; a spec::View for each picture goes out.
-// World files keep it in WorldState::view.
+// Holds how the world is viewed: the camera and its goal, what surfaces show, and the overlays. Pointer input
+// and command words come in; a spec::View for each picture goes out. World files store it in
+// WorldState::view.
 #pragma once
 
 #include <cstddef>
@@ -20,31 +20,33 @@ namespace lambent::editor {
 
 class Viewing {
  public:
-  // The size in pixels and the view of the last picture.
+  // Size in pixels and view of the last picture.
   spec::Size size;
   spec::View shown_view;
 
-  CameraPose pose, goal;  // the camera eases from the one to the other
+  CameraPose pose, goal;  // the camera eases from `pose` to `goal`
   frame::ViewChoice surfaces;
   frame::OverlayOptions overlays;
-  std::optional<std::size_t> key_at_hand;  // of Environment::keys(): whose fields are shown
+  // The index into Environment::keys() of the key light whose fields are shown.
+  std::optional<std::size_t> key_at_hand;
   PictureScale scale;
 
-  bool frame_when_loaded = true;  // the first bundle that comes decides where the camera stands
+  bool frame_when_loaded = true;  // place the camera when the first bundle is loaded
   bool changed = true;            // the picture must be drawn anew
-  bool flying = false;            // keys move the camera
+  bool flying = false;            // the keys move the camera
 
   // Eases the camera towards its goal; call it once a frame.
   void update(const Document& document, double seconds);
   Result<spec::View> view(const Document& document, spec::Size of) const;
 
   void move(const Document& document, const CameraInput& input);
-  // Lets the box fill the picture; an empty one means the whole world.
+  // Fits the box into the picture. An empty box means the whole world.
   void frame(const Document& document, const scene::Box& box);
-  // Takes "orbit:...", "pose:...", or a camera of a bundle by its name. Errors: a word that is none of these.
+  // Sets the camera from "orbit:...", "pose:..." or the name of a bundle's camera. Errors: the word is none
+  // of these.
   Result<void> setCamera(const Document& document, std::string_view word);
 
-  // Writes itself into a world's state, and reads itself from there where that has changed.
+  // Write this to a world's state, and read it back if that has changed.
   void keep(WorldState& world) const;
   void follow(const WorldState& world);
 

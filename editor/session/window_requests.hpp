@@ -1,5 +1,5 @@
-// Holds what commands ask of the window, whoever draws it: a dialog, panels that shall come up, the end of
-// the program. These are values that the window reads and clears once a frame.
+// Holds what commands request from the window: a dialog, panels to bring to the front, or the end of the
+// program. The window reads and clears them once a frame.
 #pragma once
 
 #include <optional>
@@ -11,9 +11,9 @@
 namespace lambent::editor {
 
 struct WindowRequests {
-  std::optional<Dialog> dialog;            // at most one
-  std::vector<std::string> wanted_panels;  // names of panels to bring up
-  bool raise_tabs = true;                  // the tabs that the preferences name are to come up
+  std::optional<Dialog> dialog;            // at most one at a time
+  std::vector<std::string> wanted_panels;  // names of panels to bring to the front
+  bool raise_tabs = true;                  // also bring the preferences' tabs to the front
   bool quit = false;
 };
 

@@ -15,7 +15,8 @@ constexpr std::array kFonts = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
                                "/usr/share/fonts/TTF/DejaVuSans.ttf",
                                "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf"};
 
-// Basic Latin, Latin-1, Greek (sigma, pi), general punctuation, superscripts, arrows, mathematical operators.
+// The ranges are Basic Latin, Latin-1, Greek (sigma, pi), general punctuation, superscripts, arrows and
+// mathematical operators.
 constexpr std::array<ImWchar, 13> kGlyphs = {0x20,   0xff,   0x370,  0x3ff,  0x2010, 0x205e, 0x2070,
                                              0x209f, 0x2190, 0x21ff, 0x2200, 0x22ff, 0};
 

@@ -20,7 +20,7 @@ void Marks::put(std::string_view name, const Rectangle& where) {
   std::uint32_t& times = times_[std::string(name)];
   std::string own(name);
   if (++times > 1) own += '#' + std::to_string(times);
-  // Another widget may be called like the second of this name.
+  // Another widget may already have the name NAME#2.
   while (!now_.try_emplace(own, where).second) own = std::string(name) + '#' + std::to_string(++times);
 }
 

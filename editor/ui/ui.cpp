@@ -21,7 +21,7 @@ struct Ui::State {
   double last_input = 0.0;
   bool picture_wanted = false;
   std::optional<spec::Rgba8Image> picture;
-  // Held by the last scripted frame: let go when the script is over.
+  // Tells whether the last frame had scripted input, which is released when the script is over.
   bool scripted_before = false;
 };
 
@@ -48,7 +48,7 @@ bool anyInput(const ImGuiIO& io) {
          io.InputQueueCharacters.Size > 0;
 }
 
-// Of the back buffer: what a window shows in front need not be readable.
+// Reads the back buffer, because the front buffer of a window may not be readable.
 spec::Rgba8Image readBack(std::uint32_t width, std::uint32_t height) {
   std::vector<std::uint8_t> pixels(std::size_t{width} * height * 4);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);

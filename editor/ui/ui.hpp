@@ -1,6 +1,6 @@
-// Runs Dear ImGui over a gpu::Window: its context, its looks, a frame of it, the marks of its widgets, and
-// input that comes from a script as if it came from the user. Files that were dropped onto the window are
-// handed on. Main thread only. Beside the panels, this is the only room that knows Dear ImGui.
+// Runs Dear ImGui in a gpu::Window: its context, its style, its frames, the marks of its widgets, and input
+// from scripts. It also collects files that were dropped onto the window. Main thread only. Except for the
+// panels, only this room uses Dear ImGui.
 #pragma once
 
 #include <filesystem>
@@ -17,12 +17,12 @@
 
 namespace lambent::editor {
 
-// What a script holds down and types in this frame; what it does not say is the user's.
+// A ScriptedInput is a script's input for one frame. The user's input is used for whatever it leaves unset.
 struct ScriptedInput {
-  std::optional<glm::vec2> pointer;  // window pixels
+  std::optional<glm::vec2> pointer;  // in window pixels
   bool left = false, right = false, middle = false;
   bool ctrl = false, shift = false, alt = false;
-  int key = -1;      // of GLFW, pressed in this frame
+  int key = -1;      // a GLFW key code, pressed in this frame
   std::string text;  // typed in this frame
   float wheel = 0.0f;
 };
@@ -35,7 +35,7 @@ class Ui {
   Ui(const Ui&) = delete;
   Ui& operator=(const Ui&) = delete;
 
-  // Waits up to wait_s for something to happen, then begins a frame.
+  // Waits up to wait_s seconds for input, then begins a frame.
   void begin(double wait_s, const ScriptedInput* scripted);
   // Draws the frame into framebuffer 0.
   void end();
@@ -43,15 +43,16 @@ class Ui {
   bool closeRequested() const;
   void refuseClose();
   std::vector<std::filesystem::path> takeDropped();
-  // Takes the file as if it were dropped onto the window.
+  // Adds a file as if it was dropped onto the window.
   void drop(std::filesystem::path file);
 
   Marks& marks() { return marks_; }
   const Marks& marks() const { return marks_; }
 
-  // Returns how many seconds ago the user or a script did anything.
+  // Returns the seconds since the last input of the user or a script.
   double sinceInput() const;
-  // Asks for the window as the next end() draws it; takePicture() has it then, with row 0 at the top.
+  // Requests a picture of the window as the next end() draws it. takePicture() then returns it, with row 0 at
+  // the top.
   void askForPicture();
   std::optional<spec::Rgba8Image> takePicture();
 

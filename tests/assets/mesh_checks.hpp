@@ -1,4 +1,4 @@
-// What every generated mesh must hold, as functions that tests call.
+// Checks properties that every generated mesh must have.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ inline glm::vec3 faceNormal(const Mesh& mesh, std::size_t triangle) {
   return glm::cross(b - a, c - a);
 }
 
-// Finite, unit normals, indices in range, no triangle without area, and every face turned the way of its
-// normals.
+// Expects finite positions, unit normals, indices in range, no degenerate triangle, and faces oriented as
+// their normals.
 inline void expectSound(const Mesh& mesh, const std::string& name, float least_cosine = 0.5f) {
   ASSERT_FALSE(mesh.positions.empty()) << name;
   ASSERT_EQ(mesh.normals.size(), mesh.positions.size()) << name;
@@ -41,13 +41,13 @@ inline void expectSound(const Mesh& mesh, const std::string& name, float least_c
   }
 }
 
-// Every edge, told by the positions of its ends, is used once in each direction.
+// Returns whether every edge, identified by the positions of its ends, is used once in each direction.
 inline bool isClosed(const Mesh& mesh) {
   using Key = std::array<float, 6>;
   std::map<Key, int> balance;
   const auto point = [&](std::size_t i) {
     return mesh.positions[mesh.indices[i]] + 0.0f;
-  };  // -0 and 0 are one place
+  };  // + 0.0f turns -0 into 0
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     const glm::vec3 a = point(i), b = point(i % 3 == 2 ? i - 2 : i + 1);
     ++balance[{a.x, a.y, a.z, b.x, b.y, b.z}];
@@ -58,7 +58,7 @@ inline bool isClosed(const Mesh& mesh) {
   return true;
 }
 
-// By the divergence theorem; positive if the faces point outside.
+// Returns the enclosed volume by the divergence theorem; it is positive if the faces point outwards.
 inline double volume(const Mesh& mesh) {
   double sum = 0.0;
   for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t)

@@ -1,4 +1,5 @@
-// The environment maps are finite light of mean 1, with the sun and the boxes where the source says.
+// Checks that the environment maps are finite, have mean 1, and have the sun and the boxes where the source
+// puts them.
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -36,7 +37,7 @@ TEST(AssetsEnvironmentMaps, IntegrateCountsTheSphereOnce) {
 
 TEST(AssetsEnvironmentMaps, TheSkyIsBlueAboveAndItsSunKeepsItsEnergyAtEveryWidth) {
   const spec::RgbImage large = skyMap(512), small = skyMap(128);
-  // The sun stands out by far, so that what lies within six degrees of it is nearly all its own light.
+  // The sun is by far the brightest, so the light within six degrees of it is nearly all its own.
   const auto sunlight = [](const spec::RgbImage& image) {
     const glm::dvec3 to_sun(spec::directionFromAzimuthElevation(34.0f, 44.0f));
     spec::RgbImage near = image;
@@ -55,7 +56,7 @@ TEST(AssetsEnvironmentMaps, TheSkyIsBlueAboveAndItsSunKeepsItsEnergyAtEveryWidth
   const spec::EnvironmentMap environment_map{large, sh::ImageLayout::LatLong, 0};
   const glm::vec3 zenith = spec::radiance(environment_map, glm::vec3(0, 1, 0));
   EXPECT_GT(zenith.b, 1.5f * zenith.r);
-  EXPECT_LT(luminanceTowards(large, 0, -60), 1.0);  // the ground gives back a quarter
+  EXPECT_LT(luminanceTowards(large, 0, -60), 1.0);  // the ground reflects a quarter
 }
 
 TEST(AssetsEnvironmentMaps, TheStudioHasThreeBoxesInADarkRoom) {

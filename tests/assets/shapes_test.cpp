@@ -1,4 +1,4 @@
-// The shapes are sound, closed where they should be, and have the volumes of their formulas.
+// Checks that the shapes are valid, closed where they should be, and have the volumes of their formulas.
 #include "assets/shapes.hpp"
 
 #include <numbers>
@@ -42,7 +42,7 @@ TEST(AssetsShapes, ATorusKnotIsClosedAndHoldsLengthTimesSection) {
   const Mesh mesh = torusKnot(knot);
   expectSound(mesh, "torus knot");
   EXPECT_TRUE(isClosed(mesh));
-  // A tube of constant radius holds its section times the length of its middle line (Pappus).
+  // A tube's volume is its cross-section times the length of its centre line (Pappus).
   double length = 0.0;
   glm::dvec3 last(0.0);
   for (int i = 0; i <= 20000; ++i) {

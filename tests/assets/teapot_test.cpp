@@ -1,5 +1,5 @@
-// The patches are Newell's: their known extent, smooth seams, normals outside, and the same points as an
-// independent copy of the data.
+// Checks that the patches are Newell's by their known extent, smooth seams, outward normals, and the points
+// of an independent copy of the data.
 #include "assets/teapot.hpp"
 
 #include <algorithm>
@@ -47,8 +47,8 @@ TEST(AssetsTeapot, NormalsPointAwayFromTheAxisOfTheBody) {
   EXPECT_NEAR(mesh.normals[16 * per_patch].y, 1.0f, 1e-6f);  // top of the setting, a pole
 }
 
-// The shared teapot was cut 12 x 12 per patch from another copy of the patch data: its vertices are ours,
-// scaled.
+// The shared teapot was tessellated 12 x 12 per patch from another copy of the patch data: its vertices are
+// ours, scaled.
 TEST(AssetsTeapot, AgreesWithAnIndependentCopyOfTheData) {
   const auto path = testing::sharedFile("models/teapot_5k.glb");
   LAMBENT_NEEDS_SHARED(path);
@@ -64,7 +64,7 @@ TEST(AssetsTeapot, AgreesWithAnIndependentCopyOfTheData) {
   const Mesh mesh = teapot(12, 2.0f);
   std::vector<glm::vec3> ours = mesh.positions;
   for (glm::vec3& p : ours) p.y -= 1.0f;
-  // That copy widens the lid by 7.7 % so that it fits its rim; Newell's does not.
+  // That copy widens the lid by 7.7 % so that it fits its rim; Newell's data does not.
   const std::size_t per_patch = 13 * 13;
   for (std::size_t i = 16 * per_patch; i < 24 * per_patch; ++i) ours[i] *= glm::vec3(1.077f, 1.0f, 1.077f);
   constexpr float kTolerance = 1e-5f;  // float32 positions of size 2, scaled and moved

@@ -1,5 +1,5 @@
-// The rooms of runtime and baker stand in their CMakeLists.txt in the order of the data. A header or source
-// may include files of its own room and of rooms above it in that list, and the runtime nothing of the baker.
+// The rooms of runtime and baker are listed in their CMakeLists.txt in the order of the data. A file may
+// include files of its own room and of rooms above it in that list, and the runtime none of the baker.
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -28,7 +28,7 @@ std::vector<std::string> roomsInOrder(const std::string& root) {
   return {std::istream_iterator<std::string>(words), {}};
 }
 
-// Returns the place of the room that holds the file "runtime/ROOM/FILE" in the list, or its size.
+// Returns the index in the list of the room that holds the file "runtime/ROOM/FILE", or the list's size.
 std::size_t placeOf(const std::vector<std::string>& rooms, const std::string& root, const std::string& file) {
   return static_cast<std::size_t>(
       std::ranges::find_if(
@@ -40,7 +40,7 @@ struct Arrow {
   std::string from, to;  // files, from the root of the project
 };
 
-// Returns every include, of a file of the project, by a file under the folder `root`.
+// Returns every include, by a file under the folder `root`, of a file of the project.
 std::vector<Arrow> includesOf(const std::string& root) {
   const std::regex include(R"re(#include "((?:runtime|baker|reference|editor)/[^"]+)")re");
   std::vector<Arrow> arrows;
@@ -76,7 +76,7 @@ TEST(Includes, OfTheBakerRunDownTheListOfItsRooms) {
   expectNothingRunsUp("baker");
 }
 
-// The reference judges the baker, so it shares nothing with it but the scene that was imported.
+// The reference checks the baker, so it shares nothing with it but the imported scene.
 TEST(Includes, OfTheReferenceAreItsOwnAndThoseOfTheImport) {
   const char* const kKnown[] = {"reference/",      "baker/import/", "baker/jobs/",  "runtime/base/",
                                 "runtime/bundle/", "runtime/sh/",   "runtime/spec/"};

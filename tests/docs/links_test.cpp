@@ -1,4 +1,4 @@
-// Links from one page of the documentation to another: the file is there, and so is the heading that is
+// Checks links between pages of the documentation: the file must exist, and so must the heading that is
 // named.
 #include <algorithm>
 #include <cctype>
@@ -34,7 +34,7 @@ std::string textOf(const fs::path& page) {
   return text ? *text : std::string();
 }
 
-// The name that GitHub gives to a heading: lower case, spaces as hyphens, without punctuation.
+// Returns the anchor that GitHub makes for a heading: lower case, spaces as hyphens, without punctuation.
 std::string anchorOf(const std::string& heading) {
   std::string anchor;
   for (const char c : heading) {

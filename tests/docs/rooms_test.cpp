@@ -1,5 +1,5 @@
-// docs/rooms.md lists every room. A room is a folder whose CMakeLists.txt makes a library or a program; a row
-// of the list begins with the folder's name in backquotes.
+// Checks that docs/rooms.md lists every room. A room is a folder whose CMakeLists.txt makes a library or a
+// program; a row of the list begins with the folder's name in backquotes.
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -31,7 +31,7 @@ std::set<std::string> roomsOnDisk() {
   return rooms;
 }
 
-// The first cells of all rows of the tables that are headed "| room | owns |".
+// Returns the first cells of all rows of the tables that are headed "| room | owns |".
 std::multiset<std::string> roomsListed(const std::string& page) {
   std::multiset<std::string> rooms;
   std::istringstream lines(page);

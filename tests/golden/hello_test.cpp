@@ -1,7 +1,8 @@
-// hello.glb, baked by `lambent` and shown by `lambent-demo`, as linear pictures of one ray per pixel.
+// Compares linear pictures, with one ray per pixel, of hello.glb as baked by `lambent` and shown by
+// `lambent-demo`.
 //
-// hello_sky.exr is what the programs drew when the stored picture was last looked at. After a change that is
-// meant to change it: cmake --build --preset release --target golden-pictures
+// hello_sky.exr is what the programs drew when the stored picture was last checked. To update it after an
+// intended change: cmake --build --preset release --target golden-pictures
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -19,7 +20,7 @@ bool isCovered(const glm::vec4& texel) {
   return texel.a > 0.5f;
 }
 
-// sqrt(sum (X - A)² / sum A²) over pixels that are covered in both pictures.
+// Returns sqrt(sum (X - A)² / sum A²) over pixels that are covered in both pictures.
 double relativeRms(const spec::RgbaImage& x, const spec::RgbaImage& a) {
   double error = 0.0, energy = 0.0;
   for (std::size_t i = 0; i < a.texels.size(); ++i) {
@@ -39,7 +40,7 @@ class HelloPicture : public testing::ProgramTest {
                                              (folder / "hello.lmb.glb").string(), "--quality", "draft"});
     ASSERT_EQ(baked.exit_code, 0) << baked.err;
   }
-  // Skips the test where no picture can be drawn.
+  // Skips the test if no picture can be drawn.
   void show(const std::vector<std::string>& options, spec::RgbaImage& picture) const {
     const std::string path = (folder / "picture.exr").string();
     std::vector<std::string> words = {
@@ -66,13 +67,13 @@ TEST_F(HelloPicture, UnderTheSkyIsTheStoredOne) {
   spec::RgbaImage picture;
   show({"--light", kSky}, picture);
   if (picture.texels.empty()) return;
-  // Devices may put single pixels of an outline on either side.
+  // Devices may disagree about single pixels of an outline.
   EXPECT_NEAR(static_cast<double>(covered(picture)), static_cast<double>(covered(*stored)), 20.0);
   EXPECT_LT(relativeRms(picture, *stored), 0.01);
 }
 
-// Lights add up, whatever the scene: to rounding by transfer alone; with key lights, whose rays are shared
-// out by the flux of all, as exactly as these rays tell penumbrae.
+// Lights must add up: by transfer alone up to rounding; with key lights, whose rays are distributed by flux,
+// as precisely as these rays resolve penumbrae.
 TEST_F(HelloPicture, IsLinearInItsLight) {
   const std::string disc = "sun:40,50,3,200,150,100";
   for (const auto& [keys, bound] : {std::pair{"off", 1e-3}, std::pair{"auto", 3e-3}}) {

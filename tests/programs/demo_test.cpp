@@ -1,4 +1,4 @@
-// lambent-demo as a user meets it: exit codes, one-line errors, pictures, the report.
+// Tests lambent-demo as a user sees it: exit codes, one-line errors, pictures, the report.
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -53,7 +53,7 @@ class DemoProgram : public ::testing::Test {
     return quoted(path);
   }
 
-  // As one word of a shell command.
+  // Quotes it as one word of a shell command.
   static std::string quoted(const std::filesystem::path& path) { return fmt::format("'{}'", path.string()); }
 
   std::filesystem::path folder;
@@ -213,7 +213,7 @@ TEST_F(DemoProgram, FadesFromOneLightToAnother) {
 
 TEST_F(DemoProgram, MovesAndDimsAKeyLightOfAProbe) {
   if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
-  // One bright texel at azimuth -40, elevation 40 in a grey sky.
+  // The sky is grey, with one bright texel at azimuth -40, elevation 40.
   spec::RgbImage sky{.width = 128, .height = 64, .texels = std::vector<glm::vec3>(128 * 64, glm::vec3(0.5f))};
   sky.texels[18 * 128 + 50] = glm::vec3(9000.0f);
   ASSERT_TRUE(spec::writeHdr(folder / "sky.hdr", sky));
@@ -236,7 +236,7 @@ TEST_F(DemoProgram, MovesAndDimsAKeyLightOfAProbe) {
     const double was = found["radiance"][channel];
     EXPECT_NEAR(edited["radiance"][channel].get<double>(), factor * was, 1e-3 * was);
   }
-  // One that means nothing there is told, and changes nothing.
+  // An edit of no existing key light is reported, and changes nothing.
   const Outcome told =
       run(bundle() + " --light constant:1,1,1 --edit-key key:0,0,0,0,1 --size 32x32 --headless " +
           quoted(folder / "a.png"));

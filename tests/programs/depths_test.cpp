@@ -1,5 +1,5 @@
-// Depths by raster and by rays, as a user gets them: pictures of lambent-demo and of lambent reference tell
-// the same distances of the same surfaces, and compare says where they do not show the same.
+// Tests depths by rasterization and by rays: pictures of lambent-demo and of lambent reference have the same
+// distances for the same surfaces, and compare says where they show different ones.
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -13,8 +13,8 @@ namespace {
 
 using testing::Outcome;
 
-// All around it something is seen at nearly the same distance (2 %): one surface, and not edge on, where the
-// rounding of positions (16 bits over a group) would move depths by far more than itself.
+// Returns whether everything around the pixel is at nearly the same distance (2 %): one surface, not seen
+// edge-on, where the rounding of positions (16 bits over a group) would change depths by far more.
 bool isInsideASurface(const spec::RgbaImage& image, std::size_t pixel) {
   const std::size_t x = pixel % image.width, y = pixel / image.width;
   if (x == 0 || y == 0 || x + 1 == image.width || y + 1 == image.height) return false;

@@ -1,4 +1,5 @@
-// lambent as a user meets it: exit codes, one-line errors, files that appear whole or not at all, figures.
+// Tests lambent as a user sees it: exit codes, one-line errors, files that appear whole or not at all,
+// figures.
 #include <chrono>
 #include <thread>
 
@@ -25,7 +26,7 @@ class LambentProgram : public testing::ProgramTest {
   Outcome lambent(const std::vector<std::string>& arguments) const { return run(LAMBENT_PROGRAM, arguments); }
   std::string path(const std::string& name) const { return (folder / name).string(); }
 
-  // hello.glb at draft; further options behind.
+  // Bakes hello.glb at draft quality, with further options.
   Outcome bakeHello(const std::string& name, std::vector<std::string> options = {}) const {
     options.insert(options.begin(), {"bake", kHello, "-o", path(name), "--quality", "draft"});
     return lambent(options);
@@ -188,7 +189,7 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   EXPECT_FALSE(plan["groups"][0]["lightSamplesReason"].get<std::string>().empty());
   EXPECT_GT(info["groups"][0]["proxyTriangles"][0], 0);
   EXPECT_EQ(info["groups"][0]["proxyTriangles"], report["groups"][0]["proxyTriangles"]);
-  // The same in words.
+  // The text output has the same figures.
   for (const auto& arguments : {std::vector<std::string>{"plan", kHello}, {"info", path("hello.lmb.glb")}}) {
     const Outcome words = lambent(arguments);
     EXPECT_EQ(words.exit_code, 0);
@@ -268,7 +269,7 @@ TEST_F(LambentProgram, BadInputIsExitCode1OneLineAndLeavesNoFile) {
   EXPECT_EQ(fileCount(), files);
 }
 
-// Hours of rays must not end in "its folder does not exist".
+// A missing output folder must be reported before hours of tracing.
 TEST_F(LambentProgram, LooksAtTheOutputAndTheOptionsBeforeTheRays) {
   const auto begin = std::chrono::steady_clock::now();
   for (const std::string& output : {path("no/such/out.lmb.glb"), folder.string()})
@@ -304,7 +305,7 @@ class DamagedBundle : public LambentProgram {
     ASSERT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);
     whole = bytesOf(folder / "hello.lmb.glb");
   }
-  // Bundles that no program may accept, by what is wrong with them.
+  // These bundles no program may accept; each has a reason.
   std::vector<std::pair<std::string, std::string>> damaged() const {
     std::vector<std::pair<std::string, std::string>> bundles;
     const std::size_t size = whole.size();
@@ -319,7 +320,7 @@ class DamagedBundle : public LambentProgram {
     bundles.emplace_back("trailing bytes", whole + "0123");
     return bundles;
   }
-  // The same bundle as a program of the future would write it.
+  // Writes the same bundle as a future version of the program would.
   std::string tooNew() const {
     const std::string field = "\"LAMBENT_radiance_transfer\":{";
     const std::size_t extension = whole.find(field);
@@ -380,7 +381,7 @@ TEST_F(LambentProgram, BundlesPassTheKhronosValidator) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
-// Killed as soon as so many results lie in the cache, at whatever it was at that moment.
+// Kills the bake as soon as this many results are in the cache, whatever it does at that moment.
 TEST_F(LambentProgram, GoesOnWhereItWasKilled) {
   const std::string cache = path("cache");
   const std::vector<std::string> options = {"--rays", "4096", "--cache", cache};

@@ -1,4 +1,4 @@
-// What ships: the runtime alone, with its libraries, in a folder that may stand anywhere.
+// Tests the package: the runtime alone, with its libraries, in a folder that can be anywhere.
 #include <algorithm>
 #include <regex>
 #include <sstream>
@@ -17,7 +17,7 @@ struct Library {
   std::string name, path;  // path: empty where it is not to be found
 };
 
-// Lines of ldd: "libfmt.so.9 => /lib/libfmt.so.9 (0x...)", "libdraco.so.7 => not found".
+// Parses lines of ldd: "libfmt.so.9 => /lib/libfmt.so.9 (0x...)", "libdraco.so.7 => not found".
 std::vector<Library> librariesOf(const std::string& ldd) {
   static const std::regex kLine(R"(^\s*(\S+) => (?:(/\S+)|not found))");
   std::vector<Library> out;
@@ -27,7 +27,7 @@ std::vector<Library> librariesOf(const std::string& ldd) {
   return out;
 }
 
-// What a baker links and the runtime must not; static libraries leave their symbols' names.
+// Lists what a baker links and the runtime must not; static libraries leave their symbols' names.
 std::vector<std::string> bakerPartsOf(const std::string& ldd, const fs::path& program) {
   static const std::regex kBakerLibrary("OpenImageIO|embree|tbb|opencv|gdal|meshoptimizer");
   std::vector<std::string> out;
@@ -41,7 +41,7 @@ std::vector<std::string> bakerPartsOf(const std::string& ldd, const fs::path& pr
 
 class Package : public testing::ProgramTest {
  protected:
-  // Nothing of this process's environment.
+  // Runs the program without this process's environment.
   Outcome bare(const fs::path& program, std::vector<std::string> arguments) const {
     std::vector<std::string> words = {"-i", "PATH=/usr/bin:/bin", program.string()};
     words.insert(words.end(), arguments.begin(), arguments.end());
@@ -82,7 +82,7 @@ TEST_F(Package, OfTheRuntimeRunsWhereItIsPutWithItsOwnLibraries) {
   const fs::path demo = root / "bin/lambent-demo";
   EXPECT_FALSE(fs::exists(root / "bin/lambent"));
 
-  // Left to the system: the C and C++ libraries, zlib, X11.
+  // The system provides the C and C++ libraries, zlib and X11.
   static const std::regex kSystem(R"(^lib(c|m|dl|pthread|rt|stdc\+\+|gcc_s|z|X11|xcb|Xau|Xdmcp|bsd|md)\.so)");
   const auto libraries = librariesOf(ldd(demo));
   EXPECT_GT(libraries.size(), 10u);
@@ -123,7 +123,7 @@ TEST_F(Package, OfTheRuntimeRunsWhereItIsPutWithItsOwnLibraries) {
 TEST_F(Package, OfTheRuntimeHasNothingOfTheBakerOrTheEditor) {
   const auto parts = bakerPartsOf(ldd(LAMBENT_DEMO), LAMBENT_DEMO);
   EXPECT_TRUE(parts.empty()) << parts[0];
-  // The same eyes see it where it is.
+  // The same check does find these parts in the baker.
   const auto of_lambent = bakerPartsOf(ldd(LAMBENT_PROGRAM), LAMBENT_PROGRAM);
   for (const char* part : {"libOpenImageIO.so", "libembree", "libtbb", "7lambent5baker"})
     EXPECT_TRUE(std::any_of(of_lambent.begin(), of_lambent.end(), [&](const std::string& name) {

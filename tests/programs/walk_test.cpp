@@ -1,7 +1,6 @@
-// Every glTF file of the shared scenes, baked at draft quality and shown, by the programs as a user runs
-// them: a bundle and a picture without a value that is not finite, or one line that says why not. The
-// variants of one Khronos model (embedded, Draco, quantized, ...) show the same object, so they give the same
-// picture.
+// Bakes every glTF file of the shared scenes at draft quality and shows it, with the programs as a user runs
+// them. Each gives a bundle and a picture of finite values, or one line that says why not. The variants of
+// one Khronos model (embedded, Draco, quantized, ...) must give the same picture.
 #include <cmath>
 #include <map>
 
@@ -15,7 +14,7 @@ namespace {
 
 using testing::Outcome;
 
-// Why a file may be refused, by its path: the line must say so.
+// Lists by path why a file may be refused; the error line must say so.
 const std::map<std::string, std::string> kRefused = {
     {"asset-generator/Compatibility/Compatibility_04.gltf", "needs glTF 2.1"},
     {"asset-generator/Compatibility/Compatibility_05.gltf", "FAKE_materials_quantumRendering"},
@@ -30,7 +29,7 @@ bool isPointsOrLines(const std::string& name) {
   return false;
 }
 
-// The model of a Khronos file: khronos/MODEL/VARIANT/FILE.
+// Returns the model of a Khronos file: khronos/MODEL/VARIANT/FILE.
 std::string modelOf(const std::filesystem::path& name) {
   auto part = name.begin();
   if (*part != "khronos") return {};

@@ -1,4 +1,5 @@
-// lambent bake --watch as a user meets it: a line per event, bundles that follow their scenes, a clean end.
+// Tests lambent bake --watch as a user sees it: a line per event, bundles that follow their scenes, a clean
+// end.
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -21,7 +22,7 @@ class LambentWatch : public testing::ProgramTest {
     std::filesystem::create_directories(scenes / "deep");
   }
 
-  // The events of a kind so far.
+  // Returns the events of a kind so far.
   std::vector<json> events(const std::string& kind) const {
     std::vector<json> found;
     std::istringstream lines(bytesOf(log("out")));

@@ -1,4 +1,4 @@
-// --band-limit: light as the runtime's light vector has it, in closed form where nothing is in its way.
+// Tests --band-limit: the light equals the runtime's light vector, in closed form where nothing is occluded.
 #include <gtest/gtest.h>
 
 #include "reference/exit_kernel.hpp"
@@ -22,7 +22,7 @@ Options limited(std::uint32_t spp, int in, std::optional<int> out = {}) {
   return options;
 }
 
-// E/pi on a surface with nothing around.
+// Returns E/pi on a surface with nothing around.
 double open(const sh::LightVector& light, glm::vec3 normal) {
   std::array<float, sh::kMaxCoefficients> transfer{};
   sh::unoccludedTransfer(light.order, normal, transfer);
@@ -59,7 +59,7 @@ TEST(BandLimit, OfASunOverAnOpenPlaneIsTheDotProductOfLightAndTransfer) {
 }
 
 TEST(BandLimit, IsSignedAndTurnsWithTheLight) {
-  // Away from a small sun the expansion of order 3 rings below zero, and the picture says so.
+  // Away from a small sun the expansion of order 3 is negative, and so is the picture.
   const Scene wall = sceneOf({testing::box({0, 0, 0}, {2, 2, 2}, 1)});
   const spec::SunLight sun{
       .azimuth_deg = 0, .elevation_deg = -32, .angle_deg = 8, .radiance = glm::vec3(100)};
@@ -93,14 +93,14 @@ TEST(BandLimit, DirectionsDrawnOnTheHorizonHaveADensity) {
   }
 }
 
-// Σ_k c_k l_k of a diffuse white plane that looks up.
+// Computes Σ_k c_k l_k of a diffuse white plane that faces up.
 double openWithKernel(const sh::LightVector& light, int order, glm::vec3 normal) {
   return open(light.truncated(std::min(light.order, order)), normal);
 }
 
 TEST(BandLimit, OfTheKernelCutsTheCosineAtTheFirstHit) {
-  // Nothing stands over an open plane, and nothing in the mirrored directions: light of few bands is all
-  // there, and the answer is exact.
+  // Nothing occludes an open plane or its mirrored directions, so light of few bands arrives completely, and
+  // the answer is exact.
   const Scene floor = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
   const spec::SunLight sun{
       .azimuth_deg = 30, .elevation_deg = 20, .angle_deg = 8, .radiance = glm::vec3(100)};
@@ -115,7 +115,7 @@ TEST(BandLimit, OfTheKernelCutsTheCosineAtTheFirstHit) {
     }
 }
 
-// Rays start 2^-19 of the floor's 4 m off it.
+// Rays start above the floor by 2^-19 of its 4 m.
 TEST(BandLimit, OfASphereOverAnOpenPlaneIsSeenFromThePlace) {
   const Scene floor = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
   const auto expected = [&](int order, glm::dvec3 center, double radius) {
@@ -129,7 +129,7 @@ TEST(BandLimit, OfASphereOverAnOpenPlaneIsSeenFromThePlace) {
       expectMean(seen, expected(order, glm::dvec3(center), double{sphere.radius_m}), 1e-4);
       EXPECT_LT(seen.error.g, 0.02) << order;
     }
-  // Under the plane a light of two bands still shines above it; whole, it would not.
+  // Light of two bands is not zero below the plane; light without a band limit is.
   EXPECT_GT(expected(2, {0.1, -0.3, 1.7}, 0.3), 0.05);
 }
 
@@ -149,8 +149,8 @@ TEST(BandLimit, OfADiscOverAnOpenPlaneIsSeenFromThePlace) {
 }
 
 TEST(BandLimit, OfASphereThatBouncesIsSeenFromWhereItBounces) {
-  // A speck looks up at a wide ceiling that a light under the speck shines on. Straight above it the light is
-  // 3 m away, farther out it is far.
+  // A speck looks up at a wide ceiling that is lit by a light below the speck. Straight above, the light is 3
+  // m away; further out it is far.
   const Scene scene = [] {
     Scene out =
         sceneOf({testing::grid({0, 0, 0}, 0.01f, 1), testing::flipped(testing::grid({0, 1, 0}, 200.0f, 1))});

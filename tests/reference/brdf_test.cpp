@@ -1,4 +1,4 @@
-// The reference's own BRDFs: energy, reciprocity, and that directions are drawn as their densities say.
+// Tests the reference's own BRDFs: energy, reciprocity, and that the densities match the sampled directions.
 #include <gtest/gtest.h>
 
 #include "reference/sampler.hpp"
@@ -21,7 +21,7 @@ glm::vec3 viewAt(float cosine, float azimuth = 0.7f) {
   return {side * std::cos(azimuth), side * std::sin(azimuth), cosine};
 }
 
-// A floor whose frame is known: x along +X, y along -Z, z up.
+// Makes a floor whose frame is known: x along +X, y along -Z, z up.
 struct Floor {
   Surfaces surfaces;
   Reflector towards(const glm::vec3& local_view) const {
@@ -52,7 +52,7 @@ gltf::Material plastic(float roughness, float ior = 1.5f) {
   return material;
 }
 
-// What of uniform light comes back, by the reflector's own directions.
+// Estimates the reflection of uniform light by the reflector's own samples.
 glm::dvec3 furnace(const Reflector& reflector, std::uint32_t points = 1u << 14) {
   const Sampler sampler(5, 6, 0);
   glm::dvec3 sum(0.0);
@@ -170,7 +170,7 @@ TEST(Brdf, DensitiesOfTheLobeAreThoseOfAllDirections) {
       }
 }
 
-// Chi-square over 10 x 20 cells of the sphere.
+// Returns chi-square over 10 x 20 cells of the sphere.
 void expectDrawnByDensity(const Reflector& reflector, const char* what) {
   constexpr int kRows = 10, kColumns = 20, kFine = 24;
   constexpr std::uint32_t kDraws = 40000;
@@ -206,7 +206,8 @@ void expectDrawnByDensity(const Reflector& reflector, const char* what) {
   }
   EXPECT_NEAR(rest_drawn, rest_expected, 5.0 * std::sqrt(rest_expected) + 0.002 * kDraws) << what;
   EXPECT_GT(cells, 10) << what;
-  // Five deviations of chi-square, and what the grid of densities is off.
+  // The bound is five standard deviations of chi-square, plus the error of integrating the densities on a
+  // grid.
   EXPECT_LT(chi2, cells + 5.0 * std::sqrt(2.0 * cells) + 10.0) << what;
 }
 
@@ -256,7 +257,7 @@ gltf::Material measuredMaterial() {
   return material;
 }
 
-// The formula of docs/conventions.md, "Materials", as it stands there.
+// Evaluates the formula of docs/conventions.md, "Materials", literally.
 glm::dvec3 meanOf(const MeasuredBrdf& brdf, const glm::dvec3& v, const glm::dvec3& s) {
   const auto place = [](const glm::dvec3& a, const glm::dvec3& b) {
     const glm::dvec3 h = glm::normalize(a + b);
@@ -302,7 +303,7 @@ TEST(Brdf, OfAMeasurementIsTheWeighedMeanAndReciprocal) {
 
 TEST(Brdf, OfAMeasurementReflectsOfUniformLightWhatQuadratureSaysAndNeverMoreThanAll) {
   LAMBENT_NEEDS_SHARED(testing::sharedFile("brdf"));
-  // The second is brighter than any surface can be, most of all where it is looked at from low.
+  // The second is brighter than physically possible, most of all at grazing views.
   MeasuredBrdf bright = measuredFile("garnet_red.brdf");
   for (BrdfMeasurement& m : bright.measurements) m.value *= 30.0f;
   bool scaled = false;

@@ -1,4 +1,4 @@
-// Depths of pictures: along the camera's axis, of the first surface that is not blended.
+// Tests the depths of pictures: along the camera's axis, of the first opaque surface.
 #include <algorithm>
 #include <limits>
 
@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
-// A square of 2 m in the height y, seen from 5 m above the ground by a camera that looks straight down.
+// Makes a square of 2 m at height y, seen from 5 m above the ground by a camera that looks straight down.
 std::vector<float> depthsOf(const Scene& scene, float fov_deg) {
   Scene seen = scene;
   testing::lookAt(seen, {0, 5, 0}, {0, 0, 0}, fov_deg);
@@ -27,13 +27,13 @@ std::size_t count(const std::vector<float>& depths, float depth) {
 }
 
 TEST(Depth, IsAlongTheAxisAndNotAlongTheRay) {
-  // All of the picture is floor, in whose corners rays are 1.4 times as long.
+  // The floor fills the picture. In its corners rays are 1.4 times as long.
   const std::vector<float> depths = depthsOf(testing::sceneOf({testing::grid({0, 0, 0}, 20.0f, 4)}), 70.0f);
   EXPECT_EQ(count(depths, 5.0f), depths.size());
 }
 
 TEST(Depth, IsInfiniteWhereNothingStands) {
-  // 2 of 20 m: the middle fifth.
+  // The square takes 2 of 20 m, the middle fifth.
   const std::vector<float> depths =
       depthsOf(testing::sceneOf({testing::grid({0, 0, 0}, 2.0f, 4)}), 2.0f * 63.434949f);
   EXPECT_EQ(count(depths, 5.0f) + count(depths, kNone), depths.size());

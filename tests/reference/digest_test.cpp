@@ -1,4 +1,5 @@
-// No field of a material is forgotten where a picture decides whether it may go on from a checkpoint.
+// Checks that every field of a material is part of the digest that decides whether a checkpoint can be
+// resumed.
 #include "reference/digest.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Sampling of environment maps and discs: densities that sum to one, and samples that bring the whole light.
+// Tests the sampling of environment maps and discs: densities integrate to one, and samples find all of the
+// light.
 #include "reference/environment.hpp"
 
 #include <numbers>
@@ -22,7 +23,7 @@ spec::EnvironmentMap environment_map(sh::ImageLayout layout, std::uint32_t width
   return out;
 }
 
-// Means over many points of what sampling says and what looking everywhere says.
+// Compares means over many points by sampling with those by evaluating all directions.
 void expectSamplesBringTheLight(const spec::DistantLights& lights, double tolerance) {
   const Environment environment(lights, 35.0f, 0);
   ASSERT_TRUE(environment.sampled());
@@ -34,7 +35,7 @@ void expectSamplesBringTheLight(const spec::DistantLights& lights, double tolera
     if (dir != glm::vec3(0.0f)) {
       EXPECT_NEAR(glm::length(dir), 1.0f, 1e-5f);
       const auto look = environment.look(dir);
-      // Texels are looked up in float: right at a border it may be the black one beside it.
+      // Texels are looked up in float: right at a border the result may be the adjacent black one.
       if (look.pdf > 0.0f) by_samples += double{look.radiance.g} / double{look.pdf} / kCount;
     }
     const auto look = environment.look(sphereDirection(sampler.pair(2, i)));
@@ -48,7 +49,8 @@ void expectSamplesBringTheLight(const spec::DistantLights& lights, double tolera
 }
 
 TEST(Environment, SamplesProbesOfEveryLayout) {
-  // 65536 evenly spread points: texels' borders and the angular map's rim are all that is left.
+  // 65536 stratified points are used; the rest of the error comes from texel borders and the angular map's
+  // rim.
   for (const auto& [layout, width, height] :
        {std::tuple{sh::ImageLayout::LatLong, 32u, 16u}, std::tuple{sh::ImageLayout::AngularMap, 32u, 32u},
         std::tuple{sh::ImageLayout::VerticalCross, 24u, 32u}}) {
@@ -77,7 +79,7 @@ TEST(Environment, TurnsItsProbes) {
 }
 
 TEST(Environment, FindsSmallSunsToTheDigit) {
-  // 0.01 degrees: its rim's cosine differs from 1 by a tenth of a float's rounding.
+  // At 0.01 degrees the cosine of the radius differs from 1 by a tenth of a float's rounding.
   spec::DistantLights lights;
   lights.discs = {
       {.direction = glm::normalize(glm::vec3(1, 2, 3)), .radius_rad = 1.7e-4f, .radiance = glm::vec3(1e7f)}};

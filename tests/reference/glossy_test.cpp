@@ -1,5 +1,5 @@
-// Pictures of surfaces that are no Lambert ones, against closed forms and quadrature: whole, and with the
-// kernel of the first hit cut to its bands.
+// Compares pictures of surfaces that are not Lambert with closed forms and quadrature, with the whole BRDF
+// and with the band-limited kernel of the first hit.
 #include <gtest/gtest.h>
 
 #include "reference/exit_kernel.hpp"
@@ -47,7 +47,7 @@ glm::vec3 eyeAt(float elevation_deg, float azimuth_deg) {
   return kPlace + 2.0f * spec::directionFromAzimuthElevation(azimuth_deg, elevation_deg);
 }
 
-// x along +X, y along -Z, z up; the floor's tangent lies along x.
+// The floor's frame has x along +X, y along -Z, z up; its tangent is along x.
 glm::dvec3 toLocal(const glm::dvec3& world) {
   return {world.x, -world.z, world.y};
 }
@@ -55,7 +55,8 @@ glm::dvec3 toWorld(const glm::dvec3& local) {
   return {local.x, local.z, -local.y};
 }
 
-// c_k of the floor, by half vectors on a grid and in double; materials without textures, of ior 1.5.
+// Computes c_k of the floor over a grid of half vectors, in double, for materials without textures and with
+// ior 1.5.
 sh::LightVector kernelOf(const gltf::Material& material, const glm::vec3& to_eye, int order) {
   const double alpha = std::max(1e-3, double{material.roughness} * double{material.roughness});
   const double strength = double{material.anisotropy};
@@ -125,7 +126,7 @@ TEST(Glossy, KernelTimesLightIsWhatAnOpenFloorShows) {
 }
 
 TEST(Glossy, WholePicturesOfASunAreWhatQuadratureSays) {
-  // A sun wide enough for the grid of directions over it, by way of all strategies.
+  // The sun is wide enough for the grid of directions over it. All sampling strategies are used.
   const spec::SunLight sun{
       .azimuth_deg = 205, .elevation_deg = 40, .angle_deg = 10, .radiance = glm::vec3(30)};
   const glm::mat3 frame = frameAbout(spec::directionFromAzimuthElevation(sun.azimuth_deg, sun.elevation_deg));
@@ -161,7 +162,7 @@ TEST(Glossy, MirrorsShowTheLightInTheReflectedDirection) {
   mirror.base_color = glm::vec4(0.9f, 0.6f, 0.3f, 1.0f);
   const Scene floor = floorOf(mirror);
   const spec::SunLight sun{.azimuth_deg = 200, .elevation_deg = 30, .angle_deg = 3, .radiance = glm::vec3(7)};
-  // Seen from the other side at the same height, the floor is the sun; 5 degrees off it is black.
+  // From the opposite side at the same height the floor shows the sun; 5 degrees away it is black.
   const auto seen = measured(floor, eyeAt(30.0f, 20.0f), kPlace, {sun}, samples(64));
   const double w = std::pow(0.5, 5.0);  // 1 - v·n = 1/2
   for (int c = 0; c < 3; ++c) {
@@ -173,8 +174,7 @@ TEST(Glossy, MirrorsShowTheLightInTheReflectedDirection) {
 }
 
 TEST(Glossy, SurfacesAreSeenInEachOther) {
-  // A mirror floor under a lamp: from above at a slant, the lamp's radiance; and the floor of a lamp in a
-  // diffuse floor.
+  // A slanted view of a mirror floor below a lamp shows the lamp's radiance.
   Scene scene = floorOf(glossy(1.0f, 0.0f));
   scene.materials[0].base_color = glm::vec4(1.0f);
   gltf::Material shining = testing::matte();
@@ -184,7 +184,7 @@ TEST(Glossy, SurfacesAreSeenInEachOther) {
   EXPECT_NEAR(seen.mean.g, 3.0, 0.01);
 }
 
-// A floor and a ceiling so wide that it hides the sky.
+// Makes a floor and a ceiling so wide that it hides the sky.
 Scene underCeiling(const gltf::Material& floor, const gltf::Material& ceiling) {
   Scene scene = floorOf(floor);
   testing::add(scene, testing::flipped(testing::grid({0, 1, 0}, 1e3f, 1)), ceiling);
@@ -192,8 +192,8 @@ Scene underCeiling(const gltf::Material& floor, const gltf::Material& ceiling) {
 }
 
 TEST(Glossy, LimitedKernelsSeeAClosedSkyAboveAndBelow) {
-  // The mirror image below the floor hides the sky there too: nothing is left of it, though the kernel rings
-  // there. And a ceiling that shines stands all around: uniform light.
+  // The ceiling hides the sky, also for the mirrored directions below the floor, although the kernel is not
+  // zero there. An emissive ceiling is uniform light.
   gltf::Material black = testing::matte();
   black.base_color = glm::vec4(0, 0, 0, 1);
   gltf::Material shining = black;
@@ -214,7 +214,7 @@ TEST(Glossy, LimitedKernelsSeeAClosedSkyAboveAndBelow) {
   }
 }
 
-// A black wall that stands over all directions with x < 0.
+// Makes a black wall that covers all directions with x < 0.
 void addWall(Scene& scene) {
   bundle::MeshData wall;
   wall.positions = {{0, -1, -500.0f}, {0, 500.0f, -500.0f}, {0, 500.0f, 500.0f}, {0, -1, 500.0f}};
@@ -226,7 +226,7 @@ void addWall(Scene& scene) {
   testing::add(scene, wall, black);
 }
 
-// Radiance of the sun's five bands that a kernel gets from the directions that `open` admits.
+// Returns the radiance that a kernel gets from the sun's five bands in the directions that `open` admits.
 template <typename Open>
 double received(const sh::LightVector& kernel, const Open& open) {
   const auto light = spec::loadDistantLights({kSun})->lightVector().truncated(5);
@@ -244,7 +244,7 @@ double received(const sh::LightVector& kernel, const Open& open) {
 }
 
 TEST(Glossy, LimitedKernelsSeeAWallInFrontOfHalfTheSky) {
-  // And its image below.
+  // The wall also hides its image below the floor.
   Scene scene = floorOf(glossy(1.0f, 0.5f));
   addWall(scene);
   const glm::vec3 eye = kPlace + glm::vec3(1.0f, 0.6f, 0.2f);
@@ -257,14 +257,14 @@ TEST(Glossy, LimitedKernelsSeeAWallInFrontOfHalfTheSky) {
 }
 
 TEST(Glossy, LimitedKernelsMirrorWhatLiesBelowSmoothNormalsInThem) {
-  // As the surfaces of a bundle do. Above a normal that leans away from the wall all is open that does not
-  // point to the wall, what dips below the floor too: its mirror image in the floor does not, either.
+  // Bundles' surfaces may have such normals. Above a tilted normal, all directions that do not point to the
+  // wall are open, also those below the floor, whose mirror images do not point to it either.
   for (const float lean : {0.4f, -0.4f}) {
     Scene scene = floorOf(glossy(1.0f, 0.5f));
     const glm::vec3 normal = glm::normalize(glm::vec3(lean, 1.0f, 0.0f));
     for (glm::vec3& n : scene.meshes[0].primitives[0].mesh.normals) n = normal;
     addWall(scene);
-    // Near where the sun is mirrored.
+    // The camera is near the sun's mirror image.
     const glm::vec3 eye = kPlace + glm::vec3(0.4f, 1.0f, 1.0f);
     SurfacePoint point;
     point.shading = normal;

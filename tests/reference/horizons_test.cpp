@@ -1,5 +1,5 @@
-// Surfaces whose smooth normals lean away from their triangles: of what lies above the one and below the
-// other they see the mirror image, and lose nothing.
+// Tests surfaces whose smooth normals differ from their triangles' normals: light between the two planes is
+// that of the mirror image, and no energy is lost.
 #include "reference/horizons.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ glm::vec3 leaning(float degrees) {
   return {std::sin(lean), std::cos(lean), 0.0f};
 }
 
-// Its normals lean by so much towards +X.
+// Makes a floor whose normals are tilted by this much towards +X.
 Scene floorThatLeans(const gltf::Material& material, float degrees) {
   Scene floor = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
   for (glm::vec3& n : floor.meshes[0].primitives[0].mesh.normals) n = leaning(degrees);
@@ -46,7 +46,7 @@ Scene floorThatLeans(const gltf::Material& material, float degrees) {
   return floor;
 }
 
-// At x = 1, on the floor, 2 m high, looking towards -X.
+// Makes a wall at x = 1 on the floor, 2 m high, that faces -X.
 bundle::MeshData wall() {
   bundle::MeshData wall;
   wall.positions = {{1, 0, -5}, {1, 0, 5}, {1, 2, 5}, {1, 2, -5}};
@@ -55,7 +55,7 @@ bundle::MeshData wall() {
   return wall;
 }
 
-// Stands at -X, so low that a mirror of this lean would look to +X below the floor.
+// The eye is at -X, so low that a mirror with this tilt would look to +X below the floor.
 constexpr float kLean = 20.0f, kEyeElevation = 25.0f, kHidden = 2 * kLean - kEyeElevation;
 glm::vec3 eye() {
   return kPlace + 2.0f * spec::directionFromAzimuthElevation(-90.0f, kEyeElevation);
@@ -64,7 +64,7 @@ spec::SunLight sunAt(float elevation_deg) {
   return {.azimuth_deg = 90, .elevation_deg = elevation_deg, .angle_deg = 3, .radiance = glm::vec3(7)};
 }
 
-// Of a white metal, whose F0 and F90 are 1.
+// Returns the albedo of a white metal, whose F0 and F90 are 1.
 double albedo(float roughness, float lean) {
   const glm::dvec3 n(leaning(lean)), v = glm::normalize(glm::dvec3(eye() - kPlace));
   const double cosine = glm::dot(n, v), alpha = double{roughness} * double{roughness};
@@ -103,7 +103,7 @@ TEST(LeaningNormals, ReflectAllOfUniformLight) {
     }
 }
 
-// What shines at a place of its own is found by paths and by lights that look for it: together, once.
+// Light of a local source is found both by paths and by sampling the source: it must count once in total.
 TEST(LeaningNormals, ReflectAllOfWhatShinesAllAround) {
   for (const float roughness : {0.3f, 0.6f}) {
     const double expected = 2.0 * albedo(roughness, kLean);
@@ -127,7 +127,7 @@ TEST(LeaningNormals, ShowTheSkyOfTheHiddenDirectionItself) {
 TEST(LeaningNormals, ShowWhatStandsInTheMirrorImage) {
   Scene lit = floorThatLeans(metal(0.0f), kLean);
   add(lit, wall(), shining(3.0f));
-  // Neither the sun behind the wall nor that in front of the mirror image.
+  // Neither the sun behind the wall nor the one in front of the mirror image is visible.
   const auto seen = measured(lit, eye(), kPlace, {sunAt(-kHidden), sunAt(kHidden)}, samples(64, 0));
   EXPECT_NEAR(seen.mean.g, 3.0, 0.01);
 }

@@ -1,6 +1,6 @@
-// Baker and reference account for the same materials, each by its own code: tables of b(v), interpolated and
-// turned, on one side; directions drawn at the point on the other. Their exit kernels agree, textures,
-// tangents and all.
+// Compares baker and reference for the same materials, which each evaluates by its own code: interpolated and
+// rotated tables of b(v) on one side, directions sampled at the point on the other. Their exit kernels must
+// agree, also with textures and tangents.
 #include <gtest/gtest.h>
 
 #include "baker/brdf/surface_brdfs.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kOrder = 5;
 
-// 4 x 4 texels of which every channel differs, read without filtering, as the baker does.
+// Makes 4 x 4 texels of which every channel differs, read without filtering, as the baker reads them.
 gltf::TextureRef texture(Scene& scene, std::uint32_t seed) {
   spec::Rgba8Image image{4, 4, {}};
   for (std::uint32_t i = 0; i < 64; ++i)
@@ -32,7 +32,7 @@ gltf::TextureRef texture(Scene& scene, std::uint32_t seed) {
   return {.texture = static_cast<std::int32_t>(scene.textures.size()) - 1};
 }
 
-// A sheet whose normals lean, with tangents at a slant.
+// Makes a sheet with tilted normals and oblique tangents.
 Scene sheet() {
   Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 2.0f, 3)});
   auto& mesh = scene.meshes[0].primitives[0].mesh;
@@ -47,7 +47,7 @@ Scene sheet() {
   return scene;
 }
 
-// The largest distance of the two kernels over places and views, against the reference's length.
+// Returns the largest difference of the two kernels over places and views, relative to the reference.
 double apart(const Scene& scene) {
   const auto surfaces = Surfaces::build(scene);
   const RigidGroup group = findRigidGroups(scene).at(0);
@@ -99,8 +99,8 @@ TEST(KernelTwins, AgreeOnMetalsAndDielectrics) {
   }
 }
 
-// The table's nodes lie farther apart along azimuth and strength than along the others. The first view of
-// each place stands straight above it, where the way it leans is a rounding.
+// The table's nodes are further apart in azimuth and strength than in the others. The first view of each
+// place is along the normal, where the azimuth is only rounding.
 TEST(KernelTwins, AgreeOnAnisotropyAndTextures) {
   Scene scene = sheet();
   gltf::Material& m = scene.materials[0];

@@ -1,4 +1,4 @@
-// Light from infinity, and light between surfaces, against closed forms.
+// Compares distant light, and light between surfaces, with closed forms.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -14,14 +14,14 @@ using testing::rendered;
 using testing::samples;
 using testing::sceneOf;
 
-// A box that floats over a floor: corners, contact and open sky.
+// Makes a box that floats over a floor, which has corners, contact and open sky.
 Scene boxOverFloor() {
   return sceneOf({testing::grid({0, 0, 0}, 4.0f, 1), testing::box({0.2f, 0.6f, 0}, {1, 1, 1}, 1)});
 }
 
 TEST(Reference, InAWhiteFurnaceShowsNothing) {
-  // Every path of a white scene brings the light's radiance: without noise, whatever the mesh. The few that
-  // roulette or 64 bounces end early are in the rounding.
+  // Every path of a white scene returns the light's radiance: there is no noise, for any mesh. The few paths
+  // that end early by roulette or after 64 bounces are within the rounding.
   const auto report = rendered(boxOverFloor(), {.lights = {testing::uniform(1.0f)},
                                                 .camera = spec::OrbitCamera{30, 20, 2, 40},
                                                 .options = {.size = {48, 48}, .spp = 8}});
@@ -35,7 +35,7 @@ TEST(Reference, InAWhiteFurnaceShowsNothing) {
 }
 
 TEST(Reference, InAWhiteFurnaceOfADiscThatIsTheWholeSkyShowsOneWithinItsNoise) {
-  // The same light, by next-event estimation weighed against the cosine.
+  // Tests the same light by next-event estimation combined with cosine sampling.
   const spec::SunLight whole{
       .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 180, .radiance = glm::vec3(1)};
   const auto corner = measured(boxOverFloor(), {3, 3, 3}, {0.75f, 0, 0.1f}, {whole}, samples(256));
@@ -62,14 +62,14 @@ TEST(Reference, OfAConvexBodyIsItsUnshadowedIrradiance) {
     for (int k = 1; k < 3; ++k)
       if (std::abs(texel.g - facing * dir[k]) < std::abs(texel.g - facing * dir[nearest])) nearest = k;
     ++seen[static_cast<std::size_t>(nearest)];
-    // 64 stratified points in the disc, over which the cosine varies by 10 %.
+    // The disc is sampled by 64 stratified points, over which the cosine varies by 10 %.
     EXPECT_NEAR(texel.g, facing * dir[nearest], 0.01f * facing * dir[nearest]);
   }
   for (const int pixels : seen) EXPECT_GT(pixels, 20);
 }
 
 TEST(Reference, TurnsTheLightAsTheRuntimeDoes) {
-  // A sun at azimuth 20 turned by 70 stands on +X.
+  // A sun at azimuth 20 that is rotated by 70 degrees is at +X.
   const spec::SunLight sun{.azimuth_deg = 20, .elevation_deg = 0, .angle_deg = 5, .radiance = glm::vec3(100)};
   Options options = samples(16);
   options.rotate_light_deg = 70.0f;
@@ -80,9 +80,10 @@ TEST(Reference, TurnsTheLightAsTheRuntimeDoes) {
 }
 
 TEST(Reference, InASphereWithAnOpeningHasTheRadianceOfEachBounce) {
-  // Between any two places inside a sphere the form factor is the same: with f the share that is cut off,
+  // Between any two places inside a sphere the form factor is the same. With f the fraction that is cut off,
   // bounce k adds rho f (rho (1 - f))^k to the exit radiance under uniform light of 1 (literature:
-  // integrating spheres). A mesh of 5120 faces scatters by 1.3 %, the mean of eight places by well under 1 %.
+  // integrating spheres). On a mesh of 5120 faces it varies by 1.3 %, the mean of eight places by well under
+  // 1 %.
   const bundle::MeshData whole = testing::icosphere({0, 0, 0}, 1.0f, 4);
   bundle::MeshData cut = whole;
   cut.indices.clear();

@@ -1,4 +1,5 @@
-// What materials do to rays: cut-outs, blending, unlit, one and two sides, textures, normal maps.
+// Tests what materials do to rays: cut-outs, blending, unlit, single- and double-sided, textures, normal
+// maps.
 #include <gtest/gtest.h>
 
 #include "reference/warp.hpp"
@@ -13,14 +14,14 @@ using testing::measured;
 using testing::samples;
 using testing::sceneOf;
 
-// A floor and a card at height 1 over it, both facing up.
+// Makes a floor and a card at height 1 above it, both facing up.
 Scene floorAndCard(const gltf::Material& material, float width = 2.0f) {
   Scene scene = sceneOf({testing::grid({0, 0, 0}, 40.0f, 1), testing::grid({0, 1, 0}, width, 1)});
   testing::paint(scene, 1, material);
   return scene;
 }
 
-// The texture of `texels` (RGBA, n wide, 1 high), read without filtering.
+// Makes a texture of `texels` (RGBA, n wide, 1 high), read without filtering.
 gltf::TextureRef texture(Scene& scene, const std::vector<std::uint8_t>& texels) {
   spec::Rgba8Image image{static_cast<std::uint32_t>(texels.size() / 4), 1, texels};
   const std::vector<std::uint8_t> bytes = spec::encodePng(image);
@@ -61,7 +62,7 @@ TEST(Material, OfBlendedSurfacesCoversTheEyeOnly) {
   };
   expectMean(seen({0, 4, 0}, {0, 0, 0}), (0.25 * 0.2 + 0.75) * kZenithRadiance, 1e-4);
   expectMean(seen({0, 0.5f, 4}, {0, 0, 0}), kZenithRadiance, 1e-4);  // no shadow
-  // Over the sky: coverage is the alpha, the sky shines through.
+  // Over the sky, coverage is the alpha, and the sky is visible through the card.
   Scene alone = sceneOf({testing::grid({0, 1, 0}, 2.0f, 1)});
   testing::paint(alone, 0, glass);
   const Measured sky = measured(alone, {0, 4, 0}, {0, 1, 0}, {testing::uniform(1.0f)}, samples(4, 0));
@@ -115,7 +116,7 @@ TEST(Material, OfOneSideIsCulledForTheEyeAndBlackForTheLight) {
   const Measured dark = measured(one, {0, 0.5f, 4}, {0, 0, 0}, light, samples(64));
   const Measured bright = measured(two, {0, 0.5f, 4}, {0, 0, 0}, light, samples(64));
   expectMean(bright, 1.0, 1e-3);  // some paths go to and fro until roulette ends them
-  // Form factor of the card over the point: 4/pi * (a / sqrt(1 + a²)) atan(a / sqrt(1 + a²)) at a = 1.
+  // The form factor of the card over the point is 4/pi * (a / sqrt(1 + a²)) atan(a / sqrt(1 + a²)) at a = 1.
   const double a = std::sqrt(0.5);
   expectMean(dark, 1.0 - 4.0 / double{kPi} * a * std::atan(a));
 }

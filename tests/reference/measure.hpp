@@ -1,4 +1,4 @@
-// Pictures of scenes that are built in the test, and the mean over many pixels that all look at one point.
+// Renders scenes that a test builds, and averages many pixels that all look at one point.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ inline baker::reference::Report rendered(const baker::Scene& scene,
   return report ? std::move(*report) : baker::reference::Report{};
 }
 
-// A camera of the scene, the first one: so it is used where none is asked for.
+// Adds a camera as the first of the scene, so that it is the default.
 inline void lookAt(baker::Scene& scene, glm::vec3 eye, glm::vec3 target, float fov_deg) {
   scene.cameras = {{.name = "eye", .yfov_rad = glm::radians(fov_deg)}};
   gltf::Node node;
@@ -36,7 +36,7 @@ struct Measured {
   double alpha = 0.0;
 };
 
-// What is seen of `target` from `eye`, by 64 independent pixels.
+// Returns what 64 independent pixels see of `target` from `eye`.
 inline Measured measured(baker::Scene scene, glm::vec3 eye, glm::vec3 target,
                          const std::vector<spec::Light>& lights, baker::reference::Options options = {}) {
   lookAt(scene, eye, target, 0.01f);
@@ -57,8 +57,8 @@ inline Measured measured(baker::Scene scene, glm::vec3 eye, glm::vec3 target,
   return out;
 }
 
-// Within four standard errors, a chance of 1 in 16,000 for each; rounding of floats aside. The tests draw the
-// same numbers every time.
+// Allows four standard errors, which a correct result exceeds with a chance of 1 in 16,000, and the rounding
+// of floats. The tests use the same random numbers every time.
 inline void expectMean(const Measured& m, double expected, double rounding = 2e-5) {
   EXPECT_NEAR(m.mean.g, expected, 4.0 * m.error.g + rounding * std::max(1.0, expected));
 }
@@ -70,7 +70,7 @@ inline baker::reference::Options samples(std::uint32_t spp, std::optional<std::u
   return options;
 }
 
-// Lambert, white.
+// Returns a white Lambert material.
 inline gltf::Material matte() {
   gltf::Material material;
   material.metallic = 0.0f;
@@ -82,7 +82,7 @@ inline void paint(baker::Scene& scene, std::size_t mesh, const gltf::Material& m
   scene.materials.push_back(material);
 }
 
-// Under a node of its own, where it lies.
+// Adds the mesh with a node of its own, without a transform.
 inline void add(baker::Scene& scene, const bundle::MeshData& mesh, const gltf::Material& material) {
   scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
   scene.nodes.push_back({});
@@ -91,7 +91,7 @@ inline void add(baker::Scene& scene, const bundle::MeshData& mesh, const gltf::M
   paint(scene, scene.meshes.size() - 1, material);
 }
 
-// Each triangle with its own, flat normals.
+// Gives each triangle vertices of its own with its face normal.
 inline bundle::MeshData flat(const bundle::MeshData& mesh) {
   bundle::MeshData out;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {

@@ -1,4 +1,4 @@
-// Volumes that are built in the test.
+// Builds volumes for tests.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace lambent::testing {
 
-// `density` at voxel centres, in voxels; the grid fills [0, size] of its node.
+// Evaluates `density` at voxel centres, in voxels. The grid fills [0, size] of its node.
 inline baker::SceneVolume medium(glm::uvec3 size, const std::function<float(glm::vec3)>& density) {
   baker::SceneVolume volume;
   volume.name = "medium";
@@ -31,7 +31,7 @@ inline void place(baker::Scene& scene, baker::SceneVolume volume,
   scene.volumes.push_back(std::move(volume));
 }
 
-// Of one density, in a box.
+// Makes a box of uniform density.
 inline baker::SceneVolume even(float density, glm::vec3 albedo = glm::vec3(1), float g = 0.0f,
                                glm::vec3 centre = glm::vec3(0), glm::vec3 size = glm::vec3(1)) {
   baker::SceneVolume volume = medium({3, 2, 4}, [&](glm::vec3) { return density; });
@@ -47,7 +47,7 @@ inline baker::reference::Volumes volumesOf(const baker::Scene& scene) {
   return baker::reference::Volumes::build(scene, notices);
 }
 
-// Evenly over the sphere (a Fibonacci lattice).
+// Returns the i-th of `count` directions spread evenly over the sphere (a Fibonacci lattice).
 inline glm::dvec3 evenDirection(int i, int count) {
   const double y = 1.0 - (2.0 * i + 1.0) / count, r = std::sqrt(1.0 - y * y), turn = 2.39996322972865332 * i;
   return {r * std::cos(turn), y, r * std::sin(turn)};

@@ -9,7 +9,7 @@
 namespace lambent::baker::reference {
 namespace {
 
-// 2 pi ∫ f(cos) dcos, by the midpoint rule.
+// Integrates 2 pi ∫ f(cos) dcos by the midpoint rule.
 template <typename F>
 double overSphere(const F& f, int count = 200000) {
   double sum = 0.0;
@@ -28,7 +28,7 @@ TEST(Phase, LosesNoLightAndHasTheMeanCosineG) {
 }
 
 TEST(Phase, DrawsDirectionsByItsValue) {
-  // Shares of the cosine in twenty bins, and evenly around.
+  // Compares frequencies of the cosine in twenty bins; azimuths must be uniform.
   constexpr int kCount = 1 << 18, kBins = 20;
   const glm::vec3 along = glm::normalize(glm::vec3(0.3f, -0.5f, 0.8f));
   const glm::mat3 frame = frameAbout(along);

@@ -1,4 +1,4 @@
-// The picture that refines in the background is the one that `lambent reference` draws.
+// Tests that the picture refined in the background equals that of `lambent reference`.
 #include "reference/progressive.hpp"
 
 #include <chrono>
@@ -22,7 +22,7 @@ void waitABit() {
   std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-// Waits until it is done or has failed.
+// Waits until the picture is finished or has failed.
 ProgressiveStatus ended(const ProgressiveReference& reference) {
   for (;;) {
     auto status = reference.status();
@@ -105,7 +105,7 @@ TEST_F(Progressive, GivesTwoIndependentHalvesWhoseMeanIsThePicture) {
     const glm::dvec3 difference(a.texels[i] - b.texels[i]);
     apart += glm::dot(difference, difference), energy += glm::dot(mean, mean);
   }
-  // Half of their difference is the error of the mean.
+  // Half of their difference estimates the error of the mean.
   ASSERT_TRUE(snapshot->noise);
   EXPECT_NEAR(0.5 * std::sqrt(apart / energy), *snapshot->noise, 1e-4 * *snapshot->noise);
 }
@@ -132,7 +132,7 @@ TEST_F(Progressive, GoesFromCoarseToFineAndNeverBack) {
   }
   ASSERT_TRUE(coarse);
   ASSERT_EQ(coarse->image.texels.size(), fine.image.texels.size());
-  // What is seen lies where it will: the same light in each quarter of the picture.
+  // The coarse picture shows everything in its place: each quarter of the picture has the same light.
   for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
     double seen = 0.0, expected = 0.0;
     for (std::uint32_t y = quarter / 2 * 120; y < quarter / 2 * 120 + 120; ++y)
@@ -148,14 +148,14 @@ TEST_F(Progressive, BeginsAnewWithWhatChanged) {
   auto first = shared();
   const std::weak_ptr<const Scene> watch = first;
   ProgressiveReference reference(std::move(first), request);
-  // another view and another light while it works
+  // The view and the light change while it works.
   request.camera.reset();
   request.view = spec::orbitView({70, 35, 1.5f, 50}, glm::vec3(-1), glm::vec3(1), 61.0f / 43.0f);
   request.lights.push_back(spec::SphereLight{.position_ws = {0, 2, 1}, .radius_m = 0.2f});
   EXPECT_EQ(reference.restart(request), 2u);
   expectTheReference(reference);
   EXPECT_FALSE(watch.expired());
-  // a node moved, another material
+  // A node is moved, and a material is changed.
   scene.nodes[1].parent_from_node = glm::translate(glm::mat4(1), glm::vec3(0.3f, 0.1f, 0));
   scene.materials[0].base_color = glm::vec4(0.2f, 0.6f, 0.1f, 1);
   reference.restart(shared(), request);
@@ -236,13 +236,13 @@ TEST(LightCache, LightsAreAsStrongAsTheirFactorsSay) {
   EXPECT_EQ(sky({}), glm::vec3(1.5f, 2.0f, 3.0f));
   EXPECT_EQ(sky({9.0f, 0.5f, 2.0f}), glm::vec3(1.5f, 2.5f, 4.5f));
   EXPECT_EQ(sky({9.0f, 0.0f}), glm::vec3(0.5f, 1.0f, 2.0f));
-  // The file is read once: it may go meanwhile.
+  // The file is read only once, so it may be deleted meanwhile.
   std::filesystem::remove(file);
   EXPECT_EQ(sky({9.0f, 0.0f, 4.0f}), glm::vec3(2.0f, 4.0f, 8.0f));
 }
 
 TEST(Enlarged, LiesWhereThePictureDid) {
-  // A slope stays one between the outer pixels' centres; 3 pixels cover what 10 do.
+  // A linear gradient stays linear between the outer pixels' centres; 3 pixels cover the width of 10.
   const spec::RgbaImage slope{3,
                               2,
                               {glm::vec4(0.5f), glm::vec4(1.5f), glm::vec4(2.5f),  //

@@ -1,6 +1,6 @@
-// An own, plain account of the GGX lobe in double, for the tests of the reference: the formulas of
-// docs/conventions.md as they stand there, integrated over half vectors drawn by D (not by what the view
-// sees, as the reference does), on an even grid.
+// Evaluates the GGX lobe independently of the reference, in double precision: the formulas of
+// docs/conventions.md, integrated on a regular grid over half vectors distributed by D (the reference samples
+// visible normals).
 #pragma once
 
 #include <cmath>
@@ -20,12 +20,12 @@ struct Ggx {
     const double k = h.x * h.x / (alpha_t * alpha_t) + h.y * h.y / (alpha_b * alpha_b) + h.z * h.z;
     return 1.0 / (std::numbers::pi * alpha_t * alpha_b * k * k);
   }
-  // Smith's Lambda.
+  // Returns Smith's Lambda.
   double hidden(const glm::dvec3& x) const {
     const double tangent2 = (alpha_t * alpha_t * x.x * x.x + alpha_b * alpha_b * x.y * x.y) / (x.z * x.z);
     return 0.5 * (std::sqrt(1.0 + tangent2) - 1.0);
   }
-  // The two parts of f, without the cosine.
+  // Returns the factors of F0 and F90 in the BRDF, without the cosine.
   glm::dvec2 value(const glm::dvec3& v, const glm::dvec3& s) const {
     const glm::dvec3 h = glm::normalize(v + s);
     const double f = distribution(h) / (1.0 + hidden(v) + hidden(s)) / (4.0 * v.z * s.z);
@@ -33,13 +33,13 @@ struct Ggx {
     return f * glm::dvec2(1.0 - fresnel, fresnel);
   }
 
-  // ∫ g(s) ds for a g that is large where the lobe is: visit(s, weight) sums g(s) weight. All directions,
-  // also those below the surface.
+  // Computes ∫ g(s) ds for a g that is large where the lobe is: visit(s, weight) adds g(s) weight. It covers
+  // all directions, also those below the surface.
   void integrate(const glm::dvec3& v, const std::function<void(const glm::dvec3&, double)>& visit,
                  int count = 300) const {
     for (int i = 0; i < count; ++i)
       for (int j = 0; j < count; ++j) {
-        // Dense towards both ends, where steep half vectors weigh much.
+        // The grid is dense towards both ends, where steep half vectors have much weight.
         const double w = (i + 0.5) / count, share = w * w * (3.0 - 2.0 * w), stretch = 6.0 * w * (1.0 - w);
         const double phi = 2.0 * std::numbers::pi * (j + 0.5) / count;
         const double slope = std::sqrt(share / (1.0 - share));
@@ -47,12 +47,12 @@ struct Ggx {
             glm::normalize(glm::dvec3(alpha_t * slope * std::cos(phi), alpha_b * slope * std::sin(phi), 1.0));
         const double facing = glm::dot(v, h);
         if (facing <= 0.0) continue;
-        // ds = 4 v·h dh, and D(h) n·h dh is the share of the grid.
+        // ds = 4 v·h dh, and D(h) n·h dh is the grid's uniform density.
         visit(2.0 * facing * h - v, 4.0 * facing / (distribution(h) * h.z) * stretch / (1.0 * count * count));
       }
   }
 
-  // A and B: what of uniform light is reflected towards v, for F0 and F90.
+  // Returns A and B: the reflection of uniform light towards v, for F0 and F90.
   glm::dvec2 albedo(const glm::dvec3& v) const {
     glm::dvec2 sum(0.0);
     integrate(v, [&](const glm::dvec3& s, double weight) {

@@ -1,4 +1,4 @@
-// Interrupted work goes on from its checkpoint and ends in the same bytes.
+// Tests that interrupted work resumes from its checkpoint and gives the same bytes.
 #include <fstream>
 #include <limits>
 #include <thread>
@@ -27,7 +27,7 @@ class Resume : public testing::ProgramTest {
     request.options = {.size = {64, 48}, .spp = 100};
   }
 
-  // Asks for a stop once `share` of what is left is done.
+  // Requests a stop once `share` of the remaining work is done.
   Result<Report> renderUntil(const std::filesystem::path& output, double share) const {
     Progress progress;
     std::stop_source stop;
@@ -133,7 +133,7 @@ TEST(Film, RestoresOnlyWhatItSaved) {
   std::filesystem::remove(path);
 }
 
-// Version 1 had no depths: 56 bytes a pixel.
+// Writes a checkpoint of version 1, which had no depths: 56 bytes per pixel.
 TEST(Film, RefusesCheckpointsOfTheVersionBefore) {
   const auto path = std::filesystem::path(::testing::TempDir()) / fmt::format("old-{}.partial", ::getpid());
   const auto writeFilm = [&](std::uint32_t version, std::size_t doubles_a_pixel) {

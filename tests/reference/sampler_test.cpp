@@ -9,8 +9,8 @@ namespace lambent::baker::reference {
 namespace {
 
 TEST(Sampler, FillsEverySquareOfEveryPowerOfTwo) {
-  // Owen scrambling keeps Sobol's property: of 4^k points, each of the 2^k x 2^k squares has one, and each of
-  // the strips too.
+  // Owen scrambling preserves Sobol's property: of 4^k points, each of the 2^k x 2^k squares has one, and so
+  // has each strip.
   for (std::uint32_t dimension : {0u, 7u, 300u}) {
     const Sampler sampler(1, 2, 0);
     std::array<int, 64> squares{}, columns{}, rows{};

@@ -1,4 +1,4 @@
-// Lights that stand in the scene: emissive surfaces and KHR_lights_punctual.
+// Tests lights within the scene: emissive surfaces and KHR_lights_punctual.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ gltf::Material lamp(float radiance) {
 }
 
 TEST(EmissiveSurface, OfAClosedBoxIsTheGeometricSeries) {
-  // Radiance e everywhere, albedo rho: e (1 + rho + rho² + ...).
+  // With radiance e and albedo rho everywhere, the result is e (1 + rho + rho² + ...).
   Scene scene = sceneOf({testing::flipped(testing::box({0, 0, 0}, {2, 1, 3}, 2))});
   scene.materials[0].base_color = glm::vec4(0.5f, 0.5f, 0.5f, 1);
   scene.materials[0].emissive = glm::vec3(1.0f);
@@ -35,8 +35,8 @@ TEST(EmissiveSurface, OfAClosedBoxIsTheGeometricSeries) {
   expectMean(seen({}), 2.0);
 }
 
-// Lambert's formula: the form factor of a polygon seen from `p` with normal n, wound counter-clockwise as p
-// sees it.
+// Returns Lambert's form factor of a polygon as seen from `p` with normal n. The polygon is counter-clockwise
+// as seen from p.
 double formFactor(const std::vector<glm::dvec3>& corners, const glm::dvec3& p, const glm::dvec3& n) {
   double sum = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -85,7 +85,7 @@ Scene floorWithLight(const gltf::Light& light, const glm::mat4& place) {
   return scene;
 }
 
-// From above; the node shines along its -Z.
+// Returns the matrix of a light at this height that shines straight down, along its -Z.
 glm::mat4 above(float height) {
   return glm::rotate(glm::translate(glm::mat4(1), {0, height, 0}), -glm::half_pi<float>(), {1, 0, 0});
 }
@@ -140,7 +140,7 @@ TEST(PunctualLight, CastsShadowsAndAddsUp) {
   scene.nodes.push_back(node);
   const double both = 7.0 / kPi / 4.0 + 3.0 / kPi;
   expectMean(measured(scene, {0, 3, 4}, {0, 0, 0}, {}, samples(64, 0)), both, 1e-4);
-  // A card between the two lights, wider than the floor's point needs.
+  // A card is between the two lights, wider than it has to be for the floor's point.
   Scene shaded = sceneOf({testing::grid({0, 0, 0}, 20.0f, 1), testing::grid({0, 3, 0}, 1.0f, 1)});
   for (std::size_t i = 1; i < scene.nodes.size(); ++i) shaded.nodes.push_back(scene.nodes[i]);
   shaded.lights = scene.lights;

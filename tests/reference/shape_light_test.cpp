@@ -1,4 +1,5 @@
-// Spheres and discs of light that words put into the scene, against closed forms; and the scene at a time.
+// Compares sphere and disc lights, which light words add to a scene, with closed forms; and tests the scene
+// at a given time.
 #include <gtest/gtest.h>
 
 #include "reference/digest.hpp"
@@ -13,7 +14,7 @@ using testing::measured;
 using testing::samples;
 using testing::sceneOf;
 
-// Rays start 2^-19 of the floor's 20 m off it, nearer to the light by as much.
+// Rays start above the floor by 2^-19 of its 20 m, and are nearer to the light by as much.
 constexpr double kOffset = 2e-4;
 
 spec::Light sphere(glm::vec3 place, float radius, float radiance) {
@@ -29,7 +30,7 @@ Scene whiteFloor() {
   return sceneOf({testing::grid({0, 0, 0}, 20.0f, 1)});
 }
 
-// E/pi of a sphere that is wholly above the horizon: L r²/d² cos.
+// Returns E/pi of a sphere entirely above the horizon: L r²/d² cos.
 TEST(SphereLight, LightsAFloorAsAPointOfItsPowerWould) {
   for (const float x : {0.0f, 0.8f, 3.0f})
     for (const float radius : {0.001f, 0.3f, 0.999f}) {
@@ -47,7 +48,7 @@ TEST(SphereLight, IsNotSeenAndStandsInNobodysWay) {
   const auto sky = measured(whiteFloor(), {0, 1, 4}, {0, 1, 0}, {light}, samples(4));
   EXPECT_EQ(sky.mean.g, 0.0);
   EXPECT_EQ(sky.alpha, 0.0);
-  // Through one sphere the light of another arrives whole: 10 * 0.1² / 3² more.
+  // The light of another sphere passes through this one unchanged: 10 * 0.1² / 3² more.
   const auto both = measured(whiteFloor(), {0, 0.2f, 4}, {0, 0, 0}, {light, sphere({0, 3, 0}, 0.1f, 10.0f)},
                              samples(64, 0));
   expectMean(both, 10.0 * 0.25 + 10.0 * 0.01 / 9.0);
@@ -57,7 +58,7 @@ TEST(SphereLight, FromInsideComesFromEverywhereThatNothingBlocks) {
   Scene scene = whiteFloor();
   const auto around = sphere({1, -2, 0.5f}, 50.0f, 3.0f);
   expectMean(measured(scene, {0, 1, 3}, {0, 0, 0}, {around}, samples(16, 0)), 3.0);
-  // A half plane upright on the floor takes half of it.
+  // A half plane that is upright on the floor hides half of it.
   scene = sceneOf({testing::grid({0, 0, 0}, 20.0f, 1),
                    testing::turned(testing::grid({0, 0, 0}, 4000.0f, 1), -90.0f, {0, 0, 1})});
   gltf::Material black = testing::matte();
@@ -95,11 +96,11 @@ TEST(SphereLight, FillsAWhiteBallByTheGeometricSeries) {
   expectMean(seen({}), once / 0.4, 6e-3);
 }
 
-// On the axis: L r²/(r² + h²).
+// Returns E/pi on the axis: L r²/(r² + h²).
 TEST(DiscLight, LightsWhatLiesOnItsAxisInClosedForm) {
   for (const float height : {0.002f, 0.5f, 2.0f, 30.0f}) {
     const double expected = 7.0 / (1.0 + double{height} * double{height});
-    // From below the floor's own height over the point, between disc and floor.
+    // The camera is between disc and floor.
     const auto floor = measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0},
                                 {disc({0, height, 0}, {0, -1, 0}, 1.0f, 7.0f)}, samples(128, 0));
     expectMean(floor, expected, 1e-4 * expected);
@@ -119,7 +120,8 @@ TEST(DiscLight, ShinesToOneSideAndNotAlongItsPlane) {
 }
 
 TEST(DiscLight, TiltedLightsByItsFormFactor) {
-  // Far enough for one direction: L A cos cos / d² / pi, 1e-4 right at a hundred radii.
+  // The distance is large enough for one direction: L A cos cos / d² / pi, with an error of 1e-4 at a hundred
+  // radii.
   const auto light = disc({60, 80, 0}, {-1, -1, 0}, 1.0f, 1e4f);
   const double cosine = (0.6 + 0.8) / std::sqrt(2.0);
   expectMean(measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0}, {light}, samples(64, 0)), cosine * 0.8, 3e-4);
@@ -133,7 +135,7 @@ TEST(ShapeLights, HardPlacesStayFinite) {
           measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0},
                    {sphere(place, radius, 1e8f), disc(place, {0, -1, 0}, radius, 1e8f)}, samples(16, 1));
       EXPECT_TRUE(std::isfinite(report.mean.g)) << place.y << " " << radius;
-      // Not more than two lights around give a white floor, in the mean over all that is not noise.
+      // Two lights around a white floor give no more than this, in the mean over everything but noise.
       EXPECT_LE(report.mean.g, 2.1e8) << place.y << " " << radius;
     }
 }
@@ -155,7 +157,7 @@ TEST(ShapeLights, DensitiesOfBothStrategiesAgree) {
 }
 
 TEST(Time, PutsTheSceneWhereItsAnimationsHaveIt) {
-  // A ceiling that leaves the sky after half a second.
+  // A ceiling reveals the sky after half a second.
   Scene scene =
       sceneOf({testing::grid({0, 0, 0}, 8.0f, 1), testing::flipped(testing::grid({0, 0, 0}, 8.0f, 1))});
   gltf::Node& ceiling = scene.nodes[1];
@@ -183,7 +185,7 @@ TEST(Time, PutsTheSceneWhereItsAnimationsHaveIt) {
   poseAt(still, 1.0f);
   EXPECT_EQ(still.warnings.size(), 1u);
 
-  // Checkpoints of another time or another light are other pictures.
+  // A checkpoint of another time or another light belongs to another picture.
   const auto digest = [&](float time, const std::vector<spec::LocalLight>& shapes) {
     Scene posed = scene;
     poseAt(posed, time);

@@ -1,4 +1,4 @@
-// Walks through media against integrals along the ray.
+// Compares random walks through media with integrals along the ray.
 #include <gtest/gtest.h>
 
 #include "reference/eye_depth.hpp"
@@ -31,7 +31,7 @@ Estimate estimated(int count, const Draw& draw) {
   return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count)};
 }
 
-// Both trackers against the transmittance that is expected.
+// Compares both trackers with the expected transmittance.
 void expectTransmittance(const Volumes& volumes, const Ray& ray, double far, double expected) {
   constexpr int kCount = 40000;
   const Estimate ratio = estimated(kCount, [&](Stream& r) { return volumes.transmittance(ray, far, r); });
@@ -45,7 +45,7 @@ void expectTransmittance(const Volumes& volumes, const Ray& ray, double far, dou
 const glm::mat4 kWildNode =
     glm::rotate(glm::translate(glm::mat4(1), {0.2f, -0.1f, 0.3f}), 0.7f, glm::vec3(0.3f, 1, 0.2f));
 
-// A wild field of 21 x 10 x 17 voxels, empty in parts, whose blocks differ.
+// Makes an irregular field of 21 x 10 x 17 voxels, partly empty, whose blocks differ.
 Scene wild() {
   Scene scene = sceneOf({});
   std::uint32_t state = 1;
@@ -58,7 +58,8 @@ Scene wild() {
   return scene;
 }
 
-// Through its box of 1.05 x 1 x 1.02 metres: along two diagonals, nearly along an axis, and from inside.
+// Lists rays through its box of 1.05 x 1 x 1.02 metres: along two diagonals, nearly along an axis, and from
+// inside.
 std::vector<Ray> raysThroughWild() {
   const auto ray = [](glm::vec3 from, glm::vec3 to, float length) {
     const glm::vec3 a(kWildNode * glm::vec4(from, 1)), b(kWildNode * glm::vec4(to, 1));
@@ -106,7 +107,7 @@ TEST(EyeDepth, IsTheIntegralOfTheDensityAlongTheRay) {
     }
     EXPECT_NEAR(eye.to(kFar), sum, 2e-5);
     EXPECT_EQ(eye.to(inside->begin), 0.0);
-    // And back.
+    // place() is the inverse of to().
     for (const double share : {1e-9, 0.01, 0.3, 0.77, 1.0})
       EXPECT_NEAR(eye.to(eye.place(share * sum)), share * sum, 1e-6 * sum + 1e-6) << share;
   }
@@ -136,7 +137,7 @@ TEST(Tracking, ThroughALinearRampIsTheExponentialOfItsIntegral) {
   EXPECT_NEAR(EyeDepth(volumes, along, 0.0, 13.0).to(13.0), integral(10.0), 1e-5);
   EXPECT_NEAR(EyeDepth(volumes, along, 0.0, kFar).to(kFar), 25.6, 1e-4);
   for (const double x : {0.4, 3.0, 9.5}) expectTransmittance(volumes, along, x + 3.0, std::exp(-integral(x)));
-  // Slanted, and backwards.
+  // The ray is slanted, or reversed.
   const glm::vec3 dir = glm::normalize(glm::vec3(-1, 0.2f, -0.1f));
   const Ray back{glm::vec3(12, 1, 3), dir, 0};
   const double length = 10.0 / double{-dir.x};
@@ -175,7 +176,7 @@ TEST(Tracking, OfTwoVolumesAddsTheirExtinctions) {
   EXPECT_GT(b.to(kFar), 0.5);
   EXPECT_NEAR(eye.to(kFar), a.to(kFar) + b.to(kFar), 1e-6);
   expectTransmittance(volumes, ray, kFar, std::exp(-eye.to(kFar)));
-  // Whose the collision is goes by the extinctions there, in both ways to find one.
+  // A collision belongs to a volume in proportion to its extinction there, for both ways of finding one.
   double expected = 0.0, picked = 0.0;
   constexpr int kSteps = 200000;
   const double share = -std::expm1(-eye.to(kFar));
@@ -204,7 +205,7 @@ TEST(Tracking, CountsMetresOfTheWorldWhateverTheNodesScaleAndTheRaysLength) {
 }
 
 TEST(Tracking, FromTheMiddleOfACubeLetsThroughWhatTheTableSays) {
-  // Literature 7.8: mean transmittance over all directions.
+  // Literature 7.8 gives the mean transmittance over all directions.
   const double expected[][2] = {{1.0, 0.5445496}, {4.0, 0.0908467}, {16.0, 0.0001013}};
   for (const auto& [sigma, mean] : expected) {
     Scene scene = sceneOf({});
@@ -227,7 +228,7 @@ TEST(Tracking, FromTheMiddleOfACubeLetsThroughWhatTheTableSays) {
 }
 
 TEST(Tracking, InASphereLetsThroughWhatTheTableSays) {
-  // Literature 7.8, radius 1. Voxels at the rim hold the share of them that lies inside.
+  // The values are from literature 7.8, for radius 1. Voxels at the rim have the fraction that lies inside.
   const auto ball = medium({64, 64, 64}, [](glm::vec3 p) {
     int inside = 0;
     for (int k = 0; k < 64; ++k) {
@@ -252,7 +253,7 @@ TEST(Tracking, InASphereLetsThroughWhatTheTableSays) {
       const Ray ray{glm::vec3(0, radius, 0), glm::vec3(testing::evenDirection(i, kCount)), 0};
       sum += std::exp(-EyeDepth(volumes, ray, 0.0, kFar).to(kFar)) / kCount;
     }
-    // The rim is as soft as a voxel: 1/31 of the radius, whose square and density are what is lost.
+    // The rim is as soft as a voxel, 1/31 of the radius. The error is of its square and of the density.
     EXPECT_NEAR(sum, mean, 0.002 * mean * (1.0 + sigma)) << sigma << " " << radius;
   }
 }

@@ -1,4 +1,4 @@
-// Pictures of media against closed forms.
+// Compares pictures of media with closed forms.
 #include <gtest/gtest.h>
 
 #include "runtime/sh/zonal.hpp"
@@ -24,7 +24,7 @@ Scene cloud(float density, glm::vec3 albedo = glm::vec3(1), float g = 0.0f) {
   return scene;
 }
 
-// A directional light of the scene: `lux` on what faces it, shining along `along`.
+// Makes a directional light of the scene, shining along `along`, with `lux` on a surface that faces it.
 void shine(Scene& scene, glm::vec3 along, float lux) {
   gltf::Light light;
   light.type = gltf::Light::Type::Directional;
@@ -79,8 +79,8 @@ TEST(VolumePicture, OfABlackVolumeIsTheSkyThroughIt) {
 }
 
 TEST(VolumePicture, InAWhiteFurnaceShowsNothing) {
-  // Every path of an albedo of 1 brings the light's radiance, whatever the density, the phase function and
-  // the surfaces about: without noise.
+  // Every path with albedo 1 returns the light's radiance without noise, for any density, phase function and
+  // surfaces.
   for (const float density : {1.0f, 4.0f, 16.0f})
     for (const float g : {0.0f, 0.8f}) {
       Scene scene =
@@ -100,7 +100,7 @@ TEST(VolumePicture, InAWhiteFurnaceShowsNothing) {
 }
 
 TEST(VolumePicture, InAWhiteFurnaceOfADiscThatIsTheWholeSkyShowsOneWithinItsNoise) {
-  // The same light by next-event estimation through the medium, weighed against the phase function.
+  // Tests the same light by next-event estimation through the medium, combined with phase function sampling.
   const spec::SunLight whole{
       .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 180, .radiance = glm::vec3(1)};
   const int spp[] = {256, 128, 64};
@@ -124,8 +124,8 @@ TEST(VolumePicture, CutToOneBandIsAFurnaceToo) {
   EXPECT_NEAR(seen.mean.g, 1.0, 2e-5);
 }
 
-// Radiance that arrives in the middle of the cube, the mean over all directions: by symmetry that over one
-// face of a cube map. The camera stands inside the volume.
+// Returns the mean over all directions of the radiance that arrives in the middle of the cube: by symmetry,
+// that over one face of a cube map. The camera is inside the volume.
 glm::dvec3 meanInTheMiddle(const Scene& medium, std::uint32_t spp) {
   Scene scene = medium;
   testing::lookAt(scene, {0, 0, 0}, {0, 0, -1}, 90.0f);
@@ -144,12 +144,12 @@ glm::dvec3 meanInTheMiddle(const Scene& medium, std::uint32_t spp) {
 }
 
 TEST(VolumePicture, ScattersInACubeAsTheTableSays) {
-  // Literature 7.8, albedo 0.5, 0.9 and 1, good to 0.001.
+  // The values are from literature 7.8, for albedo 0.5, 0.9 and 1, exact to 0.001.
   const std::pair<float, glm::dvec3> table[] = {
       {1.0f, {0.716, 0.930, 1.0}}, {4.0f, {0.210, 0.651, 1.0}}, {16.0f, {0.0007, 0.052, 1.0}}};
   for (const auto& [density, expected] : table) {
     const glm::dvec3 seen = meanInTheMiddle(cloud(density, {0.5f, 0.9f, 1.0f}), density > 10.0f ? 32 : 128);
-    // 30,000 and 130,000 paths.
+    // These are 30,000 and 130,000 paths.
     const double noise = density > 10.0f ? 0.003 : 0.0025;
     EXPECT_NEAR(seen.r, expected.r, noise) << density;
     EXPECT_NEAR(seen.g, expected.g, noise) << density;
@@ -212,8 +212,8 @@ TEST(VolumePicture, ThinIsTheLightConvolvedWithThePhaseFunction) {
 }
 
 TEST(VolumePicture, CutToFiveBandsIsSignedInsideAVolume) {
-  // Single scattering in a dense cube under a small sun, against a sum over directions and places with the
-  // cube's chords.
+  // Compares single scattering in a dense cube under a small sun with a sum over directions and places, which
+  // uses the cube's chords.
   const spec::SunLight sun{.azimuth_deg = 0, .elevation_deg = 90, .angle_deg = 5, .radiance = glm::vec3(100)};
   const auto light = spec::loadDistantLights({sun})->lightVector().truncated(4);
   const double density = 3.0, y = -0.3;
@@ -239,7 +239,7 @@ TEST(VolumePicture, CutToFiveBandsIsSignedInsideAVolume) {
 }
 
 TEST(VolumePicture, UnderASphereOfLightIsThatUnderAPointOfTheSameStrength) {
-  // Small and near, so both are the same light; one by its area, one by itself.
+  // The two lights are small and near, so they are equivalent; one is sampled by area, the other as a whole.
   const glm::vec3 there(0.9f, 1.0f, 0.3f);
   const float radius = 0.02f, candela = 5.0f;
   Scene pointed = cloud(2.0f, glm::vec3(0.8f), 0.3f);
@@ -267,12 +267,12 @@ TEST(VolumePicture, UnderASphereOfLightIsThatUnderAPointOfTheSameStrength) {
 }
 
 TEST(VolumePicture, FromInsideALightSphereIsAFurnace) {
-  // The sphere stands within the medium and around it.
+  // The sphere surrounds the medium.
   const spec::SphereLight around{.position_ws = {0, 0, 0}, .radius_m = 5, .radiance = glm::vec3(1)};
   const auto seen = measured(cloud(4.0f), kFront, kBack, {around}, samples(64));
   // Unseen by the eye: what it sends is what is scattered.
   EXPECT_NEAR(seen.mean.g, 1.0 - transmittanceOf(4.0f), 1e-5);
-  // One inside the medium sends to what is about it.
+  // A sphere inside the medium lights what is around it.
   const spec::SphereLight within{.position_ws = {0, 0, 0}, .radius_m = 0.2f, .radiance = glm::vec3(1)};
   const auto lit = measured(cloud(4.0f), kFront, kBack, {within}, samples(64));
   EXPECT_GT(lit.mean.g, 0.01);
@@ -280,7 +280,7 @@ TEST(VolumePicture, FromInsideALightSphereIsAFurnace) {
 }
 
 TEST(VolumePicture, ShadesTheGroundByItsOpticalDepth) {
-  // A sheet over the ground, the sun straight above: exp(-depth) of its light is left.
+  // The sun is straight above a sheet over the ground: exp(-depth) of its light passes.
   for (const float density : {0.5f, 3.0f}) {
     Scene scene = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
     place(scene, even(density, glm::vec3(0), 0, {0, 1, 0}, {3, 1, 3}));
@@ -289,7 +289,7 @@ TEST(VolumePicture, ShadesTheGroundByItsOpticalDepth) {
     const auto seen = measured(scene, {0, 0.3f, 0.8f}, {0.1f, 0, 0.1f}, {sun}, samples(256));
     expectMean(seen, open * transmittanceOf(density), 1e-3);
     EXPECT_EQ(seen.alpha, 1.0);
-    // And a lamp in it, a metre up.
+    // A lamp is in it, too, a metre above the ground.
     shine(scene, {0, -1, 0}, 3.0f);
     expectMean(measured(scene, {0, 0.3f, 0.8f}, {0.1f, 0, 0.1f}, kDark, samples(256)),
                3.0 / std::numbers::pi * transmittanceOf(density));
@@ -297,7 +297,7 @@ TEST(VolumePicture, ShadesTheGroundByItsOpticalDepth) {
 }
 
 TEST(VolumePicture, ShowsSurfacesThroughItAndFromWithin) {
-  // An emissive wall behind half a metre of a black medium.
+  // An emissive wall is behind half a metre of a black medium.
   Scene scene = sceneOf({testing::box({0, 0, -1}, {3, 3, 2}, 1)});
   scene.materials[0].emissive = glm::vec3(2);
   scene.materials[0].base_color = glm::vec4(0, 0, 0, 1);
@@ -305,7 +305,7 @@ TEST(VolumePicture, ShowsSurfacesThroughItAndFromWithin) {
   const auto from_outside = measured(scene, kFront, kBack, kDark, samples(4));
   EXPECT_NEAR(from_outside.mean.g, 2.0 * std::exp(-1.0), 1e-5);
   EXPECT_EQ(from_outside.alpha, 1.0);
-  // The near plane stands a millimetre or so before an eye that is within.
+  // The near plane is a millimetre or so in front of a camera that is inside.
   const auto from_within = measured(scene, {0, 0, 0.25f}, {0, 0, -1}, kDark, samples(4));
   EXPECT_NEAR(from_within.mean.g, 2.0 * std::exp(-0.5), 3e-3);
   const auto away = measured(scene, {0, 0, 0.25f}, {0, 0, 3}, kDark, samples(4));
@@ -337,7 +337,7 @@ TEST(VolumePicture, OfOneHiddenInAMeshIsThatOfTheMesh) {
 }
 
 TEST(VolumePicture, OfTwoThatOverlapIsThatOfTheirSum) {
-  // Where one of albedo 1 and one twice as dense of albedo 0.4 fill the same place, the albedo is 0.6.
+  // If a medium of albedo 1 and one twice as dense of albedo 0.4 overlap, the albedo is 0.6.
   Scene two = cloud(1.0f, glm::vec3(1));
   place(two, even(2.0f, glm::vec3(0.4f)));
   const spec::SunLight sun{.azimuth_deg = 60, .elevation_deg = 40, .angle_deg = 30, .radiance = glm::vec3(1)};
@@ -349,8 +349,8 @@ TEST(VolumePicture, OfTwoThatOverlapIsThatOfTheirSum) {
 }
 
 TEST(VolumePicture, CountsReflectionsBySurfacesOnly) {
-  // Over a white ground, all of it under uniform light: without a bounce the ground does not light the
-  // medium; with one it does, and what the medium scatters is whole.
+  // The medium is over a white ground under uniform light. Without a bounce the ground does not light the
+  // medium; with one it does, and scattering in the medium is complete.
   Scene scene = sceneOf({testing::grid({0, -0.6f, 0}, 40.0f, 1)});
   place(scene, even(1.0f));
   const auto seen = [&](std::uint32_t bounces) {
@@ -361,7 +361,7 @@ TEST(VolumePicture, CountsReflectionsBySurfacesOnly) {
   EXPECT_LT(seen(0), through + 0.6 * (1.0 - through));
   EXPECT_GT(seen(1), through + 0.85 * (1.0 - through));
   EXPECT_NEAR(seen(60), 1.0, 1e-3);
-  // Without surfaces one bounce is all that there is.
+  // Without surfaces one bounce is complete.
   const auto open = [&](std::optional<std::uint32_t> bounces) {
     return measured(cloud(16.0f), kFront, kBack, {uniform(1.0f)}, samples(16, bounces)).mean.g;
   };

@@ -1,4 +1,4 @@
-// Answers known beforehand, from the scene through Draco and the codes and back.
+// Compares whole bakes, from the scene through Draco and the codes and back, with known answers.
 #include "tests/stability/end_to_end_bake.hpp"
 
 namespace lambent {
@@ -17,7 +17,7 @@ TEST_F(ClosedForm, AClosedBoxIsDarkInside) {
   for (const auto& draw : bakeAndDecode(sceneOf({flipped(outer)})))
     for (std::size_t v = 0; v < draw.mesh.positions.size(); ++v)
       EXPECT_LT(std::abs(draw.uniformRadiance(v)), kCodingTolerance) << v;
-  // With a wall of some thickness, and something inside.
+  // The walls now have a thickness, and there is a ball inside.
   const auto draws = bakeAndDecode(
       sceneOf({outer, flipped(box({0, 0, 0}, {1.9f, 1.9f, 1.9f}, 8)), icosphere({0.2f, 0, 0}, 0.4f, 2)}));
   ASSERT_EQ(draws.size(), 3u);
@@ -34,8 +34,8 @@ TEST_F(ClosedForm, AnOpenPlaneSeesAllLight) {
       EXPECT_NEAR(draw.uniformRadiance(v), 1.0f, kCodingTolerance) << v;
 }
 
-// At height h over a disc of radius r the cosine-weighted share that the disc hides is r²/(r² + h²); seen
-// from the plane's middle under a ball of radius r with its centre at d, it is (r/d)².
+// At height h over a disc of radius r, the disc hides the cosine-weighted fraction r²/(r² + h²). In the
+// middle of the plane under a ball of radius r with its centre at d, it is (r/d)².
 TEST_F(ClosedForm, UnderABallTheFloorLosesTheSquareOfItsSine) {
   const auto draws = bakeAndDecode(sceneOf({grid({0, 0, 0}, 4.0f, 16), icosphere({0, 1.25f, 0}, 1.0f, 4)}));
   ASSERT_EQ(draws.size(), 2u);
@@ -43,7 +43,8 @@ TEST_F(ClosedForm, UnderABallTheFloorLosesTheSquareOfItsSine) {
   for (std::size_t v = 0; v < draws[0].mesh.positions.size(); ++v)
     if (glm::length(draws[0].mesh.positions[v]) < 1e-3f) {
       met = true;
-      // 256 stratified rays leave 1 %; chords of the ball hide a little less.
+      // 256 stratified rays have an error of 1 %, and the facets of the ball hide a little less than the
+      // ball.
       EXPECT_NEAR(draws[0].uniformRadiance(v), 1.0f - 0.64f, 0.01f);
     }
   EXPECT_TRUE(met);

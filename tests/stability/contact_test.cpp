@@ -1,5 +1,5 @@
-// A body on a floor that is moved as the editor moves bodies: it stands on the floor wherever it stands. Key
-// lights come by shadow maps, the rest of the light by its neighborhood, and neither darkens twice.
+// Tests a body on a floor that is moved as the editor moves bodies, and keeps its contact shadow. Key lights
+// use shadow maps, the rest of the light uses its neighborhood, and nothing is darkened twice.
 #include <cmath>
 #include <numbers>
 
@@ -22,7 +22,7 @@ constexpr float kAlbedo = 0.6f;                 // of the floor
 
 using Contact = testing::GpuTest;
 
-// A black box, and a floor of 4 m on which it stands at `place` when the scene is baked.
+// Makes a black box, and a floor of 4 m; the box is at `place` when the scene is baked.
 assets::Scene boxAt(const glm::vec3& place) {
   assets::Scene scene = named("contact");
   add(scene, "floor", assets::plane({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, 0.1f), glm::vec3(kAlbedo), {0, 0, 0},
@@ -32,22 +32,22 @@ assets::Scene boxAt(const glm::vec3& place) {
   return scene;
 }
 
-// What a point of the floor sees of white sky beside the middle of the box's side, so far from it: all but
-// the side, which is a rectangle that stands at right angles on the floor.
+// Returns the fraction of a white sky that a point of the floor sees at this distance from the middle of the
+// box's side: all but the side, a rectangle that is perpendicular to the floor.
 float openBeside(float distance) {
   const float x = kHeight / kHalf, y = distance / kHalf, root = std::sqrt(x * x + y * y);
   return 1.0f - 2.0f * (std::atan(1.0f / y) - y / root * std::atan(1.0f / root)) / (2.0f * kPi);
 }
 
-// E/pi beside the box's side towards +X.
+// Returns E/pi beside the box's side towards +X.
 float seenBeside(Show& show, const glm::vec3& place, float distance) {
   const glm::vec3 at = place + glm::vec3(kHalf + distance, 0, 0);
   return show.patch(at + glm::vec3(1.5f, 1.2f, 0.1f), at).g / kAlbedo;
 }
 
-// Half the sizes of the sides of what it stands on, and more.
+// The body is baked off the floor or on it, and then moved to two places on it.
 const glm::vec3 kElsewhere(6, 3, 0), kHere(0, 0, 0), kThere(0.73f, 0, 0.41f);
-// Within less than this the grid around the body, whose points stand so far apart, blurs the contact.
+// At smaller distances the spacing of the grid's points blurs the contact.
 constexpr float kNear = 0.06f;
 
 }  // namespace
@@ -61,7 +61,7 @@ TEST_F(Contact, ABoxTakesTheSkysLightFromWhatItStandsOnWhereverItWasBaked) {
         EXPECT_NEAR(seenBeside(show, place, distance), openBeside(distance), 0.03f)
             << distance << " m beside it, baked at " << baked.x << ", standing at " << place.x;
     }
-    // What it took it gives back.
+    // When the body leaves, the floor gets its light back.
     show.move("body", kElsewhere);
     EXPECT_NEAR(seenBeside(show, kHere, kNear), 1.0f, 0.01f);
   }
@@ -82,7 +82,7 @@ TEST_F(Contact, InTheSunNothingIsDarkenedTwice) {
   constexpr float kSky = 0.3f, kRadius = 2.0f, kRadiance = 700.0f, kElevation = 45.0f;
   const float sine = std::sin(glm::radians(kRadius));
   const float sun = kRadiance * sine * sine * std::sin(glm::radians(kElevation));
-  // From behind the box, so that its shadow falls on the side towards +X; and from the front.
+  // The sun comes from behind the box, so that the shadow falls on the side towards +X, or from the front.
   for (const bool lit : {false, true}) {
     Show show(boxAt(kElsewhere), {constantLight(kSky), spec::SunLight{.azimuth_deg = lit ? 90.0f : -90.0f,
                                                                       .elevation_deg = kElevation,

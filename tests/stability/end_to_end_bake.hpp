@@ -1,5 +1,5 @@
-// Scenes baked to a file and read back, and what every bake must hold: finite, and never more light than
-// comes.
+// Bakes scenes to a file and reads them back. It checks what every bake must hold: finite values, and no more
+// light than arrives.
 #pragma once
 
 #include "baker/bake/bake.hpp"
@@ -9,18 +9,18 @@
 
 namespace lambent::testing {
 
-// How far coded transfer may leave [0, 1] under uniform light.
+// Coded transfer may leave [0, 1] by this much under uniform light.
 inline constexpr float kCodingTolerance = 1e-3f;
 
 class EndToEndBake : public ProgramTest {
  protected:
-  // Coded finely: what is looked for here is not the error of coding, whose bound is an RMS.
+  // The coding is fine, because these tests do not look for its error, whose bound is an RMS.
   static baker::BakeOptions options() {
     baker::BakeOptions options;
     options.quality = baker::Quality::Draft;
     options.order = 4;
     options.error_bound = 1e-4f;
-    options.bounces = 0;  // direct light has closed forms, and white scenes with all their light are white
+    options.bounces = 0;  // direct light has closed forms, and a white scene with all bounces is white
     return options;
   }
 
@@ -38,7 +38,7 @@ class EndToEndBake : public ProgramTest {
     return std::move(*draws);
   }
 
-  // The lightest and the darkest vertex under uniform light.
+  // Returns the values of the darkest and the brightest vertex under uniform light.
   static std::pair<float, float> range(const std::vector<DecodedDraw>& draws) {
     std::pair<float, float> range{1e30f, -1e30f};
     for (const DecodedDraw& draw : draws)

@@ -1,4 +1,4 @@
-// Glossy surfaces from the scene through the baker to the frame, where the answer is known.
+// Tests glossy surfaces from the scene through the baker to the frame, with known answers.
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +16,7 @@ using testing::constantLight;
 using testing::named;
 using testing::Show;
 
-// A white ball of a material that reflects all that it gets, or as much as one lobe of GGX does.
+// Makes a white ball of a material that reflects all its light, or as much as one lobe of GGX does.
 assets::Scene ball(float roughness, float metallic, float anisotropy = 0.0f) {
   assets::Scene scene = named("ball");
   add(scene, "ball", assets::sphere(1.0f, 12), glm::vec3(1.0f), glm::vec3(0.0f), /*movable=*/false);
@@ -27,7 +27,7 @@ assets::Scene ball(float roughness, float metallic, float anisotropy = 0.0f) {
   return scene;
 }
 
-// On the ball where the view makes this angle with the normal.
+// Returns what the ball shows where the view makes this angle with the normal.
 glm::vec3 seenAt(Show& show, float angle_deg) {
   const float a = glm::radians(angle_deg);
   const glm::vec3 normal(std::sin(a), 0.0f, std::cos(a));

@@ -1,4 +1,5 @@
-// Probes with texels that are not finite or absurdly bright: the light stays finite and the repair is told.
+// Tests light probes with texels that are not finite or absurdly bright: the light stays finite and the
+// repair is reported.
 #include <limits>
 
 #include "runtime/lighting/environment.hpp"
@@ -9,7 +10,7 @@ namespace lambent {
 
 class HostileLight : public testing::ProgramTest {
  protected:
-  // A grey sky of 32 x 16 with `poison` in two of its texels.
+  // Makes a grey sky of 32 x 16 with `poison` in two of its texels.
   Result<lighting::Environment> skyWith(float poison) const {
     spec::RgbaImage image{32, 16, std::vector<glm::vec4>(32 * 16, glm::vec4(1.0f))};
     image.texels[100] = image.texels[101] = glm::vec4(glm::vec3(poison), 1.0f);
@@ -32,7 +33,7 @@ TEST_F(HostileLight, TexelsThatAreNotFiniteCountAsBlackAndAreTold) {
     EXPECT_TRUE(isFinite(sky->light()));
     ASSERT_EQ(sky->notices().size(), 1u);
     EXPECT_NE(sky->notices()[0].find("2 texels"), std::string::npos) << sky->notices()[0];
-    // Two of 512 texels are missing: less than the share of two texels at the equator.
+    // Two of 512 texels are missing, which is less than the fraction of two texels at the equator.
     EXPECT_NEAR(sky->light().c[0].x, 3.5449077f, 3.5449077f * 2.0f / 512.0f * 1.6f);
     sky->setTurn(33.0f);
     EXPECT_TRUE(isFinite(sky->light()));

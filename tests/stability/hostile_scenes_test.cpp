@@ -1,4 +1,4 @@
-// Scenes that tools do produce and bakers trip over, from the scene to the bytes and back.
+// Tests, from the scene to the bytes and back, scenes that tools produce and bakers stumble over.
 #include <random>
 
 #include "baker/import/gltf.hpp"
@@ -19,7 +19,7 @@ using testing::sceneOf;
 
 using HostileScene = testing::EndToEndBake;
 
-// A floor with a ball on it.
+// Makes a floor with a ball on it.
 baker::Scene ballOnFloor(float scale, glm::vec3 place) {
   return sceneOf(
       {grid(place, 4.0f * scale, 16), icosphere(place + glm::vec3(0, 0.6f * scale, 0), 0.5f * scale, 2)});
@@ -42,7 +42,8 @@ TEST_F(HostileScene, OfAnySizeAndPlaceLooksTheSame) {
   for (const float scale : {1e-6f, 1e-3f, 1e3f, 1e6f})
     EXPECT_NEAR(meanRadiance(bakeAndDecode(ballOnFloor(scale, glm::vec3(0.0f)))), reference, 2e-3f) << scale;
   EXPECT_NEAR(meanRadiance(bakeAndDecode(ballOnFloor(1.0f, glm::vec3(1e4f)))), reference, 5e-3f);
-  // A thousand kilometres away floats are 6 cm apart and rays stand off by metres: what is left is in range.
+  // At a distance of 1000 km floats are 6 cm apart and rays start metres off surfaces, so only the range is
+  // checked.
   EXPECT_FALSE(bakeAndDecode(ballOnFloor(1.0f, glm::vec3(1e6f, 0, 0))).empty());
 }
 
@@ -100,7 +101,7 @@ TEST_F(HostileScene, WithAHundredthOfItsNormalsFlippedStaysInRange) {
     glm::vec3& normal = ball.normals[random() % ball.normals.size()];
     normal = -normal;
   }
-  // A mean over vertices, of which refinement would add many around those that are flipped.
+  // The test uses a mean over vertices, and refinement would add many around the flipped ones.
   baker::BakeOptions as_it_is = options();
   as_it_is.refine_bound = 0.0f;
   EXPECT_GT(meanRadiance(bakeAndDecode(sceneOf({ball}), as_it_is)), 0.98f);
@@ -117,7 +118,7 @@ TEST_F(HostileScene, OfSliversIsOpen) {
   for (std::uint32_t i = 0; i < 40; ++i)
     for (const std::uint32_t corner : {0u, 1u, 2u, 1u, 3u, 2u}) slivers.indices.push_back(2 * i + corner);
   bakeAndDecode(sceneOf({slivers}));
-  // The same among ordinary triangles.
+  // Slivers among ordinary triangles must give the same.
   EXPECT_NEAR(meanRadiance(bakeAndDecode(sceneOf({joined(grid({50, 0, 0}, 100.0f, 16), slivers)}))), 1.0f,
               0.02f);
 }

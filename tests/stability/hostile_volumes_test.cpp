@@ -1,4 +1,4 @@
-// Volumes that break bakers, from the scene to the bytes and back.
+// Tests, from the scene to the bytes and back, volumes that could break a baker.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -12,7 +12,7 @@ namespace {
 
 class HostileVolume : public testing::ProgramTest {
  protected:
-  // A cube of fog of so many voxels at a node of its own, of edge 1 and centred.
+  // Adds a centred cube of fog, of edge 1 and with this many voxels, at a node of its own.
   static void addFog(baker::Scene& scene, std::uint32_t voxels, float sigma,
                      const glm::mat4& place = glm::mat4(1.0f)) {
     baker::SceneVolume volume;
@@ -60,7 +60,7 @@ class HostileVolume : public testing::ProgramTest {
     return {};
   }
 
-  // Uniform light of radiance 1 gives between nothing and 1.
+  // Uniform light of radiance 1 gives values in 0..1.
   static void expectInRange(const Baked& baked) {
     const double root = std::sqrt(4.0 * std::numbers::pi);
     for (std::size_t i = 0; i < baked.vectors.size(); ++i) {
@@ -133,8 +133,8 @@ TEST_F(HostileVolume, InsideAClosedMeshIsDark) {
   for (const float value : bakeFog(scene).vectors) ASSERT_NEAR(value, 0.0f, 1e-4f);
 }
 
-// Density is in metres of the world: what is doubled in size and halved in density looks the same, wherever
-// it stands and however it is turned or mirrored.
+// Density is per metre in world space: a volume of twice the size and half the density looks the same, for
+// any placement, rotation and mirroring.
 TEST_F(HostileVolume, OfAnySizePlaceAndTurnHasTheTransferOfItsOpticalDepth) {
   const auto meanOf = [&](const glm::mat4& place, float sigma) {
     baker::Scene scene;

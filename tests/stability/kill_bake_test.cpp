@@ -1,5 +1,5 @@
-// kill -9 in the middle of a bake, again and again at random moments: the bundle comes out as of one that
-// nobody touched, byte for byte, nothing broken is ever left under its name, and little work is done twice.
+// Kills a bake with kill -9 at random moments: the bundle is byte for byte that of an undisturbed bake, no
+// broken file ever has its name, and little work is done twice.
 #include <array>
 #include <chrono>
 #include <random>
@@ -30,7 +30,7 @@ class KilledBake : public testing::ProgramTest {
     ASSERT_TRUE(written) << written.error().line();
   }
 
-  // Every kind of work: diffuse and glossy surfaces, a body with a neighborhood, a cloud.
+  // Makes a scene with every kind of work: diffuse and glossy surfaces, a body with a neighborhood, a cloud.
   static assets::Scene scene() {
     assets::Scene scene = assets::hello();
     assets::Material brass{.name = "brass", .base_color = {0.9f, 0.7f, 0.4f}};
@@ -97,7 +97,7 @@ class KilledBake : public testing::ProgramTest {
             "--json"};
   }
 
-  // Ends it after so many seconds, unless it ends before.
+  // Kills it after this many seconds, unless it ends before.
   struct Ended {
     bool killed = false;
     int exit_code = -1;
@@ -137,7 +137,7 @@ TEST_F(KilledBake, TwentyTimesAtRandomMomentsItComesToTheSameBytesAndLosesLittle
   const Ended whole = runOut(arguments("whole.lmb.glb", "whole-cache"));
   ASSERT_EQ(whole.exit_code, 0) << bytesOf(log("err"));
   const std::string wanted = bytesOf(folder / "whole.lmb.glb");
-  // What a run costs that finds everything.
+  // Measures a run that finds everything in the cache.
   std::filesystem::remove(folder / "whole.lmb.glb");
   const Ended found = runOut(arguments("whole.lmb.glb", "whole-cache"));
   ASSERT_EQ(found.exit_code, 0);
@@ -160,7 +160,7 @@ TEST_F(KilledBake, TwentyTimesAtRandomMomentsItComesToTheSameBytesAndLosesLittle
     }
     ASSERT_EQ(ended.exit_code, 0) << bytesOf(log("err"));
     ASSERT_EQ(bytesOf(output), wanted) << "after " << kills << " kills";
-    // From the start again.
+    // The bake starts from the beginning again.
     ++finished;
     std::filesystem::remove(output);
     std::filesystem::remove_all(folder / cache);
@@ -169,8 +169,8 @@ TEST_F(KilledBake, TwentyTimesAtRandomMomentsItComesToTheSameBytesAndLosesLittle
   while (kills < kKills) ASSERT_NO_FATAL_FAILURE(run(moment(random)));
   ASSERT_NO_FATAL_FAILURE(run(1e9));
 
-  // With each kill the start, and on average half of what lies between two checkpoints; as much again for
-  // pieces that are longer. A bake that kept nothing would lose half of `whole` with each kill.
+  // Each kill costs the start-up, and on average half of the work between two checkpoints; the bound allows
+  // as much again for longer pieces. A bake without checkpoints would lose half of `whole` per kill.
   const double lost_s = cpu_s - finished * whole.cpu_s;
   const double allowed_s = kills * (found.cpu_s + kThreads * kCheckpoint_s);
   EXPECT_LT(lost_s, allowed_s) << "in " << kills << " kills and " << finished << " finished bakes of "

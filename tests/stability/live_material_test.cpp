@@ -1,4 +1,4 @@
-// Materials that are changed while they are shown, against scenes baked with them.
+// Compares materials that are changed while they are shown with scenes baked with them.
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ struct Look {
   float roughness = 1.0f, metallic = 0.0f;
 };
 
-// A ball that shadows the floor that it lies on.
+// Makes a ball that shadows the floor on which it lies.
 Show show(const Look& look, int bounces) {
   assets::Scene scene = named("ball on a floor");
   add(scene, "floor", assets::box({-3.0f, -1.2f, -3.0f}, {3.0f, -1.0f, 3.0f}, 0.5f), glm::vec3(0.7f),
@@ -90,7 +90,7 @@ TEST_F(LiveMaterials, ARoughnessOnDirectLightIsThatOfARebake) {
   Show baked = show(shiny, /*bounces=*/0);
   const glm::vec3 expected = ballOf(baked);
   EXPECT_GT(glm::distance(before, expected), 0.05f * glm::length(expected));
-  // Both are coded, each to what its own lobes show.
+  // Each of the two is coded for what its own lobes show.
   EXPECT_LT(glm::distance(ball, expected), 0.02f * glm::length(expected));
 }
 

@@ -1,5 +1,5 @@
-// Bodies that light and shadow each other, and lights that stand where they should not: from the scene
-// through the baker to the frame, in pictures of a few pixels with known answers.
+// Tests bodies that light and shadow each other, and lights in awkward places, from the scene through the
+// baker to the frame, in pictures of a few pixels with known answers.
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -102,8 +102,8 @@ TEST_F(MovingLight, ABodyTakesTheLightOfALampThatIsBakedIntoTheFloorItStandsOn) 
                          .rotation = glm::angleAxis(-0.5f * std::numbers::pi_v<float>, glm::vec3(1, 0, 0)),
                          .spot = 0});
   Show show(scene, {constantLight(0.0f)}, 1);
-  // Behind the body, as the lamp sees it, and well before it. A column knows nothing of bodies that come, so
-  // their grids must, also where the lamp stands close beside the body.
+  // The places are behind the body, as seen from the lamp, and well in front of it. A lamp's transfer does
+  // not include bodies that move, so their grids must, also if the lamp is close to the body.
   const glm::vec3 eye(1.5f, 2.0f, 0.3f), other_eye(-1.5f, 2.0f, 0.3f), behind(0.65f, 0, 0),
       before(-0.6f, 0, 0);
   const float lit = show.patch(eye, behind).g, open = show.patch(other_eye, before).g;
@@ -193,7 +193,7 @@ TEST_F(MovingLight, MirrorsOfEmissiveLightFacingEachOtherComeToRest) {
   add(scene, "right", assets::plane({0, -1, -1}, {0, 0, 2}, {0, 2, 0}, 0.5f), glm::vec3(0.95f), {0.25f, 0, 0},
       true, glm::vec3(1.0f));
   Show show(scene, {constantLight(0.0f)}, 1);
-  // Three quarters of it goes on at each bounce: 25 of them until a thousandth is left.
+  // Each bounce keeps three quarters of the light: after 25 of them a thousandth is left.
   const float seen = show.patch({0.2f, 0, 0.9f}, {-0.25f, 0, 0.2f}, /*pictures=*/3).g;
   EXPECT_GT(seen, 2.0f);
   EXPECT_LT(seen, 1.0f / (1.0f - 0.95f)) << "no more than between endless ones";

@@ -1,4 +1,4 @@
-// Neighborhoods from the scene to the file and back: right where a closed form says so, finite always.
+// Tests neighborhoods from the scene to the file and back: they match closed forms, and are always finite.
 #include "tests/support/neighborhood.hpp"
 
 #include "baker/bake/bake.hpp"
@@ -13,7 +13,7 @@ using testing::grid;
 using testing::icosphere;
 using testing::sceneOf;
 
-// A grid as it stands in a file.
+// Holds a grid as stored in a file.
 struct Stored {
   bundle::NeighborhoodGrid grid;
   baker::ChangeShape shape;
@@ -24,7 +24,7 @@ struct Stored {
 
 class NeighborhoodBundle : public testing::ProgramTest {
  protected:
-  // A floor of 8 m, and a body with a node of its own.
+  // Makes a floor of 8 m, and a body with a node of its own.
   static baker::Scene over(const bundle::MeshData& body, const glm::vec3& place) {
     baker::Scene scene = sceneOf({grid({0, 0, 0}, 8.0f, 8), body});
     scene.nodes[1].name = "body";
@@ -81,7 +81,7 @@ class NeighborhoodBundle : public testing::ProgramTest {
 };
 
 TEST_F(NeighborhoodBundle, OfABlackBallHoldsItsClosedForm) {
-  // Also where the ball stands far from its node: the grid is in the group's frame.
+  // The ball may also be far from its node, because the grid is in the group's frame.
   for (const glm::vec3 off : {glm::vec3(0.0f), glm::vec3(300.0f, 40.0f, 0.0f)}) {
     auto scene = over(icosphere(off, 0.5f, 4), glm::vec3(0.0f, 0.8f, 0.0f) - off);
     scene.materials.push_back(scene.materials[0]);
@@ -91,7 +91,7 @@ TEST_F(NeighborhoodBundle, OfABlackBallHoldsItsClosedForm) {
     ASSERT_TRUE(stored.has_value());
     EXPECT_TRUE(stored->bounced.empty());
     EXPECT_EQ(std::size_t{stored->grid.size.x} * stored->grid.size.y * stored->grid.size.z, 12u * 12u * 6u);
-    // As a bake stores it: fitted to what is between the points.
+    // The expected values are fitted between the points, as a bake does.
     const baker::GridPlacement placement = stored->placement();
     constexpr std::size_t kMatrix = 9 * 25;
     std::vector<float> truth;
@@ -111,7 +111,7 @@ TEST_F(NeighborhoodBundle, OfABlackBallHoldsItsClosedForm) {
       auto wrong =
           testing::matrixOf(stored->shape, std::span(stored->visibility).subspan(p * size, size), {});
       for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] -= truth[p * kMatrix + i];
-      // Draft: 512 rays, and codes within a third of a percent.
+      // A draft uses 512 rays, and codes are exact to a third of a percent.
       EXPECT_LT(testing::irradianceOf(wrong, 5, 3), 0.02) << p;
     }
     EXPECT_GT(looked_at, 600);
@@ -138,11 +138,11 @@ TEST_F(NeighborhoodBundle, OfHostileBodiesIsFiniteOrNone) {
   EXPECT_TRUE(bake(over(triangle, {0, 0.5f, 0})).has_value());
 
   EXPECT_TRUE(bake(over(testing::soup(3, 0.3f, 0.5f), {0, 0.5f, 0})).has_value());
-  // Half in the floor, tiny, and huge.
+  // The bodies are half in the floor, tiny, and huge.
   EXPECT_TRUE(bake(over(icosphere({0, 0, 0}, 0.5f, 2), {0, 0, 0})).has_value());
   EXPECT_TRUE(bake(over(icosphere({0, 0, 0}, 1e-4f, 2), {0, 1e-4f, 0})).has_value());
   EXPECT_TRUE(bake(over(icosphere({0, 0, 0}, 50.0f, 2), {0, 51, 0})).has_value());
-  // Out of everyone's reach.
+  // The body is out of everyone's reach.
   EXPECT_FALSE(bake(over(icosphere({0, 0, 0}, 0.1f, 2), {0, 500, 0})).has_value());
 }
 
@@ -153,7 +153,7 @@ TEST_F(NeighborhoodBundle, IsLeftOutWhereTheEffectIs) {
   ASSERT_TRUE(plan);
   for (const auto& one : plan->neighborhoods) EXPECT_FALSE(one.baked);
   EXPECT_EQ(plan->light_probes[0].count.count, 32u);  // the floor's, for the ball
-  // More bands than matrices have.
+  // Matrices do not have this many bands.
   options.effects = "auto";
   options.order = 8;
   EXPECT_FALSE(baker::planFor(over(icosphere({0, 0, 0}, 0.5f, 1), {0, 0.8f, 0}), options));

@@ -1,4 +1,4 @@
-// Baked bundles in worlds without room for all of them: what stands in for those that are not here.
+// Tests what is shown in place of baked bundles that do not fit into memory.
 #include <algorithm>
 #include <cstdint>
 #include <thread>
@@ -20,7 +20,7 @@ using frame::Shown;
 constexpr std::uint32_t kSide = 160;
 constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
-// A box that the camera is near to, on the left; to the right and farther away, what has more vertices.
+// Makes a box near the camera, on the left; the other scene, farther away to the right, has more vertices.
 assets::Scene localScene() {
   assets::Scene scene = testing::named("near");
   testing::add(scene, "box", assets::box({-1.5f, -1.0f, 1.0f}, {-0.5f, 1.0f, 2.0f}, 0.5f), glm::vec3(0.7f),
@@ -81,7 +81,7 @@ struct Place {
   Shown shown(std::size_t bundle) const { return world.streaming().bundles[bundle].shown; }
 };
 
-// Of the right half of a picture, where the far bundle is.
+// Describes the right half of a picture, where the far bundle is.
 struct Right {
   std::vector<bool> covered;
   std::size_t pixels = 0;
@@ -128,7 +128,7 @@ class ProxyLods : public testing::GpuTest {
     EXPECT_TRUE(report) << report.error().line();
     return path;
   }
-  // Room for the near one and the proxy level of detail of the far one.
+  // There is room for the near bundle and for the proxy level of detail of the far one.
   std::uint64_t tight() const {
     Place alone({near}, kNoLimit);
     alone.picture();
@@ -166,7 +166,7 @@ TEST_F(ProxyLods, CoverWhatTheBundleCoversInAboutItsLight) {
   EXPECT_NEAR(static_cast<double>(found.pixels), static_cast<double>(expected.pixels),
               0.02 * static_cast<double>(expected.pixels));
   EXPECT_LT(others, expected.pixels / 15) << "and the same ones";
-  // Unshadowed, but for what bodies of this scene hide from each other.
+  // The proxy is unshadowed; bodies of this scene hide only a little from each other.
   for (int channel = 0; channel < 3; ++channel)
     EXPECT_NEAR(found.mean[channel] / expected.mean[channel], 1.0, 0.06) << channel;
 }
@@ -179,7 +179,7 @@ TEST_F(ProxyLods, GiveWayInOneFrameAndAreNeverSeenTogetherWithTheSurfaces) {
   const std::vector<bool> after = Right(expected).covered;
   ASSERT_NE(before, after);
 
-  // Room for all of it, and one item a frame.
+  // There is room for everything, and one item is uploaded per frame.
   const std::uint64_t ample = std::uint64_t{1} << 30;
   Place place({near, far}, ample, /*upload_bytes=*/1);
   int with_proxy_lod = 0, with_surfaces = 0;

@@ -1,4 +1,4 @@
-// A scene from its description through the baker to the frame, in pictures of a few pixels.
+// Takes a scene from its description through the baker to the frame, and renders pictures of a few pixels.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@
 
 namespace lambent::testing {
 
-// A baked scene in a world, with a light, drawn in the little.
+// Holds a baked scene in a world with a light, and renders it at a small size.
 class Show {
  public:
   Show(const assets::Scene& source, const std::vector<spec::Light>& lights, int light_probes = 0,
@@ -58,8 +58,8 @@ class Show {
     frame.emplace(std::move(*made));
   }
 
-  // Mean of a small patch around `target`, once the light has come to rest, within the steps of so many
-  // pictures; all of it finite.
+  // Returns the mean of a small patch around `target`, once the light is at rest, which must happen within
+  // this many pictures. All pixels must be finite.
   glm::vec3 patch(glm::vec3 eye, glm::vec3 target, std::uint32_t pictures = 1) {
     step(eye, target);
     std::uint32_t steps = frame::kMaxRestSteps;
@@ -103,7 +103,7 @@ class Show {
   }
 
   static constexpr std::uint32_t kSide = 8;
-  baker::Scene scene;  // as it was imported
+  baker::Scene scene;  // as imported
   frame::World world;
   lighting::Environment environment;
   std::optional<frame::Frame> frame;
@@ -119,7 +119,7 @@ inline assets::Scene named(const std::string& name) {
   return scene;
 }
 
-// A body of a material of its own; in a rigid group of its own if it may move.
+// Adds a body with a material of its own, and with a rigid group of its own if it is movable.
 inline void add(assets::Scene& scene, const std::string& name, assets::Mesh mesh, glm::vec3 color,
                 glm::vec3 at, bool movable, glm::vec3 emission = glm::vec3(0.0f)) {
   scene.materials.push_back({.name = name, .base_color = color, .emission = emission});

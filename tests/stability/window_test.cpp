@@ -1,5 +1,4 @@
-// The bounced light of a key light, a sun that shines through a window, is held against the path-traced
-// reference.
+// Compares the bounced light of a key light, a sun through a window, with the path-traced reference.
 #include <cmath>
 
 #include <glm/geometric.hpp>

@@ -1,5 +1,5 @@
-// Volumes with known answers: density and transfer as functions of the place, put into a bundle's description
-// as the baker would, and as the loader hands their parts on.
+// Makes volumes with known answers: density and transfer are functions of the place, stored in a bundle's
+// description as the baker would, or in parts as the loader delivers them.
 #pragma once
 
 #include <cmath>
@@ -23,7 +23,7 @@ namespace lambent::testing {
 
 struct BuiltVolume {
   glm::uvec3 size{8};
-  // A cube of 2 m about the group's origin, unless a test says otherwise.
+  // The default is a cube of 2 m about the group's origin.
   glm::mat4 group_from_grid = glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), glm::vec3(0.25f));
   std::function<float(const glm::vec3& grid)> density = [](const glm::vec3&) { return 1.0f; };  // m^-1
   float density_max = 1.0f;
@@ -33,7 +33,7 @@ struct BuiltVolume {
   glm::uvec3 transfer_size{4};
   std::function<bool(std::uint32_t voxel)> has_sample = [](std::uint32_t) { return true; };
   transfer::TransferShape shape{.order = 3};
-  // Vector of a voxel, shape.size() values. Unless a test says otherwise the light there is the open light.
+  // Returns the shape.size() transfer values of a voxel. The default is unoccluded light.
   std::function<std::vector<float>(std::uint32_t voxel)> transfer;
   glm::quat rest_rotation{1.0f, 0.0f, 0.0f, 0.0f};
   glm::vec3 rest_translation{0.0f};
@@ -73,7 +73,7 @@ struct BuiltVolume {
         }
     return bytes;
   }
-  // A cluster for each vector that differs from the others, without axes.
+  // Has one cluster, without axes, for each distinct vector.
   struct Clusters {
     transfer::Codebook codebook;
     std::vector<std::uint32_t> of_sample;
@@ -93,7 +93,7 @@ struct BuiltVolume {
   }
 };
 
-// Appends the volume's group; blob i becomes view i. Returns the group's index.
+// Appends the volume's group and returns its index. Blob i becomes view i.
 inline std::uint32_t addVolume(bundle::Description& description, std::vector<bundle::Blob>& blobs,
                                const BuiltVolume& volume) {
   const auto payload = [&](bundle::PayloadType type, std::vector<std::byte> bytes) {
@@ -154,7 +154,7 @@ inline std::uint32_t addVolume(bundle::Description& description, std::vector<bun
   return static_cast<std::uint32_t>(description.groups.size() - 1);
 }
 
-// Density, voxels and codebook, as the loader brings them.
+// Returns density, voxels and codebook as the loader delivers them.
 inline std::vector<streaming::Ready> partsOf(const BuiltVolume& volume, std::uint32_t group) {
   const BuiltVolume::Clusters clusters = volume.clusters();
   std::vector<std::uint32_t> positions =

@@ -1,5 +1,5 @@
-// A bundle read back from its file as the runtime reads it, decoded on the CPU: a mesh and a transfer vector
-// per vertex for every draw.
+// Reads a bundle from its file as the runtime does and decodes it on the CPU: for every draw a mesh and a
+// transfer vector per vertex.
 #pragma once
 
 #include <cmath>
@@ -21,14 +21,14 @@ struct DecodedDraw {
   std::span<const float> at(std::size_t vertex) const {
     return std::span(transfer).subspan(vertex * columns, columns);
   }
-  // E/pi under uniform light of radiance 1.
+  // Returns E/pi under uniform light of radiance 1.
   float uniformRadiance(std::size_t vertex) const {
     return at(vertex)[0] * std::sqrt(4.0f * std::numbers::pi_v<float>);
   }
 };
 
-// Transfer of all light (the full block where there is one, else the shadowed one) from the environment;
-// `channel` of it where it has three. Bundles without normal maps.
+// Decodes the transfer of the environment: the full block if there is one, else the shadowed one, and
+// `channel` of it if it has three. Bundles with normal maps are not supported.
 inline Result<std::vector<DecodedDraw>> decodeBundle(const std::filesystem::path& path,
                                                      std::uint32_t channel = 0) {
   const auto reader = bundle::Reader::open(path);

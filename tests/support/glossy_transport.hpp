@@ -1,5 +1,5 @@
-// The baker's passes over diffuse and glossy surfaces together, on a scene made in the test, with kernels
-// made in the test.
+// Runs the baker's passes over diffuse and glossy surfaces together, on a scene and with kernels made by the
+// test.
 #pragma once
 
 #include <memory>
@@ -14,17 +14,17 @@ namespace lambent::testing {
 
 struct GlossyBake {
   baker::DirectResult direct;
-  baker::GlossyDirect glossy;  // with bounces, all of its field
+  baker::GlossyDirect glossy;  // if there are bounces, the whole field
   baker::BounceResult bounced;
-  std::size_t hits_inside = 0;  // bytes, of points inside faces
+  std::size_t hits_inside = 0;  // size in bytes of the points inside faces
 };
 
-// What is gathered inside all faces, too, and fitted.
+// Selects what is also gathered inside faces and fitted.
 enum class Fit { Nothing, DirectLight, AllLight };
 
 struct GlossyBakeSettings {
   int order = 5, order_out = 5;
-  int exit_order = 0;  // of the kernels; 0: order_out
+  int exit_order = 0;  // order of the kernels; 0: order_out
   std::size_t rays = 512;
   int bounces = 0;
   std::size_t hit_memory = std::size_t{1} << 30;
@@ -71,7 +71,8 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
   return bake;
 }
 
-// Lambert surfaces of the scene's own albedo, told as kernels: albedo A_l/pi y_k(n), n the face's normal.
+// Describes Lambert surfaces of the scene's own albedo by kernels: albedo A_l/pi y_k(n), where n is the
+// face's normal.
 inline baker::ExitKernels lambertKernels(const Transport& t, int order_out = 5) {
   return {
       t.colors.grey(),
@@ -91,7 +92,7 @@ inline baker::ExitKernels lambertKernels(const Transport& t, int order_out = 5) 
       }};
 }
 
-// M of the environment at glossy sample `s` (counted from the first glossy one), channel 0, without bounces.
+// Returns M of the environment at glossy sample `s` (counted from first_glossy), channel 0, without bounces.
 inline std::vector<float> shadowMatrix(const baker::GlossyField& field, std::size_t s) {
   const auto table = sh::makeGauntTable(field.order_in, field.order_out);
   std::vector<float> matrix(
@@ -101,7 +102,7 @@ inline std::vector<float> shadowMatrix(const baker::GlossyField& field, std::siz
   return matrix;
 }
 
-// All samples glossy: a metal, so that no draw counts as diffuse.
+// Makes a scene whose samples are all glossy: a metal, so that no draw counts as diffuse.
 inline baker::Scene glossyScene(const std::vector<bundle::MeshData>& meshes) {
   baker::Scene scene = sceneOf(meshes);
   scene.materials[0].metallic = 1.0f;

@@ -1,5 +1,5 @@
-// A headless context with debug output for a test that needs one, and the sentence with which it skips where
-// there is none. One per process and test: GL objects of a test must die before its context does.
+// Provides a headless OpenGL context with debug output, or the sentence with which a test skips if there is
+// none. There is one per process and test, and a test's GL objects must be destroyed before its context.
 #pragma once
 
 #include <optional>

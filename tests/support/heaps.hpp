@@ -1,4 +1,4 @@
-// Transfer to be coded that falls into clusters.
+// Makes transfer vectors that form clusters, to test their coding.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace lambent::testing {
 
-// `heaps` of neighbours, each around a mean of its own and along three directions that all share:
-// [sample][size].
+// Makes `heaps` clusters of adjacent samples, each around its own mean and along three directions that all
+// share. The layout is [sample][size].
 inline std::vector<float> heaps(std::size_t samples, std::size_t heaps, std::size_t size, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;

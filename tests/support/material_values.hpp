@@ -1,6 +1,6 @@
-// Another value for each field of a material, so that a test can walk the table of fields and see whether
-// each one arrives. The material to begin with says all that a field may need to count: a normal map, a mask,
-// emission.
+// Changes each field of a material in turn, so that a test can walk the table of fields and check that each
+// one has an effect. The initial material has all that a field may need to have an effect: a normal map, a
+// mask, emission.
 #pragma once
 
 #include <string>
@@ -38,7 +38,7 @@ inline void change(std::int32_t& value) {
 inline void change(bool& value) {
   value = !value;
 }
-inline void change(float& value) {  // stays a share, or an index of refraction
+inline void change(float& value) {  // stays in 0..1, or a valid index of refraction
   value = value > 1.0f ? value + 0.25f : value == 0.5f ? 0.625f : 0.5f;
 }
 template <glm::length_t L>
@@ -46,7 +46,7 @@ void change(glm::vec<L, float>& value) {
   value = 0.5f * value + glm::vec<L, float>(0.125f);
 }
 
-// The material with another value in one field.
+// Returns the material with another value in one field.
 template <class Field>
 gltf::Material changed(gltf::Material material, const Field& field) {
   change(material.*field.member);

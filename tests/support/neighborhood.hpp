@@ -1,4 +1,4 @@
-// Neighborhood grids read back from their codes, and the closed form of a black sphere.
+// Decodes neighborhood grids, and computes the closed form of a black sphere.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace lambent::testing {
 
-// M - I of one channel, [output][column].
+// Holds M - I of one channel, [output][column].
 using ChangeMatrix = std::vector<float>;
 
 inline ChangeMatrix matrixOf(const baker::ChangeShape& shape, std::span<const float> visibility,
@@ -30,7 +30,7 @@ inline ChangeMatrix matrixOf(const baker::ChangeShape& shape, std::span<const fl
   return matrix;
 }
 
-// Of a sphere about the origin that takes all light: minus the cap that it fills (literature 7.2).
+// Returns the change by a black sphere about the origin: minus the cap that it fills (literature 7.2).
 inline ChangeMatrix blackSphereChange(const glm::vec3& point, float radius, int order, int order_out) {
   const double distance = double{glm::length(point)};
   const double angle = std::asin(std::min(1.0, double{radius} / distance));
@@ -72,7 +72,7 @@ class DecodedNeighborhood {
     return std::span(bounced_).subspan(point * shape_.bouncedSize(), shape_.bouncedSize());
   }
 
-  // As a receiver there has it, by trilinear interpolation.
+  // Returns what a receiver at this point gets, by trilinear interpolation.
   ChangeMatrix at(const glm::vec3& point, std::size_t channel = 0) const {
     const glm::vec3 place = (point - placement_.box.low) / placement_.spacing();
     std::vector<float> v(shape_.visibilitySize(), 0.0f), b(shape_.bouncedSize(), 0.0f);
@@ -106,8 +106,8 @@ class DecodedNeighborhood {
   std::vector<float> visibility_, bounced_;
 };
 
-// RMS over lights and normals of the change of irradiance that a matrix makes, relative to the light
-// (ChangeMeter, written out).
+// Returns the RMS, over lights and normals, of the change of irradiance by a matrix, relative to the light
+// (an independent ChangeMeter).
 inline double irradianceOf(const ChangeMatrix& matrix, int order, int order_out) {
   double sum = 0.0, light = 0.0;
   const auto columns = static_cast<std::size_t>(order * order);
@@ -126,10 +126,10 @@ inline double irradianceOf(const ChangeMatrix& matrix, int order, int order_out)
 struct NeighborhoodErrors {
   double rms = 0.0, p99 = 0.0;  // of irradiance
   double near_rms = 0.0;        // within half a radius of the unit sphere
-  double of_change = 0.0;       // relative to the change, RMS where that is over 2 %
+  double of_change = 0.0;       // relative to the change, RMS over places where that exceeds 2 %
 };
 
-// At random points of the box (default: the grid's) outside the unit sphere about the origin.
+// Measures errors at random points of the box (default: the grid's) outside the unit sphere about the origin.
 inline NeighborhoodErrors errorsAgainst(const DecodedNeighborhood& grid, std::optional<baker::Box3> box,
                                         int points,
                                         const std::function<ChangeMatrix(const glm::vec3&)>& truth) {

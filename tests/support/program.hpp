@@ -1,5 +1,5 @@
-// Runs a built program as a user does: arguments in, exit code and both streams out; each test in a folder of
-// its own that goes away with it.
+// Runs a built program as a user does, with arguments in, and the exit code and both output streams out. Each
+// test has a folder of its own, which is removed after it.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,8 @@ struct Outcome {
   std::string out, err;
 };
 
-// Did lambent-demo end because there is no OpenGL 4.5 here? Any other failure is a failure.
+// Returns whether lambent-demo ended because there is no OpenGL 4.5. Any other failure is a failure of the
+// test.
 inline bool lacksDevice(const Outcome& outcome) {
   return outcome.exit_code == 1 && outcome.err.find("lambent-demo: OpenGL: ") != std::string::npos;
 }
@@ -46,7 +47,7 @@ class ProgramTest : public ::testing::Test {
     folder = std::filesystem::path(::testing::TempDir()) /
              fmt::format("{}-{}-{}", ::getpid(), test->test_suite_name(), test->name());
     std::filesystem::create_directories(folder);
-    // What other runs left behind must not answer for this one.
+    // Results of other runs must not be reused.
     ::setenv("LAMBENT_CACHE", "off", /*overwrite=*/1);
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
@@ -78,7 +79,7 @@ class ProgramTest : public ::testing::Test {
     return finish(start(program, arguments));
   }
 
-  // What lies in the folder.
+  // Returns the number of files in the folder.
   std::ptrdiff_t fileCount() const {
     return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
   }
@@ -90,7 +91,7 @@ class ProgramTest : public ::testing::Test {
   }
 };
 
-// "PROGRAM: SUBJECT: PROBLEM[; MEND]", one line, nothing else.
+// Expects stderr to be exactly one line "PROGRAM: SUBJECT: PROBLEM[; MEND]".
 inline void expectOneLine(const Outcome& outcome, const std::string& program, const std::string& what) {
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << what << "\n" << outcome.err;
   EXPECT_TRUE(outcome.err.starts_with(program + ": ")) << what << "\n" << outcome.err;

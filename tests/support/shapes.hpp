@@ -1,5 +1,4 @@
-// Small meshes and scenes with known answers, built in the test. Triangles wind counter-clockwise seen from
-// outside.
+// Makes small meshes and scenes with known answers. Triangles wind counter-clockwise seen from outside.
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@
 
 namespace lambent::testing {
 
-// A rectangle in the xz plane around `centre`, normal +Y, cut into n x n cells.
+// Makes a square in the xz plane around `centre`, with normal +Y, of n x n cells.
 inline bundle::MeshData grid(glm::vec3 centre, float width, int n) {
   bundle::MeshData mesh;
   for (int j = 0; j <= n; ++j)
@@ -36,7 +35,7 @@ inline bundle::MeshData grid(glm::vec3 centre, float width, int n) {
   return mesh;
 }
 
-// `matrix` without shear; normals follow by the rotation alone.
+// Transforms a mesh by a `matrix` without shear; normals are only rotated.
 inline bundle::MeshData transformed(bundle::MeshData mesh, const glm::mat4& matrix) {
   for (glm::vec3& p : mesh.positions) p = glm::vec3(matrix * glm::vec4(p, 1.0f));
   for (glm::vec3& n : mesh.normals) n = glm::normalize(glm::mat3(matrix) * n);
@@ -63,7 +62,7 @@ inline bundle::MeshData flipped(bundle::MeshData mesh) {
   return mesh;
 }
 
-// Six grids with flat normals looking outwards.
+// Makes a box of six grids with flat normals that point outwards.
 inline bundle::MeshData box(glm::vec3 centre, glm::vec3 size, int n) {
   bundle::MeshData mesh;
   const bundle::MeshData top = grid({0.0f, 0.5f, 0.0f}, 1.0f, n);
@@ -106,7 +105,7 @@ inline bundle::MeshData icosphere(glm::vec3 centre, float radius, int subdivisio
   return mesh;
 }
 
-// 300 random triangles through each other. Normals are those of the faces, tilted at random by up to `tilt`.
+// Makes 300 random intersecting triangles. Normals are those of the faces, tilted randomly by up to `tilt`.
 inline bundle::MeshData soup(unsigned seed, float size, float tilt) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
@@ -124,7 +123,7 @@ inline bundle::MeshData soup(unsigned seed, float size, float tilt) {
   return mesh;
 }
 
-// One static node per mesh, all with one white material.
+// Makes a scene with one static node per mesh, all with one white material.
 inline baker::Scene sceneOf(const std::vector<bundle::MeshData>& meshes) {
   baker::Scene scene;
   scene.source = "test.glb";

@@ -1,6 +1,5 @@
-// Where tests find the models and probes that the project does not ship. They lie in ../shared/data beside
-// the checkout, or where LAMBENT_SHARED_DATA points; a test that needs them skips with a sentence where they
-// are absent.
+// Finds the models and light probes that the project does not ship. They are in ../shared/data beside the
+// checkout, or where LAMBENT_SHARED_DATA points. Tests that need them skip if they are absent.
 #pragma once
 
 #include <cstdlib>
@@ -22,7 +21,7 @@ inline std::filesystem::path sharedFile(const std::string& name) {
 
 }  // namespace lambent::testing
 
-// Inside a TEST: leaves it, with the reason, where the file is not there.
+// Skips the calling TEST, with the reason, if the file does not exist.
 #define LAMBENT_NEEDS_SHARED(path)    \
   if (!std::filesystem::exists(path)) \
   GTEST_SKIP() << (path) << " is not here; set LAMBENT_SHARED_DATA to the folder with models/ and probes/"

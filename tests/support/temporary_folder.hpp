@@ -1,4 +1,4 @@
-// A folder of one test's own, removed with all that it holds.
+// Makes a folder for one test, which is removed with its contents.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
-// The baker's first stages on a scene made in the test, without Draco: geometry, samples, rays, transfer.
+// Runs the baker's first stages (geometry, samples, rays, transfer) on a scene made in the test, without
+// Draco.
 #pragma once
 
 #include <numbers>
@@ -23,7 +24,7 @@ struct Transport {
   baker::RayScene rays;
   baker::SurfaceColors colors;
 
-  // with_glossy: materials that are not diffuse have glossy samples.
+  // with_glossy: surfaces that are not diffuse get glossy samples.
   explicit Transport(const baker::Scene& from, bool with_glossy = false)
       : Transport(from, baker::findRigidGroups(from).at(0), with_glossy) {}
   Transport(const Transport&) = delete;  // colors refers to geometry
@@ -37,9 +38,9 @@ struct Transport {
 
   struct Baked {
     baker::DirectResult direct;
-    baker::BounceResult bounced;  // sums of the passes
+    baker::BounceResult bounced;  // the sums of all passes
   };
-  // bounces < 0: as many as it takes for tail_error.
+  // A negative number of bounces means as many as tail_error needs.
   Baked bake(int order, std::size_t ray_count, int bounces, double tail_error = 1e-3,
              std::size_t hit_memory = std::size_t{1} << 30) const {
     const baker::TracedScene view = diffuse();
@@ -53,7 +54,7 @@ struct Transport {
     return {std::move(*first), std::move(*rest)};
   }
 
-  // The sample whose position is nearest.
+  // Returns the sample with the nearest position.
   std::size_t sampleAt(glm::vec3 position) const {
     std::size_t best = 0;
     for (std::size_t s = 1; s < samples.size(); ++s)
@@ -98,7 +99,7 @@ struct Transport {
   }
 };
 
-// E/pi under uniform light of radiance 1.
+// Returns E/pi under uniform light of radiance 1.
 inline float uniformRadiance(std::span<const float> transfer) {
   return transfer[0] * std::sqrt(4.0f * std::numbers::pi_v<float>);
 }

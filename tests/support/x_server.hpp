@@ -1,7 +1,7 @@
-// An X server without a screen (Xvfb), for tests of programs that open windows: started by the test itself on
-// a display that the server picks (-displayfd), which it names once it takes connections, and ended with the
-// test, even when that is killed. Two tests at a time never get the same display. No xvfb-run between, so a
-// program's exit code and streams are its own.
+// Runs an X server without a screen (Xvfb), for tests of programs that open windows. The test starts it on a
+// display that the server picks (-displayfd) and names once it accepts connections, and ends it even when the
+// test is killed. Two concurrent tests never get the same display. xvfb-run is not used, so that exit code
+// and streams are the program's own.
 #pragma once
 
 #include <array>
@@ -21,9 +21,10 @@ namespace lambent::testing {
 
 class XServer {
  public:
-  // Null where there is no Xvfb, or it does not start; why() says so then.
+  // Starts a server. Returns null if Xvfb is missing or does not start; `why` then says so.
   static std::unique_ptr<XServer> start(std::string& why) {
-    // A server that ends between two looks may leave its place half cleared: the next try finds another.
+    // A server that ends at the wrong moment may leave its files half removed; the next try then finds
+    // another display.
     for (int tries = 3; tries > 0; --tries)
       if (auto server = std::unique_ptr<XServer>(new XServer); server->begin(why)) return server;
     return nullptr;
@@ -36,11 +37,11 @@ class XServer {
   XServer(const XServer&) = delete;
   XServer& operator=(const XServer&) = delete;
 
-  // For the environment variable DISPLAY.
+  // Returns the value for the environment variable DISPLAY.
   const std::string& display() const { return display_; }
 
  private:
-  static constexpr int kPatienceMs = 60'000;  // of a machine that does much else
+  static constexpr int kPatienceMs = 60'000;  // timeout, long enough for a busy machine
 
   XServer() = default;
 
@@ -65,7 +66,7 @@ class XServer {
     return false;
   }
 
-  // In the child: only calls that are safe after a fork.
+  // This runs in the child process, where only calls that are safe after a fork are allowed.
   [[noreturn]] static void run(int answer) {
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     constexpr int kAnswer = 3;
@@ -80,7 +81,7 @@ class XServer {
     ::_exit(127);
   }
 
-  // Until its end; empty where the server gave up.
+  // Reads a line until its end. It is empty if the server gave up.
   static std::string lineFrom(int end) {
     std::string line;
     for (char c = 0; c != '\n';) {

@@ -70,7 +70,7 @@ TEST(ComparePictures, LeavesOutTheRimsOfCloudsWhereverTheyFallUnderTheBound) {
 }
 
 TEST(ComparePictures, WithTwoReferencesIsFreeOfTheirNoise) {
-  // The picture is 2 % too bright, each reference has 30 % noise of its own.
+  // The picture is 2 % too bright, and each reference has 30 % independent noise.
   std::mt19937 random(5);
   std::normal_distribution<float> noise(1.0f, 0.3f);
   const auto noisy = [&] {
@@ -91,8 +91,8 @@ TEST(ComparePictures, WithTwoReferencesIsFreeOfTheirNoise) {
 }
 
 TEST(ComparePictures, OfATexturedErrorRecoversItUnderNoiseThatIsLarger) {
-  // A picture whose error is known, pixel by pixel, seen through two references with 20 % noise each; and how
-  // far off the figure can be.
+  // The picture has a known error per pixel, and two references have 20 % noise each. The test bounds the
+  // error of the figure.
   std::mt19937 random(11);
   std::normal_distribution<float> noise(0.0f, 0.2f);
   constexpr std::uint32_t kSide = 256;
@@ -118,7 +118,7 @@ TEST(ComparePictures, OfATexturedErrorRecoversItUnderNoiseThatIsLarger) {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
-// The same, with a surface at this distance in all pixels.
+// Does the same, with a surface at this distance in all pixels.
 spec::RgbaImage filledAt(float depth, glm::vec3 color) {
   auto image = filled(color);
   image.depths.assign(image.texels.size(), depth);
@@ -126,8 +126,8 @@ spec::RgbaImage filledAt(float depth, glm::vec3 color) {
 }
 
 TEST(ComparePictures, LeavesOutPixelsWhoseDepthsDifferAndSaysHowMany) {
-  // Three pixels show another surface, in another colour, each in another picture; five show the same one 10
-  // % too bright.
+  // Three pixels show another surface, in another colour, each in another picture; five show the same
+  // surface, 10 % too bright.
   auto picture = filledAt(2.0f, {1, 1, 1}), a = picture, b = picture;
   const auto another = [](spec::RgbaImage& image, std::size_t i, float depth) {
     image.texels[i] = glm::vec4(3, 3, 3, 1);
@@ -159,7 +159,7 @@ TEST(ComparePictures, TellsSurfacesApartByDepthAloneHoweverLargeTheError) {
 }
 
 TEST(ComparePictures, TakesNothingForTheSameAsNothing) {
-  // As behind a blended surface, or in a cloud.
+  // Such pixels occur behind a blended surface, or in a cloud.
   auto picture = filledAt(kNone, {1, 1, 1});
   const auto reference = picture;
   picture.depths[0] = 1e30f;

@@ -1,5 +1,5 @@
-// The whole bake: same bytes for any number of threads, nothing lost when it fails, what is read back is what
-// was meant.
+// Tests the whole bake: it writes the same bytes for any number of threads, loses nothing when it fails, and
+// what is read back is what was meant.
 #include "baker/bake/bake.hpp"
 
 #include <filesystem>
@@ -45,7 +45,7 @@ class Bake : public ::testing::Test {
   fs::path folder_;
 };
 
-// A static floor and box, and a ball that moves: two groups.
+// Makes a static floor and box, and a movable ball: two groups.
 Scene stage() {
   Scene scene = sceneOf(
       {grid({0, 0, 0}, 4.0f, 24), box({-0.8f, 0.5f, 0}, {1, 1, 1}, 6), icosphere({0, 0, 0}, 0.5f, 3)});
@@ -87,7 +87,7 @@ TEST_F(Bake, WritesABundleThatIsWhole) {
   EXPECT_EQ(d.draws.size(), 3u);
   EXPECT_EQ(d.generator.settings.at("rays"), "256");
   EXPECT_LE(report->worst_error, 0.01);
-  // In the order in which they are wanted.
+  // The parts are in the order in which the loader wants them.
   for (std::size_t p = 1; p < d.payloads.size(); ++p)
     EXPECT_LE(d.payloads[p - 1].priority, d.payloads[p].priority);
   for (std::size_t v = 1; v < d.views.size(); ++v) EXPECT_LT(d.views[v - 1].offset, d.views[v].offset);
@@ -160,7 +160,7 @@ TEST_F(Bake, StoresLightProbesAndProxiesInTheGroupsFrame) {
   }
 }
 
-// Whatever reads glTF reads a bundle: our own importer finds in it what was in the scene.
+// Our own importer reads a bundle as any glTF reader does, and finds what was in the scene.
 TEST_F(Bake, WritesAnOrdinaryScene) {
   Scene scene = stage();
   scene.lights = {{.name = "lamp", .type = gltf::Light::Type::Spot, .color = {1, 0.5f, 0}, .intensity = 9}};

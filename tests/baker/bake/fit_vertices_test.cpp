@@ -14,7 +14,7 @@ namespace {
 
 using testing::Transport;
 
-// A box on a coarse floor, diffuse or of metal.
+// Makes a box on a coarse floor, diffuse or of metal.
 Scene boxOnFloor(float metallic) {
   Scene scene = testing::sceneOf({testing::grid({0.0f, 0.0f, 0.0f}, 4.0f, 10),
                                   testing::box({0.13f, 0.4f, -0.21f}, {0.7f, 0.8f, 0.7f}, 3)});
@@ -23,8 +23,8 @@ Scene boxOnFloor(float metallic) {
   return scene;
 }
 
-// Points of faces other than those that the fit looks from, and what interpolation over the samples is off
-// there, relative to what is there: root mean square, weighted by area.
+// Measures the relative error of interpolating over the samples, at points of faces that the fit did not use:
+// root mean square, weighted by area.
 class Truth {
  public:
   explicit Truth(const Transport& t) : t_(t) {

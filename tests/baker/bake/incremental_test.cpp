@@ -1,4 +1,4 @@
-// Baking again: the bundle is the same whatever a cache holds, and only what changed is done.
+// Tests repeated bakes: the bundle is the same whatever the cache holds, and only what changed is computed.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -26,8 +26,8 @@ using testing::TemporaryFolder;
 
 constexpr std::size_t kFloor = 0, kPolished = 1, kLamp = 2, kBrushed = 3;  // materials
 
-// A floor with a box that hides a part of it from the sky, a lamp above, a polished body; and a movable ball
-// on a movable brushed plate. Grey all over.
+// Makes a floor with a box that hides a part of it from the sky, a lamp above, a polished body, and a movable
+// ball on a movable brushed plate. Everything is grey.
 Scene stage() {
   Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 12), box({-0.8f, 0.45f, 0}, {1, 1, 1}, 4),
                          grid({0, 0, 0}, 0.5f, 2), icosphere({0.9f, 0.3f, 0.9f}, 0.4f, 2),
@@ -70,7 +70,7 @@ class BakeAgain : public ::testing::Test {
     std::string bytes;
     BakeReport report;
     std::uint64_t rays() const { return report.rays + report.refinement.rays; }
-    // Of an effect on a group.
+    // Returns the counts of one effect on one group.
     Reuse of(const std::string& group, const std::string& effect) const {
       for (const BakeReport::Group& g : report.groups)
         for (const auto& e : g.effects)
@@ -92,7 +92,7 @@ class BakeAgain : public ::testing::Test {
     std::ifstream in(out, std::ios::binary);
     return {{std::istreambuf_iterator<char>(in), {}}, std::move(*report)};
   }
-  // Bakes with what is in the cache, and again without: the bundles must be the same.
+  // Bakes with the cache and again without; the bundles must be equal.
   Baked bakeBoth(Cache& cache, const Scene& scene, const BakeOptions& options = draft()) const {
     Baked with = bakeWith(&cache, scene, options);
     EXPECT_TRUE(with.bytes == bakeWith(nullptr, scene, options).bytes);
@@ -114,7 +114,7 @@ TEST_F(BakeAgain, WritesTheSameBundleWithoutAColdAndAWarmCache) {
   EXPECT_EQ(warm.report.rays_kept, cold.report.rays);
   EXPECT_EQ(warm.report.refinement.rays_kept, cold.report.refinement.rays);
   EXPECT_EQ(warm.of("static", "diffuse"), Reuse::Found);
-  // What is reported is what the bundle holds, found or not.
+  // The report describes the bundle, whether its parts were computed or found in the cache.
   EXPECT_EQ(warm.report.worst_error, cold.report.worst_error);
   EXPECT_EQ(warm.report.worst_glossy_error, cold.report.worst_glossy_error);
   EXPECT_EQ(warm.report.pass_energy, cold.report.pass_energy);
@@ -152,7 +152,7 @@ TEST_F(BakeAgain, TracesNoRayForAnAlbedo) {
   EXPECT_EQ(brushed.of("static", "glossy"), Reuse::Found);
   EXPECT_EQ(brushed.of("plate", "glossy"), Reuse::Regathered);
 
-  // Neither names nor the strength of a lamp are in what is baked.
+  // Neither names nor the strength of a lamp are baked.
   scene = stage();
   scene.materials[kLamp].emissive = glm::vec3(5.0f, 1.0f, 0.5f);
   scene.materials[kFloor].name = "a floor";
@@ -178,7 +178,7 @@ TEST_F(BakeAgain, TracesOnlyTheGroupInWhichANodeMoved) {
   EXPECT_EQ(ball.of("static", "diffuse"), Reuse::Found);
   EXPECT_EQ(ball.of("plate", "diffuse"), Reuse::Baked);
 
-  // A group that moves as a whole is where it is, and nothing more.
+  // A group that moves as a whole only changes its transform.
   scene = stage();
   scene.nodes[5].parent_from_node =
       glm::rotate(glm::translate(glm::mat4(1.0f), {5.3f, 0.7f, 0.1f}), 0.3f, {0.0f, 1.0f, 0.0f});
@@ -210,7 +210,7 @@ TEST_F(BakeAgain, TracesOneOfTenGroups) {
   EXPECT_GT(one.report.refinement.rays_kept, one.report.refinement.rays);
 }
 
-// Runs a bake and asks it to stop once so many units of work are done.
+// Runs a bake and requests a stop after this many units of work.
 bool stopsAfter(std::uint64_t units, const Scene& scene, const fs::path& out, Cache& cache) {
   Progress progress;
   std::stop_source stop;
@@ -242,7 +242,7 @@ TEST_F(BakeAgain, EndsInTheSameBundleWhereverItWasStopped) {
   }
   EXPECT_GT(stopped, 1);
 
-  // Again and again, each time a little further: what was done is not done again.
+  // Each run is stopped a little later, and no work is done twice.
   Cache cache = openCache();
   cache.setCheckpointEvery(0.0);
   int runs = 0;

@@ -1,5 +1,5 @@
-// No field of a material is forgotten in what decides whether a bundle is up to date, or whether a kept
-// result still holds.
+// Checks that every field of a material is part of the keys that decide whether a bundle is up to date, and
+// whether a cached result is valid.
 #include <gtest/gtest.h>
 
 #include "baker/bake/bake.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 using testing::changed;
 
-// A plate of the material, glossy, with everything that a field may need to count.
+// Makes a glossy plate of the material, with everything that a field may need to have an effect.
 Scene plateOf(const gltf::Material& material) {
   Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 1.0f, 2)});
   scene.materials = {material};
@@ -35,7 +35,7 @@ TEST(MaterialKeys, EveryFieldPutsABundleOutOfDate) {
   });
 }
 
-// Rows of the table that move, or values that are added in another form, would put every bundle out of date.
+// If rows of the table move, or values are hashed in another form, every bundle is out of date.
 TEST(MaterialKeys, DigestsOfScenesStayAsTheyWere) {
   EXPECT_EQ(sceneDigest(plateOf(testing::materialWithEverything())), 0xd88fe320c1367f8full);
 }
@@ -62,7 +62,7 @@ TEST(MaterialKeys, EveryFieldThatABakeDependsOnChangesTheKeysOfItsResults) {
     const bool baked =
         name != "emissive" && name != "normal_scale" && name != "normal_texture" && name != "name";
     EXPECT_EQ(keys.cells != before.cells, baked) << name;
-    // Rays are traced again only where other ones are stopped, or a lamp shines otherwise.
+    // Rays are traced again only if other rays are blocked, or a lamp changes.
     const bool stops =
         field.part == Part::Opacity || name == "emissive_texture" || name.starts_with("base_color");
     EXPECT_EQ(keys.rays != before.rays, stops) << name;

@@ -1,4 +1,4 @@
-// Every row of the table of options is read, written, checked and recorded.
+// Checks that every row of the table of options is read, written, validated and recorded.
 #include "baker/bake/option_rows.hpp"
 
 #include <map>
@@ -9,7 +9,7 @@
 namespace lambent::baker {
 namespace {
 
-// Another value for each option; a new row needs one here.
+// Returns another value for each option; a new row needs one here.
 const std::map<std::string_view, std::string_view> kOthers = {
     {"quality", "high"},      {"order", "4"},         {"glossy-order", "6"},  {"rays", "777"},
     {"bounces", "3"},         {"max-memory", "4096"}, {"error", "0.0125"},    {"max-edge", "0.1"},
@@ -34,7 +34,8 @@ TEST(OptionRows, TakeEveryWordAndGiveItBack) {
     ASSERT_TRUE(row.put(options, kOthers.at(row.name))) << row.name;
     EXPECT_EQ(row.word(options), kOthers.at(row.name));
     EXPECT_TRUE(checkOptions(options)) << row.name;
-    // What changes the bytes of a bundle stands in its settings; a quality by what it stands for.
+    // Options that change the bytes of a bundle are among its settings; a quality is stored as the options
+    // that it sets.
     const bool recorded = !row.setting.empty() || row.name == "quality";
     EXPECT_EQ(options.settings() != before, recorded) << row.name;
     if (recorded) {
@@ -95,7 +96,7 @@ TEST(OptionRows, CheckRanges) {
     ASSERT_FALSE(checked) << name << " " << word;
     EXPECT_EQ(checked.error().subject, "--" + std::string(name));
   }
-  // Already with the word, as wrong usage.
+  // The word itself is refused, as wrong usage.
   for (const auto& [name, word] : {std::pair("refine", "2"),
                                    {"refine", "0"},
                                    {"light-probes", "33"},

@@ -1,4 +1,4 @@
-// Volumes in the bake as a whole: what is quantized, what is refused, what is left out.
+// Tests volumes in the whole bake: what is quantized, what is refused, what is left out.
 #include <cmath>
 #include <tuple>
 
@@ -76,7 +76,7 @@ TEST_F(VolumeBake, WritesTheSameBytesWithOneThreadAndWithTwo) {
   EXPECT_TRUE(one == bytesWith(2));
 }
 
-// As the reference counts: a number of bounces is one of bounces between surfaces.
+// As in the reference, the number of bounces counts those between surfaces.
 TEST_F(VolumeBake, ScattersAsOftenAsItDoesHoweverFewBouncesAreAskedFor) {
   const auto iterationsWith = [&](int bounces) {
     BakeOptions options = small();

@@ -21,7 +21,7 @@ glm::dvec3 directionOf(double theta, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-// Scattered directions with values given by a function of both.
+// Makes scattered pairs of directions, with values given by a function of both.
 template <typename F>
 MeasuredBrdf measure(std::size_t count, F&& f) {
   MeasuredBrdf measured{.name = "made.brdf", .measurements = {}};
@@ -66,8 +66,8 @@ TEST(MeasuredBrdf, ThatIsTheSameEverywhereIsLambert) {
   }
 }
 
-// The conventions' formula, summed plainly: weights exp(-400 |p - p_i|²), p = (sqrt(2 theta_h / pi), 2
-// theta_d / pi).
+// Evaluates the formula of the conventions directly: weights exp(-400 |p - p_i|²), p = (sqrt(2 theta_h / pi),
+// 2 theta_d / pi).
 TEST(MeasuredBrdf, IsTheWeighedMeanOverHalfVectorAndDifference) {
   const auto shine = [](const glm::dvec3& v, const glm::dvec3& s) {
     const double z = glm::normalize(v + s).z;
@@ -101,7 +101,7 @@ TEST(MeasuredBrdf, IsTheWeighedMeanOverHalfVectorAndDifference) {
   }
 }
 
-// Twice as bright as white in all directions: brought down to 1 and no further, and still reciprocal.
+// A BRDF twice as bright as white in all directions is scaled down to 1 and no further, and stays reciprocal.
 TEST(MeasuredBrdf, ThatReflectsMoreThanItReceivesIsScaledDown) {
   const auto brdf = makeMeasured(measure(400, [](const glm::dvec3& v, const glm::dvec3& s) {
     return glm::vec3(static_cast<float>(2 / kPi * (1 + 0.3 * glm::dot(v, s))), 0.1f, 0.2f);

@@ -1,5 +1,5 @@
-// An independent integral over a hemisphere: no directions drawn from the BRDF, but a mesh of the directions
-// themselves that halves its cells where the integrand asks for it.
+// Integrates over a hemisphere independently of the baker: it samples no directions from the BRDF, but
+// subdivides cells of directions adaptively.
 #pragma once
 
 #include <array>
@@ -16,11 +16,11 @@ namespace lambent::baker::testing {
 
 constexpr double kPi = std::numbers::pi;
 
-// Gauss-Legendre with three nodes in either direction of a cell [theta] x [phi], cut in four until both
-// agree.
+// Applies Gauss-Legendre quadrature with three nodes per axis to a cell [theta] x [phi], and divides it in
+// four until both results agree.
 class HemisphereIntegral {
  public:
-  using Function = std::function<double(const glm::dvec3& s)>;  // with everything but sin(theta)
+  using Function = std::function<double(const glm::dvec3& s)>;  // the integrand without the factor sin(theta)
 
   explicit HemisphereIntegral(double tolerance) : tolerance_(tolerance) {}
 
@@ -64,7 +64,7 @@ class HemisphereIntegral {
     std::array<double, 4> sums{};
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i) sum += sums[i] = gauss(f, parts[i]);
-    // Cells start out coarser than narrow lobes, so some depth is always gone through.
+    // Cells start out coarser than narrow lobes, so a least depth is always used.
     if (depth >= kMost || (depth >= kLeast && std::abs(sum - whole) < tolerance_)) return sum;
     sum = 0;
     for (std::size_t i = 0; i < 4; ++i) sum += refined(f, parts[i], sums[i], depth + 1);
@@ -75,7 +75,7 @@ class HemisphereIntegral {
   double tolerance_;
 };
 
-// v in the frame that b stands in: x along the surface towards where the view leans.
+// Returns v in the frame of b(v), whose x axis points along the surface to the side where the view is.
 inline glm::dvec3 localView(const bundle::BrdfView& view) {
   const double z = static_cast<double>(view.cos_theta), r = std::sqrt(1 - z * z);
   return {r * static_cast<double>(view.cos_phi), r * static_cast<double>(view.sin_phi), z};

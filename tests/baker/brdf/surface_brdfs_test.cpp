@@ -26,7 +26,7 @@ using testing::kPi;
 constexpr int kOrder = sh::kMaxFactoredOrder;  // the sharpest that bakes ask for
 constexpr std::size_t kCount = sh::coefficientCount(kOrder);
 
-// A turned square of one material, tangent where u rises, and its kernels.
+// Makes a rotated square of one material, whose tangent points along increasing u, and its kernels.
 struct Square {
   Scene scene;
   glm::dmat3 turn;  // columns: tangent, bitangent (where v falls), normal
@@ -70,7 +70,7 @@ struct Square {
     brdfs.emplace(std::move(*loaded));
   }
 
-  // Integrated once for all squares.
+  // The tables are integrated once for all squares.
   static const BrdfTables::Entry& round() {
     static const BrdfTables::Entry kEntry{bundle::BrdfFamily::Ggx, "",
                                           integrateTable(*makeGgx(false), kOrder)};
@@ -82,7 +82,7 @@ struct Square {
     return kEntry;
   }
 
-  // Towards a direction given in the square's frame.
+  // Takes a direction in the square's frame.
   std::vector<float> kernel(const glm::dvec3& local, float u = 0.3f, float v = 0.3f) const {
     std::vector<float> out(3 * kCount, 77.0f);
     brdfs->exitKernel(0, u, v, glm::vec3(turn * local), out);
@@ -99,7 +99,7 @@ double power5(double x) {
   return x * x * x * x * x;
 }
 
-// f cos of the specular part as the conventions write it, on its own.
+// Evaluates f cos of the specular part as the conventions write it, independently of the baker.
 double specular(double alpha_t, double alpha_b, double f0, double f90, const glm::dvec3& v,
                 const glm::dvec3& s) {
   const glm::dvec3 h = glm::normalize(v + s);
@@ -119,7 +119,7 @@ struct Expected {
   double along = 0;  // of the longer lobe, from the tangent
 };
 
-// c_k by quadrature of the definition, in the group's frame.
+// Integrates c_k from its definition, in the group's frame.
 std::vector<double> byQuadrature(const Square& square, const Expected& e, glm::dvec3 v) {
   const double c = std::cos(e.along), s = std::sin(e.along);
   const glm::dmat3 lobe_frame(c, s, 0, -s, c, 0, 0, 0, 1);  // columns: t, b, n in the square's frame
@@ -157,7 +157,7 @@ double relativeError(const std::vector<float>& found, const std::vector<double>&
   return std::sqrt(error / norm);
 }
 
-// Total of one channel under uniform light of radiance 1.
+// Returns the reflection of uniform light of radiance 1, in one channel.
 double reflected(const std::vector<float>& kernel, std::size_t channel) {
   return 2 * std::sqrt(kPi) * static_cast<double>(kernel[channel * kCount]);
 }
@@ -206,8 +206,7 @@ TEST(SurfaceBrdfs, FollowTheConventionsFormulaOfMetalsAndDielectrics) {
   }
 }
 
-// Stored tangents and texture coordinates say the same here; rotation turns from the tangent to the
-// bitangent.
+// Stored tangents and texture coordinates agree here; the rotation goes from the tangent to the bitangent.
 TEST(SurfaceBrdfs, TurnAnisotropicLobesWithTangentAndRotation) {
   gltf::Material material = materialOf({0.9f, 0.9f, 0.9f}, 1.0f, 0.6f);
   material.anisotropy = 0.7f;
@@ -273,7 +272,7 @@ TEST(SurfaceBrdfs, NeverSendOutMoreThanUniformLightBrings) {
   }
 }
 
-// White dielectrics give everything back: what is not reflected on the surface comes out of it.
+// A white dielectric loses nothing: what its surface does not reflect leaves its diffuse part.
 TEST(SurfaceBrdfs, OfWhiteDielectricsLoseNothing) {
   const Square square(materialOf({1.0f, 1.0f, 1.0f}, 0.0f, 0.4f));
   for (const double cosine : kCosines)
@@ -291,7 +290,7 @@ TEST(SurfaceBrdfs, SendNothingBackwardsAndStayFiniteAtTheEdge) {
   }
 }
 
-// Below the plane of a bent normal, but above the triangle: as from 0.001 above that plane.
+// A view below the plane of a bent normal, but above the triangle, is treated as 0.001 above that plane.
 TEST(SurfaceBrdfs, LiftViewsBelowTheShadingPlane) {
   Square square(materialOf({0.9f, 0.9f, 0.9f}, 1.0f, 0.5f));
   const glm::dvec3 bent = glm::normalize(glm::dvec3(-0.8, 0, 1));
@@ -303,7 +302,7 @@ TEST(SurfaceBrdfs, LiftViewsBelowTheShadingPlane) {
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], edge[i], 1e-4);
 }
 
-// 2 x 2 texels: red, green / blue, (188, 188, 188) with alpha 128.
+// The texture has 2 x 2 texels: red, green / blue, (188, 188, 188) with alpha 128.
 SceneImage fourTexels() {
   constexpr unsigned char kPng[] = {
       0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52,
@@ -316,8 +315,8 @@ SceneImage fourTexels() {
   return image;
 }
 
-// Every texture against the same surface with the texel's value as a factor, at the texel of (188, 188, 188,
-// 128), at uv (0.75, 0.75): barycentric 0.5, 0.25 of the first triangle. Colours are sRGB, data are not.
+// Compares every texture with the texel's value as a factor, at the texel (188, 188, 188, 128), which is at
+// uv (0.75, 0.75): barycentric 0.5, 0.25 of the first triangle. Colours are sRGB, data are not.
 TEST(SurfaceBrdfs, LookUpEachTextureAsWhatItIs) {
   constexpr float kData = 188.0f / 255.0f, kAlpha = 128.0f / 255.0f;
   const float color = std::pow((kData + 0.055f) / 1.055f, 2.4f);
@@ -337,7 +336,7 @@ TEST(SurfaceBrdfs, LookUpEachTextureAsWhatItIs) {
       {"specular colour", &gltf::Material::specular_color_texture,
        [&](gltf::Material& m) { m.specular_color *= color; }},
       {"anisotropy", &gltf::Material::anisotropy_texture, [&](gltf::Material& m) {
-         // Red and green alike: half way from the tangent to the bitangent.
+         // Equal red and green mean the direction half way from the tangent to the bitangent.
          m.anisotropy *= kData, m.anisotropy_rotation_rad += static_cast<float>(kPi) / 4;
        }}};
   for (const auto& one : cases) {

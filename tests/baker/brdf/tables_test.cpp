@@ -21,7 +21,7 @@ using testing::kPi;
 const double kWhole = 2 * std::sqrt(kPi);  // sqrt(4 pi)
 const std::array<float, 8> kCosines = {0.001f, 0.005f, 0.02f, 0.1f, 0.3f, 0.6f, 0.9f, 1.0f};
 
-// Both lobes of one view, by as many directions as tables take.
+// Integrates both lobes for one view, with as many directions as tables use.
 std::vector<double> kernel(const Brdf& brdf, const BrdfParameters& at, const BrdfView& view, int order,
                            std::size_t directions = 4096) {
   std::vector<double> b(brdf.lobes() * static_cast<std::size_t>(order * order));
@@ -35,7 +35,7 @@ double normOf(const std::vector<double>& a) {
   return std::sqrt(sum);
 }
 
-// What Lambert's law says in closed form: nothing depends on the view.
+// Lambert's law has a closed form that does not depend on the view.
 class Lambert final : public Brdf {
  public:
   std::uint32_t lobes() const override { return 3; }
@@ -68,7 +68,7 @@ TEST(BrdfTables, OfLambertAreTheClampedCosineWhateverTheView) {
   }
 }
 
-// Furnace: what is reflected of uniform light, against a quadrature that knows nothing of lobes.
+// White-furnace test: compares the reflection of uniform light with a quadrature that does not sample lobes.
 TEST(BrdfTables, HaveTheDirectionalAlbedoOfEachGgxLobe) {
   const auto ggx = makeGgx(/*anisotropic=*/false);
   for (const float roughness : {0.1f, 0.2f, 0.35f, 0.5f, 0.7f, 0.85f, 1.0f})
@@ -112,7 +112,7 @@ TEST(BrdfTables, HaveTheDirectionalAlbedoOfAnisotropicGgx) {
         }
 }
 
-// Every coefficient, not only the first.
+// Compares every coefficient, not only the first.
 TEST(BrdfTables, ProjectTheLobeOnEveryFunction) {
   const auto ggx = makeGgx(true);
   const BrdfParameters at{.roughness = 0.5f, .strength = 0.6f};
@@ -125,7 +125,7 @@ TEST(BrdfTables, ProjectTheLobeOnEveryFunction) {
         std::array<double, 3> f{};
         std::array<double, 25> y;
         ggx->value(at, v, s, f);
-        // Into the frame of the view.
+        // This transforms the direction into the frame of the view.
         sh::evaluate(5, glm::dvec3(0.8 * s.x + 0.6 * s.y, 0.8 * s.y - 0.6 * s.x, s.z), y);
         return f[lobe] * s.z * y[static_cast<std::size_t>(i)];
       });
@@ -144,7 +144,7 @@ TEST(BrdfTables, NeverReflectMoreThanTheyReceive) {
   }
 }
 
-// A mirror sends y_k(mirrored view): even grazing, and even where alpha is only clamped at 0.001.
+// A mirror gives y_k(mirrored view), even at grazing angles, and although alpha is clamped to 0.001.
 TEST(BrdfTables, OfSmoothSurfacesAreMirrors) {
   const auto ggx = makeGgx(false);
   for (const float cosine : {0.1f, 0.3f, 0.7f, 1.0f}) {
@@ -160,7 +160,8 @@ TEST(BrdfTables, OfSmoothSurfacesAreMirrors) {
   }
 }
 
-// Between nodes, against integration at the very place; docs/measurements/glossy.md has the mean.
+// Compares interpolation between nodes with integration at that place; docs/measurements/glossy.md has the
+// mean error.
 TEST(BrdfTables, InterpolateWithinHalfAPercentWhereFiveBandsCarryTheLobe) {
   const auto ggx = makeGgx(false);
   const bundle::BrdfTable table = integrateTable(*ggx, 5);
@@ -202,7 +203,7 @@ TEST(BrdfTables, OfAnisotropicGgxAreIsotropicAtStrengthNothing) {
   EXPECT_GT(largest, 0.1f) << "strength 1 is something else";
 }
 
-// Quadrants by reflection are what integration finds there.
+// The table stores one quadrant; mirroring it must give what integration finds in the others.
 TEST(BrdfTables, OfAnisotropicGgxMirrorIntoAllQuadrants) {
   const auto ggx = makeGgx(true);
   std::vector<float> found(32);
@@ -218,8 +219,8 @@ TEST(BrdfTables, OfAnisotropicGgxMirrorIntoAllQuadrants) {
   }
 }
 
-// What five bands hold of the lobe seen from straight above, in energy (∫ (f cos)²): the figures by which
-// glossy transfer is planned.
+// Measures the fraction of a lobe's energy (∫ (f cos)²) in five bands, for a view along the normal. The
+// planning of glossy transfer uses these figures.
 TEST(BrdfTables, HoldTheKnownShareOfTheLobesEnergy) {
   const auto ggx = makeGgx(false);
   const BrdfView view{.cos_theta = 1.0f};
@@ -246,7 +247,7 @@ TEST(BrdfTables, AreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.values, all.values);
 }
 
-// The runtime keeps four values of a node in a layer; OpenGL 4.5 promises 2048 of them.
+// The runtime stores four values of a node in a texture layer; OpenGL 4.5 guarantees 2048 layers.
 TEST(BrdfTables, OfAnisotropicGgxFitTheTextureOfEveryDevice) {
   for (std::uint32_t order = 1; order <= 6; ++order) {
     const BrdfGrid grid = gridFor(*makeGgx(true), static_cast<int>(order));

@@ -21,7 +21,7 @@ Key keyOf(std::uint64_t number) {
   return KeyMaker().add(number).key();
 }
 
-// Noise, so that it cannot be made smaller, or a pattern that can.
+// Returns noise, which cannot be compressed, or a pattern that can.
 std::vector<std::byte> contents(std::uint64_t seed, std::size_t size, bool noise = true) {
   std::vector<std::byte> bytes(size);
   std::mt19937_64 random(seed);

@@ -1,5 +1,4 @@
-// Coding that is cut short: stopped at each of its checkpoints, one after the other, it comes to the same
-// codes.
+// Tests coding that is interrupted at each of its checkpoints in turn: the codes are the same.
 #include <filesystem>
 #include <thread>
 
@@ -32,7 +31,7 @@ std::size_t entriesIn(const std::filesystem::path& folder) {
   return entries;
 }
 
-// Codes by a run that is stopped as soon as it has written anything. Nothing where it was.
+// Runs coding until it has written a checkpoint. The result is empty if it was stopped.
 CodedTransfer codeUntilKept(Cache& cache, const std::vector<float>& vectors, const CodingSettings& settings) {
   std::stop_source stop;
   const std::jthread watch([&, stored = cache.figures().stored](const std::stop_token& over) {
@@ -47,7 +46,7 @@ CodedTransfer codeUntilKept(Cache& cache, const std::vector<float>& vectors, con
 
 TEST(CachedCoding, GoesOnFromEachOfItsCheckpointsToTheSameCodes) {
   const std::vector<float> vectors = heaps();
-  // The second one has to search again, for fewer clusters; the third one ends with a bound that it misses.
+  // The second case has to search again, for fewer clusters; the third misses its error bound.
   for (const CodingSettings& settings :
        {CodingSettings{.bound = 0.004f},
         CodingSettings{.bound = 0.01f, .most_expanded_bytes = 40 * kVisibility.size() * sizeof(float)},

@@ -9,7 +9,7 @@
 namespace lambent::baker {
 namespace {
 
-// Gaussian, coordinate r about `r` with standard deviation 1/(1+r).
+// Makes Gaussian points, whose coordinate r has mean `r` and standard deviation 1/(1+r).
 Points falling(Eigen::Index rank, Eigen::Index count, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
@@ -42,11 +42,11 @@ TEST(SpectrumAbout, IsTheSameByProductsOfSamplesAsByCovariance) {
     ASSERT_EQ(own.axes.cols(), own.variances.size());
     EXPECT_LE(own.variances.size(), std::min<Eigen::Index>(count, 40));
     EXPECT_GE(own.variances.size(), std::min<Eigen::Index>(count - 1, 40)) << "no true axis is lost";
-    // Sums in float, of coordinates up to 40.
+    // Sums are in float, and coordinates go up to 40.
     const double rounding = 1e-5 * all.variances(0);
     EXPECT_LT((own.variances - all.variances.head(own.variances.size())).cwiseAbs().maxCoeff(), rounding);
     EXPECT_LT((covarianceOf(own) - covariance).norm(), 10.0 * rounding) << count;
-    // Those whose variance is not just rounding of the mean.
+    // Only axes whose variance exceeds the rounding of the mean are compared.
     const Eigen::MatrixXd axes = own.axes.leftCols(std::min<Eigen::Index>(count - 1, 40));
     EXPECT_LT((axes.transpose() * axes - Eigen::MatrixXd::Identity(axes.cols(), axes.cols())).norm(), 1e-6);
     for (Eigen::Index j = 1; j < own.variances.size(); ++j) EXPECT_LE(own.variances(j), own.variances(j - 1));
@@ -106,8 +106,8 @@ TEST(Clusters, TakeASampleAmongOthersAsTheyTakeItAlone) {
 }
 
 TEST(Clusters, KnowAxesOfFewWeightsMoreRoughly) {
-  // What errors of the axis add to those of its weights, as a share: rank coordinates, each off by grid²/12,
-  // times the mean square weight.
+  // Returns the error from quantized axes relative to that from quantized weights: rank coordinates with
+  // variance grid²/12 each, times the mean square weight.
   const auto share = [](double count) {
     const double grid = axisGrid(600, 0.3, 0.01, count);
     return 600.0 * grid * grid * 0.3 / (0.01 * 0.01);

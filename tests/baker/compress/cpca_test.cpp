@@ -27,8 +27,8 @@ transfer::TransferShape shapeOf(std::uint32_t order, std::uint32_t shadowed = 1,
   return shape;
 }
 
-// Transfer of a bumpy world: unoccluded vectors along a path of normals, each run of values of `columns`
-// dimmed and disturbed in its own way.
+// Makes the transfer of a bumpy world: unoccluded vectors along a path of normals, with each run of `columns`
+// values attenuated and disturbed differently.
 std::vector<float> bumpyTransfer(std::size_t count, const transfer::TransferShape& shape, unsigned seed,
                                  float noise = 0.01f) {
   std::mt19937 random(seed);
@@ -56,7 +56,7 @@ std::vector<float> decoded(const CodedTransfer& coded, std::size_t planes = 1000
   return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
 }
 
-// Everything that ends up in the file, before entropy coding.
+// Holds everything that is written to the file, before entropy coding.
 std::vector<std::byte> bytesOf(const CodedTransfer& coded) {
   std::vector<std::byte> all = transfer::encodeCodebook(coded.codebook);
   const auto append = [&](const std::vector<std::byte>& bytes) {
@@ -127,7 +127,7 @@ TEST(ClusteredCoding, TakesLightsOfTheGroupFromVeryFarAndVeryNear) {
   const CodedTransfer coded = code(vectors, shape, 0.005f);
   expectSound(coded, 400);
   EXPECT_LE(coded.error, 0.005f);
-  // Each counts like the environment: the far light by itself is coded as well as all.
+  // Each light counts like the environment: a distant lamp alone is coded as well as everything.
   const auto back = decoded(coded);
   double off = 0.0, energy = 0.0;
   for (std::size_t at = 9; at < vectors.size(); at += 11) {
@@ -186,16 +186,16 @@ TEST(ClusteredCoding, OneClusterIsPrincipalComponents) {
   for (std::size_t i = 0; i < 25; ++i) {
     double mean = 0.0;
     for (std::size_t s = 0; s < 600; ++s) mean += double{vectors[s * 25 + i]} / 600.0;
-    // On a grid; well under the error that is allowed.
+    // The values are quantized; the tolerance is well below the allowed error.
     EXPECT_NEAR(book.vectors[i], mean, 1e-3);
   }
-  // The first axis carries more variance than any other direction could: as much as all others see.
+  // The variance along the first axis is large.
   ASSERT_GT(coded.planes.size(), 3u);
   EXPECT_GT(coded.planes[0].variance, 0.2f);
 }
 
 TEST(ClusteredCoding, FindsTheClustersOfAWorldThatHasSome) {
-  // Eight directions, little noise: one line about each of eight points.
+  // The samples have eight directions and little noise: each of eight points has one line about it.
   const auto shape = shapeOf(5);
   std::mt19937 random(13);
   std::normal_distribution<float> normal;
@@ -278,7 +278,7 @@ TEST(ClusteredCoding, ErrsAlikeInAnyOrderOfSamples) {
   for (const std::size_t s : order)
     shuffled.insert(shuffled.end(), vectors.begin() + static_cast<std::ptrdiff_t>(s * shape.size()),
                     vectors.begin() + static_cast<std::ptrdiff_t>((s + 1) * shape.size()));
-  // Both use up the bound to 2 %.
+  // Both use most of the error bound, so their errors differ by at most 3 % of it.
   const float a = code(vectors, shape, 0.004f).error, b = code(shuffled, shape, 0.004f).error;
   EXPECT_LE(std::max(a, b), 0.004f);
   EXPECT_NEAR(a, b, 0.03f * 0.004f);

@@ -1,4 +1,4 @@
-// Coding of what glossy surfaces need: visibility, and matrices of bounced light.
+// Tests the coding of what glossy surfaces need: visibility, and matrices of bounced light.
 #include <array>
 #include <cmath>
 #include <random>
@@ -22,14 +22,15 @@ constexpr transfer::TransferShape kVisibility{.order = 5, .outputs = 25, .visibi
 constexpr transfer::TransferShape kBounced{
     .order = 5, .shadowed_channels = 0, .full_channels = 3, .outputs = 25};
 
-// Of means and axes, decoded.
+// Returns the decoded means and axes.
 std::size_t expandedBytes(const CodedTransfer& coded) {
   std::size_t count = coded.codebook.axis_counts.size();
   for (const auto axes : coded.codebook.axis_counts) count += axes;
   return count * coded.shape.size() * sizeof(float);
 }
 
-// Open sky but for a few round blockers that move over it: smooth in a path of samples, never twice the same.
+// Makes an open sky with a few round blockers that move over it: smooth along a path of samples, but never
+// the same twice.
 std::vector<float> wanderingVisibility(std::size_t count, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
@@ -55,7 +56,7 @@ std::vector<float> wanderingVisibility(std::size_t count, unsigned seed) {
   return out;
 }
 
-// Heaps, each with directions of its own whose variances fall slowly.
+// Makes clusters, each with its own directions, whose variances fall slowly.
 std::vector<float> slowlyFalling(std::size_t count, std::size_t size) {
   std::mt19937 random(3);
   std::normal_distribution<float> normal;
@@ -74,7 +75,7 @@ std::vector<float> slowlyFalling(std::size_t count, std::size_t size) {
   return out;
 }
 
-// Reflections of low rank with a little of everything.
+// Makes reflections of low rank plus a little noise.
 std::vector<float> bouncedMatrices(std::size_t count, unsigned seed, float noise) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
@@ -124,7 +125,8 @@ TEST(MatrixCoding, KeepsItsBoundOnVisibility) {
 }
 
 TEST(MatrixCoding, WeighsVisibilityByTheErrorsThatItMakesInReflectedLight) {
-  // A lobe and a light, each turned at random, so of independent coefficients with the power of their bands.
+  // A lobe and a light are rotated randomly, so their coefficients are independent and have the power of
+  // their bands.
   const auto visibility = wanderingVisibility(1, 7);
   const sh::GauntTable table = sh::makeGauntTable(5, 5);
   std::vector<float> matrix(625, 0.0f);
@@ -145,7 +147,8 @@ TEST(MatrixCoding, WeighsVisibilityByTheErrorsThatItMakesInReflectedLight) {
       for (std::size_t j = 0; j < 25; ++j) reflected += lobe[i] * double{matrix[25 * i + j]} * light[j];
     sum += reflected * reflected;
   }
-  // For a single function V the diagonal is not the whole form; its mean over turned V is: bands 0..8 add up.
+  // For a single function V the diagonal is not the whole quadratic form; for its mean over rotations of V it
+  // is, and bands 0..8 add up.
   double turned = 0.0;
   std::vector<double> powers(81, 0.0);
   for (std::size_t i = 0; i < 25; ++i)
@@ -171,9 +174,10 @@ TEST(MatrixCoding, BoundsBouncedLightRelativeToAllThatIsShown) {
   }
 }
 
-// On the GPU all of a cell lies in one page: a bundle that is larger is one that nobody can show.
+// On the GPU a cell must fit into one page; a larger bundle could not be shown.
 TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
-  // Sixteen heaps, of the same three directions each: as clusters 16 x (1 + 3) vectors, as one about 1 + 18.
+  // There are sixteen clusters with the same three directions: coded apart they need 16 x (1 + 3) vectors, as
+  // one about 1 + 18.
   constexpr std::size_t kCount = 16000, kHeaps = 16;
   const std::uint32_t size = kVisibility.size();
   const std::vector<float> vectors = testing::heaps(kCount, kHeaps, size, 29);
@@ -187,7 +191,7 @@ TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
 }
 
 TEST(MatrixCoding, KeepsItsBoundWithFewerClustersWhereMemoryEndsOnTheWayThere) {
-  // Four clusters were planned to take less than this, and turn out to take more; one takes 451.
+  // Four clusters are estimated to need less than this but need more; one needs 451.
   constexpr std::size_t kCount = 3000;
   transfer::TransferShape grey = kBounced;
   grey.full_channels = 1;
@@ -278,7 +282,8 @@ TEST(MatrixCoding, KeepsABoundWithoutLeadingComponentsWhereAllOfThemMayBeTaken) 
   const float few = error(kUsualComponents, 0.0f);
   EXPECT_GT(few, 0.5f);
   EXPECT_LE(error(kAllComponents, 0.0f), 0.1f);
-  // All of them, told roughly, where few leave out more than that; few where they leave out less.
+  // At 0.4 all components are coded coarsely, because few would leave out more than that; at 0.99 few
+  // suffice.
   const float loose = error(kUsualComponents, 0.4f);
   EXPECT_LE(loose, 0.4f);
   EXPECT_GT(loose, 0.35f);

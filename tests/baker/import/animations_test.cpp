@@ -1,4 +1,4 @@
-// Animations: keyframes as the file has them, or a reason why not.
+// Tests the import of animations: keyframes as in the file, or a reason for refusing them.
 #include <limits>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What importScene() refuses, and that it names the object. Under address and undefined sanitizers these also
-// show that nothing is read out of bounds.
+// Tests what importScene() refuses, and that the error names the object. With the address and undefined
+// sanitizers it also shows that nothing is read out of bounds.
 #include <functional>
 #include <random>
 
@@ -18,7 +18,7 @@ using testing::oneTriangle;
 using testing::TemporaryFolder;
 
 struct Case {
-  const char* names;  // must stand in the error
+  const char* names;  // which the error must contain
   std::function<void(json&)> bend;
 };
 
@@ -206,7 +206,8 @@ TEST(BrokenScene, IsRefusedAtEveryTruncationOfAGlb) {
   EXPECT_TRUE(importScene(folder.write("whole.glb", whole)));
 }
 
-// Something of everything: a skinned and morphed triangle that is instanced, animated, lit and textured.
+// Writes a file with something of everything: a skinned and morphed triangle that is instanced, animated, lit
+// and textured.
 GltfWriter everything() {
   GltfWriter writer = oneTriangle();
   json& attributes = writer.primitive()["attributes"];

@@ -1,4 +1,4 @@
-// What importScene() understands, on small files written here.
+// Tests what importScene() supports, on small files written here.
 #include "baker/import/gltf.hpp"
 
 #include <cmath>
@@ -240,7 +240,7 @@ TEST(ImportScene, FindsPercentEncodedBuffersAndEmbeddedOnes) {
   auto path = writer.writeText(folder, "x.bin");
   writer.json["buffers"][0]["uri"] = "my%20data/tri%20angle.bin";
   EXPECT_TRUE(importScene(folder.write("scene.gltf", writer.json.dump())));
-  // Three zero positions but for two ones, in base64.
+  // The base64 text has three positions that are zero except for two ones.
   writer.json["buffers"][0]["uri"] =
       "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
   EXPECT_TRUE(importScene(folder.write("scene.gltf", writer.json.dump())));

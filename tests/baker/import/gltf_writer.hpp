@@ -1,5 +1,5 @@
-// Small glTF files for the tests of import: a folder that vanishes with the test, and one-triangle scenes as
-// JSON that each test bends to its purpose.
+// Writes small glTF files for the importer's tests: into a folder that vanishes with the test, from
+// one-triangle scenes as JSON, which each test modifies.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-// A document under construction: add() appends values to buffer 0 and gives the index of their accessor.
+// Builds a document: add() appends values to buffer 0 and returns the index of their accessor.
 class GltfWriter {
  public:
   nlohmann::json json =
@@ -65,7 +65,7 @@ class GltfWriter {
     primitive()["attributes"]["POSITION"] = add("VEC3", 5126, xyz, 3);
   }
 
-  // Text with the buffer in "scene.bin" beside it.
+  // Writes the JSON as text and the buffer as a file beside it.
   std::filesystem::path writeText(const TemporaryFolder& folder,
                                   const std::string& buffer_name = "scene.bin") {
     json["buffers"] = {{{"byteLength", bytes.size()}, {"uri", buffer_name}}};
@@ -90,7 +90,7 @@ class GltfWriter {
   }
 };
 
-// (0,0,0) (1,0,0) (0,1,0)
+// Makes the triangle (0,0,0) (1,0,0) (0,1,0).
 inline GltfWriter oneTriangle() {
   GltfWriter writer;
   writer.addPositions({0, 0, 0, 1, 0, 0, 0, 1, 0});

@@ -1,4 +1,4 @@
-// EXT_mesh_gpu_instancing: an instance is a node.
+// Tests EXT_mesh_gpu_instancing, whose instances become nodes.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(Instances, AreChildNodesWithTheirOwnPlaceTurnAndSize) {
   writer.json["nodes"][0]["name"] = "tree";
   writer.json["nodes"][0]["translation"] = {10, 0, 0};
   instances(writer)["TRANSLATION"] = writer.add<float>("VEC3", 5126, {1, 2, 3, 4, 5, 6}, 3);
-  // Half a turn about Y in normalized bytes, and none.
+  // The rotations, in normalized bytes, are half a turn about Y and none.
   instances(writer)["ROTATION"] = writer.add<std::int8_t>("VEC4", 5120, {0, 127, 0, 0, 0, 0, 0, 127}, 4);
   writer.json["accessors"].back()["normalized"] = true;
   instances(writer)["SCALE"] = writer.add<float>("VEC3", 5126, {2, 2, 2, 1, 3, 1}, 3);

@@ -9,7 +9,7 @@
 namespace lambent::baker {
 namespace {
 
-// A body below a pivot, with a texture of its own, a lamp, and an animation of the body.
+// Makes a body below a pivot, with a texture of its own, a lamp, and an animation of the body.
 Scene scene(const std::string& name, float height) {
   Scene made;
   made.nodes.resize(2);

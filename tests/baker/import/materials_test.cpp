@@ -1,4 +1,4 @@
-// What a material shines, shows and is bumped by, and lights that are no surfaces.
+// Tests emission, textures and normal maps of materials, and lights without surfaces.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using testing::GltfWriter;
 using testing::oneTriangle;
 using testing::TemporaryFolder;
 
-// A triangle with texture coordinates, two textures and this material.
+// Makes a triangle with texture coordinates, two textures and this material.
 GltfWriter withMaterial(const TemporaryFolder& folder, const char* material) {
   GltfWriter writer = oneTriangle();
   writer.primitive()["attributes"]["NORMAL"] =

@@ -1,4 +1,4 @@
-// EXT_meshopt_compression: what comes out is what went in, and nothing false gets through.
+// Tests EXT_meshopt_compression: data survives a round trip, and invalid data is refused.
 #include <functional>
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// A grid whose positions and indices are coded in "coded.bin"; buffer 1 has no bytes of its own.
+// Makes a grid whose positions and indices are coded in "coded.bin"; buffer 1 has no bytes of its own.
 struct CodedGrid {
   bundle::MeshData mesh = testing::grid({0, 0, 0}, 2.0f, 12);
   json document;
@@ -93,7 +93,8 @@ TEST(Meshopt, GivesBackWhatWasCoded) {
   ASSERT_TRUE(scene) << scene.error().line();
   const bundle::MeshData& mesh = scene->meshes[0].primitives[0].mesh;
   ASSERT_EQ(mesh.indices.size(), grid.mesh.indices.size());
-  // Corners of a triangle may have been turned round; made flat, each has its own. Compare what they enclose.
+  // Corners of a triangle may be permuted cyclically, and flat shading duplicates them, so sums over the
+  // corners of triangles are compared.
   glm::vec3 low(1e9f), high(-1e9f);
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     glm::vec3 expected(0.0f), found(0.0f);
@@ -129,13 +130,13 @@ TEST(Meshopt, RefusesWhatIsFalseByName) {
   refused([](CodedGrid& g) { g.coded(1)["mode"] = "ATTRIBUTES"; }, "indices as vertices", "bufferView 1");
   refused(
       [](CodedGrid& g) {
-        // Three gigabytes that a handful of bytes would have to stand for.
+        // A few bytes claim to decode to three gigabytes.
         g.document["buffers"][1]["byteLength"] = 3000000000u;
       },
       "a bomb", "claims 3000000000 bytes");
   refused(
       [](CodedGrid& g) {
-        // The same bytes named again and again stand for no more than once.
+        // The same bytes referenced many times count only once.
         for (int i = 0; i < 100; ++i) g.document["bufferViews"].push_back(g.document["bufferViews"][0]);
         g.document["buffers"][1]["byteLength"] = (g.bytes.size() + 2) * 256;
       },

@@ -1,4 +1,4 @@
-// Morph targets and skins at rest: vertices stand where the formulas of glTF put them.
+// Tests morph targets and skins at rest: vertices are where the formulas of glTF put them.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using testing::GltfWriter;
 using testing::oneTriangle;
 using testing::TemporaryFolder;
 
-// Positions of the mesh that a node draws, in world space.
+// Returns the positions of the mesh that a node draws, in world space.
 std::vector<glm::vec3> worldPositions(const Scene& scene, std::size_t node, std::size_t primitive = 0) {
   const glm::mat4 world = gltf::worldTransforms(scene.nodes).at(node);
   std::vector<glm::vec3> out;
@@ -53,14 +53,14 @@ TEST(MorphTargets, MoveVerticesByTheWeightsOfTheNodeOrElseOfTheMesh) {
   expectNear(worldPositions(scene, 1), {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}});
   EXPECT_EQ(scene.meshes.size(), 2u);  // nodes that stand alike share
   EXPECT_EQ(scene.nodes[2].mesh, scene.nodes[0].mesh);
-  // (0, 0, 1) + 0.5 (2, 0, 0), made unit.
+  // The normal is (0, 0, 1) + 0.5 (2, 0, 0), normalized.
   EXPECT_NEAR(scene.meshes[0].primitives[0].mesh.normals[1].x, 0.70710678f, 1e-6f);
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_NE(scene.warnings[0].find("do not move"), std::string::npos);
 }
 
-// The triangle on two joints: vertex 0 on the first, 1 on the second, 2 half on each. Nodes: 0 figure, 1 and
-// 2 joints, 3 the mesh, under a transform that a skinned mesh must not feel.
+// Makes a triangle on two joints: vertex 0 on the first, 1 on the second, 2 half on each. Node 0 is the
+// figure, 1 and 2 are the joints, 3 the mesh, whose own transform must not affect a skinned mesh.
 GltfWriter skinned() {
   GltfWriter writer = oneTriangle();
   json& attributes = writer.primitive()["attributes"];

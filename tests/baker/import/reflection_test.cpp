@@ -1,4 +1,4 @@
-// What materials reflect: metal and roughness, the extensions about it, and measured BRDFs.
+// Tests the reflection of materials: metal and roughness, the related extensions, and measured BRDFs.
 #include <cmath>
 #include <numbers>
 
@@ -141,7 +141,7 @@ TEST(Reflection, FactorsThatAreNoneAreRefusedByName) {
   refused(R"({"extras":{"lambent":{"brdf":7}}})", "brdf is not a string");
 }
 
-// White, twice as bright as a measurement should be, and a measurement without light.
+// The file has two measurements: a white one of value 2, and a black one.
 constexpr const char* kWhite =
     "# num wls\r\n4\r\n\r\n# wls\r\n400 500\r\n600 700\r\n\r\n# values\r\n\r\n"
     "0.5 0.25 0.75 -1.5 2 2 2 2\r\n0 0 1.5708 3 0 0 0 0\r\n";

@@ -1,4 +1,5 @@
-// Scenes and models of other people: counts as their list says, and the variants of one model agree.
+// Imports third-party scenes and models: counts must match their list, and the variants of one model must
+// agree.
 #include <cmath>
 #include <cstdio>
 

@@ -1,5 +1,5 @@
-// Every scene of other people that is at hand: each is read or refused in one line, and all variants of one
-// model are the same geometry.
+// Imports every third-party scene that is available: each is read or refused in one line, and all variants of
+// one model have the same geometry.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -24,7 +24,7 @@ std::vector<fs::path> gltfFilesUnder(const fs::path& folder) {
   return files;
 }
 
-// What every user of a scene relies on.
+// Checks what every user of a scene relies on.
 void expectWhole(const Scene& scene) {
   ASSERT_FALSE(scene.meshes.empty());
   for (const SceneMesh& mesh : scene.meshes)
@@ -69,7 +69,8 @@ TEST(SharedScenes, AreAllReadOrRefusedInOneLine) {
         EXPECT_FALSE(scene.error().hint.empty());
       }
     }
-  // Those of scenes/ but two of Compatibility/, one node with two parents, and the points and lines.
+  // All files of scenes/ are read, except two of Compatibility/, one node with two parents, and the points
+  // and lines.
   EXPECT_GE(read, 95u);
 }
 

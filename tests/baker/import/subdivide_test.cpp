@@ -28,7 +28,7 @@ double area(const MeshData& mesh) {
   return sum;
 }
 
-// How many triangles lie on each edge, edges told apart by the positions of their ends.
+// Counts the triangles at each edge; edges are identified by the positions of their ends.
 std::map<Edge, int> edges(const MeshData& mesh) {
   std::map<Edge, int> count;
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
@@ -47,8 +47,8 @@ float longestEdge(const MeshData& mesh) {
   return longest;
 }
 
-// A closed box with hard edges: every side has vertices, normals and texture coordinates of its own, and the
-// sides differ so much that neighbours split differently.
+// Makes a closed box with hard edges: every side has its own vertices, normals and texture coordinates, and
+// the sides differ so much that adjacent ones are split differently.
 MeshData box(glm::vec3 size) {
   MeshData mesh;
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-// Volumes and requests for neighborhoods: extras of nodes, and the files that they name.
+// Tests volumes and requests for neighborhoods: extras of nodes, and the files that they name.
 #include <algorithm>
 #include <bit>
 #include <cmath>

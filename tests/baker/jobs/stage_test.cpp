@@ -11,7 +11,7 @@ namespace {
 using namespace lambent::baker;
 using lambent::testing::TemporaryFolder;
 
-// Work with a result of which each number is known, and a count of what was computed.
+// Does work whose results are known, and counts what was computed.
 struct Squares {
   std::vector<std::uint64_t> values = std::vector<std::uint64_t>(1000, 0);
   std::atomic<std::size_t> computed = 0;
@@ -87,7 +87,7 @@ TEST(Stages, ComputeAgainWhatWasInADamagedEntry) {
   ASSERT_TRUE(figures);
   EXPECT_EQ(figures->found + figures->computed, kItems);
   rest.expectAll();
-  // The hole is filled, so that the entries after it are found again.
+  // Filling the gap makes the entries after it available again.
   Squares again;
   EXPECT_EQ(again.run(&*cache)->found, kItems);
   again.expectAll();

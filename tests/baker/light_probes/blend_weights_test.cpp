@@ -51,8 +51,8 @@ TEST(BlendWeights, AtALightProbeAreAllItsOwn) {
   }
 }
 
-// Along a path through the cloud no weight jumps, though those in use change all the time: the largest
-// step shrinks with the length of the steps.
+// Along a path through the cloud no weight jumps, although the light probes in use change: the largest change
+// shrinks with the step length.
 TEST(BlendWeights, ChangeWithoutAJumpAlongAPath) {
   const auto points = lights(24);
   const auto largestStep = [&](int steps) {
@@ -74,8 +74,8 @@ TEST(BlendWeights, ChangeWithoutAJumpAlongAPath) {
   EXPECT_LT(fine, coarse / 8.0) << "a jump would stay as it is";
 }
 
-// What varies evenly in space: blends miss it by less than a fifth of what the nearest light probe alone
-// does, wherever light probes stand all around.
+// Blends of a linear function of space err by less than a fifth of what the nearest light probe alone does,
+// wherever light probes are on all sides.
 TEST(BlendWeights, FollowEvenChangeAmongLightProbes) {
   const auto points = lights(64);
   double blended = 0.0, nearest = 0.0;
@@ -92,7 +92,7 @@ TEST(BlendWeights, FollowEvenChangeAmongLightProbes) {
   EXPECT_LT(std::sqrt(blended / nearest), 0.2);
 }
 
-// In the middle of two, and of the corners of a cube: no side is taken, and weights stay few.
+// In the middle of two light probes, and of the corners of a cube, the weights are symmetric and few.
 TEST(BlendWeights, OfRegularLightProbesAreFewAndDoNotJump) {
   std::vector<glm::vec3> grid;
   for (int i = 0; i < 27; ++i)

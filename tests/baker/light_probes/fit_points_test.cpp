@@ -33,7 +33,7 @@ struct Fitted {
   }
 };
 
-// Root mean square distance of the places that blends stand for.
+// Returns the root mean square distance between places and the places that their blends represent.
 double missed(const Fitted& fit, const std::vector<glm::vec3>& points) {
   double sum = 0.0, areas = 0.0;
   for (std::size_t i = 0; i < fit.areas.size(); ++i) {

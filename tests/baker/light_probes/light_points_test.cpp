@@ -55,8 +55,8 @@ TEST(LightPoints, LieNearerTheMoreThereAre) {
     EXPECT_LT(here, before) << count;
     before = here;
   }
-  // An even part of the cube's 8 m³ for each of 32 has a mean square of at least that of a ball of the
-  // volume, 3/5 r².
+  // If each of 32 light probes has an equal part of the cube's 8 m³, the mean square distance is at least
+  // that of a ball of this volume, 3/5 r².
   EXPECT_LT(before, 1.4 * 0.6 * std::pow(8.0 / 32 * 0.75 / 3.14159, 2.0 / 3.0));
 }
 

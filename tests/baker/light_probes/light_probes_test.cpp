@@ -25,7 +25,7 @@ LightProbes choose(const SampleSet& samples, LightProbeCount count) {
   return chooseLightProbes(samples, std::vector<float>(samples.size(), 1.0f), low, high, count);
 }
 
-// Points of a plane cut into so many cells along x.
+// Makes points of a plane, cut into this many cells along x.
 SampleSet strips(std::uint32_t cells, std::uint32_t across) {
   SampleSet samples;
   for (std::uint32_t c = 0; c < cells; ++c) {
@@ -87,8 +87,8 @@ TEST(LightProbes, AreAsManyAsAskedForOfEachCellOrOfTheGroup) {
 TEST(LightProbes, BlendWithoutASeamWhereCellsMeet) {
   const SampleSet samples = strips(3, 40);
   const LightProbes found = choose(samples, {4, false});
-  // A field over the light probes, blended at all places: neighbours across a border differ by no more than
-  // neighbours within a cell do at most.
+  // Blends a field over the light probes at all places: adjacent places across a cell border differ no more
+  // than the largest difference within a cell.
   const auto blended = [&](std::uint32_t c, std::uint32_t i) {
     double sum = 0.0;
     const transfer::LightWeights& w = found.cells[c].weights[i];
@@ -145,7 +145,7 @@ TEST(LightProbes, OfCellsInTheSamePlaceAreShared) {
   EXPECT_EQ(found.cells[0].weights, found.cells[1].weights);
 }
 
-// Many small cells in the reach of a wide one: it could be lit from more than a bundle holds.
+// Many small cells are in the reach of a wide one, which could use more light probes than a bundle can store.
 TEST(LightProbes, AreThinnedWhereACellWouldTakeTooMany) {
   SampleSet samples = strips(1, 30);
   const SampleSet many = strips(1, 30);

@@ -1,5 +1,5 @@
-// Every preview_level is a whole bundle, the last one the bundle that a plain bake writes; what is changed,
-// cancelled or broken on the way harms nothing.
+// Tests that every preview level is a complete bundle, that the last one is what a plain bake writes, and
+// that edits, cancels and failures on the way do no harm.
 #include "baker/pipeline/bake_queue.hpp"
 
 #include "baker/bake/bake_unshadowed.hpp"
@@ -45,7 +45,7 @@ class BakeQueueTest : public testing::PipelineTest {
   }
 };
 
-// Light that a sample takes on, by a cell's only vector.
+// Returns the light that a sample receives, by a cell's only vector.
 std::vector<float> vectorOf(const bundle::Reader& reader, std::uint32_t group, std::uint32_t cell) {
   const auto codes = reader.readCodebook(group, cell, 0);
   EXPECT_TRUE(codes);

@@ -1,4 +1,4 @@
-// What was begun and not finished is found again, once nobody works at it.
+// Tests that unfinished bakes are found again once no process works on them.
 #include "baker/pipeline/journal.hpp"
 
 #include "tests/baker/pipeline/pipeline_test.hpp"

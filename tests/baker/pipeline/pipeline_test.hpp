@@ -1,4 +1,4 @@
-// A folder for each test, and waiting for what threads do.
+// Provides a folder for each test, and waiting for other threads.
 #pragma once
 
 #include <chrono>
@@ -37,7 +37,7 @@ class PipelineTest : public ::testing::Test {
     const auto written = assets::writeGlb(path, scene);
     ASSERT_TRUE(written) << written.error().line();
   }
-  // Long enough on a machine that does something else; `done` is asked again and again.
+  // Polls `done` until it is true. The timeout is long enough for a busy machine.
   template <typename Done>
   static bool eventually(const Done& done, std::chrono::milliseconds within = std::chrono::seconds(60)) {
     const auto end = std::chrono::steady_clock::now() + within;

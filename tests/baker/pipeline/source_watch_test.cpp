@@ -1,4 +1,4 @@
-// Changes are told once they are whole; until then nothing happens.
+// Tests that a change is reported once the file is complete, and not before.
 #include "baker/pipeline/source_watch.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ class SourceWatchTest : public testing::PipelineTest {
     settings.complain_after = std::chrono::milliseconds(300);
     return settings;
   }
-  // Waits for the next event; a Kind that nobody asks for where none comes.
+  // Waits for the next event.
   std::optional<WatchEvent> next(SourceWatch& watch,
                                  std::chrono::milliseconds within = std::chrono::seconds(20)) {
     eventually(
@@ -43,7 +43,7 @@ class SourceWatchTest : public testing::PipelineTest {
   std::vector<WatchEvent> waiting_;
 };
 
-// A triangle in a buffer of its own.
+// Writes a triangle with a buffer file of its own.
 std::string gltfText(const std::string& buffer) {
   return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
              "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],

@@ -10,7 +10,7 @@ namespace {
 using testing::grid;
 using testing::sceneOf;
 
-// Two floors, the second of an emissive material, and a point light.
+// Makes two floors, the second of an emissive material, and a point light.
 Scene lampScene() {
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1), grid({0, 1, 0}, 1.0f, 1)});
   scene.materials.push_back(scene.materials[0]);

@@ -29,7 +29,7 @@ Planned plan(const Scene& scene) {
   return out;
 }
 
-// A ball of radius 1 (half its box's diagonal: √3) and a point light that moves by itself.
+// Makes a ball of radius 1 (half its box's diagonal: √3) and a point light that moves by itself.
 Scene ballAndLamp(float distance) {
   Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 3)});
   scene.nodes[0].name = "ball";
@@ -135,7 +135,7 @@ TEST(LightsInside, AreThoseWhoseWayMeetsAGroupsBounds) {
   EXPECT_EQ(sentences()[0],
             "The light of torch can stand among the surfaces of static: direct light per pixel by a shadow "
             "cube map, its bounces by patches.");
-  // One that is fixed to the group is baked, not near.
+  // A light that is fixed to the group is baked.
   scene.animations.clear();
   scene.nodes[1].animated = scene.nodes[1].movable = false;
   scene.nodes[1].parent_from_node = glm::mat4(1.0f);

@@ -1,4 +1,4 @@
-// Which bodies the plan gives a neighborhood, and for whom.
+// Tests which bodies get a neighborhood in the plan, and for which receivers.
 #include "baker/plan/neighborhoods.hpp"
 
 #include <cmath>
@@ -34,7 +34,7 @@ Planned plan(const Scene& scene) {
   return out;
 }
 
-// A floor of 20 m, and balls of radius 0.5 m that can be moved, at a height over it.
+// Makes a floor of 20 m, and movable balls of radius 0.5 m at a height above it.
 Scene ballsOver(int balls, float height, int cells = 40) {
   std::vector<bundle::MeshData> meshes = {grid({0, 0, 0}, 20.0f, cells)};
   for (int b = 0; b < balls; ++b) meshes.push_back(icosphere({0, 0, 0}, 0.5f, 1));
@@ -49,7 +49,7 @@ Scene ballsOver(int balls, float height, int cells = 40) {
   return scene;
 }
 
-// As if animations moved them, and no hand.
+// Makes bodies move by animation rather than by hand.
 Scene rolling(Scene scene) {
   for (std::size_t n = 1; n < scene.nodes.size(); ++n) scene.nodes[n].animated = true;
   return scene;
@@ -62,7 +62,7 @@ TEST(NeighborhoodPlans, AreForBodiesOnGroupsOfMoreThanTwiceTheirSize) {
   EXPECT_FALSE(planned.of("static").baked);
   EXPECT_TRUE(planned.of("ball 0").carries(planned.indexOf("static")));
   EXPECT_NE(planned.of("ball 0").reason.find("bounds of static"), std::string::npos);
-  // High above, no one asked for it.
+  // Nothing requests a neighborhood high above.
   EXPECT_FALSE(plan(rolling(ballsOver(1, 3.0f))).of("ball 0").baked);
 }
 

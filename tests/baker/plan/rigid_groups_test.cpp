@@ -10,7 +10,7 @@ namespace {
 using testing::grid;
 using testing::sceneOf;
 
-// Node 0 holds nodes 1 and 2; each has a mesh.
+// Makes node 0 with children 1 and 2; each has a mesh.
 Scene family() {
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1), grid({0, 0, 0}, 1.0f, 1), grid({0, 0, 0}, 1.0f, 1)});
   scene.roots = {0};

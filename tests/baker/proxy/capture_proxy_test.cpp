@@ -1,4 +1,4 @@
-// A proxy looks like its group from outside: as large, as bright, as powerful.
+// Tests that a proxy looks like its group from outside: as large, as bright, with the same power.
 #include "baker/proxy/capture_proxy.hpp"
 
 #include <numbers>
@@ -65,7 +65,7 @@ bool meets(glm::vec3 eye, glm::vec3 direction, const Corners& c) {
   return u >= 0.0f && v >= 0.0f && u + v <= 1.0f && glm::dot(ac, q) / det > 0.0f;
 }
 
-// Share of a cone about the body that it fills, by 4000 rays: proportional to its solid angle.
+// Returns the fraction of a cone about the body that it fills, by 4000 rays: proportional to its solid angle.
 double coneShare(glm::vec3 eye, glm::vec3 centre, float radius, const std::vector<Corners>& triangles) {
   const glm::vec3 z = glm::normalize(centre - eye),
                   x = glm::normalize(
@@ -103,7 +103,7 @@ void expectAsLarge(const bundle::MeshData& mesh, const std::vector<double>& tole
   }
 }
 
-// Which vertices stay is a matter of last bits on a body this even; with 16 triangles that shows.
+// On such a regular body rounding decides which vertices are kept; with 16 triangles this is visible.
 TEST(CaptureProxyShape, OfASphereLooksAsLarge) {
   expectAsLarge(icosphere({2, 0, 0}, 1.0f, 4), {0.015, 0.03, 0.15});
 }
@@ -151,7 +151,8 @@ TEST(CaptureProxyLight, ReflectsTheAlbedoOnEveryTriangle) {
   }
 }
 
-// Red above, blue below: the mean over the whole, and light from above that finds the red half.
+// The body is red above and blue below: the whole has the mean colour, and light from above sees the red
+// half.
 TEST(CaptureProxyLight, OfASphereOfTwoColoursHasItsMeans) {
   bundle::MeshData sphere = icosphere({0, 0, 0}, 1.0f, 5);
   for (const glm::vec3& p : sphere.positions)
@@ -181,7 +182,7 @@ TEST(CaptureProxyLight, OfASphereOfTwoColoursHasItsMeans) {
   }
 }
 
-// A texture finer than triangles: three quarters black, a quarter white.
+// The texture is finer than the triangles: three quarters black, a quarter white.
 TEST(CaptureProxyLight, ReflectsTheMeanOfATexture) {
   constexpr int kSide = 64;
   std::vector<std::uint8_t> texels(kSide * kSide);
@@ -210,8 +211,8 @@ TEST(CaptureProxyLight, ReflectsTheMeanOfATexture) {
   EXPECT_NEAR(mean.g, 0.125f, 0.005f);
 }
 
-// A panel under a ceiling, and a lamp that is round: power stays, whatever the level, and nothing else
-// shines.
+// The scene has a panel under a ceiling and a round lamp. At any level their power is kept, and nothing else
+// emits.
 TEST(CaptureProxyLight, ThatIsGivenOffKeepsItsPower) {
   for (const bool round : {false, true}) {
     Scene scene = sceneOf({icosphere({0, -3, 0}, 1.0f, 4),

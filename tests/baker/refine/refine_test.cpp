@@ -1,4 +1,5 @@
-// Vertices come where shadows change and nowhere else, without a crack, the same for any number of threads.
+// Tests that vertices are added where shadows change and nowhere else, without cracks, and equally for any
+// number of threads.
 #include "baker/refine/refine.hpp"
 
 #include <algorithm>
@@ -42,7 +43,8 @@ Refined refined(const Scene& scene, const RefineOptions& options, bool with_glos
   return result;
 }
 
-// A floor of two triangles, 4 x 4 m about the origin, and a slab of 1 m that floats half a metre above it.
+// Makes a floor of two triangles, 4 x 4 m about the origin, and a slab of 1 m that floats half a metre above
+// it.
 Scene floorUnderSlab() {
   return sceneOf({grid({0, 0, 0}, 4.0f, 1), box({0.0f, 0.5f, 0.0f}, {1.0f, 0.05f, 1.0f}, 2)});
 }
@@ -66,7 +68,7 @@ TEST(Refinement, BringsTheErrorUnderTheBoundWithVerticesWhereTheShadowFalls) {
     return std::count_if(floor.positions.begin(), floor.positions.end(),
                          [&](const glm::vec3& p) { return std::max(std::abs(p.x), std::abs(p.z)) < reach; });
   };
-  // A quarter of the floor.
+  // A quarter of the floor's area has more than half of its vertices.
   EXPECT_GT(within(1.0f), static_cast<std::ptrdiff_t>(floor.positions.size()) / 2);
 }
 
@@ -81,7 +83,7 @@ TEST(Refinement, BringsWhatAGlossyFloorReflectsUnderTheBound) {
 }
 
 TEST(Refinement, OpensNoCrackBetweenMeshes) {
-  // Two halves of a floor as meshes of their own, the slab over one of them.
+  // Two halves of a floor are separate meshes, with the slab over one of them.
   bundle::MeshData left = grid({-1, 0, 0}, 2.0f, 1), right = grid({1, 0, 0}, 2.0f, 1);
   const Refined result =
       refined(sceneOf({left, right, box({0.6f, 0.3f, 0.0f}, {1.0f, 0.05f, 1.0f}, 1)}), {.bound = 0.01f});
@@ -112,8 +114,8 @@ TEST(Refinement, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.report.error_after, many.report.error_after);
 }
 
-// A sheet in waves of two cells, polished and with the normals of the plane that it is about: every face
-// leans.
+// Makes a polished sheet with waves of two cells and the normals of its mean plane, so that every face is
+// tilted.
 Scene foldedSheet() {
   bundle::MeshData sheet = grid({0, 0, 0}, 4.0f, 16);
   for (std::size_t i = 0; i < sheet.positions.size(); ++i)

@@ -1,4 +1,4 @@
-// Faces around a vertex that see different things get values apart, and only those.
+// Tests that faces around a vertex that see different things get separate values, and only those.
 #include "baker/refine/wedges.hpp"
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace lambent::baker {
 namespace {
 
-// Six faces around star 0, of area 1, whose outer corners are stars 1..6.
+// Makes six faces around star 0, of area 1, whose outer corners are stars 1..6.
 FaceLacks ring(const std::array<float, 6>& values) {
   FaceLacks lacks{.width = 1};
   for (std::uint32_t f = 0; f < 6; ++f) {
@@ -36,7 +36,7 @@ TEST(Wedges, AreNotNeededWhereOneValueServesAll) {
 }
 
 TEST(Wedges, AreRunsOfNeighboursEvenWhereFartherFacesAreMoreAlike) {
-  // Up and down by turns: no two neighbours are alike.
+  // Faces alternate between up and down, so no two adjacent ones are alike.
   const Wedges fans = chooseWedges(ring({1, -1, 1, -1, 1, -1}), 7, 0.0, 1);
   ASSERT_EQ(fans.added, 1u);
   int changes = 0;  // around the middle
@@ -56,7 +56,7 @@ TEST(Wedges, AreAsManyAsMayBeAddedAtMost) {
   }
 }
 
-// Two estimates that share nothing but noise: their products are 0 on average, their squares are not.
+// Makes two estimates with independent noise: their products are 0 on average, their squares are not.
 TEST(Wedges, OfNoiseAreFewerThanOfWhatBothEstimatesShow) {
   constexpr std::size_t kWidth = 36;
   std::mt19937 random(2);

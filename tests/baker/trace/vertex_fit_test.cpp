@@ -16,8 +16,8 @@ namespace {
 using testing::Transport;
 using Function = std::function<float(const glm::vec3&)>;
 
-// A function over the samples of a scene, before and after it is fitted at the centroids of all triangles
-// that `wanted` names.
+// Holds a function over the samples of a scene, before and after it is fitted at the centroids of all
+// triangles that `wanted` names.
 class Fitted {
  public:
   Fitted(const Transport& t, const Function& f,
@@ -37,7 +37,7 @@ class Fitted {
     withThreads(threads, [&] { EXPECT_TRUE(fit.apply(1, at_points, after, {})); });
   }
 
-  // Root of the integral of the square of what interpolation is off.
+  // Returns the root of the integral of the squared interpolation error.
   double error(const std::vector<float>& values) const {
     double sum = 0.0;
     constexpr int kParts = 8;

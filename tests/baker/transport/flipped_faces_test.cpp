@@ -1,4 +1,4 @@
-// What a scanned skin has of faces that nobody sees does not darken what is seen.
+// Tests that invisible faces of scanned models do not darken what is visible.
 #include "baker/transport/flipped_faces.hpp"
 
 #include <array>
@@ -22,7 +22,7 @@ glm::mat3 upright() {
   return glm::mat3(localFrame({0, 1, 0}));
 }
 
-// A sliver a little above the floor, seen from behind, with the floor's normals.
+// Makes a sliver just above the floor, seen from behind, with the floor's normals.
 bundle::MeshData sliver() {
   bundle::MeshData mesh;
   mesh.positions = {{-0.1f, 0.001f, 0}, {0.1f, 0.001f, 0}, {0, 0.001f, 0.05f}};
@@ -48,7 +48,7 @@ TEST(Folds, BlockNoRays) {
 }
 
 TEST(Folds, AreNoneWhereAllOfASurfaceIsTurnedOver) {
-  // As a file has it whose normals are wrong, or whose faces are.
+  // In such a file either the normals or the faces are wrong.
   bundle::MeshData roof = grid({0, 1, 0}, 1e4f, 2);
   for (glm::vec3& n : roof.normals) n = -n;
   EXPECT_EQ(blockedRays(Transport(sceneOf({roof})), {0, 0, 0}), 256u);
@@ -78,7 +78,7 @@ TEST(SeenOrigins, LeaveOutWhatSomethingLiesOn) {
   EXPECT_EQ(found.origins[0].weight, 1.0f);
   findSeenOrigins(std::span(&covered, 1), upright(), t.rays, glances, found);
   EXPECT_FALSE(found.valid);
-  // What is as far off as the ceiling of a room does not.
+  // A surface as far off as the ceiling of a room does not hide it.
   const SampleOrigin indoors{{0.5f, 1e-4f, 0}, {0, 1, 0}, 1.0f, 1e-5f};
   findSeenOrigins(std::span(&indoors, 1), upright(), t.rays, glances, found);
   EXPECT_TRUE(found.valid);

@@ -7,7 +7,7 @@
 namespace lambent::baker {
 namespace {
 
-// Alpha masks are looked up where the picture will be: KHR_texture_transform counts.
+// Alpha masks are sampled with KHR_texture_transform applied.
 TEST(GroupGeometry, TexcoordsAreThoseOfTheTransformedBaseColorTexture) {
   Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 1.0f, 1)});
   scene.materials[0].base_color_texture = {
@@ -23,8 +23,8 @@ TEST(GroupGeometry, TexcoordsAreThoseOfTheTransformedBaseColorTexture) {
   }
 }
 
-// A mirroring node turns the bitangent over, and so does the back, whose normal is negated; the direction in
-// which the surface is brushed stays.
+// A mirroring node flips the bitangent, and so does the back, whose normal is negated; the direction in which
+// the surface is brushed stays.
 TEST(GroupGeometry, GivesGlossyDrawsTangentsAndBothSetsOfTexcoords) {
   bundle::MeshData mesh = testing::grid({0, 0, 0}, 1.0f, 1);
   mesh.tangents.assign(mesh.positions.size(), {1.0f, 0.0f, 0.0f, 1.0f});

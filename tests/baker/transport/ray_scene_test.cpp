@@ -35,7 +35,7 @@ TEST(LocalFrame, IsARotationAtThePolesToo) {
 }
 
 TEST(RayScene, BlocksExactlyTheDirectionsUnderARoof) {
-  // Half a roof, x > 0, from straight above to the horizon.
+  // The scene is half a roof, x > 0, from straight above to the horizon.
   const auto roof = testing::transformed(flipped(grid({0, 0, 0}, 1e5f, 1)),
                                          glm::translate(glm::mat4(1.0f), {5e4f, 1.0f, 0}));
   const Transport t(sceneOf({roof}));
@@ -84,7 +84,7 @@ TEST(RayScene, SeesBacksOnlyFromInsideASolid) {
 }
 
 TEST(RayScene, TellsWhatBlockedRaysMetInBothWaysAlike) {
-  // A two-sided card over a single-sided floor that is seen from behind.
+  // A double-sided card is over a single-sided floor that is seen from behind.
   Scene scene = sceneOf({grid({0, 1, 0}, 2.0f, 3), grid({0, 3, 0}, 9.0f, 1)});
   scene.materials.push_back(scene.materials[0]);
   scene.materials[1].double_sided = true;

@@ -87,7 +87,7 @@ TEST(Samples, OfACellStandInTheOrderInWhichVerticesUseThem) {
 TEST(Samples, OfLargeGroupsAreCutIntoCompactCells) {
   const Transport t(sceneOf({grid({0, 0, 0}, 1.0f, 300)}));
   const SampleCell& last = t.samples.cells[1];
-  // 24,537 of 90,601 samples along a Morton curve: the corner that it ends in, not a stripe over the whole.
+  // The last cell has 24,537 of 90,601 samples along a Morton curve: a corner, not a stripe over the whole.
   EXPECT_LT((last.bounds_max.x - last.bounds_min.x) * (last.bounds_max.z - last.bounds_min.z), 0.55f);
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using scene::Value;
 
-// Every field of every component, and the parents, by id: what undo has to bring back.
+// Returns every field of every component, and the parents, by id. Undo has to restore all of it.
 std::map<std::string, Value> everything(const Document& document) {
   std::map<std::string, Value> all;
   const ecs::Registry& registry = document.registry();
@@ -59,7 +59,7 @@ class Editing : public ::testing::Test {
   }
 };
 
-// Random edits over every kind of change, by a fixed seed.
+// Makes random edits of every kind, by a fixed seed.
 class RandomEditor {
  public:
   RandomEditor(Document& document, History& history) : document_(document), history_(history) {}
@@ -120,7 +120,7 @@ class RandomEditor {
       const auto& field = component.fields[below(static_cast<unsigned>(component.fields.size()))];
       edits.push_back({entity, component.name, field.name, valueFor(field)});
     }
-    // May be out of range: then nothing happens.
+    // The value may be out of range, and then nothing happens.
     static_cast<void>(history_.setFields(edits));
   }
   bool create() {

@@ -1,5 +1,5 @@
-// A registry with a small bundle in it (a table with a lamp on it and a camera, a material that shines, an
-// animation), made without files or a GPU.
+// Makes a registry with a small bundle (a table with a lamp on it, a ball and a camera, an emissive material,
+// an animation), without files and GPU.
 #pragma once
 
 #include <string>
@@ -29,7 +29,7 @@ inline std::int32_t addNode(bundle::Description& d, std::string name, std::int32
   return index;
 }
 
-// table (scaled) > lamp (a spot), ball; camera.
+// The hierarchy is table (scaled) > lamp (a spot), ball; the camera is beside it.
 inline bundle::Description smallDescription() {
   bundle::Description d;
   const std::int32_t table = addNode(d, "table", -1, glm::scale(glm::mat4(1.0f), glm::vec3(2.0f)));

@@ -50,7 +50,7 @@ class WorldFiles : public ::testing::Test {
   }
   ~WorldFiles() override { fs::remove_all(folder); }
 
-  // An edit of the lamp, two lights that were made (one below the table), the table below a new entity.
+  // Edits the lamp, adds two lights (one below the table), and moves the table below a new entity.
   void edit() {
     ASSERT_TRUE(history.setField(world.node("lamp"), "Light", "strength", 0.1f));
     ASSERT_TRUE(history.setField(world.node("lamp"), "Transform", "rotation",
@@ -72,7 +72,7 @@ class WorldFiles : public ::testing::Test {
     const Result<WorldFile> read = parseWorld(json, "w.json");
     return read ? "no error" : read.error().line();
   }
-  // The text with one part replaced; what to replace must be there.
+  // Returns the text with one part replaced, which must be there.
   std::string damaged(const std::string& what, const std::string& by) {
     std::string json = text();
     const auto at = json.find(what);
@@ -194,7 +194,7 @@ TEST_F(WorldFiles, EditsOfWhatABundleCameWithoutWaitForItsReturn) {
 TEST_F(WorldFiles, EveryKindOfDamageIsNamedWithItsPlace) {
   edit();
   const std::string lamp = "entities." + idText(document.idOf(world.node("lamp"))) + ".components.";
-  // What is replaced, by what, and what the error has to say.
+  // Each case has what is replaced, by what, and what the error must say.
   const std::vector<std::tuple<std::string, std::string, std::string>> damages = {
       {"\"lambent_world\": 1", "\"lambent_world\": 2",
        "lambent_world is version 2; this program reads up to 1"},

@@ -24,7 +24,8 @@ glm::dvec3 place(const GizmoTarget& target, const scene::Transform& local) {
   return glm::dvec3(worldOf(target, local)[3]);
 }
 
-// Parents as files have them: none, turned and scaled, mirrored, scaled unevenly, sheared, far away and tiny.
+// Lists parents as files have them: none, rotated and scaled, mirrored, non-uniformly scaled, sheared, far
+// away and tiny.
 std::vector<glm::mat4> parents() {
   const glm::mat4 one(1.0f);
   const glm::mat4 turned = glm::rotate(one, 0.8f, glm::normalize(glm::vec3(1.0f, 2.0f, 3.0f)));
@@ -38,7 +39,7 @@ std::vector<glm::mat4> parents() {
           glm::scale(glm::translate(one, glm::vec3(0.1f, 0.0f, 0.0f)), glm::vec3(1e-3f))};
 }
 
-// At (0.3, 0.2, -0.1) in the world, whatever the parent.
+// Makes a target at (0.3, 0.2, -0.1) in the world, for any parent.
 GizmoTarget targetBelow(const glm::mat4& parent) {
   GizmoTarget target;
   target.world_from_parent = parent;
@@ -74,13 +75,13 @@ TEST(Gizmo, DraggingAnAxisBySomePixelsMovesByWhatIsSeenAsThosePixels) {
           const glm::dvec2 along =
               glm::normalize(*projection.toScreen(place(target, target.local) + 0.01 * axis) - from);
           for (const double pixels : {-120.0, -1.0, 25.0, 200.0}) {
-            // Aside moves nothing.
+            // A movement perpendicular to the axis changes nothing.
             const glm::dvec2 pointer =
                 glm::dvec2(*grab) + pixels * along + 37.0 * glm::dvec2(-along.y, along.x);
             const scene::Transform moved = gizmo.drag(glm::vec2(pointer))[0];
             const glm::dvec3 way = place(target, moved) - place(target, target.local);
             EXPECT_LT(glm::length(glm::cross(way, axis)), 1e-5) << "leaves the axis";
-            // The place on the axis that was taken is seen that much further along.
+            // The grabbed point of the axis is seen that much further along.
             const double t = glm::dot(way, axis);
             const double taken = *projection.alongLine(place(target, target.local), axis, along,
                                                        glm::dot(along, glm::dvec2(*grab)));
@@ -143,7 +144,7 @@ TEST(Gizmo, ARingFollowsThePointerAndTurnsRigidlyBelowAnyParent) {
           return glm::vec2(*projection.toScreen(pivot + 0.2 * (std::cos(angle) * e1 + std::sin(angle) * e2)));
         };
         ASSERT_TRUE(gizmo.press(handle, at(0.3)));
-        // Once around and on: in steps, as a pointer moves.
+        // The pointer moves in steps, by more than a full circle.
         std::vector<scene::Transform> turned;
         for (int step = 1; step <= 80; ++step) turned = gizmo.drag(at(0.3 + 0.1 * step));
         const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), 8.0, axis));
@@ -253,7 +254,7 @@ TEST(Gizmo, AnAxisThatPointsAtTheViewerHasNoHandleAndNothingLeavesTheScene) {
     EXPECT_TRUE(gizmo.handleScreenPoint(Handle::X));
     EXPECT_FALSE(gizmo.press(Handle::Z, *gizmo.pivotScreenPoint()));
   }
-  // Steeply away: dragged towards and beyond its vanishing point it stays finite.
+  // The axis points steeply away: a drag towards and beyond its vanishing point stays finite.
   gizmo.setView(lookAt({1.0f, 1.0f, 5.0f}, {0.0f, 0.0f, 0.0f}, true), kViewport);
   const auto grab = gizmo.handleScreenPoint(Handle::Z);
   ASSERT_TRUE(grab);

@@ -51,7 +51,7 @@ TEST(LightGizmo, ConesFollowThePointerFromEverySideAndStayInOrder) {
     LightGizmo gizmo;
     gizmo.setView(lookAt(eye, {0.0f, 0.0f, 0.0f}, true), kViewport);
     gizmo.setLight(lightOf(Kind::Spot), glm::mat4(1.0f));
-    // Where the handle would stand at another angle is where dragging there has to lead.
+    // Dragging to where the handle would be at another angle must give that angle.
     scene::LocalLightComponent other = lightOf(Kind::Spot);
     other.outer_cone_rad = 0.9f;
     const glm::vec2 grab = *gizmo.handleScreenPoint(LightHandle::OuterCone);

@@ -46,7 +46,8 @@ TEST(SunGizmo, ASunOutsideOfThePictureIsTakenAtItsBorder) {
   const glm::vec3 right(projection.right()), up(projection.up()), back(projection.back());
   SunGizmo gizmo;
   gizmo.setView(kView, kViewport);
-  // Beyond the right edge in front of the eye and behind it; right behind the eye; straight up.
+  // The suns are beyond the right edge in front of the eye and behind it, right behind the eye, and straight
+  // up.
   gizmo.setSuns({glm::normalize(right - 0.2f * back), glm::normalize(right + back), back, up});
   const glm::vec2 center(kViewport.x + 400.0f, kViewport.y + 300.0f);
   for (std::size_t sun = 0; sun < gizmo.count(); ++sun) {
@@ -58,7 +59,7 @@ TEST(SunGizmo, ASunOutsideOfThePictureIsTakenAtItsBorder) {
     else
       EXPECT_LT(at.pixel.y, center.y - 200.0f) << sun;
   }
-  // It comes to the pointer.
+  // The sun jumps to the pointer.
   gizmo.setSuns({back});
   ASSERT_TRUE(gizmo.press(gizmo.place(0)->pixel));
   const glm::vec3 wanted(projection.ray(glm::dvec2(center)).direction);

@@ -1,4 +1,4 @@
-// Views to drag things in: perspective and orthographic, near the origin and far from it.
+// Makes views to drag things in: perspective and orthographic, near the origin and far from it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The editor as a user meets it, driven by scripts through the same widgets, under Xvfb.
+// Tests the editor as a user sees it, driven by scripts through the same widgets, under Xvfb.
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 using testing::Outcome;
 
-// For a message: all that is known of a run.
+// Returns everything known about a run, for messages.
 std::string told(const Outcome& outcome) {
   return fmt::format("exit code {}\n--- stderr\n{}--- stdout\n{}", outcome.exit_code, outcome.err,
                      outcome.out);
@@ -29,14 +29,14 @@ struct Played {
   Outcome outcome;
   std::vector<json> answers;  // a line each
 
-  // Of the last line with this command.
+  // Returns the last answer to this command.
   const json& answer(const std::string& command) const {
     for (auto line = answers.rbegin(); line != answers.rend(); ++line)
       if ((*line)["command"].get<std::string>().starts_with(command)) return (*line)["answer"];
     static const json kNone;
     return kNone;
   }
-  // Of all lines with this command, in their order.
+  // Returns all answers to this command, in order.
   std::vector<json> all(const std::string& command) const {
     std::vector<json> found;
     for (const json& line : answers)
@@ -50,7 +50,7 @@ class EditorProgram : public testing::ProgramTest {
   void SetUp() override {
     ProgramTest::SetUp();
     ::setenv("XDG_CONFIG_HOME", (folder / "config").c_str(), 1);
-    // On a display of its own; only where there is no Xvfb, on the user's.
+    // Each run uses its own display; without Xvfb it uses the user's.
     std::string why;
     display = testing::XServer::start(why);
     if (display)
@@ -123,7 +123,7 @@ screenshot {2}
                        "get Light.radius\nstate\n",
                        path("world.json")));
   ASSERT_EQ(second.outcome.exit_code, 0) << told(second.outcome);
-  // Dragged up, by more than a trifle.
+  // The handle was dragged up by a noticeable distance.
   EXPECT_GT(second.answer("get Transform")[1].get<double>(), 1.55);
   EXPECT_NEAR(second.answer("get Light.radius").get<double>(), 0.2, 1e-6);
   EXPECT_EQ(second.answer("state")["scenes"][0]["bake"]["upToDate"], true);
@@ -235,7 +235,7 @@ expect /errors 0
 }
 
 TEST_F(EditorProgram, EditsRoughnessByItsWidgetLiveWhereItCanBe) {
-  // A polished plate and a diffuse one.
+  // The scene has a polished plate and a diffuse one.
   assets::Scene plates;
   plates.materials = {{.name = "polished", .roughness = 0.4f, .metallic = 1.0f},
                       {.name = "matte", .specular = 1.0f}};
@@ -286,7 +286,7 @@ expect /errors 0
 }
 
 TEST_F(EditorProgram, TurnsSunsThatAreDraggedOverTheSky) {
-  // The eye looks towards azimuth 35, elevation 25; its back is turned to the light that is made by hand.
+  // The camera looks towards azimuth 35, elevation 25; its back faces the light that is added by hand.
   const Played played = play(fmt::format(R"(
 open {0}
 lights constant:0.3,0.3,0.3 sun:45,30,6,30,28,25
@@ -322,7 +322,7 @@ state
   EXPECT_NEAR(elevation, 25.0f, 1.0f);
   EXPECT_EQ(states[1]["undo"], "Undo turn of sun");
   EXPECT_EQ(states[2]["lights"], before) << "one step for the whole drag";
-  // A lamp that shines along its -Z stands where its +Z points.
+  // The lamp shines along its -Z, so its +Z points to where it is.
   const json turn = played.answer("get Transform");
   const double x = turn[0], y = turn[1], z = turn[2], w = turn[3];
   EXPECT_NEAR(2.0 * (x * z + w * y), std::cos(0.436) * std::sin(0.611), 0.03);
@@ -330,7 +330,8 @@ state
   EXPECT_EQ(states[3]["undo"], "Undo turn of directional");
 }
 
-// The studio's soft boxes are found in its picture, and each of their discs can be moved and dimmed.
+// The studio's soft boxes are found as key lights in its image, and each of their discs can be moved and
+// dimmed.
 TEST_F(EditorProgram, MovesDimsAndResetsAKeyLightOfAnEnvironmentMap) {
   constexpr std::string_view script = R"(
 open {0}
@@ -388,18 +389,18 @@ expect /1/edited true
   }
   EXPECT_GT(share, 0.2);
   EXPECT_LT(share, 1.0);
-  // By command, in angles of the world, which the environment's turn does not change.
+  // The command takes angles in world space, which the environment's rotation does not change.
   EXPECT_NEAR(keys[1][0]["azimuth"].get<double>(), 35.0, 0.01);
   EXPECT_NEAR(keys[1][0]["elevation"].get<double>(), 25.0, 0.01);
   EXPECT_NEAR(keys[1][0]["share"].get<double>(), keys[0][0]["share"].get<double>(), 1e-3)
       << "as strong as before";
   EXPECT_EQ(keys[1][1], keys[0][1]) << "the others stay";
-  // By its handle: the eye looks towards azimuth 35, elevation 10.
+  // The handle was dragged to the middle: the camera looks towards azimuth 35, elevation 10.
   EXPECT_NEAR(keys[2][0]["azimuth"].get<double>(), 35.0, 1.0);
   EXPECT_NEAR(keys[2][0]["elevation"].get<double>(), 10.0, 1.0);
   EXPECT_EQ(played.answer("state")["undo"], "Undo turn of key light");
   EXPECT_EQ(keys[3], keys[1]) << "one step for the whole drag";
-  // Half, a quarter and all of what was found.
+  // The factors of the channels are 1/2, 1/4 and 1.
   for (int channel = 0; channel < 3; ++channel)
     EXPECT_NEAR(keys[4][0]["radiance"][channel].get<double>(),
                 keys[0][0]["radiance"][channel].get<double>() * (channel == 0   ? 0.5
@@ -556,7 +557,7 @@ expect /errors 0
   ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
 }
 
-// What the reference has of it must be as strong, as turned and in the same places.
+// The reference's lights must be as strong, and as rotated and placed, as the runtime's.
 TEST_F(EditorProgram, HoldsItsPictureAgainstTheReference) {
   std::filesystem::copy(path("hello.glb"), path("again.glb"));
   size = "600x400";
@@ -596,8 +597,8 @@ heat
   EXPECT_GT(figures["pixels"].get<int>(), 1000);
 }
 
-// The reference traces the edited light, too: without its disc, or with the old one besides, it would be off
-// by the key light's share of 40 %.
+// The reference traces the edited light, too. Without its disc, or with the old one in addition, the error
+// would be the key light's share of 40 %.
 TEST_F(EditorProgram, HoldsAMovedKeyLightAgainstTheReference) {
   size = "600x400";
   const Played played = play(fmt::format(R"(
@@ -623,7 +624,7 @@ keys
   EXPECT_GT(played.answer("keys")[0]["share"].get<double>(), 0.2);
   const json& figures = played.answer("reference");
   ASSERT_TRUE(figures.contains("relativeRms")) << figures.dump();
-  // 1.5 % at 32 samples a pixel; 1.1 % where the key light stands as found.
+  // The error is 1.5 % at 32 samples per pixel, and 1.1 % without the edit of the key light.
   EXPECT_LT(figures["relativeRms"].get<double>(), 0.04);
   for (const json& bias : figures["bias"]) EXPECT_NEAR(bias.get<double>(), 0.0, 0.02);
 }

@@ -21,7 +21,7 @@ class NodeEdits : public ::testing::Test {
     addNodeEdits(world.registry, world.description, world.instance, found);
     return found;
   }
-  // Where the edited scene has the node.
+  // Returns the node's matrix in the edited scene.
   glm::mat4 baked(const baker::SceneEdits& with, std::string_view name) const {
     std::vector<gltf::Node> nodes = world.description.nodes;
     for (const auto& edit : with.nodes) nodes[edit.index].parent_from_node = edit.parent_from_node;
@@ -58,7 +58,7 @@ TEST(SamePlace, ForgivesRoundingButNoMove) {
   EXPECT_TRUE(samePlace(at(1000.003f, 0.0f, -3.0f), far));
   EXPECT_FALSE(samePlace(at(1000.02f, 0.0f, -3.0f), far));
   EXPECT_FALSE(samePlace(at(0.0f, 2e-5f, 0.0f), at(0.0f, 0.0f, 0.0f)));
-  // A thousandth of a small thing's size is a change of it.
+  // A thousandth of the size of a small thing counts as a change.
   EXPECT_FALSE(samePlace(glm::scale(small, glm::vec3(1.001f)), small));
   EXPECT_TRUE(samePlace(glm::scale(small, glm::vec3(1.000001f)), small));
 }

@@ -1,5 +1,5 @@
-// A session as the editor has it, without a window and without OpenGL, and a small scene that is opened in
-// it: with a limit of memory, bundles wait for a first picture before they go to the GPU.
+// Provides an editor session without window and OpenGL, and a small scene that is opened in it. It has a
+// memory limit, so that bundles are not uploaded before a first picture.
 #pragma once
 
 #include <chrono>
@@ -35,7 +35,7 @@ class Windowless : public ::testing::Test {
     return made ? std::move(*made) : nullptr;
   }
 
-  // Opens hello.glb, and waits until its entities are there.
+  // Opens hello.glb, and waits until its entities exist.
   void openHello() {
     const std::filesystem::path file = folder.path() / "hello.glb";
     ASSERT_TRUE(assets::writeGlb(file, assets::hello()));

@@ -1,4 +1,4 @@
-// Commands on a session that has neither window nor OpenGL.
+// Tests commands on a session without window and OpenGL.
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {

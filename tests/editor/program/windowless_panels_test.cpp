@@ -1,4 +1,4 @@
-// Panels in a Dear ImGui context that has no window, no OpenGL and no input but what the test gives it.
+// Tests panels in a Dear ImGui context without window and OpenGL, whose only input comes from the test.
 #include <imgui.h>
 
 #include "editor/panels/panel.hpp"
@@ -32,7 +32,7 @@ class WindowlessPanels : public testing::Windowless {
     ImGui::End();
     ImGui::EndFrame();
   }
-  // Draws it until its marks are those of a whole frame.
+  // Draws until the marks are those of a complete frame.
   void settle(const Panel& panel) {
     for (int i = 0; i < 3; ++i) draw(panel);
   }

@@ -1,5 +1,5 @@
-// Pictures of a closed sphere with a lamp at its centre: E is the same everywhere, and bounces multiply it by
-// 1 / (1 - albedo).
+// Renders a closed sphere with a lamp at its centre: E is the same everywhere, and bounces multiply it by 1 /
+// (1 - albedo).
 #include "runtime/bounces/patch_bounces.hpp"
 
 #include <cmath>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr float kAlbedo = 0.6f;
 
-// Radius 1, seen from inside.
+// Makes a sphere of radius 1 that is visible from inside.
 BuiltMesh insideOfSphere() {
   BuiltMesh mesh{testing::sphereMesh(24, 48), {}};
   for (glm::vec3& normal : mesh.data.normals) normal = -normal;
@@ -47,7 +47,7 @@ struct RoomStage : LiveStage {
   void moveLamp(const glm::vec3& place) { world.registry().edit<scene::Transform>(lamp).translation = place; }
 };
 
-// Mean over the middle of the picture, which the far side of the sphere fills.
+// Returns the mean over the middle of the picture, which shows the far side of the sphere.
 double middleOf(const std::vector<glm::vec4>& picture) {
   double sum = 0.0;
   int count = 0;

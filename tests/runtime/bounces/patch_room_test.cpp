@@ -1,4 +1,4 @@
-// Rooms with lamps in them, on the CPU: known answers, and what costs nothing.
+// Tests lamps in rooms on the CPU: known answers, and what costs nothing.
 #include "runtime/bounces/patch_room.hpp"
 
 #include <cmath>
@@ -43,7 +43,7 @@ bool sameBytes(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b)
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(glm::vec3)) == 0;
 }
 
-// Flux that arrives at all patches, over that of the lamp.
+// Returns the flux that arrives at all patches, relative to that of the lamp.
 double received(const lighting::Patches& patches, const std::vector<float>& direct, double flux) {
   double sum = 0.0;
   for (std::size_t i = 0; i < patches.size(); ++i)
@@ -152,7 +152,7 @@ TEST(PatchRoom, WhatStandsStillIsNewOnlyOnce) {
   shine(room, lamps);
   EXPECT_EQ(room.version(), version);
   EXPECT_EQ(room.bouncedLast(), 0u);
-  // The other is switched off: what stays is not bounced anew.
+  // When the other lamp is switched off, the remaining one is not computed again.
   shine(room, {lamps[1]});
   EXPECT_EQ(room.bouncedLast(), 0u);
   EXPECT_GT(room.version(), version);
@@ -181,7 +181,7 @@ TEST(PatchRoom, WhatElseStandsInTheLightTakesItAway) {
   PatchRoom room = boxRoom();
   shine(room, {pointLamp({1, 2.3f, 1.5f})});
   const std::vector<glm::vec3> open = room.givenOff();
-  // A lid right below the lamp.
+  // A lid is right below the lamp.
   const std::vector<lighting::RayTriangle> lid = {
       {.corners = {glm::vec3(-3, 2.2f, -3), glm::vec3(-3, 2.2f, 9), glm::vec3(9, 2.2f, -3)}}};
   shine(room, {pointLamp({1, 2.3f, 1.5f})}, lid);
@@ -201,7 +201,7 @@ TEST(PatchRoom, WhatElseStandsInTheLightTakesItAway) {
 TEST(PatchRoom, ATurnedAndScaledRoomTakesTheSameShareOfLight) {
   PatchRoom plain = boxRoom(), placed = boxRoom();
   shine(plain, {pointLamp({1, 2, 1})});
-  // Twice the size: a quarter of the irradiance.
+  // At twice the size the irradiance is a quarter.
   const glm::mat4 world_from_group = glm::translate(glm::mat4(1.0f), glm::vec3(3, -1, 2)) *
                                      glm::rotate(glm::mat4(1.0f), 0.7f, glm::normalize(glm::vec3(1, 2, 3))) *
                                      glm::scale(glm::mat4(1.0f), glm::vec3(2.0f));
@@ -221,14 +221,14 @@ spec::Disc sunAt(const glm::vec3& direction, float radius_rad = 0.05f) {
           .radiance = glm::vec3(10.0f, 5.0f, 2.0f)};
 }
 
-// What transfer takes for the key lights at an open light environment map.
+// Returns the part that transfer gets from key lights at an unoccluded light probe.
 KeyBands bandsOf(const std::vector<spec::Disc>& keys, const glm::vec3& position) {
   KeyBands bands{.position = position, .light = {}};
   for (const glm::vec3& c : spec::discVector(keys).c) bands.light.emplace_back(c, 0.0f);
   return bands;
 }
 
-// What the patches give off of what their own bands say of a light.
+// Returns what the patches emit by the first bands of a light.
 std::vector<glm::vec3> givenOffByBands(const PatchTransport& transport, const KeyBands& bands) {
   std::vector<glm::vec3> direct;
   for (std::size_t i = 0; i < transport.patches().size(); ++i)
@@ -236,7 +236,7 @@ std::vector<glm::vec3> givenOffByBands(const PatchTransport& transport, const Ke
   return transport.bounce(direct);
 }
 
-// Closed but for one of its sides, and lit through it.
+// Makes a room that is open on one side and lit through it.
 PatchRoom openRoom() {
   RoomBuilder builder;
   builder.box({0, 0, 0}, {2, 2, 2}, glm::vec3(0.5f));
@@ -267,7 +267,7 @@ TEST(PatchRoom, WithTheirBandsKeyLightsFallWhereTheirRaysDo) {
     else
       EXPECT_LT(by_rays[0][i], 1e-4f) << "a wall that the sun does not reach";
   }
-  // What comes through the opening: 4 m² under a cosine of 0.8, E/pi = sin² cos.
+  // The light comes through an opening of 4 m² at a cosine of 0.8; E/pi = sin² cos.
   const double sine = std::sin(0.05);
   EXPECT_NEAR(straight / (4.0 * 0.8 * sine * sine), 1.0, 0.01);
 }

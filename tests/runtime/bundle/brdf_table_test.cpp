@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kWhole = 3.5449077f;  // sqrt(4 pi)
 
-// Values that change with everything, small enough for albedos under 1.
+// Makes values that depend on every index, small enough for albedos below 1.
 BrdfTable makeTable(std::uint32_t order, std::uint32_t lobes, std::uint32_t azimuths,
                     std::uint32_t strengths) {
   BrdfTable table{.order = order,
@@ -76,7 +76,7 @@ TEST(BrdfTable, IsLinearBetweenNodesOfTheAngleAxis) {
       }
 }
 
-// A BRDF that mirrors with its view: the frame of the mirrored view has its y axis the other way round.
+// A BRDF that mirrors with its view: the frame of the mirrored view has the opposite y axis.
 TEST(BrdfTable, ReflectsIntoTheOtherQuadrants) {
   const BrdfTable table = makeTable(5, 2, 4, 1);
   std::vector<float> b(50), other(50);
@@ -144,7 +144,7 @@ TEST(BrdfTable, ThatIsTruncatedOrHasMoreIsRefused) {
   EXPECT_FALSE(decodeBrdfTable(longer, "table 3"));
 }
 
-// Sizes from a damaged file must not ask for memory, nor run past it.
+// Sizes from a damaged file must not cause large allocations or reads past its end.
 TEST(BrdfTable, WithSizesOutOfRangeIsRefused) {
   const auto bytes = encodeBrdfTable(makeTable(3, 2, 2, 2));
   for (std::size_t field = 0; field < 6; ++field)

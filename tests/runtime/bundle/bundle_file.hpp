@@ -1,4 +1,4 @@
-// Bundles in the making, and a folder for the file that vanishes with the test.
+// Builds bundles, and provides a folder for the file that vanishes with the test.
 #pragma once
 
 #include <filesystem>
@@ -32,7 +32,7 @@ class BundleFile : public ::testing::Test {
   void replace(const std::string& bytes) const {
     std::ofstream(path_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
-  // Everything that the demo would read of the file.
+  // Reads everything that the demo would read.
   Result<void> readAll() const {
     auto reader = Reader::open(path_);
     if (!reader) return failAgain(reader.error());
@@ -42,12 +42,12 @@ class BundleFile : public ::testing::Test {
   std::filesystem::path folder_, path_;
 };
 
-// A description and the bytes that it speaks of.
+// Holds a description and the bytes that it refers to.
 struct Sample {
   Description description;
   std::vector<Blob> blobs;
 
-  // As the next payload; its priority is its place.
+  // Adds the next payload, whose priority is its index.
   std::uint32_t add(PayloadType type, const Blob& bytes) {
     const bool zstd = type == PayloadType::WeightPlane;
     blobs.push_back(zstd ? compressZstd(bytes, 3) : bytes);

@@ -7,7 +7,7 @@
 namespace lambent::bundle {
 namespace {
 
-// Two levels; the first has a lamp's panel, the second one grey triangle.
+// Makes two levels: the first has a lamp's panel, the second one grey triangle.
 CaptureProxy smallProxy() {
   CaptureProxy proxy;
   proxy.positions = {{0.1f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, -3e8f}, {1.0f, 1.0f, 0.25f}};

@@ -1,4 +1,4 @@
-// The container: what is written comes back, and nothing damaged gets through.
+// Tests the container: what is written is read back, and nothing damaged is accepted.
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -21,7 +21,8 @@ Blob blobOf(std::size_t size, unsigned first) {
 const std::vector<transfer::LightWeights> kWeights = {
     transfer::kOneLight, {{1, 2, 0, 0}, {200, 55, 0, 0}}, {{2, 1, 0, 0}, {128, 127, 0, 0}}};
 
-// A description that uses every list but meshes (mesh_test.cpp has those), with values that are easy to lose.
+// Makes a description that uses every list except meshes (mesh_test.cpp has those), with values that are
+// easily lost.
 Sample sampleBundle() {
   Sample s;
   Description& d = s.description;
@@ -55,7 +56,8 @@ Sample sampleBundle() {
   d.lights = {lamp};
   d.nodes[1].light = 0;
 
-  // Cell 0 plain, two clusters of two and no axes; cell 1 normal-mapped, of one cluster; lamps in both.
+  // Cell 0 is plain, with two clusters of two axes and none; cell 1 is normal-mapped, with one cluster. Both
+  // have lamps.
   const auto add = [&](PayloadType type, const Blob& bytes) { return s.add(type, bytes); };
   const auto codebook = [&](const transfer::TransferShape& shape,
                             const std::vector<std::uint32_t>& axis_counts) {
@@ -267,7 +269,7 @@ TEST_F(BundleFile, AnOlderVersionIsToBeBakedAgain) {
   }
 }
 
-// Valid checksums around nonsense: what a hostile or buggy writer could make.
+// Surrounds nonsense with valid checksums, as a hostile or buggy writer could.
 TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   const auto refused = [&](auto spoil, const char* place) {
     Sample sample = sampleBundle();

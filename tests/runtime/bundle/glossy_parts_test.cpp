@@ -1,5 +1,5 @@
-// What glossy cells add to a bundle comes back as it was written, and what contradicts itself is refused by
-// name.
+// Tests that the glossy parts of a bundle are read back as they were written, and that contradictions are
+// refused by name.
 #include <gtest/gtest.h>
 
 #include "tests/runtime/bundle/bundle_file.hpp"
@@ -7,7 +7,8 @@
 namespace lambent::bundle {
 namespace {
 
-// One plain cell of two samples and one glossy cell of three: visibility, bounced light, a lamp; two tables.
+// Makes one plain cell of two samples and one glossy cell of three, with visibility, bounced light, a lamp,
+// and two tables.
 Sample sampleBundle() {
   Sample s;
   Description& d = s.description;

@@ -1,4 +1,5 @@
-// Materials, lights and animations come back as they were written, and what no viewer could use is refused.
+// Tests that materials, lights and animations are read back as they were written, and that what no viewer
+// could use is refused.
 #include "runtime/bundle/gltf_parts.hpp"
 
 #include <filesystem>
@@ -117,7 +118,7 @@ TEST_F(GltfParts, MaterialsKeepWhatTheyReflect) {
   EXPECT_EQ(json().find("KHR_materials"), std::string::npos);  // defaults need no extension
 }
 
-// Alone, without the tables that the bundle's reader asks for.
+// Writes it alone, without the tables that the bundle's reader requires.
 TEST(MaterialJson, NamesMeasuredBrdfsByNumberInExtras) {
   gltf::Material paint;
   paint.brdf = 3;

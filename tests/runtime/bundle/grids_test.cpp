@@ -1,5 +1,5 @@
-// Volumes and neighborhoods come back from a bundle as they were written, and what contradicts itself is
-// refused by name.
+// Tests that volumes and neighborhoods are read back from a bundle as they were written, and that
+// contradictions are refused by name.
 #include <gtest/gtest.h>
 
 #include "runtime/bundle/volume_grid.hpp"
@@ -10,8 +10,8 @@ namespace {
 
 const std::vector<std::uint32_t> kVoxels = {0, 1, 5, 7};
 
-// A body with two plain samples and a neighborhood of eight points; a cloud of 4 x 3 x 2 voxels with four
-// samples on a transfer grid of 2 x 2 x 2, within the first group.
+// Makes a body with two plain samples and a neighborhood of eight points, and a cloud of 4 x 3 x 2 voxels
+// with four samples on a transfer grid of 2 x 2 x 2, within the first group.
 Sample sampleBundle() {
   Sample s;
   Description& d = s.description;

@@ -1,4 +1,4 @@
-// Animations at a point in time, against closed forms.
+// Compares animations at a point in time with closed forms.
 #include "runtime/bundle/keyframes.hpp"
 
 #include <cmath>
@@ -25,7 +25,7 @@ AnimationChannel channel(Path path, Interpolation interpolation, std::vector<flo
           .values = std::move(values)};
 }
 
-// About +Y.
+// Returns a rotation about +Y.
 std::vector<float> turn(float degrees, float sign = 1.0f) {
   const float half = glm::radians(degrees) / 2.0f;
   return {0.0f, sign * std::sin(half), 0.0f, sign * std::cos(half)};
@@ -35,7 +35,7 @@ std::vector<float> operator+(std::vector<float> a, const std::vector<float>& b) 
   return a;
 }
 
-// Where a turn takes +Z, as degrees about +Y.
+// Returns the direction to which a rotation takes +Z, in degrees about +Y.
 float degreesOf(const glm::quat& q) {
   EXPECT_NEAR(glm::length(q), 1.0f, 1e-6f);
   const glm::vec3 there = q * glm::vec3(0, 0, 1);
@@ -72,7 +72,7 @@ TEST(Keyframes, RotationsTurnEvenlyTheShorterWay) {
   EXPECT_NEAR(degreesOf(rotationAt(little, 0.5f)), 20.0f, 1e-4f);
 }
 
-// A cubic through its keys with its own slopes is reproduced by a cubic spline, whatever the intervals are.
+// A cubic spline reproduces a cubic through its keys and slopes, for any interval lengths.
 TEST(Keyframes, CubicSplinesReproduceCubics) {
   const auto value = [](double t) { return 1.0 + t * (2.0 + t * (-3.0 + 0.5 * t)); };
   const auto slope = [](double t) { return 2.0 + t * (-6.0 + 1.5 * t); };
@@ -93,8 +93,8 @@ TEST(Keyframes, CubicSplinesReproduceCubics) {
 }
 
 TEST(Keyframes, TangentsOfEachSideAreTheirOwn) {
-  // Value 0 at both keys; out-tangent 4 at the first, in-tangent -8 at the second, over half a second. At the
-  // middle: 0.5 * (4 / 8) - 0.5 * (-8 / 8) = 0.75.
+  // The value is 0 at both keys; the out-tangent is 4 at the first and the in-tangent -8 at the second, over
+  // half a second. At the middle it is 0.5 * (4 / 8) - 0.5 * (-8 / 8) = 0.75.
   const auto c = channel(Path::Translation, Interpolation::Cubic, {1.0f, 1.5f},
                          {99, 0, 0, 0, 0, 0, 4, 0, 0, -8, 0, 0, 0, 0, 0, 99, 0, 0});
   EXPECT_FLOAT_EQ(vectorAt(c, 1.25f).x, 0.75f);
@@ -106,7 +106,7 @@ TEST(Keyframes, CubicRotationsComeOutUnit) {
       channel(Path::Rotation, Interpolation::Cubic, {0, 1}, none + turn(0) + none + none + turn(90) + none);
   EXPECT_NEAR(degreesOf(rotationAt(c, 0.5f)), 45.0f, 1e-4f) << "half and half";
   EXPECT_NEAR(degreesOf(rotationAt(c, 1.0f)), 90.0f, 1e-4f);
-  // Through zero: from q to -q.
+  // The interpolation from q to -q passes through zero.
   const auto zero = channel(Path::Rotation, Interpolation::Cubic, {0, 1},
                             none + turn(30) + none + none + turn(30, -1.0f) + none);
   EXPECT_NEAR(degreesOf(rotationAt(zero, 0.5f)), 30.0f, 1e-4f);

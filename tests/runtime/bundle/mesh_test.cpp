@@ -22,7 +22,7 @@ using baker::latticeStep;
 
 constexpr float kStep = 1.0f / 4096.0f;
 
-// An n x n grid of quads over [x0, x0 + 1] x [0, 1], bent into a bump so that normals differ.
+// Makes an n x n grid of quads over [x0, x0 + 1] x [0, 1], bent into a bump so that normals differ.
 MeshData bump(int n, float x0 = 0.0f) {
   MeshData mesh;
   for (int j = 0; j <= n; ++j) {
@@ -77,7 +77,7 @@ TEST(DracoMesh, DecodesToLatticePointsWithinHalfAStep) {
 }
 
 TEST(DracoMesh, PrimitivesThatShareAnEdgeStillShareItToTheBit) {
-  // The same plane x = 1 seen from two meshes with different boxes.
+  // Two meshes with different boxes share the plane x = 1.
   const EncodedMesh left = encoded(bump(17, 0.0f)), right = encoded(bump(17, 1.0f));
   std::set<Key> right_edge;
   for (const glm::vec3& p : right.decoded.positions)
@@ -207,7 +207,7 @@ TEST(DracoMesh, TangentsAreUnitWithinAThirtiethOfADegreeAndKeepTheirSign) {
     worst = std::max(worst, glm::length(glm::cross(glm::dvec3(decoded), glm::dvec3(mesh.tangents[i]))));
   }
   RecordProperty("worst_degrees", std::to_string(std::asin(worst) * 180.0 / std::numbers::pi));
-  // Half a step of 2/4095 on two of the axes.
+  // The tolerance is half a step of 2/4095 on two of the axes.
   EXPECT_LT(std::asin(worst) * 180.0 / std::numbers::pi, 0.03);
 }
 
@@ -305,8 +305,8 @@ TEST(DecodeDraco, RefusesEveryTruncation) {
 }
 
 TEST(DecodeDraco, SurvivesFlippedBytes) {
-  // Without texture coordinates: a forged orientation count there makes Draco 1.5.5 loop for seconds, though
-  // safely.
+  // The mesh has no texture coordinates: a forged orientation count there makes Draco 1.5.5 loop for seconds,
+  // though safely.
   MeshData mesh = bump(8);
   mesh.texcoords0.clear();
   const EncodedMesh out = encoded(mesh);

@@ -1,4 +1,4 @@
-// Overlays: their words, what they draw where, and that they leave the rest of the picture alone.
+// Tests overlays: their words, what they draw where, and that the rest of the picture stays the same.
 #include "runtime/debug/overlays.hpp"
 
 #include <glm/geometric.hpp>
@@ -19,7 +19,7 @@ using testing::quadMesh;
 using testing::sphereMesh;
 using testing::ViewStage;
 
-// Pixels that the two pictures differ in.
+// Returns the pixels in which the two pictures differ.
 std::vector<std::size_t> changes(const spec::RgbaImage& a, const spec::RgbaImage& b) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < a.texels.size(); ++i)
@@ -111,7 +111,7 @@ TEST(OverlayKeys, AKeyLightHasItsOutlineOnTheSkyAnArrowTheWayItShinesAndItsBox) 
   std::vector<OverlayLine> without_sky;
   appendKeys(std::vector{sun}, {}, {}, world, parallel, without_sky);
   EXPECT_LT(without_sky.size(), 10u);
-  // One that is dark is grey and fainter; a map adds the twelve edges of its box.
+  // A dark key light is drawn grey and fainter; a map adds the twelve edges of its box.
   std::vector<OverlayLine> both;
   KeyShadows::ShownRegion map{.light = sun, .region = {}, .texels = 256};
   map.region.max = glm::dvec2(1.0);
@@ -157,7 +157,7 @@ TEST(OverlayLines, OfBoxesThatOverlapTheWantedOrElseTheNearestIsDrawnWhole) {
                      wanted};
   };
   const glm::vec3 eye(10.0f, 0.0f, 0.0f);
-  // A row of three, and one apart; from the right.
+  // Three are in a row, and one is apart; they are seen from the right.
   EXPECT_EQ(drawnWhole({at(0.0f), at(1.5f), at(3.0f), at(-9.0f)}, eye),
             (std::vector<bool>{false, false, true, true}));
   EXPECT_EQ(drawnWhole({at(0.0f, true), at(1.5f), at(3.0f), at(-9.0f)}, eye),
@@ -217,7 +217,7 @@ TEST_F(OverlayTest, TheBallOfALightProbeHasConstantRadianceUnderConstantLight) {
   std::size_t ball = 0, edges = 0;
   for (const std::size_t i : changes(with, without)) {
     ASSERT_EQ(with.texels[i].a, without.texels[i].a) << "alpha is the scene's coverage";
-    // The cube's faces show the same, and its edges are dark.
+    // The cube's faces show the same radiance, and its edges are dark.
     if (with.texels[i].r < 0.9f * radiance.r) {
       ++edges;
       continue;
@@ -260,7 +260,7 @@ TEST_F(OverlayTest, WithoutOverlaysThePictureIsTheSameToTheBitAndThereIsNoPass) 
 }
 
 TEST_F(OverlayTest, LinesAreHiddenByWhatStandsBeforeThemButForATrace) {
-  // A line from left to right behind the sphere, and one before it.
+  // One line runs from left to right behind the sphere, and one in front of it.
   const auto lineAt = [](float z) {
     OverlayOptions options;
     options.lines.push_back(
@@ -278,7 +278,7 @@ TEST_F(OverlayTest, LinesAreHiddenByWhatStandsBeforeThemButForATrace) {
   const spec::RgbaImage behind = stage.picture();
   EXPECT_NE(behind.texels[middle], bare.texels[middle]);
   EXPECT_GT(behind.texels[middle].g, 0.6f) << "mostly the white sphere";
-  // A line that reaches behind the eye is cut, not turned about: it stays in its half of the picture.
+  // A line that reaches behind the eye is clipped, and stays in its half of the picture.
   OverlayOptions through;
   through.lines.push_back({.from_ws = {0.0f, -0.9f, -3.0f},
                            .to_ws = {0.0f, -0.9f, 40.0f},
@@ -291,7 +291,7 @@ TEST_F(OverlayTest, LinesAreHiddenByWhatStandsBeforeThemButForATrace) {
 }
 
 TEST_F(OverlayTest, KeyLightsAreMarkedWhereTheSkyShowsThem) {
-  // Beside the sphere, as the eye looks along -Z.
+  // The place is beside the sphere, for an eye that looks along -Z.
   const auto lights = std::vector<spec::Light>{
       spec::ConstantLight{.radiance = glm::vec3(0.5f)},
       spec::SunLight{

@@ -1,4 +1,4 @@
-// What is picked is what the picture shows.
+// Tests that picking returns what the picture shows.
 #include "runtime/debug/picker.hpp"
 
 #include <glm/geometric.hpp>
@@ -27,7 +27,7 @@ std::optional<Picked> pick(LiveStage& stage, float x, float y) {
   return picked ? *picked : std::nullopt;
 }
 
-// Which of the bundle's draws, -1: none.
+// Returns the index of a draw within its bundle, or -1 for none.
 int drawAt(LiveStage& stage, float x, float y) {
   const auto picked = pick(stage, x, y);
   const auto& draws = stage.world.instance(0).draws;

@@ -1,4 +1,5 @@
-// Views of surfaces: their words, their numbers in pictures, and that a picture without them stays as it is.
+// Tests views of surfaces: their words, their numbers in pictures, and that a picture without them stays the
+// same.
 #include "runtime/surface/views.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +21,7 @@ using testing::ViewStage;
 
 const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
 
-// What a normal map is shaded from where nothing is hidden: the light itself.
+// Returns the unoccluded input of a normal-mapped surface: the light itself.
 BundleBuilder& openMapped(BundleBuilder& builder) {
   std::vector<float> same(81, 0.0f);
   for (std::size_t j = 0; j < 9; ++j) same[9 * j + j] = 1.0f;
@@ -106,7 +107,7 @@ TEST_F(ViewTest, IrradianceIsTheLightWithoutTheAlbedo) {
 }
 
 TEST_F(ViewTest, NormalsAreThoseOfTheWorldHoweverTheMeshStands) {
-  // A quad towards +Z, turned to face +X, in a group that lies otherwise still.
+  // A quad that faces +Z is turned to face +X, in a group that has another rotation.
   const glm::mat4 turned(glm::vec4(0, 0, -1, 0), glm::vec4(0, 1, 0, 0), glm::vec4(1, 0, 0, 0),
                          glm::vec4(0, 0, 0, 1));
   for (const bool mapped : {false, true}) {
@@ -136,7 +137,7 @@ TEST_F(ViewTest, FalseColoursAreShownAsTheyAreWhateverTheExposure) {
   };
   const auto dark = shown(-6.0f);
   EXPECT_EQ(dark, shown(6.0f));
-  // The middle: the end of viridis (253, 231, 37).
+  // The maximum is at the end of viridis, (253, 231, 37).
   const std::size_t middle = 4 * (32 * 64 + 32);
   EXPECT_NEAR(dark[middle], 253, 4);
   EXPECT_NEAR(dark[middle + 1], 231, 4);
@@ -180,7 +181,7 @@ TEST_F(ViewTest, WiresKeepTheCoverageAndLieOnTheSurface) {
     ++changed;
     EXPECT_GT(before.texels[i].a, 0.0f) << "only on surfaces";
   }
-  // Four edges and a diagonal of a quad that is about 30 pixels wide, a pixel or three thick.
+  // Four edges and a diagonal belong to a quad about 30 pixels wide, and are one to three pixels thick.
   EXPECT_GT(changed, 60u);
   EXPECT_LT(changed, 700u);
 }

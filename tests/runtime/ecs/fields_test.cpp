@@ -26,7 +26,7 @@ struct Lamp {
   }
 };
 
-// A world file in miniature: it knows no component, only fields.
+// Imitates a world file: it knows no component, only fields.
 template <class Component>
 std::map<std::string, std::string> save(const Component& component) {
   std::map<std::string, std::string> saved;

@@ -119,7 +119,7 @@ TEST(Registry, KeepsFortyComponentTypesApart) {
   checkManyTypes(std::make_index_sequence<40>());
 }
 
-// The registry against the plainest model there is: a map per component, and a set of what lives.
+// Compares the registry with the simplest model: a map per component, and a set of living entities.
 TEST(Registry, DoesWhatMapsDoOverRandomOperations) {
   struct Model {
     std::map<Entity, int> number;

@@ -1,5 +1,5 @@
-// Depths of linear pictures: metres along the view axis, of what is not blended, infinite where there is
-// none.
+// Tests the depths of linear pictures: metres along the view axis, of opaque surfaces, infinite where there
+// is none.
 #include <limits>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -16,7 +16,7 @@ using testing::ViewStage;
 constexpr float kNone = std::numeric_limits<float>::infinity();
 const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
 
-// A square of 2 m times `scale` that faces the eye, at this z.
+// Makes a square of 2 m times `scale` that faces the camera, at this z.
 testing::BuiltMesh square(float z, float scale = 1.0f, gltf::AlphaMode alpha_mode = gltf::AlphaMode::Opaque,
                           float alpha = 1.0f) {
   gltf::Material material;
@@ -26,7 +26,7 @@ testing::BuiltMesh square(float z, float scale = 1.0f, gltf::AlphaMode alpha_mod
           glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, z)), glm::vec3(scale))};
 }
 
-// From 10 m away on +Z.
+// Returns depths seen from 10 m away on +Z.
 std::vector<float> depthsOf(ViewStage& stage, const glm::mat4& clip_from_view) {
   const glm::vec3 eye(0, 0, 10);
   const spec::View view{.view_from_world = glm::lookAt(eye, glm::vec3(0.0f), glm::vec3(0, 1, 0)),
@@ -46,7 +46,8 @@ const glm::mat4 kWide = glm::perspective(glm::radians(90.0f), 1.0f, 1.0f, 30.0f)
 using FrameDepths = testing::GpuTest;
 
 TEST_F(FrameDepths, AreMetresAlongTheAxisInPerspectivesAndParallelProjections) {
-  // A wall behind all pixels, and a square before its middle; the corners' rays are 1.7 times as long.
+  // A wall is behind all pixels, and a square is in front of its middle; rays in the corners are 1.7 times as
+  // long.
   ViewStage stage(BundleBuilder().add(square(-2.0f, 13.0f)).add(square(4.0f, 3.0f)), {kWhite},
                   testing::linearOptions());
   for (const glm::mat4& clip_from_view : {kWide, glm::ortho(-6.0f, 6.0f, -6.0f, 6.0f, 1.0f, 30.0f)}) {
@@ -55,7 +56,7 @@ TEST_F(FrameDepths, AreMetresAlongTheAxisInPerspectivesAndParallelProjections) {
     for (const std::size_t y : {1u, 20u, 31u, 32u, 43u, 62u})
       for (const std::size_t x : {1u, 20u, 31u, 32u, 43u, 62u}) {
         const bool before = x >= 20 && x <= 43 && y >= 20 && y <= 43;
-        // Half floats do not come near it: 24 bits over 30 m.
+        // Half floats would not be this exact: depths have 24 bits over 30 m.
         EXPECT_NEAR(depths[y * 64 + x], before ? 6.0f : 12.0f, 2e-5f) << x << ", " << y;
       }
   }

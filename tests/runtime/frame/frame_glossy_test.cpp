@@ -1,4 +1,4 @@
-// Glossy surfaces in whole frames: pictures with known answers, and what they cost.
+// Tests glossy surfaces in whole frames: pictures with known answers, and what they cost.
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -84,7 +84,7 @@ struct Stage {
   }
 };
 
-// Where the pixel's ray meets the true sphere of radius 1 about the origin.
+// A Hit is where the pixel's ray meets the true sphere of radius 1 about the origin.
 struct Hit {
   glm::vec3 normal, to_eye;
   float rim;  // 0 in its middle, 1 at its rim
@@ -215,7 +215,7 @@ TEST_F(FrameGlossy, MeasuredSurfacesShowTheirTable) {
 
 namespace {
 
-// The picture of an open sphere against the whole integral over the sun: relative RMS error.
+// Compares the picture of an unoccluded sphere with the whole integral over the sun: relative RMS error.
 double errorUnderASun(float roughness, bool residual, const spec::SunLight& sun) {
   BundleBuilder builder(5);
   builder.add({sphereMesh(40, 80), metal(glm::vec3(1.0f), roughness)})

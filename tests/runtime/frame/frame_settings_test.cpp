@@ -1,4 +1,4 @@
-// The table of settings, and what a changed material leaves to a rebake.
+// Tests the table of settings, and what a changed material still needs a bake for.
 #include "runtime/frame/frame_settings.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Pictures with known answers, and what a frame may and may not do.
+// Tests pictures with known answers, and what a frame may and may not do.
 #include "runtime/frame/frame.hpp"
 
 #include <numeric>
@@ -28,14 +28,14 @@ gltf::Material colored(glm::vec4 color) {
   return material;
 }
 
-// Tests of several builds may run side by side.
+// Several builds may run their tests at the same time.
 std::filesystem::path temporary(const std::string& name) {
   return std::filesystem::path(::testing::TempDir()) /
          fmt::format("{}-{}-{}", getpid(), ::testing::UnitTest::GetInstance()->current_test_info()->name(),
                      name);
 }
 
-// A world with one bundle, a light and a frame of 64 x 64.
+// Shows one bundle in a world with a light and a frame of 64 x 64.
 struct Stage {
   std::filesystem::path path;
   World world;
@@ -111,7 +111,7 @@ TEST_F(FrameTest, UniformLightShowsTheAlbedoOfAnOpenSphere) {
   std::size_t count = 0;
   for (const glm::vec4& texel : image.texels) {
     if (texel.a == 0.0f) {
-      // Filtered, so equal up to rounding.
+      // The texels are filtered, so they are equal up to rounding.
       EXPECT_LT(glm::distance(texel, glm::vec4(1.0f, 1.0f, 1.0f, 0.0f)), 1e-6f) << "the sky covers nothing";
       continue;
     }
@@ -162,7 +162,7 @@ TEST_F(FrameTest, TheSunLightsTheSideThatFacesItAlsoInTurnedGroupsAndUnderATurne
   // Seen from +Z, +X is on the right.
   EXPECT_GT(brightness(43, 32), 0.3f);
   EXPECT_LT(brightness(21, 32), 0.1f);
-  // Turned by 90 degrees, +X goes to -Z: behind. By 180 to the left. By -90 to the front.
+  // Turned by 90 degrees, +X goes to -Z, behind the camera; by 180 it goes to the left, by -90 to the front.
   stage.environment.setTurn(180.0f);
   EXPECT_GT(brightness(21, 32), 0.3f);
   EXPECT_LT(brightness(43, 32), 0.1f);
@@ -186,7 +186,7 @@ TEST_F(FrameTest, CullsBackFacesOfSingleSidedMaterialsOnly) {
 }
 
 TEST_F(FrameTest, LightsEachSideOfATwoSidedCardForItself) {
-  // The sun stands before the card; its back is turned away, with transfer of its own and unshadowed alike.
+  // The sun is in front of the card, and its back is turned away, with its own transfer or unshadowed.
   gltf::Material both = colored(glm::vec4(1.0f));
   both.double_sided = true;
   for (const auto transfer : {evaluate::TransferMode::Full, evaluate::TransferMode::Unshadowed}) {
@@ -248,7 +248,7 @@ TEST_F(FrameTest, BlendsOverWhatStandsBehind) {
   Stage stage(builder, {kWhite}, kLinear);
   const spec::RgbaImage image = stage.picture();
   EXPECT_LT(glm::distance(at(image, 32, 32), glm::vec4(0.25f, 0.75f, 0.0f, 1.0f)), 2e-3f);
-  // Beside the green quad the sky shines through the glass.
+  // Next to the green quad the sky is visible through the glass.
   EXPECT_LT(glm::distance(at(image, 12, 32), glm::vec4(1.0f, 0.75f, 0.75f, 0.25f)), 2e-3f);
 }
 
@@ -280,14 +280,14 @@ TEST_F(FrameTest, DisplayPicturesAreExposedAndOpaque) {
   stage.render();
   const spec::Rgba8Image image = stage.frame->readDisplay();
   const std::size_t centre = 4 * (32 * 64 + 32);
-  // 0.5 - 0.04, coded: 1.055 * 0.46^(1/2.4) - 0.055 = 0.708.
+  // The value is 0.5 - 0.04, coded: 1.055 * 0.46^(1/2.4) - 0.055 = 0.708.
   EXPECT_NEAR(image.texels[centre], 181, 2);
   EXPECT_EQ(image.texels[centre + 3], 255);
   EXPECT_EQ(image.texels[3], 255) << "the sky too";
 }
 
 TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
-  // A smooth picture of the sphere with a colour for each axis.
+  // The environment map is smooth, with a colour for each axis.
   spec::RgbImage environment_map{.width = 128, .height = 64, .texels = {}};
   for (std::uint32_t y = 0; y < environment_map.height; ++y)
     for (std::uint32_t x = 0; x < environment_map.width; ++x)
@@ -306,7 +306,7 @@ TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
       const scene::Box bounds = scene::worldBounds(stage.world.registry());
       const spec::View view = spec::orbitView(stage.camera, bounds.min, bounds.max, 1.0f);
       const spec::RgbaImage image = stage.picture();
-      // The ray through the centre of the top left pixel.
+      // This is the ray through the centre of the top left pixel.
       const glm::vec4 far_clip(-63.0f / 64.0f, 63.0f / 64.0f, 1.0f, 1.0f);
       const glm::vec4 far_ws = glm::inverse(view.clip_from_view * view.view_from_world) * far_clip;
       const glm::vec3 dir_ws = glm::normalize(glm::vec3(far_ws) / far_ws.w - view.eye_ws);
@@ -341,7 +341,8 @@ TEST_F(FrameTest, ABundleThatStreamsInIsLitFromTheFirstMeshOnAndEndsAtTheSamePic
 }
 
 TEST_F(FrameTest, TheWordsOfTransferChooseTheBlock) {
-  // A quarter of the light without bounces, three quarters with them, all of it where nothing shadows.
+  // The transfer gives a quarter of the light without bounces, three quarters with them, and all light
+  // unshadowed.
   const auto transfer = [](const glm::vec3& normal) {
     const std::vector<float> open = testing::openTransfer(3)(normal);
     std::vector<float> blocks;
@@ -365,7 +366,8 @@ TEST_F(FrameTest, TheWordsOfTransferChooseTheBlock) {
 TEST_F(FrameTest, LampsShineAndLightTheirGroupAndDimTogether) {
   gltf::Material glowing = colored({0.5f, 0.5f, 0.5f, 1.0f});
   glowing.emissive = {2.0f, 1.0f, 0.5f};
-  // Of a material that is a lamp the lamp says what it gives off: here it was baked with another colour.
+  // The radiance of an emissive material that is a lamp comes from the lamp, which was baked with another
+  // colour.
   const auto builder =
       BundleBuilder()
           .lamp({.kind = bundle::GroupLight::Kind::Material, .index = 0, .color = {4.0f, 1.0f, 0.0f}}, 0.5f)
@@ -408,7 +410,7 @@ TEST_F(FrameTest, NormalMappedDrawsWithoutAMapLookAsPlainOnes) {
                lights, kLinear);
   const spec::RgbaImage expected = plain.picture(), found = mapped.picture();
   for (std::size_t i = 0; i < found.texels.size(); ++i)
-    // The plain one interpolates E between vertices, the other one the normal.
+    // One surface interpolates E between vertices, the other one the normal.
     ASSERT_LT(glm::distance(found.texels[i], expected.texels[i]), 0.02f) << i;
 }
 

@@ -1,4 +1,4 @@
-// Volumes in pictures with known answers, and what a frame does for them and does not.
+// Tests volumes in pictures with known answers, and what a frame does for them.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ FrameOptions linearOptions(const std::function<void(FrameOptions&)>& change = {}
   return options;
 }
 
-// A cube of 2 m, the same everywhere.
+// Makes a homogeneous cube of 2 m.
 BuiltVolume mist(float extinction, float albedo = 1.0f) {
   BuiltVolume volume;
   volume.density_max = extinction;
@@ -49,7 +49,7 @@ BuiltVolume mist(float extinction, float albedo = 1.0f) {
   return volume;
 }
 
-// A world with one bundle, seen straight on by an orthographic camera of 3 m, 10 m away on +Z.
+// Shows one bundle in a world, by an orthographic camera of 3 m, 10 m away on +Z.
 struct Stage {
   std::filesystem::path path;
   World world;
@@ -136,7 +136,7 @@ TEST_F(FrameVolume, ATurnedGroupIsBoundedByItsCorners) {
 }
 
 TEST_F(FrameVolume, EverythingWhiteUnderWhiteLightIsWhite) {
-  // A sphere half in the mist, a quad behind it, the sky: furnace.
+  // A sphere is half in the mist, a quad is behind it, then the sky. All light is uniform.
   BundleBuilder builder;
   builder.add({sphereMesh(16, 32), colored(glm::vec4(1.0f)),
                glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-0.3f, 0.2f, 0.9f)), glm::vec3(0.5f))});
@@ -152,7 +152,7 @@ TEST_F(FrameVolume, EverythingWhiteUnderWhiteLightIsWhite) {
 }
 
 TEST_F(FrameVolume, DimsSurfacesByWhatLiesBeforeThem) {
-  // Black mist: a white quad shows exp(-extinction x way through).
+  // In black mist a white quad shows exp(-extinction * distance through it).
   for (const auto& [z, way] : {std::pair{-2.0f, 2.0f}, {-0.5f, 1.5f}, {0.75f, 0.25f}, {2.0f, 0.0f}}) {
     BundleBuilder builder;
     builder.add({quadMesh(), colored(glm::vec4(1.0f)), glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, z))});
@@ -318,7 +318,7 @@ TEST_F(FrameVolume, DisplayPicturesShowTheSameThing) {
       if (edge) continue;
       ++compared;
       for (int c = 0; c < 3; ++c) {
-        // The curve of resolve.frag below its shoulder: less the specular part.
+        // This is the tone curve of resolve.frag below its shoulder.
         const glm::vec3 texel(at(wanted, x, y));
         const float low = std::min({texel.r, texel.g, texel.b});
         float value = texel[c] - (low < 0.08f ? low - 6.25f * low * low : 0.04f);

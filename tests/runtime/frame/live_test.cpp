@@ -1,4 +1,5 @@
-// What may change while a scene is shown: settings, materials, the light; and what frames say about it.
+// Tests what may change while a scene is shown (settings, materials, the light), and what frames report about
+// it.
 #include <limits>
 
 #include <glm/geometric.hpp>
@@ -47,7 +48,7 @@ BundleBuilder glossyBall(const gltf::Material& material) {
   return builder;
 }
 
-// A ball whose transfer tells blocks and bands apart, and a cloud beside it.
+// Makes a ball whose transfer has a different value in each block and band, and a cloud beside it.
 BundleBuilder ballAndCloud() {
   BundleBuilder builder(5);
   builder.bounces().transfer([](const glm::vec3& normal) {

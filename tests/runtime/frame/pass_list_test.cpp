@@ -1,4 +1,4 @@
-// The list of passes: what a pass reads has been written before it.
+// Tests the list of passes: what a pass reads, an earlier pass has written.
 #include "runtime/frame/pass_list.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using Infos = std::vector<PassInfo>;
 
-// A pass and the type for each resource that is read before it is written, or never.
+// Returns a pass and a type for each resource that is read before it is written, or is never written.
 std::vector<std::string> readTooEarly(const Infos& passes) {
   std::vector<std::string> wrong;
   std::set<std::type_index> written, ever;

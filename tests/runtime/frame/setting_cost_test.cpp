@@ -1,4 +1,4 @@
-// What settings cost and lose, measured beside a frame that goes on as before.
+// Tests the measured cost and error of settings, beside a frame that goes on unchanged.
 #include "runtime/frame/setting_cost.hpp"
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ TEST_F(SettingCostTest, TheErrorIsThatOfTwoPicturesDrawnApart) {
       << "no knob of accuracy";
 }
 
-// How many key lights there are is the environment's to follow, and has to be measured so.
+// The environment decides the number of key lights, and the measurement must include that.
 TEST_F(SettingCostTest, FewerKeyLightsAreMeasuredByLightThatIsPartedSo) {
   const spec::Light small = spec::SunLight{
       .azimuth_deg = 60, .elevation_deg = 35, .angle_deg = 0.5f, .radiance = glm::vec3(9000.0f)};

@@ -1,4 +1,4 @@
-// Captures of small scenes on the GPU.
+// Captures the light of small scenes on the GPU.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ class CaptureTest : public testing::GpuTest {
   struct Scene {
     CaptureOptions options{};
     std::vector<bundle::CaptureProxy> proxies{};
-    std::vector<glm::vec4> radiance{};  // per triangle; black where it is shorter
+    std::vector<glm::vec4> radiance{};  // per triangle; missing ones are black
     std::vector<CaptureBody> bodies{};
     std::vector<CapturePoint> points{};
   };

@@ -1,4 +1,4 @@
-// What the light capture decides without a GPU: tiles, pages, and which bodies are closed.
+// Tests what the light capture decides without a GPU: tiles, pages, and which bodies are closed.
 #include "runtime/lighting/capture_plan.hpp"
 
 #include <array>
@@ -43,7 +43,7 @@ TEST(CaptureClosed, KnowsBodiesWhoseDarkSidesCannotBeSeenFromOutside) {
   bundle::CaptureProxy open = cubeProxy();
   --open.levels[0].triangle_count;
   EXPECT_FALSE(closed(open));
-  // A room within a house: its walls can be seen from outside of neither, but their outside is dark.
+  // A room is within a house. The inner walls are not visible from outside, and their outsides are dark.
   bundle::CaptureProxy both = cubeProxy();
   const bundle::CaptureProxy room = cubeProxy(true);
   for (const glm::vec3& p : room.positions) both.positions.push_back(0.5f * p);
@@ -102,7 +102,7 @@ TEST(CapturePlan, TilesAreApartAndInTheAtlas) {
     EXPECT_EQ(page.first_draw, draws_seen);
     points_seen += page.point_count;
     draws_seen += page.draw_count;
-    // In texels: tiles begin at multiples of a texel.
+    // Tiles begin at multiples of a texel.
     std::vector<bool> taken(capture::kAtlasWidth / 16 * capture::kAtlasHeight / 16);
     const auto& last = plan.points[page.first_point + page.point_count - 1];
     for (std::uint32_t t = plan.points[page.first_point].first_tile; t < last.first_tile + last.tile_count;

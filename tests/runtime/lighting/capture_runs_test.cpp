@@ -1,4 +1,4 @@
-// How captures run: one at a time, in pages, and shader for shader as their CPU twin.
+// Tests how captures run: one at a time, in pages, and each shader like its CPU twin.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST_F(CaptureRuns, ProxiesThatAreKnownAgainAreDrawnAsIfTheyWereNew) {
   using Proxies = std::vector<const bundle::CaptureProxy*>;
   auto known = Capture::create({.size = 8, .order = 4}, environment);
   ASSERT_TRUE(known);
-  // They come one by one, change places and go.
+  // Bodies are added one by one, change places and are removed.
   const std::vector<std::pair<Proxies, std::vector<std::uint64_t>>> steps = {
       {{&cube}, {1}},
       {{&square, &cube}, {2, 1}},

@@ -1,4 +1,4 @@
-// Small proxies for tests of the light capture, and the measure of what it gets wrong.
+// Makes small proxies for tests of the light capture, and measures its error.
 #pragma once
 
 #include <cmath>
@@ -28,12 +28,12 @@ inline bundle::CaptureProxy proxyOf(std::vector<glm::vec3> positions,
   return proxy;
 }
 
-// 2 x 2 in the plane z = 0, shining along +Z.
+// Makes a square of 2 x 2 in the plane z = 0 that emits along +Z.
 inline bundle::CaptureProxy squareProxy(bool front_only = false) {
   return proxyOf({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, front_only);
 }
 
-// A disc of radius 1 in the plane z = 0, shining along +Z; a polygon of the same area.
+// Makes a polygon with the area of a disc of radius 1, in the plane z = 0, that emits along +Z.
 inline bundle::CaptureProxy discProxy(std::uint32_t corners = 256) {
   const double turn = 2 * std::numbers::pi / corners;
   const double radius = std::sqrt(turn / std::sin(turn));
@@ -45,7 +45,7 @@ inline bundle::CaptureProxy discProxy(std::uint32_t corners = 256) {
   return proxy;
 }
 
-// The cube [-1, 1]³ seen from outside, or from inside.
+// Makes the cube [-1, 1]³, visible from outside or from inside.
 inline bundle::CaptureProxy cubeProxy(bool inside = false) {
   std::vector<glm::vec3> positions;
   for (int i = 0; i < 8; ++i) positions.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
@@ -57,7 +57,7 @@ inline bundle::CaptureProxy cubeProxy(bool inside = false) {
   return proxyOf(std::move(positions), triangles);
 }
 
-// At `center`, scaled, its +Z turned towards `to`.
+// Returns a matrix that scales, turns +Z towards `to` and moves to `center`.
 inline glm::mat4 facing(const glm::vec3& center, const glm::vec3& to, float scale) {
   const glm::vec3 z = glm::normalize(to - center);
   const glm::vec3 x =
@@ -66,7 +66,7 @@ inline glm::mat4 facing(const glm::vec3& center, const glm::vec3& to, float scal
                    glm::vec4(center, 1));
 }
 
-// A disc of the given angular radius as seen from `from`.
+// Makes a disc that has the given angular radius as seen from `from`.
 inline lighting::CaptureBody discBody(std::uint32_t proxy, const glm::vec3& from, const glm::vec3& direction,
                                       double radius_rad, float distance_m) {
   return {.proxy = proxy,
@@ -74,7 +74,7 @@ inline lighting::CaptureBody discBody(std::uint32_t proxy, const glm::vec3& from
                                      distance_m * static_cast<float>(std::tan(radius_rad)))};
 }
 
-// |light - exact|² / |exact|².
+// Returns |light - exact|² / |exact|².
 inline double squaredError(const sh::LightVector& light, const sh::LightVector& exact) {
   double difference = 0, whole = 0;
   for (std::size_t i = 0; i < exact.c.size(); ++i) {

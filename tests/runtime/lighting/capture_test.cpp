@@ -47,7 +47,7 @@ TEST_F(CaptureTest, NothingInSightLeavesTheExactSkyWithoutSunsAndCostsTheGpuNoth
 }
 
 TEST_F(CaptureTest, ABlackDiscTakesItsCapOutOfTheSky) {
-  // A disc as a sphere of the same angular radius would: literature 7.3.
+  // A disc gives what a sphere of the same angular radius does: literature 7.3.
   for (const double degrees : {5.0, 20.0, 40.0}) {
     const glm::vec3 from(3, -2, 5), direction = glm::normalize(glm::vec3(1, 2, -0.5f));
     const double radius = degrees * std::numbers::pi / 180;
@@ -203,8 +203,8 @@ TEST_F(CaptureTest, ALightAllAroundIsHalfHiddenByAWallAtThePoint) {
 
 TEST_F(CaptureTest, APointInsideABodySeesItsBlackInside) {
   for (const float offset : {0.0f, 0.5f, 0.999f, 0.99999f}) {
-    // A hundred-thousandth of the body from its face, rasterizers clip as finely as they can and no two
-    // alike: on real devices up to 0.3 % of the sky leaks in.
+    // At a distance from its face of a hundred-thousandth of the body's size, rasterizers clip differently:
+    // on real devices up to 0.3 % of the sky leaks in.
     const bool at_the_face = offset > 0.9999f;
     const auto light = captured(uniformSky(1), {.proxies = {cubeProxy()},
                                                 .radiance = std::vector(12, glm::vec4(1)),
@@ -222,7 +222,7 @@ TEST_F(CaptureTest, APointInsideABodySeesItsBlackInside) {
 }
 
 TEST_F(CaptureTest, AFloorCloseUnderThePointHidesHalfOfTheSky) {
-  // Down to a hundred-thousandth of the body's size, where clipping ends to be exact.
+  // The heights go down to a hundred-thousandth of the body's size, where clipping is no longer exact.
   for (const float height : {1e-2f, 1.0f}) {
     const auto light = captured(uniformSky(1), {.proxies = {squareProxy()},
                                                 .bodies = {{0, facing({0, 0, 0}, {0, 1, 0}, 1000)}},
@@ -297,7 +297,7 @@ TEST_F(CaptureTest, SmallBodiesAreLeftOutUnlessTheyAreBright) {
   ASSERT_TRUE(capture);
   const CaptureOptions options;
   const capture::ProxyBounds bounds = capture::ProxyBounds::of(discProxy());
-  // A quarter of a texel: 4 pi / (6 * 16 * 16) / 4 = 2.05e-3 sr, a radius of 1.46 degrees.
+  // The disc is a quarter of a texel: 4 pi / (6 * 16 * 16) / 4 = 2.05e-3 sr, a radius of 1.46 degrees.
   const auto seen = [&](double degrees, float brightness) {
     CaptureBody body = discBody(0, {}, {0, 1, 0}, degrees * std::numbers::pi / 180, 10);
     body.brightness = brightness;
@@ -312,7 +312,8 @@ TEST_F(CaptureTest, SmallBodiesAreLeftOutUnlessTheyAreBright) {
 }
 
 TEST_F(CaptureTest, ASunOfOneTexelInAProbeKeepsItsPlaceAndPower) {
-  // 128 x 64 texels of 2.8 degrees, one of them 10000 times brighter: half a texel of the capture's cube.
+  // The image has 128 x 64 texels of 2.8 degrees, one of them 10000 times brighter: half a texel of the
+  // capture's cube.
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "capture_sun.hdr";
   {
     std::ofstream out(file, std::ios::binary);

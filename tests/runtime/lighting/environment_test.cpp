@@ -40,13 +40,13 @@ TEST(Environment, TurnsAsASunOfTheTurnedAzimuth) {
   const Environment placed = sun(90);
   for (std::size_t i = 0; i < 64; ++i)
     EXPECT_LT(glm::distance(turned.light().c[i], placed.light().c[i]), 1e-5f) << "coefficient " << i;
-  // A thousand turns leave no trace.
+  // After a thousand turns there is no trace of them.
   for (int i = 0; i < 1000; ++i) turned.setTurn(static_cast<float>(i) * 0.37f);
   turned.setTurn(0.0f);
   for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(turned.light().c[i], sun(20).light().c[i]);
 }
 
-// Two sets with a sun each, to tell them apart.
+// Makes two sets with one sun each, so that they can be distinguished.
 Result<Environment> twoSets() {
   return Environment::create(
       {spec::ConstantLight{.radiance = {1, 2, 3}},
@@ -69,7 +69,7 @@ TEST(Environment, MixesTwoSetsTurnedTogether) {
   environment->setTurn(30.0f);
   environment->setFade(0.25f);
   environment->setIntensity(2.0f);
-  // 1.5 of the first set and 0.5 of the second, whose suns stand 30 degrees farther round.
+  // The light is 1.5 of the first set and 0.5 of the second, whose suns are 30 degrees further round.
   constexpr double kDegree = 3.14159265358979 / 180.0;
   const sh::LightVector sky = sh::constantLight(8, {1.5f, 3.0f, 8.5f});
   const glm::vec3 first = spec::directionFromAzimuthElevation(50, 25),
@@ -137,7 +137,7 @@ TEST(Environment, ProjectsAProbeToItsMeanRadiance) {
   EXPECT_NEAR(glm::dot(mean, glm::vec3(0.2126f, 0.7152f, 0.0722f)), 0.885f, 0.004f);
 }
 
-// A picture of one radiance.
+// Makes an image of one radiance.
 void writeEnvironmentMap(const std::filesystem::path& file, float radiance) {
   const spec::RgbaImage image{
       .width = 8, .height = 4, .texels = std::vector<glm::vec4>(32, glm::vec4(radiance))};
@@ -157,7 +157,8 @@ TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
   ASSERT_TRUE(environment) << environment.error().line();
   environment->setFade(0.25f);
   environment->setTurn(30.0f);
-  // What is there now cannot be read, but seems the same: whoever needs no look does not notice.
+  // The file's contents are now unreadable, but its size and time are unchanged: setLights() uses what it has
+  // loaded.
   const auto bytes = std::filesystem::file_size(file);
   std::filesystem::resize_file(file, 0);
   std::filesystem::resize_file(file, bytes);
@@ -167,7 +168,7 @@ TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
   EXPECT_EQ(environment->fade(), 0.25f);
   EXPECT_EQ(environment->turnDegrees(), 30.0f);
 
-  // The same light as of one that was made of these.
+  // The light equals that of an environment created with these lights.
   writeEnvironmentMap(file, 1.0f);
   auto made = Environment::create(withSun(21), withSun(-21));
   ASSERT_TRUE(made);

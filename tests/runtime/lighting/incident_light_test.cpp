@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kBodies = 40;
 const CaptureOptions kOptions{.size = 8, .subsamples = 2, .order = 3};
 
-// What a walk over all bodies finds, from what a sample's surroundings were drawn with.
+// Finds by a walk over all bodies what has changed since a sample's surroundings were drawn.
 struct Walk {
   std::vector<BodyPose> poses;  // by body, as drawn
   std::vector<bool> seen;
@@ -71,7 +71,7 @@ TEST_F(IncidentLightTest, DrawsWhatAWalkOverAllBodiesFindsChanged) {
   std::vector<Walk> drawn(kBodies);
   std::size_t all_drawn = 0, all_waiting = 0;
   for (int step = 0; step < 25; ++step) {
-    // Some move a little or far, some shine otherwise.
+    // Some bodies move a little or far, some change their radiance.
     if (step > 0)
       for (int i = 0; i < 3; ++i) {
         const auto b = static_cast<std::size_t>(uniform(0, kBodies - 0.01f));

@@ -1,4 +1,5 @@
-// Key lights of an environment map that are moved, dimmed and coloured: their discs change, and nothing else.
+// Tests key lights of an environment map that are moved, dimmed and tinted: their discs change, and nothing
+// else.
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -20,7 +21,7 @@ namespace {
 const glm::dvec3 kHigh = glm::normalize(glm::dvec3(0.4, 0.7, -0.3));
 const glm::dvec3 kLow = glm::normalize(glm::dvec3(-0.6, 0.2, 0.5));
 
-// A soft sky with two suns of 1.7 degrees.
+// Makes a soft sky with two suns of 1.7 degrees.
 class KeyEdits : public ::testing::Test {
  protected:
   KeyEdits() : file_(std::filesystem::path(::testing::TempDir()) / (std::to_string(getpid()) + "-suns.hdr")) {
@@ -41,7 +42,7 @@ class KeyEdits : public ::testing::Test {
   }
   ~KeyEdits() override { std::filesystem::remove(file_); }
 
-  // What an eye sees, as bands 0 and 1.
+  // Returns what the eye sees, as bands 0 and 1.
   sh::LightVector seen() const {
     const Environment::Shown shown = environment_->shownOf(0);
     sh::LightVector light = sh::constantLight(2, shown.constant);
@@ -147,7 +148,7 @@ TEST_F(KeyEdits, AKeyLightThatIsMovedAndDimmedIsThatDiscAndTheRestStays) {
   const Disc other = environment_->foundKeys()[1].now;
   keys += sh::discLight(8, other.direction, static_cast<double>(other.radius_rad), other.radiance);
   expectSameLight(environment_->keyLight(), keys, 1e-5f, 64);
-  // The eye's light is that of rest and keys, as before the edit.
+  // The eye sees the rest and the keys, as before the edit.
   sh::LightVector all = environment_->light().truncated(2);
   expectSameLight(seen(), all, 2e-3f, 4);
 }
@@ -178,7 +179,7 @@ TEST_F(KeyEdits, AnEditWaitsWhereItsKeyLightIsNotFound) {
   EXPECT_EQ(environment_->shownOf(0).environment_maps[0], &environment_->set(0).environment_maps[0]);
   environment_->setMostKeys(16);
   for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(environment_->light().c[i], edited.c[i]) << i;
-  // One that means no key light at all, one of the other set.
+  // The first edit belongs to no key light, the second to the other set.
   edit.found = glm::vec3(0, -1, 0);
   environment_->setKeyEdits({edit});
   EXPECT_FALSE(environment_->foundKeys()[1].edit);

@@ -28,7 +28,7 @@ double solidAngle(const spec::Disc& disc) {
   return 2 * kPi * (1 - std::cos(static_cast<double>(disc.radius_rad)));
 }
 
-// A picture of radianceAt(direction); black where the layout shows nothing.
+// Makes an environment map of radianceAt(direction), black outside the layout.
 template <typename RadianceAt>
 spec::EnvironmentMap painted(sh::ImageLayout layout, int width, int height, RadianceAt&& radianceAt) {
   spec::EnvironmentMap environment_map{
@@ -41,7 +41,7 @@ spec::EnvironmentMap painted(sh::ImageLayout layout, int width, int height, Radi
   return environment_map;
 }
 
-// Bluer above, without anything in bands 2 and up.
+// This sky is bluer above, and has nothing in bands 2 and up.
 glm::vec3 smoothSky(const glm::dvec3& dir) {
   return glm::vec3(1.0f, 1.2f, 1.5f) * static_cast<float>(1.0 + 0.4 * dir.y + 0.2 * dir.x);
 }
@@ -83,8 +83,8 @@ sh::LightVector total(const spec::DistantLights& lights, const PartedLights& par
   return light;
 }
 
-// Band 0 of keys and rest is the whole's but for rounding. Band 1 is by more: a key has one direction for all
-// channels, and is no smaller than a texel.
+// Band 0 of keys and rest equals that of the whole up to rounding. Band 1 differs by more, because a key has
+// one direction for all channels, and is no smaller than a texel.
 void expectEnergyConserved(const spec::DistantLights& lights, const PartedLights& parted,
                            float band_1_tolerance) {
   const sh::LightVector after = total(lights, parted);
@@ -146,7 +146,7 @@ TEST(KeyLights, FindsTheSunOfAPictureInEveryLayout) {
     const spec::Disc& key = parted.keys[0];
     EXPECT_LT(glm::distance(glm::dvec3(key.direction), kSun), texel_rad);
     EXPECT_NEAR(static_cast<double>(key.radius_rad), kSunRadius, texel_rad);
-    // What was painted, without the rim of the last texels: the sun is about 7 across.
+    // The painted flux is measured without the rim's texels: the sun is about 7 texels wide.
     double painted_flux = 0.0;
     ASSERT_TRUE(parted.environment_maps[0]);
     for (int y = 0; y < height; ++y)
@@ -156,7 +156,7 @@ TEST(KeyLights, FindsTheSunOfAPictureInEveryLayout) {
         if (dir == glm::dvec3(0.0)) continue;
         painted_flux +=
             sh::texelSolidAngle(layout, width, height, x, y) * luminance(skyWithSun(dir) - smoothSky(dir));
-        // The rest is the sky, with a dim patch at most where the sun was.
+        // The rest is the sky, with at most a dim patch where the sun was.
         if (glm::distance(dir, kSun) >= kSunRadius) {
           ASSERT_EQ(parted.environment_maps[0]->image.texels[i], lights.environment_maps[0].image.texels[i]);
         } else {
@@ -227,7 +227,7 @@ TEST(KeyLights, TheSameLightGivesTheSameBits) {
   EXPECT_EQ(a.environment_maps[0]->image.texels, b.environment_maps[0]->image.texels);
 }
 
-// Forty lamps of about the same flux.
+// The map has forty lamps of about the same flux.
 TEST(KeyLights, ThereAreNeverMoreThanAskedFor) {
   const auto lamps = [](const glm::dvec3& dir) {
     glm::vec3 light(0.1f);
@@ -251,7 +251,7 @@ TEST(KeyLights, ThereAreNeverMoreThanAskedFor) {
 TEST(KeyLights, AnalyticSunsAreKeysAsTheyAreAndWideOnesAreDivided) {
   for (const double radius_deg : {0.27, 2.0, 10.0, 30.0}) {
     SCOPED_TRACE(radius_deg);
-    // The same flux of all.
+    // All discs have the same flux.
     const double sr = 2 * kPi * (1 - std::cos(radius_deg * kPi / 180));
     const spec::DistantLights lights = skyAndDisc(radius_deg, static_cast<float>(30.0 / sr));
     const PartedLights parted = partLights(lights);
@@ -279,7 +279,7 @@ TEST(KeyLights, FaintDiscsStayInTheRest) {
   EXPECT_EQ(parted.discs[0].radius_rad, 0.001f);
 }
 
-// Its edge is all that is lost, and discs would not make it better.
+// Only the edge of such a light is lost, and discs would not improve it.
 TEST(KeyLights, AUniformHalfOfTheSkyHasNone) {
   const auto dome = [](const glm::dvec3& dir) { return glm::vec3(dir.y > 0.0 ? 1.0f : 0.0f); };
   const PartedLights parted = partLights(oneMap(painted(sh::ImageLayout::LatLong, 256, 128, dome)));
@@ -310,7 +310,7 @@ TEST(KeyLights, SurvivesBlackNegativeAndEmptyLight) {
     for (int channel = 0; channel < 3; ++channel) EXPECT_GE(key.radiance[channel], 0.0f);
 }
 
-// Pictures as small as one texel are light too.
+// Images as small as one texel are valid lights, too.
 TEST(KeyLights, TinyPicturesAreSearchedAsWell) {
   for (const int height : {1, 2, 5, 12}) {
     spec::EnvironmentMap environment_map = painted(sh::ImageLayout::LatLong, 2 * height, height, smoothSky);

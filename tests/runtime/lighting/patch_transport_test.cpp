@@ -18,7 +18,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// E/pi straight from a point light of one candela, nothing in its way.
+// Returns E/pi from an unoccluded point light of one candela.
 std::vector<float> litFrom(const Patches& patches, const glm::vec3& light) {
   std::vector<float> direct;
   for (const Patch& patch : patches.all()) {
@@ -39,7 +39,7 @@ double wholeOf(const Patches& patches, const std::vector<float>& received) {
   return sum;
 }
 
-// What arrives at all patches after bounces, by the light that they give off: E/pi.
+// Returns E/pi at all patches after bounces, from the light that they emit.
 std::vector<float> receivedAll(const Patches& patches, const std::vector<glm::vec3>& given_off) {
   std::vector<float> received;
   for (std::size_t i = 0; i < patches.size(); ++i)
@@ -85,7 +85,8 @@ TEST(PatchTransport, InAClosedBoxTheSameHoldsOfTheWholeWhereverTheLampStands) {
 }
 
 TEST(PatchTransport, AFurnaceStaysUniform) {
-  // Every patch gives off 1 by itself and reflects half: 2 everywhere, whatever the shape of the room.
+  // Every patch emits 1 and reflects half of what it gets: the result is 2 everywhere, for any shape of the
+  // room.
   const PatchTransport transport(RoomBuilder().box({0, 0, 0}, {1, 5, 2}, glm::vec3(0.5f)).proxy());
   const std::vector<float> direct(transport.patches().size(), 2.0f);
   for (const glm::vec3& radiance : transport.bounce(direct)) ASSERT_NEAR(radiance.g, 2.0f, 0.002f);
@@ -156,7 +157,7 @@ TEST(PatchTransport, TheSameRoomGivesTheSameBytes) {
   const auto a = one.bounce(direct), b = other.bounce(direct);
   ASSERT_EQ(a.size(), b.size());
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(glm::vec3)), 0);
-  // And twice the light gives twice the light, to the bit.
+  // Twice the light gives exactly twice the result.
   std::vector<float> twice = direct;
   for (float& value : twice) value *= 2.0f;
   const auto doubled = one.bounce(twice);

@@ -1,4 +1,4 @@
-// The sky as rough mirrors show it, against the lobe's own integrals.
+// Compares the prefiltered sky for rough mirrors with the lobe's own integrals.
 #include "runtime/lighting/prefiltered_environment.hpp"
 
 #include <cmath>
@@ -28,8 +28,8 @@ std::vector<glm::vec4> levelOf(const gpu::Texture& cube, std::uint32_t level) {
   return texels;
 }
 
-// Share of the lobe about `direction` that falls into a disc, by midpoints over the half sphere; small discs
-// by their solid angle.
+// Returns the part of the lobe about `direction` that falls into a disc, by midpoints over the hemisphere;
+// small discs use their solid angle.
 double shareOfDisc(const ReflectedLobe& lobe, const glm::dvec3& direction, const Disc& disc) {
   const double least = std::cos(static_cast<double>(disc.radius_rad));
   if (disc.radius_rad < 0.02f)
@@ -109,7 +109,7 @@ TEST_F(PrefilteredEnvironmentTest, ASunIsBlurredToTheLobesShareOfIt) {
 }
 
 TEST_F(PrefilteredEnvironmentTest, LightOfFewBandsLeavesNothing) {
-  // An environment map of bands 0 to 2: what is reflected is each band times the lobe's.
+  // The environment map has bands 0 to 2, so the reflection is each band times the lobe's.
   const std::filesystem::path path =
       std::filesystem::path(::testing::TempDir()) / (std::to_string(::getpid()) + "-bands.exr");
   constexpr std::uint32_t kWidth = 256, kHeight = 128;
@@ -151,13 +151,14 @@ TEST_F(PrefilteredEnvironmentTest, LightOfFewBandsLeavesNothing) {
       difference =
           std::max<double>(difference, glm::distance(known, glm::vec3(texels[static_cast<std::size_t>(i)])));
     }
-    // Radiance up to 3, a few looks through half floats at an environment map of 64 texels a face.
+    // The radiance goes up to 3, and passes several half-float look-ups in an environment map of 64 texels
+    // per face.
     EXPECT_LT(difference, 0.02) << "level " << level;
   }
 }
 
-// Lamps along the edges of cube faces, in an environment map that asks for cubes of 125 texels: blurred, all
-// of their light is still there.
+// Lamps are along the edges of cube faces, in an environment map that needs cubes of 125 texels. After
+// prefiltering all of their light is still there.
 TEST_F(PrefilteredEnvironmentTest, LampsInAProbeOfAnySizeKeepTheirPower) {
   const std::filesystem::path path =
       std::filesystem::path(::testing::TempDir()) / (std::to_string(::getpid()) + "-lamps.exr");
@@ -191,7 +192,7 @@ TEST_F(PrefilteredEnvironmentTest, LampsInAProbeOfAnySizeKeepTheirPower) {
     const auto side = static_cast<int>(reflected->cube(0).desc().width >> level);
     double sum = 0.0, whole = 0.0;
     for (int i = 0; i < 6 * side * side; ++i) {
-      // A point of the cube's face lies so far from the centre: the angle of a texel falls with its cube.
+      // The solid angle of a texel falls with the cube of the distance of its point from the cube's centre.
       const double u = (2.0 * (i % side) + 1.0) / side - 1.0,
                    v = (2.0 * (i / side % side) + 1.0) / side - 1.0;
       const double angle = std::pow(1.0 + u * u + v * v, -1.5);

@@ -1,4 +1,4 @@
-// Rooms as capture proxies, with known answers.
+// Builds rooms as capture proxies, with known answers.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace lambent::testing {
 
-// One level; every triangle reflects `albedo`.
+// The proxy has one level, and every triangle reflects `albedo`.
 class RoomBuilder {
  public:
   RoomBuilder() { proxy_.levels = {{.first_triangle = 0, .triangle_count = 0, .error_m = 0.0f}}; }
@@ -29,13 +29,13 @@ class RoomBuilder {
     ++proxy_.levels[0].triangle_count;
     return *this;
   }
-  // A parallelogram, seen from where its edges run counter-clockwise.
+  // Adds a parallelogram, visible from the side on which its edges run counter-clockwise.
   RoomBuilder& wall(const glm::vec3& corner, const glm::vec3& right, const glm::vec3& up,
                     const glm::vec3& albedo) {
     triangle({corner, corner + right, corner + right + up}, albedo);
     return triangle({corner, corner + right + up, corner + up}, albedo);
   }
-  // Seen from inside.
+  // Adds a box that is visible from inside.
   RoomBuilder& box(const glm::vec3& low, const glm::vec3& high, const glm::vec3& albedo) {
     const glm::vec3 size = high - low;
     const glm::vec3 x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
@@ -46,7 +46,7 @@ class RoomBuilder {
     wall(high, -z, -y, albedo);
     return wall(high, -x, -z, albedo);
   }
-  // Of radius 1 about the origin, seen from inside.
+  // Adds a sphere of radius 1 about the origin that is visible from inside.
   RoomBuilder& sphere(int rings, int segments, const glm::vec3& albedo) {
     const auto at = [&](int ring, int segment) {
       const float down = std::numbers::pi_v<float> * static_cast<float>(ring) / static_cast<float>(rings);

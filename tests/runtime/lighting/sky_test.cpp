@@ -1,4 +1,4 @@
-// The sky as drawn is the radiance of the environment as it stands: turned, faded and scaled.
+// Checks that the drawn sky is the radiance of the environment as rotated, faded and scaled.
 #include "runtime/lighting/sky.hpp"
 
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace lambent::lighting {
 
 class SkyTest : public testing::GpuTest {
  protected:
-  // What the middle pixel of a narrow picture shows that looks along dir.
+  // Returns what the middle pixel of a narrow picture along dir shows.
   static glm::vec3 seen(const Sky& sky, const Environment& environment, glm::vec3 dir) {
     constexpr std::uint32_t kSide = 5;
     const gpu::Texture color("color", {.format = GL_RGBA32F, .width = kSide, .height = kSide});
@@ -61,7 +61,7 @@ TEST_F(SkyTest, ShowsTheMixOfBothSets) {
   expectSeen(60, 60, between + glm::vec3(3.0f, 0.0f, 1.5f));
 }
 
-// A key light of a picture that is moved is seen where it went, and no longer where it was.
+// A key light that was moved is visible in its new place, and no longer in the old.
 TEST_F(SkyTest, ShowsAMovedKeyLightAsADiscInPlaceOfItsTexels) {
   const glm::vec3 sun = spec::directionFromAzimuthElevation(40, 50);
   spec::RgbImage image{.width = 256, .height = 128, .texels = {}};

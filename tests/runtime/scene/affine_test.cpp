@@ -30,7 +30,7 @@ glm::quat randomTurn(std::mt19937& random) {
   return glm::normalize(glm::quat(normal(random), normal(random), normal(random), normal(random)));
 }
 
-// A few roundings of numbers of size 1 to 10: 1e-5 is ten times what is seen.
+// Numbers of size 1 to 10 are rounded a few times; 1e-5 is ten times the errors observed.
 constexpr float kRounding = 1e-5f;
 
 TEST(Affine, TranslationRotationScaleComeBackAsTheyWere) {

@@ -1,4 +1,4 @@
-// Animations move the nodes that they name, and only when something changes.
+// Tests that animations move the nodes that they name, and only when something changes.
 #include "runtime/scene/animation.hpp"
 
 #include <cmath>
@@ -29,7 +29,7 @@ gltf::AnimationChannel channel(std::uint32_t node, Path path, std::vector<float>
           .values = std::move(values)};
 }
 
-// A ball that rolls along x from 0 to 4 in two seconds, then rests until 3; and a top that turns by 90
+// Makes a ball that rolls along x from 0 to 4 in two seconds, then rests until 3, and a top that turns by 90
 // degrees about +Y in a second while it grows from 1 to 3, a group of its own with rest scale 2.
 struct Playground {
   Playground() {
@@ -152,7 +152,7 @@ TEST(Animation, MovesAsTheBakersPosesDo) {
                 kRounding);
 }
 
-// Transfer holds for directions: growing evenly, a group turns as it would without.
+// Transfer depends on directions only: a group that scales uniformly behaves as if it only turned.
 TEST(Animation, AGroupThatGrowsEvenlyStaysRigid) {
   Playground at;
   for (const float time : {0.0f, 0.25f, 0.6f, 1.0f}) {
@@ -163,7 +163,7 @@ TEST(Animation, AGroupThatGrowsEvenlyStaysRigid) {
     EXPECT_NEAR(std::abs(glm::dot(top.rotation, turn)), 1.0f, 1e-6f) << time;
     EXPECT_NEAR(std::abs(glm::dot(top.turn_since_rest, turn)), 1.0f, 1e-6f) << time;
     EXPECT_LT(glm::distance(top.translation, glm::vec3(9, 1, 0)), kRounding) << "it grows about its place";
-    // From 2 at rest to 1 + 2 t.
+    // The scale is 2 at rest and then 1 + 2 t.
     const glm::vec3 grown(top.world_from_rest * glm::vec4(0, 1, 0, 0));
     EXPECT_LT(glm::distance(grown, glm::vec3(0, (1 + 2 * time) / 2, 0)), kRounding);
   }

@@ -56,7 +56,7 @@ void addGroup(bundle::Description& d, std::int32_t node, glm::vec3 translation, 
   d.groups.push_back(group);
 }
 
-// A hall with two chairs of one mesh, and a mirrored, stretched top that moves: a group of its own.
+// Makes a hall with two chairs of one mesh, and a mirrored, stretched top that moves: a group of its own.
 struct Hall {
   Hall() {
     hall = addNode(d, "hall", -1, glm::mat4(1.0f));
@@ -75,7 +75,7 @@ struct Hall {
     d.meshes.push_back({.name = "chair", .primitives = {seat, legs}});
     d.materials.resize(2);
     addGroup(d, -1, glm::vec3(0.0f), glm::quat(1.0f, 0.0f, 0.0f, 0.0f));
-    // One of the possible readings of a mirrored matrix; the runtime takes the baker's, whichever it is.
+    // This is one of the possible decompositions of a mirrored matrix; the runtime takes the baker's.
     addGroup(d, top, {0.0f, 3.0f, 0.0f}, glm::angleAxis(glm::radians(220.0f), kUp));
     for (const std::int32_t node : {chair_a, chair_b}) {
       d.draws.push_back({.node = static_cast<std::uint32_t>(node), .mesh = 0, .primitive = 0, .group = 0});
@@ -246,7 +246,7 @@ TEST(StableId, IsOneForEachEntityAndTheSameInEverySession) {
 
 TEST(StableId, OutlivesReimportWithNodesAddedAndReordered) {
   const Hall hall;
-  // A new root before all others, a new node between, and the file's numbers shifted.
+  // The new file has a root before all others and a node in between, so the indices shift.
   bundle::Description d;
   addNode(d, "sky", -1, glm::mat4(1.0f));
   const std::int32_t top_first = addNode(d, "top", -1, glm::mat4(1.0f));

@@ -61,7 +61,7 @@ TEST(Transforms, OnlyWhatChangedIsComputedAgain) {
   registry.edit<Transform>(root).translation.x = 4.0f;
   EXPECT_EQ(updateTransforms(registry).nodes, 111u);
 
-  // A touch that changes nothing is looked at once and goes no further.
+  // A touched Transform that is unchanged is visited once, and nothing follows from it.
   const std::uint64_t before = registry.version<WorldTransform>();
   registry.touch<Transform>(root);
   EXPECT_EQ(updateTransforms(registry).nodes, 1u);

@@ -78,7 +78,7 @@ TEST(ShBasis, DiffersFromCondonShortleyByMinusOneToTheM) {
   }
 }
 
-// sum_m y_lm² = (2l+1)/4pi in every direction, the poles and their neighbourhood included.
+// sum_m y_lm² is (2l+1)/4pi in every direction, also at and near the poles.
 TEST(ShBasis, KeepsTheEnergyOfEachBandEverywhere) {
   std::vector<glm::dvec3> dirs = {{0, 0, 1},       {0, 0, -1}, {1e-20, 0, 1},
                                   {0, -1e-20, -1}, {1, 0, 0},  {0, -1, 0}};
@@ -133,7 +133,7 @@ TEST(ShBasis, EvaluatesBatchesAsSingleDirections) {
       evaluateBatch(order, x.data(), y.data(), z.data(), count, batch.data(), stride);
       for (std::size_t k = 0; k < count; ++k) {
         evaluate(order, glm::vec3(x[k], y[k], z[k]), one);
-        // The same operations; only fused multiply-adds may fall differently.
+        // The operations are the same; only fused multiply-adds may differ.
         for (std::size_t i = 0; i < entries; ++i) EXPECT_NEAR(batch[i * stride + k], one[i], 3e-6f);
       }
       for (std::size_t i = 0; i < entries; ++i)

@@ -33,7 +33,7 @@ TEST(CachedWindow, AScaledLightKeepsTheWindowThatItWouldHave) {
     EXPECT_TRUE(kept.fits(scaled, Window::Auto)) << i;
     kept.follow(scaled, Window::Auto);
     EXPECT_EQ(kept.weights(), before);
-    // As if it had been searched for, up to what the search promises.
+    // The result equals that of a new search, up to the search's tolerance.
     const BandWeights searched = windowWeights(scaled, Window::Auto);
     for (std::size_t l = 0; l < searched.size(); ++l) EXPECT_NEAR(kept.weights()[l], searched[l], 1e-3f);
   }

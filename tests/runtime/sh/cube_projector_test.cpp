@@ -71,7 +71,7 @@ TEST(ShCubeProjector, MakesAConstantMapConstantLight) {
   }
 }
 
-// Each texel holds the share of it that the disc covers, by 8 x 8 points weighed by solid angle.
+// Fills each texel with the fraction that the disc covers, by 8 x 8 points weighted by solid angle.
 std::vector<glm::vec3> discCapture(int size, const glm::dvec3& axis, double radius_rad) {
   constexpr int kPoints = 8;
   std::vector<glm::vec3> texels;
@@ -98,7 +98,7 @@ struct CaptureError {
   double average = 0, worst = 0;
 };
 
-// Squared relative error of the coefficients, in per cent, over 150 random directions.
+// Returns the squared relative error of the coefficients, in per cent, over 150 random directions.
 std::array<CaptureError, 2> captureErrors(int order, int size, double degrees) {
   const CubeProjector projector(order, size);
   const auto count = static_cast<std::size_t>(coefficientCount(order));
@@ -135,8 +135,9 @@ std::array<CaptureError, 2> captureErrors(int order, int size, double degrees) {
   return errors;
 }
 
-// Rows of the literature's table for box-filtered texels read at their centres, 150 random directions:
-// averages scatter by a tenth, worst cases by more. The table checks the capture, and bounds the projector.
+// These are rows of the literature's table for box-filtered texels read at their centres, 150 random
+// directions: averages vary by a tenth, maxima by more. The table checks the capture, and bounds the
+// projector.
 TEST(ShCubeProjector, CapturesDiscsBetterThanTexelCentresDo) {
   struct Row {
     int order, size;

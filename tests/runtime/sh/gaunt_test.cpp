@@ -32,7 +32,7 @@ std::vector<float> randomFunction(Random& random, int bands) {
   return f;
 }
 
-// How many are not 0 where all three functions have n bands, as several sources count them.
+// These are the numbers of nonzero coefficients if all three functions have n bands, from several sources.
 TEST(Gaunt, HasTheKnownNumberOfTermsInEqualBands) {
   constexpr std::array<std::size_t, 5> kKnown = {10, 83, 353, 1158, 2907};
   for (int n = 2; n <= 6; ++n) {
@@ -47,7 +47,7 @@ TEST(Gaunt, HasTheKnownNumberOfTermsInEqualBands) {
   }
 }
 
-// Selection rules: l_k between |l_i - l_j| and l_i + l_j, even sum.
+// The selection rules are that l_k is between |l_i - l_j| and l_i + l_j, and that the sum is even.
 TEST(Gaunt, IsOrderedSymmetricAndObeysTheTriangleRule) {
   for (const auto& [in, out] : {std::pair{5, 5}, {6, 6}, {5, 4}, {4, 6}, {1, 3}, {5, 9}}) {
     const GauntTable table = makeGauntTable(in, out);
@@ -71,8 +71,8 @@ TEST(Gaunt, IsOrderedSymmetricAndObeysTheTriangleRule) {
   }
 }
 
-// Σ_k Γ_ijk² = ∫ (y_i y_j)²: the visibility has all bands that the product of two functions can have, and no
-// value was dropped.
+// Checks Σ_k Γ_ijk² = ∫ (y_i y_j)²: visibility has all bands that the product of two functions can have, and
+// no value was dropped.
 TEST(Gaunt, KeepsTheWholeEnergyOfProducts) {
   const GauntTable table = makeGauntTable(6, 6);
   std::vector<double> squares(36 * 36), energy(36 * 36);
@@ -103,7 +103,7 @@ TEST(Gaunt, TakesFullVisibilityToTheIdentity) {
   }
 }
 
-// (V L)_i against quadrature of the product itself.
+// Compares (V L)_i with quadrature of the product itself.
 TEST(Gaunt, MultipliesAsQuadratureDoes) {
   Random random(11);
   for (const auto& [in, out] : {std::pair{2, 2}, {4, 4}, {5, 5}, {5, 3}, {4, 6}, {6, 6}, {5, 9}}) {

@@ -91,7 +91,7 @@ TEST(ShImageLayout, PutsCrossSquaresWhereTheConventionsSay) {
   expectAt(ImageLayout::VerticalCross, 30, 40, {0, 0, 1}, 15, 35);
 }
 
-// Walking down the middle column crosses four square edges; directions must stay neighbours.
+// A walk down the middle column crosses four square edges; successive directions must stay close.
 TEST(ShImageLayout, FoldsTheCrossWithoutTears) {
   constexpr int kSize = 64;
   glm::dvec3 before = texelDirection(ImageLayout::VerticalCross, 3 * kSize, 4 * kSize, 3 * kSize / 2, 0);
@@ -108,7 +108,7 @@ TEST(ShImageLayout, FoldsTheCrossWithoutTears) {
   }
 }
 
-// The table of OpenGL 4.5, section 8.13: sc, tc, ma of each face.
+// This is the table of OpenGL 4.5, section 8.13: sc, tc, ma of each face.
 TEST(ShCubeMap, HasOpenGlsFaces) {
   testing::Random random(15);
   for (int k = 0; k < 100; ++k) {

@@ -1,5 +1,4 @@
-// Local lights against quadrature over the solid angle that they fill, against suns, and where they are
-// hardest.
+// Compares local lights with quadrature over their solid angle and with suns, also in the hardest cases.
 #include "runtime/sh/local_light.hpp"
 
 #include <algorithm>
@@ -49,8 +48,8 @@ bool dark(const LightVector& light) {
   return std::all_of(light.c.begin(), light.c.end(), [](const glm::vec3& c) { return c == glm::vec3(0.0f); });
 }
 
-// y_i over the disc of radius 1 whose centre lies `aside` beside and `height` ahead of the point, by polar
-// angles about the normal through the point: nothing in it is steep, however near the disc is.
+// Integrates y_i over the disc of radius 1 whose centre is `aside` beside and `height` ahead of the point, in
+// polar angles about the normal through the point. The integrand is smooth, however near the disc is.
 Coefficients discByQuadrature(double aside, double height, const glm::dquat& turn) {
   Coefficients sum{}, y;
   const auto ray = [&](double psi, double weight, double from_radius, double to_radius) {
@@ -89,7 +88,7 @@ TEST(ShLocalLight, DiscsAreWhatTheirSolidAngleHolds) {
       const double solid_angle = expected[0] * std::sqrt(4 * kPi);
       const double error =
           largestDifference(discAreaLight(kMaxOrder, center, normal, radius, kWhite), expected, kMaxOrder);
-      // Seen edge on, the rim's two sides cancel but for roundings of its length.
+      // Seen edge-on, the rim's two sides cancel up to the rounding of its length.
       const double edge_on = 2 * kPi / std::max(1.0, aside) * 1e-16;
       EXPECT_LT(error, 4 * kRounding * solid_angle + edge_on)
           << "aside " << aside << " radii, " << height << " before the plane";
@@ -141,7 +140,7 @@ TEST(ShLocalLight, ASphereIsASunOfItsAngle) {
   }
 }
 
-// Lambert's cosine law through the harmonics: irradiance of bands 0..2 is known for a point light overhead.
+// Tests Lambert's cosine law in harmonics: irradiance of bands 0..2 is known for a point light overhead.
 TEST(ShLocalLight, PointsShineByTheInverseSquareAndOneDirection) {
   Random random(32);
   for (int k = 0; k < 20; ++k) {
@@ -178,7 +177,7 @@ TEST(ShLocalLight, SpotsFadeFromTheInnerConeToTheOuter) {
   EXPECT_TRUE(std::isfinite(coneFade(0.5, 0.8, 0.8))) << "no cone between";
 }
 
-// Through the light itself: no jump in any coefficient, measured by what one step changes.
+// Moves a point through the light: no coefficient jumps, measured by the largest change in one step.
 TEST(ShLocalLight, APointLightPassesThroughThePointWithoutAJump) {
   const double step = kLeastPointDistance / 200;
   LightVector before = pointLight(kMaxOrder, {-2 * kLeastPointDistance, 0.0, 0.0}, kWhite);
@@ -194,7 +193,7 @@ TEST(ShLocalLight, APointLightPassesThroughThePointWithoutAJump) {
 }
 
 TEST(ShLocalLight, NothingJumpsWhileADiscPassesBeforeThePoint) {
-  // 0.02 radii before the plane, across the rim and back out.
+  // The point moves 0.02 radii before the plane, across the rim and back.
   LightVector before = discAreaLight(kMaxOrder, {-2.0, 0, 0.02}, {0, 0, -1}, 1.0, kWhite);
   for (double x = -2.0; x <= 2.0; x += 0.001) {
     const LightVector now = discAreaLight(kMaxOrder, {x, 0, 0.02}, {0, 0, -1}, 1.0, kWhite);
@@ -232,7 +231,7 @@ TEST(ShLocalLight, HardCasesStayFinite) {
         const glm::dvec3 place = scale * glm::dvec3(x, y, 0);
         const LightVector disc = discAreaLight(8, place, down, scale, bright);
         EXPECT_TRUE(allFinite(disc)) << x << " " << y << " " << scale;
-        // No more than half the sky: sqrt(pi) in band 0, as much times the largest y in others.
+        // The bound is half the sky: sqrt(pi) in band 0, and as much times the largest y in others.
         for (const glm::vec3& c : disc.c) EXPECT_LT(std::abs(c.r), 1.01e8f * 2 * 3.1416f * 1.2f);
         EXPECT_TRUE(allFinite(sphereLight(8, place, scale, bright)));
         EXPECT_TRUE(allFinite(pointLight(8, place, bright)));

@@ -1,5 +1,5 @@
-// Measured light probes, which the project does not ship: two pictures of one place in different layouts, and
-// numbers that were printed in a paper.
+// Tests measured light probes, which the project does not ship: two images of one place in different layouts,
+// and figures printed in a paper.
 #include <array>
 #include <memory>
 #include <vector>
@@ -58,7 +58,7 @@ TEST(ShProbes, GraceCathedralHasItsPrintedCoefficients) {
   for (std::size_t i = 0; i < 9; ++i) {
     const bool odd_in_z = i == 2 || i == 5 || i == 7;
     for (int channel = 0; channel < 3; ++channel)
-      // Printed to two decimals, so 0.005 either way.
+      // The figures are printed to two decimals, so they are exact to 0.005.
       EXPECT_NEAR(light.c[i][channel] / 3.2f * (odd_in_z ? -1.0f : 1.0f), printed[i][channel], 0.0075f) << i;
   }
 }

@@ -23,7 +23,7 @@ std::array<double, kMaxCoefficients> evaluated(const glm::dvec3& dir) {
   return y;
 }
 
-// Axes through faces, edges and corners, and some in general position.
+// Lists axes through faces, edges and corners, and some in general position.
 std::vector<glm::dvec3> axes() {
   std::vector<glm::dvec3> list = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {0, 0, -1}, {1, 1, 0},
                                   {0, 1, 1}, {-1, 0, 1}, {1, 1, 1}, {1, -1, 1}, {1e-9, 0, 1}};
@@ -48,7 +48,7 @@ double largestDifference(std::span<const double> a, std::span<const double> b) {
   return largest;
 }
 
-// As far as the functions themselves go: visibility is turned in 6 + 6 - 1 bands.
+// Visibility is rotated in 6 + 6 - 1 bands, the most that the basis functions support.
 TEST(ShRotation, TurnsTheBasisIn11Bands) {
   Random random(60);
   for (const glm::dquat& q : rotations()) {
@@ -62,7 +62,7 @@ TEST(ShRotation, TurnsTheBasisIn11Bands) {
   }
 }
 
-// y(R s) = D y(s) in double: at special angles, about special axes, towards the poles.
+// Checks y(R s) = D y(s) in double: at special angles, about special axes, towards the poles.
 TEST(ShRotation, TurnsTheBasisUpToOrder8NearThePoles) {
   Random random(6);
   for (const glm::dquat& q : rotations()) {
@@ -125,9 +125,8 @@ TEST(ShRotation, CarriesAFunctionAlong) {
   }
 }
 
-// Light as it goes into the frame of a group, against a reference that knows nothing of the recurrence:
-// lights of one direction each, turned by turning their directions, in double and by the textbook's
-// functions.
+// Rotates light into the frame of a group and compares with an independent reference: lights of one direction
+// each, whose directions are rotated, in double and with the textbook's functions.
 TEST(ShRotation, TurnsLightVectorsAsTheirDirectionsTo1e5AtEveryOrder) {
   Random random(12);
   std::vector<glm::dquat> turns = rotations();
@@ -181,12 +180,13 @@ TEST(ShRotation, AgreesInFloatWithDouble) {
     }
     rotation.apply(in, std::span<double>(out));
     rotation.apply(in_float, std::span<float>(out_float));
-    // 15 products of numbers up to 1, each rounded at 2^-24.
+    // The error is that of 15 products of numbers up to 1, each rounded at 2^-24.
     for (std::size_t i = 0; i < in.size(); ++i) EXPECT_NEAR(static_cast<double>(out_float[i]), out[i], 1e-5);
   }
 }
 
-// The documented way to turn a body for hours: accumulate and renormalise a quaternion, rebuild the matrix.
+// Tests the documented way to rotate a body for hours: accumulate and renormalise a quaternion, and rebuild
+// the matrix.
 TEST(ShRotation, DoesNotDriftOver100000SmallTurns) {
   constexpr int kTurns = 100000;
   const glm::dvec3 axis = glm::normalize(glm::dvec3(1, 2, 3));

@@ -1,4 +1,4 @@
-// What the tests of this room measure against: exact quadrature over the sphere, reproducible random
+// Provides what the tests of this room compare with: exact quadrature over the sphere, reproducible random
 // directions and rotations, and real SH by the textbook recurrence with the Condon-Shortley sign.
 #pragma once
 
@@ -16,7 +16,7 @@ struct Node {
   double at, weight;
 };
 
-// Gauss-Legendre nodes on [from, to], exact for polynomials up to degree 2 count - 1.
+// Returns Gauss-Legendre nodes on [from, to], exact for polynomials up to degree 2 count - 1.
 inline std::vector<Node> gaussLegendre(int count, double from, double to) {
   std::vector<Node> nodes;
   for (int i = 0; i < count; ++i) {
@@ -39,7 +39,7 @@ inline std::vector<Node> gaussLegendre(int count, double from, double to) {
   return nodes;
 }
 
-// f(direction, weight) over polar angles (from +Z) and azimuths in the given ranges.
+// Calls f(direction, weight) for polar angles (from +Z) and azimuths in the given ranges.
 template <typename F>
 void overSphere(int count, double polar0, double polar1, double phi0, double phi1, F&& f) {
   for (const Node& polar : gaussLegendre(count, polar0, polar1))
@@ -75,14 +75,14 @@ class Random {
   std::mt19937 engine_;
 };
 
-// The k-th of count nearly uniform directions.
+// Returns the k-th of count nearly uniform directions.
 inline glm::dvec3 fibonacciDirection(int k, int count) {
   const double z = 1 - (2.0 * k + 1) / count, r = std::sqrt(1 - z * z);
   const double phi = std::numbers::pi * (3 - std::sqrt(5.0)) * k;
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-// Real orthonormal SH with the Condon-Shortley sign, order² values, in double and by a recurrence of its own
+// Returns order² real orthonormal SH with the Condon-Shortley sign, in double and by a recurrence of its own
 // (unnormalised associated Legendre functions and factorials).
 inline std::vector<double> condonShortleySh(const glm::dvec3& dir, int order) {
   std::vector<double> out(static_cast<std::size_t>(order * order));

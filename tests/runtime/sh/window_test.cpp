@@ -16,7 +16,7 @@ using testing::Random;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// The least radiance of any channel over 20000 directions, relative to that channel's mean.
+// Returns the least radiance of any channel over 20000 directions, relative to that channel's mean.
 float leastRadiance(const LightVector& light) {
   float least = 1;
   for (int k = 0; k < 20000; ++k) {
@@ -53,8 +53,8 @@ TEST(ShWindow, AutoLeavesNoNegativeLight) {
   }
 }
 
-// Orders up to 8: k_1 is the largest zero of Legendre (odd orders) or Jacobi (0, 1) polynomials, from their
-// tables.
+// For orders up to 8, k_1 is the largest zero of Legendre (odd orders) or Jacobi (0, 1) polynomials, from
+// their tables.
 TEST(ShWindow, PositiveKernelIsNowhereNegativeAndKeepsMostOfBandOne) {
   const double zeros[] = {
       0, 0, 1.0 / 3, 0.5773502692, 0.6898979486, 0.7745966692, 0.8228240810, 0.8611363116, 0.8857916077};
@@ -77,8 +77,8 @@ TEST(ShWindow, PositiveKernelIsNowhereNegativeAndKeepsMostOfBandOne) {
     EXPECT_NEAR(five[static_cast<std::size_t>(l)], value, 1e-5);
 }
 
-// A point light needs the whole kernel only at the limit; a broad disc a part: a little less leaves it
-// negative.
+// A point light at the limit needs the whole kernel, a broad disc only a part. A little less leaves negative
+// values.
 TEST(ShWindow, AutoIsTheLeastThatHelps) {
   for (int order : {3, 5, 7})
     for (double degrees : {1.0, 15.0, 30.0}) {

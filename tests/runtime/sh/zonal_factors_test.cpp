@@ -18,7 +18,7 @@ ZonalFactors makeFactors(int order, bool isotropic) {
   return isotropic ? ZonalFactors::isotropic(order) : ZonalFactors::anisotropic(order);
 }
 
-// Largest singular value of a square matrix, row-major, by power iteration.
+// Returns the largest singular value of a row-major square matrix, by power iteration.
 double norm(const std::vector<double>& a, std::size_t n) {
   std::vector<double> v(n, 1.0), w(n);
   for (std::size_t k = 0; k < n; ++k) v[k] += 0.1 * static_cast<double>(k);
@@ -41,7 +41,7 @@ double norm(const std::vector<double>& a, std::size_t n) {
   return largest;
 }
 
-// All coefficients of a function given by those that its table stores.
+// Returns all coefficients of a function from those that its table stores.
 std::vector<float> filled(const std::vector<float>& stored, int order, bool isotropic) {
   if (!isotropic) return stored;
   std::vector<float> all(static_cast<std::size_t>(order * order));
@@ -92,7 +92,7 @@ TEST(ZonalFactors, AreWellConditionedInEveryBand) {
       }
       const double condition = norm(forward, n) * norm(inverse, n);
       RecordProperty((isotropic ? "plane" : "sphere") + std::to_string(l), std::to_string(condition));
-      // The last bands stand on axes that were chosen for the others.
+      // The last bands use axes that were chosen for the others.
       const double most = l < 6    ? (isotropic ? 2.1 : 3.6)
                           : l == 6 ? (isotropic ? 2.7 : 11.7)
                                    : (isotropic ? 3.8 : 8.5);
@@ -102,7 +102,7 @@ TEST(ZonalFactors, AreWellConditionedInEveryBand) {
   }
 }
 
-// The whole claim: expand(factor(f)) in turned axes is f turned by sh::Rotation.
+// Checks that expand(factor(f)) in rotated axes equals f rotated by sh::Rotation.
 TEST(ZonalFactors, TurnFunctionsAsRotationMatricesDo) {
   Random random(21);
   std::vector<glm::dquat> turns = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};

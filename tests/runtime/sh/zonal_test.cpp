@@ -31,7 +31,7 @@ TEST(ShZonal, HasTheClampedCosinesBands) {
     EXPECT_NEAR(clampedCosine(l) / kPi, expected[static_cast<std::size_t>(l)], 1e-15) << l;
 }
 
-// Against quadrature of max(n.s, 0)/pi over the hemisphere about z.
+// Compares with quadrature of max(n.s, 0)/pi over the hemisphere about z.
 TEST(ShZonal, TransfersAllLightToAnOpenPoint) {
   std::array<double, kMaxCoefficients> expected{}, y, transfer;
   testing::overSphere(40, 0, kPi / 2, 0, 2 * kPi, [&](const glm::dvec3& dir, double weight) {
@@ -41,7 +41,7 @@ TEST(ShZonal, TransfersAllLightToAnOpenPoint) {
   unoccludedTransfer(kMaxOrder, glm::dvec3(0, 0, 1), transfer);
   for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(transfer[i], expected[i], 1e-12) << i;
 
-  // Uniform light gives exactly the albedo, left out here, whatever the normal.
+  // Uniform light gives exactly 1 (the albedo is left out), for any normal.
   Random random(11);
   std::array<float, kMaxCoefficients> transfer_float;
   for (int k = 0; k < 20; ++k) {
@@ -100,7 +100,7 @@ TEST(ShZonal, HasTheDiscsClosedForm) {
           << row.degrees << " degrees, band " << l;
 }
 
-// Both branches of discZonal, and discs so small that the closed form cancels.
+// Covers both branches of discZonal, and discs so small that the closed form cancels.
 TEST(ShZonal, KeepsTinyDiscsAccurate) {
   for (int l = 0; l < kMaxOrder; ++l) {
     for (double radius : {1e-9, 1e-6, 0.0046, 0.05}) {
@@ -116,7 +116,7 @@ TEST(ShZonal, KeepsTinyDiscsAccurate) {
   }
 }
 
-// Relative L2 error, value at the centre and minimum of the truncated disc.
+// Returns the relative L2 error, the value at the centre and the minimum of the truncated disc.
 TEST(ShZonal, TruncatesDiscsAsTabulated) {
   struct Entry {
     double error, centre, minimum;
@@ -177,7 +177,7 @@ TEST(ShZonal, TruncatesDiscsAsTabulated) {
     }
 }
 
-// Unshadowed irradiance of a receiver that faces a disc, over the exact pi sin² a.
+// Returns the unoccluded irradiance of a receiver that faces a disc, relative to the exact pi sin² a.
 TEST(ShZonal, LightsAFacingReceiverAsTabulated) {
   struct Row {
     double degrees;

@@ -1,5 +1,5 @@
-// Lamps that stand beside a body, not within its bounds: their straight light comes per pixel with shadow
-// cubes, what surfaces send on of it by bands, and each path once.
+// Tests lamps that are beside a body, outside its bounds: their direct light comes per pixel with shadow
+// cubes, its bounces by bands, and no path counts twice.
 
 #include <numbers>
 
@@ -32,19 +32,19 @@ struct BesideStage : NeighborhoodStage {
     settings.local_radii = radii;
     ASSERT_TRUE(frame->setSettings(settings));
   }
-  // Of all pixels that the floor fills, relative to what they should be.
+  // Returns the largest error over all pixels of the floor, relative to the expected values.
   double worstError(const spec::RgbaImage& image, const Expected& expected, float reach) const {
     return worst(*this, image, reach, expected);
   }
 };
 
-// E/pi on a floor at height 0 under a lamp of 1 cd.
+// Returns E/pi on a floor at height 0 under a lamp of 1 cd.
 float openAt(const glm::vec3& lamp, const glm::vec3& place) {
   const glm::vec3 way = lamp - place;
   return way.y / (std::pow(glm::length(way), 3.0f) * kPi);
 }
 
-// The same of the light of the lamp in bands at the floor's middle.
+// Returns the same from the lamp's light in bands at the floor's middle.
 float bandsOf(const glm::vec3& lamp) {
   const sh::LightVector light = lighting::lightAt(
       {.kind = lighting::LocalLight::Kind::Point, .position_ws = lamp, .power = glm::vec3(1.0f)},
@@ -52,7 +52,7 @@ float bandsOf(const glm::vec3& lamp) {
   return irradianceOverPi(std::vector<glm::vec3>(light.c.begin(), light.c.begin() + 25), {0, 1, 0}).r;
 }
 
-// A square that stands upright, half 1, across the x axis.
+// Makes an upright square, half 1, across the x axis.
 BuiltReceiver screenAt(const glm::vec3& place) {
   BuiltReceiver screen;
   screen.name = "screen";
@@ -87,7 +87,7 @@ TEST_F(BesideLights, EachPathOfTheLightComesOnceAtEveryDistance) {
   stage.half = 0.3f;
   const float radius = 0.3f * std::numbers::sqrt2_v<float>;
   const glm::vec3 towards = glm::normalize(glm::vec3(0.4f, 1.0f, 0.1f));
-  // All of it per pixel; all the ways from one carrier to the other; all of it by bands.
+  // The settings give all light per pixel, all blends from one carrier to the other, and all light by bands.
   for (const float radii : {2.0f, 4.9f, 5.2f, 5.5f, 5.9f, 6.1f, 9.0f}) {
     const glm::vec3 lamp = radii * radius * towards;
     stage.moveLamp(lamp);
@@ -111,8 +111,8 @@ TEST_F(BesideLights, TheLightDoesNotJumpWhereItsCarrierChanges) {
   for (float radii = 4.5f; radii < 6.5f; radii += 0.05f) {
     const glm::vec3 lamp = radii * radius * glm::normalize(glm::vec3(0.4f, 1.0f, 0.1f));
     stage.moveLamp(lamp);
-    // In the corner, where bands tell a fifth more of it; times the squared distance nothing else changes it
-    // much.
+    // This is the corner, where bands give a fifth more. Times the squared distance, the light changes little
+    // otherwise.
     const float now = radii * radii * stage.picture().texels[0].r;
     if (before > 0.0f) {
       EXPECT_NEAR(now, before, 0.02f * before) << radii << " radii away";
@@ -124,7 +124,7 @@ TEST_F(BesideLights, TheLightDoesNotJumpWhereItsCarrierChanges) {
 TEST_F(BesideLights, AGridTakesNothingOfWhatShadowCubesBring) {
   NeighborhoodScene scene;
   scene.receivers = {floorOf(4.0f)};
-  // A grid and a capture proxy, but no surface that a cube could hold.
+  // The body has a grid and a capture proxy, but no surface to draw into a shadow cube.
   scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, kFine, kFineHalf)};
   scene.bodies[0].sphere_radius = 1.0f;
   BesideStage stage(scene);
@@ -139,7 +139,8 @@ TEST_F(BesideLights, AGridTakesNothingOfWhatShadowCubesBring) {
 }
 
 TEST_F(BesideLights, WhatABodyHidesIsNotSentOnEither) {
-  // It stands between the lamp and the floor, and reaches the floor by its grid. No cube holds it.
+  // The body is between the lamp and the floor and reaches the floor by its grid, but it is in no shadow
+  // cube.
   NeighborhoodScene scene;
   scene.receivers = {floorOf(0.3f)};
   scene.receivers[0].full = glm::vec3(kFull);

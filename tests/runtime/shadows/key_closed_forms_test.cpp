@@ -1,5 +1,5 @@
-// Key lights against closed forms of whole pictures: what falls through a window, and a map of the sky that
-// turns all the way round.
+// Compares key lights in whole pictures with closed forms: light through a window, and a sky map that makes a
+// full turn.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -29,7 +29,7 @@ using testing::LiveStage;
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kOrder = 5;
 
-// A white rectangle with these half sides, which are at right angles; it faces along their cross product.
+// Makes a white rectangle with these half sides, which are perpendicular; it faces along their cross product.
 BuiltMesh rectangle(const glm::vec3& center, const glm::vec3& right, const glm::vec3& up) {
   return {testing::quadMesh(),
           {},
@@ -43,7 +43,7 @@ spec::RgbaImage pictureOf(LiveStage& stage, const spec::View& view) {
   return stage.frame->readLinear();
 }
 
-// From straight above, 2 `half` wide; x to the right, z downwards.
+// Looks straight down, 2 `half` wide; x to the right, z downwards.
 spec::View down(float half, float from) {
   return {
       .view_from_world = glm::lookAt(glm::vec3(0, from, 0), glm::vec3(0, from - 1, 0), glm::vec3(0, 0, -1)),
@@ -51,7 +51,7 @@ spec::View down(float half, float from) {
       .eye_ws = {0, from, 0}};
 }
 
-// A room of 2 m, closed but for a window in the wall towards +X; no light comes by harmonics.
+// Makes a room of 2 m, closed but for a window in the wall towards +X; no light comes by harmonics.
 constexpr float kLow = 0.2f, kHigh = 0.8f, kHalfWidth = 0.4f;
 BundleBuilder roomWithWindow() {
   BundleBuilder builder(kOrder);
@@ -59,7 +59,7 @@ BundleBuilder roomWithWindow() {
   const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   builder.add(rectangle(-y, z, x)).add(rectangle(y, x, z));
   builder.add(rectangle(-z, x, y)).add(rectangle(z, y, x)).add(rectangle(-x, y, z));
-  // Around the window: below, above, to both sides.
+  // These are the parts of the wall around the window: below, above, and at both sides.
   const auto part = [&](float low, float high, float from, float to) {
     builder.add(rectangle({1, 0.5f * (low + high), 0.5f * (from + to)}, 0.5f * (to - from) * z,
                           0.5f * (high - low) * y));
@@ -102,12 +102,12 @@ TEST_F(KeyClosedForms, WhatFallsThroughAWindowLiesOnTheFloor) {
 
 namespace {
 
-// A tower with a square ground plan, higher than the sun stands over any point of the floor about it.
+// The tower has a square ground plan, and is too high for the sun to shine over it on the floor.
 constexpr float kTower = 0.25f, kTall = 20.0f;
 constexpr float kRadius = 3.0f, kElevation = 40.0f;  // degrees, of the sun in the map
 
-// How much of a disc's light on a floor comes from azimuths of less than so much beyond its middle's, as a
-// share of all: quadrature over the disc, by the azimuth of each of its points.
+// Returns the fraction of a disc's light on a floor that comes from azimuths smaller than its centre's plus
+// an angle: quadrature over the disc, by the azimuth of each of its points.
 class DiscByAzimuth {
  public:
   DiscByAzimuth(const glm::vec3& direction, float radius_rad) {
@@ -140,17 +140,17 @@ class DiscByAzimuth {
   std::vector<double> azimuths_, sums_;
 };
 
-// From -pi to pi.
+// Wraps an angle to -pi to pi.
 double wrapped(double angle) {
   return std::remainder(angle, 2.0 * std::numbers::pi);
 }
 
-// Azimuth as DiscByAzimuth counts it: of cross(up, d), which for d along +Z is +X.
+// Returns an azimuth as in DiscByAzimuth, whose axis cross(up, d) is +X for d along +Z.
 double azimuthOf(double x, double z) {
   return std::atan2(x, z);
 }
 
-// What share of the disc a point of the floor sees past the tower.
+// Returns the fraction of the disc that a point of the floor sees past the tower.
 double seenPastTower(const DiscByAzimuth& disc, const glm::vec3& sun, const glm::vec3& place) {
   const double middle = azimuthOf(-place.x, -place.z), to_sun = azimuthOf(sun.x, sun.z);
   double low = 0.0, high = 0.0;
@@ -163,7 +163,7 @@ double seenPastTower(const DiscByAzimuth& disc, const glm::vec3& sun, const glm:
   return 1.0 - (disc.below(from + high) - disc.below(from + low));
 }
 
-// How pixels change from step to step, beside how they should, all in shares of the sun's light.
+// Compares the changes of pixels from step to step with the expected ones, in units of the sun's light.
 struct Changes {
   double largest = 0.0, expected_largest = 0.0, square_sum = 0.0;
   std::size_t count = 0, far_off = 0;
@@ -179,7 +179,7 @@ struct Changes {
   double rms() const { return std::sqrt(square_sum / static_cast<double>(count)); }
 };
 
-// A sun in a sky that is brighter to one side.
+// Writes a sun in a sky that is brighter to one side.
 std::filesystem::path writeSky(const glm::vec3& sun) {
   spec::RgbImage environment_map{.width = 256, .height = 128, .texels = {}};
   for (std::uint32_t y = 0; y < environment_map.height; ++y)
@@ -226,7 +226,8 @@ TEST_F(KeyClosedForms, ASkyThatTurnsAllTheWayRoundChangesPixelsAsItsShadowsMove)
   const DiscByAzimuth disc(key.direction, key.radius_rad);
   const double sine = std::sin(double{key.radius_rad});
   const double of_sun = double{key.radiance.r} * sine * sine * double{key.direction.y};  // E/pi on the floor
-  // The same however it turns, for the floor is level. It keeps what no disc takes of the sun's ragged rim.
+  // The rest is the same for all rotations, because the floor is level. It includes the sun's ragged rim,
+  // which the disc does not cover.
   const sh::LightVector rest = stage.environment.restLight();
   std::vector<float> open(kOrder * kOrder);
   sh::unoccludedTransfer(kOrder, glm::vec3(0, 1, 0), open);
@@ -258,8 +259,8 @@ TEST_F(KeyClosedForms, ASkyThatTurnsAllTheWayRoundChangesPixelsAsItsShadowsMove)
   }
   EXPECT_EQ(changes.count, 360 * before.size());
   EXPECT_LT(changes.rms(), 0.012);
-  // A penumbra of the sun is as wide as seven steps. Where less of the disc is hidden than the search for
-  // blockers finds, a pixel takes a step of up to a third of the sun's light at once.
+  // The sun's penumbra is seven steps wide. Where less of the disc is hidden than the blocker search
+  // resolves, a pixel may change by up to a third of the sun's light in one step.
   EXPECT_NEAR(changes.expected_largest, 0.16, 0.01);
   EXPECT_LT(changes.largest, 2.2 * changes.expected_largest);
   EXPECT_LT(static_cast<double>(changes.far_off), 0.001 * static_cast<double>(changes.count));

@@ -1,5 +1,5 @@
-// Pictures under key lights with known answers, what of the light goes which way, and what a frame draws
-// again.
+// Tests pictures under key lights with known answers, how the light is divided between methods, and what a
+// frame draws again.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -40,7 +40,7 @@ gltf::Material grey(float albedo) {
   return material;
 }
 
-// A square of 2 `half` about a point, with this normal.
+// Makes a square of 2 `half` about a point, with this normal.
 BuiltMesh square(glm::vec3 center, glm::vec3 normal, glm::vec2 half, float albedo = 1.0f) {
   const glm::vec3 beside = std::abs(normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, -1);
   const glm::vec3 right = glm::normalize(glm::cross(beside, normal)), up = glm::cross(normal, right);
@@ -49,7 +49,7 @@ BuiltMesh square(glm::vec3 center, glm::vec3 normal, glm::vec2 half, float albed
                     glm::vec4(center, 1))};
 }
 
-// Six squares, their fronts out or in.
+// Adds a box of six squares that face outwards or inwards.
 void addBox(BundleBuilder& builder, glm::vec3 min, glm::vec3 max, bool inside, float albedo = 1.0f) {
   const glm::vec3 center = 0.5f * (min + max), half = 0.5f * (max - min);
   for (int axis = 0; axis < 3; ++axis)
@@ -57,7 +57,7 @@ void addBox(BundleBuilder& builder, glm::vec3 min, glm::vec3 max, bool inside, f
       glm::vec3 at = center, normal(0.0f);
       at[axis] += side * half[axis];
       normal[axis] = inside ? -side : side;
-      // As square() lays its axes.
+      // The axes are those of square().
       const glm::vec2 size = axis == 0   ? glm::vec2(half.z, half.y)
                              : axis == 1 ? glm::vec2(half.x, half.z)
                                          : glm::vec2(half.x, half.y);
@@ -65,7 +65,7 @@ void addBox(BundleBuilder& builder, glm::vec3 min, glm::vec3 max, bool inside, f
     }
 }
 
-// Reflects nothing that comes by harmonics: what is left is the direct light of key lights.
+// Reflects nothing by harmonics, so that only the direct light of key lights is left.
 testing::TransferOf noTransfer() {
   return [](const glm::vec3&) { return std::vector<float>(kOrder * kOrder, 0.0f); };
 }
@@ -79,7 +79,7 @@ spec::SunLight sun(float azimuth, float elevation, float radius_deg, float radia
           .radiance = glm::vec3(radiance / (sine * sine))};
 }
 
-// From straight above, 2 `half` wide; x to the right, z downwards.
+// Looks straight down, 2 `half` wide; x to the right, z downwards.
 spec::View above(float half, float from = 5.0f) {
   return {.view_from_world = glm::lookAt(glm::vec3(0, from, 0), glm::vec3(0), glm::vec3(0, 0, -1)),
           .clip_from_view = glm::ortho(-half, half, -half, half, 0.0f, 20.0f),
@@ -132,7 +132,7 @@ struct KeyStage {
 glm::vec4 at(const spec::RgbaImage& image, std::uint32_t x, std::uint32_t y) {
   return image.texels[y * image.width + x];
 }
-// In the world, of what a perspective shows.
+// Returns the place in world space that a pixel of a perspective picture shows.
 glm::vec3 placeAt(const spec::RgbaImage& image, const spec::View& view, std::uint32_t x, std::uint32_t y) {
   const glm::vec2 size(image.width, image.height);
   const glm::vec2 ndc = 2.0f * (glm::vec2(x, static_cast<float>(image.height - 1 - y)) + 0.5f) / size - 1.0f;
@@ -154,7 +154,7 @@ double brightest(const spec::RgbaImage& image) {
   return most;
 }
 
-// Floor, box and wall, lit from anywhere.
+// Makes a floor, a box and a wall, for light from any direction.
 BundleBuilder court(bool bounces = false) {
   BundleBuilder builder(kOrder);
   builder.add(square({0, 0, 0}, {0, 1, 0}, {3, 3}, 0.8f)).add(square({0, 1, -1.5f}, {0, 0, 1}, {2, 1}, 0.6f));
@@ -191,8 +191,8 @@ TEST_F(KeyFrame, NoSunComesIntoAClosedRoom) {
   addBox(builder.transfer(noTransfer()), {-1, -1, -1}, {1, 1, 1}, /*inside=*/true);
   KeyStage stage(builder, {sun(20, 35, 0.27f), sun(140, 15, 5.0f)});
   ASSERT_EQ(stage.environment.keys().size(), 2u);
-  // Where walls without thickness meet, what stands as near as a few texels of the map is not told from the
-  // receiver.
+  // Where walls without thickness meet, a surface within a few texels of the map cannot be distinguished from
+  // the receiver.
   constexpr float kNear = 0.03f;
   std::size_t inside = 0, all = 0;
   for (const float turn : {0.0f, 77.0f, 201.0f})
@@ -251,8 +251,8 @@ TEST_F(KeyFrame, WhereThereAreNoKeyLightsNothingIsDrawnAndNothingChanges) {
 }
 
 TEST_F(KeyFrame, UnderAWhiteSkyAndSunsAnOpenSphereHasEachLightOnce) {
-  // E/pi: 1 of the sky, of each sun what a sphere of its size gives; seen along -z, so that pixels tell the
-  // normal.
+  // E/pi is 1 from the sky, and from each sun what a sphere of its size gives. The view is along -z, so that
+  // pixels determine the normal.
   const std::vector<spec::Light> lights = {spec::ConstantLight{.radiance = glm::vec3(1.0f)},
                                            sun(60, 40, 4.0f, 3.0f), sun(-20, -10, 1.0f, 0.5f)};
   for (const bool bounces : {false, true}) {
@@ -322,7 +322,7 @@ TEST_F(KeyFrame, AStillSceneDrawsNoMapAgain) {
   EXPECT_EQ(stage.mapsDrawn(), 2u) << "the lights turned";
   stage.environment.setTurn(0.0f);
   stage.render(view);
-  // The box's top rises.
+  // The top of the box is raised.
   ecs::Registry& registry = stage.world.registry();
   ecs::Entity top;
   for (auto [entity, name] : registry.view<const scene::Name>())
@@ -447,7 +447,7 @@ TEST_F(KeyFrame, GroupsHaveAllOfTheLightInTheirTwoBlocks) {
 }
 
 TEST_F(KeyFrame, ATurningProbeMovesShadowsWithoutJumps) {
-  // A sun, a lamp and a window in a picture of the sky, over a court.
+  // The sky map has a sun, a lamp and a window, and lights a court.
   spec::RgbImage environment_map{.width = 128, .height = 64, .texels = {}};
   const glm::vec3 sun_at = glm::normalize(glm::vec3(1, 1, 0.6f)),
                   lamp_at = glm::normalize(glm::vec3(-1, 0.7f, 0.2f));
@@ -493,8 +493,8 @@ TEST_F(KeyFrame, ATurningProbeMovesShadowsWithoutJumps) {
     light_before = light;
     before = image;
   }
-  // No step is other than its neighbours; where the edge of a shadow passes, a pixel takes all of one light
-  // at most.
+  // No step differs much from its neighbours; where a shadow's edge passes, a pixel changes by the light of
+  // one source at most.
   for (std::size_t i = 1; i < means.size(); ++i)
     EXPECT_NEAR(means[i], means[i - 1], 0.4 * means[i - 1]) << "step " << i;
   for (const double mean : means) EXPECT_LT(mean, 0.004 * light_before);

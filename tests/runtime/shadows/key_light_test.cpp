@@ -1,5 +1,5 @@
-// What a shadow map says of a key light, on the CPU: closed forms, and sums over the disc that know nothing
-// of maps.
+// Compares the visibility of key lights by shadow maps, on the CPU, with closed forms and with sums over the
+// disc that do not use maps.
 #include <array>
 #include <limits>
 #include <numbers>
@@ -31,7 +31,7 @@ struct Random {
   }
 };
 
-// Distances along rays; none: less than 0.
+// Distances along rays are negative if there is no hit.
 constexpr double kMiss = -1.0;
 double nearer(double a, double b) {
   return a < 0.0 ? b : b < 0.0 ? a : std::min(a, b);
@@ -67,14 +67,14 @@ double toSphere(const KeyRay& ray, glm::dvec3 center, double radius) {
   return root < 0.0 || -b < 0.0 ? kMiss : -b - std::sqrt(root);
 }
 
-// The share of a disc on the far side of a line at s radii from its middle.
+// Returns the fraction of a disc beyond a line at s radii from its centre.
 double beyondChord(double s) {
   s = std::clamp(s, -1.0, 1.0);
   return (std::acos(s) - s * std::sqrt(1.0 - s * s)) / kPi;
 }
 
-// The share of the disc that rays from a point reach, each weighed by its cosine, over many more rays than
-// the shader takes; blocked(ray): whether something is in the way.
+// Returns the fraction of the disc that is visible from a point, weighted by the cosine, with many more rays
+// than the shader uses. blocked(ray) tells whether a ray is occluded.
 template <typename Blocked>
 double visibleByRays(const KeyRecord& key, glm::vec3 position, glm::vec3 normal, const Blocked& blocked) {
   constexpr int kRays = 3000;
@@ -108,8 +108,8 @@ struct Errors {
 }  // namespace
 
 TEST(KeyLight, AnEdgeCastsThePenumbraOfADiscThatALineCuts) {
-  // A plate ends in a line over a floor. To each side the penumbra is as wide as the edge is high, times the
-  // tangent of the radius.
+  // A plate over a floor ends in a straight edge. To each side the penumbra's width is the edge's height
+  // times the tangent of the radius.
   constexpr int kSize = 512;
   struct Case {
     float degrees, height, half;  // half: of what the map shows
@@ -134,14 +134,14 @@ TEST(KeyLight, AnEdgeCastsThePenumbraOfADiscThatALineCuts) {
           const float visible = ref::keyVisible(map, key, {static_cast<float>(x), 0.01f, 0.0f}, kUp, kUp);
           errors.add(double{visible} - beyondChord(-x / width));
         }
-        // Beyond it there is all or nothing.
+        // Beyond the penumbra the light is fully visible or hidden.
         for (const double beyond : {1.1, 1.5, 3.0}) {
           const auto x = static_cast<float>(beyond * width + 1.5 / double{key.scale.x});
           EXPECT_NEAR(ref::keyVisible(map, key, {x, 0.01f, 0.0f}, kUp, kUp), 1.0f, kRounding);
           EXPECT_EQ(ref::keyVisible(map, key, {-x, 0.01f, 0.0f}, kUp, kUp), 0.0f);
         }
       }
-      // So finely so many points tell how much of a disc lies beyond a line.
+      // This is how finely the sample points resolve the part of a disc beyond a line.
       const bool few = rays == 32;
       EXPECT_LT(errors.largest, few ? 0.08 : 0.035) << c.degrees << " degrees, " << c.height << " high";
       EXPECT_LT(errors.mean(), few ? 0.02 : 0.0075) << c.degrees << " degrees, " << c.height << " high";
@@ -168,7 +168,7 @@ TEST(KeyLight, AnEdgeWhosePenumbraIsFinerThanTexelsIsSharpToATexel) {
           EXPECT_NEAR(visible, x > 0.0f ? 1.0f : 0.0f, kRounding) << degrees << " degrees at " << x;
         }
       }
-      // To half a texel.
+      // The edge's position is exact to half a texel.
       EXPECT_NEAR((sum / kPlaces - 0.5f) * 4.0f * sharp * key.scale.x, 0.0f, 0.51f)
           << "the edge stands where it is";
     }
@@ -194,7 +194,7 @@ TEST(KeyLight, ABallCastsTheShadowOfADiscThatItCovers) {
           shadowed += 1.0 - expected;
           errors.add(double{ref::keyVisible(map, key, place, kUp, kUp)} - expected);
         }
-      // The ball stands at many heights at once; a penumbra finer than a texel is as wide as one.
+      // The ball's heights vary; a penumbra narrower than a texel becomes a texel wide.
       EXPECT_LT(errors.largest, 0.2) << degrees << " degrees, radius " << radius;
       EXPECT_LT(errors.mean(), 0.022) << degrees << " degrees, radius " << radius;
       EXPECT_LT(std::abs(errors.bias()), 0.06 * shadowed / errors.count)
@@ -279,7 +279,7 @@ TEST(KeyLight, AWallThatLightGrazesIsLitDownToTheFloor) {
 }
 
 TEST(KeyLight, NoLightComesThroughThinWallsAndClosedRooms) {
-  // In a box of walls without thickness, on the walls and on things within.
+  // Points are in a closed box of walls without thickness, on the walls and on things inside.
   constexpr int kSize = 512;
   const Slab room{{-1, -1, -1}, {1, 1, 1}};
   Random random;
@@ -290,9 +290,9 @@ TEST(KeyLight, NoLightComesThroughThinWallsAndClosedRooms) {
       const KeyRecord key = madeKey(towards, degrees * kDegree, 2.0f, kSize, random.number(0, 3));
       const MadeMap map = madeMap(key, kSize, [&](const KeyRay& ray) { return toBox(ray, room); });
       const double texel = 1.0 / double{key.scale.x};
-      // What the map can tell: all of the cone to the disc goes through walls that the light sees, two texels
-      // from the room's outline at least; and these are so far away that the receiver's own plane, which
-      // rises to the light from texel to texel, does not reach them.
+      // The test is limited to what the map can resolve: the whole cone to the disc passes through walls that
+      // the light sees, at least two texels from the room's outline, and far enough away that the receiver's
+      // own plane, which rises towards the light from texel to texel, does not reach them.
       const auto wellWithin = [&](glm::vec3 place, glm::vec3 normal) {
         const double steps = 3.0 + 3.0 / std::max(double{glm::dot(normal, towards)}, 0.02);
         for (int i = 0; i < 8; ++i) {
@@ -330,7 +330,8 @@ TEST(KeyLight, NoLightComesThroughThinWallsAndClosedRooms) {
 }
 
 TEST(KeyLight, ShadowsBeginWhereABoxStands) {
-  // The light comes at half height from -x; the box's shadow falls to +x, from the line of contact on.
+  // The light comes at half height from -x, and the box's shadow falls to +x, beginning at the line of
+  // contact.
   constexpr int kSize = 512;
   for (const float degrees : {0.27f, 2.0f, 5.0f, 8.0f})
     for (const float turn : {0.0f, 0.4f}) {
@@ -345,7 +346,7 @@ TEST(KeyLight, ShadowsBeginWhereABoxStands) {
         for (const float y : {-0.2f, 0.0f, 0.013f, 0.2f}) {
           EXPECT_EQ(ref::keyVisible(map, key, {texels * texel, y, 0.0f}, kUp, kUp), 0.0f)
               << degrees << " degrees, " << texels << " texels behind the box";
-          // And where light falls on, it reaches the foot.
+          // On the lit side the light reaches the foot of the box.
           if (texels < 2.0f) continue;
           EXPECT_NEAR(ref::keyVisible(map, key, {-0.5f - texels * texel, y, 0.0f}, kUp, kUp), 1.0f, kRounding)
               << degrees << " degrees, " << texels << " texels before the box";
@@ -363,14 +364,13 @@ TEST(KeyLight, OfADiscThatIsPartlyBelowTheHorizonTheRestShines) {
       const glm::vec3 towards(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
       const KeyRecord key = madeKey(towards, degrees * kDegree, 1.0f, kSize, 0.0f, 128);
       const MadeMap map = madeMap(key, kSize, nothing);
-      // What of the disc's light arrives is a sum over its rays above the horizon: in units of the sine's
-      // square.
+      // The expected value is a sum over the disc's rays above the horizon, in units of the squared sine.
       const double expected = [&] {
         constexpr int kRays = 40000;
         const glm::dvec3 right{glm::normalize(glm::vec3(key.right))}, up{glm::normalize(glm::vec3(key.up))};
         double sum = 0.0;
         for (int i = 0; i < kRays; ++i) {
-          // Evenly over the sphere's cap.
+          // The rays are uniform over the sphere's cap.
           const double angle = kPi * (3.0 - std::sqrt(5.0)) * i;
           const double z = 1.0 - (1.0 - std::cos(double{degrees * kDegree})) * (i + 0.5) / kRays,
                        s = std::sqrt(1.0 - z * z);
@@ -384,14 +384,15 @@ TEST(KeyLight, OfADiscThatIsPartlyBelowTheHorizonTheRestShines) {
                   2e-3 * double{sine});
       const float all = ref::keyVisible(map, key, glm::vec3(0.0f), kUp, kUp);
       EXPECT_NEAR(all, 1.0f, kRounding) << "the share has the horizon in it already";
-      // A normal of the triangle that cuts off more than that for shading: as rays say.
+      // The triangle's normal may cut off more of the disc than the shading normal; the rays give the
+      // expected value.
       const glm::vec3 normal = glm::normalize(glm::vec3(-0.7f * sine, 0.0f, 1.0f));
       const double seen = visibleByRays(key, glm::vec3(0.0f), kUp, [&](const KeyRay& ray) {
         return glm::dot(ray.direction, glm::dvec3(normal)) <= 0.0;
       });
       EXPECT_NEAR(ref::keyVisible(map, key, glm::vec3(0.0f), normal, kUp), seen, 0.03)
           << degrees << " " << above;
-      // A triangle that looks away from all of it has none, however its normal is bent.
+      // A triangle that faces away from the disc gets no light, for any shading normal.
       EXPECT_EQ(ref::keyVisible(map, key, glm::vec3(0.0f), -towards, kUp), 0.0f);
     }
 }
@@ -407,7 +408,7 @@ TEST(KeyLight, SharesStayBetweenNothingAndAllForDegenerateInputs) {
         for (const glm::vec3 normal :
              {glm::vec3(1, 0, 0), {0, 0, 1}, {0, 0, -1}, {0, 0, 0}, {1e-20f, 0, 1e-20f}})
           for (const glm::vec3 shading : {normal, glm::vec3(0, 1, 0), -normal})
-            // Also far beside the map, above its top and below its bottom.
+            // The places include ones far beside the map, above its top and below its bottom.
             for (const glm::vec3 place :
                  {glm::vec3(0), {half, half, 0}, {1e6f, -1e6f, 0}, {0, 0, 1e6f}, {0, 0, -1e6f}}) {
               const float visible = ref::keyVisible(map, key, place, normal, shading);

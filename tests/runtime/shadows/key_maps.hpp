@@ -1,5 +1,5 @@
-// Shadow maps of key lights that tests make up: depths of a world that is asked texel by texel, and the
-// pyramid over them by looking at every texel.
+// Makes shadow maps of key lights for tests: depths from a function of each texel's ray, and the pyramid over
+// them by brute force.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace lambent::frame {
 
-// What frame::ref::keyVisible asks. The tile lies at the texture's first texel.
+// Has the interface that frame::ref::keyVisible needs. The tile is at the texture's first texel.
 struct MadeMap {
   int size = 0;  // texels along an edge, a power of two, at least kBlockerTexels
   std::vector<float> depths;
@@ -50,8 +50,8 @@ struct MadeMap {
   }
 };
 
-// A light in the direction `towards`, whose map shows `half` metres to each side of the origin, and as much
-// above and below it, at least 4.
+// Makes a light in the direction `towards`. Its map covers `half` metres to each side of the origin, and as
+// much above and below it, but at least 4.
 inline KeyRecord madeKey(glm::vec3 towards, float radius_rad, float half, int size, float turn = 0.0f,
                          uint rays = 32) {
   const glm::vec3 beside = std::abs(towards.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
@@ -70,12 +70,13 @@ inline KeyRecord madeKey(glm::vec3 towards, float radius_rad, float half, int si
           .pad2 = 0};
 }
 
-// A ray from the light's side: from far above down along -towards.
+// A KeyRay starts far away on the light's side and runs along -towards.
 struct KeyRay {
   glm::dvec3 from, direction;
 };
 
-// The map of a world that says how far a ray goes until it meets something (negative: nothing).
+// Makes the map of a world whose function returns how far a ray goes until it hits something (negative:
+// nothing).
 template <typename Distance>
 MadeMap madeMap(const KeyRecord& key, int size, const Distance& distance) {
   const glm::dvec3 towards{glm::vec3(key.towards)};

@@ -1,4 +1,4 @@
-// Runs key_light.glsl on cases from a buffer, with a shadow map that key_shader_test.cpp made up.
+// Runs key_light.glsl on cases from a buffer, with a shadow map made by key_shader_test.cpp.
 #include "local_shared.h"
 #include "key_shared.h"
 #include "key_light.glsl"

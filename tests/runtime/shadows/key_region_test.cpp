@@ -1,4 +1,4 @@
-// Which part of the world a key light's shadow map shows.
+// Tests which part of the world a key light's shadow map covers.
 #include "runtime/shadows/key_region.hpp"
 
 #include <cmath>
@@ -39,7 +39,7 @@ bool sees(const glm::mat4& clip_from_world, glm::dvec3 p) {
   return std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && std::abs(clip.z) <= clip.w;
 }
 
-// By how much, in metres, a point lies outside of the region with the cone from it up to the top.
+// Returns by how many metres a point, with the cone from it up to the top, exceeds the region.
 double outside(const KeyRegion& region, glm::dvec3 p, double tan_radius) {
   const glm::dvec2 place(glm::dot(region.right, p), glm::dot(region.up, p));
   const double along = glm::dot(region.towards, p), reach = tan_radius * (region.top - along);
@@ -72,10 +72,10 @@ TEST(KeyRegion, HoldsAllOfTheBoxThatIsSeenAndWhatLightItGets) {
       ASSERT_LT(outside(*region, p, tan_radius), 1e-5);
     }
     if (!region) continue;
-    // A picture of it: axes that light can be drawn along.
+    // The axes are orthonormal.
     EXPECT_NEAR(glm::length(region->right), 1.0, 1e-12);
     EXPECT_NEAR(glm::length(glm::cross(region->right, region->up) - region->towards), 0.0, 1e-12);
-    // All that can throw a shadow on it lies below the top.
+    // Everything that can cast a shadow on it is below the top.
     for (int c = 0; c < 8; ++c) {
       const glm::dvec3 corner((c & 1) != 0 ? kBox.max.x : kBox.min.x, (c & 2) != 0 ? kBox.max.y : kBox.min.y,
                               (c & 4) != 0 ? kBox.max.z : kBox.min.z);
@@ -88,7 +88,7 @@ TEST(KeyRegion, HoldsAllOfTheBoxThatIsSeenAndWhatLightItGets) {
 TEST(KeyRegion, IsHardlyLargerThanWhatMustBeShown) {
   Random random;
   for (int i = 0; i < 60; ++i) {
-    // Half of them see the whole box.
+    // Half of the views see the whole box.
     const glm::mat4 view = i % 2 == 0 ? viewFrom({9, 7, 8}, {0.5f, 0.7f, 0.5f}, 60.0f)
                                       : viewFrom(glm::vec3(3.0 * random.direction()), glm::vec3(0.5f), 40.0f);
     const std::vector<glm::dvec3> corners = seenCorners(kBox, view);
@@ -97,7 +97,7 @@ TEST(KeyRegion, IsHardlyLargerThanWhatMustBeShown) {
     const double tan_radius = i % 3 == 0 ? 0.1 : 0.005;
     const auto region = regionOf(corners, towards, tan_radius, kBox);
     ASSERT_TRUE(region);
-    // The smallest rectangle about the same points, turned in fine steps.
+    // The area is compared with the smallest rectangle about the same points, over fine rotation steps.
     double least = std::numeric_limits<double>::infinity();
     for (int turn = 0; turn < 900; ++turn) {
       const double angle = glm::radians(0.1 * turn);
@@ -140,7 +140,7 @@ TEST(KeyRegion, TinyAndFarBoxesAndFlatOnesHaveOne) {
       for (const glm::vec3 shape : {glm::vec3(1), {1, 0, 1}, {0, 1, 1}}) {
         const glm::vec3 center = size * offset, half = 0.5f * size * shape;
         const scene::Box box{.min = center - half, .max = center + half};
-        // Of floats one in ten thousand of the distance is well told apart.
+        // Floats still resolve a ten-thousandth of the distance from the origin.
         const glm::mat4 view = glm::perspective(1.0f, 1.5f, 0.1f * size, 100.0f * size) *
                                glm::lookAt(center + size * glm::vec3(1, 2, 3), center, glm::vec3(0, 1, 0));
         const std::vector<glm::dvec3> corners = seenCorners(box, view);

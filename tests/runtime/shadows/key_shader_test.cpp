@@ -1,5 +1,5 @@
-// key_light.glsl against its CPU twin on random lights, places and normals over blocks on a floor; and the
-// pyramid over shadow maps against the least and greatest of all texels.
+// Compares key_light.glsl with its CPU twin on random lights, places and normals over blocks on a floor, and
+// the pyramid over shadow maps with the minimum and maximum of all texels.
 #include <bit>
 #include <random>
 
@@ -31,7 +31,7 @@ struct Random {
   }
 };
 
-// Of maps side by side in a row of tiles, as KeyShadows has them.
+// Joins maps side by side in a row of tiles, as in KeyShadows.
 struct Textures {
   gpu::Texture depths, blockers;
   Textures(int width, int height, const std::vector<float>& texels)
@@ -48,7 +48,7 @@ struct Textures {
   }
 };
 
-// Of a tile at (x, y), by key_blockers.comp, level by level.
+// Builds the pyramid of a tile at (x, y) by key_blockers.comp, level by level.
 void makePyramid(const gpu::Program& program, const Textures& textures, int x, int y, int size) {
   program.use();
   textures.depths.bind(0);
@@ -83,7 +83,7 @@ static_assert(sizeof(Case) == 160);
 
 constexpr int kSize = 256;
 
-// A floor at z = 0, blocks of 16 texels at several heights over a part of it, holes without a floor.
+// The world has a floor at z = 0 with holes, and blocks of 16 texels at several heights over a part of it.
 float depthAt(const KeyRecord& key, glm::ivec2 texel) {
   const int block = (texel.x / 16 * 7 + texel.y / 16 * 13) % 11;
   const float height = block < 3 ? 0.2f + 0.4f * static_cast<float>(block) : 0.0f;

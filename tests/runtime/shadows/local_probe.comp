@@ -1,4 +1,4 @@
-// Runs local_shadow.glsl on cases from a buffer, in a made-up world that local_shader_test.cpp knows too.
+// Runs local_shadow.glsl on cases from a buffer, in a synthetic world that local_shader_test.cpp also implements.
 #include "local_shared.h"
 #include "local_shadow.glsl"
 
@@ -21,7 +21,7 @@ uniform layout(location = 0) uint count;
 
 const int kSize = 64;
 
-// Floor at y = -1, and blocks of eight texels at half a metre on a chequered half of the sky.
+// The world has a floor at y = -1, and blocks of eight texels at half a metre on a chequered half of the sky.
 float localDistance(int light, int face, ivec2 texel) {
   if (((texel.x / 8 + texel.y / 8 + face) & 1) == 0 && face != 3) return 0.5 + 0.01 * float(face);
   vec3 direction = texelDirection(face, vec2(texel) + 0.5, kSize);

@@ -1,5 +1,5 @@
-// shadowed_light.glsl and local_shadow.glsl against their CPU twins, on random lights, places and normals in
-// a world of blocks and a floor.
+// Compares shadowed_light.glsl and local_shadow.glsl with their CPU twins, on random lights, places and
+// normals in a world of blocks and a floor.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ struct Case {
 };
 static_assert(sizeof(Case) == 128);
 
-// As local_probe.comp.
+// This is the same world as in local_probe.comp.
 float distanceAt(int face, glm::ivec2 texel) {
   if (((texel.x / 8 + texel.y / 8 + face) & 1) == 0 && face != 3)
     return 0.5f + 0.01f * static_cast<float>(face);
@@ -62,7 +62,7 @@ std::vector<Case> someCases() {
                .range = i % 3 == 0 ? number(1.0f, 4.0f) : 0.0f,
                .pad = 0.0f};
     c.turns = number(0, 1);
-    // Half of them on the floor below the light.
+    // Half of the places are on the floor below the light.
     const bool on_floor = i % 8 < 4;
     c.normal = on_floor ? glm::vec3(0, 1, 0) : direction();
     c.position = c.light.position + (on_floor ? glm::vec3(number(-2, 2), -1.0f, number(-2, 2))

@@ -1,4 +1,4 @@
-// Pictures under local lights with known answers: small bundles in the dark, lit by one light.
+// Tests pictures under local lights with known answers: small bundles in the dark, lit by one light.
 #include "runtime/shadows/local_shadows.hpp"
 
 #include <cmath>
@@ -104,7 +104,7 @@ TEST_F(LocalShadowsTest, AFloorThatLightGrazesIsLitAllOver) {
   const auto disc = stage.picture(above(4.0f), light);
   for (std::uint32_t y = 0; y < kSize; ++y)
     for (std::uint32_t x = 0; x < kSize; ++x) {
-      // In its middle distance the differential form is exact to (r/d)^2.
+      // At this distance the differential form is exact to (r/d)^2.
       const glm::vec2 at(placeOf(x, 4.0f), placeOf(y, 4.0f));
       if (glm::length(at) < 0.3f) continue;
       const float d2 = distance2(at), wanted = 100.0f * 0.02f * 0.02f * kHeight * kHeight / (d2 * d2);
@@ -113,7 +113,7 @@ TEST_F(LocalShadowsTest, AFloorThatLightGrazesIsLitAllOver) {
 }
 
 TEST_F(LocalShadowsTest, AnEdgeCastsAPenumbraOfTheRightWidthAndShape) {
-  // An edge along x = 0 halfway between floor and light: the penumbra is as wide as the light, 0.4.
+  // The edge is along x = 0, halfway between floor and light, so the penumbra is as wide as the light, 0.4.
   for (const std::uint32_t samples : {16u, 64u}) {
     Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(level(1.0f, 2.0f, {-2.0f, 0})),
                 {.samples = samples});
@@ -133,7 +133,7 @@ TEST_F(LocalShadowsTest, AnEdgeCastsAPenumbraOfTheRightWidthAndShape) {
           whole +=
               10.0f * kRadius * kRadius / d2 * cosine * (kind == ShadowedLight::Kind::Disc ? cosine : 1.0f);
         }
-        // The share of a disc beyond a line at s radii from its middle.
+        // This is the fraction of a disc beyond a line at s radii from its centre.
         const float s = std::clamp(placeOf(x, kHalf) / kRadius, -1.0f, 1.0f);
         const float expected = (std::acos(-s) + s * std::sqrt(1.0f - s * s)) / kPi;
         EXPECT_NEAR(mean / whole, expected, samples == 64 ? 0.02f : 0.04f) << "x " << placeOf(x, kHalf);
@@ -187,7 +187,8 @@ TEST_F(LocalShadowsTest, ShadowsOfSeveralBlockersAreNearThoseOfRaysToEveryPointO
           squares += apart * apart / (kSize * kSize);
           shadowed += (1.0 - share) / (kSize * kSize);
         }
-      // As shares of the light. Few points miss the rims of penumbras, and are noisy within them.
+      // Errors are relative to the light. Few sample points miss the rims of penumbras, and are noisy within
+      // them.
       EXPECT_LT(std::abs(error), samples == 64 ? 0.008 : 0.015) << "the shadow is as dark on the whole";
       EXPECT_LT(std::sqrt(squares), samples == 64 && !hidden ? 0.02 : 0.06);
       EXPECT_GT(shadowed, 0.05);
@@ -196,7 +197,7 @@ TEST_F(LocalShadowsTest, ShadowsOfSeveralBlockersAreNearThoseOfRaysToEveryPointO
 }
 
 TEST_F(LocalShadowsTest, TheShadowOfARoundBodyIsDarkInsideAndRightAtItsRim) {
-  // What blocks the light stands at all heights from 0.2 to 0.8.
+  // The blocker's heights range from 0.2 to 0.8.
   Stage stage(BundleBuilder()
                   .add(level(0.0f, 5.0f))
                   .add({sphereMesh(48, 96), grey(0.5f),
@@ -227,7 +228,7 @@ TEST_F(LocalShadowsTest, TheShadowOfARoundBodyIsDarkInsideAndRightAtItsRim) {
       leaks += visible == 0 && apart > 0.1 ? 1 : 0;  // two points of sixteen
     }
   EXPECT_GT(dark, 300u);
-  // At the umbra's rim rays meet the body below what the light's centre sees of it.
+  // At the umbra's rim, rays hit the body below the part that the light's centre sees.
   EXPECT_LE(leaks, dark / 25);
   EXPECT_LT(std::sqrt(squares), 0.04);
 }
@@ -252,7 +253,7 @@ TEST_F(LocalShadowsTest, ALightWithoutExtentCastsEdgesAsSharpAsItsTexels) {
 }
 
 TEST_F(LocalShadowsTest, AClosedRoomIsLitEverywhereWithoutLinesInItsCorners) {
-  // Six inner walls of a cube from -1 to 1.
+  // The scene has the six inner walls of a cube from -1 to 1.
   BundleBuilder builder;
   const glm::mat4 out = glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, -1));  // faces +Z, behind the origin
   const glm::vec3 y(0, 1, 0), x(1, 0, 0);
@@ -305,13 +306,14 @@ TEST_F(LocalShadowsTest, ASphereInACurvedRoomIsLitEverywhere) {
       .view_from_world = glm::lookAt(glm::vec3(0, 0, 0.3f), glm::vec3(0.3f, 0.2f, -1), {0, 1, 0}),
       .clip_from_view = glm::perspective(1.5f, 1.0f, 0.01f, 10.0f),
       .eye_ws = {0, 0, 0.3f}};
-  // E = pi L (r/d)^2 at d = 1; facets lie up to 0.2 % nearer.
+  // E = pi L (r/d)^2 at d = 1; the mesh's facets are up to 0.2 % nearer.
   for (const glm::vec4& pixel : stage.picture(view, sphereLight({0, 0, 0}, 0.1f, glm::vec3(100.0f))))
     ASSERT_NEAR(pixel.r, 1.0f, 0.01f);
 }
 
 TEST_F(LocalShadowsTest, BlockersShadowFromOnePercentOfTheDistanceOn) {
-  // A small square just over the floor, 2 m below the light: at 1 % of that its shadow is whole.
+  // A small square is just above the floor, 2 m below the light: from 1 % of that distance on, its shadow is
+  // complete.
   for (const float height : {0.02f, 0.2f}) {
     Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(level(height, 0.5f)));
     const auto picture =
@@ -325,7 +327,7 @@ TEST_F(LocalShadowsTest, StaysFiniteWhereTheLightTouchesTheSurface) {
   for (const float height : {0.0f, 1e-6f, -1e-3f, 0.05f})
     for (const ShadowedLight::Kind kind : {ShadowedLight::Kind::Point, ShadowedLight::Kind::Spot,
                                            ShadowedLight::Kind::Sphere, ShadowedLight::Kind::Disc}) {
-      // A pixel's centre lies on it.
+      // The light is at a pixel's centre.
       ShadowedLight light =
           sphereLight({placeOf(32, 0.5f), height, placeOf(32, 0.5f)}, 0.1f, glm::vec3(1e8f));
       light.kind = kind;
@@ -357,7 +359,7 @@ TEST_F(LocalShadowsTest, ADrawThatNoLightShinesOnCostsNothingAndChangesNoPixel) 
   EXPECT_EQ(stage.shadows.uploaded_bytes, 0u);
   EXPECT_EQ(stage.shadowed_lights.bytesResident(), 0u);
   EXPECT_LE(stage.raster.draw_calls, before.draw_calls);
-  // A dark light is as none; a light that is not in the mask, too.
+  // A dark light, or one that is not in the mask, has no effect.
   stage.masks = {2u};
   EXPECT_EQ(stage.picture(above(0.5f), light), plain);
   stage.masks = {1u};
@@ -408,7 +410,7 @@ TEST_F(LocalShadowsTest, DrawsACubeOnlyWhenItsLightOrWhatItSeesMoved) {
 TEST_F(LocalShadowsTest, MasksLetLightThroughWhereTheirAlphaIsLow) {
   BundleBuilder builder;
   BuiltMesh blocker = level(1.0f, 1.0f);
-  // Left half there, right half a hole.
+  // The left half is solid there, the right half is a hole.
   gltf::Sampler nearest{.wrap_s = GL_CLAMP_TO_EDGE,
                         .wrap_t = GL_CLAMP_TO_EDGE,
                         .mag_filter = GL_NEAREST,

@@ -58,7 +58,7 @@ TEST(ShadowedLightChoice, OfManyLightsWithinBoundsTheFirstHaveThePlaces) {
 }
 
 TEST(ShadowedLightChoice, NoMoreShineThanThereAreShadowCubesForAndNoneJumps) {
-  // Seven lights swing to and fro, and change places all the time.
+  // Seven lights move to and fro, and change their order all the time.
   const auto at = [](int step) {
     std::vector<float> from;
     for (int k = 0; k < 7; ++k)
@@ -73,7 +73,7 @@ TEST(ShadowedLightChoice, NoMoreShineThanThereAreShadowCubesForAndNoneJumps) {
     EXPECT_LE(std::ranges::count_if(now, [](float share) { return share > 0.0f; }),
               static_cast<std::ptrdiff_t>(lighting::kMaxShadowedLights));
     for (std::size_t k = 0; k < now.size(); ++k) {
-      // 0.054 radii a step at most, of the nearest limit's sixth.
+      // A light moves by at most 0.054 radii per step, relative to a sixth of the nearest limit.
       ASSERT_NEAR(now[k], before[k], 0.3f) << "step " << step << ", light " << k;
       changes += (now[k] > 0.0f) != (before[k] > 0.0f) ? 1 : 0;
     }

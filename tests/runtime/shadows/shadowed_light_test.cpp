@@ -1,5 +1,5 @@
-// Light of local lights where nothing is in the way, and what their shadow cubes say, on the CPU: closed
-// forms and a quadrature that knows nothing of the formulas.
+// Compares unoccluded local lights, and the visibility by their shadow cubes, on the CPU, with closed forms
+// and with quadrature that does not use these formulas.
 #include <array>
 #include <numbers>
 #include <random>
@@ -26,7 +26,8 @@ struct Random {
   }
 };
 
-// (1/pi) times the integral of the clamped cosine over a cone about +Z, the normal tilted in the xz plane.
+// Returns (1/pi) times the integral of the clamped cosine over a cone about +Z, with the normal tilted in the
+// xz plane.
 double coneShare(double normal_cosine, double cone_sine) {
   const double normal_sine = std::sqrt(1.0 - normal_cosine * normal_cosine);
   constexpr int kRings = 600, kTurns = 600;
@@ -40,7 +41,7 @@ double coneShare(double normal_cosine, double cone_sine) {
   return sum * 2.0 * kPi * (1.0 - least) / (kRings * kTurns) / kPi;
 }
 
-// The same for a disc by points on its area.
+// Returns the same for a disc, by points on its area.
 double discSum(glm::dvec3 normal, glm::dvec3 to_light, glm::dvec3 direction, double radius) {
   glm::vec3 s, t;
   ref::localBasis(glm::vec3(direction), s, t);
@@ -75,11 +76,11 @@ ShadowedLightRecord lightOf(uint kind) {
 
 TEST(ShadowedLight, ASphereGivesWhatAQuadratureOfItsConeGivesAlsoAcrossTheHorizon) {
   for (const float h : {1.01f, 1.3f, 2.0f, 5.0f, 20.0f, 63.0f, 65.0f, 500.0f})
-    // From below the horizon to above it in steps of the sphere's own size, and straight on.
+    // The heights go from below the horizon to above it in steps of the sphere's size, and to straight above.
     for (const double above : {-1.2, -0.9, -0.5, -0.1, 0.0, 0.3, 0.7, 0.99, 1.0, 1.5, 1e9}) {
       const double cosine = std::clamp(above / double{h}, -1.0, 1.0);
       const double expected = coneShare(cosine, 1.0 / double{h});
-      // The quadrature's own error is 1e-5 of the sphere's largest share; so is the cancellation's.
+      // The quadrature's error is 1e-5 of the largest result, and so is that of the cancellation.
       EXPECT_NEAR(ref::sphereShare(static_cast<float>(cosine), h), expected, 2e-4 / (h * h) + 2e-3 * expected)
           << "h " << h << " above " << above;
     }
@@ -99,14 +100,14 @@ TEST(ShadowedLight, ADiscGivesWhatAQuadratureOfItsAreaGivesAlsoAcrossTheHorizon)
     const float radius = random.number(0.05f, 1.0f);
     const double expected = discSum(normal, to_light, direction, radius);
     const bool shines = glm::dot(direction, to_light) < 0.0f;
-    // A polygon of 24 corners for the circle.
+    // A polygon of 24 corners replaces the circle.
     EXPECT_NEAR(ref::discShare(normal, to_light, direction, radius), shines ? expected : 0.0,
                 3e-3 * expected + 1e-4);
   }
 }
 
 TEST(ShadowedLight, ADiscOverheadHasItsKnownFormFactor) {
-  // r^2 / (r^2 + d^2) for a point on its axis that faces it.
+  // A point on the disc's axis that faces it gets r^2 / (r^2 + d^2).
   for (const float radius : {0.01f, 0.049f, 0.051f, 0.3f, 1.0f, 10.0f, 1000.0f}) {
     const float expected = radius * radius / (radius * radius + 1.0f);
     EXPECT_NEAR(ref::discShare({0, 1, 0}, {0, 1, 0}, {0, -1, 0}, radius), expected, 3e-3f * expected);
@@ -146,7 +147,7 @@ TEST(ShadowedLight, StaysFiniteAtTheLightItself) {
       for (const glm::vec3 normal : {glm::vec3(0, 0, 1), {0, 0, -1}, {1, 0, 0}}) {
         const glm::vec3 radiance =
             ref::localRadiance(lit, light, {place, normal, normal, normal}, {64, 16, 0.3f});
-        // Of 1e8 cd at no less than a centimetre.
+        // The maximum is 1e8 cd at a distance of at least a centimetre.
         EXPECT_TRUE(radiance.x >= 0.0f && radiance.x <= 1e8f * 1e4f) << kind << " " << radiance.x;
       }
   }
@@ -195,12 +196,12 @@ TEST(LocalShadow, BoxesMeetTheFacesThatTheirPointsFall) {
 }
 
 TEST(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
-  // A floor 0.05 below the light; what each texel sees is the floor, out to the horizon.
+  // A floor is 0.05 below the light; each texel sees the floor, out to the horizon.
   const auto floor_only = [](int face, glm::ivec2 texel) {
     const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, 512);
     return direction.y < 0.0f ? -0.05f / direction.y : ref::kNothing;
   };
-  // And a wall at x = 1 that stands on it, 0.5 high: the floor behind is dark.
+  // A wall at x = 1 is on it, 0.5 high: the floor behind is dark.
   const auto with_wall = [&](int face, glm::ivec2 texel) {
     const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, 512);
     const float wall = direction.x > 0.0f ? 1.0f / direction.x : ref::kNothing;
@@ -217,7 +218,8 @@ TEST(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
     EXPECT_NEAR(ref::pointVisible(floor_only, receiver, 512), 1.0f, kRounding);
     EXPECT_NEAR(ref::discVisible(floor_only, sphere, receiver, up, {512, 16, random.number(0, 1)}), 1.0f,
                 kRounding);
-    // Contact: from 1 % of the distance behind the wall on; before it, all the way to its foot, light.
+    // The shadow begins within 1 % of the distance behind the wall; before the wall it is light up to the
+    // foot.
     const bool behind = place.x > 1.012f * 1.02f, before = place.x < 0.98f;
     if (!behind && !before) continue;
     EXPECT_NEAR(ref::pointVisible(with_wall, receiver, 512), before ? 1.0f : 0.0f, kRounding)

@@ -1,4 +1,4 @@
-// Where the cameras stand, what they see, and that their depth range holds the scene.
+// Tests where the cameras are, what they see, and that their depth range contains the scene.
 #include "runtime/spec/camera.hpp"
 
 #include <numbers>

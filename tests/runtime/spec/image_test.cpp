@@ -1,5 +1,5 @@
-// Pictures survive a round trip; broken ones give one clear error and never more memory than their bytes
-// warrant.
+// Tests that images survive a round trip, and that broken ones give one clear error and never more memory
+// than their bytes warrant.
 #include "runtime/spec/image.hpp"
 
 #include <filesystem>
@@ -147,8 +147,8 @@ TEST_F(SpecImage, ExrKeepsDepthsAndHasTheirChannelOnlyWhereThereAreAny) {
   EXPECT_TRUE(bare->depths.empty());
 }
 
-// A tiled half-float picture with a data window that reaches over the display window on one side and stops
-// short on the other.
+// Writes a tiled half-float image whose data window exceeds the display window on one side and falls short of
+// it on the other.
 TEST_F(SpecImage, ExrReadsTiledHalfFloatsAndOffsetDataWindows) {
   const fs::path path = folder_ / "tiled.exr";
   const Imath::Box2i display({0, 0}, {7, 7}), data({-2, 2}, {5, 9});
@@ -239,7 +239,7 @@ TEST_F(SpecImage, AbsurdSizesAreRefusedBeforeMemoryIsAsked) {
     EXPECT_FALSE(readLightImage(write("absurd.hdr", head + size))) << size;
 }
 
-// Every truncation must fail; every flipped byte must give a picture or an error, within the bounds of memory
+// Every truncation must fail. Every flipped byte must give an image or an error, within the bounds of memory
 // (the sanitizer run checks those).
 void breakInEveryWay(const fs::path& path, const std::string& whole, std::size_t step) {
   for (std::size_t length = 0; length < whole.size(); length += step) {
@@ -276,7 +276,7 @@ TEST_F(SpecImage, BrokenExrFilesGiveErrors) {
 }
 
 TEST_F(SpecImage, SharedProbesHaveTheirKnownExtremes) {
-  // Luminance maxima from the data's own table, printed to four digits.
+  // The luminance maxima are from the data's own table, printed to four digits.
   for (const auto& [name, maximum] : {std::pair{"probes/grace_probe.hdr", 520.6f},
                                       {"probes/uffizi_latlong_small.hdr", 13.8f},
                                       {"probes/grace_latlong.exr", 14.82f}}) {

@@ -1,4 +1,4 @@
-// Looking a direction up gives the same environment whatever the picture's layout, without seams.
+// Tests that looking up a direction gives the same environment for every image layout, without seams.
 #include <filesystem>
 #include <limits>
 #include <random>
@@ -22,7 +22,7 @@ constexpr Shape kShapes[] = {{ImageLayout::LatLong, 128, 64},
                              {ImageLayout::AngularMap, 128, 128},
                              {ImageLayout::VerticalCross, 96, 128}};
 
-// A picture of f; texels that show no direction hold a value that no look-up may return.
+// Makes an image of f; texels outside the layout hold a value that no look-up may return.
 template <typename Function>
 EnvironmentMap picture(const Shape& shape, const Function& f) {
   constexpr float kPoison = 1e6f;
@@ -73,7 +73,7 @@ TEST(SpecEnvironmentMap, HasNoSeams) {
       if (shape.layout == ImageLayout::AngularMap && dir.z > 0.99f) continue;  // its rim is one direction
       if (shape.layout == ImageLayout::LatLong && std::abs(dir.y) > 0.99f) continue;  // so are its poles
       const glm::vec3 beside = glm::normalize(dir + 2e-6f * glm::vec3(dir.y, dir.z, -dir.x));
-      // The steepest texel slope: 1 over a texel of 0.02 rad (cross, corners); at a corner of the cube four
+      // The largest change is 1 over a texel of 0.02 rad (cross, corners). At a corner of the cube four
       // texels are only three, which leaves a step of up to a quarter.
       const glm::vec3 size = glm::abs(dir);
       const bool corner =
@@ -150,7 +150,8 @@ TEST(SpecEnvironmentMap, EucalyptusGroveIsTheSameAsAngularMapAndAsCross) {
   ASSERT_TRUE(angular && cross);
   EXPECT_EQ(angular->layout, ImageLayout::AngularMap);
   EXPECT_EQ(cross->layout, ImageLayout::VerticalCross);
-  // Mean log-ratio of small blurred spots: single texels of leaves against sky differ by the resampling.
+  // The test takes the mean log-ratio of small blurred spots, because single texels of leaves against sky
+  // differ by the resampling.
   double difference = 0.0, sum = 0.0;
   std::mt19937 random(3);
   std::normal_distribution<float> normal;

@@ -1,4 +1,4 @@
-// Every word parses to what the documentation says, and nothing else parses.
+// Tests that every word parses to what the documentation says, and nothing else parses.
 #include <random>
 #include <string>
 

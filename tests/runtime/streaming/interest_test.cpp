@@ -9,7 +9,8 @@
 namespace lambent::streaming {
 namespace {
 
-// Surfaces of 100 bytes; one group, codebooks of 20, ten shares of planes of 10.
+// Makes a bundle with surfaces of 100 bytes and one group, with codebooks of 20 and ten parts of planes of
+// 10.
 Parts smallParts() {
   Parts parts;
   parts.units = {{{.work = {}, .bytes = 100}}, {{.work = {}, .bytes = 20}}};

@@ -77,7 +77,7 @@ class LoaderTest : public ::testing::Test {
     EXPECT_TRUE(reader) << reader.error().line();
     return reader ? std::make_shared<const bundle::Reader>(std::move(*reader)) : nullptr;
   }
-  // Everything, as a frame loop would take it.
+  // Takes everything, as a frame loop would.
   static std::vector<Ready> drain(Loader& loader, std::size_t max_bytes) {
     std::vector<Ready> all;
     while (!loader.finished()) {
@@ -88,7 +88,7 @@ class LoaderTest : public ::testing::Test {
     loader.waitForMore();  // returns at once
     return all;
   }
-  // Turns over one bit of a view in the file.
+  // Flips one bit of a view in the file.
   void damage(std::uint32_t view) const {
     std::size_t at = std::string::npos;
     {

@@ -46,7 +46,7 @@ class Builder {
 
   std::uint32_t addPayload(bundle::PayloadType type, const std::vector<std::byte>& raw,
                            std::uint32_t priority) {
-    // Every other one compressed, so that both codecs are met.
+    // Every other payload is compressed, so that both codecs are used.
     const bool zstd = sample.description.payloads.size() % 2 == 1;
     const std::uint32_t view = addBlob(zstd ? bundle::compressZstd(raw, 3) : raw);
     sample.description.payloads.push_back(
@@ -58,7 +58,7 @@ class Builder {
     return static_cast<std::uint32_t>(sample.description.payloads.size() - 1);
   }
 
-  // A fan of triangles at a height of its own.
+  // Makes a fan of triangles at a given height.
   bundle::Primitive makePrimitive(std::uint32_t triangles, float height) {
     draco::Mesh mesh;
     mesh.set_num_points(triangles + 2);

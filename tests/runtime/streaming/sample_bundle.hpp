@@ -1,5 +1,5 @@
-// A bundle with something of every kind that the loader brings, made in memory and written where a test wants
-// it.
+// Makes a bundle in memory with something of every kind that the loader delivers, and writes it where a test
+// wants it.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace lambent::streaming::testing {
 
-// PNG (or JPEG) of texels made up from their place; channels 1, 3 or 4.
+// Encodes synthetic texels as PNG (or JPEG) with 1, 3 or 4 channels.
 std::uint8_t texel(std::uint32_t x, std::uint32_t y, std::uint32_t channel);
 std::vector<std::byte> pngFile(std::uint32_t width, std::uint32_t height, std::uint32_t channels);
 std::vector<std::byte> jpegFile(std::uint32_t width, std::uint32_t height, std::uint8_t grey);
@@ -24,15 +24,16 @@ struct Sample {
   std::vector<bundle::Blob> blobs;
 };
 
-// Two meshes (one of two primitives), three draws, two images, two groups of one and two cells, a table of
-// b(v). Priorities are such that the order of the description is not the order of delivery.
+// Makes two meshes (one of two primitives), three draws, two images, two groups of one and two cells, and a
+// table of b(v). The priorities differ from the order of the description.
 Sample sampleBundle();
-bundle::BrdfTable brdfTable();  // of that bundle
+bundle::BrdfTable brdfTable();  // the table of sampleBundle()
 
-// `count` images, all of one view: side x side texels, little in the file and much in memory.
+// Makes a bundle of `count` images that share one view: side x side texels, small in the file and large in
+// memory.
 Sample manyImages(std::uint32_t count, std::uint32_t side);
 
-// A folder of this test's own, gone with the object.
+// Makes a folder for one test, which is removed with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -1,4 +1,4 @@
-// Grids of volumes from the file into memory: in what order, checked, and in blocks.
+// Tests the loading of volumes' grids: their order, validation, and blocks.
 #include <algorithm>
 #include <memory>
 #include <random>

@@ -1,4 +1,4 @@
-// Local lights on glossy surfaces: their highlight beside the diffuse part.
+// Tests local lights on glossy surfaces: their highlight and the diffuse part.
 #include "baker/brdf/brdf.hpp"
 #include "tests/runtime/effects/glossy/random_table.hpp"
 #include "tests/support/frame/local_stage.hpp"

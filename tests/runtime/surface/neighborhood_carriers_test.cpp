@@ -1,4 +1,4 @@
-// Each pair of bodies has one carrier, grid or capture, and nothing pops where it changes.
+// Tests that each pair of bodies uses one carrier, grid or capture, and that nothing pops when it changes.
 
 #include "runtime/shadows/lit_scene.hpp"
 #include "tests/support/frame/neighborhood_checks.hpp"
@@ -22,7 +22,7 @@ TEST_F(NeighborhoodFrame, EachPairHasOneCarrier) {
   stage.edit("body").translation.x = 7.0f;
   stage.picture();
   EXPECT_EQ(pairs(), 2u);
-  // What it took away by captures it gives back: the far one's own light is the sky's again.
+  // When the body leaves, the floor's light is that of the sky again.
   const glm::vec3 open = openLight(stage.environment);
   stage.half = 1.0f;
   stage.edit("body").translation = {20.0f, 1.5f, 0.0f};
@@ -32,7 +32,7 @@ TEST_F(NeighborhoodFrame, EachPairHasOneCarrier) {
 }
 
 TEST_F(NeighborhoodFrame, ABodyIsEitherCapturedOrAroundNeverBoth) {
-  // The floor's light probe is at its middle, right below the sphere: by capture, all of it darkens.
+  // The floor's light probe is in its middle, right below the sphere: with captures, the whole floor darkens.
   NeighborhoodScene scene;
   scene.receivers = {floorOf(8.0f)};
   scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, kFine, kFineHalf)};
@@ -53,7 +53,7 @@ TEST_F(NeighborhoodFrame, NothingPopsWhereCarriersChange) {
   NeighborhoodScene scene;
   scene.receivers = {floorOf(0.3f)};
   scene.receivers[0].place = {6.0f, 0.0f, 0.0f};
-  // The sun shines right along the flight: by captures, the floor loses it behind the sphere.
+  // The sun shines along the sphere's path: with captures, the floor behind the sphere loses it.
   const spec::Light low_sun =
       spec::SunLight{.azimuth_deg = -90, .elevation_deg = 20, .angle_deg = 3, .radiance = glm::vec3(300.0f)};
   scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, glm::uvec3(21), glm::vec3(4.0f))};

@@ -1,4 +1,4 @@
-// How light goes between bodies, changed while they are shown.
+// Tests changes, while bodies are shown, of how light goes between them.
 #include "tests/support/frame/neighborhood_checks.hpp"
 
 namespace lambent::frame {

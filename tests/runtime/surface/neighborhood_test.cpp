@@ -1,4 +1,4 @@
-// Neighborhoods in whole frames: black spheres over floors, of which the light is known in closed form.
+// Tests neighborhoods in whole frames: black spheres over floors, with light known in closed form.
 
 #include "tests/support/frame/neighborhood_checks.hpp"
 
@@ -10,8 +10,8 @@ TEST_F(NeighborhoodFrame, ABlackSphereOverAFloorUnderConstantLightIsTheClosedFor
   scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, kFine, kFineHalf)};
   NeighborhoodStage stage(scene, {kWhite});
   const spec::RgbaImage image = stage.picture();
-  // literature 7.2: E/pi = 1 - (R/d)^2 cos t, of the open floor's light. Straight below, bands 0..2 of the
-  // light, all that a diffuse receiver takes, leave 0.86 % of that out.
+  // By literature 7.2, E/pi = 1 - (R/d)^2 cos t of the unoccluded floor's light. Straight below, bands 0..2
+  // of the light, which are all that a diffuse receiver uses, miss 0.86 % of it.
   const auto closedForm = [](const glm::vec3& place) {
     const float squared = 1.5f * 1.5f + glm::dot(place, place);
     return glm::vec3(1.0f - 1.5f / (squared * std::sqrt(squared)));
@@ -92,7 +92,7 @@ TEST_F(NeighborhoodFrame, OverlappingNeighborhoodsAddAndNeverTakeMoreThanThereIs
                   openLight(stage.environment)),
             0.02);
   EXPECT_EQ(stage.frame->counts()["neighborhood_arrivals"], 2u);
-  // Two at one place would take more light than there is.
+  // Two spheres at one place would take more light than there is.
   stage.edit("body").translation = stage.edit("other").translation = {0.0f, 1.06f, 0.0f};
   float least = 1.0f;
   for (const glm::vec4& texel : stage.picture().texels) least = std::min({least, texel.r, texel.g, texel.b});
@@ -103,7 +103,7 @@ TEST_F(NeighborhoodFrame, OverlappingNeighborhoodsAddAndNeverTakeMoreThanThereIs
 TEST_F(NeighborhoodFrame, AReceiverThatPassesTheBorderHasNoStep) {
   NeighborhoodScene scene;
   scene.receivers = {floorOf(8.0f)};
-  // A small grid, at whose faces the change is far from nothing yet.
+  // The grid is so small that the change is not nearly zero at its faces.
   scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, glm::uvec3(13), glm::vec3(2.2f))};
   NeighborhoodStage stage(scene, {kSun, kWhite});
   const spec::RgbaImage image = stage.picture();
@@ -136,7 +136,7 @@ TEST_F(NeighborhoodFrame, AConstantLightCostsNothingButTheLookUp) {
   EXPECT_EQ(stage.counts("neighborhood")->dispatches, 0u);
   EXPECT_EQ(stage.counts("glossy")->dispatches, 0u);
   EXPECT_EQ(stage.counts("neighborhood")->uploaded_bytes, 0u);
-  // A body that flies on without turning moves its texture about, no more.
+  // A body that moves without turning only moves its texture.
   stage.edit("body").translation.x += 0.5f;
   stage.render();
   EXPECT_EQ(stage.counts("neighborhood")->dispatches, 0u);
@@ -262,7 +262,7 @@ TEST_F(NeighborhoodFrame, FineReceiversWithAllBandsReceiveThroughTheirOwnTransfe
       floor.turn = kTurn;
       floor.group_from_mesh = glm::inverse(glm::mat4_cast(kTurn));
     }
-    // Beside a glossy one, whose draws have other storage bound.
+    // A glossy receiver is next to it, whose draws bind other storage.
     scene.table = baker::integrateTable(*baker::makeGgx(/*anisotropic=*/false), kOrder,
                                         {.angles = 4, .azimuths = 1, .roughnesses = 2, .strengths = 1});
     BuiltReceiver glossy = floorOf(0.2f);
@@ -282,7 +282,7 @@ TEST_F(NeighborhoodFrame, FineReceiversWithAllBandsReceiveThroughTheirOwnTransfe
     EXPECT_EQ(stage.frame->counts()["neighborhood_receivers"], 0u)
         << "not per pixel too; the glossy one is beyond";
     EXPECT_EQ(stage.frame->counts()["neighborhood_vertex_receivers_shaded"], 0u) << "at rest";
-    // Four bands receive as three do: A_3 is 0.
+    // A receiver with four bands gets the same as one with three, because A_3 is 0.
     const sh::LightVector light = stage.environment.light().truncated(kOrder);
     const auto expected = [&](const glm::vec3& place) {
       auto sum = changeOf(light, kOrder, kOrder, blackSphere(1.0f)(2 * kOrder - 1, place - middle));

@@ -1,5 +1,5 @@
-// The surface shaders of glossy draws by themselves: a rectangle in two draws that fills the picture, with
-// random rows, samples and tables, held against the kernel's CPU twin and closed forms.
+// Tests the surface shaders of glossy draws alone: a rectangle in two draws fills the picture, with random
+// rows, samples and tables, and is compared with the kernel's CPU twin and closed forms.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -24,7 +24,8 @@ namespace kernel = effects::glossy::ref;
 constexpr std::uint32_t kSize = 16;
 using Picture = std::vector<glm::vec4>;
 
-// Words of the geometry page: positions, normals, tangents, TEXCOORD_0, indices, four vertices each.
+// These are the words of the geometry page: positions, normals, tangents, TEXCOORD_0 and indices, for four
+// vertices.
 constexpr std::uint32_t kNormals = 12, kTangents = 24, kTexcoords = 40, kIndices = 48;
 
 struct Scene {
@@ -114,7 +115,7 @@ gpu::Texture oneTexel(const glm::vec4& value) {
   return texture;
 }
 
-// The pixel's colour from the twin, at a place of the rectangle.
+// Returns the pixel's colour by the twin, at a place of the rectangle.
 glm::vec3 expectedAt(const Scene& scene, const glm::vec3& place) {
   const std::size_t n = std::size_t{scene.kind.bands} * scene.kind.bands;
   const std::size_t triangle = place.x >= place.y ? 0 : 3;
@@ -270,8 +271,8 @@ class GlossySurface : public testing::GpuTest {
         largest = std::max<double>(largest, glm::length(expected));
         difference = std::max<double>(difference, glm::distance(expected, glm::vec3(picture[y * kSize + x])));
       }
-    // Hardware interpolates the table with 8 bits between nodes: 0.6 % on an H100, which agrees to 0.003 %
-    // where the shader interpolates by itself.
+    // Hardware interpolates the table with 8 bits between nodes, an error of 0.6 % on an H100; the shader's
+    // own interpolation agrees there to 0.003 %.
     EXPECT_LT(difference, 1e-2 * largest) << what;
     EXPECT_GT(largest, 0.1);
   }
@@ -311,7 +312,7 @@ TEST_F(GlossySurface, UniformLightShowsTheSameAlbedoAllOver) {
   scene.record.glossy.metallic = 1.0f;
   for (const glm::vec4& pixel : draw(scene))
     EXPECT_LT(glm::distance(glm::vec3(pixel), 0.7f * glm::vec3(0.8f, 0.5f, 0.3f) + 0.1f), 1e-5f);
-  // And white plastic that takes nothing gives all back in the channel that reflects most.
+  // White plastic without losses reflects everything.
   scene.record.glossy.metallic = 0.0f;
   scene.record.surface.base_color = glm::vec4(1.0f);
   scene.record.glossy.dielectric = glm::vec4(0.04f, 0.04f, 0.04f, 1.0f);

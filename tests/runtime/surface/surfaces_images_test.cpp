@@ -1,4 +1,4 @@
-// In which colour spaces the images of a bundle lie on the GPU, by what its materials look for in them.
+// Tests in which colour space each image of a bundle is stored on the GPU, depending on how materials use it.
 #include <gtest/gtest.h>
 
 #include "runtime/streaming/residency.hpp"
@@ -8,8 +8,8 @@ namespace lambent::frame {
 using SurfaceImages = testing::GpuTest;
 
 TEST_F(SurfaceImages, ColoursAreSrgbNormalsLinearAndAnImageThatIsBothIsHeldTwice) {
-  // Image 0: base colour. 1: emissive. 2: normals. 3: base colour of one material, normals of another.
-  // 4: no material names it.
+  // Image 0 is a base colour, 1 is emissive, 2 is a normal map, and 3 is the base colour of one material and
+  // the normal map of another. No material uses image 4.
   bundle::Description description;
   for (std::int32_t i = 0; i < 5; ++i) {
     description.images.push_back({.name = "image", .mime_type = "image/png", .view = 0});
@@ -43,7 +43,7 @@ TEST_F(SurfaceImages, ColoursAreSrgbNormalsLinearAndAnImageThatIsBothIsHeldTwice
       EXPECT_EQ(bundle.linear_images[i].desc().format, GLenum{GL_RGBA8});
     }
   }
-  // 4 x 3 texels of four bytes, a third more for mip levels.
+  // The size is 4 x 3 texels of four bytes, and a third more for mip levels.
   EXPECT_EQ(residency.bytesResident(), 6u * 64u) << "five images, one of them twice";
 }
 

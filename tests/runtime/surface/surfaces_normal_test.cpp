@@ -1,4 +1,4 @@
-// Normal maps on the CPU: light received at a normal, and the frame in which a normal map stands.
+// Tests normal maps on the CPU: light received at a normal, and the tangent frame.
 #include <algorithm>
 #include <random>
 
@@ -23,7 +23,8 @@ struct Random {
   }
 };
 
-// A patch of a plane as a camera sees it: how position and texture coordinates change over the picture.
+// Describes a patch of a plane as a camera sees it: how position and texture coordinates change over the
+// picture.
 struct Patch {
   glm::vec3 normal, rising_u, rising_v;  // rising_u, rising_v: dp/du, dp/dv
   glm::vec2 t_dx{0.3f, -0.1f}, t_dy{0.05f, 0.2f};
@@ -80,7 +81,7 @@ TEST(SurfaceNormal, FindsTheFrameFromThePictureAlsoUnderMirroredCoordinates) {
 
 TEST(SurfaceNormal, StaysWhereThereIsNoFrameAndWhereTheMapIsFlat) {
   const glm::vec3 z(0, 0, 1), texel(0.9f, 0.2f, 0.7f);
-  // All texture coordinates the same, and coordinates that change along a line only.
+  // All texture coordinates are equal, or they change only along a line.
   const Patch patches[] = {
       {.normal = z, .rising_u = {1, 0, 0}, .rising_v = {0, 1, 0}, .t_dx = {0, 0}, .t_dy = {0, 0}},
       {.normal = z, .rising_u = {1, 0, 0}, .rising_v = {0, 1, 0}, .t_dx = {1, 0}, .t_dy = {2, 0}}};
@@ -92,7 +93,7 @@ TEST(SurfaceNormal, StaysWhereThereIsNoFrameAndWhereTheMapIsFlat) {
 
 TEST(SurfaceNormal, TheScaleBendsXAndYOnly) {
   const ref::TangentFrame frame = ref::frameFromTangent({0, 0, 1}, {1, 0, 0, -1});
-  // (0.5, 0.5, 0.5) scaled by 2 on x and y, y turned by the handedness.
+  // The value is (0.5, 0.5, 0.5) scaled by 2 on x and y, with y multiplied by the handedness.
   const glm::vec3 bent = ref::perturbedNormal(frame, glm::vec3(0.75f), 2.0f);
   EXPECT_LT(glm::distance(bent, glm::normalize(glm::vec3(2, -2, 1))), 1e-6f);
 }

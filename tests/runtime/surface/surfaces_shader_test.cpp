@@ -1,5 +1,5 @@
-// The surface shaders by themselves: one rectangle that fills the picture, with a record, vertices, light and
-// textures that each test writes, held against closed forms and surface_normal_ref.hpp.
+// Tests the surface shaders alone: one rectangle fills the picture, with a record, vertices, light and
+// textures that each test writes, and is compared with closed forms and surface_normal_ref.hpp.
 #include <array>
 #include <cstring>
 #include <functional>
@@ -35,8 +35,8 @@ glm::mat3x2 transformed(const gltf::TextureRef& reference) {
   return {reference.apply({1, 0}) - origin, reference.apply({0, 1}) - origin, origin};
 }
 
-// What the vertices of the rectangle carry. TEXCOORD_0 as glTF has it, (0, 0) at the top left; TEXCOORD_1 all
-// at one place.
+// Holds the rectangle's vertex attributes. TEXCOORD_0 is as in glTF, (0, 0) at the top left; TEXCOORD_1 is
+// the same at all vertices.
 struct Vertices {
   std::array<glm::vec3, 4> positions = {glm::vec3(-1, -1, 0), {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   glm::vec3 normal{0, 0, 1};
@@ -140,7 +140,7 @@ class SurfaceShader : public testing::GpuTest {
     for (int i = 0; i < 4; ++i) words.insert(words.end(), {radiance.r, radiance.g, radiance.b});
     return draw(record, {}, words, 3);
   }
-  // The same light at every vertex.
+  // Sets the same light at every vertex.
   Picture drawLight(const SurfaceDraw& record, const Vertices& vertices, const Light& light) {
     std::vector<float> words;
     for (int i = 0; i < 4; ++i)
@@ -154,7 +154,7 @@ class SurfaceShader : public testing::GpuTest {
 
 namespace {
 
-// From the left and from the top, in pixels.
+// Reads a pixel, counted from the left and from the top.
 glm::vec4 at(const std::vector<glm::vec4>& picture, std::uint32_t x, std::uint32_t y) {
   return picture[(kSize - 1 - y) * kSize + x];
 }
@@ -169,8 +169,7 @@ const Light kLight = [] {
 }  // namespace
 
 TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordinates) {
-  // A base colour of one grey texel; an emissive picture of four colours, red green / blue white from the
-  // top.
+  // The base colour is one grey texel; the emissive texture has four: red green / blue white from the top.
   textures[kUnitBaseColor] = picture(1, 1, {255, 128, 0, 255}, GL_RGBA8);
   textures[kUnitEmissive] =
       picture(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}, GL_SRGB8_ALPHA8);
@@ -185,12 +184,12 @@ TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordi
   };
   const Case cases[] = {
       {{}, {5, 0, 0}, {0, 6, 0}},
-      // Shifted by half a picture to the right and downwards, repeated.
+      // The texture is shifted by half its size to the right and downwards, and repeats.
       {{.texture = 0, .texcoord = 0, .offset = {0.5f, 0.5f}}, {5, 6, 7}, {0, 0, 7}},
-      // Half of the picture's width over the whole rectangle.
+      // The rectangle shows half of the texture's width.
       {{.texture = 0, .texcoord = 0, .offset = {0.0f, 0.0f}, .scale = {0.5f, 1.0f}}, {5, 0, 0}, {5, 0, 0}},
-      // A quarter turn: u' = v, v' = -u; the top right corner (1, 0) looks at (0, -1), the top row's start
-      // at the bottom of the picture's left side.
+      // The texture is turned by 90 degrees: u' = v, v' = -u. The top right corner (1, 0) samples (0, -1),
+      // and the beginning of the top row samples the bottom of the texture's left side.
       {{.texture = 0,
         .texcoord = 0,
         .offset = {0.0f, 0.0f},
@@ -227,7 +226,7 @@ TEST_F(SurfaceShader, ShowsTheBaseColourOfUnlitSurfacesWhateverTheLight) {
 TEST_F(SurfaceShader, ReceivesLightAtThePixelsNormalAsTheReferenceDoes) {
   const glm::vec3 texel = glm::vec3(220, 70, 200) / 255.0f;
   textures[kUnitNormal] = picture(1, 1, {220, 70, 200, 255}, GL_RGBA8);
-  // A mesh that stands in its group turned and stretched, and mirrored besides.
+  // The mesh is rotated and stretched in its group, and also mirrored.
   for (const float mirrored : {1.0f, -1.0f}) {
     const glm::mat3 group_from_mesh =
         glm::mat3(glm::rotate(glm::mat4(1.0f), 1.2f, glm::normalize(glm::vec3(1, -2, 0.5f)))) *

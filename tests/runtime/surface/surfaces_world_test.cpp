@@ -1,4 +1,5 @@
-// What of a bundle's materials reaches the picture: emission, unlit surfaces, textures, and how they batch.
+// Tests how a bundle's materials appear in the picture: emission, unlit surfaces, textures, and their
+// batching.
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -23,7 +24,7 @@ constexpr gltf::Sampler kNearest{
 
 class SurfacesWorld : public testing::GpuTest {
  protected:
-  // A linear picture of 32 x 32 in uniform light, seen from +Z, or from behind.
+  // Renders a linear picture of 32 x 32 in uniform light, seen from +Z, or from behind.
   spec::RgbaImage show(const BundleBuilder& builder, float radiance, bool from_behind = false) {
     const std::filesystem::path path =
         std::filesystem::path(::testing::TempDir()) / fmt::format("{}-surfaces.lmb.glb", getpid());
@@ -76,8 +77,8 @@ TEST_F(SurfacesWorld, EmissionIsAddedOnBothSidesOfACard) {
 }
 
 TEST_F(SurfacesWorld, EachTextureHasItsOwnCoordinatesAndTransform) {
-  // Base colour: red, green from the left, by TEXCOORD_0. Emission: black, 188 = 0.5029 from the left, by
-  // TEXCOORD_1, which runs the other way, turned back by scale -1.
+  // The base colour is red, then green, from the left, by TEXCOORD_0. The emission is black, then 188 =
+  // 0.5029, from the left, by TEXCOORD_1, which runs the other way and is mirrored by scale -1.
   BundleBuilder builder;
   gltf::Material material;
   material.base_color_texture.texture = builder.addTexture(2, 1, {255, 0, 0, 255, 0, 255, 0, 255}, kNearest);

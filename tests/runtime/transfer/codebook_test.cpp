@@ -13,7 +13,7 @@ std::vector<std::byte> prefix(const std::vector<std::byte>& bytes, std::size_t l
   return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)};
 }
 
-// Three clusters of 2, 1 and 0 axes over vectors of 4 values (order 1, one light, full in one channel).
+// Makes three clusters of 2, 1 and 0 axes over vectors of 4 values (order 1, one light, full in one channel).
 TransferShape smallShape() {
   TransferShape shape;
   shape.order = 1;
@@ -113,7 +113,7 @@ TEST(Codebook, WeightsAndValuesThatAreNotFiniteAreRefused) {
   }
 }
 
-// Whatever the bytes: an error, or a codebook that decodes to finite vectors.
+// Arbitrary bytes must give an error, or a codebook that decodes to finite vectors.
 TEST(Codebook, WithFlippedBitsIsRefusedOrDecodesToFiniteVectors) {
   const auto bytes = encodeCodebook(smallCodebook());
   const std::vector<std::uint32_t> cluster_of = {0, 1, 2};
@@ -135,7 +135,7 @@ TEST(Codebook, WithFlippedBitsIsRefusedOrDecodesToFiniteVectors) {
   EXPECT_GT(refused, 3u * 16 / 2);  // most flips of a count
 }
 
-// Two basis vectors; clusters of 1 and 0 axes over vectors of 4 values.
+// Makes two basis vectors, and clusters of 1 and 0 axes over vectors of 4 values.
 SharedCodebook sharedCodebook() {
   SharedCodebook codebook;
   codebook.axis_counts = {1, 0};
@@ -196,7 +196,7 @@ TEST(SharedCodebook, WithFlippedBitsIsRefusedOrDecodesToFiniteVectors) {
 }
 
 TEST(SharedCodebook, OfTooManyVectorsIsRefusedBeforeTheyAreMade) {
-  // 70,000 clusters of 3,072 values from a payload of 140 kB.
+  // A payload of 140 kB claims to have 70,000 clusters of 3,072 values.
   SharedCodebook codebook;
   codebook.axis_counts.assign(70000, 0);
   TransferShape shape;

@@ -43,7 +43,7 @@ TEST(VertexWeights, QuantizedWeightsStillSumToOne) {
     double sum = 0.0;
     for (std::uint32_t e = back->offsets[v]; e < back->offsets[v + 1]; ++e) {
       sum += double{back->weights[e]};
-      // Half a step of rounding, and up to four of them where the remainder went.
+      // The tolerance is half a step of rounding, plus up to two for the weight that takes the remainder.
       EXPECT_NEAR(back->weights[e], rows.weights[e], 2.5f / 65535.0f);
     }
     EXPECT_NEAR(sum, 1.0, 1e-6);

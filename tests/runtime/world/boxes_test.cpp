@@ -1,4 +1,4 @@
-// Boxes that meet, against points of theirs.
+// Tests the intersection of boxes against points in them.
 
 #include "runtime/world/boxes.hpp"
 

@@ -1,4 +1,4 @@
-// Sheets with large textures, in memory that does not hold all levels of them.
+// Tests surfaces with large textures in memory that cannot hold all their levels.
 #include <cmath>
 #include <random>
 #include <thread>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kTexels = 512;
 constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
-// Broad waves with fine grain on them.
+// Makes broad waves with fine grain.
 std::vector<std::uint8_t> waves(std::uint32_t seed) {
   std::mt19937 engine(seed);
   std::vector<std::uint8_t> rgba;
@@ -65,7 +65,7 @@ struct TextureStreaming : testing::WorldTest {
             .clip_from_view = glm::perspective(0.9f, 1.0f, 0.1f, 100.0f),
             .eye_ws = eye};
   }
-  // All that there is room for, seen from there.
+  // Loads everything that fits for a camera at x, and renders it.
   spec::RgbaImage look(WorldStage& stage, float x) {
     stage.world.look(view(x));
     gpu::Counters counters;
@@ -159,7 +159,7 @@ TEST_F(TextureStreaming, WhatReplacesABundleComesOverSeveralFramesToo) {
     const std::uint32_t slot = stage.open(sheet(0));
     look(stage, 2.2f);
     const std::uint64_t bytes = stage.world.residency().bytesResident();
-    // Given up in the middle of a texture, it leaves nothing behind.
+    // An upload that is cancelled in the middle of a texture leaves nothing behind.
     for (const bool give_up : {true, false}) {
       ASSERT_TRUE(stage.world.replace(slot, sheet(1)));
       int frames = 0;

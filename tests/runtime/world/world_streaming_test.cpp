@@ -1,4 +1,4 @@
-// A row of bundles that take three times the memory there is, and a camera that flies along it.
+// Tests a row of bundles that need three times the available memory, with a camera that flies along it.
 #include <chrono>
 #include <thread>
 
@@ -69,7 +69,7 @@ TEST_F(WorldStreaming, ResidencyFollowsTheCameraWithinTheBudget) {
   EXPECT_EQ(first.queued, 0u);
   EXPECT_EQ(first.bundles[0].state, BundleStatus::State::Whole);
   EXPECT_LT(first.bundles[11].resident_bytes, first.bundles[11].whole_bytes);
-  // Along the row, with a stop at the end.
+  // The camera flies along the row and stops at the end.
   constexpr float kEnd = kApart_m * (kBundles - 1);
   for (int frame = 0; frame <= 200; ++frame) fly(kEnd * static_cast<float>(frame) / 200.0f);
   int frames = 0;
@@ -80,11 +80,11 @@ TEST_F(WorldStreaming, ResidencyFollowsTheCameraWithinTheBudget) {
   const auto last = stage.world.streaming();
   EXPECT_EQ(last.bundles[11].state, BundleStatus::State::Whole) << "after " << frames << " frames";
   EXPECT_LT(last.bundles[0].resident_bytes, last.bundles[0].whole_bytes) << "made room";
-  // What is near looks as if there were room for all.
+  // Near bundles look as if all of them fitted into memory.
   stage.renderFrom(at(kEnd));
   whole.renderFrom(at(kEnd));
   EXPECT_EQ(worst(stage.frame->readLinear(), whole.frame->readLinear()), 0.0);
-  // And nothing goes to and fro while the camera stands still.
+  // Nothing is loaded or dropped while the camera stands still.
   const std::uint64_t version = stage.world.residency().version();
   for (int frame = 0; frame < 5; ++frame) fly(kEnd);
   EXPECT_EQ(stage.world.residency().version(), version);
@@ -149,7 +149,7 @@ TEST(FrameTimesTest, UploadsShrinkWhereFramesTakeLongerAndGrowAgain) {
   EXPECT_GT(pacer.budget(kMost), 0u) << "something always comes";
 }
 
-// A scene that has arrived in part takes far longer to draw than the empty world before it.
+// A scene that has partly arrived takes far longer to draw than the empty world before it.
 TEST(FrameTimesTest, SlowFramesDoNotStarveWhatLoads) {
   UploadPacer pacer;
   constexpr std::uint64_t kMost = 16 << 20;

@@ -1,5 +1,5 @@
-// Bundles come, go and take each other's place while the world is shown: what is left shows the same picture
-// as a world that never had the others, and nothing of them stays behind.
+// Tests that bundles are opened, closed and replaced while the world is shown: the rest shows the same
+// picture as a world that never had the others, and nothing of them remains.
 #include "runtime/world/world.hpp"
 
 #include <fstream>
@@ -101,7 +101,7 @@ TEST_F(WorldTest, ADamagedReplacementLeavesTheOldBundleAndIsReported) {
   EXPECT_EQ(stage.world.residency().bytesResident(), bytes);
   EXPECT_FALSE(stage.world.replace(ball, file("missing.lmb.glb")));
   EXPECT_EQ(stage.world.errors().size(), 1u);
-  // The next one that is whole takes its place, and the error with it.
+  // The next valid bundle replaces it, and clears the error.
   ASSERT_TRUE(stage.world.replace(ball, damaged));
   ASSERT_TRUE(stage.world.replace(ball, ballFile(0.4f))) << "supersedes the other";
   stage.picture();

@@ -172,7 +172,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
     for (const BuiltLamp& lamp : lamps_) {
       group.lights.push_back(lamp.light);
       if (lamp.light.kind == bundle::GroupLight::Kind::Node) {
-        // As the baker writes them: colour times intensity is the lamp's colour.
+        // As in the baker's output, colour times intensity is the lamp's colour.
         description.nodes[lamp.light.index].light = static_cast<std::int32_t>(description.lights.size());
         description.lights.push_back({.name = "", .color = lamp.light.color, .intensity = 1.0f});
       }

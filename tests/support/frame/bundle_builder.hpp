@@ -1,5 +1,5 @@
-// Small bundles with known answers, written to a file as the baker would: each mesh with open (unoccluded)
-// transfer at its vertices, or with transfer that the test sets, one group, one cell.
+// Writes small bundles with known answers to a file as the baker would: each mesh with unoccluded transfer at
+// its vertices, or with transfer that the test sets, in one group and one cell.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,9 @@
 
 namespace lambent::testing {
 
-// Transfer vector of a sample with this normal, group frame: order² entries, with bounces twice as many (the
-// shadowed block, then the full one), for normal maps nine times as many, by output.
+// Returns the transfer vector of a sample with this normal, in the group's frame: order² entries, with
+// bounces twice as many (the shadowed block, then the full one), for normal maps nine times as many, by
+// output.
 using TransferOf = std::function<std::vector<float>(const glm::vec3& normal)>;
 TransferOf openTransfer(int order);
 
@@ -37,14 +38,14 @@ class BundleBuilder {
   BundleBuilder& transfer(TransferOf transfer);
   BundleBuilder& bounces();
   BundleBuilder& normalMapped();
-  // All surfaces glossy, with transferred light in so many bands and this table; transfer is then visibility
-  // in order + bands - 1 bands, open unless a later transfer() says otherwise.
+  // Makes all surfaces glossy, with this many bands of transferred light and this table. Transfer is then
+  // visibility in order + bands - 1 bands, unoccluded unless a later transfer() sets it.
   BundleBuilder& glossy(std::uint32_t bands, bundle::BrdfFamily family, bundle::BrdfTable table);
-  // A light of the group that gives `transfer` times its radiance to every sample. Bundles without normal
-  // maps.
+  // Adds a light of the group that gives `transfer` times its radiance to every sample. Bundles with normal
+  // maps are not supported.
   BundleBuilder& lamp(const bundle::GroupLight& light, float transfer);
   BundleBuilder& groupRotation(const glm::quat& rest_rotation);
-  // A group of its own, after that of the meshes; without meshes the only one.
+  // Adds a volume in a group of its own, after the meshes' group if there are meshes.
   BundleBuilder& volume(BuiltVolume volume);
   // Returns the texture's index.
   std::int32_t addTexture(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgba,
@@ -74,9 +75,10 @@ class BundleBuilder {
   std::vector<gltf::Texture> textures_;
 };
 
-// Radius 1 about the origin.
+// Makes a sphere of radius 1 about the origin.
 bundle::MeshData sphereMesh(int rings, int segments);
-// From (-1, -1, 0) to (1, 1, 0), facing +Z, texture coordinates as glTF has them: (0, 0) at the top left.
+// Makes a square from (-1, -1, 0) to (1, 1, 0), facing +Z, with texture coordinates as in glTF: (0, 0) at the
+// top left.
 bundle::MeshData quadMesh();
 
 }  // namespace lambent::testing

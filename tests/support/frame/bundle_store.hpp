@@ -1,5 +1,4 @@
-// What bundles that tests write are put together from: blobs, payloads, and transfer that is exact to 16
-// bits.
+// Assembles the bundles that tests write from blobs, payloads, and transfer that is exact to 16 bits.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 
 namespace lambent::testing {
 
-// Collects blobs; a payload's or image's view is the index of its blob.
+// Collects blobs. The view of a payload or image is the index of its blob.
 struct Store {
   bundle::Description& description;
   std::vector<bundle::Blob>& blobs;
@@ -34,7 +33,7 @@ struct Store {
   }
 };
 
-// One cluster: plane i carries value i, 16 bits over its range; the mean is zero.
+// Stores one cluster with zero mean: plane i holds value i, with 16 bits over its range.
 inline bundle::CellTransfer storeTransfer(Store& store, const transfer::TransferShape& shape,
                                           const std::vector<std::vector<float>>& vectors) {
   const std::size_t size = shape.size();

@@ -1,5 +1,5 @@
-// A written bundle in a world with a light and a frame of 64 x 64 linear pixels, in which everything may be
-// changed while it is shown.
+// Shows a written bundle in a world with a light and a frame of 64 x 64 linear pixels. A test can change
+// everything while it is shown.
 #pragma once
 
 #include <filesystem>
@@ -55,7 +55,7 @@ struct LiveStage {
     const Result<void> done = frame->render(world, environment, view());
     ASSERT_TRUE(done) << done.error().line();
   }
-  // After everything has come to rest.
+  // Renders until everything is at rest, and returns the picture.
   std::vector<glm::vec4> picture() {
     render();
     const Result<std::uint32_t> steps = frame->rest(world, environment);
@@ -73,7 +73,7 @@ struct LiveStage {
   scene::MaterialComponent& editMaterial(std::size_t index) {
     return world.registry().edit<scene::MaterialComponent>(world.instance(0).materials[index]);
   }
-  // Of the last frame; none: there was no such pass.
+  // Returns the time of a pass of the last frame, or none if there was no such pass.
   std::optional<gpu::PassTime> pass(const std::string& name) {
     frame->timers().finish();
     for (const gpu::PassTime& time : frame->timers().latest())
@@ -87,7 +87,7 @@ struct LiveStage {
   }
 };
 
-// The largest difference of any channel.
+// Returns the largest difference in any channel.
 inline float farthest(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b) {
   float most = a.size() == b.size() ? 0.0f : 1e9f;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)

@@ -1,4 +1,5 @@
-// A stage for local lights: small bundles in the dark, lit by one light, drawn by the raster pass alone.
+// Provides a stage for local lights: small bundles in the dark, lit by one light and drawn by the raster pass
+// alone.
 #pragma once
 
 #include <cmath>
@@ -37,7 +38,7 @@ inline gltf::Material grey(float albedo) {
   return material;
 }
 
-// A square of 2 `half` that lies at this height, seen from above.
+// Makes a horizontal square with edges of 2 `half` at this height, facing up.
 inline BuiltMesh level(float y, float half, glm::vec2 center = {0, 0}, float albedo = 1.0f) {
   return {quadMesh(), grey(albedo),
           glm::translate(glm::mat4(1.0f), glm::vec3(center.x, y, center.y)) *
@@ -45,7 +46,7 @@ inline BuiltMesh level(float y, float half, glm::vec2 center = {0, 0}, float alb
               glm::scale(glm::mat4(1.0f), glm::vec3(half))};
 }
 
-// From straight above, 2 `half` wide, of what is below y = `from`; x to the right, z downwards.
+// Looks straight down on what is below y = `from`, 2 `half` wide; x points to the right and z downwards.
 inline spec::View above(float half, float from = 0.9f) {
   return {.view_from_world = glm::lookAt(glm::vec3(0, from, 0), glm::vec3(0), glm::vec3(0, 0, -1)),
           .clip_from_view = glm::ortho(-half, half, -half, half, 0.0f, 20.0f),
@@ -64,7 +65,7 @@ inline ShadowedLight sphereLight(glm::vec3 position, float radius, glm::vec3 rad
   return light;
 }
 
-// A bundle, black surroundings, and the raster pass with local lights alone.
+// Holds a bundle with a black environment, and the raster pass with local lights alone.
 struct Stage {
   std::filesystem::path path;
   World world;
@@ -100,7 +101,7 @@ struct Stage {
     const Result<void> done = shadowed_lights.update(world, lights, masks, shadows);
     ASSERT_TRUE(done) << done.error().line();
   }
-  // Row 0 is the top. With `plain`, as where there are no local lights at all.
+  // Renders a picture; row 0 is the top. `plain` draws without local lights.
   std::vector<glm::vec4> picture(const spec::View& view, std::span<const ShadowedLight> lights,
                                  bool plain = false) {
     if (!plain) update(lights);
@@ -146,7 +147,7 @@ struct Stage {
   }
 };
 
-// Holds every pixel against what it should be at its place (x, z).
+// Compares every pixel with the expected value at its place (x, z).
 inline void expectFloor(const std::vector<glm::vec4>& picture, float half, float tolerance,
                         const std::function<float(glm::vec2)>& expected, const std::string& what) {
   for (std::uint32_t y = 0; y < kSize; ++y)

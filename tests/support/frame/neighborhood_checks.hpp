@@ -1,4 +1,4 @@
-// Floors and black spheres of known light, and pictures of them held against it.
+// Makes floors and black spheres under known light, and compares pictures with them.
 #pragma once
 
 #include <algorithm>
@@ -45,14 +45,14 @@ inline BuiltBody sphereAt(const glm::vec3& place, float radius = 1.0f,
   return body;
 }
 
-// The floor of most tests, 1.5 below, lies on a plane of points.
+// The floor of most tests, 1.5 below the origin, lies on a plane of grid points.
 inline const glm::uvec3 kFine(33, 19, 33), kWide(41, 21, 41);
 inline const glm::vec3 kFineHalf(3.0f, 4.5f, 3.0f), kWideHalf(4.5f);
 
 using Expected = std::function<glm::vec3(const glm::vec3& place)>;
 
-// Largest difference where the place is within `reach` of the origin, each way: of what it should be, or of
-// the light of the open floor.
+// Returns the largest difference among places within `reach` of the origin along each axis, relative to the
+// expected value or to the light of the unoccluded floor.
 inline double worst(const NeighborhoodStage& stage, const spec::RgbaImage& image, float reach,
                     const Expected& expected, const glm::vec3& open = glm::vec3(0.0f)) {
   double largest = 0.0;
@@ -76,7 +76,8 @@ inline double worstDifference(const spec::RgbaImage& a, const spec::RgbaImage& b
   return largest;
 }
 
-// The open floor's light, and of each sphere (M - I) l with nothing between: what an ideal grid gives.
+// Returns what an ideal grid gives: the unoccluded floor's light plus (M - I) l of each sphere, without
+// occlusion between them.
 inline Expected ideal(const lighting::Environment& environment, std::vector<glm::vec3> spheres,
                       float radius = 1.0f) {
   const sh::LightVector light = environment.light().truncated(5);

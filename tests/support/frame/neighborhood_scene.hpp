@@ -1,6 +1,6 @@
-// Bundles with grids around bodies, written as the baker would, with answers that are known: what a body
-// changes is said by the test, receivers are meshes with open transfer, each body and each receiver a rigid
-// group of its own.
+// Writes bundles with grids around bodies as the baker would, with known answers: the test says what a body
+// changes, receivers are meshes with unoccluded transfer, and each body and receiver is a rigid group of its
+// own.
 #pragma once
 
 #include <cstdint>
@@ -19,21 +19,23 @@
 
 namespace lambent::testing {
 
-// A visibility change V - 1 at a point of the body's frame, as coefficients in so many bands.
+// Returns the change of visibility V - 1 at a point in the body's frame, as SH coefficients in this many
+// bands.
 using ChangeAt = std::function<std::vector<float>(int bands, const glm::vec3& point)>;
-// Of a black sphere about the origin; points nearer than 1.05 radii count as that far.
+// Returns the change by a black sphere about the origin. Points nearer than 1.05 radii are treated as if at
+// 1.05 radii.
 ChangeAt blackSphere(float radius);
 
 struct BuiltBody {
   std::string name = "body";
   ChangeAt change;
   glm::uvec3 size{17};
-  glm::vec3 half{4.0f};  // of the grid's box, about the origin
+  glm::vec3 half{4.0f};  // half size of the grid's box, about the origin
   std::uint32_t outputs = 9;
-  float sphere_radius = 0.0f;  // over 0: captures see this black sphere
+  float sphere_radius = 0.0f;  // if positive, captures see a black sphere of this radius
   glm::vec3 place{0.0f};
   glm::quat turn{1.0f, 0.0f, 0.0f, 0.0f};
-  bool volume = false;  // with a volume, empty, within group `within`
+  bool volume = false;  // adds an empty volume, within group `within`
   std::int32_t within = -1;
 };
 
@@ -42,7 +44,8 @@ struct BuiltReceiver {
   bundle::MeshData mesh;
   glm::mat4 group_from_mesh{1.0f};
   std::uint32_t outputs = 1;  // 1, 9 or, with a table, 25
-  // Over 0, of plain ones: transfer has a full block of three channels, so many times the open shadowed one.
+  // If positive, the transfer of plain receivers has a full block of three channels: this factor times the
+  // unoccluded shadowed block.
   glm::vec3 full{0.0f};
   gltf::Material material{};
   glm::vec3 place{0.0f};
@@ -51,15 +54,15 @@ struct BuiltReceiver {
 
 struct NeighborhoodScene {
   std::uint32_t order = 5;
-  std::vector<BuiltReceiver> receivers;  // the first groups
+  std::vector<BuiltReceiver> receivers;  // these are the first groups
   std::vector<BuiltBody> bodies;
-  std::optional<bundle::BrdfTable> table;  // GGX, of glossy receivers
+  std::optional<bundle::BrdfTable> table;  // a GGX table for glossy receivers
 
-  // A failure fails the test.
+  // Writes the bundle; a failure fails the test.
   void write(const std::filesystem::path& path) const;
 };
 
-// (-half, 0, -half) to (half, 0, half), facing +Y, in cells x cells quads.
+// Makes a floor from (-half, 0, -half) to (half, 0, half), facing +Y, of cells x cells quads.
 bundle::MeshData floorMesh(float half, int cells);
 
 }  // namespace lambent::testing

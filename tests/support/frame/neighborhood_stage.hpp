@@ -1,4 +1,4 @@
-// A written scene in a world, seen from straight above, and what its floor should show.
+// Shows a written scene in a world from straight above, and computes what its floor should show.
 #pragma once
 
 #include <cmath>
@@ -29,7 +29,7 @@ struct NeighborhoodStage {
   frame::World world;
   lighting::Environment environment;
   std::optional<frame::Frame> frame;
-  float half = 4.0f;  // of the picture, metres
+  float half = 4.0f;  // half width of the picture in metres
 
   NeighborhoodStage(const NeighborhoodScene& scene, const std::vector<spec::Light>& lights,
                     bool neighborhoods = true)
@@ -68,7 +68,7 @@ struct NeighborhoodStage {
     const Result<void> done = frame->render(world, environment, view());
     ASSERT_TRUE(done) << done.error().line();
   }
-  // After everything has come to rest.
+  // Renders until everything is at rest, and returns the picture.
   spec::RgbaImage picture() {
     render();
     const Result<std::uint32_t> steps = frame->rest(world, environment);
@@ -76,7 +76,7 @@ struct NeighborhoodStage {
     render();
     return frame->readLinear();
   }
-  // World, at height 0.
+  // Returns the pixel's place in world space, at height 0.
   glm::vec3 placeOf(std::uint32_t x, std::uint32_t y) const {
     const auto at = [&](std::uint32_t i) {
       return half * ((2.0f * static_cast<float>(i) + 1.0f) / kSide - 1.0f);
@@ -99,8 +99,8 @@ struct NeighborhoodStage {
   }
 };
 
-// (V - 1) L in so many bands, world axes: what a body whose change at the point is `change` does to the
-// light.
+// Returns (V - 1) L in this many bands, in world axes: what a body does to the light L if its change at the
+// point is `change`.
 inline std::vector<glm::vec3> changeOf(const sh::LightVector& light, int order, int bands_out,
                                        const std::vector<float>& change) {
   const sh::GauntTable table = sh::makeGauntTable(order, bands_out);
@@ -111,7 +111,7 @@ inline std::vector<glm::vec3> changeOf(const sh::LightVector& light, int order, 
   return out;
 }
 
-// E/pi at a normal of light in bands.
+// Returns E/pi at a normal from the light's bands.
 inline glm::vec3 irradianceOverPi(const std::vector<glm::vec3>& light, const glm::vec3& normal) {
   const int bands = static_cast<int>(std::lround(std::sqrt(light.size())));
   std::vector<float> transfer(light.size());

@@ -1,4 +1,4 @@
-// A world with one bundle, a light and a frame of 64 x 64, for tests of views and overlays.
+// Shows one bundle in a world with a light and a frame of 64 x 64, for tests of views and overlays.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace lambent::testing {
 
-// Pictures of light or of numbers, for comparison.
+// Returns options for pictures that are compared as linear light or as numbers.
 inline frame::FrameOptions linearOptions(const frame::ViewChoice& view = {}) {
   frame::FrameOptions options;
   options.output = frame::Output::Linear;

@@ -1,5 +1,5 @@
-// Worlds of several bundles under one light, seen from above, and files for them: a floor, a ball over it
-// that changes its light (by a grid, and as others capture it), a sheet, a cloud.
+// Shows worlds of several bundles under one light from above, and writes files for them: a floor, a ball over
+// it that changes the floor's light (by a grid, and as captures see it), a sheet, a cloud.
 #pragma once
 
 #include <cstdint>
@@ -70,10 +70,10 @@ struct WorldStage {
     const Result<void> done = frame->render(world, environment, view);
     ASSERT_TRUE(done) << done.error().line();
   }
-  // All of it here, and the light at rest.
+  // Uploads everything, waits until the light is at rest, and returns the picture.
   spec::RgbaImage picture() {
     gpu::Counters counters;
-    (void)world.uploadAll(counters);  // what is wrong with a bundle is in errors()
+    (void)world.uploadAll(counters);  // errors of a bundle are in errors()
     render();
     const Result<std::uint32_t> steps = frame->rest(world, environment);
     EXPECT_TRUE(steps) << steps.error().line();
@@ -90,7 +90,7 @@ struct WorldStage {
 
 class WorldTest : public GpuTest {
  protected:
-  // Same picture, same memory.
+  // Expects the same picture and the same memory use.
   static void expectSame(const spec::RgbaImage& image, const spec::RgbaImage& expected, WorldStage&) {
     EXPECT_EQ(worst(image, expected), 0.0);
   }

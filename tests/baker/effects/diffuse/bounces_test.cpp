@@ -29,8 +29,8 @@ float triangleArea(const bundle::MeshData& mesh, std::size_t first) {
   return 0.5f * glm::length(glm::cross(b - a, c - a));
 }
 
-// The inside of a unit sphere with a round opening of half angle `alpha` about `axis`, and the share of the
-// sphere's area that it takes, both of the mesh as it is.
+// A Cavity is the inside of a unit sphere with a round opening of half angle `alpha` about `axis`. Its
+// `opening` is the fraction of the mesh's sphere area that is open.
 struct Cavity {
   bundle::MeshData mesh;
   float opening = 0.0f;
@@ -55,7 +55,7 @@ Cavity cavity(glm::vec3 axis, float alpha_deg) {
   return cavity;
 }
 
-// Mean over the surface of every column of channel 0.
+// Returns the mean over the surface of every column of channel 0.
 std::vector<double> surfaceMean(const Transport& t, const TransferField& field) {
   std::vector<double> sum(field.columns, 0.0);
   double area = 0.0;
@@ -93,7 +93,8 @@ TEST(Bounces, InACavityMatchTheClosedFormForEveryHarmonicAndBounce) {
           sum[i] += f * double{towards_opening[i]} * std::pow(double{albedo} * (1.0 - f), bounces);
       for (std::size_t i = 0; i < 25; ++i) {
         const double expected = bounces == 0 ? f * double{towards_opening[i]} : sum[i];
-        // Half a percent of the uniform part, and what the jagged rim of the mesh makes of high bands.
+        // The tolerance is half a percent of the uniform part, plus the effect of the mesh's jagged rim on
+        // high bands.
         EXPECT_NEAR(mean[i], expected, 0.005 * f * 0.2821 + 0.004 * f) << "bounces " << bounces << " i " << i;
       }
       if (bounces == 0) continue;
@@ -107,7 +108,8 @@ TEST(Bounces, InACavityMatchTheClosedFormForEveryHarmonicAndBounce) {
 }
 
 TEST(Bounces, InAWhiteFurnaceAddUpToOne) {
-  // An open cup with a ball in it: albedo 1, uniform light. No light is lost, so every point sees radiance 1.
+  // A ball is in an open cup, with albedo 1 and uniform light. No light is lost, so every point sees radiance
+  // 1.
   auto cup = flipped(box({0, 0, 0}, {2, 1, 2}, 6));
   std::vector<std::uint32_t> kept;
   for (std::size_t i = 0; i < cup.indices.size(); i += 3) {
@@ -122,7 +124,8 @@ TEST(Bounces, InAWhiteFurnaceAddUpToOne) {
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
     if (t.samples.originsOf(s).empty()) continue;
     const float sum = uniformRadiance(baked.direct.field.at(s)) + uniformRadiance(baked.bounced.field.at(s));
-    // Exact but for the passes with less than 1 % of the light, whose every fourth ray errs by some percent.
+    // The result is exact except for the passes with less than 1 % of the light, whose rays (every fourth)
+    // err by a few percent.
     EXPECT_NEAR(sum, 1.0f, 1e-3f);
   }
 }
@@ -155,7 +158,7 @@ TEST(Bounces, AreNoneOnAConvexBody) {
 }
 
 TEST(Bounces, CarryTheColourOfTheWallAndOfItsTexture) {
-  // Floor beside a red wall; then the same red from a texture.
+  // A floor is beside a red wall; then the same red comes from a texture.
   Scene scene =
       sceneOf({grid({0, 0, 0}, 1.0f, 4), transformed(turned(grid({0, 0, 0}, 1.0f, 4), -90.0f, {0, 0, 1}),
                                                      glm::translate(glm::mat4(1.0f), {-0.5f, 0.5f, 0}))});

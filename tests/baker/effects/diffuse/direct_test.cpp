@@ -1,4 +1,5 @@
-// Direct transfer against closed forms (numbers from the literature's tables, signs without Condon-Shortley).
+// Compares direct transfer with closed forms (numbers from the literature's tables, signs without
+// Condon-Shortley).
 #include "baker/effects/diffuse/direct.hpp"
 
 #include "runtime/sh/rotation.hpp"
@@ -59,7 +60,7 @@ TEST(DirectTransfer, IsUnoccludedToOnePercentOnAConvexBody) {
   }
 }
 
-// Zonal coefficients of a point under a sphere on its normal, before 1/pi (literature 7.2).
+// These are the zonal coefficients of a point under a sphere on its normal, before 1/pi (literature 7.2).
 TEST(DirectTransfer, UnderASphereMatchesTheClosedForm) {
   struct Row {
     float ratio;
@@ -91,7 +92,7 @@ TEST(DirectTransfer, OfASphereOffTheNormalLeavesOneMinusTheCosine) {
   }
 }
 
-// An infinite wall that blocks x < 0, seen from its foot with normal +Z (literature 7.2, before 1/pi).
+// An infinite wall blocks x < 0, seen from its foot with normal +Z (literature 7.2, before 1/pi).
 TEST(DirectTransfer, BesideAnInfiniteWallMatchesTheHalfPlane) {
   const auto wall = turned(grid({0, 0, 0}, 2000.0f, 2), 90.0f, {0, 0, 1});  // in the yz plane
   const auto point = transformed(turned(grid({0, 0, 0}, 1e-3f, 2), 90.0f, {1, 0, 0}),
@@ -116,7 +117,7 @@ TEST(DirectTransfer, BesideAnInfiniteWallMatchesTheHalfPlane) {
 }
 
 TEST(DirectTransfer, AtARightAngledCornerIsHalf) {
-  // Floor and wall that meet at x = 0, each with its own flat normals: the samples on the edge see a quarter
+  // Floor and wall meet at x = 0, each with its own flat normals, so the samples on the edge see a quarter
   // sphere.
   const auto floor =
       transformed(grid({0, 0, 0}, 200.0f, 20), glm::translate(glm::mat4(1.0f), {100.0f, 0, 0}));
@@ -145,7 +146,7 @@ TEST(DirectTransfer, InAClosedBoxIsDark) {
 }
 
 TEST(DirectTransfer, UnderUniformLightIsNeverAboveAlbedo) {
-  // A soup of random triangles, through each other, normals anywhere in the half space of their face.
+  // The scene is random intersecting triangles, with normals anywhere in the half space of their face.
   const Transport t(sceneOf({soup(11, 0.3f, 0.9f)}));
   const auto field = t.direct();
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
@@ -155,8 +156,8 @@ TEST(DirectTransfer, UnderUniformLightIsNeverAboveAlbedo) {
 }
 
 TEST(DirectTransfer, TurnsWithTheScene) {
-  // An L of floor and wall, and the same turned: transfer turns by the SH rotation, up to what the table's
-  // pattern, which stands in each sample's own frame, makes of it.
+  // The scene is an L of floor and wall, and the same rotated: transfer rotates by the SH rotation, up to the
+  // effect of the table's pattern, which is fixed in each sample's own frame.
   const auto scene =
       joined(grid({0, 0, 0}, 2.0f, 6), transformed(turned(grid({0, 0, 0}, 2.0f, 6), -90.0f, {0, 0, 1}),
                                                    glm::translate(glm::mat4(1.0f), {-1.0f, 1.0f, 0})));
@@ -185,7 +186,7 @@ TEST(DirectTransfer, OfASceneFarAwayIsThatOfTheSameSceneNear) {
 }
 
 TEST(DirectTransfer, UnderABodyIsFilledFromOutside) {
-  // A box sunk into the floor: floor samples inside it see only backs of its faces.
+  // A box is sunk into the floor: floor samples inside it see only backs of its faces.
   const auto floor = grid({0, 0, 0}, 4.0f, 40);
   const Transport t(sceneOf({floor, box({0, 0.3f, 0}, {1, 1, 1}, 4)}));
   const auto field = t.direct();
@@ -209,7 +210,7 @@ TEST(DirectTransfer, OfATwoSidedCardIsWholeOnBothSides) {
 }
 
 TEST(DirectTransfer, CutOutsBlockByTheirAlpha) {
-  // A roof over a floor: solid, cut out whole by vertex alpha, and blended.
+  // The roof over the floor is solid, cut out completely by vertex alpha, or blended.
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 2), flipped(grid({0, 1.0f, 0}, 50.0f, 1))});
   scene.materials.push_back(scene.materials[0]);
   scene.meshes[1].primitives[0].material = 1;

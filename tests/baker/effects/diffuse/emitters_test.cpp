@@ -1,5 +1,5 @@
-// Light of the group's own lights against closed forms: Lambert's formula for polygons, closed boxes, inverse
-// squares.
+// Compares the light of the group's own lights with closed forms: Lambert's formula for polygons, closed
+// boxes, the inverse square law.
 #include "baker/trace/emitters.hpp"
 
 #include "tests/support/shapes.hpp"
@@ -17,8 +17,8 @@ using testing::Transport;
 
 constexpr double kPi = std::numbers::pi;
 
-// Irradiance over pi at `p` with normal `n` under a polygon of radiance 1 that lies wholly above its horizon
-// (Lambert 1760: sum over edges of the angle times the edge plane's normal).
+// Returns irradiance over pi at `p` with normal `n` from a polygon of radiance 1 that is entirely above its
+// horizon (Lambert 1760: sum over edges of the angle times the edge plane's normal).
 double underPolygon(glm::dvec3 p, glm::dvec3 n, const std::vector<glm::dvec3>& corners) {
   double sum = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -30,7 +30,7 @@ double underPolygon(glm::dvec3 p, glm::dvec3 n, const std::vector<glm::dvec3>& c
   return std::abs(sum) / (2.0 * kPi);
 }
 
-// A floor under a square panel that shines downwards.
+// Makes a floor under a square panel that emits downwards.
 Scene panelScene(float height, float width, float floor_width = 4.0f) {
   Scene scene = sceneOf({grid({0, 0, 0}, floor_width, 8), flipped(grid({0, height, 0}, width, 2))});
   scene.materials[0].base_color = {0.0f, 0.0f, 0.0f, 1.0f};
@@ -58,7 +58,7 @@ TEST(GroupLights, PanelAboveAFloorMatchesLambertsFormula) {
       EXPECT_NEAR(field.at(s)[4], exact, 0.02) << height << " at " << p.x << ", " << p.z;
       error += std::pow(double{field.at(s)[4]} - exact, 2), energy += exact * exact;
     }
-    // Just under the panel's edge, 5 cm away, 256 points and 1024 rays draw the edge of the light.
+    // Just under the panel's edge, 5 cm away, 256 points and 1024 rays must resolve the edge of the light.
     EXPECT_LT(std::sqrt(error / energy), height < 0.1f ? 0.015 : 0.005) << height;
   }
 }
@@ -70,8 +70,8 @@ TEST(GroupLights, ClosedEmittingBoxShinesWithTheGeometricSeries) {
   const Transport t(scene);
   const auto baked = t.bake(2, 1024, 20);
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
-    // E/pi: what all walls give, e / (1 - albedo); direct and in all. The box has corners, where points on
-    // the emitters and rays share the work.
+    // E/pi from all walls is e / (1 - albedo), direct and in total. The box has corners, where sampling
+    // emitters and rays are combined.
     EXPECT_NEAR(baked.direct.field.at(s)[4], 1.0f, 0.03f);
     EXPECT_NEAR(baked.direct.field.at(s)[4] + baked.bounced.field.at(s)[4], 2.0f, 0.03f);
   }
@@ -98,7 +98,7 @@ Scene underLight(gltf::Light light, const glm::mat4& place) {
   return scene;
 }
 
-// A node that looks down from `position`.
+// Makes a node that looks down from `position`.
 glm::mat4 lookingDown(glm::vec3 position) {
   return glm::rotate(glm::translate(glm::mat4(1.0f), position), glm::radians(-90.0f), {1, 0, 0});
 }

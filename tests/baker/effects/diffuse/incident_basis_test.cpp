@@ -1,4 +1,4 @@
-// Light for any normal, as normal maps need it.
+// Tests transfer for any normal, as normal maps need it.
 #include "baker/effects/diffuse/incident_basis.hpp"
 
 #include "runtime/sh/zonal.hpp"
@@ -15,7 +15,7 @@ using testing::Transport;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// sum_j (A_l/pi) y_j(n) l'_j.
+// Returns sum_j (A_l/pi) y_j(n) l'_j.
 float atNormal(std::span<const float> incident, glm::vec3 n, std::size_t stride = 1) {
   std::array<float, 9> kernel;
   sh::unoccludedTransfer(3, n, std::span<float>(kernel));

@@ -42,7 +42,7 @@ TEST_P(ProjectionTableOfOrder, IsExactWhereTheAnswerIsKnown) {
   for (std::size_t i = 0; i < columns; ++i) EXPECT_NEAR(a[i] + b[i], open[i], 1e-5f) << i;
 }
 
-// Were a weight negative, uniform light could come out above albedo.
+// A negative weight could make uniform light brighter than the albedo.
 TEST_P(ProjectionTableOfOrder, WeightsArePositiveAndSumToOne) {
   const auto [order, rays] = GetParam();
   const DirectionTable directions = cosineTable(static_cast<std::size_t>(rays));

@@ -1,4 +1,4 @@
-// Interreflection over glossy surfaces, and between glossy and diffuse ones, against closed forms.
+// Compares interreflection over glossy surfaces, and between glossy and diffuse ones, with closed forms.
 #include "baker/effects/glossy/glossy_bounces.hpp"
 
 #include "baker/brdf/surface_brdfs.hpp"
@@ -35,7 +35,7 @@ bundle::MeshData cup() {
   return mesh;
 }
 
-// A floor and a wall that meet at a right angle; which is glossy.
+// Makes a floor and a wall at a right angle, either of which may be glossy.
 Scene corner(bool glossy_floor, bool glossy_wall, glm::vec3 floor_color = glm::vec3(0.8f)) {
   Scene scene =
       sceneOf({grid({0, 0, 0}, 1.0f, 12), transformed(turned(grid({0, 0, 0}, 1.0f, 12), -90.0f, {0, 0, 1}),
@@ -49,8 +49,8 @@ Scene corner(bool glossy_floor, bool glossy_wall, glm::vec3 floor_color = glm::v
   return scene;
 }
 
-// Relative RMS difference over samples at the same places with the same normals, and the share that they
-// have.
+// Returns the relative RMS difference over samples of the wall, or of the floor, that have the same place and
+// normal in both scenes.
 double difference(const Transport& a, const TransferField& of_a, const Transport& b,
                   const TransferField& of_b, bool wall) {
   double sum = 0.0, all = 0.0;
@@ -80,8 +80,8 @@ TEST(GlossyBounces, InAWhiteFurnaceLeaveUniformLightAsItIs) {
   for (std::size_t s = 0; s < field.size(); ++s) {
     if (t.samples.originsOf(s).empty()) continue;
     const auto shadow = shadowMatrix(field, s);
-    // Exact but for late passes, whose every fourth ray errs by some percent of their percent, and more so in
-    // how it is spread over directions.
+    // The result is exact but for late passes, which trace every fourth ray only: these err by a few percent
+    // of the few percent that they add, and more in its distribution over directions.
     for (std::size_t i = 0; i < 25; ++i)
       EXPECT_NEAR(shadow[i * 16] + field.bounced[(s * 25 + i) * 16], i == 0 ? 1.0f : 0.0f,
                   i == 0 ? 2e-3f : 8e-3f)
@@ -92,8 +92,8 @@ TEST(GlossyBounces, InAWhiteFurnaceLeaveUniformLightAsItIs) {
 }
 
 TEST(GlossyBounces, OfALambertKernelAreThoseOfAMatteSurfaceInBothDirections) {
-  // A bounce between floor and wall, with the floor, the wall or both glossy by name only. What differs is
-  // the receiver's or sender's cosine, of which the glossy one has five bands.
+  // Light bounces between floor and wall, of which the floor, the wall or both are nominally glossy. The only
+  // difference is the receiver's or sender's cosine, of which a glossy one has five bands.
   const Transport matte(corner(false, false));
   const auto truth = matte.bake(5, 1024, 2);
   for (const auto& [floor, wall] : {std::pair{true, false}, {false, true}, {true, true}}) {
@@ -152,8 +152,8 @@ TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
 }
 
 TEST(GlossyBounces, InASphereSpreadALampEvenly) {
-  // A lamp of 1 cd in the centre of a closed sphere of radius 2 and albedo 1/2: the wall sends out albedo
-  // E/pi, and all bounces together albedo / (1 - albedo) E/pi, the same everywhere. The lamp stands on every
+  // A lamp of 1 cd is in the centre of a closed sphere of radius 2 and albedo 1/2. The wall emits albedo
+  // E/pi, and all bounces together albedo / (1 - albedo) E/pi, the same everywhere. The lamp is on every
   // normal, so of its E/pi = 1 / (pi r²) five bands of the cosine and the mirror image see 2 (1 + 5/4 - 9/24)
   // / 4 instead of 1 (the odd bands cancel).
   Scene scene = glossyScene({flipped(icosphere({0, 0, 0}, 2.0f, 4))});
@@ -212,7 +212,7 @@ TEST(GlossyBounces, HaveThreeChannelsWhereKernelsAreColoured) {
   EXPECT_EQ(transfer[50], 0.0f);
 }
 
-// Every point reflects by `kernel`, whatever the direction.
+// Every point reflects by `kernel`, for every direction.
 ExitKernels everywhere(std::span<const float> kernel) {
   return {.grey = true, .at = [kernel](std::uint32_t, float, float, const glm::vec3&, std::span<float> out) {
             for (std::size_t c = 0; c < 3; ++c)
@@ -221,11 +221,11 @@ ExitKernels everywhere(std::span<const float> kernel) {
           }};
 }
 
-// What leaves a point is its kernel times what it sees, in as many bands as the kernel has.
+// A point's exit radiance is its kernel times what it sees, in as many bands as the kernel has.
 TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
   constexpr int kExit = 7;
   const Transport t(corner(true, true), true);
-  // All light of one direction, as far as so many bands tell it.
+  // Makes light from one direction, cut to this many bands.
   const glm::vec3 from = glm::normalize(glm::vec3(-0.3f, 1.0f, 0.0f));
   std::array<float, kExit * kExit> lobe{};
   sh::evaluate(kExit, from, lobe);
@@ -245,7 +245,7 @@ TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
   const auto corner_sample = static_cast<std::uint32_t>(sample);
   bounces.addExit({}, {corner_sample, corner_sample, corner_sample}, {0, 1, 0}, -1.0f, 1.0f, left);
 
-  // Evenly over the upper half; what lies below has the mirror image's shadow.
+  // Samples the upper half uniformly; directions below have the visibility of their mirror images.
   constexpr std::size_t kDirections = 1u << 16;
   std::vector<RaySegment> ways;
   for (std::size_t k = 0; k < kDirections; ++k) {
@@ -276,7 +276,7 @@ TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
   EXPECT_GT(std::abs(lost), 0.02);  // so that the test can tell
 }
 
-// Kernels that have nothing in the bands that are kept: a second pass has light only if the first one brought
+// Makes kernels with nothing in the bands that are kept: a second pass has light only if the first one stored
 // it in the bands above.
 TEST(GlossyBounces, LightOfLaterPassesLeavesByAllBandsOfTheKernel) {
   constexpr int kExit = 7;
@@ -292,7 +292,7 @@ TEST(GlossyBounces, LightOfLaterPassesLeavesByAllBandsOfTheKernel) {
 }
 
 TEST(GlossyBounces, WithMoreBandsForWhatLeavesHaveAsManyAsWereAskedFor) {
-  // Lambert surfaces have next to nothing in the bands above.
+  // Lambert surfaces have almost nothing in the bands above.
   const Transport t(corner(true, false), true);
   const auto few = bakeGlossy(t, lambertKernels(t), {.rays = 512, .bounces = 3});
   const auto difference = [](const std::vector<float>& a, const std::vector<float>& b) {
@@ -339,14 +339,15 @@ TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
     double largest = 0.0, most = 0.0;
     for (std::size_t s = 0; s < field.size(); ++s) {
       if (t.samples.originsOf(s).empty()) continue;
-      // l' of uniform light, as a function: its mean over the sphere, and E/pi on the sample's own plane.
+      // l' of uniform light is a function whose mean over the sphere is checked, and its E/pi on the sample's
+      // own plane.
       const double mean = double{shadowMatrix(field, s)[0]} + double{field.bounced[s * 625]};
       largest = std::max(largest, mean);
       most = std::max(most, double{uniformRadiance(baked.direct.field.at(s)) +
                                    uniformRadiance(baked.bounced.field.at(s))});
       EXPECT_GT(field.bounced[s * 625], -1e-6f);
     }
-    // 2 % for what five bands make of narrow lobes and sharp edges.
+    // The tolerance is 2 % for what five bands lose of narrow lobes and sharp edges.
     EXPECT_LT(largest, 1.02) << roughness;
     EXPECT_LT(most, 1.02) << roughness;
     for (std::size_t b = 1; b < baked.bounced.energy.size(); ++b)

@@ -1,4 +1,4 @@
-// Visibility and matrices of glossy samples against closed forms (literature 1.9, 7.2, 7.3).
+// Compares visibility and matrices of glossy samples with closed forms (literature 1.9, 7.2, 7.3).
 #include "baker/effects/glossy/glossy_direct.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -35,7 +35,7 @@ float largestDifference(std::span<const float> a, std::span<const float> b) {
   return largest;
 }
 
-// A cone of half angle `a` about `axis`, in as many bands as `bands`.
+// Returns the SH of a cone of half angle `a` about `axis`, in this many bands.
 std::vector<float> cone(int bands, glm::vec3 axis, double a) {
   std::vector<float> out(static_cast<std::size_t>(sh::coefficientCount(bands)));
   sh::evaluate(bands, axis, out);
@@ -74,7 +74,7 @@ TEST(GlossyDirect, IsTheIdentityOnAConvexBody) {
   const auto baked = bakeGlossy(t, lambertKernels(t), {});
   std::vector<float> open(25);
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
-    // Not a ray of the smooth normal's hemisphere is lost below the facets' horizons.
+    // No ray of the smooth normal's hemisphere is lost below the facets' horizons.
     expectIdentity(shadowMatrix(baked.glossy.field, s), 25, 1e-4f);
     sh::unoccludedTransfer(5, t.samples.normals[s], std::span<float>(open));
     EXPECT_LT(largestDifference(open, baked.direct.field.at(s)), 1e-4f);
@@ -162,7 +162,7 @@ TEST(GlossyDirect, FillsWhatStandsUnderABodyFromItsNeighbours) {
   EXPECT_GT(baked.glossy.filled_samples, 0u);
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
     if (std::abs(t.samples.positions[s].y) > 1e-4f) continue;
-    // Beside the body half of the sky is left at least; under it, the mean of such.
+    // Beside the body at least half of the sky is visible; samples under it get the mean of such ones.
     EXPECT_GT(visibilityOf(baked.glossy.field, s)[0], 0.4f * kUniform);
     EXPECT_GT(baked.direct.field.at(s)[0], 0.4f * 0.282095f);
   }
@@ -181,7 +181,7 @@ TEST(GlossyDirect, LeavesMatteSamplesAsTheyAre) {
   const auto alone = matte.direct();
   for (std::size_t s = 0; s < mixed.samples.glossy.begin; ++s)
     EXPECT_EQ(largestDifference(baked.direct.field.at(s), alone.at(s)), 0.0f);
-  // Seen through 5 bands of the cosine instead of the whole of it, at samples that nothing hides.
+  // Unoccluded samples see the light through 5 bands of the cosine instead of the whole cosine.
   for (std::size_t s = mixed.samples.glossy.begin; s < mixed.samples.size(); ++s)
     EXPECT_LT(largestDifference(baked.direct.field.at(s), alone.at(s)), 0.02f);
   EXPECT_EQ(baked.glossy.field.size(), mixed.samples.size() - 121u);

@@ -1,4 +1,4 @@
-// What the plan says of glossy surfaces.
+// Tests what the plan says about glossy surfaces.
 #include "baker/effects/glossy/glossy.hpp"
 
 #include "baker/effects/glossy/lobe_energy.hpp"

@@ -1,4 +1,4 @@
-// Bounces that are gathered inside faces, too, and values at vertices fitted to what arrives there.
+// Tests bounces that are also gathered inside faces, and vertex values that are fitted to them.
 #include "baker/effects/glossy/inside_faces.hpp"
 
 #include <algorithm>
@@ -20,13 +20,13 @@ using testing::lambertKernels;
 using testing::Transport;
 using testing::uniformRadiance;
 
-// A floor and a ceiling, each of n x n cells, open at the sides.
+// Makes a floor and a ceiling of n x n cells each, open at the sides.
 Scene slot(int n) {
   return glossyScene({grid({0, 0, 0}, 1.0f, n), flipped(grid({0, 0.4f, 0}, 1.0f, n))});
 }
 
-// Bounced light at samples of `fine` against interpolation over the faces of `coarse`, both `width` values a
-// sample: relative RMS.
+// Compares bounced light at samples of `fine` with interpolation over the faces of `coarse`: relative RMS.
+// Both have `width` values per sample.
 double error(const Transport& coarse, const std::vector<float>& values, const Transport& fine,
              const std::vector<float>& truth, std::size_t width) {
   double wrong = 0.0, all = 0.0;
@@ -68,7 +68,7 @@ TEST(GlossyInsideFaces, ABounceFittedThereIsThatOfAFinerMeshMoreThanWhatTheVerti
 }
 
 TEST(GlossyInsideFaces, OfAWhiteFurnaceLeaveUniformLightAsItIs) {
-  // All is white, above a white floor and beside it: of uniform light nothing is lost.
+  // Everything is white, beside and above a white floor: no uniform light is lost.
   const Transport t(glossyScene({icosphere({0.3f, 0.1f, 0.1f}, 0.3f, 2), grid({0, -0.5f, 0}, 2.0f, 8)}),
                     true);
   const auto baked = bakeGlossy(t, lambertKernels(t),
@@ -90,7 +90,7 @@ TEST(GlossyInsideFaces, GiveTheSameBouncesForAnyMemoryAndNumberOfThreads) {
   };
   const GlossyBake all = baked(std::size_t{1} << 30);
   EXPECT_GT(all.hits_inside, 0u);
-  // Room for the vertices' hits and some of the points'; for none.
+  // The memory suffices for the vertices' hits and some of the points', or for none.
   for (const std::size_t memory : {all.glossy.hits.bytes() + all.hits_inside / 2, std::size_t{0}}) {
     const GlossyBake again = baked(memory);
     EXPECT_LE(again.glossy.hits.bytes() + again.hits_inside, memory);

@@ -1,4 +1,4 @@
-// Whole neighborhoods: grids, points inside, codes.
+// Tests whole neighborhoods: grids, points inside bodies, codes.
 #include "baker/effects/neighborhood/bake_neighborhood.hpp"
 
 #include "baker/effects/neighborhood/surface_body.hpp"
@@ -17,7 +17,7 @@ using testing::matrixOf;
 using testing::sceneOf;
 using testing::Transport;
 
-// A body of one mesh and colour over the floor, or all around.
+// Makes a body of one mesh and colour, with receivers below it or on all sides.
 struct Made {
   explicit Made(const bundle::MeshData& mesh, const glm::vec3& albedo = glm::vec3(0.0f))
       : transport([&] {

@@ -1,4 +1,4 @@
-// Light that polished bodies focus: mirrors keep what symmetry says that they keep.
+// Tests light that polished bodies focus, by quantities that mirrors conserve by symmetry.
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/neighborhood/follow_highlight.hpp"
 #include "baker/effects/neighborhood/surface_body.hpp"
@@ -15,7 +15,7 @@ using testing::Transport;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// A ring about the z axis, both sides seen: radius 1, from z = 0 to z = height.
+// Makes a two-sided ring about the z axis, of radius 1, from z = 0 to z = height.
 bundle::MeshData ring(float height, int around) {
   bundle::MeshData mesh;
   for (int i = 0; i < around; ++i)
@@ -31,7 +31,7 @@ bundle::MeshData ring(float height, int around) {
   return mesh;
 }
 
-// A body of metal with bounces, baked.
+// Bakes a metal body with bounces.
 struct Metal {
   Metal(const bundle::MeshData& mesh, float roughness, const glm::vec3& color, bool double_sided)
       : scene([&] {
@@ -92,7 +92,8 @@ TEST(Caustics, TakeTheColourOfTheMetal) {
   const CapDirections directions(1024);
   PointChange of_white(white.body, directions, {.order = 5, .order_out = 3, .channels = 1});
   PointChange of_colored(colored.body, directions, {.order = 5, .order_out = 3, .channels = 3});
-  // From outside, of the outer side: one reflection, at angles where Fresnel's rise towards white is small.
+  // The point sees the ring's outer side: one reflection, at angles where Fresnel's rise towards white is
+  // small.
   of_white.look({3.0f, 0.0f, 0.5f}), of_colored.look({3.0f, 0.0f, 0.5f});
   const auto uniform = [](const PointChange& point, std::size_t c) {
     return double{point.bounced()[c * 225]};
@@ -107,7 +108,7 @@ TEST(Caustics, TakeTheColourOfTheMetal) {
 }
 
 TEST(Caustics, OfRoughMetalGoOverFromPathsToKernelsWithoutAStep) {
-  // Just below the roughness where kernels begin, and just above.
+  // The roughness is just below, and just above, the one from which kernels are used.
   const auto ball = testing::icosphere({0, 0, 0}, 1.0f, 3);
   const Metal path(ball, 0.49f, glm::vec3(0.8f), false), kernel(ball, 0.51f, glm::vec3(0.8f), false);
   const CapDirections directions(2048);
@@ -155,7 +156,7 @@ TEST(HighlightSamples, OfALeaningNormalLookAtTheMirrorImageOfWhatTheTriangleHide
 }
 
 TEST(HighlightSamples, AddUpToTheDirectionalAlbedoOfTheTable) {
-  // ∫ f cos by these samples against Brdf::value over a fine grid of directions.
+  // Compares ∫ f cos by these samples with Brdf::value over a fine grid of directions.
   const auto ggx = makeGgx(false);
   for (const float roughness : {0.3f, 0.6f, 1.0f}) {
     PointReflection at;

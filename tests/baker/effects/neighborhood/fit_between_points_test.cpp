@@ -1,4 +1,4 @@
-// Points that hold what interpolates best.
+// Tests that grid points hold the values that interpolate best.
 #include "baker/effects/neighborhood/fit_between_points.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ std::vector<float> sampled(const Field& field) {
   return values;
 }
 
-// RMS of trilinear interpolation, a cell away from the faces.
+// Returns the RMS error of trilinear interpolation, at least a cell away from the faces.
 double errorOf(const std::vector<float>& values) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> uniform;

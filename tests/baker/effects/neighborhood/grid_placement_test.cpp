@@ -1,4 +1,4 @@
-// Where grids stand.
+// Tests where grids are placed.
 #include "baker/effects/neighborhood/grid_placement.hpp"
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace lambent::baker {
 namespace {
 
-// The far field of a ball of radius 1 at the origin.
+// Returns the far field of a ball of radius 1 at the origin.
 double farField(const glm::vec3& p) {
   const double d = double{glm::length(p)};
   return d > 0.0 ? std::min(1.0, 1.0 / (d * d)) : 1.0;
@@ -44,7 +44,7 @@ TEST(GridPlacements, AreASlabBelowWhereReceiversAreOnlyBelow) {
   const auto grid = placeGrid(wish, farField);
   ASSERT_TRUE(grid.has_value());
   EXPECT_EQ(grid->size, glm::uvec3(64, 8, 64));
-  // With a point and more between the receivers and the faces that they set.
+  // The box extends beyond the receivers by one to two points.
   EXPECT_LE(grid->box.low.y, -4.0f - grid->spacing().y);
   EXPECT_GE(grid->box.high.y, -2.0f + grid->spacing().y);
   EXPECT_GE(grid->box.low.y, -4.0f - 2.0f * grid->spacing().y);

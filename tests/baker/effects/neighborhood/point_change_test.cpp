@@ -1,4 +1,4 @@
-// Matrices at points in free space against closed forms.
+// Compares matrices at points in free space with closed forms.
 #include "baker/effects/neighborhood/point_change.hpp"
 
 #include "baker/effects/neighborhood/surface_body.hpp"
@@ -17,7 +17,7 @@ using testing::Transport;
 
 constexpr double kPi = std::numbers::pi;
 
-// A ball of one colour, baked, as a body.
+// Bakes a ball of one colour as a body.
 struct Ball {
   explicit Ball(const glm::vec3& albedo, int order = 5)
       : transport([&] {
@@ -35,7 +35,7 @@ struct Ball {
   SurfaceBody body;
 };
 
-// In many directions, at distances from near the surface to far away.
+// Returns points in many directions, at distances from near the surface to far away.
 std::vector<glm::vec3> points() {
   std::vector<glm::vec3> out;
   for (const float distance : {1.01f, 1.1f, 1.3f, 2.0f, 4.0f, 8.0f})
@@ -44,7 +44,7 @@ std::vector<glm::vec3> points() {
   return out;
 }
 
-// E/pi at a receiver, relative to that under uniform light of radiance 1, of light l.
+// Returns E/pi at a receiver under light l, relative to that under uniform light of radiance 1.
 double irradiance(const ChangeMatrix& matrix, int order, int order_out, const glm::vec3& normal,
                   std::span<const float> light) {
   std::vector<float> cosine(static_cast<std::size_t>(order_out * order_out));
@@ -72,7 +72,7 @@ TEST(PointChange, OfABlackSphereIsMinusTheCapThatItFills) {
       for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] -= truth[i];
       const double change = irradianceOf(truth, 5, order_out), error = irradianceOf(wrong, 5, order_out);
       EXPECT_LT(error, 0.005) << glm::length(p);
-      // Rays go to the body alone, so far away as near by.
+      // Rays are aimed at the body, so distance does not matter.
       EXPECT_LT(error, 0.01 * change) << glm::length(p);
     }
   }

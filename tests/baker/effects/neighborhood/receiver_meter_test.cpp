@@ -1,4 +1,4 @@
-// What receivers see of a change, by how they face.
+// Tests how strongly receivers see a change, depending on their normals.
 #include "baker/effects/neighborhood/receiver_meter.hpp"
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace lambent::baker {
 namespace {
 
-// A small black body in one direction: V - 1 there.
+// Returns V - 1 of a small black body in one direction.
 std::vector<float> blackIn(const glm::vec3& direction, const ChangeShape& shape, float steradians) {
   std::vector<float> visibility(shape.visibilitySize());
   sh::evaluate(shape.visibilityBands(), direction, visibility);
@@ -34,7 +34,7 @@ TEST(ReceiverMeter, OfReceiversThatFaceAnywhereIsTheChangeMeter) {
     const auto change = blackIn(glm::normalize(glm::vec3(1, 2, -1)), shape, 0.2f);
     const double measured = ReceiverMeter(shape, anywhere).measure(change, {});
     EXPECT_DOUBLE_EQ(measured, ReceiverMeter(shape, {}).measure(change, {}));
-    // That one weighs a fifth band too, or all of them.
+    // ChangeMeter also weights a fifth band, or all bands.
     if (outputs == 3) {
       EXPECT_NEAR(measured / ChangeMeter(shape).measure(change, {}), 1.0, 0.02);
     }
@@ -48,10 +48,10 @@ TEST(ReceiverMeter, FallsWithTheCosine) {
     return floor.measure(blackIn(glm::normalize(glm::vec3(1.0f, height, 0.0f)), shape, 0.1f), {});
   };
   EXPECT_GT(seen(1.0f), 2.0 * seen(0.2f));
-  // Three bands of the clamped cosine: not quite 0 where the body stands on the horizon or below.
+  // The weight has three bands of the clamped cosine: it is not quite 0 for a body on the horizon or below.
   EXPECT_LT(seen(0.0f), 0.2 * seen(1.0f));
   EXPECT_LT(seen(-1.0f), 0.1 * seen(1.0f));
-  // Light that it sends counts the same.
+  // Light that the body emits counts the same.
   const ChangeShape sends{.order = 5, .order_out = 3, .channels = 1};
   std::vector<float> bounced(sends.bouncedSize(), 0.0f);
   std::vector<float> y(9);

@@ -1,4 +1,4 @@
-// Volumes as bodies, by a medium made here.
+// Tests volumes as bodies, with a synthetic medium.
 #include "baker/effects/neighborhood/volume_body.hpp"
 
 #include "tests/support/neighborhood.hpp"
@@ -10,8 +10,8 @@ using testing::ChangeMatrix;
 using testing::irradianceOf;
 using testing::matrixOf;
 
-// A homogeneous ball of radius 1 about the origin that stops light, and sends `glow` times what it stops of
-// each coefficient that is 0 in all other bands.
+// Makes a homogeneous ball of radius 1 about the origin. It stops light, and sends `glow` times the stopped
+// fraction, in band 0 alone.
 class Fog : public VolumeLight {
  public:
   Fog(float extinction, float glow) : extinction_(extinction), glow_(glow) {}

@@ -1,4 +1,4 @@
-// A volume's bake that is cut short goes on from where it was, with the same result to the bit.
+// Tests that an interrupted bake of a volume resumes and gives a bit-identical result.
 #include <atomic>
 #include <filesystem>
 #include <thread>
@@ -20,7 +20,7 @@ class VolumeCheckpoint : public ::testing::TestWithParam<float> {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  // A ball, thicker in its middle, that scatters nearly all, in colours.
+  // Makes a ball, denser in its middle, that scatters nearly all light, with a colour.
   static Medium ball() {
     static const glm::uvec3 size(16);
     static const std::vector<float> values = [] {
@@ -66,7 +66,7 @@ TEST_P(VolumeCheckpoint, CutShortAgainAndAgainItComesToTheSameBits) {
   int runs = 0;
   std::uint64_t rays = 0;
   std::optional<VolumeTransfer> last;
-  // Stopped wherever it is a little later each time; what is kept makes each run start further on.
+  // Each run is stopped a little later than the last, and starts from what was kept.
   for (; !last; ++runs) {
     ASSERT_LT(runs, 2000);
     Cache cache = open();

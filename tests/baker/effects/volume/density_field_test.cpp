@@ -1,4 +1,4 @@
-// Optical depth along rays, against closed forms and against plain stepping.
+// Compares optical depth along rays with closed forms and with plain ray marching.
 #include <numbers>
 #include <random>
 
@@ -35,7 +35,7 @@ TEST(DensityField, IsLinearBetweenCentresAndConstantInTheHalfVoxelsAtItsFaces) {
   EXPECT_NEAR(fog.field->opticalDepth({0, 0.5f, 0.5f}, {1, 0, 0}, kFar), 0.5f + 2.0f + 1.5f, 1e-5f);
 }
 
-// A turned, stretched box, mostly empty, with lumps: many blocks and many empty ones.
+// Makes a rotated, stretched box that is mostly empty, with clumps: many blocks, many of them empty.
 TEST(DensityField, GivesWhatFineStepsGiveInAnyDirection) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-1.0f, 1.0f);

@@ -1,4 +1,4 @@
-// Transfer grids that are too coarse for their medium.
+// Tests transfer grids that are too coarse for their medium.
 #include "baker/effects/volume/fit_within_voxels.hpp"
 
 #include <array>
@@ -20,7 +20,7 @@ using testing::gridOf;
 using testing::kRoot4Pi;
 using testing::transferOf;
 
-// A place in the cube, spread evenly.
+// Returns a uniformly distributed place in the cube.
 glm::vec3 placeOf(int k) {
   return glm::fract(static_cast<float>(k) * glm::vec3(0.8191725f, 0.6710436f, 0.5497005f)) - 0.5f;
 }
@@ -33,7 +33,7 @@ TEST(GridFit, FindsWhatTheGridCanShowAndLeavesAloneWhatNoPlaceIsNear) {
   GridFit fit(grid, 2, samples);
   for (int k = 0; k < 3000; ++k)
     if (glm::vec3 p = placeOf(k); p.x < 0.0f) {
-      // In the half voxels at the faces all that interpolate are constant.
+      // In the half voxels at the faces, interpolation is constant.
       p = glm::clamp(p, glm::vec3(-5.0f / 12.0f), glm::vec3(5.0f / 12.0f));
       fit.add(p, 1.0 + p.y, std::array{plane(p), 7.0f});
     }
@@ -51,8 +51,8 @@ TEST(GridFit, FindsWhatTheGridCanShowAndLeavesAloneWhatNoPlaceIsNear) {
   }
 }
 
-// Light of one scattering that goes out of a cube of optical depth 16 on a grid of 8, two free paths a voxel,
-// against fine steps with rays of their own.
+// Computes the single-scattered light that leaves a cube of optical depth 16, on a grid of 8 (two mean free
+// paths per voxel), and compares it with fine steps and independent rays.
 TEST(FitWithinVoxels, BringsWhatGoesOutOfAMediumOfShortFreePathsNearer) {
   constexpr float kSigma = 16.0f;
   const Fog fog = cube(kSigma);

@@ -1,4 +1,4 @@
-// A baked volume as others see it.
+// Tests a baked volume as other groups see it.
 #include "baker/effects/volume/marched_volume.hpp"
 
 #include <array>
@@ -48,8 +48,8 @@ TEST(MarchedVolume, ThatAbsorbsNothingIsNotSeenInUniformLightWhateverItsPhase) {
   }
 }
 
-// Thin: along a chord of depth d of light l the volume adds d sum_i g^l(i) l_i y_i(direction), light that
-// comes towards the eye the more the more g is over 0.
+// Along a chord of depth d, a thin volume adds d sum_i g^l(i) l_i y_i(direction) of the light l. With g > 0
+// this is more for light that travels towards the eye.
 TEST(MarchedVolume, ThatIsThinScattersWhatComesFromBehindItByItsPhase) {
   constexpr float kSigma = 1e-3f, kG = 0.6f;
   const MarchedVolume volume(transferOf(cube(kSigma), coarse(), glm::vec3(0.5f), {}, kG));

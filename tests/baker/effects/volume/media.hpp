@@ -1,4 +1,4 @@
-// Volumes with known answers.
+// Makes volumes with known answers.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ struct Fog {
   std::vector<float> values;
   std::shared_ptr<const baker::DensityField> field;
 
-  // A box from low to high, its voxels filled by their centres.
+  // Makes a box from low to high, with the density at its voxel centres.
   Fog(glm::uvec3 size, glm::vec3 low, glm::vec3 high, const std::function<float(glm::vec3)>& density) {
     const glm::mat4 group_from_grid =
         glm::scale(glm::translate(glm::mat4(1.0f), low), (high - low) / glm::vec3(size));
@@ -34,7 +34,7 @@ struct Fog {
   }
 };
 
-// [-1/2, 1/2]^3, one density.
+// Makes the box [-1/2, 1/2]^3 of one density.
 inline Fog cube(float sigma, std::uint32_t voxels = 1) {
   return Fog(glm::uvec3(voxels), glm::vec3(-0.5f), glm::vec3(0.5f), [sigma](glm::vec3) { return sigma; });
 }
@@ -59,8 +59,8 @@ inline baker::VolumeTransfer transferOf(const Fog& fog, const baker::VolumeSetti
   return std::move(*transfer);
 }
 
-// Mean radiance under uniform light of radiance 1 at a place, interpolated. block: 0 single scattering, 1 and
-// on all of it.
+// Returns the interpolated mean radiance at a place under uniform light of radiance 1. block 0 is single
+// scattering, block 1 all scattering.
 inline double uniformAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::size_t block,
                         std::size_t i = 0) {
   const auto at = t.grid.stencil(t.grid.gridFromGroup(place), 0);
@@ -71,7 +71,7 @@ inline double uniformAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::s
   return sum * kRoot4Pi;
 }
 
-// A coefficient of what arrives at a place, interpolated; per column of the light.
+// Returns one interpolated coefficient of the light that arrives at a place, per column of the environment.
 inline double arrivingAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::size_t block,
                          std::size_t output, std::size_t column) {
   const auto at = t.grid.stencil(t.grid.gridFromGroup(place), 0);

@@ -1,4 +1,4 @@
-// Transfer of volumes that prefer to scatter forwards or backwards.
+// Tests the transfer of volumes that scatter mostly forwards or backwards.
 #include <array>
 #include <numbers>
 #include <random>
@@ -53,9 +53,9 @@ TEST(PhasedTransfer, OfAMediumThatAbsorbsNothingIsUniformEverywhereInUniformLigh
     }
 }
 
-// Next to nothing is lost of what comes in, and one scattering adds
+// In a thin medium hardly any incident light is lost, and one scattering adds
 //   int y_i(s) sigma c(s) sum_j g^l y_j(s) l_j ds,
-// c(s) how far it is to the cube's face.
+// where c(s) is the distance to the cube's face.
 TEST(PhasedTransfer, OfAThinMediumIsOneScatteringByItsPhase) {
   constexpr float kSigma = 1e-3f;
   for (const float g : {0.4f, -0.4f, 0.7f}) {
@@ -97,8 +97,8 @@ TEST(PhasedTransfer, IsTheIsotropicOneAsGGoesToZero) {
   }
 }
 
-// What arrives at a place by random walks with delta tracking, backwards: coefficients of uniform light and
-// of y_10 of it, [output][2].
+// Estimates what arrives at a place by random walks with delta tracking, backwards: coefficients for uniform
+// light and for y_10, [output][2].
 std::vector<std::array<double, 2>> walked(const DensityField& density, float largest, glm::vec3 place,
                                           double albedo, float g, int bands, int walks) {
   std::mt19937 random(3);
@@ -148,7 +148,7 @@ void expectWalks(const Fog& fog, float largest, float g, const VolumeSettings& s
           EXPECT_NEAR(is, wanted[i][c], tolerance * wanted[0][0]) << g << " " << c << " " << place.x;
         }
       }
-    // Over the bands, as they go on.
+    // The error is measured over all bands together.
     EXPECT_LT(std::sqrt(off / all), tolerance + 0.01) << g << " " << place.x;
   }
 }

@@ -1,4 +1,4 @@
-// Transfer of volumes against closed forms (literature 7.8), and what must hold whatever the numbers.
+// Compares the transfer of volumes with closed forms (literature 7.8), and checks general properties.
 #include <array>
 #include <numbers>
 #include <random>
@@ -36,8 +36,8 @@ TEST(VolumeTransfer, OfTheCubesCentreIsTheMeanTransmittance) {
   }
 }
 
-// Coefficients about the z axis of int tau y_l0 ds = 4 pi T_l0, of a ball of radius 1 in voxels: its surface
-// is as thick as two of them.
+// Returns the coefficients about the z axis of int tau y_l0 ds = 4 pi T_l0, for a ball of radius 1 in voxels,
+// whose surface is two voxels thick.
 TEST(VolumeTransfer, OfABallHasTheCoefficientsOfItsChords) {
   struct Case {
     float sigma;
@@ -54,7 +54,7 @@ TEST(VolumeTransfer, OfABallHasTheCoefficientsOfItsChords) {
   for (const Case& c : {Case{1, 0.0, {1.3040987, 0, 0, 0, 0}},
                         Case{1, 0.5, {1.4832176, .4066322, -.0063963, -.0097848, .0005781}},
                         Case{4, 0.5, {.1583801, .1333539, .0405853, .0019360, -.0017221}}}) {
-    // Nine voxels of a quarter: one stands at each multiple of it.
+    // There are nine voxels of a quarter each, and one is at each multiple of a quarter.
     const VolumeTransfer t = transferOf(c.sigma == 1.0f ? thin : thick, singly(gridOf(9)));
     for (std::size_t l = 0; l < 5; ++l)
       EXPECT_NEAR(uniformAt(t, {0, 0, c.r}, 0, l * (l + 1)) * kRoot4Pi, c.wanted[l], 6e-3 * c.wanted[0])
@@ -62,7 +62,7 @@ TEST(VolumeTransfer, OfABallHasTheCoefficientsOfItsChords) {
   }
 }
 
-// Uniform light from both sides: E_2(tau / 2) at mid-depth.
+// Under uniform light from both sides, mid-depth receives E_2(tau / 2).
 TEST(VolumeTransfer, OfAWideSlabIsTheExponentialIntegral) {
   for (const auto& [tau, wanted] :
        {std::pair{0.5f, 0.51773}, {1.0f, 0.32664}, {2.0f, 0.14850}, {4.0f, 0.03753}}) {
@@ -82,7 +82,8 @@ TEST(VolumeTransfer, OfAMediumThatAbsorbsNothingIsOneEverywhereInUniformLight) {
   }
 }
 
-// By random walks, 200,000 of them: +-0.001. What is left is the grid's: a free path is a voxel wide at 16.
+// The reference is 200,000 random walks: +-0.001. The rest is the grid's error: at 16, a mean free path is
+// one voxel.
 TEST(VolumeTransfer, OfTheCubesCentreWithAllScatteringsIsThatOfRandomWalks) {
   struct Case {
     float sigma, albedo;
@@ -173,7 +174,8 @@ TEST(VolumeTransfer, IsTheSameWithOneThreadWithTwoAndWithRowsThatDoNotFit) {
   EXPECT_EQ(one, small);
 }
 
-// What arrives at a place by random walks with delta tracking: mean radiance per coefficient, order 2.
+// Estimates what arrives at a place by random walks with delta tracking: mean radiance per coefficient, order
+// 2.
 std::array<double, 4> walked(const DensityField& density, float largest, glm::vec3 place, double albedo,
                              int walks) {
   std::mt19937 random(3);
@@ -221,7 +223,7 @@ TEST(VolumeTransfer, OfACloudIsThatOfRandomWalks) {
   }
 }
 
-// A wall in the plane x = 0: thin fog on either side sees its half of the sky.
+// A wall is in the plane x = 0: thin fog on either side sees its half of the sky.
 TEST(VolumeTransfer, CutByAWallSeesHalfTheSkyOnEachSide) {
   const testing::Transport walled(
       testing::sceneOf({testing::turned(testing::grid({0, 0, 0}, 1000.0f, 2), 90.0f, {0, 0, 1})}));

@@ -1,5 +1,5 @@
-// Random bundles for the diffuse effect: several groups, cells and draws of odd sizes with random meshes,
-// rows, clusters and codes, as descriptions and as what the loader would hand on.
+// Makes random bundles for the diffuse effect: several groups, cells and draws of odd sizes with random
+// meshes, rows, clusters and codes, as descriptions and as the chunks that the loader would deliver.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@ struct RandomBundle {
   bundle::Description description;
   std::vector<streaming::Ready> meshes, rows;
   std::vector<std::vector<streaming::CodebookChunk>> codebooks;  // per cell, by transfer
-  std::vector<std::vector<streaming::PlaneChunk>> planes;   // per cell, of the environment, then the lamps
-  std::vector<streaming::LightWeightsChunk> light_weights;  // per cell; none where there is one light probe
+  std::vector<std::vector<streaming::PlaneChunk>> planes;   // per cell, for the environment, then the lamps
+  std::vector<streaming::LightWeightsChunk> light_weights;  // per cell; none if there is one light probe
   std::vector<streaming::ProxyChunk> proxies;               // per group
 };
 
@@ -33,15 +33,15 @@ struct RandomBundleOptions {
   std::uint32_t lamps = 0;
   std::uint32_t groups = 2;
   std::uint32_t cells = 3;         // per group
-  std::uint32_t mapped_cells = 0;  // and so many with nine outputs
-  std::uint32_t glossy_cells = 0;  // and so many of visibility, with glossy_bands² outputs
+  std::uint32_t mapped_cells = 0;  // more cells, with nine outputs
+  std::uint32_t glossy_cells = 0;  // more cells, with glossy_bands² outputs of visibility
   std::uint32_t glossy_bands = 5;
-  std::uint32_t neighborhood_cells = 0;  // and so many with points of a grid, neighborhood_bands² outputs
+  std::uint32_t neighborhood_cells = 0;  // more cells, with grid points of neighborhood_bands² outputs
   std::uint32_t neighborhood_bands = 3;
-  bool bounced = false;         // of glossy cells and of points
-  std::uint32_t samples = 101;  // per cell, odd on purpose
+  bool bounced = false;         // glossy cells and grid points have bounces
+  std::uint32_t samples = 101;  // per cell, deliberately odd
   std::uint32_t vertices = 131;
-  std::uint32_t light_probes = 1;     // per group, every cell uses all but the first
+  std::uint32_t light_probes = 1;     // per group; every cell uses all but the first
   std::uint32_t proxy_triangles = 0;  // per group
 };
 
@@ -92,7 +92,7 @@ class BundleMaker {
                    c < surface_cells ? transfer::Domain::Vertex : transfer::Domain::GridPoint));
     gltf::Node node;
     node.parent_from_node = glm::mat4_cast(group.rest_rotation);
-    // Scale differs by axis: normals must go by the inverse transpose.
+    // The scale is non-uniform, so that normals need the inverse transpose.
     for (int axis = 0; axis < 3; ++axis) node.parent_from_node[axis] *= uniform(0.5f, 2.0f);
     node.mesh = static_cast<std::int32_t>(g);
     description.nodes.push_back(node);
@@ -112,7 +112,7 @@ class BundleMaker {
     description.groups.push_back(std::move(group));
   }
 
-  // Triangles with none to eight entries, every other one shining.
+  // Makes triangles with none to eight entries; every other one is emissive.
   bundle::CaptureProxy makeProxy(const RandomBundleOptions& options, std::uint32_t sample_count) {
     bundle::CaptureProxy proxy;
     for (std::uint32_t t = 0; t < options.proxy_triangles; ++t) {
@@ -136,7 +136,7 @@ class BundleMaker {
   }
   glm::vec3 color() { return {uniform(0, 1), uniform(0, 1), uniform(0, 1)}; }
 
-  // Up to four different lights, weights that fall and sum to 255.
+  // Chooses up to four different lights, with decreasing weights that sum to 255.
   transfer::LightWeights lightWeights(std::uint32_t lights) {
     transfer::LightWeights weights;
     const std::uint32_t count = 1 + below(std::min(lights, 4u)), first = below(lights);
@@ -205,7 +205,7 @@ class BundleMaker {
     return cell;
   }
 
-  // Clusters of ever fewer axes, random samples in each.
+  // Makes clusters of decreasing numbers of axes, with random samples in each.
   bundle::CellTransfer makeTransfer(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g,
                                     std::uint32_t c, std::uint32_t transfer_index,
                                     const transfer::TransferShape& shape) {
@@ -250,7 +250,7 @@ class BundleMaker {
     bundle::MeshData data;
     for (std::uint32_t v = 0; v < options.vertices; ++v) {
       data.positions.push_back(direction());
-      // Poles among them: the recurrences must not mind.
+      // The poles are among them, because recurrences may fail there.
       data.normals.push_back(v == 0   ? glm::vec3(0.0f, 0.0f, 1.0f)
                              : v == 1 ? glm::vec3(0.0f, 0.0f, -1.0f)
                                       : direction());

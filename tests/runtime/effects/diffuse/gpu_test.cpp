@@ -1,4 +1,4 @@
-// Kernels against their CPU twin on random codes and lights, and what makes them run.
+// Compares kernels with their CPU twin on random codes and lights, and tests what makes them run.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ struct Bench : testing::ShadingBench<Diffuse> {
     return pages;
   }
 
-  // A sun that few bands cannot carry; what arrives at light probes of their own has one as well.
+  // Sets a sun that a few bands cannot represent, and gives light at light probes a key light, too.
   void shineByKeyLights() {
     environment.setMostKeys(16);
     ASSERT_TRUE(environment.setLights(
@@ -48,7 +48,7 @@ struct Bench : testing::ShadingBench<Diffuse> {
         if (place.incident[k].light != nullptr) place.incident[k].key = &incident[(k + 1) % incident.size()];
   }
 
-  // Largest difference to the twin relative to the largest value there is, of vertices and of samples.
+  // Returns the largest difference from the twin over vertices and samples, relative to the largest value.
   double differenceToTwin() {
     const Pages transfer = pagesOf(residency.transfer()), rows = pagesOf(residency.rows()),
                 geometry = pagesOf(residency.geometry()), radiance = pagesOf(residency.radiance());
@@ -185,7 +185,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
         bench.environment.setTurn(33.0f);
         bench.shade();
         EXPECT_LT(bench.differenceToTwin(), 1e-3) << "turned";
-        // And back to where there are none.
+        // The change is undone again.
         bench.environment.setMostKeys(0);
         for (lighting::GroupPlace& place : bench.places)
           for (lighting::Incident& incident : place.incident) incident.key = nullptr;
@@ -353,7 +353,7 @@ TEST_F(DiffuseGpu, ShadesUnshadowedUntilTransferIsThere) {
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
   bench.uploadRows();
   bench.shade();
-  // One cell of several: rows that reach into the others mix in the unshadowed light.
+  // Only one of several cells is uploaded; rows that reach into the others blend in unshadowed light.
   bench.uploadCell(0, 1);
   EXPECT_EQ(bench.shade(), 3u);
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
@@ -400,7 +400,7 @@ TEST_F(DiffuseGpu, WhatComesInPiecesIsShadedAsWhatComesWhole) {
   bench.shade();
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
 
-  // What is cancelled leaves nothing behind.
+  // A cancelled upload leaves nothing behind.
   const std::uint64_t before = bench.residency.bytesResident();
   ASSERT_TRUE(bench.residency.begin(0, bench.made.meshes.front()));
   bench.residency.cancel(0);

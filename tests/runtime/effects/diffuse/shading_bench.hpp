@@ -1,5 +1,5 @@
-// Random cells on the GPU under light, for the tests of an effect that shades samples: what of the cells is
-// there, and shading once.
+// Shades random cells on the GPU, for tests of effects that shade samples: it uploads the cells' transfer and
+// runs the effect once.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@ struct ShadingBench {
     for (const auto& item : made.rows) upload(item);
   }
   static constexpr std::uint32_t kAllPlanes = std::numeric_limits<std::uint32_t>::max();
-  // Codebooks, and of each transfer the first `count` planes.
+  // Uploads the codebooks, and the first `count` planes of each transfer.
   void uploadTransfer(std::uint32_t count = kAllPlanes) {
     for (std::size_t cell = 0; cell < made.codebooks.size(); ++cell) uploadCell(cell, count);
   }
@@ -61,7 +61,7 @@ struct ShadingBench {
     for (const auto& plane : made.planes[cell])
       if (plane.plane < count) upload(plane);
   }
-  // How many dispatches it took.
+  // Shades once and returns the number of dispatches.
   template <typename Mode>
   std::uint32_t shadeIn(Mode mode) {
     gpu::Counters counters;

@@ -1,4 +1,4 @@
-// Numbers of the transfer as views show them: the kernel against vectors that the bundle's own decoder gives.
+// Compares the transfer values that views show with vectors from the bundle's own decoder.
 #include "runtime/evaluate/transfer_values.hpp"
 
 #include <cstring>
@@ -12,7 +12,7 @@
 namespace lambent::effects::diffuse {
 namespace {
 
-// TransferValues in the place of an effect that shades.
+// Runs TransferValues in the place of an effect that shades.
 struct Asked {
   evaluate::TransferValues values;
   Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights,
@@ -33,7 +33,7 @@ struct Bench : testing::ShadingBench<Asked> {
     effect.values.buffer().read(0, std::span(values));
     return values;
   }
-  // Transfer t of a cell, sample-major, as the bundle decodes it.
+  // Returns transfer t of a cell, sample-major, as the bundle decodes it.
   std::vector<float> decoded(std::size_t cell, std::size_t t, std::vector<std::uint32_t>& cluster_of) const {
     const streaming::CodebookChunk& ready = made.codebooks[cell][t];
     cluster_of.resize(ready.positions.size());
@@ -101,7 +101,7 @@ TEST_F(TransferValuesTest, DcAndBandsAreThoseOfTheDecodedVectorsOfEveryKindOfSam
           if (shape.order == 0 || t > 0) continue;
           std::vector<std::uint32_t> cluster_of;
           const std::vector<float> vectors = bench.decoded(cell, t, cluster_of);
-          // Bounced light of glossy surfaces lies in a transfer of its own, of which DC alone adds up.
+          // Bounced light of glossy surfaces has a transfer of its own, of which only DC adds up.
           const bool bounced = dc && mode == evaluate::TransferMode::Full && shape.isVisibility();
           std::vector<std::uint32_t> others;
           const std::vector<float> bounces = bounced ? bench.decoded(cell, 1, others) : std::vector<float>();
@@ -178,7 +178,7 @@ TEST(TransferMeasures, OpenSurfacesOfEveryKindHaveTheSameNumbers) {
   const transfer::TransferShape plain{.order = kOrder}, mapped{.order = kOrder, .outputs = 9},
       visibility{.order = kOrder, .outputs = 25, .visibility_bands = 9};
   std::vector<float> row(plain.size(), 0.0f), matrix(mapped.size(), 0.0f), open(visibility.size(), 0.0f);
-  // E/pi at the normal z: (A_l/pi) y_l0.
+  // E/pi at the normal z is (A_l/pi) y_l0.
   for (std::uint32_t l = 0; l < kOrder; ++l)
     row[l * l + l] = transfer::kCosineOverPi[l] *
                      std::sqrt(static_cast<float>(2 * l + 1) / (4.0f * std::numbers::pi_v<float>));

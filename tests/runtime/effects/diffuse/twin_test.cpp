@@ -1,4 +1,4 @@
-// The CPU twin against closed forms and against the plain way of decoding: always runs.
+// Compares the CPU twin with closed forms and with plain decoding; needs no GPU.
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace lambent::effects::diffuse {
 namespace {
 
-// Of one light probe: without key lights, and of key lights alone, if there are any.
+// Makes the light at one light probe: without key lights, and of key lights alone if `keys`.
 std::vector<glm::vec4> randomLight(testing::BundleMaker& maker, int order, bool keys = false) {
   std::vector<glm::vec4> light(transfer::kLightStride, glm::vec4(0.0f));
   for (const uint first : keys ? std::vector{0u, transfer::kKeyBlock} : std::vector{0u})
@@ -35,7 +35,7 @@ TEST(DiffuseTwin, ShadesUnshadowedAsTheClosedFormOfOpenTransfer) {
       glm::vec3 expected(0.0f);
       for (std::size_t k = 0; k < transfer.size(); ++k) expected += transfer[k] * glm::vec3(light[k]);
       const glm::vec3 got = ref::unshadowedRadiance(memory, normal, 0, order);
-      // Float recurrences on coefficients of size 1, up to 64 of them.
+      // The tolerance is for float recurrences on up to 64 coefficients of size 1.
       EXPECT_LT(glm::distance(got, expected), 1e-5f * static_cast<float>(order)) << "order " << order;
     }
   }
@@ -43,7 +43,7 @@ TEST(DiffuseTwin, ShadesUnshadowedAsTheClosedFormOfOpenTransfer) {
 
 namespace {
 
-// A transfer as residency lays it out, alone in its page.
+// Lays out a transfer in GPU memory as residency does, alone in its page.
 struct Page {
   std::vector<uint> words, places;
   transfer::TransferRecord record{};
@@ -136,8 +136,8 @@ std::vector<std::vector<std::uint32_t>> codesOf(const testing::RandomBundle& mad
   return all;
 }
 
-// What all transfers of the cell give, decoded the plain way: [sample][output]. Of key lights the bounces
-// alone, full less shadowed; w: 1 and the luminance of what they give straight.
+// Returns what all transfers of the cell give, decoded directly: [sample][output]. Of key lights it has only
+// the bounces, full minus shadowed; w is 1 plus the luminance of their direct light.
 std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
                                          const std::vector<glm::vec4>& light, bool full) {
   std::vector<glm::vec4> out;
@@ -149,7 +149,7 @@ std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
     const std::vector<float> vectors =
         transfer::decodeTransfer(shape, made.codebooks[0][t].codebook, cluster_of, codesOf(made, t));
     if (out.empty()) out.resize(positions.size() * shape.outputs, glm::vec4(0, 0, 0, 1));
-    // Coefficient i of what arrives at a sample, of the block that begins so far behind the first.
+    // Returns coefficient i of what arrives at a sample, from the block at this offset from the first.
     const auto arriving = [&](std::size_t s, std::uint32_t block, std::uint32_t i) {
       if (shape.order == 0) return block == 0 ? glm::vec3(light[Page::lampsOf(made) + i]) : glm::vec3(0.0f);
       if (made.light_weights.empty()) return glm::vec3(light[block + i]);
@@ -237,7 +237,7 @@ TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
 }
 
 TEST(DiffuseTwin, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirOwnAlone) {
-  // As the plain sum above, by hand: one column, one vector, no codes.
+  // The result is the plain sum above, computed by hand: one column, one vector, no codes.
   std::vector<glm::vec4> light(transfer::kLightStride, glm::vec4(0.0f));
   light[0] = {1.0f, 2.0f, 3.0f, 0.0f};
   light[transfer::kKeyBlock] = {10.0f, 20.0f, 40.0f, 0.0f};

@@ -1,4 +1,4 @@
-// What evaluation at vertices would cost against evaluation at pixels: the figures of
+// Measures the error of evaluating glossy shading at vertices instead of pixels: the figures of
 // docs/measurements/glossy.md, "Highlights at vertices".
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
@@ -12,8 +12,9 @@
 namespace lambent::effects::glossy {
 namespace {
 
-// An open sphere of so many rings, seen from a distance of three radii: relative RMS difference between
-// radiance at interpolated normals and radiance interpolated between the corners of the triangles.
+// Views an unoccluded sphere of this many rings from a distance of three radii, and returns the relative RMS
+// difference between radiance at interpolated normals and radiance interpolated between the triangles'
+// corners.
 double facetError(const ref::Table& table, float roughness, int rings, std::span<const glm::vec4> light) {
   lambent::testing::BundleMaker maker(71);
   const glm::vec3 eye(0.0f, 0.0f, 3.0f);

@@ -1,4 +1,4 @@
-// Random glossy cells on the GPU, and what the CPU twin makes of the same memory.
+// Shades random glossy cells on the GPU and by the CPU twin, from the same memory.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,8 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
     return samples;
   }
 
-  // Largest difference of a glossy sample to the twin's, relative to the largest value; RGB and visibility.
+  // Returns the largest difference between a glossy sample and the twin's, in RGB and visibility, relative to
+  // the largest value.
   double differenceToTwin() {
     double difference = 0.0, largest = 0.0;
     const evaluate::TransferTable& tables = glossy.tables();

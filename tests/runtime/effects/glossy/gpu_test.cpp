@@ -1,4 +1,4 @@
-// Kernels against their CPU twin on random codes and lights, and what makes them run.
+// Compares kernels with their CPU twin on random codes and lights, and tests what makes them run.
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
 #include "tests/runtime/effects/glossy/glossy_bench.hpp"

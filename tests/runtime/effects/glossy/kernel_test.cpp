@@ -1,4 +1,4 @@
-// The kernel's CPU twin against spherical harmonics evaluated and turned the plain way.
+// Compares the kernel's CPU twin with spherical harmonics that are evaluated and rotated directly.
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@ std::vector<glm::vec4> randomLight(lambent::testing::BundleMaker& maker, std::ui
   return light;
 }
 
-// Sum of c_k light_k with c the function of the local frame, by evaluating both in many directions of a
-// sphere: exact for so few bands.
+// Returns the sum of c_k light_k, where c is the function in the local frame, by evaluating both in many
+// directions of a sphere: exact for so few bands.
 glm::vec4 product(std::uint32_t bands, std::span<const float> local, const glm::mat3& group_from_local,
                   std::span<const glm::vec4> light) {
   glm::dvec4 sum(0.0);

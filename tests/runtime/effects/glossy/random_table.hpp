@@ -1,4 +1,4 @@
-// Tables of b(v) that no surface has: random, so that every coefficient and axis counts.
+// Makes tables of b(v) that no surface has: they are random, so that every coefficient and axis matters.
 #pragma once
 
 #include "runtime/bundle/brdf_table.hpp"
@@ -22,7 +22,7 @@ inline bundle::BrdfTable randomTable(lambent::testing::BundleMaker& maker, std::
   return table;
 }
 
-// The same albedo in every direction, split between the lobes, and nothing else.
+// Makes a table with the same albedo in every direction, split between the lobes, and nothing else.
 inline bundle::BrdfTable evenTable(std::uint32_t order, bool isotropic, float f0_albedo, float f90_albedo) {
   bundle::BrdfTable table{.order = order,
                           .lobes = 2,

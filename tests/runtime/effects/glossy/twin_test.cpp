@@ -1,4 +1,4 @@
-// The CPU twin of projection and samples against closed forms.
+// Compares the CPU twin of projection and samples with closed forms.
 #include <gtest/gtest.h>
 
 #include "runtime/effects/glossy/glossy.hpp"
@@ -10,7 +10,7 @@
 namespace lambent::effects::glossy {
 namespace {
 
-// One vector of visibility, and light, as the kernels would find them.
+// Holds one vector of visibility, and light, in the layout of the kernels.
 struct OneVector {
   std::uint32_t in, out;
   std::vector<uint> gaunt, page;
@@ -88,7 +88,7 @@ TEST(GlossyTwin, FillsOpenSamplesWithTheLightAndFullVisibility) {
   EXPECT_EQ(ref::openLight(memory, fill, 0), glm::vec4(1.0f, 2.0f, 3.0f, ref::kSqrtFourPi));
   EXPECT_EQ(ref::openLight(memory, fill, 8), glm::vec4(1.0f, 2.0f, 3.0f, 0.0f));
   EXPECT_EQ(ref::openLight(memory, fill, 9), glm::vec4(0.0f));
-  // Points of a neighborhood, which hold changes, change nothing.
+  // Grid points of a neighborhood store changes, so unloaded ones give 0.
   fill.coefficients = fill.open = 0;
   for (std::uint32_t i = 0; i < 25; ++i) EXPECT_EQ(ref::openLight(memory, fill, i), glm::vec4(0.0f));
 }

@@ -1,4 +1,4 @@
-// Grids in one texture: nothing overlaps, nothing sticks out.
+// Tests the packing of grids in one texture: nothing overlaps, nothing exceeds the texture.
 
 #include "runtime/effects/neighborhood/atlas.hpp"
 
@@ -12,7 +12,7 @@ namespace lambent::effects::neighborhood {
 
 namespace {
 
-// Every texel of every slab, once.
+// Visits every texel of every slab once.
 void expectDisjoint(std::span<const GridShape> shapes, const AtlasLayout& layout, std::uint32_t max_side) {
   std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> taken;
   std::size_t texels = 0;

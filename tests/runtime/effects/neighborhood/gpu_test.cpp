@@ -1,4 +1,4 @@
-// Shaded points into the texture and out of it again, against the CPU twin on random data.
+// Writes shaded points into the texture and reads them back, and compares with the CPU twin on random data.
 
 #include <random>
 
@@ -44,7 +44,7 @@ struct Bench : lambent::testing::ShadingBench<glossy::Glossy> {
                       static_cast<GLsizei>(result.texels.size() * sizeof(glm::vec4)), result.texels.data());
     return result;
   }
-  // The same texels by the twin, from the samples as they are.
+  // Computes the same texels by the twin, from the same samples.
   ref::Atlas twin() const {
     const glm::uvec3 size = neighborhood.atlasSize();
     ref::Atlas result(size.x, size.y, size.z);

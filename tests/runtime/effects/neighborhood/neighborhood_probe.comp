@@ -1,5 +1,5 @@
-// What receivers get of a grid, one query to an invocation: share in w of the first result, E/pi in its RGB; then the
-// last output.
+// Evaluates what receivers get from a grid, one query per invocation. The first result has the share in w and E/pi in
+// RGB; the second is the last output.
 #include "neighborhood_eval.glsl"
 
 layout(local_size_x = 64) in;

@@ -1,4 +1,4 @@
-// The look-up on the CPU against what it should be.
+// Tests the look-up on the CPU.
 
 #include <random>
 
@@ -18,7 +18,7 @@ struct Written {
   Atlas atlas{1, 1, 1};
 };
 
-// Every output a linear function of the place, slab by slab another.
+// Fills every output with a linear function of the place, different for each slab.
 glm::vec4 linear(const glm::vec3& point, uint slab) {
   const float o = static_cast<float>(slab);
   return {1.0f + o + point.x, 2.0f - o * point.y, point.z - 3.0f * o, 0.5f * o + 0.25f * point.x};

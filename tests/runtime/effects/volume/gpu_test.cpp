@@ -1,4 +1,4 @@
-// The kernels against their CPU twin, and what makes them run.
+// Compares the kernels with their CPU twin, and tests what makes them run.
 #include "tests/runtime/effects/volume/volume_bench.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -50,7 +50,7 @@ std::vector<glm::vec4> pictureOfTwin(const Bench& bench, const spec::View& view,
   return texels;
 }
 
-// Half the picture with a wall of some slant, the other open.
+// Makes depths of a slanted wall in half of the picture; the other half is open.
 std::vector<float> someDepths(const spec::View& view) {
   std::vector<float> depths;
   for (std::uint32_t y = 0; y < kSide; ++y)
@@ -78,7 +78,7 @@ void expectAlike(const std::vector<glm::vec4>& found, const std::vector<glm::vec
   EXPECT_LT(most, 0.03f) << what;
 }
 
-// A triangle before all media, of white.
+// Draws a white triangle in front of all media.
 std::string_view wallText(std::string_view name) {
   if (name == "wall.vert")
     return "void main() { gl_Position = vec4(gl_VertexID == 1 ? 0.9 : -1.0, gl_VertexID == 2 ? 0.7 : -1.0, "
@@ -218,7 +218,7 @@ TEST_F(VolumeGpu, AnEmptyVolumeLeavesEveryPixelToTheLastBit) {
     for (const glm::vec4& texel : bench.picture(orbit(30.0f), before)) ASSERT_EQ(texel, before);
     EXPECT_EQ(bench.march.drawnLast(), 0u);
   }
-  // Beside a full one too, in the pixels where only the empty blocks of it are.
+  // The volume is next to a full one, too, in pixels that only see its empty blocks.
   BuiltVolume corner = cloud(1);
   corner.density = [](const glm::vec3& at) { return glm::length(at) < 5.0f ? 3.0f : 0.0f; };
   Bench bench({corner});
@@ -277,7 +277,8 @@ TEST_F(VolumeGpu, MoreVolumesThanOnePassTakesAreDrawnAll) {
 }
 
 TEST_F(VolumeGpu, SamplesOfAPixelEachEndAtTheirOwnSurface) {
-  // A wall's slanting edge before a homogeneous medium: every sample sees all of it or none, nothing between.
+  // A wall's slanted edge is in front of a homogeneous medium: every sample sees either all of the medium or
+  // none.
   BuiltVolume built;
   built.transfer = nullptr;
   built.density_max = 1.5f;

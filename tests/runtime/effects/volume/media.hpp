@@ -1,4 +1,4 @@
-// Media for the CPU twin, seen from a view whose axes are the world's.
+// Makes media for the CPU twin, seen by a view whose axes are the world's.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ inline streaming::ResidentVolume residentOf(const BuiltVolume& built) {
   return volume;
 }
 
-// Density as coded; the light in it as given: texel by texel of its texture with all slabs.
+// Uses the density as coded, and the given light for each texel of the light texture with all slabs.
 inline ref::Medium mediumOf(const BuiltVolume& built,
                             const std::function<glm::vec4(const glm::uvec3& texel)>& light,
                             const glm::mat4& world_from_group = glm::mat4(1.0f),
@@ -57,7 +57,8 @@ inline glm::vec4 whiteLight(const glm::uvec3&) {
   return glm::vec4(1.0f);
 }
 
-// Clumps with edges of about two voxels and holes between, in 0..1; of voxel coordinates.
+// Returns a function of voxel coordinates with values 0..1: clumps with edges about two voxels wide, and
+// holes between.
 inline std::function<float(const glm::vec3&)> clumps(unsigned seed, float voxels) {
   std::mt19937 engine(seed);
   const auto number = [&](float low, float high) {

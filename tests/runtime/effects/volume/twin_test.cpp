@@ -1,4 +1,4 @@
-// Rays through media with closed forms, on the CPU twin; gpu_test.cpp holds the shaders against it.
+// Compares rays through media on the CPU twin with closed forms; gpu_test.cpp compares the shaders with it.
 #include <numbers>
 
 #include <glm/gtc/quaternion.hpp>
@@ -23,7 +23,7 @@ BuiltVolume homogeneous(float extinction) {
   return built;
 }
 
-// From outside or inside, in all directions, some of them along axes and faces of blocks.
+// Makes rays from outside or inside, in all directions, some of them along axes and faces of blocks.
 struct Aim {
   glm::vec3 origin, direction;
 };
@@ -53,7 +53,7 @@ std::vector<Aim> someAims(int count) {
   return aims;
 }
 
-// Of a ray in a box of 2 m about the origin.
+// Returns the length of a ray in a box of 2 m about the origin.
 float chord(const Aim& aim) {
   float enter = 0.0f, leave = 1e30f;
   for (int axis = 0; axis < 3; ++axis) {
@@ -89,7 +89,8 @@ TEST(VolumeTwin, AHomogeneousBoxTransmitsTheExponentialOfItsChord) {
 }
 
 TEST(VolumeTwin, AtAnyDensityScattersNoMoreThanItTakesAway) {
-  // White medium, light 1 in it and behind it: 1 everywhere, up to the tenth of a per mille where rays end.
+  // The medium is white, with light 1 in it and behind it: the result is 1 everywhere, up to the 1e-4 at
+  // which rays end.
   for (const float density_max : {0.0f, 1e-6f, 0.3f, 10.0f, 300.0f, 1e6f}) {
     BuiltVolume built;
     built.size = {24, 20, 28};
@@ -111,7 +112,7 @@ TEST(VolumeTwin, AtAnyDensityScattersNoMoreThanItTakesAway) {
 }
 
 TEST(VolumeTwin, AStepIsExactWhereDensityIsConstantAndLightLinear) {
-  // Light x along a ray along x: int s exp(-s u) (x0 + u) du, whatever the step, thick or thin.
+  // The light is x, on a ray along x: the result is int s exp(-s u) (x0 + u) du for any step, thick or thin.
   for (const float extinction : {1e-3f, 1.0f, 50.0f, 1e4f}) {
     BuiltVolume built = homogeneous(extinction);
     built.transfer_size = glm::uvec3(8);
@@ -138,7 +139,7 @@ TEST(VolumeTwin, ABallTransmitsTheExponentialOfItsChord) {
       glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.2f)), glm::vec3(2.4f / 96.0f));
   constexpr float kExtinction = 1.5f;
   built.density_max = kExtinction;
-  // As a mean over each voxel the edge falls off within a voxel.
+  // The density is averaged over each voxel, so the edge falls off within a voxel.
   built.density = [&](const glm::vec3& grid) {
     const glm::vec3 place(built.group_from_grid * glm::vec4(grid, 1.0f));
     return kExtinction * std::clamp(0.5f + (1.0f - glm::length(place)) * 40.0f, 0.0f, 1.0f);
@@ -208,7 +209,7 @@ TEST(VolumeTwin, JitterChangesNothingThatCanBeSeen) {
 }
 
 TEST(VolumeTwin, OverlappingVolumesAddTheirExtinctions) {
-  // Two boxes, one turned and moved; only the first one's light is 1.
+  // There are two boxes, one of them rotated and moved; only the first one's light is 1.
   BuiltVolume first = homogeneous(0.7f), second = homogeneous(1.3f);
   second.size = {5, 9, 16};
   second.group_from_grid =
@@ -227,7 +228,7 @@ TEST(VolumeTwin, OverlappingVolumesAddTheirExtinctions) {
     EXPECT_NEAR(found.a, 0.7f * chord(aim) + 1.3f * chord(turned), 1e-4f);
     EXPECT_NEAR(found.r + std::exp(-found.a), 1.0f, 1e-4f);
   }
-  // Where both are, the ray starts and ends: light is shared by extinction.
+  // The ray starts and ends where both are: light is shared in proportion to extinction.
   const glm::vec3 origin(0.3f, 0.2f, 0.0f), along = glm::normalize(glm::vec3(1, 0.2f, 0.1f));
   const glm::vec4 found = ref::march(lit, {origin, along, 0.0f, 0.3f});
   EXPECT_NEAR(found.r, 0.35f * (1.0f - std::exp(-2.0f * 0.3f)), 1e-5f);
@@ -303,7 +304,7 @@ TEST(VolumeTwin, AVolumeThatIsScaledKeepsItsOpticalDepth) {
 }
 
 TEST(VolumeTwin, ForwardScatteringIsBrightTowardsTheLight) {
-  // A beam from s0 in n bands: S(d) = sum_l g^l (2l + 1)/4pi P_l(s0 . d).
+  // For a beam from s0 in n bands, S(d) = sum_l g^l (2l + 1)/4pi P_l(s0 . d).
   const glm::vec3 towards_light = glm::normalize(glm::vec3(0.3f, 0.8f, -0.5f));
   for (const float g : {-0.6f, 0.0f, 0.5f, 0.8f})
     for (const uint outputs : {9u, 16u, 25u, 36u}) {

@@ -1,4 +1,4 @@
-// Volumes on the GPU under light, shaded by the effects that shade them, and drawn into a small picture.
+// Shades volumes on the GPU by the effects that do so, and draws them into a small picture.
 #pragma once
 
 #include <memory>
@@ -57,7 +57,7 @@ struct Bench {
     for (std::uint32_t v = 0; v < built.size(); ++v)
       for (const auto& item : lambent::testing::partsOf(built[v], v)) upload(item);
   }
-  // Dispatches of the volume effect alone.
+  // Shades, and returns the number of dispatches of the volume effect alone.
   std::uint32_t shade(evaluate::TransferMode mode = evaluate::TransferMode::Full) {
     counters = {};
     gpu::Counters others;
@@ -75,7 +75,8 @@ struct Bench {
     for (std::uint32_t v = 0; v < built.size(); ++v) list.push_back({v, world_from_group[v]});
     return list;
   }
-  // Over a picture of this colour with this depth per sample of each pixel, 0..1, rows from the bottom.
+  // Draws over a picture of this colour with these depths, 0..1, one per sample of each pixel, rows from the
+  // bottom.
   std::vector<glm::vec4> picture(const spec::View& view, const glm::vec4& before = glm::vec4(0.0f),
                                  const std::vector<float>& depths = {}) {
     const gpu::Texture color("color", {.format = GL_RGBA32F, .width = kSide, .height = kSide});
@@ -98,7 +99,7 @@ struct Bench {
     EXPECT_TRUE(done) << done.error().line();
   }
 
-  // As the twin sees volume v with the texture that the GPU wrote.
+  // Returns volume v as the twin sees it, with the texture that the GPU wrote.
   ref::Medium mediumOf(std::size_t v, const spec::View& view) const {
     const glm::uvec3 size = slabLayoutOf(built[v].transfer_size, built[v].shape.outputs).texture_size;
     std::vector<glm::vec4> texels(std::size_t{size.x} * size.y * size.z);
