@@ -92,7 +92,7 @@ inline baker::ExitKernels lambertKernels(const Transport& t, int order_out = 5) 
       }};
 }
 
-// Returns M of the environment at glossy sample `s` (counted from first_glossy), channel 0, without bounces.
+// Returns M of the environment at glossy sample `s` (counted from the first glossy one), channel 0, without bounces.
 inline std::vector<float> shadowMatrix(const baker::GlossyField& field, std::size_t s) {
   const auto table = sh::makeGauntTable(field.order_in, field.order_out);
   std::vector<float> matrix(
