@@ -125,6 +125,27 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"stages", stages}};
 }
 
+// Returns where the time went, the longest first, as "bounces 9.1 s, refinement 3.6 s".
+std::string stagesText(const std::vector<Progress::Stage>& stages) {
+  constexpr std::size_t kMostShown = 6;
+  std::vector<std::pair<std::string, double>> sums;
+  for (const Progress::Stage& stage : stages) {
+    // Passes of bounces are one stage to whoever waits.
+    const std::string name =
+        stage.name.starts_with("bounce ") || stage.name == "patches" ? "bounces" : stage.name;
+    const auto known = std::ranges::find(sums, name, &std::pair<std::string, double>::first);
+    if (known != sums.end())
+      known->second += stage.seconds;
+    else
+      sums.emplace_back(name, stage.seconds);
+  }
+  std::ranges::stable_sort(sums, std::ranges::greater(), &std::pair<std::string, double>::second);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(sums.size(), kMostShown); ++i)
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", sums[i].first, durationText(sums[i].second));
+  return text;
+}
+
 void printReport(const BakeArguments& a, const BakeReport& r) {
   double seconds = 0.0;
   for (const Progress::Stage& stage : r.stages) seconds += stage.seconds;
@@ -135,6 +156,7 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
                refined.vertices_before, refined.vertices_after, 100.0 * refined.error_after,
                100.0 * refined.error_before,
                refined.fans > 0 ? fmt::format("; {} more values where faces disagree", refined.fans) : "");
+  fmt::print("  time      {}\n", stagesText(r.stages));
   fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
              durationText(r.ray_seconds),
              countText(r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0));

@@ -17,42 +17,39 @@ ExitRadiance::ExitRadiance(const GroupGeometry& geometry, const SampleSet& sampl
                                    samples.vertex_sample[t.z]);
 }
 
-void ExitRadiance::addDiffuse(const GatherHit& hit, float weight, const TransferField& before,
+void ExitRadiance::addCorners(const CornerWeights& corners, const TransferField& before,
                               std::span<float> sum) const {
-  const glm::uvec3 corners = triangle_samples_[hit.triangle];
-  const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
-              v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
-  const float* a = before.at(corners.x).data();
-  const float* b = before.at(corners.y).data();
-  const float* c = before.at(corners.z).data();
+  const glm::uvec3 samples = triangle_samples_[corners.triangle];
+  const float* a = before.at(samples.x).data();
+  const float* b = before.at(samples.y).data();
+  const float* c = before.at(samples.z).data();
   float* out = sum.data();
   const std::size_t columns = before.columns;
   for (std::size_t channel = 0; channel < before.channels; ++channel) {
-    const float albedo = weight * static_cast<float>(hit.albedo[channel]) * (1.0f / 65535.0f);
-    const float wa = albedo * (1.0f - u - v), wb = albedo * u, wc = albedo * v;
+    const float wa = corners.of_corner[0][channel], wb = corners.of_corner[1][channel],
+                wc = corners.of_corner[2][channel];
     for (std::size_t i = 0; i < columns; ++i) out[i] += wa * a[i] + wb * b[i] + wc * c[i];
     a += columns, b += columns, c += columns, out += columns;
   }
 }
 
 void ExitRadiance::addGlossy(const GatherHit& hit, const glm::vec3& to, float chance, float weight,
-                             std::span<float> sum) const {
-  if (partner_) partner_->addExit(hit, triangle_samples_[hit.triangle], to, chance, weight, sum);
-}
-
-void ExitRadiance::addPatches(const GatherHit& hit, const glm::vec3& to, float weight,
-                              const PatchRadiance& patches, std::span<float> sum) const {
-  const glm::vec3 reflected = weight * albedo(hit, to);
+                             const Bounce& bounce, std::span<float> sum) const {
+  if (!partner_) return;
+  const glm::uvec3 corners = triangle_samples_[hit.triangle];
+  const glm::vec3 reflected = weight * partner_->addExit(hit, corners, to, chance, weight, sum);
+  if (!bounce.of_patches) return;
+  const PatchRadiance& patches = *bounce.of_patches;
   const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
               v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
-  const glm::uvec3 corners = triangle_samples_[hit.triangle];
   const std::array<float, 3> shares = {1.0f - u - v, u, v};
   const std::size_t columns = patches.field.columns;
   for (int corner = 0; corner < 3; ++corner) {
     const float* in = patches.field.at(patches.patches.of_sample[corners[corner]]).data();
     float* out = sum.data();
     for (std::size_t c = 0; c < patches.field.channels; ++c, in += columns, out += columns) {
-      const float factor = shares[static_cast<std::size_t>(corner)] * reflected[static_cast<int>(c)];
+      const float factor = shares[static_cast<std::size_t>(corner)] * reflected[static_cast<int>(c)] *
+                           patches.patches.profile[corners[corner]];
       for (std::size_t i = 0; i < columns; ++i) out[i] += factor * in[i];
     }
   }
@@ -78,9 +75,8 @@ void ExitToSample::addGlossy(const GatherHit& hit, float weight, std::span<float
   const glm::vec3 along = frame_ * glm::vec3(table_.x[hit.ray], table_.y[hit.ray], table_.z[hit.ray]);
   // A golden-ratio sequence over neighbouring rays shares out the corners evenly.
   const std::uint32_t dealt = seed_ + hit.ray * 2654435769u;
-  const float chance = bounce_.thinly ? static_cast<float>(dealt >> 8) * 0x1p-24f : -1.0f;
-  bounce_.exit.addGlossy(hit, -along, chance, weight, sum);
-  if (bounce_.of_patches) bounce_.exit.addPatches(hit, -along, weight, *bounce_.of_patches, sum);
+  const float chance = static_cast<float>(dealt >> 8) * 0x1p-24f;
+  bounce_.exit.addGlossy(hit, -along, chance, weight, bounce_, sum);
 }
 
 }  // namespace lambent::baker

@@ -2,6 +2,8 @@
 // way in which late passes are thinned out.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -40,9 +42,9 @@ class BouncePartner {
  public:
   virtual ~BouncePartner() = default;
   // Does what ExitRadiance::addGlossy does, for a hit on one of the partner's triangles. `corners` are the
-  // triangle's samples.
-  virtual void addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
-                       float weight, std::span<float> sum) const = 0;
+  // triangle's samples. Returns albedo() of the hit.
+  virtual glm::vec3 addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to,
+                            float chance, float weight, std::span<float> sum) const = 0;
   // Returns how much of uniform light the hit point reflects towards `to`, for each channel.
   virtual glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const = 0;
   // Calls `take` with the hits of one of the partner's samples, and the direction from each to the sample.
@@ -58,6 +60,30 @@ class BouncePartner {
   virtual std::vector<double> energies() const = 0;
 };
 
+// CornerWeights says how much the corners of a triangle count, in each channel, in the light that diffuse
+// hits on it send.
+struct CornerWeights {
+  std::uint32_t triangle = 0;
+  std::array<std::array<float, 3>, 3> of_corner{};  // [corner][channel]
+
+  static CornerWeights of(const GatherHit& hit, float weight) {
+    CornerWeights corners{.triangle = hit.triangle};
+    const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
+                v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float albedo = weight * static_cast<float>(hit.albedo[c]) * (1.0f / 65535.0f);
+      corners.of_corner[0][c] = albedo * (1.0f - u - v);
+      corners.of_corner[1][c] = albedo * u;
+      corners.of_corner[2][c] = albedo * v;
+    }
+    return corners;
+  }
+  void add(const CornerWeights& others) {
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t c = 0; c < 3; ++c) of_corner[i][c] += others.of_corner[i][c];
+  }
+};
+
 // ExitRadiance returns the light that leaves hits, after the previous pass.
 class ExitRadiance {
  public:
@@ -68,16 +94,22 @@ class ExitRadiance {
   bool anyGlossy() const { return partner_ != nullptr; }
   // Adds weight * albedo * interpolated transfer to `sum`, which has the layout of a sample of `before`.
   void addDiffuse(const GatherHit& hit, float weight, const TransferField& before,
-                  std::span<float> sum) const;
+                  std::span<float> sum) const {
+    addCorners(CornerWeights::of(hit, weight), before, sum);
+  }
+  void prefetch(const GatherHit& hit, const TransferField& before) const {
+    const glm::uvec3 samples = triangle_samples_[hit.triangle];
+    for (int c = 0; c < 3; ++c) {
+      const std::span<const float> vector = before.at(samples[c]);
+      for (std::size_t i = 0; i < vector.size(); i += 16) __builtin_prefetch(vector.data() + i);
+    }
+  }
+  void addCorners(const CornerWeights& corners, const TransferField& before, std::span<float> sum) const;
   // Adds what leaves a hit that is not diffuse towards `to` (unit, group frame, away from the surface). A
   // negative `chance` interpolates the values at the triangle's corners. A `chance` in [0, 1) picks one of
-  // the corners with the probability of its weight, which has the same mean and reads a third of the data
-  // (thinned passes).
-  void addGlossy(const GatherHit& hit, const glm::vec3& to, float chance, float weight,
+  // the corners with the probability of its weight, which has the same mean and reads a third of the data.
+  void addGlossy(const GatherHit& hit, const glm::vec3& to, float chance, float weight, const Bounce& bounce,
                  std::span<float> sum) const;
-  // What leaves a hit that is not diffuse of light that patches brought.
-  void addPatches(const GatherHit& hit, const glm::vec3& to, float weight, const PatchRadiance& patches,
-                  std::span<float> sum) const;
   // Returns how much of the light at a hit leaves it towards `to`.
   glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const;
   std::span<const glm::uvec3> triangleSamples() const { return triangle_samples_; }
@@ -95,6 +127,29 @@ class ExitToSample {
   ExitToSample(const Bounce& bounce, const DirectionTable& table, const glm::vec3& normal,
                std::size_t sample);
 
+  // Adds all hits, each with the weight that weight_of returns for its ray, to `sum`. Neighbouring rays often
+  // meet the same triangle, whose transfer is read once for all of them.
+  template <typename WeightOf>
+  void addAll(std::span<const GatherHit> hits, const WeightOf& weight_of, std::span<float> sum) const {
+    CornerWeights together;
+    bool any = false;
+    for (std::size_t h = 0; h < hits.size(); ++h) {
+      const GatherHit& hit = hits[h];
+      if (h + kAhead < hits.size()) bounce_.exit.prefetch(hits[h + kAhead], bounce_.before);
+      const float weight = weight_of(hit.ray);
+      if (!bounce_.exit.isDiffuse(hit)) {
+        addGlossy(hit, weight, sum);
+      } else if (const CornerWeights own = CornerWeights::of(hit, weight);
+                 any && own.triangle == together.triangle) {
+        together.add(own);
+      } else {
+        if (any) bounce_.exit.addCorners(together, bounce_.before, sum);
+        together = own;
+        any = true;
+      }
+    }
+    if (any) bounce_.exit.addCorners(together, bounce_.before, sum);
+  }
   void add(const GatherHit& hit, float weight, std::span<float> sum) const {
     if (bounce_.exit.isDiffuse(hit))
       bounce_.exit.addDiffuse(hit, weight, bounce_.before, sum);
@@ -104,6 +159,8 @@ class ExitToSample {
 
  private:
   void addGlossy(const GatherHit& hit, float weight, std::span<float> sum) const;
+
+  static constexpr std::size_t kAhead = 4;  // hits whose transfer is on its way from memory
 
   const Bounce& bounce_;
   const DirectionTable& table_;

@@ -1,5 +1,10 @@
 #include "baker/trace/patch_light.hpp"
 
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+
 #include "baker/jobs/parallel.hpp"
 #include "baker/jobs/stage.hpp"
 
@@ -9,7 +14,37 @@ namespace {
 
 constexpr std::size_t kPatchesPerRange = 8;
 
+std::array<float, 3> cornerWeights(const GatherHit& hit) {
+  const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
+              v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
+  return {1.0f - u - v, u, v};
+}
+
 }  // namespace
+
+std::optional<std::vector<float>> samplesMet(std::span<const float> areas,
+                                             std::span<const glm::uvec3> corners, const VisitHits& visit,
+                                             const BakeContext& context) {
+  // Sums in whole numbers do not depend on their order. All areas together are 2^52 of them.
+  double area = 0.0;
+  for (const float one : areas) area += double{one};
+  const double scale = area > 0.0 ? 0x1p52 / area : 0.0;
+  std::vector<std::atomic<std::uint64_t>> sums(areas.size());
+  const bool done =
+      parallelRanges(areas.size(), kSamplesPerRange, context.stop, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s)
+          visit(s, [&](const GatherHit& hit, float weight, const glm::vec3& albedo) {
+            const std::array<float, 3> parts = cornerWeights(hit);
+            const double sent = scale * double{areas[s] * weight * (albedo.x + albedo.y + albedo.z)} / 3.0;
+            for (std::size_t c = 0; c < 3; ++c)
+              sums[corners[hit.triangle][static_cast<int>(c)]].fetch_add(
+                  static_cast<std::uint64_t>(std::max(sent * double{parts[c]}, 0.0)),
+                  std::memory_order_relaxed);
+          });
+      });
+  if (!done) return std::nullopt;
+  return std::vector<float>(sums.begin(), sums.end());
+}
 
 bool PatchTransport::build(const VisitHits& visit, const BakeContext& context) {
   const std::size_t count = patches_.size();
@@ -19,13 +54,12 @@ bool PatchTransport::build(const VisitHits& visit, const BakeContext& context) {
     for (std::uint32_t i = patches_.offsets[patch]; i < patches_.offsets[patch + 1]; ++i) {
       const float share = patches_.shares[i];
       visit(patches_.samples[i], [&](const GatherHit& hit, float weight, const glm::vec3& albedo) {
-        const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
-                    v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
         const glm::uvec3 corners = corners_[hit.triangle];
-        const std::array<float, 3> weights = {1.0f - u - v, u, v};
+        const std::array<float, 3> weights = cornerWeights(hit);
         for (int corner = 0; corner < 3; ++corner) {
           const std::uint32_t sender = patches_.of_sample[corners[corner]];
-          const float arriving = share * weight * weights[static_cast<std::size_t>(corner)];
+          const float arriving =
+              share * weight * weights[static_cast<std::size_t>(corner)] * patches_.profile[corners[corner]];
           for (std::size_t c = 0; c < channels_; ++c)
             links[c * count + sender] += arriving * albedo[static_cast<int>(c)];
         }

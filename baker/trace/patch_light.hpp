@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,11 +27,19 @@ struct PatchRadiance {
 // much of the light that arrives at the hit it sends back.
 using TakeHit = std::function<void(const GatherHit& hit, float weight, const glm::vec3& albedo)>;
 
+// Calls take for all hits of a sample; called from many threads.
+using VisitHits = std::function<void(std::size_t sample, const TakeHit& take)>;
+
+// Returns how much light the surface beside each sample sends to all others: the sum over hits of the
+// receiver's area times the hit's weight and albedo, a corner's part for each. Nothing if stopped. `areas`
+// are those of sampleAreas(); `corners` are each triangle's samples. The result does not depend on the number
+// of threads.
+std::optional<std::vector<float>> samplesMet(std::span<const float> areas,
+                                             std::span<const glm::uvec3> corners, const VisitHits& visit,
+                                             const BakeContext& context);
+
 class PatchTransport {
  public:
-  // Calls take for all hits of a sample; called from many threads.
-  using VisitHits = std::function<void(std::size_t sample, const TakeHit& take)>;
-
   // corners: of each triangle, its samples. Patches outlive it.
   PatchTransport(const Patches& patches, std::span<const glm::uvec3> corners, std::size_t channels)
       : patches_(patches), corners_(corners), channels_(channels) {}

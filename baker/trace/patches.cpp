@@ -5,11 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
-#include "baker/transport/sample_areas.hpp"
-
 namespace lambent::baker {
 
 namespace {
@@ -23,6 +18,10 @@ std::size_t levelOf(float brightness, float brightest) {
   const double octaves = std::log2(double{brightest} / double{brightness});
   return static_cast<std::size_t>(std::clamp(octaves / kOctavesPerLevel, 0.0, double{kLevels - 1}));
 }
+
+// Light of later bounces is taken to vary over a patch like that of the first, by at most this factor. With
+// no profile at all Sponza lost 0.6 % of its light, with it 0.2 % are won.
+constexpr double kMostProfile = 3.0;
 
 // A turn of the normal by a right angle separates as much as this share of the group's diagonal.
 constexpr float kNormalLength = 0.1f;
@@ -92,34 +91,46 @@ void joinNeighbours(std::span<const std::uint8_t> valid,
 
 }  // namespace
 
-Patches choosePatches(const GroupGeometry& geometry, const SampleSet& samples,
-                      std::span<const float> brightness, std::span<const std::uint8_t> valid,
+Patches choosePatches(const SampleSet& samples, float diagonal, const PatchInputs& inputs,
                       std::span<const std::pair<std::uint32_t, std::uint32_t>> edges) {
   Patches patches;
   patches.of_sample.assign(samples.size(), 0);
+  patches.profile.assign(samples.size(), 1.0f);
   patches.offsets.push_back(0);
   float brightest = 0.0f;
-  for (const float value : brightness) brightest = std::max(brightest, value);
-  std::array<std::vector<std::uint32_t>, kLevels> levels;
+  for (const float value : inputs.brightness) brightest = std::max(brightest, value);
+  std::array<std::vector<std::uint32_t>, 2 * kLevels> levels;  // glossy samples have their own
   std::size_t count = 0;
   for (std::uint32_t s = 0; s < samples.size(); ++s) {
-    if (valid[s] == 0) continue;
-    levels[levelOf(brightness[s], brightest)].push_back(s);
+    if (inputs.valid[s] == 0) continue;
+    const std::size_t kind = s < samples.glossy.begin ? 0 : kLevels;
+    levels[kind + levelOf(inputs.brightness[s], brightest)].push_back(s);
     ++count;
   }
-  const std::vector<float> areas = sampleAreas(geometry, samples);
-  const Splitter splitter(samples, glm::length(geometry.bounds_max - geometry.bounds_min));
+  const Splitter splitter(samples, diagonal);
   const auto emit = [&](std::span<std::uint32_t> members) {
     std::sort(members.begin(), members.end());
     const auto patch = static_cast<std::uint32_t>(patches.size());
-    double area = 0.0;
-    for (const std::uint32_t s : members) area += double{areas[s]};
+    double weight = 0.0;
+    for (const std::uint32_t s : members) weight += double{inputs.weights[s]};
+    double light = 0.0;
+    const std::size_t first = patches.shares.size();
     for (const std::uint32_t s : members) {
       patches.of_sample[s] = patch;
       patches.samples.push_back(s);
-      patches.shares.push_back(area > 0.0 ? static_cast<float>(double{areas[s]} / area)
-                                          : 1.0f / static_cast<float>(members.size()));
+      patches.shares.push_back(weight > 0.0 ? static_cast<float>(double{inputs.weights[s]} / weight)
+                                            : 1.0f / static_cast<float>(members.size()));
+      light += double{patches.shares.back()} * double{inputs.bounced[s]};
     }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < members.size() && light > 0.0; ++i) {
+      const double profile =
+          std::clamp(double{inputs.bounced[members[i]]} / light, 1.0 / kMostProfile, kMostProfile);
+      patches.profile[members[i]] = static_cast<float>(profile);
+      sum += double{patches.shares[first + i]} * profile;
+    }
+    if (sum > 0.0)
+      for (const std::uint32_t s : members) patches.profile[s] /= static_cast<float>(sum);
     patches.offsets.push_back(static_cast<std::uint32_t>(patches.samples.size()));
   };
   for (std::vector<std::uint32_t>& level : levels) {
@@ -128,7 +139,7 @@ Patches choosePatches(const GroupGeometry& geometry, const SampleSet& samples,
         count <= kMostPatches ? level.size() : std::max<std::size_t>(level.size() * kMostPatches / count, 1);
     splitter.split(level, parts, emit);
   }
-  if (count < samples.size()) joinNeighbours(valid, edges, patches.of_sample);
+  if (count < samples.size()) joinNeighbours(inputs.valid, edges, patches.of_sample);
   return patches;
 }
 

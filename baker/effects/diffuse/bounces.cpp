@@ -14,6 +14,7 @@
 #include "baker/trace/patch_light.hpp"
 #include "baker/trace/patches.hpp"
 #include "baker/transport/frame.hpp"
+#include "baker/transport/sample_areas.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 
@@ -24,6 +25,13 @@ namespace {
 // Once a pass has less than this share of all light, its rays are thinned: their noise, a percent of at most
 // a percent, is not visible.
 constexpr double kShareToThin = 0.01;
+
+// Patches pass light on until this share of the tail error is left out: their passes cost next to nothing.
+constexpr double kShareOfTail = 0.1;
+
+// Patches reflect alike in all directions, which surfaces that are not diffuse do not. Light is passed on
+// between patches once this is all, as a share of all light, that they can get wrong.
+constexpr double kMostOff = 0.05;
 
 // Adds the squares of a vector under real lights to a sum for each source of light: the environment first,
 // then each light of the group.
@@ -97,8 +105,12 @@ class Gather {
   };
 
   static void gatherPlain(const Received& received, std::span<float> out) {
-    for (const GatherHit& hit : received.hits)
-      received.exit.add(hit, received.scale * static_cast<float>(received.hemisphere.weight(hit.ray)), out);
+    received.exit.addAll(
+        received.hits,
+        [&](std::uint32_t ray) {
+          return received.scale * static_cast<float>(received.hemisphere.weight(ray));
+        },
+        out);
   }
 
   void gatherMapped(std::size_t sample, const Received& received, std::span<float> out,
@@ -189,17 +201,16 @@ class Tally {
   std::vector<double> first_, now_, all_;
 };
 
-// Returns how bright samples are under all lights at once, for patches.
-std::vector<float> brightnessOf(const TransferField& direct, const TransferField& bounced) {
-  const auto bands = static_cast<std::size_t>(sh::coefficientCount(direct.order));
-  std::vector<float> brightness(direct.size(), 0.0f);
-  for (std::size_t s = 0; s < brightness.size(); ++s)
-    for (const TransferField* field : {&direct, &bounced}) {
-      const auto vector = field->at(s);
-      for (std::size_t at = 0; at < vector.size(); ++at)
-        if (const std::size_t column = at % field->columns; column == 0 || column >= bands)
-          brightness[s] += std::abs(vector[at]);
-    }
+// Returns how bright samples are under all lights at once.
+std::vector<float> brightnessOf(const TransferField& field) {
+  const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
+  std::vector<float> brightness(field.size(), 0.0f);
+  for (std::size_t s = 0; s < brightness.size(); ++s) {
+    const auto vector = field.at(s);
+    for (std::size_t at = 0; at < vector.size(); ++at)
+      if (const std::size_t column = at % field.columns; column == 0 || column >= bands)
+        brightness[s] += std::max(vector[at], 0.0f);
+  }
   return brightness;
 }
 
@@ -208,110 +219,181 @@ void add(const PatchRadiance& rest, TransferField& field) {
   for (std::size_t s = 0; s < field.size(); ++s) {
     const auto from = rest.field.at(rest.patches.of_sample[s]);
     const auto to = field.at(s);
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+    const float profile = rest.patches.profile[s];
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += profile * from[i];
   }
 }
+
+// All passes of one group.
+class Passes {
+ public:
+  // Everything must outlive it.
+  Passes(const DirectPass& pass, const DirectResult& direct, const TracedScene& scene,
+         const BounceSettings& settings, const BakeContext& context, BouncePartner* partner)
+      : direct_(direct),
+        scene_(scene),
+        settings_(settings),
+        context_(context),
+        partner_(partner),
+        exit_(scene.geometry, scene.samples, partner),
+        gather_(pass, direct, scene, exit_),
+        tally_(withPartner(energies(direct.field))) {
+    result_.field = direct.field.zeros(direct.field.size());
+    result_.mapped = direct.mapped.zeros(direct.mapped.size());
+    const auto& valid = direct.looks.valid;
+    any_filled_ = std::find(valid.begin(), valid.end(), std::uint8_t{0}) != valid.end();
+    if (any_filled_) edges_ = sampleEdges(scene.geometry, scene.samples);
+  }
+
+  std::optional<BounceResult> run() {
+    auto brought = gather(1, direct_.field);
+    if (!brought || (!enough(1, settings_.tail_error) && !goOn(std::move(*brought)))) return std::nullopt;
+    if (any_filled_)
+      fillStretchFromNeighbours(edges_, direct_.looks.valid, scene_.samples.normal_mapped.begin,
+                                result_.mapped.vectorSize(), result_.mapped.vectors);
+    return std::move(result_);
+  }
+
+ private:
+  std::vector<double> withPartner(std::vector<double> sums) const {
+    if (!partner_) return sums;
+    const auto more = partner_->energies();
+    sums.insert(sums.end(), more.begin(), more.end());
+    return sums;
+  }
+  bool enough(int passes, double tail_error) const {
+    return passes == (settings_.bounces < 0 ? kMostBounces : settings_.bounces) ||
+           (settings_.bounces < 0 && result_.left_out < tail_error);
+  }
+
+  // Gathers one pass of what the pass before brought. Returns what it brought, or nothing if stopped.
+  std::optional<TransferField> gather(int number, const TransferField& before) {
+    auto brought = gather({.number = number,
+                           .thinly = shareOf(tally_.now(), tally_.all()) < kShareToThin,
+                           .exit = exit_,
+                           .before = before});
+    if (brought) tally_.add(withPartner(energies(*brought)), result_);
+    return brought;
+  }
+
+  // Adds what arrives at samples to the result, and returns it. Returns nothing if stopped.
+  std::optional<TransferField> gather(const Bounce& bounce) {
+    context_.progress.begin(fmt::format("bounce {}", bounce.number), scene_.samples.size(), "samples");
+    TransferField now = direct_.field.zeros(direct_.field.size());
+    const BakeContext own = context_.part("pass", bounce.number);
+    const auto first_mapped = static_cast<std::ptrdiff_t>(scene_.samples.normal_mapped.begin);
+    // For normal-mapped samples, the sum of all passes so far is kept.
+    const auto gathered = runStage(
+        {.count = scene_.samples.glossy.begin,
+         .grain = kSamplesGathered,
+         .writes = {rowsOf(now.vectors, now.vectorSize()),
+                    rowsOf(result_.mapped.vectors, result_.mapped.vectorSize(), -first_mapped)},
+         .compute = [&](std::size_t begin,
+                        std::size_t end) { gather_.range(bounce, begin, end, now, result_.mapped); }},
+        own);
+    if (!gathered) return std::nullopt;
+    if (any_filled_) fillFromNeighbours(edges_, direct_.looks.valid, now);
+    if (partner_ && !partner_->gather(bounce, now, own.part("glossy"))) return std::nullopt;
+    add(now, result_.field);
+    return now;
+  }
+
+  // Adds all passes after the first, which brought `first`. Returns false if stopped.
+  bool goOn(TransferField first) {
+    const auto visit = [&](std::size_t sample, const TakeHit& take) {
+      if (sample < scene_.samples.glossy.begin) return gather_.visitHits(sample, take);
+      partner_->visitHits(sample, [&](const GatherHit& hit, float weight, const glm::vec3& to) {
+        take(hit, weight, exit_.albedo(hit, to));
+      });
+    };
+    const auto met =
+        samplesMet(sampleAreas(scene_.geometry, scene_.samples), exit_.triangleSamples(), visit, context_);
+    if (!met) return false;
+    const std::vector<float> bounced = brightnessOf(first);
+    std::vector<float> brightness = brightnessOf(direct_.field);
+    for (std::size_t s = 0; s < brightness.size(); ++s) brightness[s] += bounced[s];
+    const Patches patches = choosePatches(
+        scene_.samples, glm::distance(scene_.geometry.bounds_min, scene_.geometry.bounds_max),
+        {.brightness = brightness, .bounced = bounced, .weights = *met, .valid = direct_.looks.valid},
+        edges_);
+    PatchTransport transport(patches, exit_.triangleSamples(), direct_.field.channels);
+    if (!transport.build(visit, context_)) return false;
+    const double off = partner_ ? offBy(transport, patches, first) : 0.0;
+    TransferField brought = std::move(first);
+    for (int number = 1;; ++number) {
+      if (partner_) partner_->advance();
+      if (off * result_.left_out <= kMostOff)
+        return byPatches(transport, patches, number, std::move(brought));
+      auto next = gather(number + 1, brought);
+      if (!next) return false;
+      if (enough(number + 1, settings_.tail_error)) return true;
+      brought = std::move(*next);
+    }
+  }
+
+  // Returns how far the first bounce between patches is off from what samples gathered: they reflect alike in
+  // all directions. It is RMS over patches, relative, of the light source for which it is most.
+  double offBy(const PatchTransport& transport, const Patches& patches, const TransferField& first) const {
+    const PatchRadiance gathered{patches, transport.meansOf(first)};
+    PatchRadiance off{patches, transport.bounce(transport.meansOf(direct_.field))};
+    for (std::size_t i = 0; i < off.field.vectors.size(); ++i)
+      off.field.vectors[i] -= gathered.field.vectors[i];
+    return shareOf(energies(off), energies(gathered));
+  }
+
+  // Passes on between patches what pass `passes` brought, and gathers all of it at samples at last. Returns
+  // false if stopped.
+  bool byPatches(const PatchTransport& transport, const Patches& patches, int passes, TransferField first) {
+    PatchRadiance last{patches, transport.meansOf(first)}, rest{patches, first.zeros(patches.size())};
+    const std::vector<double> of_first = tally_.now(), of_first_patches = energies(last);
+    std::vector<double> gathered = of_first;  // energy of all that is gathered at last
+    for (int number = passes + 1;; ++number) {
+      last.field = transport.bounce(last.field);
+      const std::vector<double> of_patches = energies(last);
+      std::vector<double> energy = of_first;
+      for (std::size_t k = 0; k < energy.size(); ++k) {
+        const std::size_t source = k % of_patches.size();
+        energy[k] *= of_first_patches[source] > 0.0 ? of_patches[source] / of_first_patches[source] : 0.0;
+      }
+      tally_.add(energy, result_);
+      if (enough(number, kShareOfTail * settings_.tail_error)) break;
+      for (std::size_t k = 0; k < energy.size(); ++k) gathered[k] += energy[k];
+      add(last.field, rest.field);
+    }
+    add(rest, first);
+    return gather({.number = passes + 1,
+                   .thinly = shareOf(gathered, tally_.all()) < kShareToThin,
+                   .exit = exit_,
+                   .before = first,
+                   .of_patches = &rest,
+                   .growth = shareOf(gathered, of_first)})
+        .has_value();
+  }
+
+  const DirectResult& direct_;
+  const TracedScene& scene_;
+  const BounceSettings& settings_;
+  const BakeContext& context_;
+  BouncePartner* partner_;
+  ExitRadiance exit_;
+  Gather gather_;
+  Tally tally_;
+  BounceResult result_{.field = {}, .mapped = {}, .energy = {1.0}, .left_out = 0.0};
+  bool any_filled_ = false;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_;  // empty unless samples are filled
+};
 
 }  // namespace
 
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
                                         const TracedScene& scene, const BounceSettings& settings,
                                         const BakeContext& context, BouncePartner* partner) {
-  const ExitRadiance exit(scene.geometry, scene.samples, partner);
-  const Gather gather(pass, direct, scene, exit);
-  BounceResult result{.field = direct.field.zeros(direct.field.size()),
-                      .mapped = direct.mapped.zeros(direct.mapped.size()),
-                      .energy = {1.0},
-                      .left_out = 0.0};
-  const bool any_filled = std::find(direct.looks.valid.begin(), direct.looks.valid.end(), std::uint8_t{0}) !=
-                          direct.looks.valid.end();
-  const auto edges = any_filled ? sampleEdges(scene.geometry, scene.samples)
-                                : std::vector<std::pair<std::uint32_t, std::uint32_t>>{};
-  const auto withPartner = [&](std::vector<double> sums) {
-    if (!partner) return sums;
-    const auto more = partner->energies();
-    sums.insert(sums.end(), more.begin(), more.end());
-    return sums;
-  };
-  const auto first_mapped = static_cast<std::ptrdiff_t>(scene.samples.normal_mapped.begin);
-  // Adds what arrives at samples to the result, and returns it.
-  const auto gatherAll = [&](const Bounce& bounce) -> std::optional<TransferField> {
-    context.progress.begin(fmt::format("bounce {}", bounce.number), scene.samples.size(), "samples");
-    TransferField now = direct.field.zeros(direct.field.size());
-    const BakeContext own = context.part("pass", bounce.number);
-    // Of normal-mapped samples the sum of all passes so far is kept.
-    const auto gathered =
-        runStage({.count = scene.samples.glossy.begin,
-                  .grain = kSamplesGathered,
-                  .writes = {rowsOf(now.vectors, now.vectorSize()),
-                             rowsOf(result.mapped.vectors, result.mapped.vectorSize(), -first_mapped)},
-                  .compute = [&](std::size_t begin,
-                                 std::size_t end) { gather.range(bounce, begin, end, now, result.mapped); }},
-                 own);
-    if (!gathered) return std::nullopt;
-    if (any_filled) fillFromNeighbours(edges, direct.looks.valid, now);
-    if (partner && !partner->gather(bounce, now, own.part("glossy"))) return std::nullopt;
-    add(now, result.field);
-    return now;
-  };
-
-  const int most = settings.bounces < 0 ? kMostBounces : settings.bounces;
-  Tally tally(withPartner(energies(direct.field)));
-  const auto enough = [&](int number) {
-    return number == most || (settings.bounces < 0 && result.left_out < settings.tail_error);
-  };
-  auto passed_on = gatherAll({.number = 1, .thinly = false, .exit = exit, .before = direct.field});
-  if (!passed_on) return std::nullopt;
-  tally.add(withPartner(energies(*passed_on)), result);
-  if (!enough(1)) {
-    if (partner) partner->advance();
-    const Patches patches = choosePatches(scene.geometry, scene.samples,
-                                          brightnessOf(direct.field, *passed_on), direct.looks.valid, edges);
-    PatchTransport transport(patches, exit.triangleSamples(), direct.field.channels);
-    const auto visit = [&](std::size_t sample, const TakeHit& take) {
-      if (sample < scene.samples.glossy.begin) return gather.visitHits(sample, take);
-      partner->visitHits(sample, [&](const GatherHit& hit, float weight, const glm::vec3& to) {
-        take(hit, weight, exit.albedo(hit, to));
-      });
-    };
-    if (!transport.build(visit, context)) return std::nullopt;
-    const std::vector<double> first = tally.now();
-    PatchRadiance last{patches, transport.meansOf(*passed_on)},
-        rest{patches, passed_on->zeros(patches.size())};
-    const std::vector<double> first_of_patches = energies(last);
-    std::vector<double> gathered_last = first;  // energy of all that the last pass gathers
-    for (int number = 2;; ++number) {
-      last.field = transport.bounce(last.field);
-      const std::vector<double> of_patches = energies(last);
-      std::vector<double> energy = first;
-      for (std::size_t k = 0; k < energy.size(); ++k) {
-        const std::size_t source = k % of_patches.size();
-        energy[k] *= first_of_patches[source] > 0.0 ? of_patches[source] / first_of_patches[source] : 0.0;
-      }
-      tally.add(energy, result);
-      if (enough(number)) break;
-      for (std::size_t k = 0; k < energy.size(); ++k) gathered_last[k] += energy[k];
-      add(last.field, rest.field);
-    }
-    add(rest, *passed_on);
-    const double share = shareOf(gathered_last, tally.all());
-    if (!gatherAll({.number = 2,
-                    .thinly = share < kShareToThin,
-                    .exit = exit,
-                    .before = *passed_on,
-                    .of_patches = &rest,
-                    .growth = shareOf(gathered_last, first)}))
-      return std::nullopt;
-  }
-  if (any_filled)
-    fillStretchFromNeighbours(edges, direct.looks.valid, scene.samples.normal_mapped.begin,
-                              result.mapped.vectorSize(), result.mapped.vectors);
-  return result;
+  return Passes(pass, direct, scene, settings, context, partner).run();
 }
 
 void dropBounces(const TracedScene& scene, std::size_t inside_faces, const BakeContext& context) {
   const std::size_t plain = scene.samples.glossy.begin, glossy = scene.samples.glossy.size();
-  for (const int number : {1, 2}) {
+  for (int number = 1; number <= kMostBounces; ++number) {
     const BakeContext pass = context.part("pass", number);
     dropStage(pass, plain, kSamplesGathered);
     dropStage(pass.part("glossy"), glossy, kSamplesGathered);

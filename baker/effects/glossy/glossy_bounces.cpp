@@ -26,6 +26,8 @@ namespace {
 constexpr std::size_t kMostOutputs = sh::coefficientCount(sh::kMaxFactoredOrder);
 // Number of hits whose radiance is added to a matrix at once.
 constexpr std::size_t kBlock = 8;
+// Uniform light of radiance 1 has sqrt(4 pi) as its coefficient 0 and no others.
+constexpr float kUniform = 3.54490770f;
 
 // The rays of a row share the exit radiance of one of their hits; the larger the share of all light that a
 // pass carries, the shorter its rows. V needs many rays for its edges, while exit radiance at a glossy point
@@ -214,8 +216,8 @@ GlossyBounces::State GlossyBounces::zero(int order, std::size_t samples) const {
           .lights = matrices(field.light_columns)};
 }
 
-void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to,
-                            float chance, float weight, std::span<float> sum) const {
+glm::vec3 GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to,
+                                 float chance, float weight, std::span<float> sum) const {
   const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
               v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
   const std::size_t outputs = before_.environment.outputs, columns = before_.environment.columns;
@@ -247,11 +249,10 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
   } else {
     add(picked, weight);
   }
+  return kUniform * glm::vec3(kernel[0], kernel[outputs], kernel[2 * outputs]);
 }
 
 glm::vec3 GlossyBounces::albedo(const GatherHit& hit, const glm::vec3& to) const {
-  // Uniform light of radiance 1 has sqrt(4 pi) as its coefficient 0 and no others.
-  constexpr float kUniform = 3.54490770f;
   const std::size_t outputs = before_.environment.outputs;
   std::array<float, 3 * kMostOutputs> kernel;
   kernels_.at(hit.triangle, static_cast<float>(hit.u) * (1.0f / 65535.0f),

@@ -47,8 +47,8 @@ class GlossyBounces : public BouncePartner {
   GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels, const DirectResult& plain,
                 GlossyDirect& direct, int order_out);
 
-  void addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
-               float weight, std::span<float> sum) const override;
+  glm::vec3 addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
+                    float weight, std::span<float> sum) const override;
   glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const override;
   void visitHits(std::size_t sample, const TakeGlossyHit& take) const override;
   bool gather(const Bounce& bounce, TransferField& now, const BakeContext& context) override;

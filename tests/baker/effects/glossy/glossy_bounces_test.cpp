@@ -80,14 +80,14 @@ TEST(GlossyBounces, InAWhiteFurnaceLeaveUniformLightAsItIs) {
   for (std::size_t s = 0; s < field.size(); ++s) {
     if (t.samples.originsOf(s).empty()) continue;
     const auto shadow = shadowMatrix(field, s);
-    // The result is exact but for late passes, which trace every fourth ray only: these err by a few percent
-    // of the few percent that they add, and more in its distribution over directions.
+    // The first two passes are exact but for the corner of the triangle that each ray picks. All later ones
+    // arrive as the second does, and leave alike in all directions.
     for (std::size_t i = 0; i < 25; ++i)
       EXPECT_NEAR(shadow[i * 16] + field.bounced[(s * 25 + i) * 16], i == 0 ? 1.0f : 0.0f,
-                  i == 0 ? 2e-3f : 8e-3f)
+                  i == 0 ? 1e-2f : 1.6e-2f)
           << i;
     EXPECT_NEAR(uniformRadiance(baked.direct.field.at(s)) + uniformRadiance(baked.bounced.field.at(s)), 1.0f,
-                3e-3f);
+                1e-2f);
   }
 }
 
@@ -285,10 +285,16 @@ TEST(GlossyBounces, LightOfLaterPassesLeavesByAllBandsOfTheKernel) {
   sh::evaluate(kExit, glm::normalize(glm::vec3(1.0f, 2.0f, 0.5f)), lobe);
   std::fill_n(lobe.begin(), 25, 0.0f);
   const ExitKernels kernels = everywhere(lobe);
-  const auto baked = bakeGlossy(t, kernels, {.exit_order = kExit, .rays = 512, .bounces = 2});
-  ASSERT_EQ(baked.bounced.energy.size(), 3u);
-  EXPECT_GT(baked.bounced.energy[1], 0.05);
-  EXPECT_GT(baked.bounced.energy[2], 0.002);
+  const auto once = bakeGlossy(t, kernels, {.exit_order = kExit, .rays = 512, .bounces = 1});
+  const auto twice = bakeGlossy(t, kernels, {.exit_order = kExit, .rays = 512, .bounces = 2});
+  ASSERT_EQ(twice.bounced.energy.size(), 3u);
+  EXPECT_GT(twice.bounced.energy[1], 0.05);
+  double first = 0.0, second = 0.0;
+  for (std::size_t i = 0; i < once.bounced.field.vectors.size(); ++i) {
+    const double a = double{once.bounced.field.vectors[i]}, b = double{twice.bounced.field.vectors[i]};
+    first += a * a, second += (b - a) * (b - a);
+  }
+  EXPECT_GT(std::sqrt(second / first), 0.03);
 }
 
 TEST(GlossyBounces, WithMoreBandsForWhatLeavesHaveAsManyAsWereAskedFor) {
@@ -347,9 +353,10 @@ TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
                                    uniformRadiance(baked.bounced.field.at(s))});
       EXPECT_GT(field.bounced[s * 625], -1e-6f);
     }
-    // The tolerance is 2 % for what five bands lose of narrow lobes and sharp edges.
-    EXPECT_LT(largest, 1.02) << roughness;
-    EXPECT_LT(most, 1.02) << roughness;
+    // The tolerance is 2 % for what five bands lose of narrow lobes and sharp edges, and 5 % of light that is
+    // passed on between patches, which reflect alike in all directions (bounces.cpp, kMostOff).
+    EXPECT_LT(largest, 1.05) << roughness;
+    EXPECT_LT(most, 1.05) << roughness;
     for (std::size_t b = 1; b < baked.bounced.energy.size(); ++b)
       EXPECT_LT(baked.bounced.energy[b], baked.bounced.energy[b - 1]) << roughness << " pass " << b;
   }
