@@ -75,6 +75,7 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
   const bool with_glossy = !tables.entries.empty();
   if (const float bound = options.effectiveRefineBound(); bound > 0.0f) {
     RefineOptions refine{.bound = bound,
+                         .rays = std::min(RefineOptions{}.rays, options.effectiveRays()),
                          .most_growth = options.refineGrowth(),
                          .most_added = options.refineAdded(),
                          .most_wedges = options.refineWedges()};

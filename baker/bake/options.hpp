@@ -33,7 +33,7 @@ struct BakeOptions {
   // name.
   glm::uvec3 neighborhood_grid{0};
   // Where shadows change, edges are split until the interpolation error is less than this, relative RMS
-  // against open light. 0: no edges are split; negative: as the quality says.
+  // against the light that arrives. 0: no edges are split; negative: as the quality says.
   float refine_bound = -1.0f;
   // True if values at vertices are those with which interpolation over the faces shows light best
   // (bake/fit_vertices.hpp), and not what the vertices see. This concerns direct and bounced light of glossy

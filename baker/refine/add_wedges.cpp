@@ -31,6 +31,7 @@ std::vector<FanSource> fanSources(const std::vector<RigidGroup>& groups,
       const PlannedDraw& draw = groups[g].draws[d];
       const DrawGeometry& drawn = geometries[g].draws[d];
       if (draw.back || fronts[{draw.mesh, draw.primitive}] != 1) continue;
+      if (drawn.kind != SampleKind::Glossy) continue;
       sources.push_back(
           {draw.mesh, draw.primitive, g, d,
            std::span(geometries[g].mesh_faces).subspan(drawn.first_triangle, drawn.triangle_count)});

@@ -23,6 +23,8 @@ constexpr int kMostProbesAlong = 8;
 constexpr std::size_t kPointsPerRange = 64;  // probed points in one range of work
 // No edge is split if its triangle's longest edge is below this share of the diagonal.
 constexpr float kShortestEdge = 1.0f / 1024.0f;
+// Light is never taken to be less than this share of that of an open point: what bounces brightens the dark.
+constexpr double kLeastLight = 0.15;
 // A split triangle splits its edges of at least this share of the longest one.
 constexpr float kSplitShare = 0.6f;
 // A round splits triangles until the remaining square error is this share of what is allowed, or this share
@@ -137,7 +139,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, const BakeCont
 
   if (auto probed = probe(missing, context); !probed || !*probed) return probed;
 
-  std::vector<double> error_at(inner.size()), light_at(inner.size(), 0.0);
+  std::vector<double> error_at(inner.size());
   std::vector<float> lack_at(for_wedges_ ? inner.size() * 2 * kLackValues : 0);
   std::vector<std::uint8_t> seen_at(inner.size(), 0);
   // Points that cannot be seen have no error, and unseen corners take the values of their neighbours
@@ -156,13 +158,13 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, const BakeCont
     if (seen_[point.shadow] == 0 || !(shares > 0.0f)) return 0.0;
     for (HiddenFrom& corner : corners) corner.share /= shares;
     const auto wrong = probe_.difference(corners, {masksAt(point.shadow), point.normal}, point.kind);
-    light_at[i] = ShadowProbe::squareError(
-        probe_.arriving({masksAt(point.shadow), point.normal}, point.kind));
+    const double light =
+        ShadowProbe::squareError(probe_.arriving({masksAt(point.shadow), point.normal}, point.kind));
     seen_at[i] = 1;
     if (for_wedges_)
       for (std::size_t half = 0; half < 2; ++half)
         std::copy_n(wrong[half].begin(), kLackValues, lack_at.begin() + (2 * i + half) * kLackValues);
-    return ShadowProbe::squareError(wrong);
+    return ShadowProbe::squareError(wrong) / (std::max(light, 0.0) + kLeastLight * kLeastLight);
   };
   const bool measured =
       parallelRanges(inner.size(), kPointsPerRange, context.stop, [&](std::size_t begin, std::size_t end) {
@@ -171,18 +173,19 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, const BakeCont
   if (!measured) return false;
 
   triangle_error_.assign(geometry.triangles.size(), 0.0);
-  square_error_ = light_ = 0.0;
+  square_error_ = area_ = 0.0;
   for (std::size_t first = 0; first < inner.size();) {
     const std::uint32_t t = inner[first].triangle;
     std::size_t last = first;
-    double sum = 0.0, light = 0.0;
+    double sum = 0.0;
+    std::size_t seen = 0;
     for (; last < inner.size() && inner[last].triangle == t; ++last)
-      sum += error_at[last], light += light_at[last];
+      sum += error_at[last], seen += seen_at[last];
     const glm::uvec3 corners = geometry.triangles[t];
     const double area = triangleArea(geometry, corners);
     triangle_error_[t] = area * sum / static_cast<double>(last - first);
     square_error_ += triangle_error_[t];
-    light_ += area * light / static_cast<double>(last - first);
+    area_ += area * static_cast<double>(seen) / static_cast<double>(last - first);
     first = last;
   }
   if (for_wedges_) keepLacks(geometry, inner, seen_at, lack_at);
@@ -216,7 +219,7 @@ void GroupRefiner::addLacks(const DrawGeometry& draw, FaceLacks& lacks) const {
 
 std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
                                     std::size_t& room, MarkedEdges& edges) const {
-  const double allowed = bound * bound * light_;
+  const double allowed = bound * bound * area_;
   if (square_error_ <= allowed) return 0;
   std::vector<std::uint32_t> order(geometry.triangles.size());
   std::iota(order.begin(), order.end(), 0u);

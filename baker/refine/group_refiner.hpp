@@ -32,10 +32,13 @@ class GroupRefiner {
   // alpha_maps outlive this. The geometry is that before any split: rays are traced against it in all rounds.
   void prepare(const GroupGeometry& geometry, const Scene& scene, const AlphaMaps& alpha_maps);
 
-  // Area times square error of every triangle. Errors: no memory for the hierarchy. False when stopped.
+  // Measures the area times the square of the relative error of every triangle. Errors: no memory for the
+  // hierarchy. False when stopped.
   Result<bool> measure(const GroupGeometry& geometry, const BakeContext& context);
 
-  double relativeError() const { return light_ > 0.0 ? std::sqrt(std::max(0.0, square_error_) / light_) : 0.0; }
+  // Returns the RMS over all that can be seen of what interpolation gets wrong at a point, relative to the
+  // direct light that arrives there: an eye in a dark room sees errors that are small beside open light.
+  double relativeError() const { return area_ > 0.0 ? std::sqrt(std::max(0.0, square_error_) / area_) : 0.0; }
   std::uint64_t raysTraced() const { return traced_; }
   std::uint64_t raysKept() const { return rays_kept_; }
 
@@ -84,7 +87,7 @@ class GroupRefiner {
   std::vector<double> triangle_error_, triangle_area_;
   std::vector<float> triangle_lack_;
   double square_error_ = 0.0;
-  double light_ = 0.0;  // area times the square of the light that arrives
+  double area_ = 0.0;  // of what can be seen
   std::uint64_t traced_ = 0, rays_kept_ = 0;
 };
 

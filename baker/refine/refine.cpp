@@ -13,9 +13,9 @@ namespace lambent::baker {
 
 namespace {
 
-// Fans are added until the error is this share of the bound: most of what remains after splitting edges can
-// only be reduced by fans, and they cost no triangles.
-constexpr double kFanShare = 0.25;
+// Fans are added until the error, here relative to the light of an open point, is this share of the bound:
+// most of what remains after splitting edges can only be reduced by fans, and they cost no triangles.
+constexpr double kFanShare = 0.24;
 
 std::size_t countVertices(const std::vector<std::vector<bundle::MeshData>>& meshes) {
   std::size_t count = 0;
