@@ -1,8 +1,6 @@
 // Patches: clusters of samples of the same kind (glossy or not) that lie near each other, face alike and are
-// about as bright. Light that has
-// been reflected twice and more is smooth enough to be passed on between patches (Hanrahan, Salzman and
-// Aupperle 1991, "A Rapid Hierarchical Radiosity Algorithm"), and what arrives at last is gathered at samples
-// again (patch_light.hpp).
+// about as bright. Light that has been reflected twice and more is smooth enough to be passed on between
+// patches (Hanrahan et al. 1991), and what arrives at last is gathered at samples again (patch_light.hpp).
 #pragma once
 
 #include <cstddef>

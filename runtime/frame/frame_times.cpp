@@ -10,8 +10,7 @@ namespace {
 constexpr double kLonger = 1.35;  // times the median; a longer frame uploaded too much
 constexpr double kGrow = 1.1, kShrink = 0.5;
 constexpr double kFirstBytes = 1 << 20, kLeastBytes = 128 << 10;
-// This limit holds however slow frames are. Without it, a scene whose frames take seconds would take minutes
-// to load.
+// Holds however slow frames are: else a scene whose frames take seconds would take minutes to load.
 constexpr double kLeastBytesPerSecond = 8 << 20;
 
 }  // namespace

@@ -23,8 +23,7 @@ std::size_t changedSince(const ecs::Registry& registry, std::uint64_t seen) {
   return count;
 }
 
-// Sets `seen` to the current version, and returns the number of changes, or nothing if it was current
-// already.
+// Sets `seen` to the current version. Returns the number of changes, or nothing if it was current already.
 template <typename Component>
 std::optional<std::size_t> changes(const ecs::Registry& registry, std::uint64_t& seen) {
   const std::uint64_t now = registry.version<Component>();

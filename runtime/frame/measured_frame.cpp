@@ -39,8 +39,7 @@ std::vector<gpu::PassTime> medians(const std::vector<std::vector<gpu::PassTime>>
   return passes;
 }
 
-// Causes all samples to be shaded again after a measurement, however it ends, because other frames rely on
-// them.
+// Has all samples shaded again after a measurement, however it ends: other frames rely on them.
 class Unshaded {
  public:
   explicit Unshaded(World& world) : world_(world) {}

@@ -21,8 +21,7 @@ std::vector<Texel> flipped(const std::vector<Texel>& texels, std::size_t row_len
   return result;
 }
 
-// Converts a depth buffer to distances along the view axis. Perspective and parallel projections both map z
-// to (a z + b) / (c z + d).
+// Converts depths to distances along the view axis. All projections map z to (a z + b) / (c z + d).
 std::vector<float> linearDepths(std::vector<float> window_depths, const glm::mat4& clip_from_view) {
   const double a = clip_from_view[2][2], b = clip_from_view[3][2], c = clip_from_view[2][3],
                d = clip_from_view[3][3];

@@ -1,5 +1,4 @@
-// Updates what bodies with grids change around them. The light pass has chosen which of them act on which
-// groups.
+// Updates what bodies with grids change around them. The light pass has chosen which of them act on whom.
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/frame/passes/passes.hpp"
 #include "runtime/surface/light_modules.hpp"

@@ -1,5 +1,4 @@
-// Uploads what has arrived, within a budget of bytes per frame, and then updates nodes, rigid groups and
-// materials.
+// Uploads what has arrived, within a budget of bytes, and updates nodes, rigid groups and materials.
 #include <chrono>
 #include <optional>
 

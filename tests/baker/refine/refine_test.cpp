@@ -72,6 +72,20 @@ TEST(Refinement, BringsTheErrorUnderTheBoundWithVerticesWhereTheShadowFalls) {
   EXPECT_GT(within(1.0f), static_cast<std::ptrdiff_t>(floor.positions.size()) / 2);
 }
 
+TEST(Refinement, MeasuresErrorsBesideTheLightThatArrives) {
+  // Four walls as high as the floor is wide take most of the light, and of the shadow beside open light.
+  const Scene open = floorUnderSlab();
+  const Scene shaft = sceneOf(
+      {open.meshes[0].primitives[0].mesh, open.meshes[1].primitives[0].mesh,
+       box({-2.1f, 2.0f, 0.0f}, {0.1f, 4.0f, 4.2f}, 8), box({2.1f, 2.0f, 0.0f}, {0.1f, 4.0f, 4.2f}, 8),
+       box({0.0f, 2.0f, -2.1f}, {4.2f, 4.0f, 0.1f}, 8), box({0.0f, 2.0f, 2.1f}, {4.2f, 4.0f, 0.1f}, 8)});
+  const RefineOptions measured{.bound = 1.0f};
+  const double in_the_open = refined(open, measured).report.error_before,
+               in_the_shaft = refined(shaft, measured).report.error_before;
+  // The walls' inner faces and the floor are a quarter of the surface; their relative errors are larger.
+  EXPECT_GT(in_the_shaft, 0.5 * in_the_open);
+}
+
 TEST(Refinement, BringsWhatAGlossyFloorReflectsUnderTheBound) {
   Scene scene = floorUnderSlab();
   scene.materials[0].metallic = 1.0f;
