@@ -11,8 +11,14 @@ namespace {
 
 // Rates of about one core, used only to have an estimate before anything is known.
 constexpr double kGuessedRaysPerSecond = 3e6, kGuessedCodedPerSecond = 2e4;
-// Later passes have less light to carry, and fewer samples for which it matters.
-constexpr int kGuessedBounces = 4;
+// All bounces but the first are passed on between patches, and gathered in one more pass (bounces.hpp).
+constexpr int kMostGathered = 2;
+constexpr const char* kBetweenPatches = "bounce between patches";
+constexpr double kPatchShare = 0.3;  // of a pass
+
+int gathered(const BakeOptions& options) {
+  return options.bounces < 0 ? kMostGathered : std::min(options.bounces, kMostGathered);
+}
 
 bool isBounce(const std::string& stage) {
   return stage.starts_with("bounce ");
@@ -52,8 +58,9 @@ StageSeconds guessSeconds(const Scene& scene, const BakeOptions& options) {
       vertices += static_cast<double>(primitive.mesh.positions.size());
   const double direct = vertices * static_cast<double>(options.effectiveRays()) / kGuessedRaysPerSecond;
   StageSeconds seconds = {{"direct light", direct}, {"coding", vertices / kGuessedCodedPerSecond}};
-  const int bounces = options.bounces < 0 ? kGuessedBounces : options.bounces;
-  for (int bounce = 1; bounce <= bounces; ++bounce) seconds[fmt::format("bounce {}", bounce)] = 0.3 * direct;
+  for (int bounce = 1; bounce <= gathered(options); ++bounce)
+    seconds[fmt::format("bounce {}", bounce)] = 0.3 * direct;
+  if (gathered(options) > 1) seconds[kBetweenPatches] = kPatchShare * 0.3 * direct;
   return seconds;
 }
 
@@ -69,7 +76,9 @@ StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOpt
   for (const Progress::Stage& stage : stages)
     seconds[stage.name] += stage.seconds * growth(stage.name, of, to);
   // Passes beyond those measured cost about as much as the last one.
-  const int bounces = to.bounces < 0 ? kGuessedBounces : to.bounces;
+  const int bounces = gathered(to);
+  if (const auto first = seconds.find("bounce 1"); bounces > 1 && first != seconds.end())
+    seconds.try_emplace(kBetweenPatches, kPatchShare * first->second);
   for (int bounce = 2; bounce <= bounces; ++bounce)
     for (const char* where : {"", " inside faces"}) {
       const auto before = seconds.find(fmt::format("bounce {}{}", bounce - 1, where));

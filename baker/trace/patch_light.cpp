@@ -66,7 +66,7 @@ bool PatchTransport::build(const VisitHits& visit, const BakeContext& context) {
       });
     }
   };
-  return runStage({.name = "patches",
+  return runStage({.name = "bounce between patches",
                    .unit = "patches",
                    .count = count,
                    .grain = kPatchesPerRange,
