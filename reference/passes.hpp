@@ -17,9 +17,13 @@ std::uint32_t samplesInPass(const Options& options, const Volumes& volumes);
 // The number of rows traced between two checks of the clock.
 inline constexpr std::uint32_t kRowsAtOnce = 32;
 
-// Brings rows [first, last) to `samples` per pixel, in parallel. Returns false if stopped; unfinished rows
+struct Rows {
+  std::uint32_t first, last;  // [first, last)
+};
+
+// Brings rows to `samples` per pixel, in parallel. Returns false if stopped; unfinished rows
 // are dropped, so stopping takes no longer than a few pixels.
-bool addSamples(const Integrator& integrator, Film& film, std::uint32_t first, std::uint32_t last,
-                std::uint32_t samples, Progress& progress, const std::stop_token& stop);
+bool addSamples(const Integrator& integrator, Film& film, const Rows& rows, std::uint32_t samples,
+                Progress& progress, const std::stop_token& stop);
 
 }  // namespace lambent::baker::reference

@@ -192,7 +192,7 @@ class ProgressiveReference::Worker {
     for (std::uint32_t first = 0; first < height; first += kRowsAtOnce) {
       const std::uint32_t last = std::min(first + kRowsAtOnce, height);
       if (!waitWhilePaused(job)) return false;
-      if (!addSamples(integrator, film, first, last, samples, progress_, job.stop)) return false;
+      if (!addSamples(integrator, film, {first, last}, samples, progress_, job.stop)) return false;
       if (on_rows) on_rows(first, last);
     }
     return true;

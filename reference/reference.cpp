@@ -26,8 +26,12 @@ double secondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
+struct SampleCounts {
+  std::uint32_t per_pixel, in_pass;
+};
+
 // Renders the picture pass by pass, and writes a checkpoint every few seconds and when stopped.
-Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t spp, std::uint32_t together,
+Result<void> renderAll(const Integrator& integrator, Film& film, const SampleCounts& samples,
                        const fs::path& checkpoint, Progress& progress, const std::stop_token& stop) {
   const double seconds_before = film.seconds;
   const Clock::time_point begin = Clock::now();
@@ -38,10 +42,11 @@ Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t s
     if (checkpoint.empty()) return {};
     return film.save(checkpoint);
   };
-  for (std::uint32_t pass = 0; pass < spp; pass += together)
+  for (std::uint32_t pass = 0; pass < samples.per_pixel; pass += samples.in_pass)
     for (std::uint32_t row = 0; row < film.size().height; row += kRowsAtOnce) {
-      const bool whole = addSamples(integrator, film, row, std::min(row + kRowsAtOnce, film.size().height),
-                                    std::min(spp, pass + together), progress, stop);
+      const Rows rows{row, std::min(row + kRowsAtOnce, film.size().height)};
+      const bool whole = addSamples(integrator, film, rows,
+                                    std::min(samples.per_pixel, pass + samples.in_pass), progress, stop);
       if (!whole || Clock::now() - saved > kCheckpointEvery)
         if (auto done = save(); !done) return done;
       if (!whole)
@@ -106,8 +111,8 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   // Trace the paths.
   progress.begin("paths", left, "samples");
   const World world = (*traced)->under(environment, shapes, EyeRays(*view, options.size));
-  auto done = renderAll(Integrator(world, options), film, options.spp, samplesInPass(options, world.volumes),
-                        checkpoint, progress, stop);
+  auto done = renderAll(Integrator(world, options), film,
+                        {options.spp, samplesInPass(options, world.volumes)}, checkpoint, progress, stop);
   if (!done) return failAgain(std::move(done.error()));
   report.image = film.image();
   report.rays = film.rays();

@@ -41,6 +41,12 @@ struct Surface {
   Texture base, metallic_roughness, specular, specular_color, anisotropy;
 };
 
+struct SurfacePoint {
+  std::uint32_t triangle;
+  float u, v;        // shares of corners 1 and 2
+  glm::vec3 normal;  // unit shading normal
+};
+
 // Factored is a table with weights of zonal factors in place of coefficients; this is exact between nodes
 // too, since look-up and factoring are both linear.
 struct Factored {
@@ -189,8 +195,8 @@ struct SurfaceBrdfs::State {
   void expand(const Factored& factored, int order, std::span<const float> weights, const ViewFrame& frame,
               std::span<Kernel> lobes) const;
   void diffuseKernel(const glm::vec3& color, int order, const glm::vec3& normal, std::span<float> out) const;
-  void glossyKernel(const Surface& surface, int order, std::uint32_t triangle, float u, float v,
-                    const glm::vec3& normal, const glm::vec3& to, std::span<float> out) const;
+  void glossyKernel(const Surface& surface, int order, const SurfacePoint& at, const glm::vec3& to,
+                    std::span<float> out) const;
 };
 
 glm::vec3 SurfaceBrdfs::State::geometricNormal(std::uint32_t triangle) const {
@@ -329,9 +335,8 @@ void SurfaceBrdfs::State::diffuseKernel(const glm::vec3& color, int order, const
       out[static_cast<std::size_t>(c) * count + k] += color[c] * cosine[k] * y[k];
 }
 
-void SurfaceBrdfs::State::glossyKernel(const Surface& surface, int order, std::uint32_t triangle, float u,
-                                       float v, const glm::vec3& normal, const glm::vec3& to,
-                                       std::span<float> out) const {
+void SurfaceBrdfs::State::glossyKernel(const Surface& surface, int order, const SurfacePoint& at,
+                                       const glm::vec3& to, std::span<float> out) const {
   const Factored& from = tables[surface.table];
   const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
   const std::size_t stored = from.table.coefficients();
@@ -339,7 +344,7 @@ void SurfaceBrdfs::State::glossyKernel(const Surface& surface, int order, std::u
   std::array<Kernel, kMaxBrdfLobes> lobes;
 
   if (from.family == BrdfFamily::Measured) {
-    const ViewFrame frame = frameOf(normal, anyAcross(normal), to);
+    const ViewFrame frame = frameOf(at.normal, anyAcross(at.normal), to);
     lookUpStored(from.table, frame.view, 0.0f, 0.0f, weights);
     expand(from, order, weights, frame, lobes);
     for (std::size_t c = 0; c < 3; ++c)
@@ -347,16 +352,16 @@ void SurfaceBrdfs::State::glossyKernel(const Surface& surface, int order, std::u
     return;
   }
 
-  const Parameters p = parametersAt(surface, triangle, u, v);
-  const auto [tangent, strength] = leanOf(surface, triangle, u, v, normal);
-  const ViewFrame frame = frameOf(normal, tangent, to);
+  const Parameters p = parametersAt(surface, at.triangle, at.u, at.v);
+  const auto [tangent, strength] = leanOf(surface, at.triangle, at.u, at.v, at.normal);
+  const ViewFrame frame = frameOf(at.normal, tangent, to);
   lookUpStored(from.table, frame.view, p.roughness, strength, weights);
   expand(from, order, weights, frame, std::span(lobes).first(2));
   for (int c = 0; c < 3; ++c)
     for (std::size_t k = 0; k < count; ++k)
       out[static_cast<std::size_t>(c) * count + k] = p.f0[c] * lobes[0][k] + p.f90 * lobes[1][k];
   if (const glm::vec3 rest = diffuseRest(p, weights, stored); rest != glm::vec3(0.0f))
-    diffuseKernel(rest, order, normal, out);
+    diffuseKernel(rest, order, at.normal, out);
 }
 
 Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry& geometry,
@@ -434,7 +439,7 @@ void SurfaceBrdfs::exitKernel(std::uint32_t triangle, float u, float v, const gl
   if (surface.material.unlit || glm::dot(state_->geometricNormal(triangle), to) <= 0.0f) return;
   const glm::vec3 normal = state_->normalAt(triangle, u, v);
   if (surface.glossy)
-    state_->glossyKernel(surface, order_, triangle, u, v, normal, to, out);
+    state_->glossyKernel(surface, order_, {triangle, u, v, normal}, to, out);
   else
     state_->diffuseKernel(state_->baseColor(surface, triangle, u, v), order_, normal, out);
 }

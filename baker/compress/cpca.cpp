@@ -21,9 +21,9 @@ namespace {
 
 constexpr std::size_t kGrain = 512;
 constexpr std::size_t kBasisSamples = 8192;  // samples that the covariance uses at least
-// Multiply-adds that the covariance may take for visibility, bounced light and lamps. With few values per
-// sample this covers all samples, which matters because some are rare: those of a grid beside the body are
-// unlike all others, and few samples next to a lamp hold nearly all of its energy.
+// Multiply-adds that the covariance may take. With few values per sample this covers all samples, which
+// matters because some are rare: those of a grid beside the body are unlike all others, few samples next to a
+// lamp hold nearly all of its energy, and a room has some that face where hardly any others do.
 constexpr double kBasisWork = 1.6e10;
 constexpr double kTailShare = 0.05;     // share of the allowed square error that the basis may leave out
 constexpr double kBesideLeftOut = 1.3;  // allowed square error relative to what the basis has to leave out
@@ -217,10 +217,7 @@ class Coder {
 void Coder::findBasis() {
   double left_out = 0.0;
   const double size = static_cast<double>(shape_.size());
-  const std::size_t looked_at =
-      shape_.isVisibility() || shape_.shadowed_channels == 0 || shape_.light_columns > 0
-          ? std::max(kBasisSamples, static_cast<std::size_t>(kBasisWork / (size * size)))
-          : kBasisSamples;
+  const auto looked_at = std::max(kBasisSamples, static_cast<std::size_t>(kBasisWork / (size * size)));
   const Points some = weighted(vectors_, space_.roots, someSamples(count_, looked_at));
   Spectrum spectrum = leadingSpectrum(some, kTailShare * allowed_, settings_.most_components, left_out);
   // If the components that were looked for leave out more than is allowed, the rest is coded to match.

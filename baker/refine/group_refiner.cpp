@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -18,18 +19,18 @@ namespace lambent::baker {
 namespace {
 
 // A triangle is probed at n² points if its longest edge is n times this share of the group's diagonal.
-constexpr float kProbeSpacing = 1.0f / 24.0f;
+constexpr float kProbeSpacing = 1.0f / 32.0f;
 constexpr int kMostProbesAlong = 8;
 constexpr std::size_t kPointsPerRange = 64;  // probed points in one range of work
 // No edge is split if its triangle's longest edge is below this share of the diagonal.
 constexpr float kShortestEdge = 1.0f / 1024.0f;
 // Light is never taken to be less than this share of that of an open point: what bounces brightens the dark.
-constexpr double kLeastLight = 0.15;
+constexpr double kLeastLight = 0.07;
 // A split triangle splits its edges of at least this share of the longest one.
 constexpr float kSplitShare = 0.6f;
 // A round splits triangles until the remaining square error is this share of what is allowed, or this share
 // of all of it if that is more, because what the first splits show decides where the next ones go.
-constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.5;
+constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.35;
 
 // An InnerPoint is a point inside a triangle, by the weights of its corners.
 struct InnerPoint {
@@ -71,7 +72,14 @@ void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene, co
 std::uint32_t GroupRefiner::shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
                                      std::span<const SampleOrigin> origins, std::vector<Point>& missing) {
   const auto next = static_cast<std::uint32_t>(seen_.size() + missing.size());
-  const auto [entry, is_new] = known_.try_emplace(vertexKey(position, normal, kind), next);
+  // A vertex looks from a little inside the faces around it. Once these are split it looks from elsewhere,
+  // and is another point.
+  std::uint32_t from = 0;
+  for (const SampleOrigin& origin : origins)
+    for (int k = 0; k < 3; ++k) from = from * 0x9E3779B1u + std::bit_cast<std::uint32_t>(origin.position[k]);
+  VertexKey key = vertexKey(position, normal, kind);
+  key.back() = from;
+  const auto [entry, is_new] = known_.try_emplace(key, next);
   if (is_new) missing.push_back({normal, kind, {origins.begin(), origins.end()}, next});
   return entry->second;
 }
@@ -230,10 +238,10 @@ std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geom
   std::size_t marked = 0;
   for (const std::uint32_t t : order) {
     if (left <= enough || room < 3) break;
-    left -= triangle_error_[t];
     const glm::uvec3 corners = geometry.triangles[t];
     const float longest = longestEdge(geometry, corners);
     if (longest < kShortestEdge * diagonal_) continue;
+    left -= triangle_error_[t];
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t a = corners[c], b = corners[(c + 1) % 3];
       if (glm::distance(geometry.positions[a], geometry.positions[b]) < kSplitShare * longest) continue;

@@ -21,7 +21,7 @@ FacePoint facePoint(const GroupGeometry& geometry, const glm::uvec3& corners, co
           .origin = {.position = at + standOff(at, std::sqrt(0.5f * twice_area)) * face,
                      .geometric_normal = face,
                      .weight = 1.0f,
-                     .reach = reachOf(std::sqrt(twice_area), geometry)}};
+                     .reach = reachOf(corners, geometry)}};
 }
 
 FacePoints facePoints(const GroupGeometry& geometry, const SampleSet& samples,

@@ -12,7 +12,7 @@
 namespace lambent::baker {
 
 template <>
-inline constexpr bool kPlainBytes<SampleOrigin> = sizeof(SampleOrigin) == 8 * sizeof(float);
+inline constexpr bool kPlainBytes<SampleOrigin> = sizeof(SampleOrigin) == 11 * sizeof(float);
 template <>
 inline constexpr bool kPlainBytes<BrdfMeasurement> = sizeof(BrdfMeasurement) == 7 * sizeof(float);
 

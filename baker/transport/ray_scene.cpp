@@ -346,11 +346,11 @@ float RayScene::meet(const SampleRays& rays, std::span<MetShares> shares) const 
       if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
       ++met;
       const RTCRay16& ray = packet.rays.ray;
-      near[origin] += ray.tfar[k] < origins[origin].reach;
-      if (state_->surfaces[hit.geomID[k]].double_sided) continue;
       const float along =
           ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
-      backs[origin] += along > 0.0f;
+      const bool back = along > 0.0f && !state_->surfaces[hit.geomID[k]].double_sided;
+      backs[origin] += back;
+      near[origin] += back || ray.tfar[k] < origins[origin].reach;
     }
   }
   for (std::size_t o = 0; o < origins.size(); ++o) {

@@ -47,8 +47,8 @@ struct FirstHit {
   bool any() const { return triangle != kNothing; }
 };
 
-// The shares of an origin's rays whose first hit is the back of a single-sided surface (`back`) or nearer
-// than the origin's reach (`near`).
+// The shares of an origin's rays whose first hit is the back of a single-sided surface (`back`), or that or
+// nearer than the origin's reach (`near`).
 struct MetShares {
   float back = 0.0f, near = 0.0f;
 };

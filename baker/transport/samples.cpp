@@ -155,11 +155,12 @@ void findOrigins(const GroupGeometry& geometry, SampleSet& samples) {
     if (!(twice_area > 0.0f) || !(angle > 0.0f)) continue;  // a degenerate face has no inside to stand on
     const glm::vec3 normal = area_normal / twice_area;
     if (faces_up[corner.sample] != 0 && !(glm::dot(normal, samples.normals[corner.sample]) > 0.0f)) continue;
-    const glm::vec3 pulled = p + kPullIntoFace * ((p + q + r) / 3.0f - p);
+    const glm::vec3 middle = (p + q + r) / 3.0f, pulled = p + kPullIntoFace * (middle - p);
     samples.origins.push_back({.position = pulled + standOff(p, std::sqrt(0.5f * twice_area)) * normal,
                                .geometric_normal = normal,
                                .weight = angle,
-                               .reach = reachOf(std::sqrt(twice_area), geometry)});
+                               .reach = reachOf(triangle, geometry),
+                               .inward = middle - pulled});
     ++samples.origin_offsets[corner.sample + 1];
   }
   std::partial_sum(samples.origin_offsets.begin(), samples.origin_offsets.end(),
@@ -181,8 +182,11 @@ float standOff(const glm::vec3& position, float face_size) {
   return 1e-4f * face_size + 4e-6f * magnitude;
 }
 
-float reachOf(float face_size, const GroupGeometry& geometry) {
-  return std::min(face_size, kLongestReach * glm::distance(geometry.bounds_min, geometry.bounds_max));
+float reachOf(const glm::uvec3& corners, const GroupGeometry& geometry) {
+  const glm::vec3 &a = geometry.positions[corners.x], &b = geometry.positions[corners.y],
+                  &c = geometry.positions[corners.z];
+  const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+  return std::min(longest, kLongestReach * glm::distance(geometry.bounds_min, geometry.bounds_max));
 }
 
 SampleSet buildSamples(const GroupGeometry& geometry) {

@@ -7,7 +7,8 @@
 // Rays of a sample start from several origins, one for each face around the vertex, pulled a little into the
 // face and offset along its geometric normal; at concave edges anything else sees through walls. Faces that
 // turn away from the vertex normal, such as flipped faces of a scan, have no origin unless all faces do,
-// since nobody sees what they see.
+// since nobody sees what they see. A vertex that stands inside or under something has its origins moved
+// further into the faces (seen_origins.hpp).
 #pragma once
 
 #include <cstdint>
@@ -29,9 +30,11 @@ struct SampleOrigin {
   glm::vec3 position;          // as GroupGeometry::positions
   glm::vec3 geometric_normal;  // unit; rays below its horizon are blocked
   float weight;                // by the corner's angle; origins of one sample sum to 1
-  // In metres, this is as long as the face is wide, but at most a small share of the group. If all of the sky
-  // is hidden from nearer than this, something lies on the face itself.
+  // In metres, this is as long as the face's longest edge, but at most a small share of the group. If all of
+  // the sky is hidden from nearer than this, something lies on the face itself.
   float reach = 0.0f;
+  glm::vec3 inward{
+      0.0f};  // from here to the middle of the face; if this place is hidden, others on the way may not be
 };
 
 // Samples of one kind stand side by side.
@@ -67,8 +70,8 @@ struct SampleSet {
 // needs, plus a little of the face's size (metres, of an edge). A fixed length would not suit all scales.
 float standOff(const glm::vec3& position, float face_size);
 
-// Returns SampleOrigin::reach for a face of this size, metres.
-float reachOf(float face_size, const GroupGeometry& geometry);
+// Returns SampleOrigin::reach for a face with these corners, metres.
+float reachOf(const glm::uvec3& corners, const GroupGeometry& geometry);
 
 SampleSet buildSamples(const GroupGeometry& geometry);
 

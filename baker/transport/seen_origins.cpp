@@ -1,6 +1,7 @@
 #include "baker/transport/seen_origins.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace lambent::baker {
 
@@ -8,12 +9,16 @@ namespace {
 
 // If more first hits of an origin than this share are back faces, it lies inside a body or under something.
 constexpr float kInsideShare = 0.5f;
-// If more first hits than this share are nearer than the origin's reach, something lies on its face.
+// If more first hits than this share are nearer than the origin's reach, or back faces, something lies on its
+// face: a slab, or a hollow body without a bottom, whose rooms show some fronts from inside.
 constexpr float kCoveredShare = 0.9f;
 // If this share of a few rays is blocked, the sample deserves more rays. If all of them are, it most likely
 // stands in a closed room, where more rays show nothing more.
 constexpr float kBlockedShare = 0.5f;
 constexpr std::size_t kInsideTestRays = 16, kLookRays = 64;
+// If no origin is seen, all of them move into their faces by these shares of the way to the middle, until
+// one is.
+constexpr std::array kMovedInto = {0.0f, 0.1f, 0.3f, 1.0f};
 
 }  // namespace
 
@@ -32,18 +37,26 @@ void findSeenOrigins(std::span<const SampleOrigin> all, const glm::mat3& frame, 
     return met.back == 0.0f && met.near <= kCoveredShare;
   });
   if (seen.valid) return;
-  rays.meet({all, frame, glances.look}, shares);
-  seen.origins.clear();
-  float weight = 0.0f;
-  for (std::size_t o = 0; o < all.size(); ++o) {
-    if (shares[o].back > kInsideShare || shares[o].near > kCoveredShare) continue;
-    seen.origins.push_back(all[o]);
-    weight += all[o].weight;
-  }
-  seen.valid = !seen.origins.empty();
-  if (!seen.valid) seen.origins.assign(all.begin(), all.end());
-  if (seen.valid)
+  for (const float share : kMovedInto) {
+    seen.origins.clear();
+    float weight = 0.0f;
+    for (const SampleOrigin& origin : all) {
+      // Each gets all of the rays. Dealt out by weight, faces that are slivers at the vertex would get none.
+      SampleOrigin moved = origin;
+      moved.position += share * origin.inward;
+      moved.weight = 1.0f;
+      MetShares met;
+      rays.meet({std::span(&moved, 1), frame, glances.look}, std::span(&met, 1));
+      if (met.back > kInsideShare || met.near > kCoveredShare) continue;
+      moved.weight = origin.weight;
+      weight += origin.weight;
+      seen.origins.push_back(moved);
+    }
+    seen.valid = !seen.origins.empty();
     for (SampleOrigin& origin : seen.origins) origin.weight /= weight;
+    if (seen.valid) return;
+  }
+  seen.origins.assign(all.begin(), all.end());
 }
 
 }  // namespace lambent::baker

@@ -1,6 +1,7 @@
 // Finds which of a sample's origins stand where they could be seen: not inside a body, and not where
 // something lies on the face. Transfer from such places would leak, as darkness, over the visible parts of
-// the faces.
+// the faces. If a vertex stands inside or under something while parts of its faces can be seen, its origins
+// move towards these parts: what is interpolated over the face then begins with light that is there.
 #pragma once
 
 #include <span>

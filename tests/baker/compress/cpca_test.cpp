@@ -95,6 +95,26 @@ void expectSound(const CodedTransfer& coded, std::size_t count) {
   EXPECT_EQ(back->vectors, book.vectors);
 }
 
+TEST(Cpca, KeepsItsBoundForFewSamplesThatFaceWhereNoOthersDo) {
+  // Most of a room's samples lie in a few dimensions. A basis that is found from some of them misses the
+  // rest.
+  const transfer::TransferShape shape = shapeOf(5);
+  constexpr std::size_t kCount = 40'000, kRare = 64;
+  std::vector<float> up(shape.size()), aside(shape.size());
+  sh::unoccludedTransfer(5, glm::vec3(0, 1, 0), up);
+  sh::unoccludedTransfer(5, glm::normalize(glm::vec3(1, -0.5f, 0.7f)), aside);
+  for (std::size_t first = 0; first + kRare < kCount; first += kCount / 12) {
+    std::vector<float> vectors;
+    for (std::size_t s = 0; s < kCount; ++s) {
+      const bool rare = s >= first && s < first + kRare;
+      const float dim = 0.5f + 0.5f * static_cast<float>(s % 97) / 97.0f;
+      for (std::size_t i = 0; i < shape.size(); ++i) vectors.push_back(dim * (rare ? aside[i] : up[i]));
+    }
+    const CodedTransfer coded = codeTransfer(vectors, kCount, shape, {.bound = 0.005f});
+    EXPECT_LE(coded.error, 0.005f) << "rare samples from " << first;
+  }
+}
+
 TEST(ClusteredCoding, KeepsItsBoundAtEveryOrderOnWhatTheFileDecodesTo) {
   for (const std::uint32_t order : {1u, 2u, 5u, 8u})
     for (const float bound : {0.03f, 0.003f, 0.0005f}) {

@@ -84,5 +84,26 @@ TEST(SeenOrigins, LeaveOutWhatSomethingLiesOn) {
   EXPECT_TRUE(found.valid);
 }
 
+TEST(SeenOrigins, AreJudgedByAllRaysHoweverSmallTheirFaceIs) {
+  // Rays that are dealt out by weight leave none for the face that is a sliver at the vertex, and what no ray
+  // tests would pass as seen.
+  const Transport t(sceneOf({grid({0, 0, 0}, 4.0f, 4), box({1.0f, 0.051f, 0}, {2.0f, 0.1f, 4.0f}, 1)}));
+  const SampleOrigin wide{{0.5f, 1e-4f, 0}, {0, 1, 0}, 0.999f, 0.1f},
+      narrow{{0.6f, 1e-4f, 0}, {0, 1, 0}, 0.001f, 0.1f};
+  SeenOrigins found;
+  findSeenOrigins(std::array{wide, narrow}, upright(), t.rays, InsideTestTables(), found);
+  EXPECT_FALSE(found.valid);
+}
+
+TEST(SeenOrigins, MoveIntoTheFaceWhereItsVertexIsCovered) {
+  const Transport t(sceneOf({grid({0, 0, 0}, 4.0f, 4), box({1.0f, 0.051f, 0}, {2.0f, 0.1f, 4.0f}, 1)}));
+  const SampleOrigin covered{{0.5f, 1e-4f, 0}, {0, 1, 0}, 1.0f, 0.1f, {-1.5f, 0, 0}};
+  SeenOrigins found;
+  findSeenOrigins(std::span(&covered, 1), upright(), t.rays, InsideTestTables(), found);
+  ASSERT_TRUE(found.valid);
+  EXPECT_LT(found.origins[0].position.x, 0.0f);
+  EXPECT_EQ(found.origins[0].weight, 1.0f);
+}
+
 }  // namespace
 }  // namespace lambent::baker
