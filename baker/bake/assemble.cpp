@@ -86,7 +86,7 @@ class Assembler {
         group.lights.push_back({light.kind == PlannedLight::Kind::Material
                                     ? bundle::GroupLight::Kind::Material
                                     : bundle::GroupLight::Kind::Node,
-                                light.index, light.color});
+                                light.index, light.color, light.spheres});
       group.light_probes.clear();
       for (const glm::vec3& point : baked[g].light_probes.points)
         group.light_probes.push_back(origin + point);

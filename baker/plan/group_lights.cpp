@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "baker/plan/lamp_spheres.hpp"
+
 namespace lambent::baker {
 
 std::int32_t groupRootOf(const Scene& scene, std::uint32_t node) {
@@ -33,7 +35,8 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
                                    [&](const PlannedLight& light) { return light.index == index; });
     // Blended surfaces cast no shadow and rays miss them, so their light is only visible directly.
     if (!known && !source.unlit && source.alpha_mode != gltf::AlphaMode::Blend && isLit(source.emissive))
-      lights.push_back({PlannedLight::Kind::Material, index, source.emissive, glm::mat4(1.0f)});
+      lights.push_back({PlannedLight::Kind::Material, index, source.emissive, glm::mat4(1.0f),
+                        findLampSpheres(scene, group, index)});
   }
   const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
   for (std::uint32_t n = 0; n < scene.nodes.size(); ++n) {
@@ -41,7 +44,7 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
     const gltf::Light& light = scene.lights[static_cast<std::size_t>(scene.nodes[n].light)];
     const glm::vec3 color = light.intensity * light.color;
     if (!isLit(color)) continue;
-    lights.push_back({PlannedLight::Kind::Node, n, color, groupFromNode(scene, group, n, world)});
+    lights.push_back({PlannedLight::Kind::Node, n, color, groupFromNode(scene, group, n, world), {}});
   }
   return lights;
 }

@@ -11,6 +11,7 @@
 
 #include "baker/import/scene.hpp"
 #include "baker/plan/rigid_groups.hpp"
+#include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
 
@@ -20,6 +21,8 @@ struct PlannedLight {
   std::uint32_t index = 0;  // into the scene's materials or nodes
   glm::vec3 color{1.0f};    // strength as in the file: radiance, or colour x intensity of a punctual light
   glm::mat4 group_from_node{1.0f};  // used for punctual lights only
+  // Used for materials only: the spheres as which it emits, if it does (lamp_spheres.hpp).
+  std::vector<bundle::LampSphere> spheres{};
 };
 
 // Returns materials first, in the order of the draws, then nodes in their own order.

@@ -75,7 +75,9 @@ std::uint32_t PatchBounces::within(const LitScene& scene, std::size_t group) {
 }
 
 std::uint32_t PatchBounces::beside(const LitScene& scene, std::size_t group) {
-  return group < scene.pixel_masks.size() ? scene.pixel_masks[group] & ~within(scene, group) : 0u;
+  // Columns bounce by themselves.
+  const std::uint32_t others = ~(within(scene, group) | scene.columnMask(group));
+  return group < scene.pixel_masks.size() ? scene.pixel_masks[group] & others : 0u;
 }
 
 bool PatchBounces::apart(const World& world, const LitScene& scene, const PatchLights& lights,

@@ -28,7 +28,8 @@ inline constexpr std::uint32_t kVersionGlossyTransfer = 4;
 inline constexpr std::uint32_t kVersionVolumesAndNeighborhoods = 5;
 inline constexpr std::uint32_t kVersionWeightedNormals = 6;
 inline constexpr std::uint32_t kVersionFans = 7;
-inline constexpr std::uint32_t kVersionCurrent = kVersionFans;
+inline constexpr std::uint32_t kVersionLampShapes = 8;
+inline constexpr std::uint32_t kVersionCurrent = kVersionLampShapes;
 
 // Describes a byte range of the GLB's binary chunk.
 struct View {
@@ -138,6 +139,15 @@ struct Cell {
   }
 };
 
+// Describes a sphere that emits evenly, about as a closed part of a mesh does. A sphere of this radius has
+// the area of the part, and hence its power. The part itself is within `body_radius_m` of the center.
+struct LampSphere {
+  glm::vec3 center{0.0f};  // group frame, metres
+  float radius_m = 0.0f, body_radius_m = 0.0f;
+  bool operator==(const LampSphere&) const = default;
+};
+inline constexpr std::size_t kMaxLampSpheres = 4;  // of a material
+
 // Describes a light that belongs to a group, so that it does not move in the group's frame. Column k of the
 // group's transfer is the response to light k at unit strength; its coefficient is the light's current colour
 // times strength.
@@ -147,6 +157,9 @@ struct GroupLight {
   std::uint32_t index = 0;  // index of the emissive material, or of the node that carries a KHR light
   // Colour as baked: radiance (factor times strength) of a material, or colour times intensity of a node.
   glm::vec3 color{0.0f};
+  // If the material emits like a few spheres, these are the spheres; else it is empty. Its direct light can
+  // then be shaded per pixel.
+  std::vector<LampSphere> spheres{};
 };
 
 // Describes a medium that absorbs and scatters, in a box of voxels. The density has its own resolution, for

@@ -207,6 +207,15 @@ Cell readCell(const Field& field, const Description& d, const Group& group, std:
   return cell;
 }
 
+LampSphere readLampSphere(const Field& field) {
+  LampSphere sphere{.center = field["center"].vector<glm::vec3>(),
+                    .radius_m = field["radius"].number(),
+                    .body_radius_m = field["bodyRadius"].number()};
+  if (!(sphere.radius_m > 0.0f)) field["radius"].fault("is not above 0");
+  if (sphere.body_radius_m < sphere.radius_m) field["bodyRadius"].fault("is below the radius");
+  return sphere;
+}
+
 GroupLight readGroupLight(const Field& field, const Description& d) {
   GroupLight light;
   light.kind = readWord<GroupLight::Kind>(field["kind"], kLightKinds);
@@ -215,6 +224,10 @@ GroupLight readGroupLight(const Field& field, const Description& d) {
   if (light.kind == GroupLight::Kind::Node && d.nodes[light.index].light < 0)
     field["node"].fault("carries no light");
   light.color = field["color"].vector<glm::vec3>();
+  for (const Field& entry : field.list("spheres")) light.spheres.push_back(readLampSphere(entry));
+  if (light.spheres.size() > kMaxLampSpheres) field["spheres"].fault("are too many");
+  if (light.kind == GroupLight::Kind::Node && !light.spheres.empty())
+    field["spheres"].fault("are those of a node");
   return light;
 }
 
@@ -230,9 +243,14 @@ Json cellJson(const Cell& cell) {
 }
 
 Json groupLightJson(const GroupLight& light) {
-  return {{"kind", word(light.kind, kLightKinds)},
-          {light.kind == GroupLight::Kind::Material ? "material" : "node", light.index},
-          {"color", vectorJson(light.color)}};
+  Json json = {{"kind", word(light.kind, kLightKinds)},
+               {light.kind == GroupLight::Kind::Material ? "material" : "node", light.index},
+               {"color", vectorJson(light.color)}};
+  for (const LampSphere& sphere : light.spheres)
+    json["spheres"].push_back({{"center", vectorJson(sphere.center)},
+                               {"radius", sphere.radius_m},
+                               {"bodyRadius", sphere.body_radius_m}});
+  return json;
 }
 
 Json groupJson(const Group& group) {

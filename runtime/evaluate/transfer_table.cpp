@@ -15,11 +15,18 @@ bool takesAny(const transfer::TransferShape& shape, TransferMode mode) {
   return takesFull(shape, mode) || (mode != TransferMode::Unshadowed && shape.shadowed_channels > 0);
 }
 
+// Only surfaces see the group's own lights per pixel. Grids around bodies carry all of their light, because
+// what receives it there has no shadow cube of it.
+bool takesPartedLamps(const streaming::ResidentCell& cell, const lighting::GroupLights& lights) {
+  return lights.hasPartedLamps() && cell.domain == transfer::Domain::Vertex;
+}
+
 transfer::TransferRecord describeTransfer(const streaming::ResidentCell& cell,
                                           const streaming::ResidentTransfer& transfer, TransferMode mode,
-                                          bool has_keys) {
+                                          const lighting::GroupLights& lights) {
   const transfer::TransferShape& shape = transfer.shape;
   const bool full = takesFull(shape, mode);
+  const bool apart = shape.order > 0 ? lights.hasKeys() : takesPartedLamps(cell, lights);
   const bool several = shape.order > 0 && cell.light_probes.size() > 1;
   return {.light_count = several ? static_cast<std::uint32_t>(cell.light_probes.size()) : 1,
           .first_light = 0,
@@ -43,8 +50,10 @@ transfer::TransferRecord describeTransfer(const streaming::ResidentCell& cell,
           .accumulate = 0,
           .order = shape.order,
           .visibility = shape.isVisibility() ? 1u : 0u,
-          .bounced = full && has_keys && shape.order > 0 ? 1u : 0u,
-          .straight_channels = has_keys && shape.order > 0 ? shape.shadowed_channels : 0};
+          .bounced = full && apart ? 1u : 0u,
+          .straight_channels = apart ? shape.shadowed_channels : 0,
+          .apart = shape.order > 0 ? lighting::GroupLights::kBlock : shape.light_columns,
+          .pad = 0};
 }
 
 }  // namespace
@@ -55,11 +64,12 @@ void TransferTable::add(const streaming::ResidentCell& cell, const lighting::Gro
   Cell& range = cells.back();
   for (const streaming::ResidentTransfer& transfer : cell.transfers) {
     if (!takesAny(transfer.shape, mode) || !transfer.codebook_resident) continue;
-    transfer::TransferRecord record = describeTransfer(cell, transfer, mode, lights.hasKeys());
+    transfer::TransferRecord record = describeTransfer(cell, transfer, mode, lights);
     record.accumulate = range.count++ > 0 ? 1 : 0;
     record.first_light = static_cast<std::uint32_t>(places.size());
     if (transfer.shape.order == 0) {
-      places.push_back(lights.lampsOf(cell.group));
+      places.push_back(takesPartedLamps(cell, lights) ? lights.partedLampsOf(cell.group)
+                                                      : lights.lampsOf(cell.group));
     } else {
       for (const std::uint32_t sample : cell.light_probes)
         places.push_back(lights.firstOf(cell.group, sample));

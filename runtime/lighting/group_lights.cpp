@@ -25,6 +25,13 @@ float changeBetween(std::span<const glm::vec3> before, std::span<const glm::vec3
   return power > 0.0 ? static_cast<float>(std::min(std::sqrt(change / power), 1.0)) : 0.0f;
 }
 
+// The group's own lights stand in the table three times.
+constexpr std::size_t kLampBlocks = 3;
+
+bool partsLamps(const GroupPlace& place) {
+  return place.parted && std::ranges::any_of(place.lamps_apart, [](float share) { return share > 0.0f; });
+}
+
 // Lamps that are kept apart give light, so their band 0 is not zero.
 bool hasLampsApart(const GroupPlace& place) {
   return place.parted && std::ranges::any_of(place.incident, [](const Incident& incident) {
@@ -41,9 +48,9 @@ void GroupLights::layOut(std::span<const GroupPlace> groups) {
     const std::size_t samples = groups[i].incident.size(), lamps = groups[i].lamps.size();
     Group& group = groups_[i];
     const auto first = static_cast<std::uint32_t>(coefficients.size());
-    coefficients.resize(first + kStride * samples + lamps, glm::vec4(0.0f));
+    coefficients.resize(first + kStride * samples + kLampBlocks * lamps, glm::vec4(0.0f));
     if (group.version != 0 && sameLayout(groups[i], group)) {
-      std::copy_n(coefficients_.begin() + group.first, kStride * samples + lamps,
+      std::copy_n(coefficients_.begin() + group.first, kStride * samples + kLampBlocks * lamps,
                   coefficients.begin() + first);
     } else {
       group = {};
@@ -60,13 +67,20 @@ bool GroupLights::sameLayout(const GroupPlace& place, const Group& group) {
 }
 
 bool GroupLights::updateLamps(Group& group, const GroupPlace& place) {
-  if (group.lamps_version != 0 && group.lamps == place.lamps) return false;
+  const std::vector<float> apart = place.parted ? place.lamps_apart : std::vector<float>();
+  if (group.lamps_version != 0 && group.lamps == place.lamps && group.lamps_apart == apart) return false;
   group.change = std::max(group.change, changeBetween(group.lamps, place.lamps));
   group.lamps = place.lamps;
+  group.lamps_apart = apart;
   group.lamps_version = ++version_;
   const std::size_t first = group.first + kStride * group.samples.size();
-  for (std::size_t k = 0; k < group.lamps.size(); ++k)
+  const std::size_t count = group.lamps.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const float share = k < apart.size() ? apart[k] : 0.0f;
     coefficients_[first + k] = glm::vec4(group.lamps[k], 0.0f);
+    coefficients_[first + count + k] = glm::vec4((1.0f - share) * group.lamps[k], 0.0f);
+    coefficients_[first + 2 * count + k] = glm::vec4(share * group.lamps[k], 0.0f);
+  }
   return true;
 }
 
@@ -109,6 +123,7 @@ void GroupLights::update(const Environment& environment, sh::Window window,
   renewed_ = static_cast<std::uint32_t>(renewals.size());
   environment_version_ = environment.version();
   has_keys_ = !environment.keys().empty() || std::ranges::any_of(groups, hasLampsApart);
+  has_parted_lamps_ = std::ranges::any_of(groups, partsLamps);
   window_ = window;
   max_order_ = max_order;
   followWindows(environment, window, groups, renewals);

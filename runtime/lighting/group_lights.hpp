@@ -3,7 +3,8 @@
 // the light that arrives at its light probes, and the current strength of its own lights. It provides per
 // group and light probe two blocks of 64 vec4 coefficients (zero from order² on): first the light without key
 // lights, then key lights alone, with those lamps whose direct light is shaded per pixel. The group's own
-// lights follow. Versions rise when these change. The first block is windowed (the environment once per
+// lights follow three times: all of their light, the part that is not shaded per pixel, and the part that is.
+// Versions rise when these change. The first block is windowed (the environment once per
 // order, and only when the shape of its light changed); both blocks are rotated per group. Render thread
 // only.
 #pragma once
@@ -37,6 +38,9 @@ struct GroupPlace {
   // The strengths of the lights that belong to the group, one per light column of its transfer: colour times
   // strength.
   std::vector<glm::vec3> lamps{};
+  // The share of each of these lights whose direct light is shaded per pixel, 0..1, so that only its bounces
+  // go by the column. Empty means 0 for all. It counts only if the place is parted.
+  std::vector<float> lamps_apart{};
   std::vector<Incident> incident = {{}};  // one per light probe
   std::uint64_t key = 0;                  // identifies the group when others come and go
   // If true, key lights and lamps are kept apart because shadow maps carry their direct light. If false,
@@ -65,12 +69,19 @@ class GroupLights {
   std::size_t groupCount() const { return groups_.size(); }
   // Returns whether there are key lights or lamps that are kept apart. If not, their blocks are 0.
   bool hasKeys() const { return has_keys_; }
+  // Returns whether any of the groups' own lights is shaded per pixel.
+  bool hasPartedLamps() const { return has_parted_lamps_; }
   // Return indices of vec4s: of a light probe's first coefficient (its key lights follow kBlock later), and
   // of the group's own lights.
   std::uint32_t firstOf(std::size_t group, std::size_t sample = 0) const {
     return groups_[group].first + kStride * static_cast<std::uint32_t>(sample);
   }
   std::uint32_t lampsOf(std::size_t group) const { return firstOf(group, groups_[group].samples.size()); }
+  // Returns the index of the light that is not shaded per pixel of the group's own lights; what is shaded per
+  // pixel follows as many vec4s later as the group has lights.
+  std::uint32_t partedLampsOf(std::size_t group) const {
+    return lampsOf(group) + static_cast<std::uint32_t>(groups_[group].lamps.size());
+  }
   // Return the versions of all light of a group, of one light probe, and of the group's own lights.
   std::uint64_t versionOf(std::size_t group) const { return groups_[group].version; }
   std::uint64_t versionOf(std::size_t group, std::size_t sample) const {
@@ -100,6 +111,7 @@ class GroupLights {
     std::uint32_t order = 0;
     bool parted = true;
     std::vector<glm::vec3> lamps;
+    std::vector<float> lamps_apart;
     std::vector<Sample> samples;
     std::uint32_t first = 0;
     std::uint64_t version = 0, lamps_version = 0;
@@ -139,7 +151,7 @@ class GroupLights {
   int max_order_ = sh::kMaxOrder;
   std::uint64_t version_ = 0;
   std::uint32_t renewed_ = 0;
-  bool has_keys_ = false;
+  bool has_keys_ = false, has_parted_lamps_ = false;
   gpu::Table table_;
 };
 

@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/scene/affine.hpp"
+#include "runtime/shadows/column_lights.hpp"
 #include "runtime/shadows/shadowed_light_choice.hpp"
 #include "runtime/shadows/shadowed_light_record.hpp"
 #include "runtime/world/boxes.hpp"
@@ -94,7 +95,37 @@ bool shadesColumn(const World& world, std::size_t group, ecs::Entity light, cons
   return false;
 }
 
+// Gives the free shadow cubes to column lights.
+void addColumnLights(const World& world, std::span<const ecs::Entity> light_entities, LitScene& scene) {
+  const std::vector<ColumnLight> lights = findColumnLights(world);
+  const std::size_t free = lighting::kMaxShadowedLights - scene.shadowed_lights.size();
+  for (const std::size_t i : chooseColumnLights(lights, free)) {
+    const ColumnLight& light = lights[i];
+    std::vector<float>& apart = scene.lamps_apart[light.group];
+    apart.resize(world.residency().groups()[light.group].light_columns, 0.0f);
+    apart[light.column] = 1.0f;
+    for (const lighting::ShadowedLight& shape : light.shapes) {
+      ColumnCube cube{.shadowed_light = static_cast<std::uint32_t>(scene.shadowed_lights.size()),
+                      .group = light.group,
+                      .source = {}};
+      if (!light.material)
+        cube.source = static_cast<std::size_t>(std::ranges::find(light_entities, light.entity) -
+                                               light_entities.begin());
+      scene.column_cubes.push_back(cube);
+      scene.shadowed_lights.push_back(shape);
+      scene.scopes.push_back({.without = {}, .lamp = light.material ? light.entity : ecs::Entity{}});
+    }
+  }
+}
+
 }  // namespace
+
+std::uint32_t LitScene::columnMask(std::size_t group) const {
+  std::uint32_t mask = 0;
+  for (const ColumnCube& cube : column_cubes)
+    if (cube.group == group) mask |= 1u << cube.shadowed_light;
+  return mask;
+}
 
 bool LitScene::needsSampling() const {
   const auto seesOthers = [&](const lighting::IncidentGroup& group) {
@@ -112,6 +143,23 @@ BodyProxies proxiesOf(const streaming::Residency& residency) {
       bodies.keys.push_back(group.id);
     }
   return bodies;
+}
+
+void leaveOutOfColumns(LitScene& scene) {
+  for (const ColumnCube& cube : scene.column_cubes) {
+    std::vector<std::uint32_t>& without = scene.scopes[cube.shadowed_light].without;
+    without.clear();
+    const std::vector<std::uint32_t>& by_grid = scene.groups[cube.group].left_out;
+    for (std::uint32_t g = 0; g < scene.groups.size(); ++g) {
+      const lighting::IncidentGroup& group = scene.groups[g];
+      if (!std::ranges::binary_search(by_grid, group.body)) continue;
+      // Light of a material reaches the body by captures. A grid knows nothing of light that has a cube
+      // there.
+      constexpr float kMostly = 0.5f;
+      if (!cube.source || (group.lit_by[*cube.source] != 0 && group.apart[*cube.source] < kMostly))
+        without.push_back(g);
+    }
+  }
 }
 
 LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options) {
@@ -140,6 +188,10 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
     scene.local_sources.push_back(k);
   }
 
+  scene.scopes.resize(scene.shadowed_lights.size());
+  scene.lamps_apart.resize(groups.size());
+  if (options.column_lights) addColumnLights(world, light_entities, scene);
+
   std::uint32_t proxy_index = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const streaming::ResidentGroup& group = groups[g];
@@ -164,7 +216,7 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
                               .radiance_drift = 0.0,
                               .key = receiver.key});
     }
-    std::uint32_t local_mask = 0, pixel_mask = 0;
+    std::uint32_t local_mask = 0, pixel_mask = scene.columnMask(g);
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {
       bool by_harmonics = !world.litByColumn(g, light_entities[k]);
       float apart = 0.0f;

@@ -1,6 +1,8 @@
 // Gathers the scene as the lighting system sees it, from the registry and what is resident: rigid groups as
 // receivers and as bodies, the local lights, and which carrier brings each light to each group:
-// - the group's own light column, if the light belongs to the group and stands where it stood in the bake;
+// - the group's own light column, if the light belongs to the group and stands where it stood in the bake. If
+//   its shape is known and a shadow cube is free, only its bounces go by the column, and its direct light
+//   goes per pixel (column_lights.hpp);
 // - a shadow cube map, per pixel, if the light stands within the bounds of a group of surfaces; its bounces
 //   travel by patches;
 // - a shadow cube map, per pixel, if the light stands beside any group, within a few of its radii. It then
@@ -12,31 +14,48 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "runtime/lighting/incident_light.hpp"
+#include "runtime/shadows/local_shadows.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
 
+// Names the column light that a shadowed light shows.
+struct ColumnCube {
+  std::uint32_t shadowed_light = 0;
+  std::size_t group = 0;  // of the column
+  // Index in LitScene::lights of a light at a node; nothing for an emissive material.
+  std::optional<std::size_t> source;
+};
+
 struct LitScene {
   std::vector<lighting::IncidentGroup> groups;  // in the order of residency().groups()
   std::vector<std::vector<glm::vec3>> lamps;    // per group, its own lights' strengths by column
+  std::vector<std::vector<float>> lamps_apart;  // per group and column: share shaded per pixel, 0 or 1
   std::vector<lighting::IncidentBody> bodies;
   std::vector<lighting::LocalLight> lights;
   std::vector<lighting::ShadowedLight>
       shadowed_lights;                     // at most kMaxShadowedLights, times the share shaded per pixel
   std::vector<std::uint32_t> local_masks;  // per group: bit k if shadowed light k stands within its bounds
   std::vector<std::uint32_t> pixel_masks;  // per group: bit k if shadowed light k shines on it per pixel
-  std::vector<std::size_t> local_sources;  // for each shadowed light, its index in `lights`
+  // Column lights come after the other shadowed lights, and each shines so on the group of its column only.
+  std::vector<ColumnCube> column_cubes;
+  std::vector<std::size_t> local_sources;  // for each shadowed light that is no column, its index in `lights`
+  std::vector<ShadowScope> scopes;         // for each shadowed light
   std::uint32_t local_left_out = 0;  // lights within bounds without a free shadow cube: harmonics carry them
 
   // Returns whether anything but the environment reaches any group from outside.
   bool needsSampling() const;
+  // Returns bit k if shadowed light k is a column of the group.
+  std::uint32_t columnMask(std::size_t group) const;
 };
 
 struct LitSceneOptions {
   bool shadowed_lights = true;  // false: harmonics carry all lights that stand in the scene
+  bool column_lights = false;   // true: column lights are shaded per pixel where shadow cubes are free
   float local_radii = 0.0f;     // lights within this many radii of a group's centre are beside it
   bool bodies = true;           // false: groups neither light nor shadow each other
 };
@@ -44,6 +63,10 @@ struct LitSceneOptions {
 // Gathers the scene. `surroundings` is the mean radiance against which bodies count as bright. The frame
 // fills in radiance_drift of the bodies.
 LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options = {});
+
+// Leaves out of the shadow cubes of column lights those bodies whose neighborhood grids carry their shadow in
+// that light already. Call it when the carriers between bodies are chosen (Neighborhoods::chooseCarriers()).
+void leaveOutOfColumns(LitScene& scene);
 
 // Lists the proxies of the groups that have one, in the order of the bodies, and the keys of these groups.
 struct BodyProxies {

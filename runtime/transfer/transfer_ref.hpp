@@ -38,14 +38,19 @@ struct TransferVector {
   uint at, channels, stride, columns;
 };
 
-// Returns the vector times `rest` of the light without key lights and `key` of the key lights.
-inline glm::vec3 timesLight(const Memory& memory, const TransferVector& vector, uint light, float rest,
-                            float key) {
+// Names the light that is multiplied: a share of what starts at index `rest`, plus a share of what is shaded
+// per pixel and starts at index `key`.
+struct ArrivingLight {
+  uint rest, key;
+  float rest_share, key_share;
+};
+
+inline glm::vec3 timesLight(const Memory& memory, const TransferVector& vector, const ArrivingLight& light) {
   const auto [at, channels, stride, columns] = vector;
   glm::vec3 sum(0.0f);
   for (uint i = 0; i < columns; ++i) {
-    glm::vec3 arriving = rest * memory.lightAt(light + i);
-    if (key != 0.0f) arriving += key * memory.lightAt(light + kKeyBlock + i);
+    glm::vec3 arriving = light.rest_share * memory.lightAt(light.rest + i);
+    if (light.key_share != 0.0f) arriving += light.key_share * memory.lightAt(light.key + i);
     glm::vec3 value(memory.floatAt(at + i));
     if (channels > 1) {
       value.g = memory.floatAt(at + stride + i);
@@ -61,12 +66,15 @@ inline glm::vec4 projectOnLight(const Memory& memory, const TransferRecord& tran
   const uint columns = transfer.columns, stride = transfer.outputs * columns;
   const uint first = transfer.vectors_word + vector * transfer.vector_size + output_index * columns;
   const auto bounced = static_cast<float>(transfer.bounced);
+  const uint key = light + transfer.apart;
   const glm::vec3 sum = timesLight(memory, {first + transfer.first_value, transfer.channels, stride, columns},
-                                   light, 1.0f, bounced);
+                                   {light, key, 1.0f, bounced});
   if (transfer.straight_channels == 0) return glm::vec4(sum, 0.0f);
   const glm::vec3 straight =
-      timesLight(memory, {first, transfer.straight_channels, stride, columns}, light, 0.0f, 1.0f);
-  return glm::vec4(sum - bounced * straight, glm::dot(straight, kLuminance));
+      timesLight(memory, {first, transfer.straight_channels, stride, columns}, {light, key, 0.0f, 1.0f});
+  // In samples of glossy surfaces, w is how visible light is.
+  const float sent_on = transfer.outputs > kMappedOutputs ? 0.0f : glm::dot(straight, kLuminance);
+  return glm::vec4(sum - bounced * straight, sent_on);
 }
 
 inline uint codeOf(const Memory& memory, uint codes, uint position) {

@@ -22,7 +22,7 @@ LAMBENT_CONSTANT kLightsPerSample = 4u;  // light probes that may light one samp
 
 LAMBENT_CONSTANT kBindWork = 0u;  // WorkItem per work group
 LAMBENT_CONSTANT kBindLights =
-    1u;  // vec4 per coefficient: per group kLightStride for each light probe, then its own lights
+    1u;  // vec4 per coefficient: per group kLightStride for each light probe, then three times its own lights
 LAMBENT_CONSTANT kBindTransfers = 2u;  // TransferRecord
 LAMBENT_CONSTANT kBindPlaces = 3u;     // words of a transfer's planes, and its lights
 LAMBENT_CONSTANT kBindProducts =
@@ -51,9 +51,10 @@ struct WorkItem {
 };
 #endif
 
-// In a shaded sample of a vector, w is 1 plus the luminance that arrives straight from key lights by harmonics (in
-// the first output at least 0). A sample that was not shaded yet has w = 0. Surfaces take that light per pixel, by
-// shadow maps; capture proxies have no pixels and send it on from here.
+// In a shaded sample of a vector, w is 1 plus the luminance that arrives straight from lights that are shaded per pixel:
+// from key lights by harmonics, and from the group's own lights by their columns (in the first output at least 0). A
+// sample that was not shaded yet has w = 0. Surfaces take that light per pixel, by shadow maps and cubes; capture
+// proxies have no pixels and send it on from here.
 
 // Describes the resident part of one transfer of a cell, and the block of it that counts. Words are those of the
 // transfer page:
@@ -88,16 +89,19 @@ struct TransferRecord {
   uint accumulate;  // 1: adds to what another transfer of the cell has written
   uint order;       // bands of the environment's light; 0: the group's own lights
   uint visibility;  // 1: the vectors are visibility, to be multiplied with the light (visibility_light.glsl)
-  // These count only with key lights. `bounced` is 1 if the block that counts contains bounced light, so that it
-  // takes key lights too. straight_channels is the number of channels at the start of a vector that carry light
-  // without bounces, which key lights do not take here.
+  // These count only if lights are shaded per pixel: key lights, or some of the group's own lights. Their coefficients
+  // lie `apart` vec4s after those of the other light. `bounced` is 1 if the block that counts contains bounced light,
+  // so that it takes these lights too. straight_channels is the number of channels at the start of a vector that carry
+  // light without bounces, which these lights do not take here.
   uint bounced;
   uint straight_channels;
+  uint apart;
+  uint pad;
 };
 
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
-static_assert(sizeof(TransferRecord) == 96 && offsetof(TransferRecord, first_product) == 60 &&
+static_assert(sizeof(TransferRecord) == 104 && offsetof(TransferRecord, first_product) == 60 &&
               offsetof(TransferRecord, accumulate) == 76);
 }  // namespace lambent::transfer
 #endif

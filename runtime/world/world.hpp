@@ -182,6 +182,8 @@ class World {
   std::vector<glm::vec3> lampsOf(std::uint32_t bundle, std::uint32_t group) const;
   // Returns whether the light is one of the group's own and stands in its place.
   bool litByColumn(std::size_t group, ecs::Entity light) const;
+  // Returns the entity of the draw's material as a lamp of its group; null if it is none.
+  ecs::Entity lampOfDraw(std::size_t draw) const { return lamp_of_draw_[draw]; }
   glm::quat rotationOf(std::size_t group) const;
   glm::mat4 worldFromMesh(std::size_t draw) const;
   // Returns the current radiance emitted by the draw's material, before its texture: that of its lamp if it

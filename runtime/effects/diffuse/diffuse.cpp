@@ -59,7 +59,7 @@ Diffuse::Diffuse()
 Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
                             evaluate::TransferMode mode, gpu::Counters& counters,
                             const evaluate::ShadedKinds& kinds) {
-  const bool other_way = way_changed_.renew(mode, lights.hasKeys());
+  const bool other_way = way_changed_.renew(mode, lights.hasKeys(), lights.hasPartedLamps());
   if (other_way) {  // shades everything anew
     cells_changed_.clear();
     draws_changed_.clear();

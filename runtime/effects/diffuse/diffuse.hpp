@@ -76,8 +76,9 @@ class Diffuse {
   gpu::WorkList project_work_, samples_work_, adding_work_, vertices_work_;
   KeyedState<ChangeGate<std::uint64_t, std::uint64_t>> cells_changed_;  // versions: cell, light
   KeyedState<ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t>> draws_changed_;  // draw, light, cells
-  KeyedState<std::uint64_t> group_shaded_;                 // rises when a cell of the group was shaded
-  ChangeGate<evaluate::TransferMode, bool> way_changed_;   // the mode, whether key lights stand apart
+  KeyedState<std::uint64_t> group_shaded_;  // rises when a cell of the group was shaded
+  // Holds the mode, and whether key lights and lamps stand apart.
+  ChangeGate<evaluate::TransferMode, bool, bool> way_changed_;
   ChangeGate<std::uint64_t, std::size_t> layout_changed_;  // residency, groups
   Shaded shaded_;
 };

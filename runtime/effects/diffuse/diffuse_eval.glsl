@@ -124,13 +124,32 @@ float keyVisibility(uint first, vec3 direction) {
   return clamp(diffuseLight(visibility, direction).r, 0.0, 1.0);
 }
 
+// Returns the colour, of luminance 1, of the light that samples know only by its luminance. Where there are both key
+// lights and lamps, it is the mean of their colours.
+vec3 straightTint(ProxyGroupRecord group, vec3 key, float key_luminance) {
+  vec3 lamps = vec3(0.0);
+  for (uint k = 0u; k < group.lamp_count; ++k) lamps += lightAt(group.lamps + 2u * group.lamp_count + k);
+  float lamps_luminance = dot(lamps, kLuminance);
+  vec3 sum = vec3(0.0);
+  float count = 0.0;
+  if (key_luminance > 0.0) {
+    sum += key / key_luminance;
+    count += 1.0;
+  }
+  if (lamps_luminance > 0.0) {
+    sum += lamps / lamps_luminance;
+    count += 1.0;
+  }
+  return sum / max(count, 1.0);
+}
+
 // Returns the radiance that a proxy's triangle sends out. Samples that are not shaded yet count as unshadowed.
 // Truncated light may be negative somewhere, but a surface never sends out negative radiance.
 vec3 proxyRadiance(ProxyGroupRecord group, ProxyTriangleRecord triangle) {
   vec3 normal = vec3(triangle.normal[0], triangle.normal[1], triangle.normal[2]);
   uint key = group.light + kKeyBlock;
   float key_luminance = dot(lightAt(key), kLuminance);
-  vec3 tint = key_luminance > 0.0 ? lightAt(key) / key_luminance : vec3(0.0);
+  vec3 tint = straightTint(group, lightAt(key), key_luminance);
   vec3 towards_key = vec3(dot(lightAt(key + 3u), kLuminance), dot(lightAt(key + 1u), kLuminance), dot(lightAt(key + 2u), kLuminance));
   vec3 sum = vec3(0.0), waiting = vec3(0.0);
   for (uint i = triangle.first_entry; i < triangle.first_entry + triangle.entry_count; ++i) {

@@ -146,6 +146,24 @@ inline float keyVisibility(const Memory& memory, uint first, glm::vec3 direction
   return std::clamp(diffuseLight(visibility, direction).r, 0.0f, 1.0f);
 }
 
+inline glm::vec3 straightTint(const Memory& memory, const ProxyGroupRecord& group, glm::vec3 key,
+                              float key_luminance) {
+  glm::vec3 lamps(0.0f);
+  for (uint k = 0; k < group.lamp_count; ++k) lamps += memory.lightAt(group.lamps + 2 * group.lamp_count + k);
+  const float lamps_luminance = glm::dot(lamps, kLuminance);
+  glm::vec3 sum(0.0f);
+  float count = 0.0f;
+  if (key_luminance > 0.0f) {
+    sum += key / key_luminance;
+    count += 1.0f;
+  }
+  if (lamps_luminance > 0.0f) {
+    sum += lamps / lamps_luminance;
+    count += 1.0f;
+  }
+  return sum / std::max(count, 1.0f);
+}
+
 inline glm::vec3 proxyRadiance(const Memory& memory, const ProxyGroupRecord& group,
                                const ProxyTriangleRecord& triangle,
                                std::span<const ProxyEntryRecord> entries) {
@@ -154,7 +172,7 @@ inline glm::vec3 proxyRadiance(const Memory& memory, const ProxyGroupRecord& gro
   const int order = static_cast<int>(group.order);
   const auto keyAt = [&](uint i) { return glm::dot(memory.lightAt(key + i), kLuminance); };
   const float key_luminance = keyAt(0);
-  const glm::vec3 tint = key_luminance > 0.0f ? memory.lightAt(key) / key_luminance : glm::vec3(0.0f);
+  const glm::vec3 tint = straightTint(memory, group, memory.lightAt(key), key_luminance);
   const glm::vec3 towards_key(keyAt(3), keyAt(1), keyAt(2));
   glm::vec3 sum(0.0f), waiting(0.0f);
   for (const ProxyEntryRecord& entry : entries.subspan(triangle.first_entry, triangle.entry_count)) {

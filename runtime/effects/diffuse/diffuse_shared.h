@@ -50,9 +50,10 @@ struct ProxyGroupRecord {
   uint first_triangle;
   uint triangle_count;
   uint light;  // vec4 index of the coefficients of its first light probe
-  uint lamps;  // vec4 index of its own lights
+  uint lamps;  // vec4 index of its own lights; those that are shaded per pixel follow after 2 lamp_count
   uint order;
-  uint pad[3];
+  uint lamp_count;
+  uint pad[2];
 };
 
 struct ProxyTriangleRecord {

@@ -79,6 +79,7 @@ void Proxies::rebuildTables(const streaming::Residency& residency, const lightin
                        .light = lights.firstOf(g),
                        .lamps = lights.lampsOf(g),
                        .order = group.order,
+                       .lamp_count = group.light_columns,
                        .pad = {}});
   }
   groups_table_.assign(std::span<const ProxyGroupRecord>(groups_));

@@ -60,7 +60,7 @@ Glossy::Glossy()
 Result<void> Glossy::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
                            evaluate::TransferMode mode, gpu::Counters& counters,
                            const evaluate::ShadedKinds& kinds) {
-  const bool other_way = way_changed_.renew(mode, lights.hasKeys());
+  const bool other_way = way_changed_.renew(mode, lights.hasKeys(), lights.hasPartedLamps());
   if (other_way) cells_changed_.clear();  // shades everything anew
   if (layout_changed_.renew(residency.version(), lights.groupCount()) || other_way) {
     any_ = std::any_of(residency.cells().begin(), residency.cells().end(),

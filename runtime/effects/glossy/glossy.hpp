@@ -77,7 +77,8 @@ class Glossy {
   std::array<gpu::WorkList, kMaxTransfers> samples_work_;
   KeyedState<ChangeGate<std::uint64_t, std::uint64_t>> cells_changed_;  // its version, its light
   KeyedState<std::uint64_t> group_shaded_;
-  ChangeGate<evaluate::TransferMode, bool> way_changed_;   // the mode, whether key lights stand apart
+  // Holds the mode, and whether key lights and lamps stand apart.
+  ChangeGate<evaluate::TransferMode, bool, bool> way_changed_;
   ChangeGate<std::uint64_t, std::size_t> layout_changed_;  // residency, groups
   std::uint32_t cells_shaded_ = 0;
   bool any_ = false;

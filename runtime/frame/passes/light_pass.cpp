@@ -76,11 +76,13 @@ class LightPass final : public FramePass {
     const FrameSettings& settings = frame.settings();
     scene_ = gatherLitScene(frame.world, meanRadiance(frame.environment),
                             {.shadowed_lights = settings.local_shadows,
+                             .column_lights = settings.local_shadows && frame.options.keysApart(),
                              .local_radii = frame.options.keysApart() ? settings.local_radii : 0.0f,
                              .bodies = settings.captures});
     Neighborhoods& neighborhoods = frame.write<Neighborhoods>();
     if (settings.neighborhoods || neighborhoods.any())
       neighborhoods.chooseCarriers(frame.world, scene_, settings.neighborhoods);
+    leaveOutOfColumns(scene_);
     keepFewerSamples(frame.world, settings.light_probes);
     hideApart(scene_, proxiesOf(frame.world.residency()).proxies);
   }
@@ -140,6 +142,7 @@ class LightPass final : public FramePass {
       places.push_back({.world_from_group = frame.world.rotationOf(g),
                         .order = groups[g].order,
                         .lamps = scene_.lamps[g],
+                        .lamps_apart = scene_.lamps_apart[g],
                         .incident = incidentOf(g, groups[g].light_probes.size()),
                         .key = scene_.groups[g].key,
                         .parted = frame.options.keysApart() && groups[g].volume < 0});

@@ -97,7 +97,10 @@ Sample sampleBundle() {
   group.rest_translation = {1.0f, 2.0f, 3.0f};
   group.rest_rotation = glm::quat(0.5f, 0.5f, -0.5f, 0.5f);
   group.sample_count = 5;
-  group.lights = {{GroupLight::Kind::Material, 0, {3.0f, 2.0f, 1.0f}},
+  group.lights = {{GroupLight::Kind::Material,
+                   0,
+                   {3.0f, 2.0f, 1.0f},
+                   {{{1.0f, -2.0f, 0.1f}, 0.25f, 0.3f}, {{0.0f, 4.0f, 0.0f}, 1e-3f, 1e-3f}}},
                   {GroupLight::Kind::Node, 1, {0.0f, 40.0f, 0.5f}}};
   group.cells = {{0, 3, glm::vec3(-1.0f), glm::vec3(1.0f), {plain, lamps}},
                  {3, 2, glm::vec3(-1.0f), glm::vec3(1.0f), {mapped}}};
@@ -147,6 +150,8 @@ TEST_F(BundleFile, GivesBackClustersLampsAndNormalMappedCells) {
   const Group& group = reader->description().groups[0];
   ASSERT_EQ(group.lights.size(), 2u);
   EXPECT_EQ(group.lights[0].kind, GroupLight::Kind::Material);
+  EXPECT_EQ(group.lights[0].spheres, sample.description.groups[0].lights[0].spheres);
+  EXPECT_TRUE(group.lights[1].spheres.empty());
   EXPECT_EQ(group.lights[1].kind, GroupLight::Kind::Node);
   EXPECT_EQ(group.lights[1].index, 1u);
   EXPECT_EQ(group.lights[1].color, glm::vec3(0.0f, 40.0f, 0.5f));
@@ -307,6 +312,10 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   refused([](Description& d) { d.groups[0].cells[0].transfers.push_back(d.groups[0].cells[0].transfers[1]); },
           "the group's lights after the environment");
   refused([](Description& d) { d.groups[0].lights[0].index = 1; }, "lights[0].material");
+  refused([](Description& d) { d.groups[0].lights[0].spheres[1].radius_m = 0.0f; }, "spheres[1].radius");
+  refused([](Description& d) { d.groups[0].lights[0].spheres[0].body_radius_m = 0.2f; }, "bodyRadius");
+  refused([](Description& d) { d.groups[0].lights[0].spheres.resize(5, {{}, 1.0f, 1.0f}); }, "too many");
+  refused([](Description& d) { d.groups[0].lights[1].spheres = {{{}, 1.0f, 1.0f}}; }, "those of a node");
   refused([](Description& d) { d.groups[0].lights[1].index = 2; }, "lights[1].node");
   refused([](Description& d) { d.groups[0].lights[1].index = 0; }, "carries no light");
   refused(

@@ -32,7 +32,7 @@ TEST_F(GroupLightsTest, GiveEachGroupTheLightInItsOwnFrame) {
   EXPECT_EQ(lights.firstOf(0), 0u);
   constexpr std::uint32_t kStride = GroupLights::kStride;
   EXPECT_EQ(lights.firstOf(1), kStride);
-  ASSERT_EQ(lights.coefficients().size(), 2 * kStride + 2);
+  ASSERT_EQ(lights.coefficients().size(), 2 * kStride + 3 * 2);
   EXPECT_FALSE(lights.hasKeys());
   const sh::LightVector upright = sunAlong(90).light().truncated(5),
                         turned = sunAlong(0).light().truncated(4);
@@ -112,6 +112,35 @@ TEST_F(GroupLightsTest, ALampThatChangesIsNewLightForItsGroupOnly) {
   EXPECT_EQ(lights.versionOf(0), first);
   EXPECT_GT(lights.versionOf(1), second);
   EXPECT_EQ(lights.coefficients()[lights.lampsOf(1)], glm::vec4(0, 0, 5, 0));
+}
+
+TEST_F(GroupLightsTest, LampsThatShinePerPixelStandApartAndAllPartsAddUp) {
+  GroupLights lights;
+  gpu::Counters counters;
+  const Environment environment = sunAlong(10);
+  std::vector<GroupPlace> places = {{.order = 3, .lamps = {{1, 2, 3}, {4, 5, 6}}}};
+  const auto expect = [&](glm::vec3 rest, glm::vec3 apart) {
+    lights.update(environment, sh::Window::Off, places, counters);
+    const std::span<const glm::vec4> all = lights.coefficients();
+    const std::uint32_t whole = lights.lampsOf(0), parted = lights.partedLampsOf(0);
+    EXPECT_EQ(all[whole], glm::vec4(1, 2, 3, 0));
+    EXPECT_EQ(all[whole + 1], glm::vec4(4, 5, 6, 0));
+    EXPECT_EQ(all[parted], glm::vec4(1, 2, 3, 0)) << "this one has no cube";
+    EXPECT_EQ(all[parted + 1], glm::vec4(rest, 0));
+    EXPECT_EQ(all[parted + 2], glm::vec4(0.0f));
+    EXPECT_EQ(all[parted + 3], glm::vec4(apart, 0));
+    EXPECT_EQ(lights.hasPartedLamps(), apart != glm::vec3(0.0f));
+  };
+  expect({4, 5, 6}, glm::vec3(0.0f));
+  const std::uint64_t before = lights.lampsVersionOf(0);
+  places[0].lamps_apart = {0.0f, 1.0f};
+  expect(glm::vec3(0.0f), {4, 5, 6});
+  EXPECT_GT(lights.lampsVersionOf(0), before) << "another carrier is other light for the samples";
+  EXPECT_EQ(lights.changeOf(0), 0.0f) << "but the same light for what the group sends out";
+  places[0].lamps_apart = {0.0f, 0.25f};
+  expect({3, 3.75f, 4.5f}, {1, 1.25f, 1.5f});
+  places[0].parted = false;
+  expect({4, 5, 6}, glm::vec3(0.0f));
 }
 
 TEST_F(GroupLightsTest, BandsThatDoNotCountAreZeroAndTheWindowIsThatOfTheOthers) {

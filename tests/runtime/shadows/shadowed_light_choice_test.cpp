@@ -1,10 +1,13 @@
 #include "runtime/shadows/shadowed_light_choice.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+
+#include "runtime/shadows/column_lights.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -80,6 +83,26 @@ TEST(ShadowedLightChoice, NoMoreShineThanThereAreShadowCubesForAndNoneJumps) {
     before = now;
   }
   EXPECT_GT(changes, 20);
+}
+
+ColumnLight columnOf(std::vector<float> radii_m, float radiance) {
+  ColumnLight light;
+  for (const float radius : radii_m)
+    light.shapes.push_back(
+        {.kind = lighting::ShadowedLight::Kind::Sphere, .radius_m = radius, .power = glm::vec3(radiance)});
+  return light;
+}
+
+TEST(ColumnLightChoice, TheBrightestGetTheCubesAsFarAsAllTheirShapesFit) {
+  EXPECT_NEAR(intensityOf(columnOf({2.0f}, 3.0f).shapes[0]), 12.0f * std::numbers::pi_v<float>, 1e-4f);
+  const std::vector<ColumnLight> lights = {columnOf({0.1f}, 10.0f), columnOf({0.1f, 0.1f, 0.1f}, 9.0f),
+                                           columnOf({0.2f}, 10.0f)};
+  using Chosen = std::vector<std::size_t>;
+  EXPECT_EQ(chooseColumnLights(lights, 5), (Chosen{2, 1, 0}));
+  EXPECT_EQ(chooseColumnLights(lights, 4), (Chosen{2, 1}));
+  EXPECT_EQ(chooseColumnLights(lights, 3), (Chosen{2, 0})) << "two cubes are too few for three spheres";
+  EXPECT_EQ(chooseColumnLights(lights, 1), (Chosen{2}));
+  EXPECT_EQ(chooseColumnLights(lights, 0), Chosen());
 }
 
 }  // namespace

@@ -81,8 +81,10 @@ struct Page {
               .accumulate = transfer_index > 0 ? 1u : 0u,
               .order = shape.order,
               .visibility = 0,
-              .bounced = full && keys && shape.order > 0 ? 1u : 0u,
-              .straight_channels = keys && shape.order > 0 ? shape.shadowed_channels : 0u};
+              .bounced = full && keys ? 1u : 0u,
+              .straight_channels = keys ? shape.shadowed_channels : 0u,
+              .apart = shape.order > 0 ? transfer::kKeyBlock : shape.light_columns,
+              .pad = 0};
     uint vector = 0;
     for (const uint axes : codebook.axis_counts) {
       words.insert(words.end(), {vector, axes});
@@ -111,7 +113,8 @@ struct Page {
       std::memcpy(&words[record.light_weights_word], weights.data(), 8 * weights.size());
     }
   }
-  // The lamps come after the light probes.
+  // The lamps come after the light probes: the part of their light that is not shaded per pixel, then the
+  // part that is.
   static uint lampsOf(const testing::RandomBundle& made) {
     return made.light_weights.empty()
                ? transfer::kLightStride
@@ -136,8 +139,8 @@ std::vector<std::vector<std::uint32_t>> codesOf(const testing::RandomBundle& mad
   return all;
 }
 
-// Returns what all transfers of the cell give, decoded directly: [sample][output]. Of key lights it has only
-// the bounces, full minus shadowed; w is 1 plus the luminance of their direct light.
+// Returns what all transfers of the cell give, decoded directly: [sample][output]. Of lights that are shaded
+// per pixel it has only the bounces, full minus shadowed; w is 1 plus the luminance of their direct light.
 std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
                                          const std::vector<glm::vec4>& light, bool full) {
   std::vector<glm::vec4> out;
@@ -151,7 +154,8 @@ std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
     if (out.empty()) out.resize(positions.size() * shape.outputs, glm::vec4(0, 0, 0, 1));
     // Returns coefficient i of what arrives at a sample, from the block at this offset from the first.
     const auto arriving = [&](std::size_t s, std::uint32_t block, std::uint32_t i) {
-      if (shape.order == 0) return block == 0 ? glm::vec3(light[Page::lampsOf(made) + i]) : glm::vec3(0.0f);
+      if (shape.order == 0)
+        return glm::vec3(light[Page::lampsOf(made) + (block == 0 ? 0 : shape.light_columns) + i]);
       if (made.light_weights.empty()) return glm::vec3(light[block + i]);
       const transfer::LightWeights& weights = made.light_weights[0].samples[s];
       glm::vec3 sum(0.0f);
@@ -180,7 +184,8 @@ std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
         glm::vec3 sum = times(s, j, first, channels, 0);
         if (full) sum += times(s, j, first, channels, transfer::kKeyBlock) - straight;
         const float luminance = glm::dot(straight, transfer::ref::kLuminance);
-        out[s * shape.outputs + j] += glm::vec4(sum, j == 0 ? std::max(luminance, 0.0f) : luminance);
+        out[s * shape.outputs + j] +=
+            glm::vec4(sum, t == 0 && j == 0 ? std::max(luminance, 0.0f) : luminance);
       }
   }
   return out;
@@ -211,8 +216,11 @@ TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
                 const std::vector<glm::vec4> more = randomLight(maker, 3, keys);
                 light.insert(light.end(), more.begin(), more.end());
               }
-              for (std::uint32_t k = 0; k < lamps; ++k)
-                light.emplace_back(maker.uniform(0, 1), maker.uniform(0, 1), maker.uniform(0, 1), 0.0f);
+              for (std::uint32_t k = 0; k < 2 * lamps; ++k) {
+                const float on = k < lamps || keys ? 1.0f : 0.0f;
+                light.emplace_back(on * maker.uniform(0, 1), on * maker.uniform(0, 1),
+                                   on * maker.uniform(0, 1), 0.0f);
+              }
               const std::vector<glm::vec4> expected = decodedTimesLight(made, light, full);
               std::vector<glm::vec4> samples(expected.size(), glm::vec4(0.0f));
               for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
@@ -254,6 +262,7 @@ TEST(DiffuseTwin, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirO
   };
   transfer::TransferRecord record{};
   record.columns = record.outputs = record.order = 1;
+  record.apart = transfer::kKeyBlock;
   record.channels = 3;
   record.vector_size = 4;
   record.first_value = 1;
@@ -261,12 +270,13 @@ TEST(DiffuseTwin, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirO
   EXPECT_EQ(project(record), glm::vec4(kFull * rest, 0.0f)) << "no key lights";
   record.bounced = 1;
   record.straight_channels = 1;
-  EXPECT_EQ(project(record),
-            glm::vec4(kFull * (rest + key) - kShadowed * key, glm::dot(kShadowed * key, transfer::ref::kLuminance)));
+  EXPECT_EQ(project(record), glm::vec4(kFull * (rest + key) - kShadowed * key,
+                                       glm::dot(kShadowed * key, transfer::ref::kLuminance)));
   record.channels = 1;  // without bounces
   record.first_value = 0;
   record.bounced = 0;
-  EXPECT_EQ(project(record), glm::vec4(kShadowed * rest, glm::dot(kShadowed * key, transfer::ref::kLuminance)));
+  EXPECT_EQ(project(record),
+            glm::vec4(kShadowed * rest, glm::dot(kShadowed * key, transfer::ref::kLuminance)));
   record.channels = 3;  // bounces that have a transfer of their own: nothing of it is straight
   record.first_value = 1;
   record.bounced = 1;

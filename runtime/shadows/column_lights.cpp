@@ -1,0 +1,119 @@
+#include "runtime/shadows/column_lights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+
+#include "runtime/shadows/shadowed_light_record.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+// Returns whether the group has the size that it was baked with.
+bool hasItsSize(const glm::mat4& world_from_group) {
+  constexpr float kTolerance = 1e-3f;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j)
+      if (std::abs(glm::dot(glm::vec3(world_from_group[i]), glm::vec3(world_from_group[j])) -
+                   (i == j ? 1.0f : 0.0f)) > kTolerance)
+        return false;
+  return true;
+}
+
+std::vector<lighting::ShadowedLight> spheresOf(const bundle::GroupLight& light, glm::vec3 radiance,
+                                               const glm::mat4& world_from_group) {
+  std::vector<lighting::ShadowedLight> spheres;
+  for (const bundle::LampSphere& sphere : light.spheres)
+    spheres.push_back({.kind = lighting::ShadowedLight::Kind::Sphere,
+                       .position_ws = glm::vec3(world_from_group * glm::vec4(sphere.center, 1.0f)),
+                       .radius_m = sphere.radius_m,
+                       .body_radius_m = sphere.body_radius_m,
+                       .power = radiance});
+  return spheres;
+}
+
+// Returns the shape of a light at a node, or nothing if it is neither a point nor a spot, or differs from
+// what was baked.
+std::vector<lighting::ShadowedLight> punctualOf(const World& world, ecs::Entity entity,
+                                                const gltf::Light& baked, glm::vec3 intensity) {
+  using Kind = lighting::ShadowedLight::Kind;
+  const auto* light = world.registry().tryGet<scene::LocalLightComponent>(entity);
+  const auto* place = world.registry().tryGet<scene::WorldTransform>(entity);
+  if (!light || !place) return {};
+  const bool spot = baked.type == gltf::Light::Type::Spot;
+  if (baked.type == gltf::Light::Type::Directional || light->range_m != baked.range_m ||
+      light->kind !=
+          (spot ? scene::LocalLightComponent::Kind::Spot : scene::LocalLightComponent::Kind::Point))
+    return {};
+  if (spot &&
+      (light->inner_cone_rad != baked.inner_cone_rad || light->outer_cone_rad != baked.outer_cone_rad))
+    return {};
+  const glm::vec3 ahead = -glm::vec3(place->world_from_node[2]);
+  const float length = glm::length(ahead);
+  return {{.kind = spot ? Kind::Spot : Kind::Point,
+           .position_ws = glm::vec3(place->world_from_node[3]),
+           .direction_ws = length > 0.0f ? ahead / length : glm::vec3(0.0f, 0.0f, -1.0f),
+           .power = intensity,
+           .range_m = light->range_m,
+           .inner_cone_rad = light->inner_cone_rad,
+           .outer_cone_rad = light->outer_cone_rad}};
+}
+
+}  // namespace
+
+std::vector<ColumnLight> findColumnLights(const World& world) {
+  std::vector<ColumnLight> found;
+  const auto& groups = world.residency().groups();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const bundle::Description& description = world.description(groups[g].bundle);
+    const bundle::Group& described = description.groups[groups[g].index];
+    const glm::mat4 world_from_group = world.worldFromGroup(g);
+    if (groups[g].volume >= 0 || described.lights.empty() || !hasItsSize(world_from_group)) continue;
+    const std::vector<glm::vec3> strengths = world.lampsOf(g);
+    const std::vector<ecs::Entity>& entities = world.instance(groups[g].bundle).lamps[groups[g].index];
+    for (std::uint32_t k = 0; k < described.lights.size(); ++k) {
+      const bundle::GroupLight& light = described.lights[k];
+      ColumnLight one{.group = g, .column = k, .entity = entities[k], .shapes = {}};
+      one.material = light.kind == bundle::GroupLight::Kind::Material;
+      if (one.material) {
+        one.shapes = spheresOf(light, strengths[k], world_from_group);
+      } else {
+        const std::int32_t carried = description.nodes[light.index].light;
+        one.shapes = punctualOf(world, entities[k], description.lights[static_cast<std::size_t>(carried)],
+                                strengths[k]);
+      }
+      if (!one.shapes.empty() && std::ranges::all_of(one.shapes, shines)) found.push_back(std::move(one));
+    }
+  }
+  return found;
+}
+
+float intensityOf(const lighting::ShadowedLight& light) {
+  const float luminance = glm::dot(light.power, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+  return hasExtent(light) ? luminance * std::numbers::pi_v<float> * light.radius_m * light.radius_m
+                          : luminance;
+}
+
+std::vector<std::size_t> chooseColumnLights(std::span<const ColumnLight> lights, std::size_t cubes) {
+  std::vector<float> intensity;
+  for (const ColumnLight& light : lights) {
+    intensity.push_back(0.0f);
+    for (const lighting::ShadowedLight& shape : light.shapes) intensity.back() += intensityOf(shape);
+  }
+  std::vector<std::size_t> order(lights.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return intensity[i]; });
+  std::vector<std::size_t> chosen;
+  for (const std::size_t i : order) {
+    if (lights[i].shapes.size() > cubes) continue;
+    cubes -= lights[i].shapes.size();
+    chosen.push_back(i);
+  }
+  return chosen;
+}
+
+}  // namespace lambent::frame

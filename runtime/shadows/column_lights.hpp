@@ -1,0 +1,36 @@
+// Chooses which of the groups' own lights are shaded per pixel: column lights whose shape is known, as far as
+// there are shadow cubes. Point and spot lights at nodes, and emissive materials that shine as a few spheres,
+// have a known shape. All other column lights, and those without a cube, shine by their columns alone. No GL.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "runtime/lighting/shadowed_light.hpp"
+#include "runtime/world/world.hpp"
+
+namespace lambent::frame {
+
+// Describes a column light that a shadow cube, or one for each of its spheres, can show.
+struct ColumnLight {
+  std::size_t group = 0;  // of the residency
+  std::uint32_t column = 0;
+  bool material = false;
+  ecs::Entity entity{};  // of the light, or of the lamp of the material
+  std::vector<lighting::ShadowedLight> shapes;
+};
+
+// Returns the column lights of all groups of surfaces that shine now, stand in their places and have a known
+// shape. A group that was scaled since the bake has none, because its columns do not know of that.
+std::vector<ColumnLight> findColumnLights(const World& world);
+
+// Returns the intensity of a light, as luminance in candela.
+float intensityOf(const lighting::ShadowedLight& light);
+
+// Returns the indices of those lights that get shadow cubes, of which `cubes` are free: the brightest ones,
+// each only if there are cubes for all of its shapes.
+std::vector<std::size_t> chooseColumnLights(std::span<const ColumnLight> lights, std::size_t cubes);
+
+}  // namespace lambent::frame

@@ -1,0 +1,134 @@
+// Tests a group's own lights whose direct light goes per pixel: sharp shadows as in closed forms, bounced
+// light as in the path-traced reference, and every path once.
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "reference/reference.hpp"
+#include "tests/stability/show.hpp"
+#include "tests/support/gpu_context.hpp"
+
+namespace lambent {
+namespace {
+
+using testing::add;
+using testing::named;
+using testing::Show;
+using ColumnLight = testing::GpuTest;
+
+constexpr float kAlbedo = 0.6f, kRadiance = 400.0f, kRadius = 0.05f, kHeight = 1.0f;
+const glm::vec3 kEye(0.9f, 0.6f, 0.9f);
+
+// Has a bulb 1 m above a floor, and a plate of 0.2 m halfway below it. All of it is one rigid group.
+assets::Scene lampScene(bool closed) {
+  assets::Scene scene = named("lamp");
+  add(scene, "floor", assets::plane({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0.1f), glm::vec3(kAlbedo), {0, 0, 0},
+      false);
+  add(scene, "plate", assets::box({-0.1f, 0.49f, -0.1f}, {0.1f, 0.5f, 0.1f}, 0.1f), glm::vec3(kAlbedo),
+      {0, 0, 0}, false);
+  add(scene, "bulb", assets::sphere(kRadius, 8), glm::vec3(kAlbedo), {0, kHeight, 0}, false,
+      glm::vec3(kRadiance));
+  if (!closed) return scene;
+  const auto wall = [&](const char* name, glm::vec3 corner, glm::vec3 right, glm::vec3 up) {
+    add(scene, name, assets::plane(corner, right, up, 0.1f), glm::vec3(kAlbedo), {0, 0, 0}, false);
+  };
+  wall("ceiling", {-1, 2, -1}, {2, 0, 0}, {0, 0, 2});
+  wall("back", {-1, 0, -1}, {2, 0, 0}, {0, 2, 0});
+  wall("front", {1, 0, 1}, {-2, 0, 0}, {0, 2, 0});
+  wall("left", {-1, 0, 1}, {0, 0, -2}, {0, 2, 0});
+  wall("right", {1, 0, -1}, {0, 0, 2}, {0, 2, 0});
+  return scene;
+}
+
+// Returns the floor's radiance where nothing hides the bulb: the whole sphere is above the horizon.
+float openAt(const glm::vec3& place) {
+  const glm::vec3 way = glm::vec3(0, kHeight, 0) - place;
+  const float squared = glm::dot(way, way);
+  return kAlbedo * kRadiance * (kRadius * kRadius / squared) * way.y / std::sqrt(squared);
+}
+
+std::vector<spec::Light> noLight() {
+  return {testing::constantLight(0.0f)};
+}
+
+void setLocalShadows(Show& show, bool on) {
+  frame::FrameSettings settings = show.frame->settings();
+  settings.local_shadows = on;
+  ASSERT_TRUE(show.frame->setSettings(settings));
+}
+
+}  // namespace
+
+TEST_F(ColumnLight, ABulbCastsTheSharpShadowOfAPlate) {
+  Show show(lampScene(false), noLight(), 0, /*bounces=*/0);
+  // The umbra reaches 0.15 m, the penumbra from there to 0.25 m.
+  for (const float x : {0.0f, 0.08f, 0.13f})
+    EXPECT_LT(show.patch(kEye, {x, 0, 0}).g, 0.01f * openAt({x, 0, 0})) << x;
+  for (const float x : {0.28f, 0.35f, 0.5f, 0.8f}) {
+    const glm::vec3 place(x, 0, 0.02f);
+    EXPECT_NEAR(show.patch(kEye, place).g / openAt(place), 1.0f, 0.02f) << x;
+  }
+  EXPECT_EQ(show.frame->counts()["shadowed_lights"], 1u);
+  // The bulb shows its emission alone, because its own light does not reach it.
+  EXPECT_NEAR(show.patch(kEye, {0.0f, kHeight, 0.0f}).g / kRadiance, 1.0f, 0.001f);
+}
+
+TEST_F(ColumnLight, WithoutShadowCubesAllOfItGoesByTheColumn) {
+  Show show(lampScene(false), noLight(), 0, /*bounces=*/0);
+  setLocalShadows(show, false);
+  float worst = 0.0f;
+  for (const float x : {0.45f, 0.6f, 0.8f}) {
+    const glm::vec3 place(x, 0, 0.1f);
+    const float column = show.patch(kEye, place).g;
+    EXPECT_NEAR(column / openAt(place), 1.0f, 0.06f) << "the column at vertices, " << x;
+    worst = std::max(worst, std::abs(column - openAt(place)));
+  }
+  EXPECT_EQ(show.frame->counts()["shadowed_lights"], 0u);
+  EXPECT_GT(worst, 0.0f);
+  setLocalShadows(show, true);
+  EXPECT_NEAR(show.patch(kEye, {0.6f, 0, 0.1f}).g / openAt({0.6f, 0, 0.1f}), 1.0f, 0.02f);
+  show.world.scaleLamps(0.5f);
+  EXPECT_NEAR(show.patch(kEye, {0.6f, 0, 0.1f}).g / openAt({0.6f, 0, 0.1f}), 0.5f, 0.01f);
+}
+
+TEST_F(ColumnLight, BouncesAsInTheReference) {
+  Show show(lampScene(true), noLight());
+  double found = 0.0, by_column = 0.0, expected = 0.0;
+  const auto referenceAt = [&](const glm::vec3& target) {
+    baker::reference::Request request;
+    request.lights = noLight();
+    request.view = spec::View{.view_from_world = glm::lookAt(kEye, target, glm::vec3(0.01f, 1.0f, 0.02f)),
+                              .clip_from_view = glm::perspective(glm::radians(1.5f), 1.0f, 0.01f, 1000.0f),
+                              .eye_ws = kEye};
+    request.options.size = {8, 8};
+    request.options.spp = 256;
+    baker::Progress progress;
+    const auto report = baker::reference::render(show.scene, request, {}, true, progress, {});
+    EXPECT_TRUE(report) << report.error().line();
+    double sum = 0.0;
+    for (const glm::vec4& texel : report->image.texels) sum += double{texel.g} / 64.0;
+    return sum;
+  };
+  // The first places see only bounced light.
+  for (const glm::vec3& target :
+       {glm::vec3(0.05f, 0, 0), glm::vec3(-0.1f, 0, 0.05f), glm::vec3(0, 0, -0.11f)}) {
+    const double reference = referenceAt(target);
+    EXPECT_NEAR(double{show.patch(kEye, target).g} / reference, 1.0, 0.15) << target.x << " " << target.z;
+  }
+  for (const glm::vec3& target :
+       {glm::vec3(-0.6f, 0, 0.3f), glm::vec3(0.4f, 0, -0.5f), glm::vec3(-1, 1.2f, 0.1f),
+        glm::vec3(0.2f, 0.7f, -1), glm::vec3(-0.3f, 2, -0.2f)}) {
+    const double reference = referenceAt(target);
+    setLocalShadows(show, true);
+    const double seen = double{show.patch(kEye, target).g};
+    EXPECT_NEAR(seen / reference, 1.0, 0.06) << target.x << " " << target.y << " " << target.z;
+    setLocalShadows(show, false);
+    by_column += double{show.patch(kEye, target).g};
+    found += seen;
+    expected += reference;
+  }
+  EXPECT_NEAR(found / expected, 1.0, 0.03);
+  EXPECT_NEAR(by_column / found, 1.0, 0.06) << "where nothing is hidden, both carriers bring as much";
+}
+
+}  // namespace lambent
