@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 
 #include "reference/reference.hpp"
 #include "tests/stability/show.hpp"
@@ -71,6 +72,29 @@ TEST_F(ColumnLight, ABulbCastsTheSharpShadowOfAPlate) {
   EXPECT_EQ(show.frame->counts()["shadowed_lights"], 1u);
   // The bulb shows its emission alone, because its own light does not reach it.
   EXPECT_NEAR(show.patch(kEye, {0.0f, kHeight, 0.0f}).g / kRadiance, 1.0f, 0.001f);
+}
+
+TEST_F(ColumnLight, ASpotOfTheGroupCastsTheSharpShadowOfAPlate) {
+  assets::Scene scene = lampScene(false);
+  scene.nodes.pop_back();  // the bulb
+  scene.meshes.pop_back();
+  scene.materials.pop_back();
+  constexpr float kIntensity = 3.0f;
+  scene.spots = {
+      {.name = "spot", .intensity_cd = kIntensity, .inner_cone_deg = 60.0f, .outer_cone_deg = 80.0f}};
+  assets::Node node{.name = "lamp", .mesh = -1, .translation = {0, kHeight, 0}};
+  node.rotation = glm::angleAxis(glm::radians(-90.0f), glm::vec3(1, 0, 0));  // from -Z to -Y
+  node.spot = 0;
+  scene.nodes.push_back(node);
+  Show show(scene, noLight(), 0, /*bounces=*/0);
+  // The plate's upper side, half way down, shades the floor to 0.2 m.
+  for (const float x : {0.0f, 0.1f, 0.18f}) EXPECT_LT(show.patch(kEye, {x, 0, 0}).g, 1e-4f) << x;
+  for (const float x : {0.22f, 0.3f, 0.6f, 0.9f}) {
+    const float squared = kHeight * kHeight + x * x;
+    const float expected = kAlbedo / glm::pi<float>() * kIntensity * kHeight / (squared * std::sqrt(squared));
+    EXPECT_NEAR(show.patch(kEye, {x, 0, 0}).g / expected, 1.0f, 0.02f) << x;
+  }
+  EXPECT_EQ(show.frame->counts()["shadowed_lights"], 1u);
 }
 
 TEST_F(ColumnLight, WithoutShadowCubesAllOfItGoesByTheColumn) {
