@@ -42,6 +42,29 @@ assets::Scene lampScene(bool closed, bool movable = false) {
   return scene;
 }
 
+constexpr float kIntensity = 3.0f;
+
+// Has a spot in the place of the bulb.
+assets::Scene spotScene(bool movable) {
+  assets::Scene scene = lampScene(false, movable);
+  scene.nodes.pop_back();
+  scene.meshes.pop_back();
+  scene.materials.pop_back();
+  scene.spots = {
+      {.name = "spot", .intensity_cd = kIntensity, .inner_cone_deg = 60.0f, .outer_cone_deg = 80.0f}};
+  assets::Node node{.name = "lamp", .mesh = -1, .translation = {0, kHeight, 0}};
+  node.rotation = glm::angleAxis(glm::radians(-90.0f), glm::vec3(1, 0, 0));  // from -Z to -Y
+  node.spot = 0;
+  scene.nodes.push_back(node);
+  return scene;
+}
+
+// Returns the floor's radiance on the x axis where nothing hides the spot.
+float underSpot(float x) {
+  const float squared = kHeight * kHeight + x * x;
+  return kAlbedo / glm::pi<float>() * kIntensity * kHeight / (squared * std::sqrt(squared));
+}
+
 // Returns the floor's radiance where nothing hides the bulb: the whole sphere is above the horizon.
 float openAt(const glm::vec3& place) {
   const glm::vec3 way = glm::vec3(0, kHeight, 0) - place;
@@ -76,26 +99,22 @@ TEST_F(ColumnLight, ABulbCastsTheSharpShadowOfAPlate) {
 }
 
 TEST_F(ColumnLight, ASpotOfTheGroupCastsTheSharpShadowOfAPlate) {
-  assets::Scene scene = lampScene(false);
-  scene.nodes.pop_back();  // the bulb
-  scene.meshes.pop_back();
-  scene.materials.pop_back();
-  constexpr float kIntensity = 3.0f;
-  scene.spots = {
-      {.name = "spot", .intensity_cd = kIntensity, .inner_cone_deg = 60.0f, .outer_cone_deg = 80.0f}};
-  assets::Node node{.name = "lamp", .mesh = -1, .translation = {0, kHeight, 0}};
-  node.rotation = glm::angleAxis(glm::radians(-90.0f), glm::vec3(1, 0, 0));  // from -Z to -Y
-  node.spot = 0;
-  scene.nodes.push_back(node);
-  Show show(scene, noLight(), 0, /*bounces=*/0);
+  Show show(spotScene(/*movable=*/false), noLight(), 0, /*bounces=*/0);
   // The plate's upper side, half way down, shades the floor to 0.2 m.
   for (const float x : {0.0f, 0.08f, 0.15f}) EXPECT_LT(show.patch(kEye, {x, 0, 0}).g, 1e-4f) << x;
-  for (const float x : {0.25f, 0.3f, 0.6f, 0.9f}) {
-    const float squared = kHeight * kHeight + x * x;
-    const float expected = kAlbedo / glm::pi<float>() * kIntensity * kHeight / (squared * std::sqrt(squared));
-    EXPECT_NEAR(show.patch(kEye, {x, 0, 0}).g / expected, 1.0f, 0.02f) << x;
-  }
+  for (const float x : {0.25f, 0.3f, 0.6f, 0.9f})
+    EXPECT_NEAR(show.patch(kEye, {x, 0, 0}).g / underSpot(x), 1.0f, 0.02f) << x;
   EXPECT_EQ(show.frame->counts()["shadowed_lights"], 1u);
+}
+
+TEST_F(ColumnLight, ABodyThatHasTheLampByACubeTooKeepsItsGrid) {
+  Show show(spotScene(/*movable=*/true), noLight(), 0, /*bounces=*/0);
+  for (const float x : {0.0f, 0.15f}) EXPECT_LT(show.patch(kEye, {x, 0, 0}).g, 0.01f * underSpot(x)) << x;
+  // The plate's own light arrives in five bands.
+  for (const float x : {0.25f, 0.3f, 0.6f})
+    EXPECT_NEAR(show.patch(kEye, {x, 0, 0}).g / underSpot(x), 1.0f, 0.05f) << x;
+  EXPECT_EQ(show.frame->counts()["shadowed_lights"], 2u) << "one for the floor, one for the plate";
+  EXPECT_EQ(show.frame->counts()["neighborhood_pairs"], 1u);
 }
 
 TEST_F(ColumnLight, WithoutShadowCubesAllOfItGoesByTheColumn) {
