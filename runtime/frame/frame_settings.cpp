@@ -139,7 +139,7 @@ const std::array kRows = {
                                  "Bodies with grids around them shade others by these, off: by\ncaptures"),
     switchRow<&S::local_shadows>("local-shadows", "local lights", 1.0,
                                  "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
-                                 "harmonics",
+                                 "harmonics, or by the columns of their groups",
                                  "near-shadows"),
     SettingRow{
         .name = "local-radii",

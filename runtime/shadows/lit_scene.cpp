@@ -81,12 +81,18 @@ std::vector<float> nearnessOf(const World& world, std::span<const lighting::Loca
 
 // Returns whether the group stands within a group that has a column for this light, or between that group and
 // the light, and has a neighborhood grid through which the other takes the light. Then the grid must be
-// multiplied with this light.
-bool shadesColumn(const World& world, std::size_t group, ecs::Entity light, const glm::vec3& light_ws) {
+// multiplied with this light, unless a shadow cube brings the light to the other.
+bool shadesColumn(const World& world, const LitScene& scene, std::size_t group, ecs::Entity light,
+                  std::size_t source) {
+  const glm::vec3& light_ws = scene.lights[source].position_ws;
+  const auto byCube = [&](std::size_t g) {
+    return std::ranges::any_of(
+        scene.column_cubes, [&](const ColumnCube& cube) { return cube.group == g && cube.source == source; });
+  };
   const auto& groups = world.residency().groups();
   if (!world.description(groups[group].bundle).groups[groups[group].index].neighborhood) return false;
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (g == group || groups[g].volume >= 0 || !world.litByColumn(g, light)) continue;
+    if (g == group || groups[g].volume >= 0 || !world.litByColumn(g, light) || byCube(g)) continue;
     scene::Box lit = world.groupBounds(g);
     lit.add(glm::vec3(glm::inverse(world.worldFromGroup(g)) * glm::vec4(light_ws, 1.0f)));
     if (meet(world.groupBounds(group), world.worldFromGroup(group), lit, world.worldFromGroup(g)))
@@ -113,7 +119,7 @@ void addColumnLights(const World& world, std::span<const ecs::Entity> light_enti
                                                light_entities.begin());
       scene.column_cubes.push_back(cube);
       scene.shadowed_lights.push_back(shape);
-      scene.scopes.push_back({.without = {}, .lamp = light.material ? light.entity : ecs::Entity{}});
+      scene.own_lamps.push_back(light.material ? light.entity : ecs::Entity{});
     }
   }
 }
@@ -145,23 +151,6 @@ BodyProxies proxiesOf(const streaming::Residency& residency) {
   return bodies;
 }
 
-void leaveOutOfColumns(LitScene& scene) {
-  for (const ColumnCube& cube : scene.column_cubes) {
-    std::vector<std::uint32_t>& without = scene.scopes[cube.shadowed_light].without;
-    without.clear();
-    const std::vector<std::uint32_t>& by_grid = scene.groups[cube.group].left_out;
-    for (std::uint32_t g = 0; g < scene.groups.size(); ++g) {
-      const lighting::IncidentGroup& group = scene.groups[g];
-      if (!std::ranges::binary_search(by_grid, group.body)) continue;
-      // Light of a material reaches the body by captures. A grid knows nothing of light that has a cube
-      // there.
-      constexpr float kMostly = 0.5f;
-      if (!cube.source || (group.lit_by[*cube.source] != 0 && group.apart[*cube.source] < kMostly))
-        without.push_back(g);
-    }
-  }
-}
-
 LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options) {
   LitScene scene;
   const ecs::Registry& registry = world.registry();
@@ -188,7 +177,7 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
     scene.local_sources.push_back(k);
   }
 
-  scene.scopes.resize(scene.shadowed_lights.size());
+  scene.own_lamps.resize(scene.shadowed_lights.size());
   scene.lamps_apart.resize(groups.size());
   if (options.column_lights) addColumnLights(world, light_entities, scene);
 
@@ -229,7 +218,7 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
           by_harmonics = bit == 0;
           scene.local_left_out += bit == 0 ? 1 : 0;
         } else if (bit != 0 && options.local_radii > 0.0f &&
-                   !shadesColumn(world, g, light_entities[k], scene.lights[k].position_ws)) {
+                   !shadesColumn(world, scene, g, light_entities[k], k)) {
           pixel_mask |= bit;
           apart = shares[k];
         }

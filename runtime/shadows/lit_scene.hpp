@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "runtime/lighting/incident_light.hpp"
-#include "runtime/shadows/local_shadows.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
@@ -44,7 +43,9 @@ struct LitScene {
   // Column lights come after the other shadowed lights, and each shines so on the group of its column only.
   std::vector<ColumnCube> column_cubes;
   std::vector<std::size_t> local_sources;  // for each shadowed light that is no column, its index in `lights`
-  std::vector<ShadowScope> scopes;         // for each shadowed light
+  // For each shadowed light, the entity of an emissive material whose own surfaces it does not light, or
+  // null.
+  std::vector<ecs::Entity> own_lamps;
   std::uint32_t local_left_out = 0;  // lights within bounds without a free shadow cube: harmonics carry them
 
   // Returns whether anything but the environment reaches any group from outside.
@@ -63,10 +64,6 @@ struct LitSceneOptions {
 // Gathers the scene. `surroundings` is the mean radiance against which bodies count as bright. The frame
 // fills in radiance_drift of the bodies.
 LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options = {});
-
-// Leaves out of the shadow cubes of column lights those bodies whose neighborhood grids carry their shadow in
-// that light already. Call it when the carriers between bodies are chosen (Neighborhoods::chooseCarriers()).
-void leaveOutOfColumns(LitScene& scene);
 
 // Lists the proxies of the groups that have one, in the order of the bodies, and the keys of these groups.
 struct BodyProxies {

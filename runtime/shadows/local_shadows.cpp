@@ -89,7 +89,7 @@ void LocalShadows::updateMasks(const World& world, std::span<const std::uint32_t
   for (std::size_t k = 0; k < lights_.size(); ++k) shining |= shines(lights_[k]) ? 1u << k : 0u;
   for (const std::uint32_t mask : mask_of_group) lights_used_ |= mask & shining;
   any_ = lights_used_ != 0;
-  if (!masks_changed_.renew({mask_of_group.begin(), mask_of_group.end()}, scopes_, shining,
+  if (!masks_changed_.renew({mask_of_group.begin(), mask_of_group.end()}, own_lamps_, shining,
                             residency.version(), world.transformsVersion()))
     return;
   std::vector<LocalDraw> draws;
@@ -101,8 +101,8 @@ void LocalShadows::updateMasks(const World& world, std::span<const std::uint32_t
       // Unlit surfaces show their colour whatever the light.
       const bool lit = group < mask_of_group.size() && !materialOf(world, i).unlit;
       std::uint32_t own = 0;
-      for (std::size_t k = 0; k < scopes_.size(); ++k)
-        if (scopes_[k].lamp != ecs::Entity{} && scopes_[k].lamp == world.lampOfDraw(i)) own |= 1u << k;
+      for (std::size_t k = 0; k < own_lamps_.size(); ++k)
+        if (own_lamps_[k] && own_lamps_[k] == world.lampOfDraw(i)) own |= 1u << k;
       draws.push_back({.world_from_group = {turn.x, turn.y, turn.z, turn.w},
                        .lights = lit ? mask_of_group[group] & shining & ~own : 0u,
                        .pad0 = 0,
@@ -130,22 +130,19 @@ std::vector<std::uint32_t> LocalShadows::findChanged(World& world) {
   for (std::uint32_t k = 0; k < lights_.size(); ++k) {
     Cube& cube = cubes_[k];
     const ShadowedLight& light = lights_[k];
-    const std::vector<std::uint32_t>& without = scopes_[k].without;
-    const bool light_same = cube.drawn && sameShadows(cube.light, light) && cube.without == without;
+    const bool light_same = cube.drawn && sameShadows(cube.light, light);
     if ((lights_used_ >> k & 1u) == 0 || (light_same && world_same)) continue;
     std::vector<ShadowCaster> casters;
     float reach = 0.0f;
     for (const ShadowCaster& caster : casters_.all()) {
       const scene::Box box = around(caster.bounds_ws, light.position_ws);
       if (!reaches(light, box)) continue;
-      if (std::ranges::binary_search(without, world.residency().draws()[caster.draw].group)) continue;
       casters.push_back(caster);
       reach = std::max(reach, farthestDistance(box));
     }
     if (light_same && casters == cube.casters) continue;
     cube.light = light;
     cube.casters = std::move(casters);
-    cube.without = without;
     // The reach is a little larger than needed, because depth 1 means that nothing is there.
     cube.reach = std::max(1.001f * std::min(reach, rangeOf(light)), 1e-3f);
     cube.drawn = false;
@@ -156,15 +153,15 @@ std::vector<std::uint32_t> LocalShadows::findChanged(World& world) {
 
 Result<void> LocalShadows::update(World& world, std::span<const ShadowedLight> lights,
                                   std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters,
-                                  std::span<const ShadowScope> scopes) {
+                                  std::span<const ecs::Entity> own_lamps) {
   cubes_drawn_ = 0;
   const std::span<const ShadowedLight> kept =
       lights.first(std::min<std::size_t>(lights.size(), kShadowedLights));
   lights_.assign(kept.begin(), kept.end());
   for (ShadowedLight& light : lights_)
     if (const float length = glm::length(light.direction_ws); length > 0.0f) light.direction_ws /= length;
-  scopes_.assign(scopes.begin(), scopes.end());
-  scopes_.resize(lights_.size());
+  own_lamps_.assign(own_lamps.begin(), own_lamps.end());
+  own_lamps_.resize(lights_.size());
   updateMasks(world, mask_of_group, counters);
   if (!any_) return {};
   if (Result<void> done = compile(); !done) return done;

@@ -31,26 +31,18 @@ struct LocalOptions {
   std::uint32_t samples = 16;  // sample points on a light with an extent, 1..256
 };
 
-// Says what a light does not meet.
-struct ShadowScope {
-  std::vector<std::uint32_t> without;  // groups, rising, that cast no shadow in its cube
-  // An emissive material's own surfaces are not lit by the light: its entity as World::lampOfDraw() returns
-  // it.
-  ecs::Entity lamp{};
-  bool operator==(const ShadowScope&) const = default;
-};
-
 class LocalShadows {
  public:
   explicit LocalShadows(const LocalOptions& options = {});
 
   // Lights beyond the first kMaxShadowedLights are ignored. Bit k of mask_of_group, indexed as
   // residency().groups(), tells that light k lights the group's draws; groups beyond its end have no light.
-  // Lights beyond the end of `scopes` meet everything. Call it after World::updateTransforms(). Changes the
-  // bound framebuffer, viewport and program.
+  // A light whose entry in `own_lamps` is not null does not light the draws of that emissive material
+  // (World::lampOfDraw()). Call it after World::updateTransforms(). Changes the bound framebuffer, viewport
+  // and program.
   Result<void> update(World& world, std::span<const lighting::ShadowedLight> lights,
                       std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters,
-                      std::span<const ShadowScope> scopes = {});
+                      std::span<const ecs::Entity> own_lamps = {});
 
   // Binds what the surface shaders read, for a picture of this size and view. Call it before Surfaces draws;
   // it binds nothing if no draw is lit.
@@ -73,7 +65,6 @@ class LocalShadows {
   struct Cube {  // as last drawn
     lighting::ShadowedLight light;
     std::vector<ShadowCaster> casters;
-    std::vector<std::uint32_t> without;  // copy of ShadowScope::without
     float reach = 0.0f;
     bool drawn = false;
   };
@@ -93,11 +84,12 @@ class LocalShadows {
   std::uint32_t rows_ = 0;  // rows of the texture, one per light
   gpu::Table block_, draws_table_, faces_;
   std::vector<LocalDraw> draws_;
-  // What draws_ follows from: the groups' masks, the scopes, the lights that shine, residency and transforms.
-  ChangeGate<std::vector<std::uint32_t>, std::vector<ShadowScope>, std::uint32_t, std::uint64_t,
+  // What draws_ follows from: the groups' masks, the materials that shine as lights, the lights that shine,
+  // residency and transforms.
+  ChangeGate<std::vector<std::uint32_t>, std::vector<ecs::Entity>, std::uint32_t, std::uint64_t,
              std::uint64_t>
       masks_changed_;
-  std::vector<ShadowScope> scopes_;  // one per light
+  std::vector<ecs::Entity> own_lamps_;  // one per light
   std::vector<lighting::ShadowedLight> lights_;
   std::uint32_t lights_used_ = 0;  // how many shine on any group
   bool any_ = false;

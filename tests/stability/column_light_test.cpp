@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 
 #include "reference/reference.hpp"
 #include "tests/stability/show.hpp"
@@ -19,13 +20,14 @@ using ColumnLight = testing::GpuTest;
 constexpr float kAlbedo = 0.6f, kRadiance = 400.0f, kRadius = 0.05f, kHeight = 1.0f;
 const glm::vec3 kEye(0.9f, 0.6f, 0.9f);
 
-// Has a bulb 1 m above a floor, and a plate of 0.2 m halfway below it. All of it is one rigid group.
-assets::Scene lampScene(bool closed) {
+// Has a bulb 1 m above a floor, and a plate of 0.2 m halfway below it. All of it is one rigid group, unless
+// the plate is movable.
+assets::Scene lampScene(bool closed, bool movable = false) {
   assets::Scene scene = named("lamp");
   add(scene, "floor", assets::plane({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0.1f), glm::vec3(kAlbedo), {0, 0, 0},
       false);
   add(scene, "plate", assets::box({-0.1f, 0.49f, -0.1f}, {0.1f, 0.5f, 0.1f}, 0.1f), glm::vec3(kAlbedo),
-      {0, 0, 0}, false);
+      {0, 0, 0}, movable);
   add(scene, "bulb", assets::sphere(kRadius, 8), glm::vec3(kAlbedo), {0, kHeight, 0}, false,
       glm::vec3(kRadiance));
   if (!closed) return scene;
@@ -38,6 +40,29 @@ assets::Scene lampScene(bool closed) {
   wall("left", {-1, 0, 1}, {0, 0, -2}, {0, 2, 0});
   wall("right", {1, 0, -1}, {0, 0, 2}, {0, 2, 0});
   return scene;
+}
+
+constexpr float kIntensity = 3.0f;
+
+// Has a spot in the place of the bulb.
+assets::Scene spotScene(bool movable) {
+  assets::Scene scene = lampScene(false, movable);
+  scene.nodes.pop_back();
+  scene.meshes.pop_back();
+  scene.materials.pop_back();
+  scene.spots = {
+      {.name = "spot", .intensity_cd = kIntensity, .inner_cone_deg = 60.0f, .outer_cone_deg = 80.0f}};
+  assets::Node node{.name = "lamp", .mesh = -1, .translation = {0, kHeight, 0}};
+  node.rotation = glm::angleAxis(glm::radians(-90.0f), glm::vec3(1, 0, 0));  // from -Z to -Y
+  node.spot = 0;
+  scene.nodes.push_back(node);
+  return scene;
+}
+
+// Returns the floor's radiance on the x axis where nothing hides the spot.
+float underSpot(float x) {
+  const float squared = kHeight * kHeight + x * x;
+  return kAlbedo / glm::pi<float>() * kIntensity * kHeight / (squared * std::sqrt(squared));
 }
 
 // Returns the floor's radiance where nothing hides the bulb: the whole sphere is above the horizon.
@@ -73,6 +98,25 @@ TEST_F(ColumnLight, ABulbCastsTheSharpShadowOfAPlate) {
   EXPECT_NEAR(show.patch(kEye, {0.0f, kHeight, 0.0f}).g / kRadiance, 1.0f, 0.001f);
 }
 
+TEST_F(ColumnLight, ASpotOfTheGroupCastsTheSharpShadowOfAPlate) {
+  Show show(spotScene(/*movable=*/false), noLight(), 0, /*bounces=*/0);
+  // The plate's upper side, half way down, shades the floor to 0.2 m.
+  for (const float x : {0.0f, 0.08f, 0.15f}) EXPECT_LT(show.patch(kEye, {x, 0, 0}).g, 1e-4f) << x;
+  for (const float x : {0.25f, 0.3f, 0.6f, 0.9f})
+    EXPECT_NEAR(show.patch(kEye, {x, 0, 0}).g / underSpot(x), 1.0f, 0.02f) << x;
+  EXPECT_EQ(show.frame->counts()["shadowed_lights"], 1u);
+}
+
+TEST_F(ColumnLight, ABodyThatHasTheLampByACubeTooKeepsItsGrid) {
+  Show show(spotScene(/*movable=*/true), noLight(), 0, /*bounces=*/0);
+  for (const float x : {0.0f, 0.15f}) EXPECT_LT(show.patch(kEye, {x, 0, 0}).g, 0.01f * underSpot(x)) << x;
+  // The plate's own light arrives in five bands.
+  for (const float x : {0.25f, 0.3f, 0.6f})
+    EXPECT_NEAR(show.patch(kEye, {x, 0, 0}).g / underSpot(x), 1.0f, 0.05f) << x;
+  EXPECT_EQ(show.frame->counts()["shadowed_lights"], 2u) << "one for the floor, one for the plate";
+  EXPECT_EQ(show.frame->counts()["neighborhood_pairs"], 1u);
+}
+
 TEST_F(ColumnLight, WithoutShadowCubesAllOfItGoesByTheColumn) {
   Show show(lampScene(false), noLight(), 0, /*bounces=*/0);
   setLocalShadows(show, false);
@@ -89,6 +133,20 @@ TEST_F(ColumnLight, WithoutShadowCubesAllOfItGoesByTheColumn) {
   EXPECT_NEAR(show.patch(kEye, {0.6f, 0, 0.1f}).g / openAt({0.6f, 0, 0.1f}), 1.0f, 0.02f);
   show.world.scaleLamps(0.5f);
   EXPECT_NEAR(show.patch(kEye, {0.6f, 0, 0.1f}).g / openAt({0.6f, 0, 0.1f}), 0.5f, 0.01f);
+}
+
+TEST_F(ColumnLight, ABodyShadesItOnceByTheCubeAndNotByItsGrid) {
+  Show show(lampScene(false, /*movable=*/true), noLight(), 0, /*bounces=*/0);
+  const auto at = [&](float x) { return show.patch(kEye, {x, 0, 0.02f}).g / openAt({x, 0, 0.02f}); };
+  for (const float x : {0.0f, 0.13f}) EXPECT_LT(at(x), 0.01f) << x;
+  // What the bright plate sends out arrives in five bands, which take up to 3.4 % away here.
+  for (const float x : {0.28f, 0.35f, 0.6f})
+    EXPECT_NEAR(at(x), 1.0f, 0.05f) << "nothing is taken twice, " << x;
+  EXPECT_EQ(show.frame->counts()["shadowed_lights"], 1u);
+  EXPECT_EQ(show.frame->counts()["neighborhood_pairs"], 0u);
+  setLocalShadows(show, false);
+  EXPECT_LT(at(0.0f), 0.2f) << "the column has the body's shadow from its grid";
+  EXPECT_EQ(show.frame->counts()["neighborhood_pairs"], 1u);
 }
 
 TEST_F(ColumnLight, BouncesAsInTheReference) {

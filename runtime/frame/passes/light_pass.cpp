@@ -82,7 +82,6 @@ class LightPass final : public FramePass {
     Neighborhoods& neighborhoods = frame.write<Neighborhoods>();
     if (settings.neighborhoods || neighborhoods.any())
       neighborhoods.chooseCarriers(frame.world, scene_, settings.neighborhoods);
-    leaveOutOfColumns(scene_);
     keepFewerSamples(frame.world, settings.light_probes);
     hideApart(scene_, proxiesOf(frame.world.residency()).proxies);
   }

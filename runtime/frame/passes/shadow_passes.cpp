@@ -24,7 +24,7 @@ class LocalShadowsPass final : public FramePass {
   Result<void> update(FrameContext& frame) override {
     const auto& scene = frame.read<LitScene>();
     Result<void> done = shadows_.update(frame.world, scene.shadowed_lights, scene.pixel_masks,
-                                        frame.counters(), scene.scopes);
+                                        frame.counters(), scene.own_lamps);
     if (shadows_.cubesDrawn() > 0) frame.because("lights among surfaces");
     frame.count("shadow_cubes_drawn", shadows_.cubesDrawn());
     return done;

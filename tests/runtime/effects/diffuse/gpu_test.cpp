@@ -153,6 +153,40 @@ TEST_F(DiffuseGpu, MatchesItsTwinWithClustersLampsBothBlocksAndNormalMaps) {
       }
 }
 
+TEST_F(DiffuseGpu, MatchesItsTwinWhereSomeLampsStandApart) {
+  testing::BundleMaker maker(27);
+  for (const std::uint32_t full : {0u, 1u, 3u})
+    for (const bool keys : {false, true}) {
+      Bench bench(maker, {.order = 4,
+                          .full_channels = full,
+                          .clusters = 3,
+                          .lamps = 3,
+                          .cells = 1,
+                          .mapped_cells = 1,
+                          .samples = 222});
+      if (keys) bench.shineByKeyLights();
+      for (lighting::GroupPlace& place : bench.places) place.lamps_apart = {1.0f, 0.0f, 0.25f};
+      bench.uploadMeshes();
+      bench.uploadRows();
+      bench.uploadTransfer(4);
+      bench.shade();
+      EXPECT_LT(bench.differenceToTwin(), 1e-3) << full << " channels";
+      for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers) {
+        EXPECT_EQ(record.bounced, (record.order == 0 || keys) && full > 0 ? 1u : 0u);
+        if (record.order == 0) {
+          EXPECT_EQ(record.straight_channels, 1u);
+        }
+      }
+      for (lighting::GroupPlace& place : bench.places) place.lamps_apart.clear();
+      bench.shade();
+      EXPECT_LT(bench.differenceToTwin(), 1e-3) << "all by their columns again";
+      for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers)
+        if (record.order == 0) {
+          EXPECT_EQ(record.straight_channels, 0u);
+        }
+    }
+}
+
 TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
   testing::BundleMaker maker(24);
   for (const std::uint32_t full : {0u, 1u, 3u})

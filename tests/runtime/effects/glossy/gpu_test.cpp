@@ -44,6 +44,9 @@ TEST_F(GlossyGpu, MatchesItsTwinWithClustersBouncesLampsAndSeveralLightProbes) {
           EXPECT_LT(bench.differenceToTwin(), 1e-4)
               << clusters << " clusters, " << lamps << " lamps, " << lights << " lights";
         }
+        for (lighting::GroupPlace& place : bench.places) place.lamps_apart.assign(lamps, 1.0f);
+        bench.shade(evaluate::TransferMode::Full);
+        EXPECT_LT(bench.differenceToTwin(), 1e-4) << "lamps stand apart, " << lamps << " lamps";
       }
 }
 
