@@ -53,11 +53,6 @@ std::vector<InnerPoint> innerPoints(int n) {
   return points;
 }
 
-float longestEdge(const GroupGeometry& geometry, const glm::uvec3& t) {
-  const glm::vec3 &a = geometry.positions[t.x], &b = geometry.positions[t.y], &c = geometry.positions[t.z];
-  return std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-}
-
 }  // namespace
 
 void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene, const AlphaMaps& alpha_maps) {

@@ -1,5 +1,7 @@
 #include "baker/transport/sample_areas.hpp"
 
+#include <algorithm>
+
 #include <glm/geometric.hpp>
 
 namespace lambent::baker {
@@ -8,6 +10,12 @@ double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners) {
   const glm::vec3 a = geometry.positions[corners.x];
   return 0.5 * double{glm::length(
                    glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a))};
+}
+
+float longestEdge(const GroupGeometry& geometry, const glm::uvec3& corners) {
+  const glm::vec3 &a = geometry.positions[corners.x], &b = geometry.positions[corners.y],
+                  &c = geometry.positions[corners.z];
+  return std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
 }
 
 std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples) {

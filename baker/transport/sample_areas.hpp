@@ -1,4 +1,4 @@
-// Computes how much of the surface each sample stands for.
+// Measures triangles, and how much of the surface each sample stands for.
 #pragma once
 
 #include <vector>
@@ -10,6 +10,8 @@ namespace lambent::baker {
 
 // Returns square metres.
 double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners);
+// Returns metres.
+float longestEdge(const GroupGeometry& geometry, const glm::uvec3& corners);
 
 // Returns square metres per sample; a third of each triangle goes to each of its corners. Both sides of a
 // double-sided surface count.

@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "baker/transport/sample_areas.hpp"
 #include "baker/transport/vertex_key.hpp"
 
 namespace lambent::baker {
@@ -183,10 +184,8 @@ float standOff(const glm::vec3& position, float face_size) {
 }
 
 float reachOf(const glm::uvec3& corners, const GroupGeometry& geometry) {
-  const glm::vec3 &a = geometry.positions[corners.x], &b = geometry.positions[corners.y],
-                  &c = geometry.positions[corners.z];
-  const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-  return std::min(longest, kLongestReach * glm::distance(geometry.bounds_min, geometry.bounds_max));
+  return std::min(longestEdge(geometry, corners),
+                  kLongestReach * glm::distance(geometry.bounds_min, geometry.bounds_max));
 }
 
 SampleSet buildSamples(const GroupGeometry& geometry) {

@@ -33,8 +33,8 @@ struct SampleOrigin {
   // In metres, this is as long as the face's longest edge, but at most a small share of the group. If all of
   // the sky is hidden from nearer than this, something lies on the face itself.
   float reach = 0.0f;
-  glm::vec3 inward{
-      0.0f};  // from here to the middle of the face; if this place is hidden, others on the way may not be
+  // This leads to the middle of the face. If this place is hidden, others on the way may not be.
+  glm::vec3 inward{0.0f};
 };
 
 // Samples of one kind stand side by side.

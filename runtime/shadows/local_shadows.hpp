@@ -84,7 +84,7 @@ class LocalShadows {
   std::uint32_t rows_ = 0;  // rows of the texture, one per light
   gpu::Table block_, draws_table_, faces_;
   std::vector<LocalDraw> draws_;
-  // What draws_ follows from: the groups' masks, the materials that shine as lights, the lights that shine,
+  // draws_ follows from the groups' masks, the materials that shine as lights, the lights that shine,
   // residency and transforms.
   ChangeGate<std::vector<std::uint32_t>, std::vector<ecs::Entity>, std::uint32_t, std::uint64_t,
              std::uint64_t>

@@ -67,8 +67,8 @@ bool localShadowsDiffer(const LitScene& scene, std::size_t body, std::size_t rec
     const std::optional<float> sent = byHarmonics(scene, body, n), had = byHarmonics(scene, receiver, n);
     if (sent && had && *sent != *had) return true;
   }
-  // A column light of the receiver with a cube: light of a material reaches the body as light of another
-  // body, so its grid always has it.
+  // The receiver may have a column light by a cube. If that is a material, the body takes it as light of
+  // another body, so its grid always has it.
   return std::ranges::any_of(scene.column_cubes, [&](const ColumnCube& cube) {
     if (cube.group != receiver) return false;
     const lighting::IncidentGroup& lit = scene.groups[body];

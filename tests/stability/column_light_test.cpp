@@ -139,7 +139,7 @@ TEST_F(ColumnLight, ABodyShadesItOnceByTheCubeAndNotByItsGrid) {
   Show show(lampScene(false, /*movable=*/true), noLight(), 0, /*bounces=*/0);
   const auto at = [&](float x) { return show.patch(kEye, {x, 0, 0.02f}).g / openAt({x, 0, 0.02f}); };
   for (const float x : {0.0f, 0.13f}) EXPECT_LT(at(x), 0.01f) << x;
-  // What the bright plate sends out arrives in five bands, which take up to 3.4 % away here.
+  // Light of the bright plate arrives in five bands, which take up to 3.4 % away here.
   for (const float x : {0.28f, 0.35f, 0.6f})
     EXPECT_NEAR(at(x), 1.0f, 0.05f) << "nothing is taken twice, " << x;
   EXPECT_EQ(show.frame->counts()["shadowed_lights"], 1u);
