@@ -1,5 +1,7 @@
 #include "reference/grid_medium.hpp"
 
+#include <algorithm>
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -10,6 +12,7 @@ GridMedium::GridMedium(const SceneVolume& volume, const glm::dmat4& world_from_g
   const glm::dmat4 inverse = glm::inverse(world_from_grid);
   linear_ = glm::dmat3(inverse);
   shift_ = glm::dvec3(inverse[3]);
+  boundDensity(glm::dmat3(world_from_grid));
   blocks_ = (glm::ivec3(size_) + (kBlock - 1)) / kBlock;
   // Points of a block lie between centres of its own voxels and of the adjacent ones.
   for (int z = 0; z < blocks_.z; ++z)
@@ -31,6 +34,21 @@ GridMedium::GridMedium(const SceneVolume& volume, const glm::dmat4& world_from_g
         // The bounds are widened for rounding errors of the interpolation.
         bounds_.emplace_back(least * (1.0f - 1e-6f), most * (1.0f + 1e-6f));
       }
+}
+
+void GridMedium::boundDensity(const glm::dmat3& world_from_grid) {
+  // Tracking takes as many steps through a block as its densest voxel has mean free paths. A voxel with so
+  // many lets no light through, and more of them would change nothing but the time.
+  constexpr double kMostFreePaths = 256.0;
+  const double voxel_m = std::min(
+      {glm::length(world_from_grid[0]), glm::length(world_from_grid[1]), glm::length(world_from_grid[2])});
+  const auto most =
+      static_cast<float>(std::min(kMostFreePaths / voxel_m, double{std::numeric_limits<float>::max()}));
+  if (std::ranges::none_of(density_, [&](float density) { return density > most; })) return;
+  densest_ = most;
+  bounded_.assign(density_.begin(), density_.end());
+  for (float& density : bounded_) density = std::min(density, most);
+  density_ = bounded_;
 }
 
 std::optional<GridRay> GridMedium::clipped(const Ray& ray, double begin, double end) const {

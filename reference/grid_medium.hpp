@@ -34,8 +34,12 @@ class GridMedium {
  public:
   // `world_from_grid` must be invertible.
   GridMedium(const SceneVolume& volume, const glm::dmat4& world_from_grid);
+  GridMedium(GridMedium&&) = default;
+  GridMedium& operator=(GridMedium&&) = default;
 
   const SceneVolume& volume() const { return *volume_; }
+  // Returns the density above which voxels count as this dense, or infinity if there is none.
+  float densest() const { return densest_; }
   bool dark() const { return !(most_ > 0.0f); }  // the volume is empty
 
   // Returns the part within [begin, end] of the ray, or nothing if it misses the box.
@@ -51,9 +55,12 @@ class GridMedium {
   void visitBlocks(const GridRay& ray, Visit&& visit) const;
 
  private:
+  void boundDensity(const glm::dmat3& world_from_grid);
+
   static constexpr int kBlock = 8;  // edge of a block in voxels
 
   const SceneVolume* volume_;
+  std::vector<float> bounded_;  // the densities, if some had to be bounded
   std::span<const float> density_;
   glm::uvec3 size_;
   glm::vec3 last_;  // centre of the last voxel, relative to the centre of the first
@@ -61,7 +68,7 @@ class GridMedium {
   glm::dvec3 shift_;
   glm::ivec3 blocks_;
   std::vector<glm::vec2> bounds_;  // minimum and maximum density per block, x fastest
-  float most_ = 0.0f;
+  float most_ = 0.0f, densest_ = std::numeric_limits<float>::infinity();
 };
 
 inline float GridMedium::at(const glm::dvec3& place) const {

@@ -1,6 +1,7 @@
 #include "reference/ray_tracer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <type_traits>
 
@@ -122,10 +123,20 @@ bool addGeometry(RTCDevice device, RTCScene scene, const Record& record) {
   return room;
 }
 
+// Returns whether Embree takes the ray. It asserts that numbers are finite and small enough for products of
+// two; a camera or a lamp may be further away, and from there nothing of a scene is seen.
+bool traceable(const Ray& ray) {
+  constexpr float kLargest = 1.8e18f;
+  const auto holds = [](const glm::vec3& v) {
+    return std::abs(v.x) <= kLargest && std::abs(v.y) <= kLargest && std::abs(v.z) <= kLargest;
+  };
+  return holds(ray.origin) && holds(ray.dir) && !std::isnan(ray.far);
+}
+
 void fill(RTCRay16& packet, std::span<const Ray> rays, int* valid) {
   for (std::size_t k = 0; k < kWidth; ++k) {
-    valid[k] = k < rays.size() ? -1 : 0;
     const Ray& ray = rays[std::min(k, rays.size() - 1)];
+    valid[k] = k < rays.size() && traceable(ray) ? -1 : 0;
     packet.org_x[k] = ray.origin.x, packet.org_y[k] = ray.origin.y, packet.org_z[k] = ray.origin.z;
     packet.dir_x[k] = ray.dir.x, packet.dir_y[k] = ray.dir.y, packet.dir_z[k] = ray.dir.z;
     packet.tnear[k] = 0.0f, packet.tfar[k] = ray.far;
@@ -217,6 +228,7 @@ void RayTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> bloc
 void RayTracer::visible(const Ray& ray, std::vector<Hit>& layers) const {
   const FlushDenormals flush;
   layers.clear();
+  if (!traceable(ray)) return;
   const auto trace = [&](RTCScene scene, RTCFilterFunctionN filter, float far) {
     LayerContext context{{}, &layers};
     rtcInitIntersectContext(&context.embree);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <glm/matrix.hpp>
 
 namespace lambent::baker::reference {
@@ -80,6 +81,11 @@ Volumes Volumes::build(const Scene& scene, std::vector<std::string>& notices) {
       continue;
     }
     GridMedium grid(volume, world_from_grid);
+    if (std::isfinite(grid.densest()))
+      notices.push_back(
+          fmt::format("{}: densities above {:.3g} per metre, at which a voxel lets no light through, "
+                      "count as that",
+                      volume.name, grid.densest()));
     if (!grid.dark()) out.grids_.push_back(std::move(grid));
   }
   return out;

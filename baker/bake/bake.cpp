@@ -22,6 +22,8 @@
 #include "baker/jobs/parallel.hpp"
 #include "baker/refine/refine.hpp"
 #include "runtime/base/atomic_file.hpp"
+#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/writer.hpp"
 
 namespace lambent::baker {
 
@@ -30,29 +32,6 @@ namespace {
 static_assert(BakeOptions::kMostBounces == kMostBounces);
 constexpr int kMostGlossyOrder = 6;
 constexpr int kMostNeighborhoodOrder = 6;
-
-// Returns all effects that the scene calls for, or those that the user listed.
-Result<std::vector<EffectEntry>> effectsOf(const BakeOptions& options) {
-  const auto all = effectList();
-  std::vector<EffectEntry> chosen;
-  if (options.effects == "auto") return std::vector<EffectEntry>(all.begin(), all.end());
-  for (std::size_t begin = 0; begin <= options.effects.size();) {
-    const std::size_t end = std::min(options.effects.find(',', begin), options.effects.size());
-    const std::string name = options.effects.substr(begin, end - begin);
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const EffectEntry& e) { return name == e.name; });
-    if (found == all.end()) {
-      std::string known;
-      for (const EffectEntry& entry : all)
-        known += fmt::format("{}{}", known.empty() ? "" : ", ", entry.name);
-      return fail("--effects", fmt::format("\"{}\" is not an effect", name),
-                  "use auto or a list of: " + known);
-    }
-    chosen.push_back(*found);
-    begin = end + 1;
-  }
-  return chosen;
-}
 
 Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, const BakeContext& context) {
   context.progress.begin("BRDF tables");
@@ -114,7 +93,12 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
 
   context.progress.begin("writing");
   AssembledBundle bundle = assemble(whole, std::move(*meshes), baked);
-  if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs); !written)
+  // What cannot be opened must not take the place of a bundle that can.
+  const auto opens = [](const std::filesystem::path& part) -> Result<void> {
+    if (const auto reader = bundle::Reader::open(part); !reader) return failAgain(reader.error());
+    return {};
+  };
+  if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs, opens); !written)
     return failAgain(written.error());
   context.progress.end();
   std::error_code ignored;
@@ -161,14 +145,13 @@ const char* reuseName(Reuse reuse) {
 
 Result<void> checkRequest(const BakeOptions& options, const std::filesystem::path& output) {
   if (auto checked = checkOptions(options); !checked) return checked;
-  if (const auto effects = effectsOf(options); !effects) return failAgain(effects.error());
   // The file is opened as for writing; closing it uncommitted leaves nothing behind.
   if (const auto writable = AtomicFile::open(output); !writable) return failAgain(writable.error());
   return {};
 }
 
 Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
-  const auto effects = effectsOf(options);
+  const auto effects = effectsNamed(options.effects);
   if (!effects) return failAgain(effects.error());
   EffectPlan plan = makePlan(scene, *effects);
   if (plan.bakes("glossy") && options.order > kMostGlossyOrder)

@@ -1,7 +1,6 @@
 // Fits direct light at the vertices so that interpolation over faces shows it best: it traces rays from
 // inside the faces over which light changes, and fits the vertices to what they see by least squares
-// (trace/vertex_fit.hpp). Bounces gather from the fitted values; the light that they bring to diffuse samples
-// is added at the vertices.
+// (trace/vertex_fit.hpp). Bounces gather from the fitted values, and fit what they bring in the same way.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +18,9 @@ struct FitFigures {
   double ray_seconds = 0.0;
 };
 
-// Fits diffuse samples, with and without normal maps. The key of the context is that of the rays of the
-// vertices. Returns nothing if stopped. The result does not depend on the number of threads.
+// Fits diffuse samples, with and without normal maps. If hits are kept for bounces, the points inside faces
+// are kept in direct.inside. The key of the context is that of the rays of the vertices. Returns nothing if
+// stopped. The result does not depend on the number of threads.
 std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const TracedScene& scene, DirectResult& direct,
                                      const BakeContext& context);
 // Fits glossy samples. If hits are kept for bounces, the hits of the points inside faces are kept too, as far

@@ -1,6 +1,7 @@
 #include "baker/bake/group_keys.hpp"
 
 #include "baker/brdf/brdf_kinds.hpp"
+#include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
@@ -53,6 +54,8 @@ void addColors(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key)
     key.add(material != nullptr);
     if (!material) continue;
     addValues(*material, gltf::MaterialPart::Color, key);
+    key.add(draw.layered);
+    if (draw.layered) key.add(meanSpecularAlbedo(*material));
     gltf::forEachMaterialTexture([&](const auto& field) {  // texture coordinates are among the geometry's
       if (field.part == gltf::MaterialPart::Color) addTexture(scene, (material->*field.member).texture, key);
     });

@@ -36,8 +36,8 @@ GroupScene::GroupScene(const SceneBake& of, const SurfaceInputs& inputs, std::si
       anyGlossy() && bytes > kMostBytesShaded) {
     bake.report.notices.push_back(fmt::format(
         "rigid group \"{}\": {} glossy samples take {} MiB on the GPU, more than the {} MiB that one piece "
-        "may have; its "
-        "surfaces are Lambert. Part it into several groups (extras.lambent.movable), or lower --glossy-order",
+        "may have; its surfaces have diffuse transfer and mirror little but the sky. Part it into several "
+        "groups (extras.lambent.movable), or lower --glossy-order",
         group.name, samples.glossy.size(), bytes >> 20, kMostBytesShaded >> 20));
     place(/*with_glossy=*/false);
   }

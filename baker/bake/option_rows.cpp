@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "baker/bake/typed_option.hpp"
+#include "baker/effects/effect_list.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/plan/local_light.hpp"
 
@@ -27,20 +28,28 @@ std::string recordRays(const BakeOptions& o) {
 std::string recordError(const BakeOptions& o) {
   return fmt::format("{}", o.effectiveErrorBound());
 }
+std::string recordGlossyError(const BakeOptions& o) {
+  return fmt::format("{}", o.effectiveGlossyErrorBound());
+}
 std::string recordRefine(const BakeOptions& o) {
   return fmt::format("{}", o.effectiveRefineBound());
 }
 std::string recordFit(const BakeOptions& o) {
-  return o.fitsDiffuse() ? "on" : o.fitsGlossy() ? "glossy" : "off";
+  return o.fitsGlossy() ? "on" : o.fitsDiffuse() ? "diffuse" : "off";
+}
+
+Result<void> checkEffects(const BakeOptions& o) {
+  if (const auto known = effectsNamed(o.effects); !known) return failAgain(known.error());
+  return {};
 }
 
 constexpr std::tuple kRows{
     TypedRow<Quality>{
         .name = "quality",
         .setting = "",
-        .kind = "NAME",
+        .kind = "draft|standard|high",
         .member = &B::quality,
-        .help = "draft, standard (default) or high: rays and error bound together",
+        .help = "Rays, refinement and error bounds together; default standard",
         .words = {{{"draft", Quality::Draft}, {"standard", Quality::Standard}, {"high", Quality::High}}}},
     TypedRow<int>{.name = "order",
                   .setting = "order",
@@ -59,12 +68,13 @@ constexpr std::tuple kRows{
         .setting = "rays",
         .kind = "N",
         .member = &B::rays,
-        .help = "Rays per sample over its hemisphere; default 256, 1024 or 4096 by quality",
+        .help = "Rays per sample over its hemisphere; default {} by quality",
         .words = {{{"auto", 0}}},
         .limits =
             Limits<std::uint32_t>{
                 .least = 128, .greatest = 1u << 20, .hint = "leave it out to take what --quality stands for"},
-        .record = &recordRays},
+        .record = &recordRays,
+        .help_values = {&recordRays}},
     TypedRow<int>{
         .name = "bounces",
         .setting = "bounces",
@@ -76,7 +86,6 @@ constexpr std::tuple kRows{
         .words = {{{"auto", -1}}},
         .limits = Limits<int>{.least = 0,
                               .greatest = B::kMostBounces,
-                              .usage = true,
                               .hint = "leave it out to bake as many as the error bound asks for"}},
     TypedRow<std::uint64_t>{
         .name = "max-memory",
@@ -85,17 +94,22 @@ constexpr std::tuple kRows{
         .member = &B::memory_bytes,
         .help = "Memory for what passes keep, in bytes or like 4GB; default half of the machine's. What does "
                 "not fit is computed again: slower, the same result",
-        .words = {{{"auto", 0}}}},
+        .words = {{{"auto", 0}}},
+        .limits = Limits<std::uint64_t>{.least = 1u << 16,
+                                        .greatest = kMost<std::uint64_t>,
+                                        .kind = "a size of 64KB or more",
+                                        .hint = "give bytes or a unit, as 4GB"}},
     TypedRow<float>{
         .name = "error",
         .setting = "errorBound",
         .kind = "E",
         .member = &B::error_bound,
-        .help = "Bound on the coding error, relative RMS of shaded radiance; default 0.01, 0.003 or "
-                "0.001 by quality, of glossy surfaces 0.03, 0.015 or 0.005",
+        .help = "Bound on the coding error, relative RMS of shaded radiance; default {} by quality, "
+                "of glossy surfaces {}",
         .words = {{{"auto", 0.0f}}},
         .limits = Limits<float>{.least = 0.0f, .greatest = 1.0f, .open = true, .hint = "0.003 means 0.3 %"},
-        .record = &recordError},
+        .record = &recordError,
+        .help_values = {&recordError, &recordGlossyError}},
     TypedRow<float>{
         .name = "max-edge",
         .setting = "maxEdge",
@@ -104,7 +118,7 @@ constexpr std::tuple kRows{
         .help = "Split edges longer than this (scene units), so that large faces catch shadows",
         .limits = Limits<float>{.least = 0.0f,
                                 .greatest = kMost<float>,
-                                .wrong = "is not a length",
+                                .kind = "a length",
                                 .hint = "give a positive number in the scene's units, or leave it out"}},
     TypedRow<float>{
         .name = "refine",
@@ -113,22 +127,23 @@ constexpr std::tuple kRows{
         .member = &B::refine_bound,
         .help =
             "Split edges where shadows change, until interpolation errs by less than E, relative RMS; auto "
-            "(default): 0.02, 0.014 or 0.007 by quality; off: keep the vertices as they are",
+            "(default): {} by quality; off: keep the vertices as they are",
         .words = {{{"auto", -1.0f}, {"off", 0.0f}}},
         .limits = Limits<float>{.least = 0.0f,
                                 .greatest = 1.0f,
                                 .open = true,
-                                .usage = true,
                                 .hint = "auto takes what --quality stands for"},
-        .record = &recordRefine},
+        .record = &recordRefine,
+        .help_values = {&recordRefine}},
     TypedRow<std::optional<bool>>{
         .name = "fit",
         .setting = "fit",
         .kind = "auto|on|off",
         .member = &B::fit,
-        .help = "Fit light at vertices to what rays from inside the faces see, so that interpolation shows "
-                "faces best, of diffuse surfaces direct light alone: on, off (what the vertices see) or auto "
-                "(default): on glossy surfaces, but for drafts",
+        .help =
+            "Fit light at vertices to what rays from inside the faces see, so that interpolation shows "
+            "faces best: on, off (what the vertices see) or auto (default): on, but not on glossy surfaces "
+            "of drafts",
         .words = {{{"auto", std::nullopt}, {"on", true}, {"off", false}}},
         .record = &recordFit},
     TypedRow<int>{
@@ -141,7 +156,6 @@ constexpr std::tuple kRows{
         .words = {{{"auto", 0}}},
         .limits = Limits<int>{.least = 1,
                               .greatest = static_cast<int>(kMostLightProbes),
-                              .usage = true,
                               .hint = "auto chooses by how near light comes"},
         .former = "light-samples"},
     TypedRow<glm::uvec3>{
@@ -166,13 +180,18 @@ constexpr std::tuple kRows{
                           .setting = "effects",
                           .kind = "LIST",
                           .member = &B::effects,
-                          .help = "auto: what the scene calls for; or a list of effects"},
+                          .help = "auto: what the scene calls for; or a list of effects",
+                          .check = &checkEffects},
     TypedRow<unsigned>{.name = "threads",
                        .setting = "",
                        .kind = "N",
                        .member = &B::threads,
                        .help = "Threads; default all. The result does not depend on it",
-                       .words = {{{"auto", 0}}}}};
+                       .words = {{{"auto", 0}}},
+                       .limits = Limits<unsigned>{.least = 1,
+                                                  .greatest = kMost<unsigned>,
+                                                  .kind = "a number of threads",
+                                                  .hint = "auto takes one for each processor"}}};
 
 // A member of BakeOptions without a row does not compile, since it changes how many names this needs.
 [[maybe_unused]] auto membersOf(const BakeOptions& options) {
@@ -183,6 +202,15 @@ static_assert(std::tuple_size_v<decltype(membersOf(BakeOptions()))> == std::tupl
               "every member of BakeOptions has a row");
 
 // ---- rows without their types
+
+template <std::size_t I>
+bool outsideOf(const BakeOptions& options) {
+  const auto& row = std::get<I>(kRows);
+  if constexpr (kHasLimits<std::remove_cvref_t<decltype(options.*row.member)>>)
+    return outside(row, options.*row.member).has_value();
+  else
+    return false;
+}
 
 template <std::size_t I>
 std::string wordOf(const BakeOptions& options) {
@@ -199,33 +227,52 @@ bool readWord(BakeOptions& options, std::string_view word) {
 template <std::size_t I>
 Result<void> putWord(BakeOptions& options, std::string_view word) {
   const auto& row = std::get<I>(kRows);
-  auto value = options.*row.member;
-  bool good = readValue(row, word, value);
-  if constexpr (std::is_arithmetic_v<decltype(value)>)
-    if (good && row.limits && row.limits->usage)  // 0 is not another word for "off"
-      good = std::ranges::any_of(row.words, [&](const auto& w) { return w.word == word; }) ||
-             within(*row.limits, value);
+  BakeOptions tried = options;
+  auto& value = tried.*row.member;
+  // A number is no other word for what a word stands for: 0 does not mean "auto".
+  const bool named = std::ranges::any_of(row.words, [&](const auto& w) { return w.word == word; });
+  const bool good = readValue(row, word, value) && (named || !outsideOf<I>(tried));
   if (!good)
-    return fail(fmt::format("--{}", row.name), fmt::format("{} {}", word, notOfItsKind(row)),
-                fmt::format("give {}", row.kind));
-  options.*row.member = value;
+    return fail(fmt::format("--{}", row.name),
+                word.empty() ? "is empty" : fmt::format("{} {}", word, notOfItsKind(row)),
+                row.limits && !row.limits->hint.empty() ? std::string(row.limits->hint)
+                                                        : fmt::format("give {}", row.kind));
+  if (auto checked = checkMore(row, tried); !checked) return checked;
+  options = std::move(tried);
   return {};
 }
 
 template <std::size_t I>
 Result<void> checkValue(const BakeOptions& options) {
   const auto& row = std::get<I>(kRows);
-  if constexpr (kHasLimits<std::remove_cvref_t<decltype(options.*row.member)>>) {
-    const auto wrong = outside(row, options.*row.member);
-    if (!wrong) return {};
-    const auto& limits = *row.limits;
-    return fail(fmt::format("--{}", row.name),
-                limits.wrong.empty()
-                    ? fmt::format("{} is not between {} and {}", *wrong, limits.least, limits.greatest)
-                    : fmt::format("{} {}", *wrong, limits.wrong),
-                std::string(limits.hint));
-  }
-  return {};
+  const auto& value = options.*row.member;
+  const bool named =
+      std::ranges::any_of(row.words, [&](const auto& w) { return !w.word.empty() && w.value == value; });
+  if (!named && outsideOf<I>(options))
+    return fail(fmt::format("--{}", row.name), fmt::format("{} {}", textOf(row, value), notOfItsKind(row)),
+                std::string(row.limits->hint));
+  return checkMore(row, options);
+}
+
+// Lists what the options of each quality come to: "256, 1024 or 4096".
+std::string byQuality(std::string (*value)(const BakeOptions&)) {
+  std::string text;
+  for (const Quality quality : {Quality::Draft, Quality::Standard, Quality::High})
+    text += fmt::format("{}{}",
+                        quality == Quality::Draft  ? ""
+                        : quality == Quality::High ? " or "
+                                                   : ", ",
+                        value({.quality = quality}));
+  return text;
+}
+
+template <std::size_t I>
+std::string helpOf() {
+  const auto& row = std::get<I>(kRows);
+  std::string help(row.help);
+  for (const auto value : row.help_values)
+    if (value) help.replace(help.find("{}"), 2, byQuality(value));
+  return help;
 }
 
 template <std::size_t I>
@@ -233,7 +280,7 @@ OptionRow optionRow() {
   const auto& row = std::get<I>(kRows);
   using T = std::remove_cvref_t<decltype(BakeOptions().*row.member)>;
   OptionRow out{
-      .name = row.name, .setting = row.setting, .kind = row.kind, .help = row.help, .former = row.former};
+      .name = row.name, .setting = row.setting, .kind = row.kind, .help = helpOf<I>(), .former = row.former};
   for (const Word<T>& word : row.words)
     if (!word.word.empty()) out.words.push_back(word.word);
   out.only_words = kOnlyWords<T>;

@@ -18,7 +18,7 @@ struct OptionRow {
   std::string_view name;     // as in --name, in scripts and journals
   std::string_view setting;  // in the settings that a bundle records; empty: it does not change the bytes
   std::string_view kind;     // what a word looks like, for help: "N|auto"
-  std::string_view help;
+  std::string help;
   std::vector<std::string_view> words{};  // words that stand for values
   bool only_words = false;                // it takes no other words
   bool shows_default = false;             // the default is a value like others, not "auto" or "none"
@@ -26,11 +26,11 @@ struct OptionRow {
   std::string (*word)(const BakeOptions&) = nullptr;
   // Returns what the bundle records, which most often is the word.
   std::string (*record)(const BakeOptions&) = nullptr;
-  // Takes a word over. check() looks at the range, unless the command line counts a number outside as wrong
-  // usage.
+  // Takes a word over, if it is of the option's kind and within its range.
   Result<void> (*put)(BakeOptions&, std::string_view word) = nullptr;
   // Takes over what word() or record() wrote. Returns false if it is not of the option's kind.
   bool (*read)(BakeOptions&, std::string_view word) = nullptr;
+  // Checks the value itself, which may not come from a word.
   Result<void> (*check)(const BakeOptions&) = nullptr;
   std::string_view former{};  // the name before 0.11, which is still understood but not shown; may be empty
 };

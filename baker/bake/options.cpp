@@ -93,7 +93,7 @@ float BakeOptions::effectiveRefineBound() const {
 }
 
 bool BakeOptions::fitsDiffuse() const {
-  return fit.value_or(false);
+  return fit.value_or(true);
 }
 
 bool BakeOptions::fitsGlossy() const {

@@ -36,8 +36,8 @@ struct BakeOptions {
   // against the light that arrives. 0: no edges are split; negative: as the quality says.
   float refine_bound = -1.0f;
   // True if values at vertices are those with which interpolation over the faces shows light best
-  // (bake/fit_vertices.hpp), and not what the vertices see. This concerns direct and bounced light of glossy
-  // surfaces, and direct light of diffuse ones. Unset: glossy surfaces alone are fitted, except in drafts.
+  // (bake/fit_vertices.hpp), and not what the vertices see. Unset: they are, except on glossy surfaces of
+  // drafts.
   std::optional<bool> fit = {};
   int light_probes = 0;        // per cell, 1..32; 0: chosen by how near light comes (local_light.hpp)
   glm::uvec3 volume_grid{32};  // voxels of a volume's transfer, 1..256 along each axis

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "baker/bake/fit_vertices.hpp"
+#include "baker/effects/diffuse/inside_faces.hpp"
 #include "baker/effects/glossy/glossy_bounces.hpp"
 #include "baker/effects/glossy/inside_faces.hpp"
 
@@ -35,6 +36,7 @@ bool traceDiffuse(const DirectPass& pass, const GroupScene& group, const BakeCon
     add(*fit, figures.diffuse, figures);
   }
   figures.hit_bytes = light.direct.hits.bytes();
+  if (const auto& inside = light.direct.inside) figures.hit_bytes += inside->direct().hits.bytes();
   return true;
 }
 
@@ -82,10 +84,12 @@ bool bounce(const DirectPass& pass, const GlossyPass* glossy_pass, const GroupSc
   if (partner) {
     partner->finish();
     light.glossy->hits = HitStore();
-    if (light.glossy->inside) light.inside_faces = light.glossy->inside->size();
+    if (light.glossy->inside) light.inside_glossy = light.glossy->inside->size();
     light.glossy->inside.reset();
   }
   light.direct.hits = HitStore();
+  if (light.direct.inside) light.inside_diffuse = light.direct.inside->size();
+  light.direct.inside.reset();
   light.figures.pass_energy = light.bounced->energy;
   light.figures.left_out = light.bounced->left_out;
   return true;
@@ -116,7 +120,8 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
 
 void dropTransport(const GroupScene& group, const SurfaceTransport& light, const BakeContext& context) {
   const BakeContext bounces = context.keyed(group.keys.bounces);
-  if (light.bounced && bounces.keeps()) dropBounces(group.view(), light.inside_faces, bounces);
+  if (light.bounced && bounces.keeps())
+    dropBounces(group.view(), light.inside_diffuse, light.inside_glossy, bounces);
 }
 
 }  // namespace lambent::baker

@@ -29,8 +29,9 @@ struct SurfaceTransport {
   DirectResult direct;
   std::optional<GlossyDirect> glossy;  // set if there are glossy samples
   std::optional<BounceResult> bounced;
-  std::size_t inside_faces = 0;  // glossy samples inside faces that gathered bounces too
-  SurfaceFigures figures;        // without the errors of coding
+  // Samples inside faces that gathered bounces too.
+  std::size_t inside_diffuse = 0, inside_glossy = 0;
+  SurfaceFigures figures;  // without the errors of coding
 };
 
 // The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay until

@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include "baker/bake/options.hpp"
+#include "runtime/base/result.hpp"
 
 namespace lambent::baker::typed_options {
 
@@ -35,9 +36,8 @@ using LimitOf = std::conditional_t<std::is_same_v<T, glm::uvec3>, std::uint32_t,
 template <class T>
 struct Limits {
   LimitOf<T> least{}, greatest{};
-  bool open = false;                 // both ends are excluded
-  bool usage = false;                // a number outside is refused with the word, as wrong usage
-  std::string_view wrong{}, hint{};  // instead of "is not between"; what to do
+  bool open = false;                // both ends are excluded
+  std::string_view kind{}, hint{};  // instead of "between", as "a length"; what to do
 };
 
 template <class T>
@@ -48,6 +48,9 @@ struct TypedRow {
   std::array<Word<T>, 3> words{};  // unused ones have an empty word
   std::optional<Limits<T>> limits{};
   std::string (*record)(const BakeOptions&) = nullptr;  // null: the word is recorded
+  // Values that take the place of each "{}" in the help, listed for all qualities.
+  std::array<std::string (*)(const BakeOptions&), 2> help_values{};
+  Result<void> (*check)(const BakeOptions&) = nullptr;  // what limits cannot say; null: nothing
   std::string_view former{};                            // see OptionRow
 };
 
@@ -125,13 +128,10 @@ bool within(const Limits<T>& limits, LimitOf<T> value) {
   return value >= limits.least && value <= limits.greatest;
 }
 
-// Returns the number that lies outside the limits, or nothing if the value is allowed. A value that a word
-// stands for is always allowed.
+// Returns the number that lies outside the limits, or nothing if there is none.
 template <class T>
 std::optional<LimitOf<T>> outside(const TypedRow<T>& row, const T& value) {
   if (!row.limits) return std::nullopt;
-  for (const Word<T>& word : row.words)
-    if (!word.word.empty() && word.value == value) return std::nullopt;
   if constexpr (std::is_same_v<T, glm::uvec3>) {
     for (int axis = 0; axis < 3; ++axis)
       if (!within(*row.limits, value[axis])) return value[axis];
@@ -141,6 +141,11 @@ std::optional<LimitOf<T>> outside(const TypedRow<T>& row, const T& value) {
   }
 }
 
+template <class T>
+Result<void> checkMore(const TypedRow<T>& row, const BakeOptions& options) {
+  return row.check ? row.check(options) : Result<void>();
+}
+
 // Says what a word should have been: "is neither auto nor between 1 and 32".
 template <class T>
 std::string notOfItsKind(const TypedRow<T>& row) {
@@ -148,14 +153,11 @@ std::string notOfItsKind(const TypedRow<T>& row) {
   for (const Word<T>& word : row.words)
     if (!word.word.empty()) kinds.emplace_back(word.word);
   if constexpr (std::is_same_v<T, glm::uvec3>)
-    kinds.insert(kinds.end(), {"N", "XxYxZ"});
-  else if constexpr (std::is_same_v<T, std::uint64_t>)
-    kinds.emplace_back("a size in memory");
+    kinds.push_back(fmt::format("N or XxYxZ of {} to {} each", row.limits->least, row.limits->greatest));
   else if constexpr (std::is_arithmetic_v<T>)
-    kinds.push_back(row.limits && row.limits->usage
+    kinds.push_back(row.limits->kind.empty()
                         ? fmt::format("between {} and {}", row.limits->least, row.limits->greatest)
-                    : std::is_integral_v<T> ? "a whole number"
-                                            : "a number");
+                        : std::string(row.limits->kind));
   std::string text = kinds.size() == 1 ? "is not " : "is neither ";
   for (std::size_t i = 0; i < kinds.size(); ++i) text += (i > 0 ? " nor " : "") + kinds[i];
   return text;

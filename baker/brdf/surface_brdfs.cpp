@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "baker/plan/smooth_dielectrics.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/with_order.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -38,6 +39,7 @@ struct Surface {
   gltf::Material material;
   bool glossy = false, colored_vertices = false;
   std::size_t table = 0;  // index in State::tables, if glossy
+  glm::vec3 layer{0.0f};  // mean albedo of a smooth dielectric's layer
   Texture base, metallic_roughness, specular, specular_color, anisotropy;
 };
 
@@ -390,6 +392,7 @@ Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry&
     // Draws that were planned as diffuse have no coordinates for the other textures.
     surface.glossy = table >= 0 && draw.kind == SampleKind::Glossy;
     if (surface.glossy) surface.table = static_cast<std::size_t>(table);
+    if (draw.layered) surface.layer = meanSpecularAlbedo(material);
 
     std::vector<std::pair<Texture*, const gltf::TextureRef*>> wanted = {
         {&surface.base, &material.base_color_texture}};
@@ -412,7 +415,8 @@ Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry&
     const bool grey_specular =
         !surface.glossy || (isGrey(material.specular_color) && isGrey(surface.specular_color));
     if (!material.unlit &&
-        (measured || !grey_specular || !isGrey(glm::vec3(material.base_color)) || !isGrey(surface.base) ||
+        (measured || !grey_specular || !isGrey(surface.layer) || !isGrey(glm::vec3(material.base_color)) ||
+         !isGrey(surface.base) ||
          !std::all_of(first, last, [](const glm::vec4& c) { return isGrey(glm::vec3(c)); })))
       state->grey = false;
     std::fill_n(state->surface_of.begin() + draw.first_triangle, draw.triangle_count,
@@ -441,7 +445,8 @@ void SurfaceBrdfs::exitKernel(std::uint32_t triangle, float u, float v, const gl
   if (surface.glossy)
     state_->glossyKernel(surface, order_, {triangle, u, v, normal}, to, out);
   else
-    state_->diffuseKernel(state_->baseColor(surface, triangle, u, v), order_, normal, out);
+    state_->diffuseKernel(albedoUnderLayer(state_->baseColor(surface, triangle, u, v), surface.layer), order_,
+                          normal, out);
 }
 
 float SurfaceBrdfs::roughness(std::uint32_t triangle, float u, float v) const {

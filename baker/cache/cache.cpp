@@ -112,9 +112,9 @@ fs::path Cache::defaultFolder() {
 }
 
 Result<Cache> Cache::open(const fs::path& folder, std::uint64_t most_bytes) {
-  std::error_code code;
+  std::error_code code, unreachable;
   fs::create_directories(folder, code);
-  if (!fs::is_directory(folder))
+  if (!fs::is_directory(folder, unreachable))
     return fail(folder.string(), "cannot be made a cache: " + (code ? code.message() : "it is no folder"),
                 "name another folder with --cache, or --cache off");
   auto state = std::make_unique<State>();

@@ -14,13 +14,13 @@ namespace {
 CLI::Option* add(CLI::App& command, std::string_view name, const OptionRow& row, BakeOptions& options) {
   CLI::Option* option = command.add_option_function<std::string>(
       "--" + std::string(name), [&options, &row](const std::string& word) { row.put(options, word); },
-      std::string(row.help));
+      row.help);
   option->type_name(std::string(row.kind));
   option->check(CLI::Validator(
       [&row](const std::string& word) {
         BakeOptions tried;
         const auto put = row.put(tried, word);
-        return put ? std::string() : put.error().problem;
+        return put ? std::string() : put.error().problem + "; " + put.error().hint;
       },
       ""));
   return option;

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "baker/cli/bake_report.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
@@ -143,7 +144,8 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
     fmt::print("  {:<13} {:>10}  {:6.2f} bytes a vertex\n", name, bytesText(static_cast<double>(bytes)),
                static_cast<double>(bytes) / vertices);
   };
-  fmt::print("{} draws, {} vertices, {} triangles\n", d.draws.size(), sizes.vertices, sizes.triangles);
+  fmt::print("{}, {} vertices, {} triangles\n", counted(d.draws.size(), "draw"), sizes.vertices,
+             sizes.triangles);
   line("meshes", sizes.mesh);
   line("images", sizes.image);
   line("vertex rows", sizes.rows);
@@ -155,8 +157,10 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
   if (!d.brdf_tables.empty()) line("BRDF tables", sizes.brdf_tables);
   if (sizes.densities > 0) line("densities", sizes.densities);
   line("whole file", reader.fileBytes());
+  std::size_t missed = 0, transfers = 0;
   for (const bundle::Group& group : d.groups) {
-    fmt::print("group \"{}\": {} samples in {} cells\n", group.name, group.sample_count, group.cells.size());
+    fmt::print("group \"{}\": {} in {}\n", group.name, counted(group.sample_count, "sample"),
+               counted(group.cells.size(), "cell"));
     const std::vector<std::uint32_t> proxy = proxyTriangles(reader, group);
     fmt::print("  {}, {}\n", counted(group.light_probes.size(), "light probe"),
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
@@ -172,14 +176,18 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
           double{group.volume->density_max}, group.volume->transfer_size.x, group.volume->transfer_size.y,
           group.volume->transfer_size.z);
     for (const bundle::Cell& cell : group.cells)
-      for (const bundle::CellTransfer& transfer : cell.transfers)
-        fmt::print("  {} {}: {}, {} samples, {} clusters, {} planes, error {:.3f} % (bound {:.3f} %)\n",
-                   effectName(cell, transfer),
+      for (const bundle::CellTransfer& transfer : cell.transfers) {
+        fmt::print("  {} {}: {}, {}, {}, {}, error {:.3f} % (bound {:.3f} %)\n", effectName(cell, transfer),
                    transfer.fromEnvironment() ? fmt::format("order {}", transfer.shape.order)
-                                              : fmt::format("{} lamps", transfer.shape.light_columns),
-                   partName(transfer.shape), cell.sample_count, transfer.clusters, transfer.planes.size(),
+                                              : counted(transfer.shape.light_columns, "lamp"),
+                   partName(transfer.shape), counted(cell.sample_count, "sample"),
+                   counted(transfer.clusters, "cluster"), counted(transfer.planes.size(), "plane"),
                    100.0 * double{transfer.error}, 100.0 * double{transfer.error_bound});
+        missed += missesBound(transfer.error, transfer.error_bound);
+        ++transfers;
+      }
   }
+  if (missed > 0) fmt::print("{} of {} miss their error bound\n", missed, counted(transfers, "part"));
 }
 
 int runInfo(const InfoArguments& a) {

@@ -1,19 +1,63 @@
 // The program lambent bakes glTF scenes into bundles of precomputed radiance transfer. Exit codes: 0 done, 1
 // failed, 2 wrong usage.
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <system_error>
+
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "baker/cli/commands.hpp"
+#include "baker/cli/output.hpp"
+#include "runtime/base/standard_output.hpp"
+#include "runtime/spec/usage_error.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+int runToItsEnd(const Command& run) {
+  try {
+    const int code = run();
+    if (const auto printed = flushStandardOutput(); !printed) return reportError(printed.error());
+    return code;
+  } catch (const std::bad_alloc&) {
+    return reportError({"memory", "is used up", "free some or bake the scene in parts"});
+  } catch (const std::system_error& failure) {  // printing and starting threads throw it
+    if (const auto printed = flushStandardOutput(); !printed) return reportError(printed.error());
+    return reportError(
+        {"the system", failure.what(), "see how many threads and files it allows (ulimit -a)"});
+  } catch (const std::exception& failure) {
+    return reportError({"stopped", failure.what(), "please report this scene"});
+  }
+}
+
+// Libraries end the program where an exception cannot leave a function of theirs, most often because a thread
+// or memory is not to be had.
+[[noreturn]] void endInOneLine() {
+  reportError(
+      {"a library", "cannot go on", "free some memory, or see how many threads there may be (ulimit -a)"});
+  std::_Exit(1);
+}
+
+}  // namespace
+
+}  // namespace lambent::baker
 
 int main(int argc, char** argv) {
+  using namespace lambent;
+  // A file that grows past its limit is an error of writing, which says what to do, and not a death.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::set_terminate(baker::endInOneLine);
   CLI::App app("Bakes glTF scenes once, so that they can be lit any way you like in real time.", "lambent");
   app.require_subcommand(1);
-  lambent::baker::Command run;
-  lambent::baker::addBakeCommand(app, run);
-  lambent::baker::addPlanCommand(app, run);
-  lambent::baker::addInfoCommand(app, run);
-  lambent::baker::addReferenceCommand(app, run);
-  lambent::baker::addCompareCommand(app, run);
+  baker::Command run;
+  baker::addBakeCommand(app, run);
+  baker::addPlanCommand(app, run);
+  baker::addInfoCommand(app, run);
+  baker::addReferenceCommand(app, run);
+  baker::addCompareCommand(app, run);
   const std::string version = std::string("lambent ") + LAMBENT_VERSION;
   app.set_version_flag("--version", version);
   for (CLI::App* command : app.get_subcommands({})) command->set_version_flag("--version", version);
@@ -22,13 +66,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& asked) {
     return app.exit(asked);  // --help, --version
   } catch (const CLI::ParseError& wrong) {
-    fmt::print(stderr, "lambent: {}; see lambent --help\n", wrong.what());
+    baker::reportError(spec::usageError(app, wrong));
     return 2;
   }
-  try {
-    return run();
-  } catch (const std::exception& failure) {  // most likely out of memory
-    fmt::print(stderr, "lambent: {}; free some memory or bake the scene in parts\n", failure.what());
-    return 1;
-  }
+  return baker::runToItsEnd(run);
 }

@@ -17,21 +17,22 @@ namespace lambent::baker {
 
 namespace {
 
+constexpr std::chrono::milliseconds kLogEvery = std::chrono::seconds(10);
+
 std::string scaled(double value, double base, std::span<const char* const> units) {
   std::size_t unit = 0;
   for (; value >= base && unit + 1 < units.size(); ++unit) value /= base;
   return fmt::format("{:.{}f} {}", value, unit == 0 ? 0 : 1, units[unit]);
 }
 
-std::string progressText(const Progress::Stage& stage) {
-  std::string text = stage.name;
-  if (stage.total == 0) return fmt::format("{} ({})", text, durationText(stage.seconds));
-  const double done = static_cast<double>(stage.done), total = static_cast<double>(stage.total);
-  text += fmt::format(" {:5.1f} %", 100.0 * done / total);
-  if (stage.done == 0 || stage.seconds <= 0.0) return text;
-  const double rate = done / stage.seconds;
-  return text +
-         fmt::format("  {} {}/s  {} left", countText(rate), stage.unit, durationText((total - done) / rate));
+// Returns a line such as "37 %  direct light, 1.2 M samples/s, about 12.0 s left".
+std::string progressText(const WholeProgress::Seen& seen) {
+  std::string text = fmt::format("{:3.0f} %  {}", 100.0 * seen.share, seen.stage.name);
+  if (seen.stage.done > 0 && seen.stage.seconds > 0.0)
+    text += fmt::format(", {} {}/s", countText(static_cast<double>(seen.stage.done) / seen.stage.seconds),
+                        seen.stage.unit);
+  if (seen.seconds_left > 0.0) text += fmt::format(", about {} left", durationText(seen.seconds_left));
+  return text;
 }
 
 }  // namespace
@@ -59,20 +60,26 @@ int reportError(const Error& error) {
   return 1;
 }
 
-ProgressLine::ProgressLine(const Progress& progress) {
-  if (::isatty(STDERR_FILENO) == 0) return;
-  thread_ = std::jthread([&progress](std::stop_token stop) {
-    std::mutex lock;
-    std::condition_variable_any stopped;  // lets the end of a job come before the next tick
-    std::unique_lock hold(lock);
-    while (!stopped.wait_for(hold, stop, std::chrono::milliseconds(100),
-                             [&] { return stop.stop_requested(); })) {
-      if (const auto stage = progress.now(); !stage.name.empty())
-        fmt::print(stderr, "\r\033[K{}", progressText(stage));
-      std::fflush(stderr);
-    }
-    fmt::print(stderr, "\r\033[K");
-  });
+void reportNotice(const std::filesystem::path& subject, const std::string& sentence) {
+  fmt::print(stderr, "lambent: {}\n", Error{subject.string(), sentence, {}}.line());
+}
+
+ProgressLine::ProgressLine(const Progress& progress, StageSeconds expected) {
+  thread_ =
+      std::jthread([&progress, whole = WholeProgress(std::move(expected))](std::stop_token stop) mutable {
+        const bool terminal = ::isatty(STDERR_FILENO) != 0;
+        const auto every = terminal ? std::chrono::milliseconds(100) : kLogEvery;
+        std::mutex lock;
+        std::condition_variable_any stopped;  // lets the end of a job come before the next tick
+        std::unique_lock hold(lock);
+        while (!stopped.wait_for(hold, stop, every, [&] { return stop.stop_requested(); })) {
+          if (const auto seen = whole.look(progress); !seen.stage.name.empty())
+            fmt::print(stderr, "{}{}{}", terminal ? "\r\033[K" : "lambent: ", progressText(seen),
+                       terminal ? "" : "\n");
+          std::fflush(stderr);
+        }
+        if (terminal) fmt::print(stderr, "\r\033[K");
+      });
 }
 
 ProgressLine::~ProgressLine() = default;  // the jthread stops and joins

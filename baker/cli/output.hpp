@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <stop_token>
 #include <string>
 #include <thread>
 
 #include "baker/jobs/progress.hpp"
+#include "baker/pipeline/whole_progress.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker {
@@ -20,11 +22,15 @@ std::string durationText(double seconds);
 // Prints "lambent: SUBJECT: PROBLEM; MEND" to stderr and returns the exit code 1.
 int reportError(const Error& error);
 
-// Keeps one line on stderr that follows `progress`, with rate and time left, while it lives. Prints nothing
-// if stderr is no terminal.
+// Prints "lambent: SUBJECT: SENTENCE" to stderr, for what a user should know though it is no error.
+void reportNotice(const std::filesystem::path& subject, const std::string& sentence);
+
+// Follows `progress` on stderr while it lives: the share of the whole, the stage, its rate and the time left.
+// A terminal has one line that changes, and a log file gets a line every ten seconds. `expected` is what
+// stages will take.
 class ProgressLine {
  public:
-  explicit ProgressLine(const Progress& progress);
+  ProgressLine(const Progress& progress, StageSeconds expected);
   ~ProgressLine();
 
  private:

@@ -9,6 +9,8 @@
 #include "baker/cli/output.hpp"
 #include "baker/import/gltf.hpp"
 #include "reference/reference.hpp"
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/spec/display.hpp"
 #include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
 
@@ -17,7 +19,7 @@ namespace lambent::baker {
 namespace {
 
 struct ReferenceArguments {
-  std::filesystem::path scene, output;
+  std::filesystem::path scene, output, png;
   std::vector<std::string> lights;
   std::string light_layout, camera, size = "1280x720", band_limit, rotate_light = "0", time;
   reference::Options options;
@@ -77,6 +79,13 @@ Result<std::optional<float>> understandTime(const std::string& word) {
   return time;
 }
 
+// Expects the paths of a usual scene; the stage's own rate replaces that as soon as there is one.
+StageSeconds expectedSeconds(const reference::Options& options) {
+  constexpr double kGuessedPathsPerSecond = 3e5;
+  const double paths = double(options.size.width) * double(options.size.height) * double(options.spp);
+  return {{"paths", paths / kGuessedPathsPerSecond}};
+}
+
 void print(const ReferenceArguments& a, const reference::Request& request, const reference::Report& r) {
   const double rate = r.seconds > 0.0 ? static_cast<double>(r.rays) / r.seconds : 0.0;
   if (a.json) {
@@ -113,6 +122,8 @@ int runReference(const ReferenceArguments& a) {
     reportError(time.error());
     return kWrongUsage;
   }
+  if (!a.png.empty())  // what cannot be written is said before paths are traced
+    if (const auto writable = AtomicFile::open(a.png); !writable) return reportError(writable.error());
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
   Progress progress;
@@ -123,14 +134,16 @@ int runReference(const ReferenceArguments& a) {
     request->nodes_at_rest = scene->nodes;
     reference::poseAt(*scene, **time);
   }
-  for (const std::string& warning : scene->warnings)
-    fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), warning);
+  for (const std::string& warning : scene->warnings) reportNotice(a.scene, warning);
   const auto report = [&] {
-    const ProgressLine line(progress);
+    const ProgressLine line(progress, expectedSeconds(request->options));
     return reference::render(*scene, *request, a.output, a.force, progress, stop.get_token());
   }();
   if (!report) return reportError(report.error());
-  for (const std::string& notice : report->notices) fmt::print(stderr, "lambent: {}\n", notice);
+  for (const std::string& notice : report->notices) reportNotice({}, notice);
+  if (!a.png.empty())
+    if (const auto written = spec::writePng(a.png, spec::displayed(report->image)); !written)
+      return reportError(written.error());
   print(a, *request, *report);
   return 0;
 }
@@ -142,6 +155,10 @@ void addReferenceCommand(CLI::App& app, Command& run) {
   CLI::App* command = app.add_subcommand("reference", "Path-trace a picture to measure the runtime against");
   command->add_option("SCENE", a->scene, "The scene, .gltf or .glb")->required();
   command->add_option("-o,--output", a->output, "The picture to write, linear OUT.exr")->required();
+  command
+      ->add_option("--png", a->png,
+                   "Write it for a screen, too: as lambent-demo shows light at\n--exposure 0")
+      ->type_name("PNG");
   command
       ->add_option(
           "--light", a->lights,

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <map>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -45,16 +46,18 @@ class FolderBakes {
       case WatchEvent::Kind::Changed:
         return add(event.scene);
       case WatchEvent::Kind::Broken:
+        failed_.insert(event.scene);
         return say("broken", event.scene, event.error->line() + "; waiting for it to change",
                    {{"error", event.error->line()}});
       case WatchEvent::Kind::Removed:
         if (const auto job = jobs_.find(event.scene); job != jobs_.end()) queue_.cancel(job->second);
         std::erase_if(scene_of_, [&](const auto& entry) { return entry.second == event.scene; });
+        failed_.erase(event.scene);
         return say("removed", event.scene, "is gone; its bundle stays");
     }
   }
 
-  void take(const BakeEvent& event) const {
+  void take(const BakeEvent& event) {
     const std::vector<JobState> states = queue_.states();
     const auto state =
         std::find_if(states.begin(), states.end(), [&](const JobState& s) { return s.id == event.job; });
@@ -65,6 +68,7 @@ class FolderBakes {
       case BakeEvent::Kind::Began:
         return say("baking", scene, "baking", {{"output", output}});
       case BakeEvent::Kind::Failed:
+        failed_.insert(scene);
         if (state->error)
           say("failed", scene, state->error->line(), {{"output", output}, {"error", state->error->line()}});
         return;
@@ -73,8 +77,8 @@ class FolderBakes {
       case BakeEvent::Kind::Bundle:
         break;
     }
-    for (const std::string& warning : state->warnings)
-      fmt::print(stderr, "lambent: {}: {}\n", scene.string(), warning);
+    failed_.erase(scene);
+    for (const std::string& warning : state->warnings) reportNotice(scene, warning);
     if (state->up_to_date) return say("upToDate", scene, output + " is up to date", {{"output", output}});
     if (!state->report) return;
     const BakeReport& report = *state->report;
@@ -89,11 +93,15 @@ class FolderBakes {
          {"raysKept", report.rays_kept}});
   }
 
+  // Returns whether a scene has no bundle that shows it as it is.
+  bool anyFailed() const { return !failed_.empty(); }
+
  private:
   void add(const fs::path& scene) {
     const fs::path output = outputOf(scene);
     const auto [entry, added] = scene_of_.try_emplace(output, scene);
     if (!added && entry->second != scene) {
+      failed_.insert(scene);
       const std::string why = fmt::format("would be baked to {}, where {} is; rename one of them",
                                           output.string(), entry->second.string());
       return say("failed", scene, why, {{"output", output.string()}, {"error", why}});
@@ -107,17 +115,18 @@ class FolderBakes {
   }
 
   fs::path outputOf(const fs::path& scene) const {
-    const fs::path name = scene.stem().string() + ".lmb.glb";
-    if (arguments_.output.empty()) return scene.parent_path() / name;
+    const fs::path beside = bundleBeside(scene);
+    if (arguments_.output.empty()) return beside;
     return (arguments_.output / scene.parent_path().lexically_relative(arguments_.folder))
                .lexically_normal() /
-           name;
+           beside.filename();
   }
 
   const WatchArguments& arguments_;
   BakeQueue& queue_;
   std::map<fs::path, JobId> jobs_;
   std::map<fs::path, fs::path> scene_of_;  // by output
+  std::set<fs::path> failed_;              // scenes that are broken or whose last bake failed
 };
 
 }  // namespace
@@ -143,7 +152,7 @@ int watchFolder(const WatchArguments& arguments, Cache* cache) {
   bakes.say("ended", {},
             cut_short ? "ended; what was cut short goes on with the next bake, or --resume" : "ended",
             {{"cutShort", cut_short}});
-  return 0;
+  return bakes.anyFailed() ? 1 : 0;
 }
 
 }  // namespace lambent::baker

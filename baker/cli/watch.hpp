@@ -18,7 +18,7 @@ struct WatchArguments {
   bool json = false;  // prints one object per line
 };
 
-// Runs until it is interrupted, and returns the exit code.
+// Runs until it is interrupted, and returns the exit code: 1 if a scene is broken or its last bake failed.
 int watchFolder(const WatchArguments& arguments, Cache* cache);
 
 }  // namespace lambent::baker

@@ -1,5 +1,10 @@
 #include "baker/effects/effect_list.hpp"
 
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
 #include "baker/effects/diffuse/diffuse.hpp"
 #include "baker/effects/glossy/glossy.hpp"
 #include "baker/effects/neighborhood/neighborhood.hpp"
@@ -15,6 +20,27 @@ std::span<const EffectEntry> effectList() {
       {"neighborhood", chooseNeighborhood},
   };
   return kEffects;
+}
+
+Result<std::vector<EffectEntry>> effectsNamed(std::string_view words) {
+  const auto all = effectList();
+  if (words == "auto") return std::vector<EffectEntry>(all.begin(), all.end());
+  std::vector<EffectEntry> chosen;
+  for (std::size_t begin = 0; begin <= words.size();) {
+    const std::size_t end = std::min(words.find(',', begin), words.size());
+    const std::string_view name = words.substr(begin, end - begin);
+    const auto found = std::ranges::find_if(all, [&](const EffectEntry& e) { return name == e.name; });
+    if (found == all.end()) {
+      std::string known;
+      for (const EffectEntry& entry : all)
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", entry.name);
+      return fail("--effects", fmt::format("\"{}\" is not an effect", name),
+                  "use auto or a list of: " + known);
+    }
+    chosen.push_back(*found);
+    begin = end + 1;
+  }
+  return chosen;
 }
 
 }  // namespace lambent::baker

@@ -3,11 +3,18 @@
 #pragma once
 
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include "baker/plan/effect_plan.hpp"
+#include "runtime/base/result.hpp"
 
 namespace lambent::baker {
 
 std::span<const EffectEntry> effectList();
+
+// Returns all effects for "auto", else those of a list such as "diffuse,glossy". The error names the effect
+// that is not known.
+Result<std::vector<EffectEntry>> effectsNamed(std::string_view words);
 
 }  // namespace lambent::baker

@@ -1,6 +1,7 @@
 #include "baker/import/check.hpp"
 
 #include "baker/import/check_fields.hpp"
+#include "baker/import/reason.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -109,7 +110,7 @@ Result<void> checkDocument(const nlohmann::json& document, const std::string& fi
   } catch (const BrokenField& broken) {
     return fail(file, broken.problem, broken.hint);
   } catch (const nlohmann::json::exception& exception) {
-    return fail(file, fmt::format("is not glTF 2.0 ({})", exception.what()), BrokenField{}.hint);
+    return fail(file, fmt::format("is not glTF 2.0 ({})", reasonOf(exception)), BrokenField{}.hint);
   }
 }
 

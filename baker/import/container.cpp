@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/base/atomic_file.hpp"
 #include "runtime/bundle/glb.hpp"
 
 namespace lambent::baker {
@@ -72,9 +73,9 @@ Result<Container> takeApart(std::span<const std::byte> glb, const std::string& f
 }  // namespace
 
 Result<std::vector<std::byte>> readBytes(const std::filesystem::path& path, const std::string& subject) {
+  if (auto checked = checkRegularFile(path, "a file"); !checked)
+    return fail(subject, checked.error().problem, checked.error().hint);
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) return fail(subject, "no such file", "check the path");
-  if (!std::filesystem::is_regular_file(path, error)) return fail(subject, "is not a file", "name a file");
   const auto size = std::filesystem::file_size(path, error);
   std::ifstream in(path, std::ios::binary);
   if (error || !in) return fail(subject, "cannot be opened", "check its permissions");

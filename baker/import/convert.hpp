@@ -50,6 +50,9 @@ Result<void> convertInstances(const Document& document, const NodeMap& map, Scen
 // Converts extras.lambent.volume and extras.lambent.neighborhood to Scene::volumes and Scene::neighborhoods.
 Result<void> convertGrids(const Document& document, const NodeMap& map, Scene& scene);
 
+// Checks that every body is of a size, and at a place, that can be traced.
+Result<void> checkSizes(const Document& document, const Scene& scene);
+
 // Removes non-finite and degenerate triangles and unused vertices, makes flat normals where there are no
 // usable ones, and makes normals and tangents unit. Warnings begin with `name`.
 void cleanMesh(bundle::MeshData& mesh, const std::string& name, std::vector<std::string>& warnings);

@@ -14,6 +14,7 @@
 #include "baker/import/buffer_source.hpp"
 #include "baker/import/check.hpp"
 #include "baker/import/container.hpp"
+#include "baker/import/reason.hpp"
 #include "baker/import/tinygltf.hpp"
 
 namespace lambent::baker {
@@ -35,7 +36,7 @@ Result<json> parseJson(const std::string& text, const std::string& file) {
       return fail(file, fmt::format("nests JSON deeper than {} levels", kMaxDepth), "simplify its extras");
     return document;
   } catch (const json::exception& exception) {
-    return fail(file, fmt::format("is not glTF: its JSON cannot be parsed ({})", exception.what()),
+    return fail(file, fmt::format("is not glTF: its JSON cannot be parsed ({})", reasonOf(exception)),
                 "export the scene again");
   }
 }
@@ -141,7 +142,7 @@ Result<Document> Document::open(const std::filesystem::path& path, const ImportO
       return fail(file, fmt::format("is not valid glTF ({})", firstLine(error)), "export the scene again");
     return Document(path, options, std::move(model), std::make_unique<nlohmann::json>(std::move(*document)));
   } catch (const std::exception& exception) {
-    return fail(file, fmt::format("cannot be read ({})", exception.what()), "export the scene again");
+    return fail(file, fmt::format("cannot be read ({})", reasonOf(exception)), "export the scene again");
   }
 }
 

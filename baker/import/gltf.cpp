@@ -13,10 +13,17 @@
 #include "baker/import/check.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/document.hpp"
+#include "baker/import/reason.hpp"
 #include "baker/import/tinygltf.hpp"
+#include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
 namespace {
+
+bool isBundle(const Document& document) {
+  const auto& used = document.model().extensionsUsed;
+  return std::ranges::find(used, bundle::kExtensionName) != used.end();
+}
 
 void warnAboutExtensions(const Document& document, Scene& scene) {
   const auto& used = document.model().extensionsUsed;
@@ -53,6 +60,9 @@ void foldWarnings(std::vector<std::string>& warnings) {
 Result<Scene> convert(const Document& document) {
   Scene scene;
   scene.source = document.path();
+  if (isBundle(document))
+    return fail(document.file(), "is a bundle, which was baked already",
+                "name the scene that it was made of");
   warnAboutExtensions(document, scene);
   // Convert materials, with the textures and images that they use.
   if (auto materials = convertMaterials(document, scene); !materials)
@@ -72,9 +82,10 @@ Result<Scene> convert(const Document& document) {
     return failAgain(std::move(instances.error()));
   // Convert volumes and requests for neighborhoods.
   if (auto grids = convertGrids(document, *map, scene); !grids) return failAgain(std::move(grids.error()));
+  if (auto sizes = checkSizes(document, scene); !sizes) return failAgain(std::move(sizes.error()));
   foldWarnings(scene.warnings);
   if (scene.meshes.empty() && scene.volumes.empty())
-    return fail(document.file(), "has no triangles in its scene", "give it a mesh");
+    return fail(document.file(), "has no triangles in its scene that have an area", "give it a mesh");
   return scene;
 }
 
@@ -86,7 +97,7 @@ Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions
   try {
     return convert(*document);
   } catch (const std::exception& exception) {
-    return fail(path.string(), fmt::format("cannot be imported ({})", exception.what()),
+    return fail(path.string(), fmt::format("cannot be imported ({})", reasonOf(exception)),
                 "export the scene again");
   }
 }

@@ -10,6 +10,9 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include "baker/import/png_chunks.hpp"
+#include "baker/import/reason.hpp"
+
 namespace lambent::baker {
 namespace {
 
@@ -53,31 +56,17 @@ glm::vec4 texel(const DecodedImage& image, const gltf::Sampler& sampler, std::in
   return {srgbTable()[p[0]], srgbTable()[p[1]], srgbTable()[p[2]], static_cast<float>(p[3]) / 255.0f};
 }
 
-// Returns whether the chunks of a PNG lie within its bytes up to the last one, IEND. (OpenImageIO leaks
-// memory if the file ends early.) Source: PNG specification, section 5.
-bool isWholePng(std::span<const std::byte> png) {
-  constexpr std::size_t kSignature = 8, kFrame = 12;  // length, type and checksum of a chunk
-  constexpr std::uint32_t kEnd = 0x49454e44;
-  const auto u32 = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = (value << 8) | std::to_integer<std::uint32_t>(png[at + i]);
-    return value;
-  };
-  for (std::size_t at = kSignature; at + kFrame <= png.size();) {
-    const std::size_t length = u32(at);
-    if (length > png.size() - at - kFrame) return false;
-    if (u32(at + 4) == kEnd) return true;
-    at += kFrame + length;
-  }
-  return false;
-}
-
 Result<DecodedImage> decode(const SceneImage& image) {
   const std::string subject = fmt::format("image \"{}\"", image.name);
-  if (image.mime_type == "image/png" && !isWholePng(image.file_bytes))
-    return fail(subject, "is truncated", "save it again");
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(image.file_bytes.data()),
-                                       image.file_bytes.size());
+  std::vector<std::byte> essential;
+  std::span<const std::byte> bytes = image.file_bytes;
+  if (image.mime_type == "image/png") {
+    auto png = essentialPng(bytes, subject);
+    if (!png) return failAgain(png.error());
+    essential = std::move(*png);
+    bytes = essential;
+  }
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
   OIIO::ImageSpec wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);  // glTF colours are not premultiplied by alpha
   const char* name = image.mime_type == "image/png" ? "memory.png" : "memory.jpg";
@@ -119,7 +108,7 @@ Result<DecodedImage> decodeImage(const SceneImage& image) {
     return decode(image);
   } catch (const std::exception& exception) {
     return fail(fmt::format("image \"{}\"", image.name),
-                fmt::format("cannot be decoded ({})", exception.what()), "save it again as PNG or JPEG");
+                fmt::format("cannot be decoded ({})", reasonOf(exception)), "save it again as PNG or JPEG");
   }
 }
 

@@ -10,9 +10,17 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "baker/import/density_file.hpp"
+#include "baker/import/memory_limit.hpp"
+#include "baker/import/reason.hpp"
+#include "runtime/base/atomic_file.hpp"
 
 namespace lambent::baker {
 namespace {
+
+// OpenVDB believes sizes that a damaged file names. An intact fog volume takes up to some hundred times its
+// bytes as trees and again as voxels.
+constexpr std::uint64_t kLeastRoom = std::uint64_t{1} << 30, kMostRoom = std::uint64_t{6} << 30;
+constexpr std::uint64_t kRoomPerByte = 1000;
 
 constexpr const char* kHint = "write it again as a fog volume of float values";
 
@@ -74,9 +82,14 @@ Result<DensityGrid> readGrid(OIIO::ImageInput& input, const std::string& subject
 
 Result<DensityGrid> read(const std::filesystem::path& file, const std::string& wanted) {
   const auto input = OIIO::ImageInput::open(file.string());
-  if (!input)
-    return fail(file.string(), fmt::format("cannot be read ({})", OIIO::geterror()),
+  if (!input) {
+    const std::string why = OIIO::geterror();
+    return fail(file.string(),
+                why.find("bad_alloc") == std::string::npos
+                    ? fmt::format("cannot be read ({})", why)
+                    : "needs far more memory than a file of its size should, as damaged files do",
                 "take it from its source again");
+  }
   std::vector<std::string> names;
   for (int i = 0; input->seek_subimage(i, 0); ++i) names.push_back(gridName(input->spec()));
   const std::string name = wanted.empty() ? (names.size() == 1 ? names.front() : "density") : wanted;
@@ -91,10 +104,14 @@ Result<DensityGrid> read(const std::filesystem::path& file, const std::string& w
 }  // namespace
 
 Result<DensityGrid> readVdb(const std::filesystem::path& file, const std::string& grid) {
+  if (auto checked = checkRegularFile(file, "a .vdb file"); !checked) return failAgain(checked.error());
+  std::error_code ignored;
+  const std::uint64_t bytes = std::filesystem::file_size(file, ignored);
+  const MemoryLimit limit(std::clamp(bytes * kRoomPerByte, kLeastRoom, kMostRoom));
   try {
     return read(file, grid);
   } catch (const std::exception& exception) {
-    return fail(file.string(), fmt::format("cannot be read ({})", exception.what()),
+    return fail(file.string(), fmt::format("cannot be read ({})", reasonOf(exception)),
                 "take it from its source again");
   }
 }

@@ -51,4 +51,8 @@ bool isSceneFile(const std::filesystem::path& path) {
   return path.extension() == ".gltf" || path.extension() == ".glb";
 }
 
+std::filesystem::path bundleBeside(const std::filesystem::path& scene) {
+  return scene.parent_path() / (scene.stem().string() + ".lmb.glb");
+}
+
 }  // namespace lambent::baker

@@ -11,6 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include "baker/plan/motion.hpp"
+#include "baker/plan/smooth_dielectrics.hpp"
 
 namespace lambent::baker {
 
@@ -210,7 +211,7 @@ class Planner {
 
   bool glossy(const PlannedDraw& draw) const {
     const std::int32_t material = scene_.meshes[draw.mesh].primitives[draw.primitive].material;
-    return material >= 0 && !scene_.materials[static_cast<std::size_t>(material)].isDiffuse();
+    return material >= 0 && hasMatrices(scene_.materials[static_cast<std::size_t>(material)]);
   }
 
   std::vector<Triangles> trianglesOf(std::size_t group) const {

@@ -1,6 +1,5 @@
 #include "baker/trace/sample_visibility.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -11,9 +10,11 @@ namespace lambent::baker {
 
 namespace {
 
-// If more than one ray in this many hits something, most packets have a ray that hits, and it is faster to
-// ask for the closest hit at once than to ask first whether there is one.
-constexpr std::size_t kAskWhatAtOnce = 6;
+// If more than this share of the rays hits something, most packets have a ray that hits, and it is faster to
+// ask for the closest hit at once than to ask first whether there is one. Either way may choose another of
+// two faces where a ray meets their edge, so the choice follows from the sample alone: hits that are traced
+// again are the same.
+constexpr float kAskWhatAtOnce = 1.0f / 6.0f;
 
 }  // namespace
 
@@ -28,9 +29,7 @@ std::uint32_t SampleVisibility::look(const DirectionTable& table, bool wants_hit
   if (seen_.origins.empty()) return 0;
   const SampleRays rays{seen_.origins, glm::mat3(frame_), table, below};
   if (!wants_hits) return rays_.trace(rays, blocked_);
-  const std::uint32_t traced = rays_.traceHits(rays, mostly_blocked_, blocked_, hits_);
-  mostly_blocked_ = kAskWhatAtOnce * hits_.size() > table.size();
-  return traced;
+  return rays_.traceHits(rays, seen_.blocked > kAskWhatAtOnce, blocked_, hits_);
 }
 
 void SampleVisibility::keepHits(RangeHits& out) const {

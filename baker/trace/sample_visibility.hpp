@@ -53,7 +53,6 @@ class SampleVisibility {
   const RayScene& rays_;
   const InsideTestTables& inside_test_;
   glm::dmat3 frame_{1.0};
-  bool mostly_blocked_ = false;
   SeenOrigins seen_;
   std::vector<std::uint16_t> blocked_;
   std::vector<RayHit> hits_;

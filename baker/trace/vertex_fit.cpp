@@ -16,7 +16,7 @@ namespace lambent::baker {
 namespace {
 
 // The triangles that get a point have this share of all squared change between corners.
-constexpr double kShareOfChange = 0.98;
+constexpr double kShareOfChange = 0.99;
 // Limit on the squared relative change: smaller ones are rounding, and noise of rays that hit the same
 // things.
 constexpr double kLeastChange = 1e-6;

@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 
+#include "baker/plan/smooth_dielectrics.hpp"
+
 namespace lambent::baker {
 
 namespace {
@@ -29,7 +31,7 @@ bool isNormalMapped(const gltf::Material& material, const bundle::MeshData& mesh
 
 SampleKind kindOf(const gltf::Material* material, const bundle::MeshData& mesh, bool with_glossy) {
   if (!material) return SampleKind::Diffuse;
-  if (with_glossy && !material->isDiffuse()) return SampleKind::Glossy;
+  if (with_glossy && hasMatrices(*material)) return SampleKind::Glossy;
   return isNormalMapped(*material, mesh) ? SampleKind::NormalMapped : SampleKind::Diffuse;
 }
 
@@ -59,7 +61,8 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
                    .triangle_count = 0,
                    .material = material_index,
                    .back = draw.back,
-                   .kind = kindOf(material, mesh, with_glossy)};
+                   .kind = kindOf(material, mesh, with_glossy),
+                   .layered = with_glossy && material && isSmoothDielectric(*material)};
   const glm::dmat4 group_from_mesh(draw.group_from_mesh);
   const glm::mat3 linear(draw.group_from_mesh);
   const glm::mat3 normal_matrix = glm::inverseTranspose(linear);

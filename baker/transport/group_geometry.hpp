@@ -31,6 +31,7 @@ struct DrawGeometry {
   std::int32_t material = -1;
   bool back = false;  // the back of a double-sided material; the draw before it is its front
   SampleKind kind = SampleKind::Diffuse;
+  bool layered = false;  // a smooth dielectric, which has no matrices (baker/plan/smooth_dielectrics.hpp)
 };
 
 struct GroupGeometry {
@@ -60,8 +61,8 @@ struct GroupGeometry {
 glm::vec3 interpolatedNormal(const GroupGeometry& geometry, const glm::uvec3& corners,
                              const glm::vec3& shares);
 
-// decoded[mesh][primitive] is the mesh as it ships. With `with_glossy`, materials that are not diffuse have
-// glossy samples; without it all materials are Lambertian.
+// decoded[mesh][primitive] is the mesh as it ships. With `with_glossy`, surfaces whose materials
+// have matrices get glossy samples; without it all materials are Lambertian.
 GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
                                  const std::vector<std::vector<bundle::MeshData>>& decoded,
                                  bool with_glossy = false);

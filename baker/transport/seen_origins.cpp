@@ -28,11 +28,12 @@ void findSeenOrigins(std::span<const SampleOrigin> all, const glm::mat3& frame, 
                      const InsideTestTables& glances, SeenOrigins& seen) {
   seen.origins.assign(all.begin(), all.end());
   seen.valid = seen.double_rays = false;
+  seen.blocked = 0.0f;
   if (all.empty()) return;
   std::vector<MetShares> shares(all.size());
   // Sixteen rays are enough to see that nothing is odd, which is nearly always so.
-  const float blocked = rays.meet({all, frame, glances.glance}, shares);
-  seen.double_rays = blocked >= kBlockedShare && blocked < 1.0f;
+  seen.blocked = rays.meet({all, frame, glances.glance}, shares);
+  seen.double_rays = seen.blocked >= kBlockedShare && seen.blocked < 1.0f;
   seen.valid = std::all_of(shares.begin(), shares.end(), [](const MetShares& met) {
     return met.back == 0.0f && met.near <= kCoveredShare;
   });

@@ -23,6 +23,7 @@ struct InsideTestTables {
 struct SeenOrigins {
   std::vector<SampleOrigin> origins;  // weights sum to 1
   bool valid = false;                 // false if no origin is seen; then `origins` holds all of them
+  float blocked = 0.0f;               // share of a few rays that hit anything
   bool double_rays = false;           // much is in the way, so that twice the rays should be traced
 };
 

@@ -5,6 +5,8 @@
 
 #include <glm/common.hpp>
 
+#include "baker/plan/smooth_dielectrics.hpp"
+
 namespace lambent::baker {
 
 namespace {
@@ -40,6 +42,7 @@ Result<SurfaceColors> SurfaceColors::load(const Scene& scene, const GroupGeometr
     Surface surface{
         .first_triangle = draw.first_triangle,
         .base_color = material.unlit ? glm::vec3(0.0f) : glm::vec3(material.base_color),
+        .layer = draw.layered ? meanSpecularAlbedo(material) : glm::vec3(0.0f),
         .base_texture = {},
         .emissive_texture = {},
         .light = kNoLight,
@@ -67,7 +70,7 @@ Result<SurfaceColors> SurfaceColors::load(const Scene& scene, const GroupGeometr
     }
     const bool grey_vertices = std::all_of(first, first + draw.vertex_count,
                                            [](const glm::vec4& c) { return isGrey(glm::vec3(c)); });
-    if (!isGrey(surface.base_color) || !grey_vertices ||
+    if (!isGrey(surface.base_color) || !isGrey(surface.layer) || !grey_vertices ||
         (surface.base_color != glm::vec3(0.0f) && surface.base_texture.image &&
          !isGrey(*surface.base_texture.image)))
       colors.grey_ = false;
@@ -99,12 +102,12 @@ glm::vec4 SurfaceColors::vertexColor(std::uint32_t triangle, float u, float v) c
 
 glm::vec3 SurfaceColors::albedo(std::uint32_t triangle, float u, float v) const {
   const Surface& surface = surfaceOf(triangle);
-  if (surface.base_color == glm::vec3(0.0f)) return glm::vec3(0.0f);
+  if (surface.base_color == glm::vec3(0.0f)) return surface.layer;
   glm::vec3 color = surface.base_color;
   if (const Texture& base = surface.base_texture; base.image)
     color *= glm::vec3(nearestTexel(*base.image, base.sampler, at(geometry_->texcoords, triangle, u, v)));
   if (surface.colored_vertices) color *= glm::vec3(vertexColor(triangle, u, v));
-  return glm::clamp(color, 0.0f, 1.0f);
+  return albedoUnderLayer(glm::clamp(color, 0.0f, 1.0f), surface.layer);
 }
 
 float SurfaceColors::alpha(const Surface& surface, std::uint32_t triangle, float u, float v) const {

@@ -25,7 +25,7 @@ class SurfaceColors {
                                     std::span<const PlannedLight> lights, DecodedImages& images);
 
   // Returns base colour factor x texture x vertex colour, at most 1; 0 for unlit surfaces, which reflect
-  // nothing.
+  // nothing. Of smooth dielectrics it returns what the base and the layer over it reflect together.
   glm::vec3 albedo(std::uint32_t triangle, float u, float v) const;
   // Returns the emission at unit strength: the texture alone, 1 where there is none; 0 in the holes of
   // cut-outs. The triangle must belong to a light.
@@ -51,6 +51,7 @@ class SurfaceColors {
   struct Surface {
     std::uint32_t first_triangle = 0;
     glm::vec3 base_color{0.0f};
+    glm::vec3 layer{0.0f};  // mean albedo of a smooth dielectric's layer
     Texture base_texture, emissive_texture;
     std::uint32_t light = kNoLight;
     bool colored_vertices = false, glossy = false;

@@ -7,6 +7,7 @@
 
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/size.hpp"
+#include "runtime/spec/usage_error.hpp"
 
 namespace lambent::editor {
 
@@ -104,7 +105,7 @@ std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    printError({.subject = "usage", .problem = error.what(), .hint = "see lambent-editor --help"});
+    printError(spec::usageError(app, error));
     return 2;
   }
   Result<Options> options = understand(words);

@@ -19,7 +19,7 @@ void tellHelp(const baker::OptionRow& row) {
   if (!ImGui::IsItemHovered()) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(30.0f * ImGui::GetFontSize());
-  ImGui::TextUnformatted((std::string(row.kind) + ": " + std::string(row.help)).c_str());
+  ImGui::TextUnformatted((std::string(row.kind) + ": " + row.help).c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
 }

@@ -13,7 +13,8 @@ namespace lambent {
 
 class AtomicFile {
  public:
-  // Opens PATH.part-PID for writing. Fails if the folder is missing or not writable.
+  // Opens PATH.part-PID for writing, and removes parts of PATH that killed programs left behind. Fails if the
+  // folder is missing or not writable.
   static Result<AtomicFile> open(const std::filesystem::path& path);
 
   AtomicFile(AtomicFile&& other) noexcept;
@@ -24,6 +25,8 @@ class AtomicFile {
 
   Result<void> write(std::span<const std::byte> bytes);
   Result<void> write(const std::string& text);
+  // Returns where what was written lies until commit().
+  const std::filesystem::path& part() const { return part_; }
   // Flushes to disk and renames the part file to PATH. The object is empty afterwards.
   Result<void> commit();
 
@@ -36,7 +39,11 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
-// Returns the whole file. The error says whether it is missing, a folder or unreadable.
+// Checks that there is a regular file to read, before anything opens it: a pipe would wait for its other end
+// for ever. `kind` is what to name instead, as "a file".
+Result<void> checkRegularFile(const std::filesystem::path& path, const std::string& kind);
+
+// Returns the whole file. The error says whether it is missing, not a regular file or unreadable.
 Result<std::string> readTextFile(const std::filesystem::path& path);
 
 }  // namespace lambent

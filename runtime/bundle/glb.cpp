@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "runtime/base/atomic_file.hpp"
+
 namespace lambent::bundle {
 
 static_assert(std::endian::native == std::endian::little,
@@ -90,16 +92,14 @@ Result<void> GlbFile::readHeaders() {
 }
 
 Result<GlbFile> GlbFile::open(const std::filesystem::path& path) {
+  if (auto checked = checkRegularFile(path, "a bundle (.lmb.glb)"); !checked)
+    return failAgain(checked.error());
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) {
-    if (errno == ENOENT) return fail(path.string(), "no such file", "check the path");
+  struct stat status {};
+  GlbFile file(path, descriptor);
+  if (descriptor < 0 || ::fstat(descriptor, &status) != 0)
     return fail(path.string(), fmt::format("cannot be read: {}", std::strerror(errno)),
                 "check its permissions");
-  }
-  GlbFile file(path, descriptor);
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode))
-    return fail(path.string(), "is not a file", "name a bundle (.lmb.glb)");
   file.file_bytes_ = static_cast<std::uint64_t>(status.st_size);
   if (auto read = file.readHeaders(); !read) return failAgain(read.error());
   return file;

@@ -145,12 +145,18 @@ void linkParents(const Field& document, std::vector<gltf::Node>& nodes) {
       if (node.parent >= 0) document["nodes"].fault(fmt::format("give node {} two parents", child));
       node.parent = static_cast<std::int32_t>(i);
     }
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    std::size_t steps = 0;
-    for (std::int32_t at = static_cast<std::int32_t>(i); at >= 0;
-         at = nodes[static_cast<std::size_t>(at)].parent)
-      if (++steps > nodes.size()) document["nodes"].fault("form a ring");
+  // With one parent each, a node hangs on a root, or it or an ancestor of it lies on a ring. Then the walk
+  // down from all roots does not arrive at it.
+  std::vector<std::int32_t> open;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i].parent < 0) open.push_back(static_cast<std::int32_t>(i));
+  std::size_t arrived = 0;
+  for (; !open.empty(); ++arrived) {
+    const std::vector<std::int32_t>& children = nodes[static_cast<std::size_t>(open.back())].children;
+    open.pop_back();
+    open.insert(open.end(), children.begin(), children.end());
   }
+  if (arrived < nodes.size()) document["nodes"].fault("form a ring");
 }
 
 // --- textures ---
@@ -279,8 +285,10 @@ void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d)
       if (!node.trs) node.trs = gltf::Trs{};  // readAnimation() has checked that the node has no matrix
     }
   }
-  if (document.has("scenes"))
-    for (const Field& root : document["scenes"].items().at(0).list("nodes"))
+  const auto scenes = document.list("scenes");
+  if (document.has("scenes") && scenes.empty()) document["scenes"].fault("are none");
+  for (std::size_t i = 0; i < std::min<std::size_t>(scenes.size(), 1); ++i)
+    for (const Field& root : scenes[i].list("nodes"))
       d.roots.push_back(static_cast<std::int32_t>(root.index(d.nodes.size())));
 }
 

@@ -48,8 +48,8 @@ bool isANumber(const CellTransfer& transfer) {
 
 }  // namespace
 
-Result<void> write(const std::filesystem::path& path, Description description,
-                   const std::vector<Blob>& blobs) {
+Result<void> write(const std::filesystem::path& path, Description description, const std::vector<Blob>& blobs,
+                   const PartCheck& check) {
   assert(std::none_of(blobs.begin(), blobs.end(), [](const Blob& blob) { return blob.empty(); }) &&
          "glTF has no empty bufferViews");
   for (const Group& group : description.groups)
@@ -87,6 +87,10 @@ Result<void> write(const std::filesystem::path& path, Description description,
     const auto padding = std::span(kZeros).first(padded8(part.size()) - part.size());
     if (auto written = file->write(padding); !written) return written;
   }
+  if (check)
+    if (auto good = check(file->part()); !good)
+      return fail(path.string(), "cannot be opened after it was written: it " + good.error().problem,
+                  "this is a fault of the program: please report it with the scene");
   return file->commit();
 }
 

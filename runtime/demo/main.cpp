@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/base/standard_output.hpp"
 #include "runtime/demo/options.hpp"
 #include "runtime/demo/run.hpp"
 
@@ -12,10 +14,16 @@ int main(int argc, char** argv) {
     const auto parsed = demo::parseOptions(argc, argv);
     if (const int* exit_code = std::get_if<int>(&parsed)) return *exit_code;
     const auto& options = std::get<demo::Options>(parsed);
+    for (const std::filesystem::path& bundle : options.bundles)
+      if (const auto checked = checkRegularFile(bundle, "a bundle (.lmb.glb)"); !checked) {
+        demo::printError(checked.error());
+        return 1;
+      }
     if (options.default_light)
       fmt::print(stderr, "lambent-demo: no --light given; showing {}\n",
                  fmt::join(options.light_words, " and "));
-    const Result<void> done = options.headless ? demo::runHeadless(options) : demo::runWindowed(options);
+    Result<void> done = options.headless ? demo::runHeadless(options) : demo::runWindowed(options);
+    if (done) done = flushStandardOutput();
     if (done) return 0;
     demo::printError(done.error());
   } catch (const std::exception& error) {  // mostly out of memory

@@ -11,6 +11,7 @@
 #include "runtime/frame/quality.hpp"
 #include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
+#include "runtime/spec/usage_error.hpp"
 
 namespace lambent::demo {
 
@@ -284,7 +285,7 @@ std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    printError({.subject = "usage", .problem = error.what(), .hint = "see lambent-demo --help"});
+    printError(spec::usageError(app, error));
     return 2;
   }
   Result<Options> options = understand(words);

@@ -31,8 +31,19 @@ std::optional<BrdfChoice> tableFor(std::span<const bundle::BrdfFamily> tables,
 
 BrdfChoice choiceOf(const World& world, std::size_t draw) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
-  return brdfChoiceOf(world.residency().bundles()[resident.bundle].brdf_families, world.material(draw),
+  gltf::Material now = world.material(draw);
+  if (resident.layered) now.brdf = -1, now.anisotropy = 0.0f;  // the layer is one of GGX without direction
+  return brdfChoiceOf(world.residency().bundles()[resident.bundle].brdf_families, now,
                       world.bakedMaterial(draw));
+}
+
+// Returns whether the table that a draw looks up is resident.
+bool tableReady(const World& world, std::size_t draw) {
+  const std::int32_t table = brdfTableOf(world, draw);
+  return table >= 0 && world.residency()
+                           .bundles()[world.residency().draws()[draw].bundle]
+                           .brdf_tables[static_cast<std::size_t>(table)]
+                           .texture;
 }
 
 }  // namespace
@@ -57,6 +68,11 @@ bool glossyReady(const World& world, std::size_t draw) {
          world.residency().groups()[resident.group].samples;
 }
 
+bool layerReady(const World& world, std::size_t draw) {
+  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
+  return resident.layered && resident.radiance && tableReady(world, draw);
+}
+
 GlossyPart describeGlossy(const World& world, std::size_t draw) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
   const streaming::ResidentMesh& mesh = world.residency().meshes()[resident.mesh];
@@ -68,13 +84,16 @@ GlossyPart describeGlossy(const World& world, std::size_t draw) {
   // A diffuse material is Lambert, whatever its roughness says (docs/conventions.md).
   const glm::vec3 dielectric = material.reflectance() * material.specular_color;
   const float specular = material.isDiffuse() ? 0.0f : material.specular;
-  const streaming::SampleStretch samples = group.stretchOf(transfer::Form::Matrix);
+  const streaming::SampleStretch samples = group.stretchOf(resident.form());
+  const auto textureOfLobes = [&](const gltf::TextureRef& texture) {
+    return slotOf(resident.layered ? gltf::TextureRef{} : texture, mesh);
+  };
   return {.group_from_world = glm::mat3x4(glm::mat3_cast(glm::conjugate(world.rotationOf(resident.group)))),
           .dielectric = glm::vec4(dielectric, specular),
           .metallic_roughness_texture = slotOf(material.metallic_roughness_texture, mesh),
-          .specular_texture = slotOf(material.specular_texture, mesh),
-          .specular_color_texture = slotOf(material.specular_color_texture, mesh),
-          .anisotropy_texture = slotOf(material.anisotropy_texture, mesh),
+          .specular_texture = textureOfLobes(material.specular_texture),
+          .specular_color_texture = textureOfLobes(material.specular_color_texture),
+          .anisotropy_texture = textureOfLobes(material.anisotropy_texture),
           .metallic = material.metallic,
           .roughness = material.roughness,
           .anisotropy = material.anisotropy,
@@ -89,7 +108,15 @@ GlossyPart describeGlossy(const World& world, std::size_t draw) {
           .first_sample = samples.first_sample,
           .draw = static_cast<std::uint32_t>(draw),
           .first_output = samples.first_output,
-          .glossy_pad = {}};
+          .seen_word = resident.layered ? resident.seenWord(mesh) : kAbsent,
+          .glossy_pad = 0};
+}
+
+GlossyKind layerKindOf(const World& world, std::size_t draw) {
+  const streaming::ResidentBundle& owner =
+      world.residency().bundles()[world.residency().draws()[draw].bundle];
+  const BrdfChoice choice = choiceOf(world, draw);
+  return {.bands = owner.brdf_tables[static_cast<std::size_t>(choice.table)].order, .family = choice.family};
 }
 
 GlossyKind glossyKindOf(const World& world, std::size_t draw, std::uint32_t max_bands) {
@@ -99,17 +126,21 @@ GlossyKind glossyKindOf(const World& world, std::size_t draw, std::uint32_t max_
           .family = choiceOf(world, draw).family};
 }
 
+std::string axesText(const sh::ZonalFactors& factors) {
+  std::string axes;
+  for (const glm::vec3& axis : factors.axes())
+    axes += fmt::format("{}vec3({:.9g}, {:.9g}, {:.9g})", axes.empty() ? "" : ", ", axis.x, axis.y, axis.z);
+  return fmt::format("vec3[]({})", axes);
+}
+
 std::vector<gpu::Define> definesOf(const GlossyKind& kind) {
   const bool anisotropic = kind.family == bundle::BrdfFamily::AnisotropicGgx;
   const auto order = static_cast<int>(kind.bands);
   const sh::ZonalFactors factors =
       anisotropic ? sh::ZonalFactors::anisotropic(order) : sh::ZonalFactors::isotropic(order);
-  std::string axes;
-  for (const glm::vec3& axis : factors.axes())
-    axes += fmt::format("{}vec3({:.9g}, {:.9g}, {:.9g})", axes.empty() ? "" : ", ", axis.x, axis.y, axis.z);
   std::vector<gpu::Define> defines = {{"LAMBENT_GLOSSY", "1"},
                                       {"LAMBENT_BANDS", std::to_string(kind.bands)},
-                                      {"LAMBENT_ZONAL_AXES", fmt::format("vec3[]({})", axes)}};
+                                      {"LAMBENT_ZONAL_AXES", axesText(factors)}};
   if (kind.used_bands > 0) defines.push_back({"LAMBENT_USED_BANDS", std::to_string(kind.used_bands)});
   if (anisotropic) defines.push_back({"LAMBENT_ANISOTROPIC", "1"});
   if (kind.family == bundle::BrdfFamily::Measured) defines.push_back({"LAMBENT_MEASURED", "1"});

@@ -7,7 +7,9 @@
 //   Gathered     void f(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients])
 //   Received     void f(SurfacePoint at, inout SurfaceLight light), see surface_light.glsl
 //   MirroredSky  void f(Reflected reflected, SurfaceLight light, inout vec3 sky); it replaces what mirrors
-//                show of the sky
+//                show of the sky. For layered draws
+//                void f(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights), see
+//                layer.glsl; it replaces what the mirror shows, and highlights of key lights
 #pragma once
 
 #include <cstddef>
@@ -24,16 +26,27 @@ namespace lambent::frame {
 enum class SurfaceHook : std::uint8_t { Vertex, Gathered, Received, MirroredSky };
 
 // Tells how a surface uses the light that transfer brings to it.
-enum class SurfaceReceiver : std::uint8_t { Diffuse, NormalMapped, Ggx, Measured };
+enum class SurfaceReceiver : std::uint8_t { Diffuse, NormalMapped, Layered, LayeredMapped, Ggx, Measured };
 constexpr bool isGlossy(SurfaceReceiver receiver) {
   return receiver == SurfaceReceiver::Ggx || receiver == SurfaceReceiver::Measured;
 }
+// Returns whether a specular layer lies over its diffuse transfer.
+constexpr bool isLayered(SurfaceReceiver receiver) {
+  return receiver == SurfaceReceiver::Layered || receiver == SurfaceReceiver::LayeredMapped;
+}
 
 // Tells which receivers call a function.
-enum class CalledBy : std::uint8_t { All, Diffuse /* also with normal maps */, Glossy, Ggx };
+enum class CalledBy : std::uint8_t {
+  All,
+  Diffuse /* also with normal maps and layers */,
+  Layered,
+  Glossy,
+  Ggx
+};
 constexpr bool calls(SurfaceReceiver receiver, CalledBy by) {
   return by == CalledBy::All || (by == CalledBy::Ggx && receiver == SurfaceReceiver::Ggx) ||
-         (by == CalledBy::Glossy && isGlossy(receiver)) || (by == CalledBy::Diffuse && !isGlossy(receiver));
+         (by == CalledBy::Layered && isLayered(receiver)) || (by == CalledBy::Glossy && isGlossy(receiver)) ||
+         (by == CalledBy::Diffuse && !isGlossy(receiver));
 }
 
 struct SurfaceFunction {

@@ -89,7 +89,7 @@ SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDr
   const bool glossy = world.residency().draws()[draw].glossy();
   if (record.normal_texture.set != kAbsent && (glossy || normalMapped(world, draw)))
     textures.normal = material.normal_texture.texture;
-  if (glossy) {
+  if (glossy || world.residency().draws()[draw].layered) {
     const streaming::ResidentMesh& mesh = world.residency().meshes()[world.residency().draws()[draw].mesh];
     const auto textureOf = [&](const gltf::TextureRef& reference) {
       return slotOf(reference, mesh).set != kAbsent ? reference.texture : -1;

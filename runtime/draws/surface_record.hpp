@@ -18,7 +18,7 @@ namespace lambent::frame {
 // Holds indices into the bundle's tables; -1 means none.
 struct SurfaceTextures {
   std::int32_t bundle = -1, base_color = -1, emissive = -1, normal = -1;
-  // These are used by glossy draws only.
+  // These are used by glossy and layered draws only.
   std::int32_t metallic_roughness = -1, specular = -1, specular_color = -1, anisotropy = -1;
   auto operator<=>(const SurfaceTextures&) const = default;
 };

@@ -38,10 +38,11 @@ LAMBENT_CONSTANT kAbsent = 0xffffffffu;
 LAMBENT_CONSTANT kUnitBaseColor = 0u;  // texture units
 LAMBENT_CONSTANT kUnitEmissive = 1u;
 LAMBENT_CONSTANT kUnitNormal = 2u;
-LAMBENT_CONSTANT kUnitMetallicRoughness = 3u;  // from here on only in glossy draws
+LAMBENT_CONSTANT kUnitMetallicRoughness = 3u;  // from here on only in glossy and layered draws
 LAMBENT_CONSTANT kUnitSpecular = 4u;
 LAMBENT_CONSTANT kUnitSpecularColor = 5u;
 LAMBENT_CONSTANT kUnitAnisotropy = 6u;
+LAMBENT_CONSTANT kUnitSeenKernel = 6u;  // in layered draws, which have no direction
 LAMBENT_CONSTANT kUnitBrdf = 7u;  // table of b(v)
 
 LAMBENT_CONSTANT kAlphaOpaque = 0u;  // alpha is 1
@@ -58,7 +59,8 @@ struct TextureSlot {
   uint pad;
 };
 
-// Holds the additional fields of glossy draws (effects/glossy).
+// Holds the additional fields of draws that reflect: glossy ones (effects/glossy) and layered ones, which have no
+// samples.
 struct GlossyPart {
   mat3x4 group_from_world;  // rotation
   vec4 dielectric;          // ((ior - 1) / (ior + 1))² times the specular colour; w: specular
@@ -78,7 +80,8 @@ struct GlossyPart {
   uint first_sample;  // of the draw; output o of sample s is vec4 first_output + outputs (s - first_sample) + o
   uint draw;          // index in the residency
   uint first_output;
-  uint glossy_pad[2];
+  uint seen_word;  // layered draws: first word of what the vertices see of the sky, in the page of radiance
+  uint glossy_pad;
 };
 
 struct SurfaceDraw {

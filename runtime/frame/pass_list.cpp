@@ -17,6 +17,7 @@ constexpr MakePass kStepPasses[] = {
     &makeLightPass,         // light at each light probe, windowed, in its group's frame
     &makePatchBouncesPass,  // bounces of lights among the surfaces, and of key lights
     &makeDiffusePass,       // E/pi at every vertex whose light or transfer changed
+    &makeSeenSkyPass,       // what vertices of smooth dielectrics see of the sky, once transfer has arrived
     &makeGlossyPass,        // transferred light at samples of glossy surfaces, likewise
     &makeVolumePass,        // light in volumes, as rays look it up
     &makeNeighborhoodPass,  // changes of light around bodies with grids

@@ -120,9 +120,12 @@ Result<EnvironmentMap> loadEnvironmentMap(const EnvironmentMapLight& light) {
                 "choose another --light-layout, or leave it out");
   EnvironmentMap environment_map{std::move(*image), *layout, 0};
   for (glm::vec3& texel : environment_map.image.texels) {
-    if (std::isfinite(texel.r) && std::isfinite(texel.g) && std::isfinite(texel.b)) continue;
-    texel = glm::vec3(0.0f);
-    ++environment_map.texels_not_finite;
+    const glm::vec3 stored = texel;
+    // Filters that sharpen leave some values below 0. One that is not finite makes its texel useless.
+    const bool usable = std::max({stored.r, stored.g, stored.b}) <= kMostRadiance &&
+                        !std::isnan(stored.r + stored.g + stored.b);
+    texel = usable ? glm::max(stored, glm::vec3(0.0f)) : glm::vec3(0.0f);
+    environment_map.texels_mended += texel != stored;
   }
   return environment_map;
 }

@@ -126,10 +126,8 @@ Result<RgbaImage> readOpened(Imf::InputFile& file, const std::filesystem::path& 
 }  // namespace
 
 Result<RgbaImage> readExr(const std::filesystem::path& path) {
+  if (auto checked = checkRegularFile(path, "an .exr file"); !checked) return failAgain(checked.error());
   std::error_code code;
-  const std::filesystem::file_status status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) return fail(path.string(), "no such file", "check the path");
-  if (std::filesystem::is_directory(status)) return fail(path.string(), "is a folder", "name an .exr file");
   const std::uint64_t file_bytes = std::filesystem::file_size(path, code);
   if (code) return fail(path.string(), "cannot be read", "check its permissions");
   try {

@@ -20,11 +20,8 @@ Result<void> checkImageSize(const std::filesystem::path& path, std::uint64_t wid
 
 Result<RgbImage> readLightImage(const std::filesystem::path& path) {
   constexpr std::string_view kExrMagic = "\x76\x2f\x31\x01", kHdrMagic = "#?";
-  std::error_code code;
-  const std::filesystem::file_status status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) return fail(path.string(), "no such file", "check the path");
-  if (std::filesystem::is_directory(status))
-    return fail(path.string(), "is a folder", "name a .hdr or .exr file");
+  if (auto checked = checkRegularFile(path, "a .hdr or .exr file"); !checked)
+    return failAgain(checked.error());
   std::string head(kExrMagic.size(), '\0');
   std::ifstream in(path, std::ios::binary);
   if (!in) return fail(path.string(), "cannot be read", "check its permissions");

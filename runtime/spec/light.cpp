@@ -19,16 +19,15 @@ constexpr std::string_view kForms =
     "give an environment map file (.hdr or .exr), constant:R,G,B, sun:AZ,EL,ANGLE,R[,G,B], "
     "sphere:X,Y,Z,RADIUS,R[,G,B] "
     "or disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]";
-constexpr std::string_view kConstantForm = "write constant:R,G,B with radiances of 0 or more";
+constexpr std::string_view kConstantForm = "write constant:R,G,B with radiances of 0 to 1e15";
 constexpr std::string_view kSunForm =
     "write sun:AZ,EL,ANGLE,R[,G,B] in degrees: elevation -90..90, angular radius above 0 up to 180, "
-    "radiances of 0 or more";
+    "radiances of 0 to 1e15";
 constexpr std::string_view kSphereForm =
-    "write sphere:X,Y,Z,RADIUS,R[,G,B] in metres: radius and radiances of 0 or more";
+    "write sphere:X,Y,Z,RADIUS,R[,G,B] in metres: radius of 0 or more, radiances of 0 to 1e15";
 constexpr std::string_view kDiscForm =
     "write disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B] in metres: it shines along NX,NY,NZ, which is not 0; radius "
-    "and "
-    "radiances of 0 or more";
+    "of 0 or more, radiances of 0 to 1e15";
 
 tl::unexpected<Error> wrong(std::string_view word, std::string problem, std::string_view hint) {
   return fail("light \"" + std::string(word) + "\"", std::move(problem), std::string(hint));
@@ -44,7 +43,8 @@ std::string lowerExtension(const std::filesystem::path& path) {
 // Parses one number for all channels, or three.
 std::optional<glm::vec3> parseRadiance(std::span<const float> values) {
   if (values.size() != 1 && values.size() != 3) return std::nullopt;
-  if (std::ranges::any_of(values, [](float value) { return value < 0.0f; })) return std::nullopt;
+  if (std::ranges::any_of(values, [](float value) { return !(value >= 0.0f && value <= kMostRadiance); }))
+    return std::nullopt;
   return values.size() == 1 ? glm::vec3(values[0]) : glm::vec3(values[0], values[1], values[2]);
 }
 
@@ -53,7 +53,7 @@ Result<Light> parseConstant(std::string_view word, std::string_view text) {
   if (!values) return wrong(word, "is not a list of numbers", kConstantForm);
   if (values->size() != 3) return wrong(word, "needs three numbers", kConstantForm);
   const auto colour = parseRadiance(*values);
-  if (!colour) return wrong(word, "has a negative radiance", kConstantForm);
+  if (!colour) return wrong(word, "has a radiance outside 0..1e15", kConstantForm);
   return ConstantLight{*colour};
 }
 
@@ -65,7 +65,7 @@ Result<Light> parseSun(std::string_view word, std::string_view text) {
   if (std::abs(elevation) > 90.0f) return wrong(word, "has an elevation outside -90..90", kSunForm);
   if (angle <= 0.0f || angle > 180.0f) return wrong(word, "has an angular radius outside 0..180", kSunForm);
   const auto colour = parseRadiance(std::span(*values).subspan(3));
-  if (!colour) return wrong(word, "has a negative radiance", kSunForm);
+  if (!colour) return wrong(word, "has a radiance outside 0..1e15", kSunForm);
   return SunLight{azimuth, elevation, angle, *colour};
 }
 
@@ -77,7 +77,7 @@ Result<Light> parseSphere(std::string_view word, std::string_view text) {
   const std::vector<float>& v = *values;
   if (v[3] < 0.0f) return wrong(word, "has a negative radius", kSphereForm);
   const auto colour = parseRadiance(std::span(v).subspan(4));
-  if (!colour) return wrong(word, "has a negative radiance", kSphereForm);
+  if (!colour) return wrong(word, "has a radiance outside 0..1e15", kSphereForm);
   return SphereLight{{v[0], v[1], v[2]}, v[3], *colour};
 }
 
@@ -92,7 +92,7 @@ Result<Light> parseDisc(std::string_view word, std::string_view text) {
   if (!(glm::length(normal) > 0.0)) return wrong(word, "has a normal of length 0", kDiscForm);
   if (v[6] < 0.0f) return wrong(word, "has a negative radius", kDiscForm);
   const auto colour = parseRadiance(std::span(v).subspan(7));
-  if (!colour) return wrong(word, "has a negative radiance", kDiscForm);
+  if (!colour) return wrong(word, "has a radiance outside 0..1e15", kDiscForm);
   return DiscLight{{v[0], v[1], v[2]}, glm::vec3(glm::normalize(normal)), v[6], *colour};
 }
 

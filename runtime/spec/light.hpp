@@ -26,6 +26,9 @@
 
 namespace lambent::spec {
 
+// Brighter light than this is refused, since sums over many lights and directions must stay finite.
+inline constexpr float kMostRadiance = 1e15f;
+
 // Describes light from all directions at infinity, as a picture of the sphere.
 struct EnvironmentMapLight {
   std::filesystem::path file;

@@ -8,11 +8,12 @@ namespace lambent::streaming {
 
 namespace {
 
-std::vector<bool> glossyMaterials(const bundle::Description& description) {
+std::vector<bool> reflectingMaterials(const bundle::Description& description) {
   std::vector<bool> glossy(description.materials.size(), false);
   for (const bundle::Draw& draw : description.draws) {
     const std::int32_t material = description.meshes[draw.mesh].primitives[draw.primitive].material;
-    if (draw.glossy() && material >= 0) glossy[static_cast<std::size_t>(material)] = true;
+    if (material >= 0 && (draw.glossy() || bundle::isLayered(description, draw)))
+      glossy[static_cast<std::size_t>(material)] = true;
   }
   return glossy;
 }
@@ -26,7 +27,7 @@ std::vector<ImageUse> imageUses(const bundle::Description& description) {
     const std::int32_t image = description.textures[static_cast<std::size_t>(reference.texture)].image;
     if (image >= 0) uses[static_cast<std::size_t>(image)].*as = true;
   };
-  const std::vector<bool> glossy = glossyMaterials(description);
+  const std::vector<bool> glossy = reflectingMaterials(description);
   for (std::size_t i = 0; i < description.materials.size(); ++i) {
     const gltf::Material& material = description.materials[i];
     gltf::forEachMaterialTexture([&](const auto& field) {

@@ -176,7 +176,7 @@ Result<void> Residency::finish(At at, const MeshUpload& upload) {
     draw.version = version_;
     if (draw.glossy()) continue;
     const Result<gpu::Allocation> radiance =
-        radiance_.allocate(4ull * radianceWords(draw.form()) * mesh.vertex_count);
+        radiance_.allocate(4ull * vertexWords(draw.form(), draw.layered) * mesh.vertex_count);
     if (!radiance) return failAgain(radiance.error());
     draw.radiance = *radiance;
   }

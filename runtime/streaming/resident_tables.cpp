@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/bundle/gltf_types.hpp"
+#include "runtime/streaming/sizes.hpp"
 
 namespace lambent::streaming {
 
@@ -124,6 +125,10 @@ std::vector<Entry> takeFrom(std::vector<Entry>& from, std::uint32_t place, std::
 
 }  // namespace
 
+std::uint32_t ResidentDraw::seenWord(const ResidentMesh& of) const {
+  return radiance.word() + radianceWords(form()) * of.vertex_count;
+}
+
 bool ResidentCell::usable() const {
   if (!light_weights_resident) return false;
   for (const ResidentTransfer& transfer : transfers) {
@@ -193,6 +198,7 @@ ResidentTables tablesOf(const bundle::Description& description, std::uint64_t ve
     made.material = description.meshes[draw.mesh].primitives[draw.primitive].material;
     made.back = draw.back;
     made.outputs = draw.outputs;
+    made.layered = bundle::isLayered(description, draw);
     made.group_from_mesh_normal =
         (draw.back ? -1.0f : 1.0f) * normalMatrix(description.groups[draw.group], world_from_node[draw.node]);
     made.version = version;

@@ -147,21 +147,25 @@ struct ResidentGroup {
 
 struct ResidentDraw {
   std::uint64_t id = 0;
-  std::uint32_t bundle = 0, index = 0;     // slot of the bundle, and index in its description
-  std::uint32_t group = 0, mesh = 0;       // indices into groups() and meshes()
-  std::int32_t material = -1;              // material of the bundle
-  bool back = false;                       // true for the back of a double-sided surface
-  std::uint32_t outputs = 1;               // 9 if normal-mapped, more if glossy
+  std::uint32_t bundle = 0, index = 0;  // slot of the bundle, and index in its description
+  std::uint32_t group = 0, mesh = 0;    // indices into groups() and meshes()
+  std::int32_t material = -1;           // material of the bundle
+  bool back = false;                    // true for the back of a double-sided surface
+  std::uint32_t outputs = 1;            // 9 if normal-mapped, more if glossy
+  bool layered = false;                 // has a specular layer over diffuse transfer, see bundle::isLayered()
   glm::mat3 group_from_mesh_normal{1.0f};  // negated for a back
   // vertex_count + 1 offsets, row_entries samples and row_entries unorm16 weights; empty until loaded.
   gpu::Allocation rows;
   std::uint32_t row_entries = 0;
-  // radianceWords(outputs) floats per vertex, once the mesh is loaded; empty for glossy draws.
+  // radianceWords(form) floats per vertex, once the mesh is loaded; empty for glossy draws. With a layer,
+  // what each vertex sees of the sky follows (transfer/seen_sky_shared.h).
   gpu::Allocation radiance;
   std::uint64_t version = 0;
 
   transfer::Form form() const { return transfer::formOf(transfer::Domain::Vertex, outputs); }
   bool glossy() const { return form() == transfer::Form::Matrix; }
+  // Returns the first word of what the vertices see of the sky; its mesh must be loaded.
+  std::uint32_t seenWord(const ResidentMesh& of) const;
 };
 
 // Numbers of entries of each table.

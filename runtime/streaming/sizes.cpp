@@ -84,7 +84,9 @@ Needs needsOf(const bundle::Description& description) {
   for (const bundle::Draw& draw : description.draws) {
     const std::uint64_t vertices = description.meshes[draw.mesh].primitives[draw.primitive].vertex_count;
     needs.rows += description.payloads[draw.rows].raw_length + 6 * vertices + 2 * kSlack;
-    if (!draw.glossy()) needs.radiance += 4ull * radianceWords(draw.form()) * vertices + kSlack;
+    if (!draw.glossy())
+      needs.radiance +=
+          4ull * vertexWords(draw.form(), bundle::isLayered(description, draw)) * vertices + kSlack;
   }
   return needs;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "runtime/bundle/description.hpp"
+#include "runtime/transfer/seen_sky_shared.h"
 
 namespace lambent::streaming {
 
@@ -13,6 +14,12 @@ namespace lambent::streaming {
 constexpr std::uint32_t radianceWords(transfer::Form form) {
   if (form == transfer::Form::Vector) return 3;
   return form == transfer::Form::NormalMapped ? 3 * transfer::kMappedOutputs : 0;
+}
+
+// Returns the number of words per vertex that a draw keeps beside its mesh: these, and with a specular layer
+// what it sees of the sky.
+constexpr std::uint32_t vertexWords(transfer::Form form, bool layered) {
+  return radianceWords(form) + (layered ? transfer::kSeenWords : 0);
 }
 
 // Words per sample if its cell has several light probes.

@@ -3,6 +3,9 @@ layout(std430, binding = kBindRadiance) readonly buffer Radiance { float radianc
 layout(location = 3) out vec3 radiance;
 layout(location = 4) out vec3 normal_group;  // on the visible side
 layout(location = 5) out vec3 position_mesh;
+#ifdef LAMBENT_GLOSSY
+layout(location = 6) out vec4 looks_at_reflection;  // texture coordinates of the layer; xy: metallic-roughness
+#endif
 
 #include "vertex_light.glsl"
 
@@ -15,4 +18,7 @@ void writeReceiver(uint vertex, vec3 position) {
   addVertexLight(vertex, radiance);
   normal_group = draws[draw_index].facing * weightedNormal(vertex);
   position_mesh = position;
+#ifdef LAMBENT_GLOSSY
+  looks_at_reflection = vec4(LOOKED_AT(glossy.metallic_roughness_texture), 0.0, 0.0);
+#endif
 }

@@ -27,7 +27,8 @@ constexpr SurfaceFunction kNeighborhoods[] = {
 constexpr SurfaceFunction kVertexChange[] = {
     {SurfaceHook::Vertex, CalledBy::Diffuse, "neighborhood_vertex.glsl", "addVertexChange"}};
 constexpr SurfaceFunction kSpecular[] = {
-    {SurfaceHook::MirroredSky, CalledBy::Ggx, "specular_environment.glsl", "addSpecularEnvironment"}};
+    {SurfaceHook::MirroredSky, CalledBy::Ggx, "specular_environment.glsl", "addSpecularEnvironment"},
+    {SurfaceHook::MirroredSky, CalledBy::Layered, "layered_environment.glsl", "addLayeredEnvironment"}};
 
 }  // namespace
 

@@ -56,7 +56,7 @@ vec3 reflectedLight(vec3 base_color) {
   vec3 normal = pixelNormal(frame);
   vec4 light_of_bands[kCoefficients];
   gatherLight(light_of_bands);
-  lookFrom(normal, vec3(0.0), towardsEye(), 0.0, 0.0, uvec2(1u));
+  lookFrom(normal, vec3(0.0), towardsEye(position_mesh), 0.0, 0.0, uvec2(1u));
   Reflected reflected = reflectLight(pixel_view, pixel_weights, light_of_bands);
 
   SurfaceLight light = kNoLight;

@@ -4,7 +4,7 @@
 #include "surface_light.glsl"
 #include "diffuse_light.glsl"
 
-layout(location = 6) in vec3 light_of_bands[kLightCoefficients];
+#include "packed_light.glsl"
 
 const bool kHighlights = false;
 vec3 lightReflectance(vec3 to_light, float spread) { return vec3(0.0); }
@@ -15,6 +15,6 @@ vec3 reflectedLight(vec3 base_color) {
   vec3 normal = shadingNormal();
   SurfaceLight light = kNoLight;
   receiveLight(SurfacePoint(draw_of, position_group.xyz, draws[draw_of].facing * normal_group.xyz, normal), light);
-  vec3 received = withLight(diffuseLight(light_of_bands, normal), light);
+  vec3 received = withLight(diffuseLight(lightOfBands(), normal), light);
   return kShown == kShownIrradiance ? received : received * base_color;
 }

@@ -13,6 +13,7 @@
 #include "lambent_shadows_embedded.hpp"
 #include "lambent_surface_embedded.hpp"
 #include "lambent_transfer_embedded.hpp"
+#include "runtime/transfer/seen_sky_shared.h"
 
 namespace lambent::frame {
 
@@ -28,7 +29,8 @@ constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find,
 
 std::string_view vertexFileOf(SurfaceReceiver receiver) {
   if (isGlossy(receiver)) return "glossy_vertex.glsl";
-  return receiver == SurfaceReceiver::NormalMapped ? "normal_mapped_vertex.glsl" : "diffuse_vertex.glsl";
+  const bool mapped = receiver == SurfaceReceiver::NormalMapped || receiver == SurfaceReceiver::LayeredMapped;
+  return mapped ? "normal_mapped_vertex.glsl" : "diffuse_vertex.glsl";
 }
 
 std::string_view fileOf(SurfaceReceiver receiver) {
@@ -37,6 +39,10 @@ std::string_view fileOf(SurfaceReceiver receiver) {
       return "diffuse_receiver.glsl";
     case SurfaceReceiver::NormalMapped:
       return "normal_mapped_receiver.glsl";
+    case SurfaceReceiver::Layered:
+      return "layered_receiver.glsl";
+    case SurfaceReceiver::LayeredMapped:
+      return "layered_mapped_receiver.glsl";
     case SurfaceReceiver::Ggx:
       return "ggx_receiver.glsl";
     case SurfaceReceiver::Measured:
@@ -68,10 +74,19 @@ struct Caller {
 
 Caller vertexCaller(SurfaceReceiver receiver) {
   return {SurfaceHook::Vertex, "vertex_light.glsl",
-          receiver == SurfaceReceiver::NormalMapped
+          receiver == SurfaceReceiver::NormalMapped || receiver == SurfaceReceiver::LayeredMapped
               ? "addVertexLight(uint vertex, inout vec3 light[kLightCoefficients])"
               : "addVertexLight(uint vertex, inout vec3 light)",
           "vertex, light"};
+}
+
+Caller mirrorCaller(SurfaceReceiver receiver) {
+  if (isLayered(receiver))
+    return {SurfaceHook::MirroredSky, "mirrored_sky.glsl",
+            "addMirroredSky(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights)",
+            "mirror, light, mirrored, highlights"};
+  return {SurfaceHook::MirroredSky, "mirrored_sky.glsl",
+          "addMirroredSky(Reflected reflected, SurfaceLight light, inout vec3 sky)", "reflected, light, sky"};
 }
 
 constexpr Caller kPixelCallers[] = {
@@ -80,8 +95,6 @@ constexpr Caller kPixelCallers[] = {
      "corners, weights, light"},
     {SurfaceHook::Received, "received_light.glsl", "receiveLight(SurfacePoint at, inout SurfaceLight light)",
      "at, light"},
-    {SurfaceHook::MirroredSky, "mirrored_sky.glsl",
-     "addMirroredSky(Reflected reflected, SurfaceLight light, inout vec3 sky)", "reflected, light, sky"},
 };
 
 gpu::WrittenFile callerFile(const Caller& caller, std::span<const SurfaceFunction> functions) {
@@ -97,6 +110,7 @@ gpu::WrittenFile callerFile(const Caller& caller, std::span<const SurfaceFunctio
 }  // namespace
 
 SurfaceReceiver SurfaceKind::receiver() const {
+  if (layered) return normal_mapped ? SurfaceReceiver::LayeredMapped : SurfaceReceiver::Layered;
   if (glossy.bands > 0)
     return glossy.family == bundle::BrdfFamily::Measured ? SurfaceReceiver::Measured : SurfaceReceiver::Ggx;
   return normal_mapped ? SurfaceReceiver::NormalMapped : SurfaceReceiver::Diffuse;
@@ -117,10 +131,16 @@ Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
       {"surface_kind.glsl", kindText(kind, finest_texels)},
       {"vertex_receiver.glsl", fmt::format("#include \"{}\"\n", vertexFileOf(receiver))},
       {"receiver.glsl", fmt::format("#include \"{}\"\n", fileOf(receiver))},
-      callerFile(vertexCaller(receiver), functions)};
+      callerFile(vertexCaller(receiver), functions),
+      callerFile(mirrorCaller(receiver), functions)};
   for (const Caller& caller : kPixelCallers) written.push_back(callerFile(caller, functions));
   std::vector<gpu::Define> defines;
-  if (isGlossy(receiver)) defines = definesOf(kind.glossy);
+  if (kind.glossy.bands > 0) defines = definesOf(kind.glossy);
+  if (kind.layered) {
+    defines.push_back({"LAMBENT_LAYERED", "1"});
+    defines.push_back(
+        {"LAMBENT_SEEN_AXES", axesText(sh::ZonalFactors::isotropic(static_cast<int>(transfer::kSeenBands)))});
+  }
   return gpu::Program::create("surface",
                               {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}},
                               {.tables = tables, .defines = defines, .written = written});

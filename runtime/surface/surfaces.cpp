@@ -59,6 +59,11 @@ bool Surfaces::ready(const World& world, const effects::diffuse::Diffuse& diffus
   return world.residency().draws()[draw].glossy() ? glossyReady(world, draw) : diffuse.shaded(draw);
 }
 
+// Until what its vertices see is known, a layered draw is shown without its layer.
+bool Surfaces::layered(const World& world, std::size_t draw) const {
+  return options_.glossy && seen_sky_ != nullptr && seen_sky_->known(draw) && layerReady(world, draw);
+}
+
 SurfaceKind Surfaces::kindOf(const World& world, std::size_t draw) const {
   const bool other = view_shown_ == SurfaceView::Irradiance || view_shown_ == SurfaceView::Normals;
   SurfaceKind kind{.view = other ? view_shown_ : SurfaceView::Final};
@@ -69,6 +74,8 @@ SurfaceKind Surfaces::kindOf(const World& world, std::size_t draw) const {
   kind.normal_mapped = normalMapped(world, draw);
   if (world.residency().draws()[draw].glossy())
     kind.glossy = glossyKindOf(world, draw, options_.glossy_bands);
+  kind.layered = layered(world, draw);
+  if (kind.layered) kind.glossy = layerKindOf(world, draw);
   const SurfaceReceiver receiver = kind.receiver();
   for (std::size_t m = 0; m < modules_.size(); ++m)
     if (modules_[m]->reaches(draw, records_[draw]) &&
@@ -97,11 +104,13 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
               .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};
     if (item.state.kind.dark) {
       item.state.radiance_page = 0;
-    } else if (draw.glossy()) {
+    } else if (item.state.kind.glossy.bands > 0) {
       item.state.bundle = draw.bundle;
       item.state.brdf_table = brdfTableOf(world, i);
-      item.state.rows_page = draw.rows.page;
-      item.state.samples_page = residency.groups()[draw.group].samples.page;
+      if (!item.state.kind.layered) {
+        item.state.rows_page = draw.rows.page;
+        item.state.samples_page = residency.groups()[draw.group].samples.page;
+      }
       glossy_index_[i] = static_cast<std::uint32_t>(glossy_records_.size());
       glossy_records_.push_back({.surface = records_[i], .glossy = describeGlossy(world, i)});
     }
@@ -125,6 +134,7 @@ void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, st
 Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
                                const SurfaceInputs& inputs, gpu::Counters& counters) {
   const bool options_same = std::exchange(options_, inputs.options) == inputs.options;
+  seen_sky_ = inputs.seen_sky;
   modules_.assign(inputs.modules.begin(), inputs.modules.end());
   const ViewBlock block{view.view_from_world, view.clip_from_view, eyeOf(view)};
   view_.assign(std::span<const ViewBlock>(&block, 1));
@@ -136,7 +146,8 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
                                     world.lampsVersion(),
                                     world.materialsVersion(),
                                     shaded,
-                                    static_cast<std::uint64_t>(view_shown_)};
+                                    static_cast<std::uint64_t>(view_shown_),
+                                    seen_sky_ != nullptr ? seen_sky_->version() : 0};
   for (const SurfaceModule* module : modules_) now.push_back(module->version());
   const bool scene_same = options_same && now == seen_;
   if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return {};
@@ -208,15 +219,16 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
     const SurfaceKind& kind = run.state.kind;
     programs_.at(kind).use();
     units_.bind(world, run.state.textures);
-    const bool glossy = isGlossy(kind.receiver());
-    (glossy ? glossy_draws_ : draws_).bindStorage(kBindDraws);
-    if (glossy) {
+    (kind.glossy.bands > 0 ? glossy_draws_ : draws_).bindStorage(kBindDraws);
+    if (isGlossy(kind.receiver())) {
       world.residency().rows().page(run.state.rows_page).bindStorage(kBindRows);
       world.residency().samples().page(run.state.samples_page).bindStorage(kBindSamples);
-      units_.bindGlossy(world, run.state.textures, run.state.bundle, run.state.brdf_table);
     } else if (!kind.dark) {
       world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
     }
+    if (kind.glossy.bands > 0)
+      units_.bindGlossy(world, run.state.textures, run.state.bundle, run.state.brdf_table);
+    if (kind.layered) seen_sky_->bindKernel(kUnitSeenKernel);
     for (std::size_t m = 0; m < modules_.size(); ++m)
       if ((kind.modules & bitOf(m)) != 0) modules_[m]->bind(kind.receiver());
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);

@@ -22,6 +22,7 @@
 #include "runtime/draws/surface_shared.h"
 #include "runtime/draws/texture_units.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
+#include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/surface/surface_program.hpp"
@@ -38,6 +39,7 @@ struct SurfaceOptions {
 
 struct SurfaceInputs {
   SurfaceOptions options{};
+  const evaluate::SeenSky* seen_sky = nullptr;  // null: layers are not shown
   std::span<const SurfaceModule* const> modules{};
 };
 
@@ -64,7 +66,7 @@ class Surfaces {
     std::uint32_t geometry_page = 0, radiance_page = 0;
     SurfaceTextures textures = {};
     SurfaceKind kind = {};
-    // These are used by glossy draws only.
+    // These are used by glossy draws only, the bundle and the table by layered ones too.
     std::uint32_t bundle = 0, rows_page = 0, samples_page = 0;
     std::int32_t brdf_table = -1;
     bool clockwise = false;  // winding of the visible side
@@ -83,6 +85,7 @@ class Surfaces {
   Surfaces();
   bool dark(const World& world, std::size_t draw) const;
   bool ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const;
+  bool layered(const World& world, std::size_t draw) const;
   SurfaceKind kindOf(const World& world, std::size_t draw) const;
   void collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
                std::vector<Item>& opaque, std::vector<Item>& blended);
@@ -105,6 +108,7 @@ class Surfaces {
   std::vector<DrawCommand> commands_uploaded_;
   std::vector<std::uint8_t> shown_;  // indexed by draw
   SurfaceOptions options_;
+  const evaluate::SeenSky* seen_sky_ = nullptr;
   std::vector<std::uint32_t> glossy_index_;  // index of each draw in glossy_records_
   std::vector<Run> opaque_, blended_;
   std::vector<const SurfaceModule*> modules_;  // modules of this frame

@@ -1,5 +1,5 @@
-// Writes what mapped_normal.glsl reads of the vertices. Together with the light of normal-mapped surfaces this uses
-// all fifteen locations that OpenGL 4.5 promises.
+// Writes what mapped_normal.glsl reads of the vertices. Together with the light of normal-mapped surfaces and what a
+// layer reads this uses all fifteen locations that OpenGL 4.5 promises.
 layout(location = 3) out vec4 position_group;
 layout(location = 4) out vec4 normal_group;
 layout(location = 5) out vec4 tangent_group;

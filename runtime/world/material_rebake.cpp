@@ -31,6 +31,18 @@ bool tableMissing(const gltf::Material& material, const std::vector<bundle::Brdf
   return !has(Family::Ggx) && !has(Family::AnisotropicGgx);
 }
 
+// Adds what does not show of a smooth dielectric. Its layer follows all factors, but has no matrices.
+template <class Add>
+void addForLayer(const gltf::Material& now, const MaterialUse& use, const std::string& field,
+                 const Add& add) {
+  if (now.brdf >= 0 || now.anisotropy > 0.0f)
+    add(now.brdf >= 0 ? "brdf" : "anisotropy", false,
+        "It was baked as a smooth dielectric: this shows only after a rebake.");
+  else if (now.metallic > 0.0f)
+    add("metallic", true, "It was baked as a dielectric, and mirrors little of what is around it.");
+  if (use.bounces || use.seen) add(field, true, "Light that bounces off it still does so as it was baked.");
+}
+
 }  // namespace
 
 MaterialUse materialUse(const bundle::Description& description, std::uint32_t material) {
@@ -41,6 +53,7 @@ MaterialUse materialUse(const bundle::Description& description, std::uint32_t ma
     if (of_draw != static_cast<std::int32_t>(material)) continue;
     const bundle::Group& group = description.groups[draw.group];
     use.glossy |= draw.glossy();
+    use.layered |= bundle::isLayered(description, draw);
     use.normal_mapped |= draw.form() == transfer::Form::NormalMapped;
     use.diffuse |= draw.form() == transfer::Form::Vector;
     for (const bundle::Cell& cell : group.cells)
@@ -70,8 +83,9 @@ std::vector<RebakeReason> needsRebake(const gltf::Material& now, const gltf::Mat
         now.alpha_mode == gltf::AlphaMode::Mask ? "The cut-outs of its baked shadow stay as they were."
                                                 : "Its baked shadow stays as it was.");
   if (const std::string field = changedReflection(now, baked); !field.empty()) {
-    if ((use.diffuse || use.normal_mapped) && now.isDiffuse() != baked.isDiffuse())
+    if ((use.diffuse || use.normal_mapped) && !use.layered && now.isDiffuse() != baked.isDiffuse())
       add(field, false, "It was baked as a diffuse surface: roughness and metal show only after a rebake.");
+    if (use.layered) addForLayer(now, use, field, add);
     if (use.glossy) {
       if (tableMissing(now, use.tables))
         add(now.brdf >= 0 ? "brdf" : "anisotropy", false,

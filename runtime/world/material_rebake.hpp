@@ -16,6 +16,7 @@ namespace lambent::frame {
 // Describes how the draws of a bundle use one of its materials.
 struct MaterialUse {
   bool diffuse = false, normal_mapped = false, glossy = false;  // which kinds of draws use it
+  bool layered = false;                      // draws have a specular layer over diffuse transfer
   bool bounces = false;                      // baked transfer contains light reflected by it
   bool seen = false;                         // other groups see it
   bool lamp = false;                         // its emission is baked as a light of its group

@@ -5,6 +5,7 @@
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 
 #include "runtime/bundle/description.hpp"
 #include "tests/support/program.hpp"
@@ -42,11 +43,11 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
   const Outcome help = lambent({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
-      {"bake", {"SCENE",           "--output",     "--quality",     "--order",
-                "--rays",          "--bounces",    "--error",       "--max-edge",
+      {"bake", {"SCENE",          "--output",     "--quality",     "--order",
+                "--rays",         "--bounces",    "--error",       "--max-edge",
                 "--light-probes", "--refine",     "--volume-grid", "--neighborhood-grid",
-                "--effects",       "--threads",    "--max-memory",  "--allow-outside",
-                "--cache",         "--cache-size", "--force",       "--json"}},
+                "--effects",      "--threads",    "--max-memory",  "--allow-outside",
+                "--cache",        "--cache-size", "--force",       "--json"}},
       {"reference",
        {"SCENE", "--light", "--camera", "--output", "--spp", "--seed", "--band-limit", "--bounces", "--time",
         "--json"}},
@@ -70,7 +71,7 @@ TEST_F(LambentProgram, WrongUsageIsExitCode2AndOneLine) {
       {},
       {"brew"},
       {"bake"},
-      {"bake", kHello},
+      {"bake", "-o", path("a.lmb.glb")},
       {"bake", kHello, "-o"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--no-such-option"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--quality", "splendid"},
@@ -85,6 +86,22 @@ TEST_F(LambentProgram, WrongUsageIsExitCode2AndOneLine) {
       {"bake", kHello, "-o", path("a.lmb.glb"), "--volume-grid", "32x32"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--neighborhood-grid", "fine"},
       {"bake", kHello, kHello, "-o", path("a.lmb.glb")},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--effects", "diffuse,smell"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--effects", ""},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--order", "9"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--order", "-1"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--rays", "5"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--rays", "1048577"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--max-edge", "-1"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--max-edge", "nan"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--max-edge", "inf"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--error", "nan"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--error", "-0.1"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--error", "1"},
+      {"plan", kHello, "--effects", "smell"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--rays", "0"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--threads", "0"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--max-memory", "1"},
       {"plan"},
       {"info"},
       {"info", "a", "b"},
@@ -95,6 +112,78 @@ TEST_F(LambentProgram, WrongUsageIsExitCode2AndOneLine) {
     EXPECT_EQ(outcome.exit_code, 2) << words;
     expectOneLine(outcome, "lambent", words);
   }
+  EXPECT_EQ(fileCount(), 0);
+}
+
+TEST_F(LambentProgram, NamesTheOptionOrCommandThatWasMeant) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> meant = {
+      {{"bake", kHello, "-o", path("a.lmb.glb"), "--qualty", "draft"},
+       "--qualty: is not an option; did you mean --quality?"},
+      {{"bake", kHello, "-o", path("a.lmb.glb"), "--rasy=256"},
+       "--rasy: is not an option; did you mean --rays?"},
+      {{"info", "--jsno", "a"}, "did you mean --json?"},
+      {{"bkae", kHello}, "bkae: is not a command; did you mean bake?"},
+      {{"bake", kHello, "--splendid"}, "--splendid: is not an option; see lambent bake --help"},
+      {{"bake", kHello, "--quality", "ultra"}, "ultra is neither draft nor standard nor high"}};
+  for (const auto& [arguments, sentence] : meant) {
+    const Outcome outcome = lambent(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << sentence;
+    expectOneLine(outcome, "lambent", sentence);
+    EXPECT_NE(outcome.err.find(sentence), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(LambentProgram, BakesBesideTheSceneUnlessToldWhere) {
+  std::filesystem::copy(kHello, folder / "hello.glb");
+  ASSERT_EQ(lambent({"bake", path("hello.glb"), "--quality", "draft"}).exit_code, 0);
+  EXPECT_EQ(lambent({"info", path("hello.lmb.glb")}).exit_code, 0);
+  // A bundle is a GLB file too, but not one to bake.
+  const std::ptrdiff_t files = fileCount();
+  for (const std::vector<std::string>& again :
+       {std::vector<std::string>{"bake", path("hello.lmb.glb"), "-o", path("b.lmb.glb")},
+        {"plan", path("hello.lmb.glb")}}) {
+    const Outcome outcome = lambent(again);
+    EXPECT_EQ(outcome.exit_code, 1);
+    expectOneLine(outcome, "lambent", again.front());
+    EXPECT_NE(outcome.err.find("is a bundle, which was baked already; name the scene"), std::string::npos);
+  }
+  EXPECT_EQ(fileCount(), files);
+}
+
+TEST_F(LambentProgram, SaysWhenItsOutputIsLost) {
+  ASSERT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);
+  for (const std::string& command :
+       {"info " + path("hello.lmb.glb"), "plan --json " + kHello,
+        "bake --json --force --quality draft -o " + path("a.lmb.glb") + " " + kHello}) {
+    const Outcome lost = run("/bin/sh", {"-c", LAMBENT_PROGRAM " " + command + " > /dev/full"});
+    EXPECT_EQ(lost.exit_code, 1) << command;
+    expectOneLine(lost, "lambent", command);
+    EXPECT_NE(lost.err.find("standard output: cannot be written"), std::string::npos) << lost.err;
+  }
+}
+
+TEST_F(LambentProgram, DoesNotWaitForPipesInPlaceOfFiles) {
+  const std::string pipe = path("pipe.hdr");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", pipe},
+        {"plan", pipe},
+        {"bake", pipe, "-o", path("a.lmb.glb")},
+        {"compare", pipe, pipe},
+        {"reference", kHello, "-o", path("a.exr"), "--light", pipe}}) {
+    const Outcome outcome = lambent(arguments);
+    EXPECT_EQ(outcome.exit_code, 1) << arguments.front();
+    expectOneLine(outcome, "lambent", arguments.front());
+    EXPECT_NE(outcome.err.find("pipe.hdr: is a device or a pipe"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(LambentProgram, ReportsAFileThatGrowsPastItsLimit) {
+  const Outcome outcome = run("/bin/sh", {"-c", "ulimit -f 8; exec " LAMBENT_PROGRAM " bake " + kHello +
+                                                    " --quality draft -o " + path("a.lmb.glb")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("a.lmb.glb: cannot be written: File too large"), std::string::npos)
+      << outcome.err;
   EXPECT_EQ(fileCount(), 0);
 }
 
@@ -198,6 +287,16 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   }
 }
 
+TEST_F(LambentProgram, WritesAReferenceForAScreenToo) {
+  const Outcome outcome = lambent({"reference", kHello, "-o", path("a.exr"), "--png", path("a.png"), "--size",
+                                   "16x16", "--spp", "4", "--light", "constant:1,1,1"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(bytesOf(folder / "a.png").starts_with("\x89PNG"));
+  const Outcome nowhere = lambent({"reference", kHello, "-o", path("b.exr"), "--png", path("no/such/a.png")});
+  EXPECT_EQ(nowhere.exit_code, 1);
+  expectOneLine(nowhere, "lambent", "--png");
+}
+
 TEST_F(LambentProgram, ComparesPictures) {
   const std::string picture = LAMBENT_SOURCE_DIR "/tests/golden/hello_sky.exr";
   const Outcome same = lambent({"compare", picture, picture, "--reference2", picture, "--json"});
@@ -237,23 +336,10 @@ TEST_F(LambentProgram, BadInputIsExitCode1OneLineAndLeavesNoFile) {
                                    {"empty.glb", {"bake", path("empty.glb"), "-o", out}},
                                    {"no/such/out", {"bake", kHello, "-o", path("no/such/out.lmb.glb")}},
                                    {"a-folder", {"bake", kHello, "-o", path("a-folder")}},
-                                   {"\"smell\"", {"bake", kHello, "-o", out, "--effects", "diffuse,smell"}},
-                                   {"--effects", {"bake", kHello, "-o", out, "--effects", ""}},
-                                   {"--order", {"bake", kHello, "-o", out, "--order", "9"}},
-                                   {"--order", {"bake", kHello, "-o", out, "--order", "-1"}},
-                                   {"--rays", {"bake", kHello, "-o", out, "--rays", "5"}},
-                                   {"--rays", {"bake", kHello, "-o", out, "--rays", "1048577"}},
-                                   {"--max-edge", {"bake", kHello, "-o", out, "--max-edge", "-1"}},
-                                   {"--max-edge", {"bake", kHello, "-o", out, "--max-edge", "nan"}},
-                                   {"--max-edge", {"bake", kHello, "-o", out, "--max-edge", "inf"}},
                                    {"--max-edge", {"bake", kHello, "-o", out, "--max-edge", "1e-6"}},
-                                   {"--error", {"bake", kHello, "-o", out, "--error", "nan"}},
-                                   {"--error", {"bake", kHello, "-o", out, "--error", "-0.1"}},
-                                   {"--error", {"bake", kHello, "-o", out, "--error", "1"}},
                                    {"scene itself", {"bake", path("scene.glb"), "-o", path("scene.glb")}},
                                    {"lost.glb", {"plan", path("lost.glb")}},
                                    {"cut.glb", {"plan", path("cut.glb")}},
-                                   {"\"smell\"", {"plan", kHello, "--effects", "smell"}},
                                    {"lost.glb", {"info", path("lost.glb")}},
                                    {"a-folder", {"info", path("a-folder")}},
                                    {"words.glb", {"info", path("words.glb")}},
@@ -292,10 +378,24 @@ TEST_F(LambentProgram, AnInterruptEndsALongBakeAndKeepsTheOldBundle) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
     EXPECT_EQ(outcome.exit_code, 1);
     expectOneLine(outcome, "lambent", "interrupted");
-    EXPECT_NE(outcome.err.find("stopped; nothing was written"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("stopped; nothing was written; with a cache, the next bake would go on"),
+              std::string::npos)
+        << outcome.err;
     EXPECT_EQ(bytesOf(bundle), "the old one");
     EXPECT_EQ(fileCount(), 1);
   }
+}
+
+TEST_F(LambentProgram, TellsALogFileEveryTenSecondsHowFarItIs) {
+  const ::pid_t id = start(LAMBENT_PROGRAM, {"bake", kGallery, "-o", path("gallery.lmb.glb"), "--quality",
+                                             "high", "--rays", "1048576"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(11500));
+  ::kill(id, SIGINT);
+  const Outcome outcome = finish(id);
+  EXPECT_NE(outcome.err.find(" %  "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("/s, about "), std::string::npos) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\r'), 0)
+      << "a log file has no line to go back in";
 }
 
 class DamagedBundle : public LambentProgram {

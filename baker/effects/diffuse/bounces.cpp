@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "baker/compress/light_weights.hpp"
+#include "baker/effects/diffuse/bounce_gather.hpp"
+#include "baker/effects/diffuse/inside_faces.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/trace/fill.hpp"
 #include "baker/trace/patch_light.hpp"
@@ -61,87 +64,6 @@ std::vector<double> energies(const TransferField& field) {
 void add(const TransferField& part, TransferField& sum) {
   for (std::size_t i = 0; i < sum.vectors.size(); ++i) sum.vectors[i] += part.vectors[i];
 }
-
-class Gather {
- public:
-  Gather(const DirectPass& pass, const DirectResult& direct, const TracedScene& scene,
-         const ExitRadiance& exit)
-      : pass_(pass), direct_(direct), scene_(scene), exit_(exit) {}
-
-  void visitHits(std::size_t sample, const TakeHit& take) const {
-    const Hemisphere& hemisphere = pass_.hemisphereOf(sample, direct_.looks.double_rays[sample] != 0);
-    const StoredHits hits(direct_.hits, pass_, sample, sample + 1);
-    const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[sample]))));
-    for (const GatherHit& hit : hits.of(sample))
-      take(hit, static_cast<float>(hemisphere.weight(hit.ray)),
-           exit_.albedo(hit, -(frame * hemisphere.direction(hit.ray))));
-  }
-
-  // Gathers at samples [begin, end). Adds to `mapped`, which is in the group's frame.
-  void range(const Bounce& bounce, std::size_t begin, std::size_t end, TransferField& now,
-             TransferField& mapped) const {
-    std::vector<GatherHit> thinned;
-    const StoredHits hits(direct_.hits, pass_, begin, end);
-    const std::size_t first_mapped = scene_.samples.normal_mapped.begin;
-    for (std::size_t s = begin; s < end; ++s) {
-      const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.double_rays[s] != 0);
-      const ExitToSample exit(bounce, hemisphere.table(), scene_.samples.normals[s], s);
-      Received received{hits.of(s), 1.0f, hemisphere, exit};
-      if (bounce.thinly) received.scale = thinHits(bounce.number, hemisphere, received.hits, thinned);
-      if (s < first_mapped)
-        gatherPlain(received, now.at(s));
-      else
-        gatherMapped(s, received, now.at(s), mapped.at(s - first_mapped));
-    }
-  }
-
- private:
-  // Received are the hits of a sample's rays and the exit radiance towards it; hits are weighted by `scale`.
-  struct Received {
-    std::span<const GatherHit> hits;
-    float scale;
-    const Hemisphere& hemisphere;
-    const ExitToSample& exit;
-  };
-
-  static void gatherPlain(const Received& received, std::span<float> out) {
-    received.exit.addAll(
-        received.hits,
-        [&](std::uint32_t ray) {
-          return received.scale * static_cast<float>(received.hemisphere.weight(ray));
-        },
-        out);
-  }
-
-  void gatherMapped(std::size_t sample, const Received& received, std::span<float> out,
-                    std::span<float> mapped) const {
-    const std::size_t stride = out.size();
-    std::vector<float> exit(stride), local(kIncident * stride, 0.0f);
-    for (const GatherHit& hit : received.hits) {
-      std::fill(exit.begin(), exit.end(), 0.0f);
-      received.exit.add(hit, received.scale, exit);
-      const auto weight = static_cast<float>(received.hemisphere.weight(hit.ray));
-      for (std::size_t i = 0; i < stride; ++i) out[i] += weight * exit[i];
-      const auto& weights = received.hemisphere.incidentWeight(hit.ray);
-      for (std::size_t j = 0; j < kIncident; ++j)
-        for (std::size_t i = 0; i < stride; ++i) local[j * stride + i] += weights[j] * exit[i];
-    }
-    if (received.hits.empty()) return;
-    const sh::Rotation group_from_local(
-        localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[sample]))), 3);
-    std::array<float, kIncident> from, to;
-    for (std::size_t at = 0; at < stride; ++at) {
-      for (std::size_t j = 0; j < kIncident; ++j) from[j] = local[j * stride + at];
-      group_from_local.apply(std::span<const float>(from), std::span<float>(to));
-      for (std::size_t j = 0; j < kIncident; ++j) mapped[j * stride + at] += to[j];
-    }
-  }
-
-  const DirectPass& pass_;
-  const DirectResult& direct_;
-  const TracedScene& scene_;
-  const ExitRadiance& exit_;
-};
 
 // Returns the largest share of all light that a pass has, over the light sources.
 double shareOf(const std::vector<double>& pass, const std::vector<double>& all) {
@@ -238,6 +160,7 @@ class Passes {
         exit_(scene.geometry, scene.samples, partner),
         gather_(pass, direct, scene, exit_),
         tally_(withPartner(energies(direct.field))) {
+    if (direct.inside) inside_.emplace(direct.inside, exit_);
     result_.field = direct.field.zeros(direct.field.size());
     result_.mapped = direct.mapped.zeros(direct.mapped.size());
     const auto& valid = direct.looks.valid;
@@ -251,6 +174,8 @@ class Passes {
     if (any_filled_)
       fillStretchFromNeighbours(edges_, direct_.looks.valid, scene_.samples.normal_mapped.begin,
                                 result_.mapped.vectorSize(), result_.mapped.vectors);
+    if (inside_ && !inside_->faces->fitMapped(inside_->mapped, result_.mapped, context_.stop))
+      return std::nullopt;
     return std::move(result_);
   }
 
@@ -293,9 +218,32 @@ class Passes {
         own);
     if (!gathered) return std::nullopt;
     if (any_filled_) fillFromNeighbours(edges_, direct_.looks.valid, now);
+    if (inside_ && !fit(bounce, own.part("inside faces"), now)) return std::nullopt;
     if (partner_ && !partner_->gather(bounce, now, own.part("glossy"))) return std::nullopt;
     add(now, result_.field);
     return now;
+  }
+
+  // Fits what a pass brought to vertices to what it brings to points inside faces. Returns false if stopped.
+  bool fit(const Bounce& bounce, const BakeContext& context, TransferField& now) {
+    const SampleSet& points = inside_->faces->scene().samples;
+    context_.progress.begin(fmt::format("bounce {} inside faces", bounce.number), points.size(), "samples");
+    TransferField there = now.zeros(points.size());
+    // Neighbours even out the noise of fewer rays.
+    Bounce thinned = bounce;
+    thinned.thinly = true;
+    const auto first_mapped = static_cast<std::ptrdiff_t>(points.normal_mapped.begin);
+    return runStage({.count = points.size(),
+                     .grain = kSamplesGathered,
+                     .writes = {rowsOf(there.vectors, there.vectorSize()),
+                                rowsOf(inside_->mapped.vectors, inside_->mapped.vectorSize(), -first_mapped)},
+                     .compute =
+                         [&](std::size_t begin, std::size_t end) {
+                           inside_->gather.range(thinned, begin, end, there, inside_->mapped);
+                         }},
+                    context)
+               .has_value() &&
+           inside_->faces->fit(there, std::numeric_limits<float>::max(), now, context_.stop);
   }
 
   // Adds all passes after the first, which brought `first`. Returns false if stopped.
@@ -370,14 +318,26 @@ class Passes {
         .has_value();
   }
 
+  // Inside gathers at points inside faces.
+  struct Inside {
+    Inside(std::shared_ptr<const DiffuseInsideFaces> points, const ExitRadiance& exit)
+        : faces(std::move(points)),
+          gather(faces->pass(), faces->direct(), faces->scene(), exit),
+          mapped(faces->direct().mapped.zeros(faces->direct().mapped.size())) {}
+    std::shared_ptr<const DiffuseInsideFaces> faces;
+    BounceGather gather;
+    TransferField mapped;  // the sum of what all passes brought to normal-mapped points
+  };
+
   const DirectResult& direct_;
   const TracedScene& scene_;
   const BounceSettings& settings_;
   const BakeContext& context_;
   BouncePartner* partner_;
   ExitRadiance exit_;
-  Gather gather_;
+  BounceGather gather_;
   Tally tally_;
+  std::optional<Inside> inside_;
   BounceResult result_{.field = {}, .mapped = {}, .energy = {1.0}, .left_out = 0.0};
   bool any_filled_ = false;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_;  // empty unless samples are filled
@@ -391,13 +351,15 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
   return Passes(pass, direct, scene, settings, context, partner).run();
 }
 
-void dropBounces(const TracedScene& scene, std::size_t inside_faces, const BakeContext& context) {
+void dropBounces(const TracedScene& scene, std::size_t inside_diffuse, std::size_t inside_glossy,
+                 const BakeContext& context) {
   const std::size_t plain = scene.samples.glossy.begin, glossy = scene.samples.glossy.size();
   for (int number = 1; number <= kMostBounces; ++number) {
     const BakeContext pass = context.part("pass", number);
     dropStage(pass, plain, kSamplesGathered);
+    dropStage(pass.part("inside faces"), inside_diffuse, kSamplesGathered);
     dropStage(pass.part("glossy"), glossy, kSamplesGathered);
-    dropStage(pass.part("glossy").part("inside faces"), inside_faces, kSamplesGathered);
+    dropStage(pass.part("glossy").part("inside faces"), inside_glossy, kSamplesGathered);
   }
 }
 

@@ -6,7 +6,9 @@
 // until what is still to come would add less than asked for, and their sum is gathered at all samples once
 // more: a final gather, in place of a gather per pass. The surface's albedo rho is textured and coloured; the
 // receiver's own is left out. A final gather that carries less than a hundredth of all light goes over every
-// fourth ray.
+// fourth ray. Where direct light was fitted, both gathers go over the points inside faces too, and what they
+// bring to vertices is fitted to these (inside_faces.hpp): in rooms most light bounces, and changes within
+// faces.
 #pragma once
 
 #include <optional>
@@ -38,7 +40,8 @@ struct BounceResult {
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
                                         const TracedScene& scene, const BounceSettings& settings,
                                         const BakeContext& context, BouncePartner* partner = nullptr);
-// Removes what bakeBounces() kept. `inside_faces` is the partner's number of samples inside faces.
-void dropBounces(const TracedScene& scene, std::size_t inside_faces, const BakeContext& context);
+// Removes what bakeBounces() kept. The numbers of points inside faces are its own and the partner's.
+void dropBounces(const TracedScene& scene, std::size_t inside_diffuse, std::size_t inside_glossy,
+                 const BakeContext& context);
 
 }  // namespace lambent::baker

@@ -6,6 +6,7 @@
 // passed on to the bounces.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -32,12 +33,16 @@ struct DirectSettings {
   bool colored_kernels = false;  // exit kernels of glossy surfaces are coloured: three channels
 };
 
+class DiffuseInsideFaces;
+
 struct DirectResult {
   TransferField field;   // of all samples, with 1 output
   TransferField mapped;  // of SampleSet::normal_mapped, with 9 outputs
   SampleVisibilities looks;
   HitStore hits;                // of all samples but glossy ones
   std::uint64_t rays_kept = 0;  // rays that results in the cache saved
+  // Points inside faces, to which bounces are fitted as direct light was; null if nothing is fitted.
+  std::shared_ptr<const DiffuseInsideFaces> inside = {};
 };
 
 // A DirectPass traces pass 0 for ranges of samples, and traces the hits of a range again.

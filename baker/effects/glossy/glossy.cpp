@@ -10,8 +10,9 @@
 #include <fmt/ranges.h>
 
 #include "baker/brdf/brdf_kinds.hpp"
-#include "baker/effects/glossy/lobe_energy.hpp"
 #include "baker/plan/counted.hpp"
+#include "baker/plan/lobe_energy.hpp"
+#include "baker/plan/smooth_dielectrics.hpp"
 
 namespace lambent::baker {
 
@@ -22,12 +23,19 @@ namespace {
 constexpr int kOrder = 5;
 constexpr float kRoughEnough = 0.5f;
 
+// Counts draws with matrices.
 struct Counts {
   std::size_t draws = 0, metals = 0, dielectrics = 0;
   std::map<const BrdfKind*, std::size_t> of_kind;
   // Draws smoother than kRoughEnough, and other draws that a texture may make so.
   std::size_t smooth = 0, textured = 0;
   float smoothest = 1.0f;
+};
+
+// Counts draws of smooth dielectrics, which have none.
+struct LayeredCounts {
+  std::size_t draws = 0;
+  float smoothest = 1.0f, roughest = 0.0f;
 };
 
 void count(const gltf::Material& material, Counts& counts) {
@@ -44,18 +52,21 @@ void count(const gltf::Material& material, Counts& counts) {
   }
 }
 
-}  // namespace
+void count(const gltf::Material& material, LayeredCounts& counts) {
+  ++counts.draws;
+  counts.smoothest = std::min(counts.smoothest, material.roughness);
+  counts.roughest = std::max(counts.roughest, material.roughness);
+}
 
-EffectChoice chooseGlossy(const Scene& scene, const std::vector<RigidGroup>& groups) {
-  Counts counts;
-  for (const RigidGroup& group : groups)
-    for (const PlannedDraw& draw : group.draws) {
-      const std::int32_t index = scene.meshes[draw.mesh].primitives[draw.primitive].material;
-      if (index < 0) continue;
-      const gltf::Material& material = scene.materials[static_cast<std::size_t>(index)];
-      if (!material.isDiffuse()) count(material, counts);
-    }
-  if (counts.draws == 0) return {"glossy", false, "every material is diffuse"};
+double percentCarried(float roughness) {
+  return 100.0 * lobeEnergyShare(double{roughness}, kOrder);
+}
+
+std::string drawsAre(std::size_t draws) {
+  return counted(draws, "draw") + (draws == 1 ? " is" : " are");
+}
+
+std::string reasonOf(const Counts& counts) {
   std::vector<std::string> kinds;
   const auto name = [&](std::size_t n, const char* what) {
     if (n > 0) kinds.push_back(fmt::format("{} {}", n, what));
@@ -63,20 +74,51 @@ EffectChoice chooseGlossy(const Scene& scene, const std::vector<RigidGroup>& gro
   name(counts.metals, "metallic");
   name(counts.dielectrics, "dielectric");
   for (const BrdfKind& kind : brdfKinds() | std::views::reverse)
-    if (kind.family != bundle::BrdfFamily::Ggx) name(counts.of_kind[&kind], kind.name);
-  std::string reason = fmt::format("{} not diffuse ({}): {} transfer matrices for any light and view",
-                                   counts.draws == 1 ? "1 draw is" : counted(counts.draws, "draw") + " are",
-                                   fmt::join(kinds, ", "), fmt::format("{0} x {0}", kOrder * kOrder));
+    if (const auto found = counts.of_kind.find(&kind);
+        found != counts.of_kind.end() && kind.family != bundle::BrdfFamily::Ggx)
+      name(found->second, kind.name);
+  std::string reason =
+      fmt::format("{} not diffuse ({}): {} transfer matrices for any light and view", drawsAre(counts.draws),
+                  fmt::join(kinds, ", "), fmt::format("{0} x {0}", kOrder * kOrder));
   if (counts.smooth > 0)
     reason += fmt::format(
         "; {} with roughness below {}, down to {:.2g}, where order {} carries {:.0f} % of the "
         "highlight's energy",
         counted(counts.smooth, "draw"), kRoughEnough, double{counts.smoothest}, kOrder,
-        100.0 * lobeEnergyShare(double{counts.smoothest}, kOrder));
+        percentCarried(counts.smoothest));
   if (counts.textured > 0)
     reason += fmt::format("; {} whose roughness texture may go below {}", counted(counts.textured, "draw"),
                           kRoughEnough);
-  return {"glossy", true, reason};
+  return reason;
+}
+
+std::string reasonOf(const LayeredCounts& counts) {
+  const std::string least = fmt::format("{:.0f}", percentCarried(counts.smoothest)),
+                    most = fmt::format("{:.0f}", percentCarried(counts.roughest));
+  return fmt::format(
+      "{} of smooth dielectrics, of whose highlights order {} carries {} %: diffuse transfer and the "
+      "prefiltered environment instead",
+      counted(counts.draws, "draw"), kOrder, least == most ? least : least + " to " + most);
+}
+
+}  // namespace
+
+EffectChoice chooseGlossy(const Scene& scene, const std::vector<RigidGroup>& groups) {
+  Counts counts;
+  LayeredCounts layered;
+  for (const RigidGroup& group : groups)
+    for (const PlannedDraw& draw : group.draws) {
+      const std::int32_t index = scene.meshes[draw.mesh].primitives[draw.primitive].material;
+      if (index < 0) continue;
+      const gltf::Material& material = scene.materials[static_cast<std::size_t>(index)];
+      if (hasMatrices(material)) count(material, counts);
+      if (isSmoothDielectric(material)) count(material, layered);
+    }
+  std::vector<std::string> reasons;
+  if (counts.draws > 0) reasons.push_back(reasonOf(counts));
+  if (layered.draws > 0) reasons.push_back(reasonOf(layered));
+  if (reasons.empty()) return {"glossy", false, "every material is diffuse"};
+  return {"glossy", true, fmt::format("{}", fmt::join(reasons, "; "))};
 }
 
 }  // namespace lambent::baker

@@ -23,6 +23,7 @@ MadePass makeTransformsPass(const PassSetup& setup);
 MadePass makeLightPass(const PassSetup& setup);
 MadePass makePatchBouncesPass(const PassSetup& setup);
 MadePass makeDiffusePass(const PassSetup& setup);
+MadePass makeSeenSkyPass(const PassSetup& setup);
 MadePass makeGlossyPass(const PassSetup& setup);
 MadePass makeVolumePass(const PassSetup& setup);
 MadePass makeNeighborhoodPass(const PassSetup& setup);

@@ -31,7 +31,7 @@ class RasterPass final : public FramePass {
   RasterPass(Surfaces surfaces, Blackboard& board)
       : FramePass({.name = "raster",
                    .reads = resources<World, LitScene, GroupLights, Diffuse, Neighborhoods, PatchBounces, Sky,
-                                      Prefiltered, LocalShadows, KeyShadows>(),
+                                      evaluate::SeenSky, Prefiltered, LocalShadows, KeyShadows>(),
                    .writes = resources<PictureTargets, Surfaces, std::optional<DataView>, Prefiltered,
                                        LocalShadows, KeyShadows>(),
                    .causes = kPictureCauses}),
@@ -67,6 +67,7 @@ class RasterPass final : public FramePass {
                              {.options = {.diffuse = settings.diffuse,
                                           .glossy = settings.glossy,
                                           .glossy_bands = settings.glossy_order},
+                              .seen_sky = &frame.read<evaluate::SeenSky>(),
                               .modules = modules_},
                              frame.counters());
   }

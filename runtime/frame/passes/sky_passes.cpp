@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "runtime/base/change_gate.hpp"
-#include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/frame/passes/passes.hpp"
 #include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/lighting/sky.hpp"
@@ -14,7 +13,6 @@ namespace lambent::frame {
 
 namespace {
 
-using effects::glossy::Glossy;
 using lighting::PrefilteredEnvironment;
 using lighting::Sky;
 
@@ -44,7 +42,7 @@ class PrefilteredEnvironmentPass final : public FramePass {
  public:
   explicit PrefilteredEnvironmentPass(Blackboard& board)
       : FramePass({.name = "specular environment",
-                   .reads = resources<World, Glossy, Sky>(),
+                   .reads = resources<World, Sky>(),
                    .writes = resources<std::optional<PrefilteredEnvironment>>(),
                    .causes = static_cast<std::uint32_t>(Cause::Environment)}) {
     board.offer(prefiltered_);
@@ -53,11 +51,11 @@ class PrefilteredEnvironmentPass final : public FramePass {
 
   bool due(const FrameContext& frame) override {
     shown_ = frame.settings().residual;
-    if (!frame.settings().residual || !frame.settings().glossy || !frame.read<Glossy>().any()) return false;
+    if (!frame.settings().residual || !frame.settings().glossy) return false;
     if (source_.holds(PrefilteredEnvironment::sourceVersion(frame.environment))) return false;
     // Matrices may belong to neighborhoods or volumes alone, which do not show it.
-    return std::ranges::any_of(frame.world.residency().groups(), [](const streaming::ResidentGroup& group) {
-      return group.glossy_outputs > 0;
+    return std::ranges::any_of(frame.world.residency().draws(), [](const streaming::ResidentDraw& draw) {
+      return draw.glossy() || draw.layered;
     });
   }
   Result<void> update(FrameContext& frame) override {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "baker/effects/diffuse/bounce_gather.hpp"
+#include "baker/effects/diffuse/bounces.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/transport/face_points.hpp"
 #include "tests/support/glossy_transport.hpp"
@@ -137,6 +139,41 @@ TEST(FitVertices, ShowsIrradianceOverMatteFacesBetterThanWhatTheVerticesSee) {
   RecordProperty("before", std::to_string(before));
   RecordProperty("after", std::to_string(error()));
   EXPECT_LT(error(), 0.9 * before);
+}
+
+TEST(FitVertices, ShowsBouncedLightOverMatteFacesBetterThanWhatTheVerticesReceive) {
+  const Transport t(boxOnFloor(0.0f));
+  const Truth truth(t);
+  const TracedScene view = t.diffuse(), true_view = withSamples(t, truth.points);
+  Progress progress;
+  const DirectPass pass(view, {.order = 5, .rays = kRays, .keep_hits = true, .hit_memory = 1u << 30});
+  auto direct = bakeDirect(pass, view, {progress});
+  ASSERT_TRUE(fitDiffuse(pass, view, *direct, {progress}));
+  ASSERT_TRUE(direct->inside);
+  const DirectPass true_pass(true_view,
+                             {.order = 5, .rays = kTrueRays, .keep_hits = true, .hit_memory = 1u << 30});
+  const auto there = bakeDirect(true_pass, true_view, {progress});
+  const ExitRadiance exit(t.geometry, t.samples, nullptr);
+  TransferField truly = there->field.zeros(truth.points.size()), mapped = there->mapped;
+  for (std::size_t s = 0; s < truth.points.size(); s += kSamplesGathered)
+    BounceGather(true_pass, *there, true_view, exit)
+        .range({.number = 1, .thinly = false, .exit = exit, .before = direct->field}, s,
+               std::min(s + kSamplesGathered, truth.points.size()), truly, mapped);
+  const auto bounced = [&](unsigned threads) {
+    std::optional<BounceResult> result;
+    withThreads(threads, [&] { result = bakeBounces(pass, *direct, view, {.bounces = 1}, {progress}); });
+    return std::move(result->field.vectors);
+  };
+  const auto error = [&](const std::vector<float>& vectors) {
+    return truth.error(direct->field.vectorSize(), truly.vectors, there->looks.valid, vectors);
+  };
+  const std::vector<float> fitted = bounced(0);
+  EXPECT_EQ(bounced(1), fitted);
+  direct->inside.reset();
+  const double before = error(bounced(0)), after = error(fitted);
+  RecordProperty("before", std::to_string(before));
+  RecordProperty("after", std::to_string(after));
+  EXPECT_LT(after, 0.9 * before);
 }
 
 TEST(FitVertices, LeavesAnOpenBodyOfMetalAsItIsAndTracesNothing) {

@@ -274,7 +274,7 @@ TEST(SurfaceBrdfs, NeverSendOutMoreThanUniformLightBrings) {
 
 // A white dielectric loses nothing: what its surface does not reflect leaves its diffuse part.
 TEST(SurfaceBrdfs, OfWhiteDielectricsLoseNothing) {
-  const Square square(materialOf({1.0f, 1.0f, 1.0f}, 0.0f, 0.4f));
+  const Square square(materialOf({1.0f, 1.0f, 1.0f}, 0.0f, 0.5f));
   for (const double cosine : kCosines)
     EXPECT_NEAR(reflected(square.kernel(direction(cosine, 1.0)), 0), 1.0, 1e-4) << cosine;
 }

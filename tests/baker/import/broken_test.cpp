@@ -156,6 +156,15 @@ TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
       {"2.1", [](json& j) { j["asset"]["minVersion"] = "2.1"; }},
       {"asset", [](json& j) { j.erase("asset"); }},
       {"no triangles", [](json& j) { j["meshes"][0]["primitives"][0]["mode"] = 0; }},
+      // Sizes that floats cannot trace.
+      {"node 0 (\"\") reaches 1e+12 m",
+       [](json& j) {
+         j["nodes"][0]["scale"] = {1e12, 1, 1};
+       }},
+      {"is only 1e-11 m large",
+       [](json& j) {
+         j["nodes"][0]["scale"] = {1e-11, 1e-11, 1e-11};
+       }},
       {"deeper",
        [](json& j) {
          json deep = 1;

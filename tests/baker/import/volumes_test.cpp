@@ -280,6 +280,20 @@ TEST(VdbFile, OfTheSharedCloudIsTheSameAsItsNrrd) {
   EXPECT_EQ(unnamed->values, a->values);
 }
 
+TEST(VdbFile, DamagedDoesNotTakeAllMemory) {
+  const auto vdb = testing::sharedFile("volumes/wdas_cloud_sixteenth.vdb");
+  LAMBENT_NEEDS_SHARED(vdb);
+  std::ifstream in(vdb, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  bytes[58] = '\xff';  // a count that the library believes: it took over 4 GiB
+  const TemporaryFolder folder;
+  folder.write("damaged.vdb", bytes);
+  const auto grid = readVdb(folder.path() / "damaged.vdb", "density");
+  ASSERT_FALSE(grid);
+  EXPECT_NE(grid.error().problem.find("far more memory"), std::string::npos) << grid.error().line();
+  EXPECT_TRUE(readVdb(vdb, "density")) << "the limit is gone";
+}
+
 TEST(VdbFile, WithoutTheGridAskedForSaysWhatItHas) {
   const auto vdb = testing::sharedFile("volumes/wdas_cloud_sixteenth.vdb");
   LAMBENT_NEEDS_SHARED(vdb);

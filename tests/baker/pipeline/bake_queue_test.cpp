@@ -58,7 +58,7 @@ std::vector<float> vectorOf(const bundle::Reader& reader, std::uint32_t group, s
 TEST_F(BakeQueueTest, TheUnshadowedRungHasNoSampleAtVerticesAndOneThatSeesEverythingInVolumes) {
   assets::Scene shown = assets::hello();
   shown.materials[0].specular = 1.0f;  // glossy
-  shown.materials[0].roughness = 0.4f;
+  shown.materials[0].roughness = 0.6f;
   shown.nodes.push_back({.name = "cloud",
                          .mesh = -1,
                          .translation = {0, 2, 0},

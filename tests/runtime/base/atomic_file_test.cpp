@@ -5,6 +5,8 @@
 #include <utility>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace lambent {
@@ -54,11 +56,38 @@ TEST_F(AtomicFileTest, SaysWhyItCannotBeWritten) {
   EXPECT_NE(AtomicFile::open(folder_).error().problem.find("folder"), std::string::npos);
   EXPECT_NE(AtomicFile::open(folder_ / "missing" / "file").error().problem.find("folder does not exist"),
             std::string::npos);
+  const auto no_files_there = AtomicFile::open("/proc/lambent-file");
+  ASSERT_FALSE(no_files_there);
+  EXPECT_NE(no_files_there.error().problem.find("cannot be written"), std::string::npos);
+}
+
+TEST_F(AtomicFileTest, RemovesWhatKilledProgramsLeftAndNothingElse) {
+  const ::pid_t gone = ::fork();
+  if (gone == 0) ::_exit(0);
+  ASSERT_EQ(::waitpid(gone, nullptr, 0), gone);
+  const auto part = [&](const std::string& name, ::pid_t writer) {
+    const fs::path path = folder_ / (name + ".part-" + std::to_string(writer));
+    std::ofstream(path) << "half";
+    return path;
+  };
+  const fs::path abandoned = part("file", gone), in_use = part("file", ::getppid()),
+                 of_another = part("other-file", gone), of_no_process = folder_ / "file.part-two";
+  std::ofstream(of_no_process) << "mine";
+  EXPECT_TRUE(AtomicFile::open(folder_ / "file"));
+  EXPECT_FALSE(fs::exists(abandoned));
+  EXPECT_TRUE(fs::exists(in_use));
+  EXPECT_TRUE(fs::exists(of_another));
+  EXPECT_TRUE(fs::exists(of_no_process));
 }
 
 TEST_F(AtomicFileTest, ReadingNamesWhatIsWrong) {
   EXPECT_EQ(readTextFile(folder_ / "nothing").error().problem, "no such file");
   EXPECT_EQ(readTextFile(folder_).error().problem, "is a folder");
+}
+
+TEST_F(AtomicFileTest, DoesNotWaitForAPipe) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(readTextFile(folder_ / "pipe").error().problem, "is a device or a pipe");
 }
 
 }  // namespace

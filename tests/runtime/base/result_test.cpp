@@ -9,6 +9,10 @@ TEST(Error, IsOneLineThatNamesTheThingTheProblemAndTheMend) {
   EXPECT_EQ((Error{"a.glb", "is truncated", "copy it again"}).line(), "a.glb: is truncated; copy it again");
   EXPECT_EQ((Error{"a.glb", "stopped", ""}).line(), "a.glb: stopped");
   EXPECT_EQ((Error{"", "no device", "install a driver"}).line(), "no device; install a driver");
+  EXPECT_EQ((Error{"a\x1b[31mb\x1b[0m", "says\tno\x07", ""}).line(), "ab: says no ");
+  const std::string long_name = (Error{"", std::string(5000, 'x'), "export it again"}).line();
+  EXPECT_LT(long_name.size(), 600u);
+  EXPECT_TRUE(long_name.ends_with("x...; export it again")) << long_name;
   EXPECT_EQ((Error{"a\nb", "said\r\nno", ""}).line(), "a b: said  no");
 }
 

@@ -1,10 +1,13 @@
 // Tests the container: what is written is read back, and nothing damaged is accepted.
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 
 #include <gtest/gtest.h>
 
+#include "runtime/bundle/description_json.hpp"
+#include "runtime/bundle/glb.hpp"
 #include "tests/runtime/bundle/bundle_file.hpp"
 
 namespace lambent::bundle {
@@ -272,6 +275,50 @@ TEST_F(BundleFile, AnOlderVersionIsToBeBakedAgain) {
     EXPECT_NE(reader.error().problem.find("was written by an older program"), std::string::npos);
     EXPECT_EQ(reader.error().hint, "bake it again");
   }
+}
+
+TEST_F(BundleFile, WhatACheckRefusesDoesNotTakeThePlaceOfTheOldOne) {
+  Sample sample = sampleBundle();
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  const std::string before = bytes();
+  sample.description.roots = {99};
+  const auto written = write(path_, sample.description, sample.blobs, [&](const std::filesystem::path& part) {
+    EXPECT_NE(part, path_);
+    const auto reader = Reader::open(part);
+    return reader ? Result<void>() : failAgain(reader.error());
+  });
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().subject, path_);
+  EXPECT_NE(written.error().problem.find("scenes[0].nodes[0]"), std::string::npos) << written.error().line();
+  EXPECT_TRUE(bytes() == before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(BundleFile, ADeepChainOfNodesIsReadInNoTime) {
+  Sample sample = sampleBundle();
+  std::vector<gltf::Node>& nodes = sample.description.nodes;
+  constexpr std::size_t kDeep = 100'000;  // with a walk to the root from each node this takes half a minute
+  while (nodes.size() < kDeep) {
+    nodes.push_back({});
+    nodes[nodes.size() - 2].children.push_back(static_cast<std::int32_t>(nodes.size() - 1));
+  }
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_TRUE(Reader::open(path_));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
+TEST_F(BundleFile, AnEmptyListOfScenesIsRefused) {
+  Sample sample = sampleBundle();
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  auto glb = GlbFile::open(path_);
+  ASSERT_TRUE(glb);
+  std::string json = glb->json();
+  const std::string scenes = R"("scenes":[{"nodes":[0]}])";
+  const std::size_t at = json.find(scenes);
+  ASSERT_NE(at, std::string::npos) << json;
+  json.replace(at, scenes.size(), R"("scenes":[])");
+  EXPECT_FALSE(fromJson(json, glb->binaryBytes(), "scene"));
 }
 
 // Surrounds nonsense with valid checksums, as a hostile or buggy writer could.

@@ -120,6 +120,17 @@ TEST(MaterialRebake, SaysWhatDoesNotShow) {
   now = baked;
   now.brdf = 2;
   EXPECT_EQ(fields(now, shiny), Fields{"brdf"});
+  const MaterialUse layered{.diffuse = true, .layered = true, .tables = {bundle::BrdfFamily::Ggx}};
+  now = baked;
+  now.roughness = 0.9f;
+  EXPECT_EQ(fields(now, layered), Fields{}) << "the layer has all roughnesses";
+  now.metallic = 1.0f;
+  EXPECT_EQ(fields(now, layered), Fields{"metallic nearly"});
+  now = baked;
+  now.specular = 0.0f;
+  EXPECT_EQ(fields(now, layered), Fields{}) << "a layer that reflects nothing is none";
+  now.anisotropy = 0.5f;
+  EXPECT_EQ(fields(now, layered), Fields{"anisotropy"});
   now = baked;
   now.emissive = glm::vec3(1.0f);
   EXPECT_EQ(fields(now, shiny), Fields{"emission nearly"});

@@ -17,6 +17,7 @@
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
+#include "runtime/spec/display.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace lambent::spec {
@@ -289,6 +290,23 @@ TEST_F(SpecImage, SharedProbesHaveTheirKnownExtremes) {
       largest = std::max(largest, 0.2126f * t.x + 0.7152f * t.y + 0.0722f * t.z);
     EXPECT_NEAR(largest, maximum, 0.005f * maximum) << name;
   }
+}
+
+TEST(SpecDisplay, MapsLightToTheColoursOfAScreen) {
+  const RgbaImage linear{
+      5,
+      1,
+      {glm::vec4(0.0f), glm::vec4(0.18f, 0.18f, 0.18f, 1.0f), glm::vec4(-1.0f, -1.0f, -1.0f, 1.0f),
+       glm::vec4(1e9f, 1e9f, 1e9f, 1.0f), glm::vec4(0.5f, 0.2f, 0.1f, 1.0f)}};
+  const Rgba8Image shown = displayed(linear);
+  ASSERT_EQ(shown.texels.size(), 20u);
+  const auto red = [&](std::size_t i) { return int{shown.texels[4 * i]}; };
+  EXPECT_EQ(red(0), 0);
+  EXPECT_EQ(red(1), 105) << "0.18 - 0.04, in sRGB";
+  EXPECT_EQ(red(2), 0);
+  EXPECT_EQ(red(3), 255);
+  EXPECT_EQ(red(4), 181) << "0.5 - 0.04";
+  EXPECT_EQ(shown.texels[18], 69) << "0.1 - 0.04";
 }
 
 }  // namespace

@@ -114,15 +114,19 @@ TEST(SpecEnvironmentMap, TinyPicturesAreLookedUpToo) {
   }
 }
 
-TEST(SpecEnvironmentMap, TexelsThatAreNotFiniteAreBlackAndCounted) {
+TEST(SpecEnvironmentMap, ValuesThatAreNoRadiancesAreBlackAndCounted) {
   const auto path = std::filesystem::path(::testing::TempDir()) / "lambent_spec_not_finite.exr";
   RgbaImage image{4, 2, std::vector<glm::vec4>(8, glm::vec4(1.0f))};
   image.texels[1].x = std::numeric_limits<float>::quiet_NaN();
   image.texels[6].z = -std::numeric_limits<float>::infinity();
+  image.texels[3].y = -0.25f;  // as filters leave it
+  image.texels[5].x = 3e38f;
   ASSERT_TRUE(writeExr(path, image));
   const Result<EnvironmentMap> environment_map = loadEnvironmentMap({path, {}});
   ASSERT_TRUE(environment_map) << environment_map.error().line();
-  EXPECT_EQ(environment_map->texels_not_finite, 2u);
+  EXPECT_EQ(environment_map->texels_mended, 4u);
+  EXPECT_EQ(environment_map->image.texels[3], glm::vec3(1.0f, 0.0f, 1.0f));
+  EXPECT_EQ(environment_map->image.texels[5], glm::vec3(0.0f));
   EXPECT_EQ(environment_map->image.texels[1], glm::vec3(0.0f));
   EXPECT_EQ(environment_map->image.texels[2], glm::vec3(1.0f));
   std::filesystem::remove(path);

@@ -49,14 +49,14 @@ TEST(SpecLight, ParsesConstantSunAndProbe) {
 
 TEST(SpecLight, RefusesEverythingElseAndShowsTheForm) {
   for (const char* wrong : {"constant:", "constant:1", "constant:1,2", "constant:1,2,3,4", "constant:1,2,-3",
-                            "constant:1,2,nan", "constant:1,2,3 "}) {
+                            "constant:1,2,nan", "constant:1,2,3e38", "constant:1,2,3 "}) {
     const Result<Light> light = parseLight(wrong);
     ASSERT_FALSE(light) << wrong;
     EXPECT_NE(light.error().line().find("constant:R,G,B"), std::string::npos) << light.error().line();
   }
   for (const char* wrong :
        {"sun:", "sun:1,2,3", "sun:1,2,3,4,5", "sun:1,2,3,4,5,6,7", "sun:0,91,1,1", "sun:0,-91,1,1",
-        "sun:0,0,0,1", "sun:0,0,181,1", "sun:0,0,1,-1", "sun:0,0,1,1x", "sun:inf,0,1,1"}) {
+        "sun:0,0,0,1", "sun:0,0,181,1", "sun:0,0,1,-1", "sun:0,0,1,3e38", "sun:0,0,1,1x", "sun:inf,0,1,1"}) {
     const Result<Light> light = parseLight(wrong);
     ASSERT_FALSE(light) << wrong;
     EXPECT_NE(light.error().line().find("sun:AZ,EL,ANGLE,R[,G,B]"), std::string::npos)

@@ -100,7 +100,8 @@ Scene makeScene(lambent::testing::BundleMaker& maker, const GlossyKind& kind, bo
                          .first_sample = 0,
                          .draw = 0,
                          .first_output = 0,
-                         .glossy_pad = {}};
+                         .seen_word = 0,
+                         .glossy_pad = 0};
   scene.texels[kUnitNormal] = {0.6f, 0.45f, 0.9f, 1.0f};
   scene.texels[kUnitMetallicRoughness] = {0.0f, 0.8f, 0.5f, 1.0f};
   scene.texels[kUnitSpecular] = {0.0f, 0.0f, 0.0f, 0.75f};

@@ -61,6 +61,12 @@ BundleBuilder& BundleBuilder::lamp(const bundle::GroupLight& light, float transf
   return *this;
 }
 
+BundleBuilder& BundleBuilder::layered(bundle::BrdfTable table) {
+  layered_ = true;
+  table_ = std::move(table);
+  return *this;
+}
+
 BundleBuilder& BundleBuilder::volume(BuiltVolume volume) {
   volumes_.push_back(std::move(volume));
   return *this;
@@ -157,7 +163,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
       .full_channels = bounces_ ? 1u : 0u,
       .outputs = outputs(),
       .visibility_bands = glossy_bands_ > 0 ? static_cast<std::uint32_t>(order_) + glossy_bands_ - 1 : 0};
-  if (glossy_bands_ > 0)
+  if (glossy_bands_ > 0 || layered_)
     description.brdf_tables.push_back(
         {.family = family_,
          .name = family_ == bundle::BrdfFamily::Measured ? "measured.brdf" : "",

@@ -41,6 +41,9 @@ class BundleBuilder {
   // Makes all surfaces glossy, with this many bands of transferred light and this table. Transfer is then
   // visibility in order + bands - 1 bands, unoccluded unless a later transfer() sets it.
   BundleBuilder& glossy(std::uint32_t bands, bundle::BrdfFamily family, bundle::BrdfTable table);
+  // Gives the bundle this GGX table beside diffuse or normal-mapped transfer, so that materials that are not
+  // diffuse have a specular layer.
+  BundleBuilder& layered(bundle::BrdfTable table);
   // Adds a light of the group that gives `transfer` times its radiance to every sample. Bundles with normal
   // maps are not supported.
   BundleBuilder& lamp(const bundle::GroupLight& light, float transfer);
@@ -59,7 +62,7 @@ class BundleBuilder {
     float transfer = 0.0f;
   };
   int order_;
-  bool bounces_ = false, normal_mapped_ = false;
+  bool bounces_ = false, normal_mapped_ = false, layered_ = false;
   std::uint32_t outputs() const {
     return glossy_bands_ > 0 ? glossy_bands_ * glossy_bands_ : normal_mapped_ ? 9u : 1u;
   }

@@ -2,6 +2,9 @@
 // Condon-Shortley).
 #include "baker/effects/diffuse/direct.hpp"
 
+#include <algorithm>
+#include <tuple>
+
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/shapes.hpp"
@@ -244,6 +247,30 @@ TEST(DirectTransfer, StopsWhenAsked) {
   Progress progress;
   const TracedScene scene = t.diffuse();
   EXPECT_FALSE(bakeDirect(DirectPass(scene, {5, 128}), scene, {progress, stop.get_token()}).has_value());
+}
+
+TEST(DirectTransfer, FindsTheSameHitsAgainForSingleSamples) {
+  // Rays of a grid meet many edges, where either face may count as hit.
+  const Transport t(sceneOf({grid({0.0f, 0.0f, 0.0f}, 4.0f, 12), grid({0.0f, 1.0f, 0.0f}, 4.0f, 12),
+                             box({0.1f, 0.5f, -0.2f}, {1.0f, 1.0f, 1.0f}, 4)}));
+  const TracedScene scene = t.diffuse();
+  const DirectPass pass(scene, {.order = 3, .rays = 256, .keep_hits = true, .hit_memory = 1u << 30});
+  Progress progress;
+  const auto direct = bakeDirect(pass, scene, {progress});
+  const HitStore nothing(t.samples.size(), 0);
+  std::size_t hits = 0;
+  for (std::size_t s = 0; s < t.samples.size(); ++s) {
+    const StoredHits kept(direct->hits, pass, s, s + 1), again(nothing, pass, s, s + 1);
+    ASSERT_EQ(kept.of(s).size(), again.of(s).size()) << "sample " << s;
+    hits += kept.of(s).size();
+    for (std::size_t h = 0; h < kept.of(s).size(); ++h) {
+      const GatherHit &a = kept.of(s)[h], &b = again.of(s)[h];
+      ASSERT_EQ(std::tie(a.ray, a.triangle, a.u, a.v), std::tie(b.ray, b.triangle, b.u, b.v))
+          << "sample " << s;
+      ASSERT_TRUE(std::ranges::equal(a.albedo, b.albedo)) << "sample " << s;
+    }
+  }
+  EXPECT_GT(hits, 1000u);
 }
 
 }  // namespace

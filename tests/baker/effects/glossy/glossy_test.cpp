@@ -1,7 +1,7 @@
 // Tests what the plan says about glossy surfaces.
 #include "baker/effects/glossy/glossy.hpp"
 
-#include "baker/effects/glossy/lobe_energy.hpp"
+#include "baker/plan/lobe_energy.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
@@ -40,6 +40,26 @@ TEST(ChooseGlossy, CountsWhatThereIsAndSaysWhatFiveBandsCannotCarry) {
       "any light and "
       "view; 1 draw with roughness below 0.5, down to 0.3, where order 5 carries 38 % of the "
       "highlight's energy");
+}
+
+TEST(ChooseGlossy, SaysHowLittleOfTheirHighlightsSmoothDielectricsWouldHaveByMatrices) {
+  Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1), grid({2, 0, 0}, 1.0f, 1), grid({4, 0, 0}, 1.0f, 1)});
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[0].roughness = 0.0f;
+  scene.materials[1].roughness = 0.4f;
+  scene.meshes[1].primitives[0].material = 1;
+  EXPECT_TRUE(choiceOf(scene).baked) << "it makes the table";
+  EXPECT_EQ(
+      choiceOf(scene).reason,
+      "3 draws of smooth dielectrics, of whose highlights order 5 carries 0 to 71 %: diffuse transfer and "
+      "the prefiltered environment instead");
+  scene.materials[1].metallic = 1.0f;
+  EXPECT_EQ(
+      choiceOf(scene).reason,
+      "1 draw is not diffuse (1 metallic): 25 x 25 transfer matrices for any light and view; 1 draw with "
+      "roughness below 0.5, down to 0.4, where order 5 carries 71 % of the highlight's energy; 2 draws of "
+      "smooth dielectrics, of whose highlights order 5 carries 0 %: diffuse transfer and the prefiltered "
+      "environment instead");
 }
 
 TEST(LobeEnergyShare, MatchesTheKnownValuesAndEndsAtOneAndNothing) {

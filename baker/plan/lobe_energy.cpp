@@ -1,4 +1,4 @@
-#include "baker/effects/glossy/lobe_energy.hpp"
+#include "baker/plan/lobe_energy.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,193 @@
+#include "baker/cli/bake_report.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/cli/output.hpp"
+#include "baker/plan/counted.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// Returns where the time went, the longest first, as "bounces 9.1 s, refinement 3.6 s".
+std::string stagesText(const std::vector<Progress::Stage>& stages) {
+  constexpr std::size_t kMostShown = 6;
+  std::vector<std::pair<std::string, double>> sums;
+  for (const Progress::Stage& stage : stages) {
+    // Passes of bounces are one stage to whoever waits.
+    const std::string name = stage.name.starts_with("bounce ") ? "bounces" : stage.name;
+    const auto known = std::ranges::find(sums, name, &std::pair<std::string, double>::first);
+    if (known != sums.end())
+      known->second += stage.seconds;
+    else
+      sums.emplace_back(name, stage.seconds);
+  }
+  std::ranges::stable_sort(sums, std::ranges::greater(), &std::pair<std::string, double>::second);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(sums.size(), kMostShown); ++i)
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", sums[i].first, durationText(sums[i].second));
+  return text;
+}
+
+// Says which bounds the codes miss; empty if they keep all.
+std::string missedText(const FinishedBake& bake) {
+  const double bound = bake.options.effectiveErrorBound(),
+               glossy_bound = bake.options.effectiveGlossyErrorBound();
+  std::string text;
+  if (missesBound(bake.report.worst_error, bound))
+    text = fmt::format("the error bound: {:.2f} instead of {:.2f} %", 100.0 * bake.report.worst_error,
+                       100.0 * bound);
+  if (missesBound(bake.report.worst_glossy_error, glossy_bound))
+    text += fmt::format("{}: {:.2f} instead of {:.2f} %; --error keeps more, at a price in bytes and time",
+                        text.empty() ? "the error bound of glossy surfaces" : ", of glossy surfaces",
+                        100.0 * bake.report.worst_glossy_error, 100.0 * glossy_bound);
+  return text;
+}
+
+}  // namespace
+
+bool missesBound(double error, double bound) {
+  constexpr double kRounded = 1.005;  // reports have three figures, and what they round away is no miss
+  return error > kRounded * bound;
+}
+
+void printReportJson(const FinishedBake& bake) {
+  const BakeReport& r = bake.report;
+  nlohmann::json stages = nlohmann::json::array();
+  for (const Progress::Stage& stage : r.stages)
+    stages.push_back(
+        {{"stage", stage.name}, {"seconds", stage.seconds}, {"units", stage.done}, {"unit", stage.unit}});
+  nlohmann::json groups = nlohmann::json::array();
+  for (const BakeReport::Group& group : r.groups) {
+    nlohmann::json effects = nlohmann::json::array();
+    for (const BakeReport::Group::Effect& effect : group.effects)
+      effects.push_back({{"effect", effect.name},
+                         {"work", reuseName(effect.reuse)},
+                         {"rays", effect.rays},
+                         {"raysKept", effect.rays_kept}});
+    groups.push_back({{"name", group.name},
+                      {"lightSamples", group.light_probes},
+                      {"proxyTriangles", group.proxy_triangles},
+                      {"effects", effects}});
+  }
+  nlohmann::json neighborhoods = nlohmann::json::array();
+  for (const BakeReport::Neighborhood& n : r.neighborhoods)
+    neighborhoods.push_back({{"name", n.name},
+                             {"size", {n.size.x, n.size.y, n.size.z}},
+                             {"boundsMin", {n.bounds_min.x, n.bounds_min.y, n.bounds_min.z}},
+                             {"boundsMax", {n.bounds_max.x, n.bounds_max.y, n.bounds_max.z}},
+                             {"insidePoints", n.inside_points},
+                             {"codingError", n.error},
+                             {"changeCodingError", n.change_error}});
+  nlohmann::json volumes = nlohmann::json::array();
+  for (const BakeReport::Volume& volume : r.volumes)
+    volumes.push_back({{"name", volume.name},
+                       {"voxels", volume.voxels},
+                       {"samples", volume.samples},
+                       {"densityBits", volume.density_bits},
+                       {"densityError", volume.density_error},
+                       {"iterations", volume.iterations},
+                       {"residual", volume.residual},
+                       {"rowBytes", volume.row_bytes}});
+  const nlohmann::json json = {
+      {"output", bake.output.string()},
+      {"settings", bake.options.settings()},
+      {"vertices", r.vertices},
+      {"triangles", r.triangles},
+      {"samples", r.samples},
+      {"filledSamples", r.filled_samples},
+      {"rays", r.rays},
+      {"raysKept", r.rays_kept},
+      {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
+      {"lights", r.lights},
+      {"groups", groups},
+      {"neighborhoods", neighborhoods},
+      {"volumes", volumes},
+      {"passEnergy", r.pass_energy},
+      {"leftOut", r.left_out},
+      {"hitBytes", r.hit_bytes},
+      {"codingError", r.worst_error},
+      {"glossyCodingError", r.worst_glossy_error},
+      {"missesBound", !missedText(bake).empty()},
+      {"glossySamples", r.glossy_samples},
+      {"fileBytes", r.file_bytes},
+      {"meshBytes", r.mesh_bytes},
+      {"transferBytes", r.transfer_bytes},
+      {"proxyBytes", r.proxy_bytes},
+      {"imageBytes", r.image_bytes},
+      {"notices", r.notices},
+      {"refinement",
+       {{"verticesBefore", r.refinement.vertices_before},
+        {"verticesAfter", r.refinement.vertices_after},
+        {"fans", r.refinement.fans},
+        {"errorBefore", r.refinement.error_before},
+        {"errorAfter", r.refinement.error_after},
+        {"rays", r.refinement.rays},
+        {"raysKept", r.refinement.rays_kept}}},
+      {"cache",
+       {{"found", r.cache.found},
+        {"bytesRead", r.cache.bytes_read},
+        {"stored", r.cache.stored},
+        {"bytesWritten", r.cache.bytes_written},
+        {"damaged", r.cache.damaged},
+        {"evicted", r.cache.evicted}}},
+      {"stages", stages}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+void printReport(const FinishedBake& bake) {
+  const BakeReport& r = bake.report;
+  double seconds = 0.0;
+  for (const Progress::Stage& stage : r.stages) seconds += stage.seconds;
+  fmt::print("{}: {} vertices, {} triangles, {} samples in {}\n", bake.output.string(), r.vertices,
+             r.triangles, r.samples, durationText(seconds));
+  if (const RefineReport& refined = r.refinement; refined.vertices_after > refined.vertices_before)
+    fmt::print("  refined   {} vertices to {}: shadows between them {:.2f} % wrong, before {:.2f} %{}\n",
+               refined.vertices_before, refined.vertices_after, 100.0 * refined.error_after,
+               100.0 * refined.error_before,
+               refined.fans > 0 ? fmt::format("; {} more values where faces disagree", refined.fans) : "");
+  fmt::print("  time      {}\n", stagesText(r.stages));
+  fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
+             durationText(r.ray_seconds),
+             countText(r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0));
+  if (r.rays_kept > 0)
+    fmt::print("  kept      {} rays of earlier bakes; {} read from the cache\n",
+               countText(static_cast<double>(r.rays_kept)),
+               bytesText(static_cast<double>(r.cache.bytes_read)));
+  if (!r.pass_energy.empty())
+    fmt::print("  bounces   {}, the last with {:.3f} % of the direct light; {:.3f} % left out\n",
+               r.pass_energy.size() - 1, 100.0 * r.pass_energy.back(), 100.0 * r.left_out);
+  for (const BakeReport::Volume& volume : r.volumes)
+    fmt::print(
+        "  volume    {}: {} voxels, {} samples, density in {} bits ({:.2f} %), scattering solved in {} "
+        "steps\n",
+        volume.name, volume.voxels, volume.samples, volume.density_bits, 100.0 * volume.density_error,
+        volume.iterations);
+  std::uint64_t light_probes = 0, proxy_triangles = 0;
+  for (const BakeReport::Group& group : r.groups)
+    light_probes += group.light_probes,
+        proxy_triangles += group.proxy_triangles.empty() ? 0 : group.proxy_triangles.front();
+  fmt::print("  groups    {}: {}, {} proxy triangles\n", r.groups.size(),
+             counted(light_probes, "light probe"), proxy_triangles);
+  fmt::print(
+      "  bytes     {}: mesh {}, transfer {} ({:.1f} a vertex), proxies {}, images {}\n",
+      bytesText(static_cast<double>(r.file_bytes)), bytesText(static_cast<double>(r.mesh_bytes)),
+      bytesText(static_cast<double>(r.transfer_bytes)),
+      static_cast<double>(r.transfer_bytes) / static_cast<double>(std::max<std::uint64_t>(r.vertices, 1)),
+      bytesText(static_cast<double>(r.proxy_bytes)), bytesText(static_cast<double>(r.image_bytes)));
+  fmt::print("  coding    {:.2f} % relative error of shaded radiance (bound {:.2f} %)\n",
+             100.0 * r.worst_error, 100.0 * double{bake.options.effectiveErrorBound()});
+  if (r.worst_glossy_error > 0.0)
+    fmt::print("            {:.2f} % of glossy surfaces (bound {:.2f} %)\n", 100.0 * r.worst_glossy_error,
+               100.0 * double{bake.options.effectiveGlossyErrorBound()});
+  for (const BakeReport::Neighborhood& n : r.neighborhoods)
+    fmt::print("  around    {}: {} x {} x {} points, {:.3f} % of irradiance, {:.1f} % of the change\n",
+               n.name, n.size.x, n.size.y, n.size.z, 100.0 * n.error, 100.0 * n.change_error);
+  if (const std::string missed = missedText(bake); !missed.empty()) fmt::print("  missed    {}\n", missed);
+}
+
+}  // namespace lambent::baker

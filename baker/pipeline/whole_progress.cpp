@@ -1,0 +1,22 @@
+#include "baker/pipeline/whole_progress.hpp"
+
+#include <algorithm>
+
+namespace lambent::baker {
+
+WholeProgress::Seen WholeProgress::look(const Progress& progress) {
+  constexpr double kMostBeforeTheEnd = 0.99;  // what was expected may be over before the job is
+  Seen seen;
+  seen.stage = progress.now();
+  const auto finished = progress.finished();
+  seen.seconds_left = secondsLeft(expected_, finished, seen.stage);
+  double spent = seen.stage.seconds;
+  for (const Progress::Stage& stage : finished) spent += stage.seconds;
+  // Estimates change while stages run, and a share that falls would say that work was lost.
+  if (spent > 0.0)
+    share_ = std::max(share_, std::min(kMostBeforeTheEnd, spent / (spent + seen.seconds_left)));
+  seen.share = share_;
+  return seen;
+}
+
+}  // namespace lambent::baker

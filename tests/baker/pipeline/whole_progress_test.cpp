@@ -1,0 +1,47 @@
+#include "baker/pipeline/whole_progress.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace lambent::baker {
+namespace {
+
+void work() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+}
+
+TEST(WholeProgress, GoesOverAllStagesAndNeverBack) {
+  // The second stage takes far longer than expected, and the third was not expected at all.
+  WholeProgress whole({{"direct light", 0.06}, {"coding", 0.001}});
+  Progress progress;
+  double before = 0.0;
+  for (const char* stage : {"direct light", "coding", "proxy"}) {
+    progress.begin(stage, 4, "samples");
+    for (int unit = 0; unit < 4; ++unit) {
+      work();
+      progress.add(1);
+      const auto seen = whole.look(progress);
+      EXPECT_EQ(seen.stage.name, stage);
+      EXPECT_GE(seen.share, before);
+      EXPECT_LT(seen.share, 1.0);
+      EXPECT_GE(seen.seconds_left, 0.0);
+      before = seen.share;
+    }
+  }
+  EXPECT_GT(before, 0.5);
+}
+
+TEST(WholeProgress, KnowsThatMuchIsLeftWhileAStageOfMoreBegins) {
+  WholeProgress whole({{"direct light", 0.03}, {"bounces", 10.0}});
+  Progress progress;
+  progress.begin("direct light", 2, "samples");
+  work();
+  progress.add(2);
+  EXPECT_LT(whole.look(progress).share, 0.1) << "the stage is done, and the whole is not";
+  EXPECT_NEAR(whole.look(progress).seconds_left, 10.0, 0.5);
+}
+
+}  // namespace
+}  // namespace lambent::baker
