@@ -99,6 +99,7 @@ class Assembler {
                                .transfers = {},
                                .light_probes = baked[g].light_probes.cells[c].points});
       }
+      group.picture_error = baked[g].picture_error;
       if (baked[g].volume) addVolume(*baked[g].volume, planned, group);
       if (baked[g].neighborhood) addNeighborhood(*baked[g].neighborhood, group);
       description_.groups.push_back(std::move(group));

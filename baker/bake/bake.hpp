@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,7 @@ struct BakeReport {
       std::uint64_t rays = 0, rays_kept = 0;
     };
     std::vector<Effect> effects;
+    std::optional<bundle::PictureError> picture_error = {};  // of diffuse surfaces
   };
   std::vector<Group> groups;
   struct Neighborhood {

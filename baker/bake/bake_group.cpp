@@ -66,6 +66,7 @@ void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, Ba
   report.worst_error = std::max(report.worst_error, figures.worst_error);
   report.worst_glossy_error = std::max(report.worst_glossy_error, figures.worst_glossy_error);
   report.left_out = std::max(report.left_out, figures.left_out);
+  told.picture_error = figures.picture_error;
   if (figures.pass_energy.size() > report.pass_energy.size()) report.pass_energy = figures.pass_energy;
   report.ray_seconds += figures.ray_seconds;
   const auto add = [&](const char* name, const SurfaceFigures::Rays& rays) {
@@ -119,7 +120,7 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
   if (found) tell(group, cells.figures, found, told);
   const bool any_around = bake.plan.neighborhoods[index].baked && !group.geometry.triangles.empty();
   const bool around_found = any_around && findAround(around, around_context, baked.neighborhood);
-  if (found) baked.cells = std::move(cells.cells);
+  if (found) baked.cells = std::move(cells.cells), baked.picture_error = cells.figures.picture_error;
   if (found && (!any_around || around_found)) return finished();
 
   if (auto prepared = group.prepareRays(context); !prepared) return failAgain(prepared.error());
@@ -133,6 +134,7 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
     keepValue(cells_context, *coded);
     coding.drop();
     baked.cells = std::move(coded->cells);
+    baked.picture_error = coded->figures.picture_error;
   } else {
     bake.report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
   }

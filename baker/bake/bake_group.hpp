@@ -21,9 +21,10 @@ struct BakedGroup {
   SampleSet samples;
   std::vector<PlannedLight> lights;
   std::vector<std::vector<CodedTransfer>> cells;  // as in SurfaceCells
-  LightProbes light_probes;                       // in the frame of SampleSet::positions
-  bundle::CaptureProxy proxy;                     // group frame
-  std::optional<BakedVolume> volume;              // if set, the members above are empty but for light_probes
+  std::optional<bundle::PictureError> picture_error;
+  LightProbes light_probes;           // in the frame of SampleSet::positions
+  bundle::CaptureProxy proxy;         // group frame
+  std::optional<BakedVolume> volume;  // if set, the members above are empty but for light_probes
   std::optional<BakedNeighborhood> neighborhood;
 };
 

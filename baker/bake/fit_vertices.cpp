@@ -21,8 +21,9 @@ std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const TracedScene& 
   if (triangles.empty()) return FitFigures{};
   const auto inside = std::make_shared<DiffuseInsideFaces>(pass, scene, triangles, direct.hits.bytesLeft());
   if (!inside->look(insideContext(context, triangles))) return std::nullopt;
-  const DirectResult& found = inside->direct();
-  const FitFigures figures{inside->size(), found.field.rays, found.rays_kept, context.progress.now().seconds};
+  const DirectResult& found = inside->points().direct();
+  const FitFigures figures{inside->points().size(), found.field.rays, found.rays_kept,
+                           context.progress.now().seconds};
   if (!inside->fit(found.field, 1.0f, direct.field, context.stop) ||
       !inside->fitMapped(found.mapped, direct.mapped, context.stop))
     return std::nullopt;

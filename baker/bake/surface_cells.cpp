@@ -9,6 +9,9 @@
 
 namespace lambent::baker {
 
+template <>
+inline constexpr bool kPlainBytes<bundle::PictureError> = true;
+
 namespace {
 
 // The share of visibility in the bound on glossy light, where light bounces: halving the error costs
@@ -101,14 +104,19 @@ void write(const SurfaceCells& cells, ByteWriter& out) {
   out.addList(figures.pass_energy);
   out.add(figures.diffuse.traced + figures.diffuse.kept);
   out.add(figures.glossy.traced + figures.glossy.kept);
+  out.add(figures.picture_error.value_or(bundle::PictureError{}));
 }
 
 bool read(ByteReader& in, SurfaceCells& cells) {
   SurfaceFigures& figures = cells.figures;
-  return read(in, cells.cells) && in.read(figures.filled_samples) && in.read(figures.glossy_samples) &&
-         in.read(figures.hit_bytes) && in.read(figures.worst_error) && in.read(figures.worst_glossy_error) &&
-         in.read(figures.left_out) && in.readList(figures.pass_energy) && in.read(figures.diffuse.kept) &&
-         in.read(figures.glossy.kept);
+  bundle::PictureError error;
+  const bool whole = read(in, cells.cells) && in.read(figures.filled_samples) &&
+                     in.read(figures.glossy_samples) && in.read(figures.hit_bytes) &&
+                     in.read(figures.worst_error) && in.read(figures.worst_glossy_error) &&
+                     in.read(figures.left_out) && in.readList(figures.pass_energy) &&
+                     in.read(figures.diffuse.kept) && in.read(figures.glossy.kept) && in.read(error);
+  if (whole && error.points > 0) figures.picture_error = error;
+  return whole;
 }
 
 std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceTransport& light,
@@ -121,6 +129,14 @@ std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceT
     if (coding.stopped()) return std::nullopt;
     progress.add(cell.count);
   }
+  if (light.view)
+    out.figures.picture_error = measurePictureError(
+        *light.view, group.view(),
+        {.direct = light.direct.field,
+         .bounced = light.bounced ? &light.bounced->field : nullptr,
+         .bounced_at_points = light.bounced ? std::span(std::as_const(light.bounced->at_watched))
+                                            : std::span<const TransferField>(),
+         .cells = out.cells});
   return out;
 }
 

@@ -36,7 +36,7 @@ bool traceDiffuse(const DirectPass& pass, const GroupScene& group, const BakeCon
     add(*fit, figures.diffuse, figures);
   }
   figures.hit_bytes = light.direct.hits.bytes();
-  if (const auto& inside = light.direct.inside) figures.hit_bytes += inside->direct().hits.bytes();
+  if (const auto& inside = light.direct.inside) figures.hit_bytes += inside->points().direct().hits.bytes();
   return true;
 }
 
@@ -88,7 +88,7 @@ bool bounce(const DirectPass& pass, const GlossyPass* glossy_pass, const GroupSc
     light.glossy->inside.reset();
   }
   light.direct.hits = HitStore();
-  if (light.direct.inside) light.inside_diffuse = light.direct.inside->size();
+  if (light.direct.inside) light.inside_diffuse = light.direct.inside->points().size();
   light.direct.inside.reset();
   light.figures.pass_energy = light.bounced->energy;
   light.figures.left_out = light.bounced->left_out;
@@ -108,6 +108,11 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
                                        .colored_kernels = brdfs && !brdfs->grey()});
   std::optional<SurfaceTransport> light(std::in_place);
   if (!traceDiffuse(pass, group, context, *light)) return std::nullopt;
+  if (!group.samples.diffuse.empty()) {
+    light->view = traceView(pass, group.view(), context);
+    if (!light->view) return std::nullopt;
+    light->direct.watched = {light->view->noisy, light->view->exact};
+  }
   std::optional<GlossyPass> glossy_pass;
   if (brdfs) {
     glossy_pass.emplace(pass, group.view(), options.exitOrder());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "baker/bake/group_scene.hpp"
+#include "baker/bake/picture_error.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/glossy/glossy_direct.hpp"
 
@@ -22,7 +23,8 @@ struct SurfaceFigures {
     std::uint64_t traced = 0, kept = 0;  // in this run; saved by results of earlier runs
   };
   Rays diffuse, glossy;
-  double ray_seconds = 0.0;  // of this run
+  double ray_seconds = 0.0;                           // of this run
+  std::optional<bundle::PictureError> picture_error;  // of diffuse surfaces
 };
 
 struct SurfaceTransport {
@@ -31,7 +33,8 @@ struct SurfaceTransport {
   std::optional<BounceResult> bounced;
   // Samples inside faces that gathered bounces too.
   std::size_t inside_diffuse = 0, inside_glossy = 0;
-  SurfaceFigures figures;  // without the errors of coding
+  std::optional<TracedView> view;  // set if there are diffuse samples
+  SurfaceFigures figures;          // without the errors of coding
 };
 
 // The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay until

@@ -55,6 +55,24 @@ bool missesBound(double error, double bound) {
   return error > kRounded * bound;
 }
 
+std::string pictureErrorText(const bundle::PictureError& error) {
+  return fmt::format(
+      "{:.2f} % wrong at {} points that eyes see: {:.2f} % by too few rays, {:.2f} % by codes, {:.2f} % "
+      "between "
+      "vertices",
+      100.0 * double{error.all}, error.points, 100.0 * double{error.samples}, 100.0 * double{error.codes},
+      100.0 * double{error.interpolation});
+}
+
+nlohmann::json pictureErrorJson(const std::optional<bundle::PictureError>& error) {
+  if (!error) return nullptr;
+  return {{"all", error->all},
+          {"samples", error->samples},
+          {"codes", error->codes},
+          {"interpolation", error->interpolation},
+          {"points", error->points}};
+}
+
 void printReportJson(const FinishedBake& bake) {
   const BakeReport& r = bake.report;
   nlohmann::json stages = nlohmann::json::array();
@@ -72,7 +90,8 @@ void printReportJson(const FinishedBake& bake) {
     groups.push_back({{"name", group.name},
                       {"lightSamples", group.light_probes},
                       {"proxyTriangles", group.proxy_triangles},
-                      {"effects", effects}});
+                      {"effects", effects},
+                      {"pictureError", pictureErrorJson(group.picture_error)}});
   }
   nlohmann::json neighborhoods = nlohmann::json::array();
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
@@ -150,6 +169,10 @@ void printReport(const FinishedBake& bake) {
                refined.vertices_before, refined.vertices_after, 100.0 * refined.error_after,
                100.0 * refined.error_before,
                refined.fans > 0 ? fmt::format("; {} more values where faces disagree", refined.fans) : "");
+  for (const BakeReport::Group& group : r.groups)
+    if (group.picture_error)
+      fmt::print("  pictures  {}{}\n", r.groups.size() > 1 ? fmt::format("\"{}\": ", group.name) : "",
+                 pictureErrorText(*group.picture_error));
   fmt::print("  time      {}\n", stagesText(r.stages));
   fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
              durationText(r.ray_seconds),

@@ -2,6 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "baker/bake/bake.hpp"
 
@@ -15,6 +19,11 @@ struct FinishedBake {
 
 // Returns whether codes with this error miss the bound.
 bool missesBound(double error, double bound);
+
+// Returns what the bake measured of its pictures' error, as a sentence's end and as JSON, which is null if
+// nothing was measured.
+std::string pictureErrorText(const bundle::PictureError& error);
+nlohmann::json pictureErrorJson(const std::optional<bundle::PictureError>& error);
 
 // Says in its last line if a bound on the error is missed.
 void printReport(const FinishedBake& bake);

@@ -108,6 +108,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
                       {"lightSamples", group.light_probes.size()},
                       {"proxyTriangles", proxyTriangles(reader, group)},
                       {"neighborhood", neighborhoodJson(group)},
+                      {"pictureError", pictureErrorJson(group.picture_error)},
                       {"transfer", cells}});
   }
   const nlohmann::json json = {
@@ -164,6 +165,8 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
     const std::vector<std::uint32_t> proxy = proxyTriangles(reader, group);
     fmt::print("  {}, {}\n", counted(group.light_probes.size(), "light probe"),
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
+    if (group.picture_error)
+      fmt::print("  diffuse surfaces are {}\n", pictureErrorText(*group.picture_error));
     if (const auto& around = group.neighborhood)
       fmt::print(
           "  neighborhood of {} x {} x {} points, ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, {:.2f}, {:.2f})\n",

@@ -109,12 +109,6 @@ std::size_t expandedBytes(const std::vector<Cluster>& clusters, const transfer::
   return vectors * shape.size() * sizeof(float);
 }
 
-std::vector<float> decode(const CodedTransfer& coded) {
-  std::vector<std::vector<std::uint32_t>> codes;
-  for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
-  return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
-}
-
 // Codes one transfer step by step. The state after each step is all that another run needs to go on.
 class Coder {
  public:
@@ -181,7 +175,7 @@ class Coder {
     return expandedBytes(one.clusters, shape_) <= settings_.most_expanded_bytes;
   }
   double errorOf(const CodedTransfer& coded) const {
-    return radianceError(vectors_, decode(coded), shape_, settings_.shown_energy, settings_.kernel_power);
+    return radianceError(vectors_, decodeTransfer(coded), shape_, settings_.shown_energy, settings_.kernel_power);
   }
 
   void findBasis();
@@ -332,6 +326,12 @@ std::optional<bool> Coder::fitToBound(Clustering& found) {
 }
 
 }  // namespace
+
+std::vector<float> decodeTransfer(const CodedTransfer& coded) {
+  std::vector<std::vector<std::uint32_t>> codes;
+  for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
+  return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
+}
 
 CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const transfer::TransferShape& shape, const CodingSettings& settings) {

@@ -78,6 +78,9 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const transfer::TransferShape& shape, const CodingSettings& settings,
                            const BakeContext& context);
 
+// Returns the vectors that the codes hold, coded.shape.size() values per sample.
+std::vector<float> decodeTransfer(const CodedTransfer& coded);
+
 // Returns the error that codeTransfer bounds: that of the worse of the two blocks.
 double radianceError(std::span<const float> truth, std::span<const float> coded,
                      const transfer::TransferShape& shape, double shown_energy = 0.0,

@@ -189,6 +189,18 @@ struct NeighborhoodGrid {
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // first and last point, in the group's frame
 };
 
+// Says how wrong the diffuse surfaces of a group are shown, as the bake measured it: relative RMS of the
+// light that leaves them towards eyes, over real lights that the bundle's bands carry, without lamps. The
+// squares of its three parts sum to that of `all`.
+struct PictureError {
+  float all = 0.0f;
+  float samples = 0.0f;        // noise of too few rays at vertices
+  float codes = 0.0f;          // compression
+  float interpolation = 0.0f;  // too few vertices
+  std::uint32_t points = 0;    // where it was measured
+  bool operator==(const PictureError&) const = default;
+};
+
 // Describes a rigid group, the unit of transport, whose nodes never move relative to each other. Transfer is
 // stored in the group's frame, which has the rotation and position of its root node at rest, without scale.
 struct Group {
@@ -211,6 +223,7 @@ struct Group {
   // -1 if there is none.
   std::int32_t within = -1;
   std::optional<NeighborhoodGrid> neighborhood;
+  std::optional<PictureError> picture_error;  // absent if no diffuse surface is seen, or none was measured
 
   // Returns the number of surface samples with the given outputs. Samples with fewer outputs precede them.
   std::uint32_t samplesOf(transfer::Form form) const {

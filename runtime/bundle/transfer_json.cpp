@@ -253,6 +253,27 @@ Json groupLightJson(const GroupLight& light) {
   return json;
 }
 
+Json pictureErrorJson(const PictureError& error) {
+  return {{"all", error.all},
+          {"samples", error.samples},
+          {"codes", error.codes},
+          {"interpolation", error.interpolation},
+          {"points", error.points}};
+}
+
+PictureError readPictureError(const Field& field) {
+  const auto share = [&](const char* name) {
+    const float value = field[name].number();
+    if (!(value >= 0.0f)) field[name].fault("is negative");
+    return value;
+  };
+  return {.all = share("all"),
+          .samples = share("samples"),
+          .codes = share("codes"),
+          .interpolation = share("interpolation"),
+          .points = static_cast<std::uint32_t>(field["points"].count(0xffffffffu))};
+}
+
 Json groupJson(const Group& group) {
   const glm::quat& r = group.rest_rotation;
   Json json = {{"name", group.name},
@@ -269,6 +290,7 @@ Json groupJson(const Group& group) {
   if (group.volume) json["volume"] = volumeJson(*group.volume);
   if (group.within >= 0) json["within"] = group.within;
   if (group.neighborhood) json["neighborhood"] = neighborhoodJson(*group.neighborhood);
+  if (group.picture_error) json["pictureError"] = pictureErrorJson(*group.picture_error);
   for (const glm::vec3& point : group.light_probes) json["lightSamples"].push_back(vectorJson(point));
   for (const GroupLight& light : group.lights) json["lights"].push_back(groupLightJson(light));
   for (const Cell& cell : group.cells) json["cells"].push_back(cellJson(cell));
@@ -302,6 +324,7 @@ Group readGroup(const Field& field, const Description& d) {
   }
   if (next != group.sample_count) field["cells"].fault("do not hold all samples of the group");
   readGrids(field, d, group);
+  if (field.has("pictureError")) group.picture_error = readPictureError(field["pictureError"]);
   // Some cell must use each light probe, or light would be captured in vain. A group without cells has one,
   // too.
   std::vector<bool> used(group.light_probes.size(), group.cells.empty());

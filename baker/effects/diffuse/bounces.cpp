@@ -161,6 +161,8 @@ class Passes {
         gather_(pass, direct, scene, exit_),
         tally_(withPartner(energies(direct.field))) {
     if (direct.inside) inside_.emplace(direct.inside, exit_);
+    for (const auto& points : direct.watched)
+      result_.at_watched.push_back(direct.field.zeros(points->size()));
     result_.field = direct.field.zeros(direct.field.size());
     result_.mapped = direct.mapped.zeros(direct.mapped.size());
     const auto& valid = direct.looks.valid;
@@ -219,6 +221,7 @@ class Passes {
     if (!gathered) return std::nullopt;
     if (any_filled_) fillFromNeighbours(edges_, direct_.looks.valid, now);
     if (inside_ && !fit(bounce, own.part("inside faces"), now)) return std::nullopt;
+    if (!watch(bounce)) return std::nullopt;
     if (partner_ && !partner_->gather(bounce, now, own.part("glossy"))) return std::nullopt;
     add(now, result_.field);
     return now;
@@ -226,7 +229,7 @@ class Passes {
 
   // Fits what a pass brought to vertices to what it brings to points inside faces. Returns false if stopped.
   bool fit(const Bounce& bounce, const BakeContext& context, TransferField& now) {
-    const SampleSet& points = inside_->faces->scene().samples;
+    const SampleSet& points = inside_->faces->points().scene().samples;
     context_.progress.begin(fmt::format("bounce {} inside faces", bounce.number), points.size(), "samples");
     TransferField there = now.zeros(points.size());
     // Neighbours even out the noise of fewer rays.
@@ -244,6 +247,25 @@ class Passes {
                     context)
                .has_value() &&
            inside_->faces->fit(there, std::numeric_limits<float>::max(), now, context_.stop);
+  }
+
+  // Adds what a pass brings to the watched points, with all of their rays. Returns false if stopped.
+  bool watch(const Bounce& bounce) {
+    Bounce whole = bounce;
+    whole.thinly = false;
+    for (std::size_t w = 0; w < direct_.watched.size(); ++w) {
+      const TracedPoints& points = *direct_.watched[w];
+      const BounceGather gather(points.pass(), points.direct(), points.scene(), exit_);
+      TransferField& sum = result_.at_watched[w];
+      TransferField no_mapped;
+      const auto compute = [&](std::size_t begin, std::size_t end) {
+        gather.range(whole, begin, end, sum, no_mapped);
+      };
+      if (!runStage({.count = points.size(), .grain = kSamplesGathered, .writes = {}, .compute = compute},
+                    context_.keyed(Key{})))
+        return false;
+    }
+    return true;
   }
 
   // Adds all passes after the first, which brought `first`. Returns false if stopped.
@@ -322,8 +344,8 @@ class Passes {
   struct Inside {
     Inside(std::shared_ptr<const DiffuseInsideFaces> points, const ExitRadiance& exit)
         : faces(std::move(points)),
-          gather(faces->pass(), faces->direct(), faces->scene(), exit),
-          mapped(faces->direct().mapped.zeros(faces->direct().mapped.size())) {}
+          gather(faces->points().pass(), faces->points().direct(), faces->points().scene(), exit),
+          mapped(faces->points().direct().mapped.zeros(faces->points().direct().mapped.size())) {}
     std::shared_ptr<const DiffuseInsideFaces> faces;
     BounceGather gather;
     TransferField mapped;  // the sum of what all passes brought to normal-mapped points

@@ -32,6 +32,7 @@ struct BounceResult {
   // is that of the light (environment or one of the group's) with the largest share in the pass.
   std::vector<double> energy;
   double left_out = 0.0;  // estimate of the light of all further passes, relative to all light
+  std::vector<TransferField> at_watched = {};  // what all passes bring to DirectResult::watched
 };
 
 // Returns nothing if stopped. Progress shows "bounce 1", "bounce 2", ... `partner` may be null. The key of

@@ -34,6 +34,7 @@ struct DirectSettings {
 };
 
 class DiffuseInsideFaces;
+class TracedPoints;
 
 struct DirectResult {
   TransferField field;   // of all samples, with 1 output
@@ -43,6 +44,8 @@ struct DirectResult {
   std::uint64_t rays_kept = 0;  // rays that results in the cache saved
   // Points inside faces, to which bounces are fitted as direct light was; null if nothing is fitted.
   std::shared_ptr<const DiffuseInsideFaces> inside = {};
+  // Points at which bounces are gathered too, and fitted to nothing (BounceResult::at_watched).
+  std::vector<std::shared_ptr<const TracedPoints>> watched = {};
 };
 
 // A DirectPass traces pass 0 for ranges of samples, and traces the hits of a range again.

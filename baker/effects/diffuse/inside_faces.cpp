@@ -89,25 +89,23 @@ std::vector<std::uint32_t> changingDiffuse(const TracedScene& scene, const Trans
 DiffuseInsideFaces::DiffuseInsideFaces(const DirectPass& vertices, const TracedScene& scene,
                                        std::span<const std::uint32_t> triangles, std::size_t hit_memory)
     : vertices_(scene),
-      points_(facePoints(scene.geometry, scene.samples, triangles)),
-      scene_(scene.withSamples(points_.samples)),
-      pass_(scene_, settingsInside(vertices.settings(), hit_memory)) {}
+      points_(scene, facePoints(scene.geometry, scene.samples, triangles),
+              settingsInside(vertices.settings(), hit_memory)) {}
 
 bool DiffuseInsideFaces::look(const BakeContext& context) {
-  auto found = bakeDirect(pass_, scene_, context, "inside faces");
-  if (!found) return false;
-  direct_ = std::move(*found);
+  if (!points_.look(context, "inside faces")) return false;
+  const FacePoints& points = points_.points();
+  const auto& valid = points_.direct().looks.valid;
   const GroupGeometry& geometry = vertices_.geometry;
   const SampleSet& samples = vertices_.samples;
-  plain_.emplace(geometry, samples, samples.diffuse, points_, points_.samples.diffuse, direct_.looks.valid);
-  mapped_.emplace(geometry, samples, samples.normal_mapped, points_, points_.samples.normal_mapped,
-                  direct_.looks.valid);
+  plain_.emplace(geometry, samples, samples.diffuse, points, points.samples.diffuse, valid);
+  mapped_.emplace(geometry, samples, samples.normal_mapped, points, points.samples.normal_mapped, valid);
   return true;
 }
 
 bool DiffuseInsideFaces::fit(const TransferField& at_points, float most, TransferField& at_vertices,
                              const std::stop_token& stop) const {
-  const SampleSet &of_points = points_.samples, &of_vertices = vertices_.samples;
+  const SampleSet &of_points = points_.points().samples, &of_vertices = vertices_.samples;
   const std::size_t width = at_vertices.vectorSize();
   const TransferField before = at_vertices;
   const bool fitted = plain_->apply(width, partOf(at_points.vectors, of_points.diffuse, width),

@@ -9,9 +9,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/effects/diffuse/direct.hpp"
+#include "baker/effects/diffuse/traced_points.hpp"
 #include "baker/trace/vertex_fit.hpp"
-#include "baker/transport/face_points.hpp"
 
 namespace lambent::baker {
 
@@ -27,17 +26,12 @@ class DiffuseInsideFaces {
   // this.
   DiffuseInsideFaces(const DirectPass& vertices, const TracedScene& scene,
                      std::span<const std::uint32_t> triangles, std::size_t hit_memory);
-  DiffuseInsideFaces(const DiffuseInsideFaces&) = delete;  // its pass refers to its points
-  DiffuseInsideFaces& operator=(const DiffuseInsideFaces&) = delete;
 
   // Traces direct light at the points. The key of the context covers the vertices' rays and the triangles.
   // Returns false if stopped.
   bool look(const BakeContext& context);
 
-  std::size_t size() const { return points_.samples.size(); }
-  const TracedScene& scene() const { return scene_; }  // its samples are the points, starting at 0
-  const DirectPass& pass() const { return pass_; }
-  const DirectResult& direct() const { return direct_; }
+  const TracedPoints& points() const { return points_; }
 
   // Corrects diffuse transfer of all samples, or that of normal-mapped ones for any normal, by how far
   // interpolation is off at the points. A fit may overshoot, so a sample is corrected only as far as it stays
@@ -49,10 +43,7 @@ class DiffuseInsideFaces {
 
  private:
   const TracedScene vertices_;
-  FacePoints points_;
-  TracedScene scene_;
-  DirectPass pass_;
-  DirectResult direct_;
+  TracedPoints points_;
   std::optional<VertexFit> plain_, mapped_;
 };
 

@@ -1,0 +1,44 @@
+// Measures how wrong pictures show the diffuse surfaces of a group: relative RMS of the light that leaves
+// them, over real lights that the bake's bands carry. At points that eyes see (view_points.hpp), the light
+// that vertices, codes and interpolation show is compared with what many rays from the point itself find,
+// all bounces included. What few bands of light cannot show is no part of it, and neither is light of lamps.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "baker/bake/group_scene.hpp"
+#include "baker/bake/view_points.hpp"
+#include "baker/compress/cpca.hpp"
+#include "baker/effects/diffuse/bounces.hpp"
+#include "baker/effects/diffuse/traced_points.hpp"
+#include "runtime/bundle/description.hpp"
+
+namespace lambent::baker {
+
+// The same points, traced with as many rays as vertices, whose noise they tell, and with many.
+struct TracedView {
+  ViewPoints view;
+  std::shared_ptr<TracedPoints> noisy, exact;
+};
+
+// Returns nothing if stopped. Without diffuse surfaces in sight, there are no points. No result is kept.
+std::optional<TracedView> traceView(const DirectPass& vertices, const TracedScene& scene,
+                                    const BakeContext& context);
+
+// What the bake knows of the vertices, and what bounces brought to the points: to the noisy ones, then to the
+// exact ones. Without bounces, both pointers and the list are empty.
+struct BakedVertices {
+  const TransferField& direct;
+  const TransferField* bounced;
+  std::span<const TransferField> bounced_at_points;
+  const std::vector<std::vector<CodedTransfer>>& cells;  // as in SurfaceCells
+};
+
+// Returns nothing if too few points are seen for a figure.
+std::optional<bundle::PictureError> measurePictureError(const TracedView& traced, const TracedScene& scene,
+                                                        const BakedVertices& baked);
+
+}  // namespace lambent::baker
