@@ -12,13 +12,15 @@
 
 namespace lambent::lighting {
 
-// Holds a bit for each voxel of a grid of cubes: whether a surface passes through it.
+// Holds a byte for each voxel of a grid of cubes: towards which sides the surfaces that pass through it face.
 struct SurfaceVoxels {
   static constexpr int kLongest = 40;  // voxels along the longest edge of the box
 
   glm::vec3 origin{0.0f};  // corner of voxel (0, 0, 0)
   float edge_m = 0.0f;     // of a voxel
   glm::ivec3 count{0};     // along each axis
+  // Four voxels per word, the first in the lowest byte. Bits 0, 1 and 2: some surface faces towards +X, +Y or
+  // +Z, 4, 5 and 6: towards -X, -Y or -Z.
   std::vector<std::uint32_t> words;
 
   // Makes an empty grid that covers a box, with a voxel of margin. The box must not be empty.
@@ -26,14 +28,12 @@ struct SurfaceVoxels {
   std::size_t placeOf(const glm::ivec3& voxel) const {
     return static_cast<std::size_t>((voxel.z * count.y + voxel.y) * count.x + voxel.x);
   }
-  bool at(const glm::ivec3& voxel) const {
+  std::uint32_t at(const glm::ivec3& voxel) const {
     const std::size_t place = placeOf(voxel);
-    return (words[place / 32] >> (place % 32) & 1u) != 0;
+    return words[place / 4] >> (8 * (place % 4)) & 0xffu;
   }
-  void set(const glm::ivec3& voxel) {
-    const std::size_t place = placeOf(voxel);
-    words[place / 32] |= 1u << (place % 32);
-  }
+  // Adds a surface with this normal.
+  void add(const glm::ivec3& voxel, const glm::vec3& normal);
 };
 
 // Returns at most `most` places in the frame of the voxels, the one that sees most first. Returns nothing if

@@ -45,12 +45,14 @@ lighting::SurfaceVoxels SurfaceVoxelizer::voxelsOf(World& world, std::size_t gro
   for (std::size_t i = 0; i < residency.draws().size(); ++i) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
-    if (draw.group != group || draw.back || !mesh.block) continue;
+    if (draw.group != group || !mesh.block) continue;
     world.residency().geometry().page(mesh.block.page).bindStorage(kBindVoxelGeometry);
     const glm::mat4 from_mesh = voxels_from_world * describe(world, i).world_from_mesh;
+    // Mirrored nodes reverse the winding, and so do the backs of double-sided surfaces.
+    const bool over = (glm::determinant(glm::mat3(from_mesh)) < 0.0f) != draw.back;
     const std::uint32_t triangles = mesh.index_count / 3;
     glUniformMatrix4fv(kFromMesh, 1, GL_FALSE, glm::value_ptr(from_mesh));
-    glUniform4ui(kMesh, mesh.positions_word, mesh.indices_word, triangles, 0);
+    glUniform4ui(kMesh, mesh.positions_word, mesh.indices_word, triangles, over ? 1 : 0);
     glDispatchCompute((triangles + kVoxelGroup - 1) / kVoxelGroup, 1, 1);
     ++counters.dispatches;
   }
