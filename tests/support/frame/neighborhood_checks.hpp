@@ -32,6 +32,7 @@ inline BuiltReceiver floorOf(float half, int cells = 1) {
   BuiltReceiver receiver;
   receiver.name = "floor";
   receiver.mesh = floorMesh(half, cells);
+  receiver.material.metallic = 0.0f;  // diffuse, so that it has no specular layer beside a bundle's table
   return receiver;
 }
 
