@@ -95,7 +95,7 @@ Result<void> Picture::draw(Session& session, const spec::View& view, spec::Size 
   facts.volume_bytes = frame_.kept<effects::volume::Volume>().textureBytes();
   facts.settled = stage.world().loaded() && counts["light_probes_captured"] == 0 &&
                   counts["light_probes_waiting"] == 0 && counts["cells_shaded"] == 0 &&
-                  counts["draws_shaded"] == 0;
+                  counts["draws_shaded"] == 0 && counts["reflection_probes_captured"] == 0;
   return {};
 }
 

@@ -6,10 +6,10 @@
 //                void f(uint vertex, inout vec3 light[kLightCoefficients])
 //   Gathered     void f(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients])
 //   Received     void f(SurfacePoint at, inout SurfaceLight light), see surface_light.glsl
-//   MirroredSky  void f(Reflected reflected, SurfaceLight light, inout vec3 sky); it replaces what mirrors
-//                show of the sky. For layered draws
-//                void f(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights), see
-//                layer.glsl; it replaces what the mirror shows, and highlights of key lights
+//   MirroredSky  void f(Reflected reflected, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights),
+//   for
+//                layered draws void f(Mirror mirror, ...), see layer.glsl; it changes what the mirror shows,
+//                and highlights of key lights. Functions are called in the order of the list of modules
 #pragma once
 
 #include <cstddef>

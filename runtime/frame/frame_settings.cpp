@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "runtime/spec/numbers.hpp"
+#include "runtime/surface/reflection_probes_shared.h"
 
 namespace lambent::frame {
 
@@ -135,6 +136,15 @@ const std::array kRows = {
     switchRow<&S::residual>("specular-environment", "sharp reflections of the sky", 1.0,
                             "Glossy surfaces reflect what the bands of their light leave out\nof the sky",
                             "residual"),
+    SettingRow{.name = "reflection-probes",
+               .label = "reflections of rooms",
+               .kind = Kind::Whole,
+               .greatest = kMostProbes,
+               .zero = "off",
+               .finest = kMostProbes,
+               .help = "Points of a room from which it is captured for the mirrors in it, at\nmost",
+               .get = getNumber<&S::reflection_probes>,
+               .put = putNumber<&S::reflection_probes>},
     switchRow<&S::neighborhoods>("neighborhoods", "neighborhoods", 1.0,
                                  "Bodies with grids around them shade others by these, off: by\ncaptures"),
     switchRow<&S::local_shadows>("local-shadows", "local lights", 1.0,

@@ -41,6 +41,9 @@ struct FrameSettings {
   bool diffuse = true, glossy = true, volumes = true;
   // Glossy surfaces also reflect what the bands of their light leave out of the sky.
   bool residual = true;
+  // Mirrors in rooms show the room as captured from this many points of it, at most; 0: the sky where they
+  // see it, and a mean elsewhere.
+  std::uint32_t reflection_probes = 1;
   // Bodies with grids change the light of others by these; if false, by captures.
   bool neighborhoods = true;
   // Lights among the surfaces shine per pixel, with shadow cubes; if false, by harmonics.

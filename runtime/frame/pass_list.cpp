@@ -29,6 +29,7 @@ constexpr MakePass kPicturePasses[] = {
     &makeLocalShadowsPass,            // shadow cubes of lights among the surfaces
     &makeKeyShadowsPass,              // shadow maps of key lights over the visible area
     &makePrefilteredEnvironmentPass,  // the sky as rough mirrors show it
+    &makeReflectionProbesPass,        // rooms as mirrors in them show them
     &makeRasterPass,                  // surfaces, sky, blended surfaces: linear radiance
     &makeMarchPass,                   // what volumes scatter and absorb
     &makeToneMapPass,                 // exposure, tone curve, sRGB

@@ -57,11 +57,12 @@ void Table::assignBytes(std::span<const std::byte> bytes) {
 
 Texture::Texture(std::string_view label, const TextureDesc& desc)
     : Handle(made([&](GLuint* id) {
-        glCreateTextures(desc.cube          ? GL_TEXTURE_CUBE_MAP
-                         : desc.depth > 0   ? GL_TEXTURE_3D
-                         : desc.layers > 0  ? GL_TEXTURE_2D_ARRAY
-                         : desc.samples > 0 ? GL_TEXTURE_2D_MULTISAMPLE
-                                            : GL_TEXTURE_2D,
+        glCreateTextures(desc.cube && desc.layers > 0 ? GL_TEXTURE_CUBE_MAP_ARRAY
+                         : desc.cube                  ? GL_TEXTURE_CUBE_MAP
+                         : desc.depth > 0             ? GL_TEXTURE_3D
+                         : desc.layers > 0            ? GL_TEXTURE_2D_ARRAY
+                         : desc.samples > 0           ? GL_TEXTURE_2D_MULTISAMPLE
+                                                      : GL_TEXTURE_2D,
                          1, id);
       })),
       desc_(desc) {
@@ -74,7 +75,7 @@ Texture::Texture(std::string_view label, const TextureDesc& desc)
                        static_cast<GLsizei>(desc.depth));
   else if (desc.layers > 0)
     glTextureStorage3D(id(), static_cast<GLsizei>(desc.levels), desc.format, width, height,
-                       static_cast<GLsizei>(desc.layers));
+                       static_cast<GLsizei>(desc.cube ? 6 * desc.layers : desc.layers));
   else
     glTextureStorage2D(id(), static_cast<GLsizei>(desc.levels), desc.format, width, height);
   setLabel(GL_TEXTURE, id(), label);

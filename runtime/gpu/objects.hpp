@@ -101,7 +101,7 @@ struct TextureDesc {
   std::uint32_t levels = 1;
   std::uint32_t samples = 0;  // 0 for a single-sampled texture
   bool cube = false;
-  std::uint32_t layers = 0;  // 0 if the texture is no array
+  std::uint32_t layers = 0;  // 0 if the texture is no array; an array of cubes has six images per layer
   std::uint32_t depth = 0;   // 0 if the texture is not three-dimensional
 };
 

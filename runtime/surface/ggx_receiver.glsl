@@ -33,8 +33,7 @@ vec3 reflectedLight(vec3 base_color) {
   if (kShown == kShownIrradiance) return received;
   reflected.f0_light.w += pixel_change.f0_light.w;
   reflected.f90_light.w += pixel_change.f90_light.w;
-  // If a module draws the mirrored sky, key lights in mirrors are part of it.
-  vec3 sky = light.key_highlights;
-  addMirroredSky(reflected, light, sky);
-  return mirrored + diffuse * received + light.local_highlights + sky;
+  vec3 highlights = light.key_highlights;
+  addMirroredSky(reflected, light, mirrored, highlights);
+  return mirrored + diffuse * received + light.local_highlights + highlights;
 }

@@ -30,6 +30,10 @@ constexpr SurfaceFunction kSpecular[] = {
     {SurfaceHook::MirroredSky, CalledBy::Ggx, "specular_environment.glsl", "addSpecularEnvironment"},
     {SurfaceHook::MirroredSky, CalledBy::Layered, "layered_environment.glsl", "addLayeredEnvironment"}};
 
+constexpr SurfaceFunction kProbes[] = {
+    {SurfaceHook::MirroredSky, CalledBy::Ggx, "glossy_probes.glsl", "addGlossyProbes"},
+    {SurfaceHook::MirroredSky, CalledBy::Layered, "layered_probes.glsl", "addLayeredProbes"}};
+
 }  // namespace
 
 std::span<const SurfaceFunction> LocalLightModule::functions() const {
@@ -66,6 +70,12 @@ std::span<const SurfaceFunction> SpecularEnvironmentModule::functions() const {
   return kSpecular;
 }
 std::span<const gpu::FindText> SpecularEnvironmentModule::shaders() const {
+  return kSurfaceShaders;
+}
+std::span<const SurfaceFunction> ReflectionProbeModule::functions() const {
+  return kProbes;
+}
+std::span<const gpu::FindText> ReflectionProbeModule::shaders() const {
   return kSurfaceShaders;
 }
 

@@ -10,6 +10,7 @@
 #include "runtime/shadows/key_shadows.hpp"
 #include "runtime/shadows/local_shadows.hpp"
 #include "runtime/surface/neighborhoods.hpp"
+#include "runtime/surface/reflection_probes.hpp"
 
 namespace lambent::frame {
 
@@ -119,6 +120,25 @@ class SpecularEnvironmentModule : public SurfaceModule {
  private:
   const std::optional<lighting::PrefilteredEnvironment>& environment_;
   const bool& on_;
+};
+
+// Shows the room in mirrors, where reflection probes know it. It needs the specular environment, whose
+// function is called before.
+class ReflectionProbeModule : public SurfaceModule {
+ public:
+  ReflectionProbeModule(const ReflectionProbes& probes, const SpecularEnvironmentModule& environment)
+      : probes_(probes), environment_(environment) {}
+  std::span<const SurfaceFunction> functions() const override;
+  std::span<const gpu::FindText> shaders() const override;
+  bool reaches(std::size_t draw, const SurfaceDraw& record) const override {
+    return probes_.shownBy(draw) && environment_.reaches(draw, record);
+  }
+  std::uint64_t version() const override { return probes_.layoutVersion() + environment_.version(); }
+  void bind(SurfaceReceiver receiver) const override { probes_.bind(receiver); }
+
+ private:
+  const ReflectionProbes& probes_;
+  const SpecularEnvironmentModule& environment_;
 };
 
 }  // namespace lambent::frame

@@ -12,7 +12,9 @@ layout(binding = kUnitMetallicRoughness) uniform sampler2D metallic_roughness_te
 #ifndef LAMBENT_LAYERED
 layout(binding = kUnitSpecular) uniform sampler2D specular_texture;
 layout(binding = kUnitSpecularColor) uniform sampler2D specular_color_texture;
+#ifdef LAMBENT_ANISOTROPIC
 layout(binding = kUnitAnisotropy) uniform sampler2D anisotropy_texture;
+#endif
 #endif
 layout(binding = kUnitBrdf) uniform sampler2DArray brdf_table;
 

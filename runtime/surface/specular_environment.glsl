@@ -50,17 +50,17 @@ vec3 residualOver(Lobes lobes, vec3 normal, vec3 to_eye) {
   return weights > 0.0 ? sum / weights : vec3(0.0);
 }
 
-// Replaces what the mirror shows of the sky. It is scaled by the share of the sky that the lobe sees, as far as few
-// bands can tell: (c . V) / (c . 1). Key lights are shown in their true shape.
-void addSpecularEnvironment(Reflected reflected, SurfaceLight light, inout vec3 sky) {
+// Adds what the mirror shows of the sky beyond the bands. It is scaled by the share of the sky that the lobe sees, as far
+// as few bands can tell: (c . V) / (c . 1). Key lights are shown in their true shape.
+void addSpecularEnvironment(Reflected reflected, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights) {
   Fresnel fresnel = pixel_lobes.fresnel;
   vec3 rho = fresnel.f0 * reflected.albedo.x + fresnel.f90 * reflected.albedo.y;
   float f0 = dot(fresnel.f0, vec3(1.0 / 3.0));
   float seen = f0 * reflected.f0_light.w + fresnel.f90 * reflected.f90_light.w;
   float open = f0 * reflected.albedo.x + fresnel.f90 * reflected.albedo.y;
   float visibility = clamp(seen / max(open, 1e-6), 0.0, 1.0);
-  sky = visibility * rho * residualOver(pixel_lobes, pixel_normal, pixel_to_eye);
+  mirrored += visibility * rho * residualOver(pixel_lobes, pixel_normal, pixel_to_eye);
   if (!light.keys_apart) return;
   vec3 mirrored_ws = reflect(-pixel_to_eye, pixel_normal) * mat3(draws[draw_of].glossy.group_from_world);
-  sky += keyHighlights(pixel_lobes, light, mirrored_ws, rho);
+  highlights = keyHighlights(pixel_lobes, light, mirrored_ws, rho);
 }

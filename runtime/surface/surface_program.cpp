@@ -85,8 +85,10 @@ Caller mirrorCaller(SurfaceReceiver receiver) {
     return {SurfaceHook::MirroredSky, "mirrored_sky.glsl",
             "addMirroredSky(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights)",
             "mirror, light, mirrored, highlights"};
-  return {SurfaceHook::MirroredSky, "mirrored_sky.glsl",
-          "addMirroredSky(Reflected reflected, SurfaceLight light, inout vec3 sky)", "reflected, light, sky"};
+  return {
+      SurfaceHook::MirroredSky, "mirrored_sky.glsl",
+      "addMirroredSky(Reflected reflected, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights)",
+      "reflected, light, mirrored, highlights"};
 }
 
 constexpr Caller kPixelCallers[] = {

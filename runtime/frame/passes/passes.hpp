@@ -33,6 +33,7 @@ MadePass makeSkyPass(const PassSetup& setup);
 MadePass makeLocalShadowsPass(const PassSetup& setup);
 MadePass makeKeyShadowsPass(const PassSetup& setup);
 MadePass makePrefilteredEnvironmentPass(const PassSetup& setup);
+MadePass makeReflectionProbesPass(const PassSetup& setup);
 MadePass makeRasterPass(const PassSetup& setup);
 MadePass makeMarchPass(const PassSetup& setup);
 MadePass makeToneMapPass(const PassSetup& setup);

@@ -8,6 +8,7 @@
 #include "runtime/debug/data_view.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/frame/passes/passes.hpp"
+#include "runtime/frame/passes/prepare_surfaces.hpp"
 #include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/shadows/key_shadows.hpp"
@@ -15,6 +16,7 @@
 #include "runtime/shadows/local_shadows.hpp"
 #include "runtime/surface/neighborhoods.hpp"
 #include "runtime/surface/proxy_lods.hpp"
+#include "runtime/surface/reflection_probes.hpp"
 #include "runtime/surface/surfaces.hpp"
 
 namespace lambent::frame {
@@ -29,12 +31,13 @@ using Prefiltered = std::optional<lighting::PrefilteredEnvironment>;
 class RasterPass final : public FramePass {
  public:
   RasterPass(Surfaces surfaces, Blackboard& board)
-      : FramePass({.name = "raster",
-                   .reads = resources<World, LitScene, GroupLights, Diffuse, Neighborhoods, PatchBounces, Sky,
-                                      evaluate::SeenSky, Prefiltered, LocalShadows, KeyShadows>(),
-                   .writes = resources<PictureTargets, Surfaces, std::optional<DataView>, Prefiltered,
-                                       LocalShadows, KeyShadows>(),
-                   .causes = kPictureCauses}),
+      : FramePass(
+            {.name = "raster",
+             .reads = resources<World, LitScene, GroupLights, Diffuse, Neighborhoods, PatchBounces, Sky,
+                                evaluate::SeenSky, Prefiltered, LocalShadows, KeyShadows, ReflectionProbes>(),
+             .writes = resources<PictureTargets, Surfaces, std::optional<DataView>, Prefiltered, LocalShadows,
+                                 KeyShadows>(),
+             .causes = kPictureCauses}),
         surfaces_(std::move(surfaces)),
         modules_(board.get<SurfaceModules>()) {
     board.offer(surfaces_);
@@ -44,34 +47,15 @@ class RasterPass final : public FramePass {
   Result<void> update(FrameContext& frame) override {
     frame.because();
     // Surfaces are prepared even if numbers are drawn, because picking reads them.
-    if (Result<void> done = prepareSurfaces(frame); !done) return done;
+    if (Result<void> done = prepareSurfaces(frame, surfaces_, modules_, *frame.view, frame.options.view.view);
+        !done)
+      return done;
     if (showsTransfer(frame.options.view.view)) return drawNumbers(frame);
     data_view_.reset();
     return drawLight(frame);
   }
 
  private:
-  Result<void> prepareSurfaces(FrameContext& frame) {
-    surfaces_.setView(frame.options.view.view);
-    const FrameSettings& settings = frame.settings();
-    Prefiltered& prefiltered = frame.write<Prefiltered>();
-    const bool residual = prefiltered && settings.residual;
-    if (residual) {
-      std::uint32_t order = 1;
-      for (const streaming::ResidentGroup& group : frame.world.residency().groups())
-        order = std::max(order, group.order);
-      order = std::min(order, settings.order);
-      prefiltered->update(frame.environment, static_cast<int>(order), settings.window, frame.counters());
-    }
-    return surfaces_.prepare(frame.world, frame.read<Diffuse>(), *frame.view,
-                             {.options = {.diffuse = settings.diffuse,
-                                          .glossy = settings.glossy,
-                                          .glossy_bands = settings.glossy_order},
-                              .seen_sky = &frame.read<evaluate::SeenSky>(),
-                              .modules = modules_},
-                             frame.counters());
-  }
-
   Result<void> drawNumbers(FrameContext& frame) {
     if (!data_view_) data_view_.emplace(/*numbers=*/frame.options.linear());
     if (Result<void> done = data_view_->update(frame.world, frame.read<GroupLights>(), frame.options.view,

@@ -46,6 +46,7 @@ class PrefilteredEnvironmentPass final : public FramePass {
                    .writes = resources<std::optional<PrefilteredEnvironment>>(),
                    .causes = static_cast<std::uint32_t>(Cause::Environment)}) {
     board.offer(prefiltered_);
+    board.offer(module_);
     board.get<SurfaceModules>().push_back(&module_);
   }
 

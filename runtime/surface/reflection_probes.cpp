@@ -1,0 +1,218 @@
+#include "runtime/surface/reflection_probes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <utility>
+
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "lambent_lighting_embedded.hpp"
+#include "lambent_surface_embedded.hpp"
+#include "runtime/lighting/prefiltered_shared.h"
+
+namespace lambent::frame {
+
+namespace {
+
+static_assert(kProbeLevels == lighting::kReflectedLevels, "reflection_probes.glsl uses levelOf()");
+static_assert(kProbeShares == lighting::kLobeShares);
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find, &embedded::lambent_lighting::find};
+// These are the uniform locations of the kernels.
+constexpr GLint kFace = 0, kImageLayer = 1, kDistanceLayer = 2, kProjection = 3;
+constexpr GLint kSize = 0, kLobe = 1, kShares = 2, kFirstLayer = 3;
+constexpr std::uint32_t kLevels = std::bit_width(kProbeFaceTexels);
+
+// Returns the number of samples of the lobe: more where it is wide.
+GLint sharesOf(std::uint32_t level) {
+  return level <= 1 ? 32 : 64;
+}
+
+std::uint32_t groupsOf(std::uint32_t texels) {
+  return (texels + kProbeGroup - 1) / kProbeGroup;
+}
+
+}  // namespace
+
+spec::View probeFaceView(const glm::vec3& place_ws, int face, float near_m, float far_m) {
+  // The axes of texels are those of runtime/sh/cube_map.hpp. Row 0 of a picture is at the bottom, so "up" is
+  // where rows of the face go.
+  static constexpr std::array<glm::vec3, 6> kForward = {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0),
+                                                        glm::vec3(0, 1, 0), glm::vec3(0, -1, 0),
+                                                        glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)};
+  static constexpr std::array<glm::vec3, 6> kUp = {glm::vec3(0, -1, 0), glm::vec3(0, -1, 0),
+                                                   glm::vec3(0, 0, 1),  glm::vec3(0, 0, -1),
+                                                   glm::vec3(0, -1, 0), glm::vec3(0, -1, 0)};
+  const auto at = static_cast<std::size_t>(face);
+  return {.view_from_world = glm::lookAt(place_ws, place_ws + kForward[at], kUp[at]),
+          .clip_from_view = glm::perspective(glm::radians(90.0f), 1.0f, near_m, far_m),
+          .eye_ws = place_ws};
+}
+
+Result<ReflectionProbes> ReflectionProbes::create() {
+  ReflectionProbes probes;
+  Result<gpu::Program> store =
+      gpu::Program::create("probe store", {{GL_COMPUTE_SHADER, "reflection_probe_store.comp"}}, kShaders);
+  if (!store) return failAgain(store.error());
+  Result<gpu::Program> filter =
+      gpu::Program::create("probe filter", {{GL_COMPUTE_SHADER, "reflection_probe_filter.comp"}}, kShaders);
+  if (!filter) return failAgain(filter.error());
+  probes.store_ = std::move(*store);
+  probes.filter_ = std::move(*filter);
+  for (std::uint32_t level = 0; level < kProbeLevels; ++level)
+    probes.lobes_.push_back(lighting::makeReflectedLobe(lighting::roughnessOfLevel(level, kProbeLevels)));
+  return probes;
+}
+
+void ReflectionProbes::place(std::vector<glm::vec3> places_ws) {
+  if (places_ws.size() > kMostProbes) places_ws.resize(kMostProbes);
+  if (places_ws == places_) return;
+  if (places_ws.size() != places_.size()) {
+    images_ = {};
+    captured_.clear();
+    ++layout_version_;
+  }
+  std::vector<std::uint8_t> captured(places_ws.size(), 0);
+  for (std::size_t i = 0; i < captured_.size(); ++i)
+    captured[i] = captured_[i] != 0 && places_[i] == places_ws[i] ? 1 : 0;
+  captured_ = std::move(captured);
+  places_ = std::move(places_ws);
+  if (places_.empty()) {
+    target_ = {};
+    for (gpu::Texture* const texture : {&drawn_, &depth_, &weighted_, &weights_}) *texture = {};
+    return;
+  }
+  if (!images_) makeTargets();
+  uploadBlock(/*looked_up=*/true);
+}
+
+void ReflectionProbes::showBy(std::vector<std::uint8_t> draws) {
+  if (draws == draws_) return;
+  draws_ = std::move(draws);
+  ++layout_version_;
+}
+
+void ReflectionProbes::makeTargets() {
+  const auto count = static_cast<std::uint32_t>(places_.size());
+  const gpu::TextureDesc square{.width = kProbeFaceTexels, .height = kProbeFaceTexels};
+  gpu::TextureDesc desc = square;
+  desc.format = GL_RGBA16F;
+  drawn_ = gpu::Texture("probe face", desc);
+  desc.cube = true;
+  desc.levels = kLevels;
+  weighted_ = gpu::Texture("probe to filter", desc);
+  desc.format = GL_R16F;
+  weights_ = gpu::Texture("probe weights", desc);
+  desc = square;
+  desc.format = GL_DEPTH_COMPONENT32F;
+  depth_ = gpu::Texture("probe depth", desc);
+  target_ = gpu::Framebuffer("probe face", drawn_, &depth_);
+  images_ = gpu::Texture("reflection probes", {.format = GL_RGBA16F,
+                                               .width = kProbeFaceTexels,
+                                               .height = kProbeFaceTexels,
+                                               .levels = kProbeLevels,
+                                               .cube = true,
+                                               .layers = 2 * count});
+  for (const gpu::Texture* const texture : {&weighted_, &weights_, &images_}) {
+    glTextureParameteri(texture->id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTextureParameteri(texture->id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  }
+}
+
+void ReflectionProbes::uploadBlock(bool looked_up) {
+  ProbeValues values{};
+  values.counts = {static_cast<float>(places_.size()), looked_up ? 1.0f : 0.0f, 0.0f, 0.0f};
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    values.places[i] = glm::vec4(places_[i], captured_[i] != 0 ? 1.0f : 0.0f);
+  block_.assign(std::span<const ProbeValues>(&values, 1));
+}
+
+Result<void> ReflectionProbes::capture(
+    std::size_t probe, float near_m, float far_m,
+    const std::function<Result<void>(const spec::View&, const spec::Size&)>& draw, gpu::Counters& counters) {
+  const spec::Size size{kProbeFaceTexels, kProbeFaceTexels};
+  constexpr float kNothing[4] = {0.0f, 0.0f, 0.0f, 0.0f}, kFar = 1.0f;
+  uploadBlock(/*looked_up=*/false);
+  for (int face = 0; face < 6; ++face) {
+    const spec::View view = probeFaceView(places_[probe], face, near_m, far_m);
+    glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
+    glViewport(0, 0, static_cast<GLsizei>(size.width), static_cast<GLsizei>(size.height));
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
+    glClearNamedFramebufferfv(target_.id(), GL_COLOR, 0, kNothing);
+    glClearNamedFramebufferfv(target_.id(), GL_DEPTH, 0, &kFar);
+    if (Result<void> done = draw(view, size); !done) return done;
+    store(probe, face, view.clip_from_view, counters);
+  }
+  filter(probe, counters);
+  captured_[probe] = 1;
+  uploadBlock(/*looked_up=*/true);
+  return {};
+}
+
+void ReflectionProbes::store(std::size_t probe, int face, const glm::mat4& clip_from_view,
+                             gpu::Counters& counters) const {
+  const auto layer = static_cast<GLint>(6 * probe) + face;
+  store_.use();
+  drawn_.bind(0);
+  depth_.bind(1);
+  glBindSampler(0, 0);
+  glBindSampler(1, 0);
+  glUniform1i(kFace, face);
+  glUniform1i(kImageLayer, layer);
+  glUniform1i(kDistanceLayer, layer + static_cast<GLint>(6 * places_.size()));
+  // With z_clip = a z + b and w = -z, the depth -z is b / (z_ndc + a).
+  glUniform2f(kProjection, clip_from_view[3][2], clip_from_view[2][2]);
+  glBindImageTexture(0, images_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(1, weighted_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(2, weights_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R16F);
+  glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  glDispatchCompute(groupsOf(kProbeFaceTexels), groupsOf(kProbeFaceTexels), 1);
+  ++counters.dispatches;
+}
+
+void ReflectionProbes::filter(std::size_t probe, gpu::Counters& counters) {
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
+                  GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  glGenerateTextureMipmap(weighted_.id());
+  glGenerateTextureMipmap(weights_.id());
+  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+  filter_.use();
+  weighted_.bind(0);
+  weights_.bind(1);
+  glBindSampler(0, 0);
+  glBindSampler(1, 0);
+  for (std::uint32_t level = 1; level < kProbeLevels; ++level) {
+    const std::uint32_t side = kProbeFaceTexels >> level;
+    angles_.assign(std::span<const float>(lobes_[level].angles_rad));
+    angles_.bindStorage(kBindProbeLobe);
+    glUniform1i(kSize, static_cast<GLint>(side));
+    glUniform2f(kLobe, lobes_[level].alpha, lobes_[level].scale);
+    glUniform1i(kShares, sharesOf(level));
+    glUniform1i(kFirstLayer, static_cast<GLint>(6 * probe));
+    glBindImageTexture(0, images_.id(), static_cast<GLint>(level), GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+    glDispatchCompute(groupsOf(side), groupsOf(side), 6);
+    ++counters.dispatches;
+  }
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void ReflectionProbes::bind(SurfaceReceiver receiver) const {
+  const GLuint unit = isLayered(receiver) ? kUnitProbesLayered : kUnitProbesGlossy;
+  glBindBufferBase(GL_UNIFORM_BUFFER, kBindProbes, block_.buffer().id());
+  images_.bind(unit);
+  glBindSampler(unit, 0);
+  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+}
+
+std::uint64_t ReflectionProbes::bytesResident() const {
+  if (!images_) return 0;
+  const std::uint64_t texels = std::uint64_t{6} * kProbeFaceTexels * kProbeFaceTexels;
+  return places_.size() * 2 * texels * 8 * 4 / 3 + texels * 10 * 4 / 3 + texels / 6 * 12;
+}
+
+}  // namespace lambent::frame

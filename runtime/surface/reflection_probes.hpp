@@ -1,0 +1,77 @@
+// Owns reflection probes: pictures of the lit scene in all directions from a few points inside rooms, with
+// distances. Mirrors look up in them what they show of the room (reflection_probes.glsl), where the
+// prefiltered environment alone would show the sky. A probe's picture has the room's radiance and coverage;
+// the sky is not in it, because surfaces know it better. Roughness lies along its mip levels, as in the
+// prefiltered environment. The owner chooses the places, draws the faces and says which draws look probes up.
+// Render thread only. create() fails if a kernel does not compile on this device.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "runtime/base/result.hpp"
+#include "runtime/draws/surface_module.hpp"
+#include "runtime/gpu/objects.hpp"
+#include "runtime/gpu/program.hpp"
+#include "runtime/lighting/prefiltered_lobe.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/size.hpp"
+#include "runtime/surface/reflection_probes_shared.h"
+
+namespace lambent::frame {
+
+inline constexpr std::uint32_t kProbeFaceTexels = 128;  // along an edge of a face
+
+// Returns the view of a face of a cube map about a point. Its pixels are the face's texels, in the same
+// order.
+spec::View probeFaceView(const glm::vec3& place_ws, int face, float near_m, float far_m);
+
+class ReflectionProbes {
+ public:
+  static Result<ReflectionProbes> create();
+
+  // Sets where probes are, at most kMostProbes. Those that stay where they were, in the same order, stay
+  // captured.
+  void place(std::vector<glm::vec3> places_ws);
+  const std::vector<glm::vec3>& places() const { return places_; }
+  // Sets which draws look probes up, by index in the residency.
+  void showBy(std::vector<std::uint8_t> draws);
+  bool shownBy(std::size_t draw) const {
+    return !places_.empty() && draw < draws_.size() && draws_[draw] != 0;
+  }
+  // Rises when shownBy() changes for any draw.
+  std::uint64_t layoutVersion() const { return layout_version_; }
+
+  // Captures a probe: binds and clears a target for each face and calls `draw`, which draws what is opaque
+  // and then what is blended. Depths are those of the view. While it draws, surfaces look no probes up.
+  Result<void> capture(std::size_t probe, float near_m, float far_m,
+                       const std::function<Result<void>(const spec::View&, const spec::Size&)>& draw,
+                       gpu::Counters& counters);
+
+  void bind(SurfaceReceiver receiver) const;
+  std::uint64_t bytesResident() const;
+
+ private:
+  ReflectionProbes() : block_("reflection probes"), angles_("probe lobe") {}
+  void uploadBlock(bool looked_up);
+  void makeTargets();
+  void store(std::size_t probe, int face, const glm::mat4& clip_from_view, gpu::Counters& counters) const;
+  void filter(std::size_t probe, gpu::Counters& counters);
+
+  gpu::Program store_, filter_;
+  std::vector<lighting::ReflectedLobe> lobes_;  // one per level
+  std::vector<glm::vec3> places_;
+  std::vector<std::uint8_t> captured_;  // one per place
+  std::vector<std::uint8_t> draws_;
+  std::uint64_t layout_version_ = 0;
+  gpu::Texture images_;  // see ProbeValues
+  gpu::Texture drawn_, depth_, weighted_, weights_;
+  gpu::Framebuffer target_;
+  gpu::Table block_, angles_;
+};
+
+}  // namespace lambent::frame
