@@ -1,6 +1,6 @@
 // The scene `ring` shows a caustic: a polished ring of gold that stands on a white plane and gathers light in
-// it, as in the talk on precomputed radiance transfer (Sloan, Kautz and Snyder 2002). The plane's vertices are
-// as many as the texels of the talk's plane.
+// it, as in the talk on precomputed radiance transfer (Sloan, Kautz and Snyder 2002). The plane's vertices
+// are as many as the texels of the talk's plane.
 #include <vector>
 
 #include "assets/scenes.hpp"
@@ -16,11 +16,11 @@ Scene ring() {
   scene.materials = {
       {.name = "plane", .base_color = glm::vec3(0.8f)},
       {.name = "gold", .base_color = {1.0f, 0.77f, 0.34f}, .roughness = 0.05f, .metallic = 1.0f}};
-  Mesh floor =
-      plane({-kHalf, 0, kHalf}, {2 * kHalf, 0, 0}, {0, 0, -2 * kHalf}, kTexels - 1, kTexels - 1);
+  Mesh floor = plane({-kHalf, 0, kHalf}, {2 * kHalf, 0, 0}, {0, 0, -2 * kHalf}, kTexels - 1, kTexels - 1);
   floor.texcoords.clear();
   // The band has no lower side: it stands on the plane.
-  const std::vector<glm::vec2> profile = {{kOuter, 0.0f}, {kOuter, kHeight}, {kInner, kHeight}, {kInner, 0.0f}};
+  const std::vector<glm::vec2> profile = {
+      {kOuter, 0.0f}, {kOuter, kHeight}, {kInner, kHeight}, {kInner, 0.0f}};
   Mesh band = lathe(profile, 192, 0.04f);
   band.texcoords.clear();
   scene.meshes = {{"plane", std::move(floor), 0}, {"ring", std::move(band), 1}};

@@ -31,7 +31,8 @@ struct GatherHit {
   }
 };
 
-// MirroredLight is what a ray of a sample found by way of mirrors (mirror_paths.hpp), beside diffuse surfaces.
+// MirroredLight is what a ray of a sample found by way of mirrors (mirror_paths.hpp), beside diffuse
+// surfaces.
 struct MirroredLight {
   enum class From : std::uint8_t {
     Sky,             // distant light from `direction`
@@ -59,8 +60,8 @@ struct RangeHits {
 
   // Starts the next sample: hits that are appended from here on are its own. The last call ends the range.
   void next() { offsets.push_back(static_cast<std::uint32_t>(hits.size())); }
-  // Replaces these hits by those of samples [begin, end), traced by a walk with functions look(), looked() and
-  // keepHits(). Returns for each sample whether it took twice the rays.
+  // Replaces these hits by those of samples [begin, end), traced by a walk with functions look(), looked()
+  // and keepHits(). Returns for each sample whether it took twice the rays.
   template <typename Walk>
   std::vector<std::uint8_t> traceAgain(Walk&& walk, std::size_t begin, std::size_t end) {
     std::vector<std::uint8_t> double_rays;

@@ -72,8 +72,7 @@ class MirrorPaths::Walk {
       std::size_t next = 0;
       std::erase_if(paths_, [&](Path& path) { return !meet(path, met[next++]); });
     }
-    for (const Path& path : paths_)
-      add(MirroredLight::From::Kernel, path, -path.along, path.throughput);
+    for (const Path& path : paths_) add(MirroredLight::From::Kernel, path, -path.along, path.throughput);
   }
 
   // Takes out the hits that paths began at and that no diffuse surface replaced, and sorts what they found.
@@ -105,8 +104,8 @@ class MirrorPaths::Walk {
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
 
   struct Path {
-    GatherHit hit;                   // the last one; `ray` is the sample's
-    glm::vec3 along{0.0f};           // to the hit
+    GatherHit hit;                    // the last one; `ray` is the sample's
+    glm::vec3 along{0.0f};            // to the hit
     glm::vec3 from{0.0f}, ray{0.0f};  // where it goes on
     glm::vec3 throughput;
     std::size_t index;  // of the hit that it began at
@@ -137,8 +136,7 @@ class MirrorPaths::Walk {
     const float below = std::min(-glm::dot(path.along, at.geometric), 0.0f);
     const glm::vec3 to = glm::normalize(-path.along - 2.0f * below * at.geometric);
     if (mirrors_.with_lights_) add(MirroredLight::From::LightsByKernel, path, to, path.throughput);
-    if (at.diffuse != glm::vec3(0.0f))
-      add(MirroredLight::From::Base, path, to, path.throughput * at.diffuse);
+    if (at.diffuse != glm::vec3(0.0f)) add(MirroredLight::From::Base, path, to, path.throughput * at.diffuse);
     const HighlightSample next = sampleHighlight(at, to, choices(path.number, reflection));
     path.throughput *= next.weight;
     const glm::vec3 place = (1.0f - u - v) * a + u * b + v * c;
@@ -165,9 +163,9 @@ class MirrorPaths::Walk {
       add(MirroredLight::From::Kernel, path, -path.along, path.throughput);
       return false;
     }
-    setAlbedo(path.throughput *
-                  mirrors_.colors_.albedo(met.triangle, shareOf(path.hit.u), shareOf(path.hit.v)),
-              path.hit);
+    setAlbedo(
+        path.throughput * mirrors_.colors_.albedo(met.triangle, shareOf(path.hit.u), shareOf(path.hit.v)),
+        path.hit);
     if (!isBlack(path.hit)) hits_.hits[path.index] = path.hit;
     return false;
   }

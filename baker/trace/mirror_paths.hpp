@@ -19,8 +19,9 @@
 
 namespace lambent::baker {
 
-// Light is followed through highlights of surfaces that are smoother than this. Seven bands carry six tenths
-// of the energy of a highlight of this roughness (lobeEnergyShare), and almost nothing of a polished one.
+// Light is followed through highlights of surfaces that are smoother than this. Seven bands carry less than
+// half of the energy of a highlight of this roughness (lobeEnergyShare), and almost nothing of a polished
+// one.
 inline constexpr float kMirrorRoughness = 0.25f;
 
 // Returns the unit direction of a ray of a sample, which is counted from the first of its range.

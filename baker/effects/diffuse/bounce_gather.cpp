@@ -28,8 +28,8 @@ void BounceGather::visitHits(std::size_t sample, const TakeHit& take) const {
     take(hit, static_cast<float>(hemisphere.weight(hit.ray)),
          exit_.albedo(hit, -(frame * hemisphere.direction(hit.ray))));
   exit_.visitMirrored(
-      hits.mirroredOf(sample),
-      [&](std::uint32_t ray) { return static_cast<float>(hemisphere.weight(ray)); }, take);
+      hits.mirroredOf(sample), [&](std::uint32_t ray) { return static_cast<float>(hemisphere.weight(ray)); },
+      take);
 }
 
 void BounceGather::range(const Bounce& bounce, std::size_t begin, std::size_t end, TransferField& now,

@@ -145,8 +145,7 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
   return traced;
 }
 
-void DirectPass::paint(std::size_t first, std::span<const std::uint8_t> double_rays,
-                       RangeHits& hits) const {
+void DirectPass::paint(std::size_t first, std::span<const std::uint8_t> double_rays, RangeHits& hits) const {
   const auto direction = [&](std::size_t s, std::uint32_t ray) {
     const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[first + s]))));
     return frame * hemisphereOf(first + s, double_rays[s] != 0).direction(ray);

@@ -172,8 +172,7 @@ std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::st
   return traced;
 }
 
-void GlossyPass::paint(std::size_t begin, std::span<const std::uint8_t> double_rays,
-                       RangeHits& hits) const {
+void GlossyPass::paint(std::size_t begin, std::span<const std::uint8_t> double_rays, RangeHits& hits) const {
   const auto direction = [&](std::size_t s, std::uint32_t ray) {
     const glm::mat3 frame(
         localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[first() + begin + s]))));

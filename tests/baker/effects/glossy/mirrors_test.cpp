@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/brdf/surface_brdfs.hpp"
+#include "baker/plan/lobe_energy.hpp"
 #include "baker/trace/mirror_paths.hpp"
 #include "tests/support/glossy_transport.hpp"
 
@@ -69,10 +70,9 @@ struct Room {
     if (follow) transport.mirrors = &mirrors;
   }
   GlossyBake bake(const GlossyBakeSettings& settings) const {
-    const ExitKernels kernels{brdfs.grey(), [this](std::uint32_t triangle, float u, float v,
-                                                   const glm::vec3& to, std::span<float> out) {
-                                brdfs.exitKernel(triangle, u, v, to, out);
-                              }};
+    const ExitKernels kernels{brdfs.grey(),
+                              [this](std::uint32_t triangle, float u, float v, const glm::vec3& to,
+                                     std::span<float> out) { brdfs.exitKernel(triangle, u, v, to, out); }};
     return bakeGlossy(transport, kernels, settings);
   }
   // The sum of direct light and bounces at the diffuse sample nearest to a place.
@@ -91,18 +91,23 @@ struct Room {
   MirrorPaths mirrors;
 };
 
-// A black floor, and a wall 0.5 m beside its middle that is endless for it.
-Scene wallBesideAFloor(float roughness) {
-  Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 2)});
+// A black floor, so small that the wall hardly sees it, and a wall of `size` m with n x n cells 0.5 m beside
+// it.
+Scene wallBesideAFloor(float roughness, float size, int n) {
+  Scene scene = sceneOf({grid({0, 0, 0}, 0.1f, 2)});
   scene.materials[0].base_color = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
-  addMetal(transformed(turned(grid({0, 0, 0}, 400.0f, 2), -90.0f, {0, 0, 1}),
-                       glm::translate(glm::mat4(1.0f), {-0.5f, 199.9f, 0})),
+  addMetal(transformed(turned(grid({0, 0, 0}, size, n), -90.0f, {0, 0, 1}),
+                       glm::translate(glm::mat4(1.0f), {-0.5f, 0.5f * size - 0.1f, 0})),
            roughness, glm::vec3(1.0f), scene);
   return scene;
 }
 
+TEST(Mirrors, AreFollowedWhereSevenBandsCarryLessThanHalfOfAHighlight) {
+  EXPECT_LT(lobeEnergyShare(double{kMirrorRoughness}, 7), 0.5);
+}
+
 TEST(Mirrors, BesideAFloorShowItTheOtherHalfOfTheSky) {
-  const Room room(wallBesideAFloor(0.0f));
+  const Room room(wallBesideAFloor(/*roughness=*/0.0f, /*size=*/400.0f, /*n=*/2));
   const auto transfer = room.transferAt(room.bake({.rays = 4096, .bounces = 1}), {0, 0, 0});
   // By the image method, light from s with s.x < 0 is that from s with x turned round.
   std::array<double, 25> expected{};
@@ -113,12 +118,12 @@ TEST(Mirrors, BesideAFloorShowItTheOtherHalfOfTheSky) {
       // Equal shares of the cosine-weighted hemisphere.
       const double square = (i + 0.5) / kSteps, turn = 2.0 * double{kPi} * (j + 0.5) / (2 * kSteps);
       const double r = std::sqrt(square);
-      sh::evaluate(5, glm::vec3(std::abs(r * std::cos(turn)), std::sqrt(1.0 - square), r * std::sin(turn)), y);
+      sh::evaluate(5, glm::vec3(std::abs(r * std::cos(turn)), std::sqrt(1.0 - square), r * std::sin(turn)),
+                   y);
       for (std::size_t k = 0; k < y.size(); ++k) expected[k] += double{y[k]} / (2.0 * kSteps * kSteps);
     }
   // Rays are few where the mirror ends at the horizon.
-  for (std::size_t k = 0; k < expected.size(); ++k)
-    EXPECT_NEAR(double{transfer[k]}, expected[k], 0.003) << k;
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(double{transfer[k]}, expected[k], 0.003) << k;
   EXPECT_GT(std::abs(expected[3]), 0.1);  // the half of the sky matters
 }
 
@@ -159,13 +164,14 @@ TEST(Mirrors, OfARingLeaveLightAboutItsAxisAsItIs) {
 
 TEST(Mirrors, InAWhiteFurnaceLeaveUniformLightAsItIs) {
   for (const float roughness : {0.0f, 0.1f}) {
-    Scene scene = sceneOf({grid({0, 0, 0}, 3.0f, 10)});
-    addMetal(icosphere({0, 0.6f, 0}, 0.5f, 3), roughness, glm::vec3(1.0f), scene);
-    addMetal(icosphere({0.9f, 0.4f, 0.4f}, 0.35f, 3), roughness, glm::vec3(1.0f), scene);
+    Scene scene = sceneOf({grid({0, 0, 0}, 3.0f, 8)});
+    addMetal(icosphere({0, 0.6f, 0}, 0.5f, 2), roughness, glm::vec3(1.0f), scene);
+    addMetal(icosphere({0.9f, 0.4f, 0.4f}, 0.35f, 2), roughness, glm::vec3(1.0f), scene);
     const Room room(scene);
-    const GlossyBake baked = room.bake({.rays = 512, .bounces = -1});
+    const GlossyBake baked = room.bake({.rays = 256, .bounces = 8});
     for (std::size_t s = 0; s < room.transport.samples.glossy.begin; ++s) {
-      const float sum = uniformRadiance(baked.direct.field.at(s)) + uniformRadiance(baked.bounced.field.at(s));
+      const float sum =
+          uniformRadiance(baked.direct.field.at(s)) + uniformRadiance(baked.bounced.field.at(s));
       EXPECT_NEAR(sum, 1.0f, 0.01f) << "roughness " << roughness;
     }
   }
@@ -185,9 +191,9 @@ TEST(Mirrors, TakeTheColourOfTheMetal) {
   const glm::vec3 gold(1.0f, 0.5f, 0.25f);
   Scene scene = sceneOf({grid({0, 0, 0}, 3.0f, 8)});
   scene.materials[0].base_color = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
-  addMetal(icosphere({0, 0.6f, 0}, 0.5f, 3), 0.0f, gold, scene);
+  addMetal(icosphere({0, 0.6f, 0}, 0.5f, 2), 0.0f, gold, scene);
   const Room room(scene);
-  const GlossyBake baked = room.bake({.rays = 512, .bounces = 1});
+  const GlossyBake baked = room.bake({.rays = 256, .bounces = 1});
   const auto bounced = baked.bounced.field.at(room.transport.sampleAt({0.75f, 0, 0}));
   ASSERT_EQ(baked.bounced.field.channels, 3u);
   const float white = bounced[0];
@@ -199,41 +205,43 @@ TEST(Mirrors, TakeTheColourOfTheMetal) {
   }
 }
 
-// Half of this surface is a metal: its base sends light too.
+// Half of this surface is a metal: its base sends light too. Under uniform light five bands of a kernel lose
+// nothing where nearly all is open.
 TEST(Mirrors, OfHalfAMetalSendAsMuchLightAsTheirKernels) {
-  Scene scene = sceneOf({grid({0, 0, 0}, 3.0f, 8)});
-  addMetal(icosphere({0, 0.6f, 0}, 0.5f, 3), 0.2f, glm::vec3(0.9f), scene);
+  Scene scene = wallBesideAFloor(/*roughness=*/0.2f, /*size=*/8.0f, /*n=*/4);
   scene.materials[1].metallic = 0.5f;
-  const Room room(scene), kernels(scene, /*follow=*/false);
-  const GlossyBake a = room.bake({.rays = 512, .bounces = 4}), b = kernels.bake({.rays = 512, .bounces = 4});
-  double of_paths = 0.0, of_kernels = 0.0;
-  for (std::size_t s = 0; s < room.transport.samples.glossy.begin; ++s) {
-    of_paths += double{uniformRadiance(a.bounced.field.at(s))};
-    of_kernels += double{uniformRadiance(b.bounced.field.at(s))};
-  }
-  EXPECT_NEAR(of_paths / of_kernels, 1.0, 0.02);
+  scene.materials[1].base_color = {0.9f, 0.9f, 0.9f, 1.0f};
+  const auto of = [&](bool follow) {
+    const Room room(scene, follow);
+    const GlossyBake baked = room.bake({.rays = 1024, .bounces = 1});
+    return uniformRadiance(baked.bounced.field.at(room.transport.sampleAt({0, 0, 0})));
+  };
+  const float by_kernels = of(false);
+  EXPECT_GT(by_kernels, 0.2f);
+  EXPECT_NEAR(of(true), by_kernels, 0.01f * by_kernels);
 }
 
 // A path never meets a lamp that is a point, so its light leaves the mirror by the kernel.
 TEST(Mirrors, SendOnTheLightOfPointLampsByTheirKernels) {
-  Scene scene = wallBesideAFloor(0.1f);
+  Scene scene = wallBesideAFloor(/*roughness=*/0.2f, /*size=*/2.0f, /*n=*/12);
   gltf::Light lamp;
   lamp.type = gltf::Light::Type::Point;
   scene.lights.push_back(lamp);
   gltf::Node node;
-  node.translation = {0.5f, 0.5f, 0.0f};
+  node.parent_from_node = glm::translate(glm::mat4(1.0f), {0.5f, 0.5f, 0.0f});
   node.light = 0;
   scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
   scene.nodes.push_back(node);
   const Room room(scene), kernels(scene, /*follow=*/false);
   ASSERT_EQ(room.transport.lights.size(), 1u);
   const auto of = [](const Room& r) {
-    const GlossyBake baked = r.bake({.rays = 512, .bounces = 1});
+    const GlossyBake baked = r.bake({.rays = 4096, .bounces = 1});
     return double{baked.bounced.field.at(r.transport.sampleAt({0, 0, 0}))[25]};
   };
   const double expected = of(kernels);
   EXPECT_GT(expected, 0.001);
-  EXPECT_NEAR(of(room), expected, 0.01 * expected);
+  // Corners are interpolated here, and dealt out there.
+  EXPECT_NEAR(of(room), expected, 0.05 * expected);
 }
 
 }  // namespace
