@@ -24,6 +24,7 @@ Result<void> writeAll(const std::filesystem::path& folder) {
   if (auto done = assets::writeGlb(folder / "field.glb", assets::field()); !done) return done;
   if (auto done = assets::writeGlb(folder / "metals.glb", assets::metals()); !done) return done;
   if (auto done = assets::writeGlb(folder / "flight.glb", assets::flight()); !done) return done;
+  if (auto done = assets::writeGlb(folder / "ring.glb", assets::ring()); !done) return done;
   constexpr std::uint32_t kProbeWidth = 512;
   if (auto done = spec::writeHdr(folder / "sky.hdr", assets::skyMap(kProbeWidth)); !done) return done;
   return spec::writeHdr(folder / "studio.hdr", assets::studioMap(kProbeWidth));

@@ -65,6 +65,7 @@ Result<void> GroupScene::prepareRays(const BakeContext& context) {
       SurfaceBrdfs::load(bake.scene, geometry, bake.tables, inputs_.images, bake.options.exitOrder());
   if (!brdfs) return failAgain(brdfs.error());
   brdfs_ = std::move(*brdfs);
+  mirrors_.emplace(geometry, *rays_, *colors_, *brdfs_, !lights.empty());
   return {};
 }
 

@@ -42,7 +42,9 @@ class GroupScene {
   // May be called after loadColors().
   const SurfaceColors& colors() const { return *colors_; }
   // May be called after prepareRays(). brdfs() returns null if the group has no glossy surfaces.
-  TracedScene view() const { return {bake.scene, geometry, samples, *rays_, *colors_, lights}; }
+  TracedScene view() const {
+    return {bake.scene, geometry, samples, *rays_, *colors_, lights, mirrors_ ? &*mirrors_ : nullptr};
+  }
   const SurfaceBrdfs* brdfs() const { return brdfs_ ? &*brdfs_ : nullptr; }
 
  private:
@@ -50,6 +52,7 @@ class GroupScene {
   std::optional<SurfaceColors> colors_;
   std::optional<SurfaceBrdfs> brdfs_;
   std::optional<RayScene> rays_;
+  std::optional<MirrorPaths> mirrors_;  // set with the BRDFs
 };
 
 // Returns how many glossy samples a group may have; the runtime holds what it shades of them in one page.

@@ -1,10 +1,12 @@
 #include "baker/trace/exit_radiance.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include <glm/geometric.hpp>
 
 #include "baker/transport/frame.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::baker {
 
@@ -77,6 +79,41 @@ void ExitToSample::addGlossy(const GatherHit& hit, float weight, std::span<float
   const std::uint32_t dealt = seed_ + hit.ray * 2654435769u;
   const float chance = static_cast<float>(dealt >> 8) * 0x1p-24f;
   bounce_.exit.addGlossy(hit, -along, chance, weight, bounce_, sum);
+}
+
+void ExitToSample::addMirrored(const MirroredLight& light, float weight, std::span<float> scratch,
+                               std::span<float> sum) const {
+  using From = MirroredLight::From;
+  if (!brings(light)) return;
+  const TransferField& before = bounce_.before;
+  const auto bands = static_cast<std::size_t>(sh::coefficientCount(before.order));
+  // The columns that this light has: those of the sky, and those of the group's lights.
+  std::size_t begin = 0, end = before.columns;
+  const glm::vec3 throughput = light.throughput();
+  glm::vec3 factor = weight * throughput;
+  std::fill(scratch.begin(), scratch.end(), 0.0f);
+  switch (light.from) {
+    case From::Sky:
+      end = bands;
+      for (std::size_t c = 0; c < before.channels; ++c)
+        sh::evaluate(before.order, light.direction, scratch.subspan(c * before.columns, bands));
+      break;
+    case From::Base:
+      // The kernels bring the light of lamps from the base too.
+      if (bounce_.number == 1) end = bands;
+      bounce_.exit.addDiffuse(light.hit, weight, before, scratch);
+      factor = glm::vec3(1.0f);  // it is the albedo of the hit
+      break;
+    case From::LightsByKernel:
+      begin = bands;
+      [[fallthrough]];
+    case From::Kernel:
+      bounce_.exit.addGlossy(light.hit, light.direction, /*chance=*/-1.0f, 1.0f, bounce_, scratch);
+      break;
+  }
+  for (std::size_t c = 0; c < before.channels; ++c)
+    for (std::size_t i = c * before.columns + begin; i < c * before.columns + end; ++i)
+      sum[i] += factor[static_cast<int>(c)] * scratch[i];
 }
 
 }  // namespace lambent::baker

@@ -47,9 +47,9 @@ class BouncePartner {
                             float chance, float weight, std::span<float> sum) const = 0;
   // Returns how much of uniform light the hit point reflects towards `to`, for each channel.
   virtual glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const = 0;
-  // Calls `take` with the hits of one of the partner's samples, and the direction from each to the sample.
-  using TakeGlossyHit = std::function<void(const GatherHit& hit, float weight, const glm::vec3& to)>;
-  virtual void visitHits(std::size_t sample, const TakeGlossyHit& take) const = 0;
+  // Calls `take` with what the rays of one of the partner's samples met, and how much of the light leaves it
+  // towards the sample.
+  virtual void visitHits(std::size_t sample, const ExitRadiance& exit, const TakeHit& take) const = 0;
   // Gathers one pass over the partner's samples. `now` is the diffuse transfer of all samples; this adds to
   // it at the partner's own samples. The key of the context is that of this pass. Returns false if stopped.
   virtual bool gather(const Bounce& bounce, TransferField& now, const BakeContext& context) = 0;
@@ -112,6 +112,18 @@ class ExitRadiance {
                  std::span<float> sum) const;
   // Returns how much of the light at a hit leaves it towards `to`.
   glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const;
+  // Calls `take` with all of these that passes between surfaces bring light from. `weight_of` returns the
+  // weight of a ray.
+  template <typename WeightOf>
+  void visitMirrored(std::span<const MirroredLight> mirrored, const WeightOf& weight_of,
+                     const TakeHit& take) const {
+    for (const MirroredLight& light : mirrored) {
+      if (light.from == MirroredLight::From::Base)
+        take(light.hit, weight_of(light.hit.ray), light.throughput());
+      else if (light.from == MirroredLight::From::Kernel)
+        take(light.hit, weight_of(light.hit.ray), light.throughput() * albedo(light.hit, light.direction));
+    }
+  }
   std::span<const glm::uvec3> triangleSamples() const { return triangle_samples_; }
 
  private:
@@ -155,6 +167,15 @@ class ExitToSample {
       bounce_.exit.addDiffuse(hit, weight, bounce_.before, sum);
     else
       addGlossy(hit, weight, sum);
+  }
+  // Adds light that came by way of mirrors. That of the sky, and what the group's lights send straight to
+  // mirrors, comes with the first bounce alone. `scratch` is as long as `sum`.
+  void addMirrored(const MirroredLight& light, float weight, std::span<float> scratch,
+                   std::span<float> sum) const;
+  // Returns whether this bounce brings such light at all.
+  bool brings(const MirroredLight& light) const {
+    return bounce_.number == 1 || light.from == MirroredLight::From::Base ||
+           light.from == MirroredLight::From::Kernel;
   }
 
  private:

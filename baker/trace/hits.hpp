@@ -31,32 +31,63 @@ struct GatherHit {
   }
 };
 
+// MirroredLight is what a ray of a sample found by way of mirrors (mirror_paths.hpp), beside diffuse
+// surfaces.
+struct MirroredLight {
+  enum class From : std::uint8_t {
+    Sky,             // distant light from `direction`
+    Base,            // what the diffuse base of the mirror at `hit` sends in all directions
+    Kernel,          // what the surface at `hit`, which is not diffuse, sends along `direction`
+    LightsByKernel,  // that part of it that the group's own lights bring straight to `hit`
+  };
+  GatherHit hit;  // where the path is; `albedo` is what it passes on of the light there
+  glm::vec3 direction{0.0f};
+  From from = From::Sky;
+
+  glm::vec3 throughput() const {
+    return glm::vec3(hit.albedo[0], hit.albedo[1], hit.albedo[2]) * (1.0f / 65535.0f);
+  }
+};
+
 // RangeHits are the hits of one range of samples.
 struct RangeHits {
   std::vector<std::uint32_t> offsets;  // index of each sample's first hit, then the number of hits
   std::vector<GatherHit> hits;
+  // The same for light that came by way of mirrors; both are empty if there is none.
+  std::vector<std::uint32_t> mirrored_offsets;
+  std::vector<MirroredLight> mirrored;
   bool kept = false;
 
   // Starts the next sample: hits that are appended from here on are its own. The last call ends the range.
   void next() { offsets.push_back(static_cast<std::uint32_t>(hits.size())); }
-  // Replaces these hits by those of samples [begin, end), traced by a walk with functions look() and
-  // keepHits().
+  // Replaces these hits by those of samples [begin, end), traced by a walk with functions look(), looked()
+  // and keepHits(). Returns for each sample whether it took twice the rays.
   template <typename Walk>
-  void traceAgain(Walk&& walk, std::size_t begin, std::size_t end) {
+  std::vector<std::uint8_t> traceAgain(Walk&& walk, std::size_t begin, std::size_t end) {
+    std::vector<std::uint8_t> double_rays;
     offsets.clear();
     hits.clear();
     for (std::size_t s = begin; s < end; ++s) {
       next();
       walk.look(s);
       walk.keepHits(*this);
+      double_rays.push_back(walk.looked().double_rays());
     }
     next();
+    return double_rays;
   }
 
-  std::size_t bytes() const { return hits.size() * sizeof(GatherHit); }
+  std::size_t bytes() const {
+    return hits.size() * sizeof(GatherHit) + mirrored.size() * sizeof(MirroredLight);
+  }
   // Returns the hits of the sample at this index in the range.
   std::span<const GatherHit> of(std::size_t sample) const {
     return std::span(hits).subspan(offsets[sample], offsets[sample + 1] - offsets[sample]);
+  }
+  std::span<const MirroredLight> mirroredOf(std::size_t sample) const {
+    if (mirrored.empty()) return {};
+    return std::span(mirrored).subspan(mirrored_offsets[sample],
+                                       mirrored_offsets[sample + 1] - mirrored_offsets[sample]);
   }
 };
 
@@ -83,6 +114,7 @@ class HitStore {
     }
     ranges_[range] = std::move(hits);
     ranges_[range].hits.shrink_to_fit();
+    ranges_[range].mirrored.shrink_to_fit();
     ranges_[range].kept = true;
   }
   const RangeHits& range(std::size_t index) const { return ranges_[index]; }
@@ -112,6 +144,9 @@ class StoredHits {
   StoredHits& operator=(const StoredHits&) = delete;
 
   std::span<const GatherHit> of(std::size_t sample) const { return hits_->of(sample - first_); }
+  std::span<const MirroredLight> mirroredOf(std::size_t sample) const {
+    return hits_->mirroredOf(sample - first_);
+  }
 
  private:
   const RangeHits* hits_;

@@ -40,7 +40,8 @@ void SampleVisibility::keepHits(RangeHits& out) const {
                         .v = GatherHit::unorm(hit.v)});
 }
 
-void paintHits(const SurfaceColors& colors, RangeHits& hits) {
+void paintHits(const TracedScene& scene, std::size_t first, const RayDirection& direction, RangeHits& hits) {
+  const SurfaceColors& colors = scene.colors;
   std::size_t left = 0;
   for (std::size_t s = 0; s + 1 < hits.offsets.size(); ++s) {
     const std::size_t begin = std::exchange(hits.offsets[s], static_cast<std::uint32_t>(left));
@@ -58,6 +59,7 @@ void paintHits(const SurfaceColors& colors, RangeHits& hits) {
   }
   if (!hits.offsets.empty()) hits.offsets.back() = static_cast<std::uint32_t>(left);
   hits.hits.resize(left);
+  if (scene.mirrors) scene.mirrors->follow(first, direction, hits);
 }
 
 }  // namespace lambent::baker

@@ -9,6 +9,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "baker/trace/hits.hpp"
+#include "baker/trace/traced_scene.hpp"
 #include "baker/transport/direction_table.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
@@ -58,7 +59,8 @@ class SampleVisibility {
   std::vector<RayHit> hits_;
 };
 
-// Looks up what the surfaces at hits reflect. Removes hits on surfaces that reflect nothing.
-void paintHits(const SurfaceColors& colors, RangeHits& hits);
+// Looks up what the surfaces at hits reflect, and removes hits on surfaces that reflect nothing. Then follows
+// rays from mirrors, where the scene has any; `first` is the first sample of the hits.
+void paintHits(const TracedScene& scene, std::size_t first, const RayDirection& direction, RangeHits& hits);
 
 }  // namespace lambent::baker

@@ -4,29 +4,28 @@
 #include <utility>
 
 #include "baker/trace/hit_bytes.hpp"
-#include "baker/trace/sample_visibility.hpp"
 
 namespace lambent::baker {
 
-TracedRanges::TracedRanges(const TracedScene& scene, std::size_t samples, bool keep_hits, bool kept,
+TracedRanges::TracedRanges(const TracedScene& scene, std::size_t samples, Settings settings, Paint paint,
                            HitStore& store)
     : scene_(scene),
+      paint_(std::move(paint)),
       store_(store),
-      keep_hits_(keep_hits),
-      kept_(kept),
+      settings_(settings),
       rays_((samples + kSamplesPerRange - 1) / kSamplesPerRange, 0),
       unpainted_(rays_.size()) {}
 
 void TracedRanges::offer(std::size_t range, RangeHits&& hits) {
-  paintHits(scene_.colors, hits);
+  paint_(range * kSamplesPerRange, hits);
   store_.offer(range, std::move(hits));
 }
 
 void TracedRanges::add(std::size_t range, std::uint64_t rays, RangeHits&& hits, const std::stop_token& stop) {
   rays_[range] = rays;
   traced_ += rays;
-  if (!keep_hits_ || stop.stop_requested()) return;
-  if (kept_) {
+  if (!settings_.keep_hits || stop.stop_requested()) return;
+  if (settings_.kept) {
     ByteWriter bytes;
     writeHits(hits, bytes);
     unpainted_[range] = bytes.take();
@@ -44,7 +43,7 @@ Output TracedRanges::output() {
 void TracedRanges::write(std::size_t range, ByteWriter& out) {
   out.add(rays_[range]);
   // Hits that had no room in memory are not written; they are traced again when they are asked for.
-  const bool with_hits = keep_hits_ && store_.range(range).kept;
+  const bool with_hits = settings_.keep_hits && store_.range(range).kept;
   out.add(with_hits);
   const std::vector<std::byte> hits = std::exchange(unpainted_[range], {});
   if (with_hits) out.addBytes(hits);

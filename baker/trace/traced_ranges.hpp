@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <stop_token>
 #include <vector>
 
@@ -17,9 +18,17 @@ namespace lambent::baker {
 
 class TracedRanges {
  public:
-  // Scene and store must outlive this. `keep_hits` says that bounces need hits; `kept` says that output()
-  // will be written.
-  TracedRanges(const TracedScene& scene, std::size_t samples, bool keep_hits, bool kept, HitStore& store);
+  // Gives the hits of samples that begin with `first` their colours (paintHits). It is called once all other
+  // outputs of the range are there.
+  using Paint = std::function<void(std::size_t first, RangeHits& hits)>;
+
+  struct Settings {
+    bool keep_hits;  // bounces need hits
+    bool kept;       // output() will be written
+  };
+  // Scene and store must outlive this.
+  TracedRanges(const TracedScene& scene, std::size_t samples, Settings settings, Paint paint,
+               HitStore& store);
 
   // Takes the result of a range that was traced just now. May be called from any thread, once for each range.
   // If a stop was requested, the hits are not kept.
@@ -37,8 +46,9 @@ class TracedRanges {
   void offer(std::size_t range, RangeHits&& hits);
 
   const TracedScene& scene_;
+  Paint paint_;
   HitStore& store_;
-  bool keep_hits_, kept_;
+  Settings settings_;
   std::vector<std::uint64_t> rays_;
   std::vector<std::vector<std::byte>> unpainted_;  // packed hits without colours, until they are written
   std::atomic<std::uint64_t> traced_ = 0;

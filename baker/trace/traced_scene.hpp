@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "baker/trace/mirror_paths.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
@@ -19,9 +20,10 @@ struct TracedScene {
   const RayScene& rays;
   const SurfaceColors& colors;
   std::span<const PlannedLight> lights;
+  const MirrorPaths* mirrors = nullptr;  // null if no surface is glossy
 
   TracedScene withSamples(const SampleSet& others) const {
-    return {scene, geometry, others, rays, colors, lights};
+    return {scene, geometry, others, rays, colors, lights, mirrors};
   }
 };
 

@@ -23,6 +23,7 @@ struct Transport {
   baker::SampleSet samples;
   baker::RayScene rays;
   baker::SurfaceColors colors;
+  const baker::MirrorPaths* mirrors = nullptr;  // set by tests whose rays follow mirrors
 
   // with_glossy: surfaces that are not diffuse get glossy samples.
   explicit Transport(const baker::Scene& from, bool with_glossy = false)
@@ -30,7 +31,7 @@ struct Transport {
   Transport(const Transport&) = delete;  // colors refers to geometry
   Transport& operator=(const Transport&) = delete;
 
-  baker::TracedScene diffuse() const { return {scene, geometry, samples, rays, colors, lights}; }
+  baker::TracedScene diffuse() const { return {scene, geometry, samples, rays, colors, lights, mirrors}; }
 
   baker::TransferField direct(int order = 5, std::size_t ray_count = 512) const {
     return bake(order, ray_count, /*bounces=*/0).direct.field;

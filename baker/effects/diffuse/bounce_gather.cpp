@@ -14,6 +14,7 @@ namespace lambent::baker {
 // Received are the hits of a sample's rays and the exit radiance towards it; hits are weighted by `scale`.
 struct BounceGather::Received {
   std::span<const GatherHit> hits;
+  std::span<const MirroredLight> mirrored;
   float scale;
   const Hemisphere& hemisphere;
   const ExitToSample& exit;
@@ -26,42 +27,59 @@ void BounceGather::visitHits(std::size_t sample, const TakeHit& take) const {
   for (const GatherHit& hit : hits.of(sample))
     take(hit, static_cast<float>(hemisphere.weight(hit.ray)),
          exit_.albedo(hit, -(frame * hemisphere.direction(hit.ray))));
+  exit_.visitMirrored(
+      hits.mirroredOf(sample), [&](std::uint32_t ray) { return static_cast<float>(hemisphere.weight(ray)); },
+      take);
 }
 
 void BounceGather::range(const Bounce& bounce, std::size_t begin, std::size_t end, TransferField& now,
                          TransferField& mapped) const {
   std::vector<GatherHit> thinned;
+  std::vector<float> scratch;
   const StoredHits hits(direct_.hits, pass_, begin, end);
   const std::size_t first_mapped = scene_.samples.normal_mapped.begin;
   for (std::size_t s = begin; s < end; ++s) {
     const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.double_rays[s] != 0);
     const ExitToSample exit(bounce, hemisphere.table(), scene_.samples.normals[s], s);
-    Received received{hits.of(s), 1.0f, hemisphere, exit};
+    Received received{hits.of(s), hits.mirroredOf(s), 1.0f, hemisphere, exit};
     if (bounce.thinly) received.scale = thinHits(bounce.number, hemisphere, received.hits, thinned);
-    if (s < first_mapped)
+    if (s < first_mapped) {
       exit.addAll(
           received.hits,
           [&](std::uint32_t ray) { return received.scale * static_cast<float>(hemisphere.weight(ray)); },
           now.at(s));
-    else
+      scratch.resize(now.vectorSize());
+      for (const MirroredLight& light : received.mirrored)
+        exit.addMirrored(light, static_cast<float>(hemisphere.weight(light.hit.ray)), scratch, now.at(s));
+    } else {
       gatherMapped(s, received, now.at(s), mapped.at(s - first_mapped));
+    }
   }
 }
 
 void BounceGather::gatherMapped(std::size_t sample, const Received& received, std::span<float> out,
                                 std::span<float> mapped) const {
   const std::size_t stride = out.size();
-  std::vector<float> exit(stride), local(kIncident * stride, 0.0f);
-  for (const GatherHit& hit : received.hits) {
-    std::fill(exit.begin(), exit.end(), 0.0f);
-    received.exit.add(hit, received.scale, exit);
-    const auto weight = static_cast<float>(received.hemisphere.weight(hit.ray));
+  std::vector<float> exit(stride, 0.0f), scratch(stride), local(kIncident * stride, 0.0f);
+  // Adds what was found along a ray, and clears it.
+  const auto addExit = [&](std::uint32_t ray) {
+    const auto weight = static_cast<float>(received.hemisphere.weight(ray));
     for (std::size_t i = 0; i < stride; ++i) out[i] += weight * exit[i];
-    const auto& weights = received.hemisphere.incidentWeight(hit.ray);
+    const auto& weights = received.hemisphere.incidentWeight(ray);
     for (std::size_t j = 0; j < kIncident; ++j)
       for (std::size_t i = 0; i < stride; ++i) local[j * stride + i] += weights[j] * exit[i];
+    std::fill(exit.begin(), exit.end(), 0.0f);
+  };
+  for (const GatherHit& hit : received.hits) {
+    received.exit.add(hit, received.scale, exit);
+    addExit(hit.ray);
   }
-  if (received.hits.empty()) return;
+  for (const MirroredLight& light : received.mirrored) {
+    if (!received.exit.brings(light)) continue;
+    received.exit.addMirrored(light, 1.0f, scratch, exit);
+    addExit(light.hit.ray);
+  }
+  if (received.hits.empty() && received.mirrored.empty()) return;
   const sh::Rotation group_from_local(localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[sample]))),
                                       3);
   std::array<float, kIncident> from, to;

@@ -272,9 +272,7 @@ class Passes {
   bool goOn(TransferField first) {
     const auto visit = [&](std::size_t sample, const TakeHit& take) {
       if (sample < scene_.samples.glossy.begin) return gather_.visitHits(sample, take);
-      partner_->visitHits(sample, [&](const GatherHit& hit, float weight, const glm::vec3& to) {
-        take(hit, weight, exit_.albedo(hit, to));
-      });
+      partner_->visitHits(sample, exit_, take);
     };
     const auto met =
         samplesMet(sampleAreas(scene_.geometry, scene_.samples), exit_.triangleSamples(), visit, context_);

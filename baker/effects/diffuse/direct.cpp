@@ -145,9 +145,16 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
   return traced;
 }
 
+void DirectPass::paint(std::size_t first, std::span<const std::uint8_t> double_rays, RangeHits& hits) const {
+  const auto direction = [&](std::size_t s, std::uint32_t ray) {
+    const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[first + s]))));
+    return frame * hemisphereOf(first + s, double_rays[s] != 0).direction(ray);
+  };
+  paintHits(scene_, first, direction, hits);
+}
+
 void DirectPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
-  hits.traceAgain(Walk(*this), begin, end);
-  paintHits(scene_.colors, hits);
+  paint(begin, hits.traceAgain(Walk(*this), begin, end), hits);
 }
 
 std::optional<DirectResult> bakeDirect(const DirectPass& pass, const TracedScene& scene,
@@ -160,7 +167,10 @@ std::optional<DirectResult> bakeDirect(const DirectPass& pass, const TracedScene
                       .mapped = makeField(mapped, settings.order, kIncident, pass.channels(), pass.columns()),
                       .looks = {std::vector<std::uint8_t>(count, 0), std::vector<std::uint8_t>(count, 0)},
                       .hits = HitStore(own, settings.keep_hits ? settings.hit_memory : 0)};
-  TracedRanges ranges(scene, own, settings.keep_hits, context.keeps(), result.hits);
+  const auto paint = [&](std::size_t first, RangeHits& hits) {
+    pass.paint(first, std::span(result.looks.double_rays).subspan(first), hits);
+  };
+  TracedRanges ranges(scene, own, {settings.keep_hits, context.keeps()}, paint, result.hits);
   const bool grey_lights = scene.colors.greyEmission();
   const auto compute = [&](std::size_t begin, std::size_t end) {
     RangeHits hits;

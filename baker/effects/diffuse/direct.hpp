@@ -69,6 +69,8 @@ class DirectPass {
   // samples are left out, since with a million rays per sample a range takes seconds.
   std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, DirectResult& out,
                      RangeHits& hits) const;
+  // Gives hits of samples that begin with `first` their colours. `double_rays` are theirs.
+  void paint(std::size_t first, std::span<const std::uint8_t> double_rays, RangeHits& hits) const;
   // Fills in only the hits, the same as those of bake() and with colours.
   void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
 

@@ -111,9 +111,11 @@ class GlossyBounces::Walk {
 
   // Gathers at sample `s` of the pass. Hits in a row of `together` rays (raysTogether) share the exit
   // radiance of one of them.
-  void gather(std::size_t s, std::span<const GatherHit> hits, std::uint32_t together,
+  void gather(std::size_t s, const StoredHits& stored, std::uint32_t together,
               const GlossyHemisphere& hemisphere, State& now) {
-    if (hits.empty()) return;
+    const std::span<const GatherHit> hits = stored.of(s);
+    const std::span<const MirroredLight> mirrored = stored.mirroredOf(s);
+    if (hits.empty() && mirrored.empty()) return;
     const std::size_t sample = pass_.first() + s;
     const glm::vec3 normal = pass_.scene().samples.normals[sample];
     const ExitToSample exit(bounce_, hemisphere.table(), normal, sample);
@@ -133,6 +135,13 @@ class GlossyBounces::Walk {
       const std::uint32_t dealt = (row + static_cast<std::uint32_t>(bounce_.number) * 5u) * 2654435769u;
       const auto pick = static_cast<std::size_t>(std::uint64_t{dealt} * (last - first) >> 32);
       exit.add(hits[first + pick], 1.0f, std::span(exits_).subspan(filled * stride, stride));
+      if (++filled == kBlock) addBlock(even), filled = 0;
+    }
+    for (const MirroredLight& light : mirrored) {
+      if (!exit.brings(light)) continue;
+      for (std::size_t e = 0; e < even; ++e) weights_[e][filled] = hemisphere.row(light.hit.ray)[e];
+      scratch_.resize(stride);
+      exit.addMirrored(light, 1.0f, scratch_, std::span(exits_).subspan(filled * stride, stride));
       if (++filled == kBlock) addBlock(even), filled = 0;
     }
     if (filled > 0) {
@@ -173,7 +182,7 @@ class GlossyBounces::Walk {
   const GlossyPass& pass_;
   const Bounce& bounce_;
   sh::Rotation outputs_from_local_;
-  std::vector<float> exits_, local_;
+  std::vector<float> exits_, local_, scratch_;
   std::array<std::array<float, kBlock>, kMostOutputs> weights_{};  // [output][hit of the block]
 };
 
@@ -260,17 +269,18 @@ glm::vec3 GlossyBounces::albedo(const GatherHit& hit, const glm::vec3& to) const
   return kUniform * glm::vec3(kernel[0], kernel[outputs], kernel[2 * outputs]);
 }
 
-void GlossyBounces::visitHits(std::size_t sample, const TakeGlossyHit& take) const {
+void GlossyBounces::visitHits(std::size_t sample, const ExitRadiance& exit, const TakeHit& take) const {
   const std::size_t s = sample - pass_.first();
   const GlossyHemisphere& hemisphere = pass_.hemisphereOf(diffuse_.looks.double_rays[sample] != 0);
   const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(pass_.scene().samples.normals[sample]))));
   const StoredHits hits(direct_.hits, pass_, s, s + 1);
-  for (const GatherHit& hit : hits.of(s)) {
-    const glm::vec3 local = hemisphere.direction(hit.ray);
-    // Rays are uniform over the hemisphere, over which the cosine has the mean 1/2.
-    const float weight = 2.0f * local.z * static_cast<float>(hemisphere.weight(hit.ray));
-    take(hit, weight, -(frame * local));
-  }
+  // Rays are uniform over the hemisphere, over which the cosine has the mean 1/2.
+  const auto weight = [&](std::uint32_t ray) {
+    return 2.0f * hemisphere.direction(ray).z * static_cast<float>(hemisphere.weight(ray));
+  };
+  for (const GatherHit& hit : hits.of(s))
+    take(hit, weight(hit.ray), exit.albedo(hit, -(frame * hemisphere.direction(hit.ray))));
+  exit.visitMirrored(hits.mirroredOf(s), weight, take);
 }
 
 bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& now,
@@ -283,7 +293,7 @@ bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& n
     for (std::size_t s = begin; s < end; ++s) {
       const GlossyHemisphere& hemisphere =
           at.pass.hemisphereOf(at.looks.double_rays[at.pass.first() + s] != 0);
-      walk.gather(s, hits.of(s), raysTogether(share, hemisphere.table().size()), hemisphere, now);
+      walk.gather(s, hits, raysTogether(share, hemisphere.table().size()), hemisphere, now);
     }
   };
   return runStage({.count = at.pass.size(),

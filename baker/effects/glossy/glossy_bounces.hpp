@@ -50,7 +50,7 @@ class GlossyBounces : public BouncePartner {
   glm::vec3 addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
                     float weight, std::span<float> sum) const override;
   glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const override;
-  void visitHits(std::size_t sample, const TakeGlossyHit& take) const override;
+  void visitHits(std::size_t sample, const ExitRadiance& exit, const TakeHit& take) const override;
   bool gather(const Bounce& bounce, TransferField& now, const BakeContext& context) override;
   void advance() override;
   std::vector<double> energies() const override { return energies_; }

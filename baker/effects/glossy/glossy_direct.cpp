@@ -9,6 +9,7 @@
 #include "baker/trace/fill.hpp"
 #include "baker/trace/sample_visibility.hpp"
 #include "baker/trace/traced_ranges.hpp"
+#include "baker/transport/frame.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -171,9 +172,17 @@ std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::st
   return traced;
 }
 
+void GlossyPass::paint(std::size_t begin, std::span<const std::uint8_t> double_rays, RangeHits& hits) const {
+  const auto direction = [&](std::size_t s, std::uint32_t ray) {
+    const glm::mat3 frame(
+        localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[first() + begin + s]))));
+    return frame * hemisphereOf(double_rays[s] != 0).direction(ray);
+  };
+  paintHits(scene_, first() + begin, direction, hits);
+}
+
 void GlossyPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
-  hits.traceAgain(Walk(*this), begin, end);
-  paintHits(scene_.colors, hits);
+  paint(begin, hits.traceAgain(Walk(*this), begin, end), hits);
 }
 
 void diffuseTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out) {
@@ -225,7 +234,10 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
                     kept_lights = pass.scene().colors.greyEmission() ? channel : per_sample;
   field.visibility.resize(count * field.visibilitySize());
   field.lights_shadowed.resize(count * per_sample);
-  TracedRanges ranges(pass.scene(), count, keep_hits, context.keeps(), result.hits);
+  const auto paint = [&](std::size_t begin, RangeHits& hits) {
+    pass.paint(begin, std::span(looks.double_rays).subspan(pass.first() + begin), hits);
+  };
+  TracedRanges ranges(pass.scene(), count, {keep_hits, context.keeps()}, paint, result.hits);
   const auto compute = [&](std::size_t begin, std::size_t end) {
     RangeHits hits;
     const std::uint64_t rays = pass.bake(begin, end, context.stop, field, looks, hits);

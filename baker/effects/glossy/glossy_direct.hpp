@@ -32,9 +32,10 @@ class GlossyPass {
   // Returns a GlossyField of the right shape without samples.
   GlossyField shape() const;
 
-  // Does what DirectPass::bake does. `looks` has all samples of the group.
+  // These do what those of DirectPass do. `looks` has all samples of the group.
   std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, GlossyField& field,
                      SampleVisibilities& looks, RangeHits& hits) const;
+  void paint(std::size_t first, std::span<const std::uint8_t> double_rays, RangeHits& hits) const;
   void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
 
  private:

@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/effects/neighborhood/follow_highlight.hpp"
+#include "baker/brdf/follow_highlight.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"

@@ -1,4 +1,4 @@
-#include "baker/effects/neighborhood/follow_highlight.hpp"
+#include "baker/brdf/follow_highlight.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,197 @@
+#include "baker/trace/mirror_paths.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "baker/brdf/follow_highlight.hpp"
+#include "baker/transport/samples.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// Where light is reflected this often, what is left leaves the last mirror by its exit kernel.
+constexpr std::uint32_t kMostReflections = 16;
+
+float shareOf(std::uint16_t unorm) {
+  return static_cast<float>(unorm) * (1.0f / 65535.0f);
+}
+
+void setAlbedo(const glm::vec3& albedo, GatherHit& hit) {
+  for (int c = 0; c < 3; ++c) hit.albedo[c] = GatherHit::unorm(albedo[c]);
+}
+
+bool isBlack(const GatherHit& hit) {
+  return std::all_of(std::begin(hit.albedo), std::end(hit.albedo), [](std::uint16_t a) { return a == 0; });
+}
+
+// Spreads the numbers of samples, so that neighbours do not make the same choices.
+std::uint32_t scattered(std::size_t sample) {
+  std::uint32_t hash = static_cast<std::uint32_t>(sample) * 0x9E3779B9u;
+  hash = (hash ^ hash >> 16) * 0x7FEB352Du;
+  return hash ^ hash >> 15;
+}
+
+}  // namespace
+
+bool MirrorPaths::isSharp(const GatherHit& hit) const {
+  return brdfs_.glossy(hit.triangle) &&
+         brdfs_.roughness(hit.triangle, shareOf(hit.u), shareOf(hit.v)) < kMirrorRoughness;
+}
+
+// Follows all paths of a range at once, a reflection at a time.
+class MirrorPaths::Walk {
+ public:
+  Walk(const MirrorPaths& mirrors, RangeHits& hits) : mirrors_(mirrors), hits_(hits) {}
+
+  // Starts a path at hit `index`, which sample `sample` sees along a ray of this direction.
+  void start(std::size_t index, std::size_t sample, std::uint32_t number, const glm::vec3& along) {
+    paths_.push_back({.hit = hits_.hits[index],
+                      .along = along,
+                      .throughput = glm::vec3(1.0f),
+                      .index = index,
+                      .sample = static_cast<std::uint32_t>(sample),
+                      .number = number});
+  }
+
+  void follow() {
+    std::vector<RaySegment> rays;
+    std::vector<FirstHit> met;
+    for (std::uint32_t reflection = 0; reflection < kMostReflections && !paths_.empty(); ++reflection) {
+      std::erase_if(paths_, [&](Path& path) { return !reflect(path, reflection); });
+      rays.clear();
+      for (const Path& path : paths_)
+        rays.push_back({path.from, path.ray, std::numeric_limits<float>::infinity()});
+      met.resize(rays.size());
+      mirrors_.rays_.firstHits(rays, met);
+      std::size_t next = 0;
+      std::erase_if(paths_, [&](Path& path) { return !meet(path, met[next++]); });
+    }
+    for (const Path& path : paths_) add(MirroredLight::From::Kernel, path, -path.along, path.throughput);
+  }
+
+  // Takes out the hits that paths began at and that no diffuse surface replaced, and sorts what they found.
+  void finish(const std::vector<std::uint8_t>& begun) {
+    std::size_t left = 0;
+    for (std::size_t s = 0; s + 1 < hits_.offsets.size(); ++s) {
+      const std::size_t begin = std::exchange(hits_.offsets[s], static_cast<std::uint32_t>(left));
+      for (std::size_t h = begin; h < hits_.offsets[s + 1]; ++h)
+        if (begun[h] == 0 || hits_.hits[h].triangle != kNowhere) hits_.hits[left++] = hits_.hits[h];
+    }
+    hits_.offsets.back() = static_cast<std::uint32_t>(left);
+    hits_.hits.resize(left);
+
+    // Of one ray, what was found after fewer reflections comes first.
+    std::stable_sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) {
+      return std::pair(a.sample, a.light.hit.ray) < std::pair(b.sample, b.light.hit.ray);
+    });
+    hits_.mirrored_offsets.assign(hits_.offsets.size(), 0);
+    for (const Found& found : found_) {
+      ++hits_.mirrored_offsets[found.sample + 1];
+      hits_.mirrored.push_back(found.light);
+    }
+    for (std::size_t s = 1; s < hits_.mirrored_offsets.size(); ++s)
+      hits_.mirrored_offsets[s] += hits_.mirrored_offsets[s - 1];
+  }
+
+ private:
+  // Hits of paths that did not end on a diffuse surface.
+  static constexpr std::uint32_t kNowhere = 0xffffffffu;
+
+  struct Path {
+    GatherHit hit;                    // the last one; `ray` is the sample's
+    glm::vec3 along{0.0f};            // to the hit
+    glm::vec3 from{0.0f}, ray{0.0f};  // where it goes on
+    glm::vec3 throughput;
+    std::size_t index;  // of the hit that it began at
+    std::uint32_t sample, number;
+  };
+  struct Found {
+    std::uint32_t sample;
+    MirroredLight light;
+  };
+
+  void add(MirroredLight::From from, const Path& path, const glm::vec3& direction, const glm::vec3& factor) {
+    MirroredLight light{.hit = path.hit, .direction = direction, .from = from};
+    setAlbedo(factor, light.hit);
+    if (!isBlack(light.hit)) found_.push_back({path.sample, light});
+  }
+
+  // Directs a path into the highlight at its hit. Returns false if it ends there.
+  bool reflect(Path& path, std::uint32_t reflection) {
+    // The hit is left to diffuse surfaces that the path may meet.
+    if (reflection == 0) hits_.hits[path.index].triangle = kNowhere;
+    const GatherHit hit = path.hit;
+    const float u = shareOf(hit.u), v = shareOf(hit.v);
+    const glm::uvec3 t = mirrors_.geometry_.triangles[hit.triangle];
+    const auto& positions = mirrors_.geometry_.positions;
+    const glm::vec3 a = positions[t.x], b = positions[t.y], c = positions[t.z];
+    PointReflection at = mirrors_.brdfs_.reflection(hit.triangle, u, v, -path.along);
+    // Rays of glossy samples may have been mirrored at the sample's horizon.
+    const float below = std::min(-glm::dot(path.along, at.geometric), 0.0f);
+    const glm::vec3 to = glm::normalize(-path.along - 2.0f * below * at.geometric);
+    if (mirrors_.with_lights_) add(MirroredLight::From::LightsByKernel, path, to, path.throughput);
+    if (at.diffuse != glm::vec3(0.0f)) add(MirroredLight::From::Base, path, to, path.throughput * at.diffuse);
+    const HighlightSample next = sampleHighlight(at, to, choices(path.number, reflection));
+    path.throughput *= next.weight;
+    const glm::vec3 place = (1.0f - u - v) * a + u * b + v * c;
+    const float size = std::sqrt(0.5f * glm::length(glm::cross(b - a, c - a)));
+    path.from = place + standOff(place, size) * at.geometric;
+    path.ray = next.ray, path.along = next.direction;
+    return path.throughput != glm::vec3(0.0f);
+  }
+
+  // Adds the light that the path finds. Returns true if it is at another mirror.
+  bool meet(Path& path, const FirstHit& met) {
+    if (!met.any()) {
+      add(MirroredLight::From::Sky, path, path.along, path.throughput);
+      return false;
+    }
+    if (met.back) return false;
+    path.along = path.ray;
+    path.hit = {.triangle = met.triangle,
+                .ray = path.hit.ray,
+                .u = GatherHit::unorm(met.u),
+                .v = GatherHit::unorm(met.v)};
+    if (mirrors_.isSharp(path.hit)) return true;
+    if (mirrors_.brdfs_.glossy(met.triangle)) {
+      add(MirroredLight::From::Kernel, path, -path.along, path.throughput);
+      return false;
+    }
+    setAlbedo(
+        path.throughput * mirrors_.colors_.albedo(met.triangle, shareOf(path.hit.u), shareOf(path.hit.v)),
+        path.hit);
+    if (!isBlack(path.hit)) hits_.hits[path.index] = path.hit;
+    return false;
+  }
+
+  const MirrorPaths& mirrors_;
+  RangeHits& hits_;
+  std::vector<Path> paths_;
+  std::vector<Found> found_;
+};
+
+void MirrorPaths::follow(std::size_t first_sample, const RayDirection& direction, RangeHits& hits) const {
+  Walk walk(*this, hits);
+  std::vector<std::uint8_t> begun(hits.hits.size(), 0);
+  bool any = false;
+  for (std::size_t s = 0; s + 1 < hits.offsets.size(); ++s) {
+    const std::uint32_t number = scattered(first_sample + s);
+    for (std::uint32_t h = hits.offsets[s]; h < hits.offsets[s + 1]; ++h) {
+      const GatherHit& hit = hits.hits[h];
+      if (!isSharp(hit)) continue;
+      begun[h] = 1, any = true;
+      walk.start(h, s, number + hit.ray, direction(s, hit.ray));
+    }
+  }
+  if (!any) return;
+  walk.follow();
+  walk.finish(begun);
+}
+
+}  // namespace lambent::baker
