@@ -77,6 +77,8 @@ function(lambent_test name)
   endif()
   add_executable(${name} ${TEST_SOURCES})
   target_link_libraries(${name} PRIVATE lambent_flags ${TEST_LINK} GTest::gtest_main)
+  # What is tested is built as it ships. The claims themselves run once; -O1 compiles them in two thirds of the time.
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   # Tests find the shared data beside the checkout, if it is there; LAMBENT_SHARED_DATA overrides.
   target_compile_definitions(${name} PRIVATE "LAMBENT_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" "LAMBENT_BINARY_DIR=\"${CMAKE_BINARY_DIR}\"")
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
