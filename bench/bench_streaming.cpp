@@ -27,7 +27,7 @@
 #include <glm/ext/matrix_transform.hpp>
 
 #include "runtime/frame/frame.hpp"
-#include "runtime/frame/frame_times.hpp"
+#include "runtime/world/frame_times.hpp"
 #include "runtime/gpu/context.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/components.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/frame/setting_cost.hpp"
+#include "runtime/measure/setting_cost.hpp"
 #include "runtime/gpu/context.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/lights.hpp"

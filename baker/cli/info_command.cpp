@@ -54,7 +54,7 @@ Sizes sizesOf(const bundle::Description& d) {
 
 // Returns the triangles of each level, finest first; empty if the group has no proxy.
 std::vector<std::uint32_t> proxyTriangles(const bundle::Reader& reader, const bundle::Group& group) {
-  const auto index = static_cast<std::uint32_t>(&group - reader.description().groups.data());
+  const bundle::GroupIndex index{static_cast<std::uint32_t>(&group - reader.description().groups.data())};
   std::vector<std::uint32_t> counts;
   if (const auto proxy = reader.readProxy(index))  // checked before anything is printed
     for (const bundle::ProxyLevel& level : proxy->levels) counts.push_back(level.triangle_count);

@@ -18,7 +18,7 @@ std::vector<std::uint32_t> selectedGroups(const Session& session) {
   const auto& groups = session.stage.world().residency().groups();
   const auto add = [&](const scene::RigidGroupComponent& group) {
     for (std::uint32_t i = 0; i < groups.size(); ++i)
-      if (groups[i].bundle == group.bundle && groups[i].index == group.group) found.push_back(i);
+      if (groups[i].bundle == group.bundle && groups[i].index.value == group.group) found.push_back(i);
   };
   for (const ecs::Entity entity : selected)
     if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(entity)) add(*group);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "runtime/frame/frame.hpp"
-#include "runtime/frame/frame_times.hpp"
+#include "runtime/world/frame_times.hpp"
 
 namespace lambent::editor {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/frame/measured_frame.hpp"
+#include "runtime/measure/measured_frame.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/spec/size.hpp"

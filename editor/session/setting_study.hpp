@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/frame/setting_cost.hpp"
+#include "runtime/measure/setting_cost.hpp"
 
 namespace lambent::editor {
 

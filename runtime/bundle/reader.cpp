@@ -126,11 +126,20 @@ Result<transfer::VertexWeights> Reader::readRows(std::uint32_t index) const {
   return rows;
 }
 
-Result<CellCodebook> Reader::readCodebook(std::uint32_t group, std::uint32_t cell_index,
-                                          std::uint32_t transfer_index) const {
-  const Cell& cell = description().groups.at(group).cells.at(cell_index);
-  const CellTransfer& transfer = cell.transfers.at(transfer_index);
-  const std::string subject = fmt::format("{}: group {} cell {}", path().string(), group, cell_index);
+namespace {
+
+const Cell& cellAt(const Description& d, GroupIndex group, CellIndex cell) {
+  return d.groups.at(group.value).cells.at(cell.value);
+}
+
+}  // namespace
+
+Result<CellCodebook> Reader::readCodebook(GroupIndex group, CellIndex cell_index,
+                                          TransferIndex transfer_index) const {
+  const Cell& cell = cellAt(description(), group, cell_index);
+  const CellTransfer& transfer = cell.transfers.at(transfer_index.value);
+  const std::string subject =
+      fmt::format("{}: group {} cell {}", path().string(), group.value, cell_index.value);
   const auto bytes = readPayload(transfer.codebook);
   if (!bytes) return failAgain(bytes.error());
   auto codebook = transfer::decodeCodebook(*bytes, transfer.shape, transfer.clusters, subject);
@@ -152,36 +161,36 @@ Result<CellCodebook> Reader::readCodebook(std::uint32_t group, std::uint32_t cel
   return found;
 }
 
-Result<std::vector<std::uint32_t>> Reader::readPlane(std::uint32_t group, std::uint32_t cell,
-                                                     std::uint32_t transfer, std::uint32_t index) const {
+Result<std::vector<std::uint32_t>> Reader::readPlane(GroupIndex group, CellIndex cell, TransferIndex transfer,
+                                                     PlaneIndex index) const {
   const WeightPlane& plane =
-      description().groups.at(group).cells.at(cell).transfers.at(transfer).planes.at(index);
+      cellAt(description(), group, cell).transfers.at(transfer.value).planes.at(index.value);
   const auto bytes = readPayload(plane.payload);
   if (!bytes) return failAgain(bytes.error());
   return transfer::decodeWeightPlane(
       *bytes, plane.bits, plane.count,
-      fmt::format("{}: group {} cell {} plane {}", path().string(), group, cell, index));
+      fmt::format("{}: group {} cell {} plane {}", path().string(), group.value, cell.value, index.value));
 }
 
-Result<std::vector<transfer::LightWeights>> Reader::readLightWeights(std::uint32_t group,
-                                                                     std::uint32_t cell_index) const {
-  const Cell& cell = description().groups.at(group).cells.at(cell_index);
+Result<std::vector<transfer::LightWeights>> Reader::readLightWeights(GroupIndex group,
+                                                                     CellIndex cell_index) const {
+  const Cell& cell = cellAt(description(), group, cell_index);
   if (cell.light_weights < 0)
     return std::vector<transfer::LightWeights>(cell.sample_count, transfer::kOneLight);
   const auto bytes = readPayload(static_cast<std::uint32_t>(cell.light_weights));
   if (!bytes) return failAgain(bytes.error());
   return transfer::decodeLightWeights(
       *bytes, cell.sample_count, cell.light_probes.size(),
-      fmt::format("{}: group {} cell {}", path().string(), group, cell_index));
+      fmt::format("{}: group {} cell {}", path().string(), group.value, cell_index.value));
 }
 
-Result<CaptureProxy> Reader::readProxy(std::uint32_t index) const {
-  const Group& group = description().groups.at(index);
+Result<CaptureProxy> Reader::readProxy(GroupIndex index) const {
+  const Group& group = description().groups.at(index.value);
   if (group.proxy < 0) return CaptureProxy{};
   const auto bytes = readPayload(static_cast<std::uint32_t>(group.proxy));
   if (!bytes) return failAgain(bytes.error());
   return decodeCaptureProxy(*bytes, group.sample_count, static_cast<std::uint32_t>(group.lights.size()),
-                            fmt::format("{}: group {}", path().string(), index));
+                            fmt::format("{}: group {}", path().string(), index.value));
 }
 
 Result<BrdfTable> Reader::readBrdfTable(std::uint32_t index) const {
@@ -197,12 +206,13 @@ Result<BrdfTable> Reader::readBrdfTable(std::uint32_t index) const {
 
 namespace {
 
-Result<void> checkTransfer(const Reader& reader, std::uint32_t group, std::uint32_t cell,
-                           std::uint32_t transfer) {
+Result<void> checkTransfer(const Reader& reader, GroupIndex group, CellIndex cell, TransferIndex transfer) {
   if (auto found = reader.readCodebook(group, cell, transfer); !found) return failAgain(found.error());
-  const std::size_t planes = reader.description().groups[group].cells[cell].transfers[transfer].planes.size();
+  const std::size_t planes =
+      cellAt(reader.description(), group, cell).transfers[transfer.value].planes.size();
   for (std::uint32_t j = 0; j < planes; ++j)
-    if (auto codes = reader.readPlane(group, cell, transfer, j); !codes) return failAgain(codes.error());
+    if (auto codes = reader.readPlane(group, cell, transfer, PlaneIndex{j}); !codes)
+      return failAgain(codes.error());
   return {};
 }
 
@@ -220,12 +230,15 @@ Result<void> Reader::checkAll() const {
   for (std::uint32_t table = 0; table < d.brdf_tables.size(); ++table)
     if (auto found = readBrdfTable(table); !found) return failAgain(found.error());
   for (std::uint32_t group = 0; group < d.groups.size(); ++group)
-    if (auto proxy = readProxy(group); !proxy) return failAgain(proxy.error());
+    if (auto proxy = readProxy(GroupIndex{group}); !proxy) return failAgain(proxy.error());
   for (std::uint32_t group = 0; group < d.groups.size(); ++group)
     for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell) {
-      if (auto weights = readLightWeights(group, cell); !weights) return failAgain(weights.error());
+      if (auto weights = readLightWeights(GroupIndex{group}, CellIndex{cell}); !weights)
+        return failAgain(weights.error());
       for (std::uint32_t t = 0; t < d.groups[group].cells[cell].transfers.size(); ++t)
-        if (auto checked = checkTransfer(*this, group, cell, t); !checked) return checked;
+        if (auto checked = checkTransfer(*this, GroupIndex{group}, CellIndex{cell}, TransferIndex{t});
+            !checked)
+          return checked;
     }
   return {};
 }

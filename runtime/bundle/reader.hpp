@@ -16,6 +16,7 @@
 #include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
+#include "runtime/bundle/indices.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/transfer/light_weights.hpp"
 #include "runtime/transfer/vertex_rows.hpp"
@@ -51,16 +52,16 @@ class Reader {
   // Returns the rows of a draw. All their samples belong to cells with the draw's outputs.
   Result<transfer::VertexWeights> readRows(std::uint32_t draw) const;
   // Returns the codebook of Cell::transfers[transfer]. Its clusters agree with the lengths of the planes.
-  Result<CellCodebook> readCodebook(std::uint32_t group, std::uint32_t cell, std::uint32_t transfer) const;
+  Result<CellCodebook> readCodebook(GroupIndex group, CellIndex cell, TransferIndex transfer) const;
   // Returns the codes of a plane in the order of positionsOf().
-  Result<std::vector<std::uint32_t>> readPlane(std::uint32_t group, std::uint32_t cell,
-                                               std::uint32_t transfer, std::uint32_t plane) const;
+  Result<std::vector<std::uint32_t>> readPlane(GroupIndex group, CellIndex cell, TransferIndex transfer,
+                                               PlaneIndex plane) const;
   // Returns one entry per sample of the cell. If the cell has only one light probe, all entries are
   // kOneLight.
-  Result<std::vector<transfer::LightWeights>> readLightWeights(std::uint32_t group, std::uint32_t cell) const;
+  Result<std::vector<transfer::LightWeights>> readLightWeights(GroupIndex group, CellIndex cell) const;
   Result<BrdfTable> readBrdfTable(std::uint32_t index) const;
   // Returns a proxy without levels if the group has none.
-  Result<CaptureProxy> readProxy(std::uint32_t group) const;
+  Result<CaptureProxy> readProxy(GroupIndex group) const;
   // Reads, decodes and checks everything in the file.
   Result<void> checkAll() const;
 

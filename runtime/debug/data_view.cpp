@@ -54,7 +54,7 @@ CodingErrors errorsOf(const World& world) {
   for (std::uint32_t c = 0; c < residency.cells().size(); ++c) {
     const streaming::ResidentGroup& group = residency.groups()[residency.cells()[c].group];
     const bundle::Cell& cell =
-        world.description(group.bundle).groups[group.index].cells[c - group.first_cell];
+        world.description(group.bundle).groups[group.index.value].cells[c - group.first_cell];
     float error = 0.0f;
     for (const bundle::CellTransfer& transfer : cell.transfers) {
       if (!transfer.fromEnvironment()) continue;

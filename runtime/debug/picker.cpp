@@ -211,7 +211,7 @@ Result<std::optional<Picked>> Picker::pick(World& world, const Surfaces& surface
                volume.grid.size);
     if (!hit || (hit->from_within && picked) || hit->distance >= nearest) continue;
     const streaming::ResidentGroup& group = residency.groups()[volume.group];
-    const ecs::Entity entity = world.instance(group.bundle).groups[group.index];
+    const ecs::Entity entity = world.instance(group.bundle).groups[group.index.value];
     const auto* rigid = world.registry().tryGet<scene::RigidGroupComponent>(entity);
     nearest = hit->distance;
     picked = Picked{.draw = {},

@@ -7,7 +7,7 @@
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "runtime/frame/frame_times.hpp"
+#include "runtime/world/frame_times.hpp"
 
 namespace lambent::demo {
 

@@ -70,11 +70,11 @@ std::vector<ColumnLight> findColumnLights(const World& world) {
   const auto& groups = world.residency().groups();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const bundle::Description& description = world.description(groups[g].bundle);
-    const bundle::Group& described = description.groups[groups[g].index];
+    const bundle::Group& described = description.groups[groups[g].index.value];
     const glm::mat4 world_from_group = world.worldFromGroup(g);
     if (groups[g].volume >= 0 || described.lights.empty() || !hasItsSize(world_from_group)) continue;
     const std::vector<glm::vec3> strengths = world.lampsOf(g);
-    const std::vector<ecs::Entity>& entities = world.instance(groups[g].bundle).lamps[groups[g].index];
+    const std::vector<ecs::Entity>& entities = world.instance(groups[g].bundle).lamps[groups[g].index.value];
     for (std::uint32_t k = 0; k < described.lights.size(); ++k) {
       const bundle::GroupLight& light = described.lights[k];
       ColumnLight one{.group = g, .column = k, .entity = entities[k], .shapes = {}};

@@ -90,7 +90,7 @@ bool shadesColumn(const World& world, const LitScene& scene, std::size_t group, 
         scene.column_cubes, [&](const ColumnCube& cube) { return cube.group == g && cube.source == source; });
   };
   const auto& groups = world.residency().groups();
-  if (!world.description(groups[group].bundle).groups[groups[group].index].neighborhood) return false;
+  if (!world.description(groups[group].bundle).groups[groups[group].index.value].neighborhood) return false;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (g == group || groups[g].volume >= 0 || !world.litByColumn(g, light) || byCube(g)) continue;
     scene::Box lit = world.groupBounds(g);
@@ -232,7 +232,7 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
   }
   // The transfer of a volume contains what it stands within.
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::int32_t within = world.description(groups[g].bundle).groups[groups[g].index].within;
+    const std::int32_t within = world.description(groups[g].bundle).groups[groups[g].index.value].within;
     if (within < 0) continue;
     const std::size_t around =
         world.residency().bundles()[groups[g].bundle].first.groups + static_cast<std::size_t>(within);

@@ -45,11 +45,11 @@ void appendByPriority(std::vector<Work>& list, std::vector<Ranked> ranked) {
 
 template <class Place>  // a request with a group and a cell
 const bundle::Cell& cellOf(const bundle::Description& description, const Place& at) {
-  return description.groups[at.group].cells[at.cell];
+  return description.groups[at.group.value].cells[at.cell.value];
 }
 template <class Place>
 const bundle::CellTransfer& transferOf(const bundle::Description& description, const Place& at) {
-  return cellOf(description, at).transfers[at.transfer];
+  return cellOf(description, at).transfers[at.transfer.value];
 }
 
 template <class T>
@@ -117,7 +117,7 @@ class Load {
   }
 
   Loaded operator()(const PlaneRequest& work) const {
-    const bundle::WeightPlane& plane = transferOf(description_, work).planes[work.plane];
+    const bundle::WeightPlane& plane = transferOf(description_, work).planes[work.plane.value];
     if (!reserve_(5 * std::size_t{plane.count})) return {};
     const auto codes = reader_.readPlane(work.group, work.cell, work.transfer, work.plane);
     if (!codes) return failAgain(codes.error());
@@ -139,7 +139,7 @@ class Load {
   }
 
   Loaded operator()(const ProxyRequest& work) const {
-    const auto payload = static_cast<std::size_t>(description_.groups[work.group].proxy);
+    const auto payload = static_cast<std::size_t>(description_.groups[work.group.value].proxy);
     if (!reserve_(3 * description_.payloads[payload].raw_length)) return {};
     auto proxy = reader_.readProxy(work.group);
     if (!proxy) return failAgain(proxy.error());
@@ -147,7 +147,7 @@ class Load {
   }
 
   Loaded operator()(const DensityRequest& work) const {
-    const bundle::VolumeGrid& grid = *description_.groups[work.group].volume;
+    const bundle::VolumeGrid& grid = *description_.groups[work.group.value].volume;
     if (!reserve_(2 * description_.payloads[grid.density].raw_length)) return {};
     auto codes = reader_.readPayload(grid.density);
     if (!codes) return failAgain(codes.error());
@@ -156,12 +156,12 @@ class Load {
   }
 
   Loaded operator()(const VoxelsRequest& work) const {
-    const bundle::VolumeGrid& grid = *description_.groups[work.group].volume;
+    const bundle::VolumeGrid& grid = *description_.groups[work.group.value].volume;
     if (!reserve_(3 * description_.payloads[grid.voxels].raw_length)) return {};
     const auto bytes = reader_.readPayload(grid.voxels);
     if (!bytes) return failAgain(bytes.error());
     auto voxels =
-        bundle::decodeVoxels(*bytes, grid.transfer_size, named(fmt::format("group {}", work.group)));
+        bundle::decodeVoxels(*bytes, grid.transfer_size, named(fmt::format("group {}", work.group.value)));
     if (!voxels) return failAgain(voxels.error());
     return VoxelsChunk{work.group, std::move(*voxels)};
   }
@@ -199,28 +199,31 @@ std::vector<Work> requestsOf(const bundle::Description& d) {
   }
   appendByPriority(list, std::move(rows));
   for (std::uint32_t table = 0; table < d.brdf_tables.size(); ++table) list.push_back(BrdfRequest{table});
-  for (std::uint32_t group = 0; group < d.groups.size(); ++group) {
-    if (!d.groups[group].volume) continue;
-    list.push_back(DensityRequest{group});
-    list.push_back(VoxelsRequest{group});
+  for (std::uint32_t g = 0; g < d.groups.size(); ++g) {
+    if (!d.groups[g].volume) continue;
+    list.push_back(DensityRequest{bundle::GroupIndex{g}});
+    list.push_back(VoxelsRequest{bundle::GroupIndex{g}});
   }
   for (std::uint32_t image = 0; image < d.images.size(); ++image) list.push_back(ImageRequest{image});
-  for (std::uint32_t group = 0; group < d.groups.size(); ++group) {
-    const std::int32_t proxy = d.groups[group].proxy;
+  for (std::uint32_t g = 0; g < d.groups.size(); ++g) {
+    const bundle::GroupIndex group{g};
+    const std::int32_t proxy = d.groups[g].proxy;
     if (proxy >= 0)
       transfer.push_back({d.payloads[static_cast<std::size_t>(proxy)].priority, ProxyRequest{group}});
-    for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell) {
-      const auto& parts = d.groups[group].cells[cell].transfers;
-      const std::int32_t weights = d.groups[group].cells[cell].light_weights;
+    for (std::uint32_t c = 0; c < d.groups[g].cells.size(); ++c) {
+      const bundle::CellIndex cell{c};
+      const auto& parts = d.groups[g].cells[c].transfers;
+      const std::int32_t weights = d.groups[g].cells[c].light_weights;
       if (weights >= 0)
         transfer.push_back(
             {d.payloads[static_cast<std::size_t>(weights)].priority, LightWeightsRequest{group, cell}});
       for (std::uint32_t t = 0; t < parts.size(); ++t) {
         std::uint32_t priority = d.payloads[parts[t].codebook].priority;
-        transfer.push_back({priority, CodebookRequest{group, cell, t}});
-        for (std::uint32_t plane = 0; plane < parts[t].planes.size(); ++plane) {
-          priority = std::max(priority, d.payloads[parts[t].planes[plane].payload].priority);
-          transfer.push_back({priority, PlaneRequest{group, cell, t, plane}});
+        transfer.push_back({priority, CodebookRequest{group, cell, bundle::TransferIndex{t}}});
+        for (std::uint32_t p = 0; p < parts[t].planes.size(); ++p) {
+          priority = std::max(priority, d.payloads[parts[t].planes[p].payload].priority);
+          transfer.push_back(
+              {priority, PlaneRequest{group, cell, bundle::TransferIndex{t}, bundle::PlaneIndex{p}}});
         }
       }
     }
@@ -233,26 +236,27 @@ std::uint64_t bytesInFile(const bundle::Description& d, const Work& work) {
   const auto view = [&](std::uint32_t index) { return d.views[index].length; };
   const auto payload = [&](std::uint32_t index) { return view(d.payloads[index].view); };
   return std::visit(
-      Overloaded{[&](const MeshRequest& at) { return view(d.meshes[at.mesh].primitives[at.primitive].view); },
-                 [&](const WeightsRequest& at) { return payload(d.draws[at.draw].rows); },
-                 [&](const ImageRequest& at) { return view(d.images[at.image].view); },
-                 [&](const CodebookRequest& at) {
-                   const bundle::CellTransfer& transfer = transferOf(d, at);
-                   const std::uint64_t codebook = payload(transfer.codebook);
-                   return transfer.cluster_ids < 0
-                              ? codebook
-                              : codebook + payload(static_cast<std::uint32_t>(transfer.cluster_ids));
-                 },
-                 [&](const PlaneRequest& at) { return payload(transferOf(d, at).planes[at.plane].payload); },
-                 [&](const LightWeightsRequest& at) {
-                   return payload(static_cast<std::uint32_t>(cellOf(d, at).light_weights));
-                 },
-                 [&](const ProxyRequest& at) {
-                   return payload(static_cast<std::uint32_t>(d.groups[at.group].proxy));
-                 },
-                 [&](const BrdfRequest& at) { return payload(d.brdf_tables[at.table].payload); },
-                 [&](const DensityRequest& at) { return payload(d.groups[at.group].volume->density); },
-                 [&](const VoxelsRequest& at) { return payload(d.groups[at.group].volume->voxels); }},
+      Overloaded{
+          [&](const MeshRequest& at) { return view(d.meshes[at.mesh].primitives[at.primitive].view); },
+          [&](const WeightsRequest& at) { return payload(d.draws[at.draw].rows); },
+          [&](const ImageRequest& at) { return view(d.images[at.image].view); },
+          [&](const CodebookRequest& at) {
+            const bundle::CellTransfer& transfer = transferOf(d, at);
+            const std::uint64_t codebook = payload(transfer.codebook);
+            return transfer.cluster_ids < 0
+                       ? codebook
+                       : codebook + payload(static_cast<std::uint32_t>(transfer.cluster_ids));
+          },
+          [&](const PlaneRequest& at) { return payload(transferOf(d, at).planes[at.plane.value].payload); },
+          [&](const LightWeightsRequest& at) {
+            return payload(static_cast<std::uint32_t>(cellOf(d, at).light_weights));
+          },
+          [&](const ProxyRequest& at) {
+            return payload(static_cast<std::uint32_t>(d.groups[at.group.value].proxy));
+          },
+          [&](const BrdfRequest& at) { return payload(d.brdf_tables[at.table].payload); },
+          [&](const DensityRequest& at) { return payload(d.groups[at.group.value].volume->density); },
+          [&](const VoxelsRequest& at) { return payload(d.groups[at.group.value].volume->voxels); }},
       work);
 }
 

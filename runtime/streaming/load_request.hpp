@@ -26,25 +26,31 @@ struct ImageRequest {
   std::uint32_t level = 0;  // finest mip level that is needed
 };
 struct CodebookRequest {
-  std::uint32_t group = 0, cell = 0, transfer = 0;
+  bundle::GroupIndex group;
+  bundle::CellIndex cell;
+  bundle::TransferIndex transfer;
 };
 struct PlaneRequest {
-  std::uint32_t group = 0, cell = 0, transfer = 0, plane = 0;
+  bundle::GroupIndex group;
+  bundle::CellIndex cell;
+  bundle::TransferIndex transfer;
+  bundle::PlaneIndex plane;
 };
 struct LightWeightsRequest {
-  std::uint32_t group = 0, cell = 0;
+  bundle::GroupIndex group;
+  bundle::CellIndex cell;
 };
 struct ProxyRequest {
-  std::uint32_t group = 0;
+  bundle::GroupIndex group;
 };
 struct BrdfRequest {
   std::uint32_t table = 0;
 };
 struct DensityRequest {
-  std::uint32_t group = 0;
+  bundle::GroupIndex group;
 };
 struct VoxelsRequest {
-  std::uint32_t group = 0;
+  bundle::GroupIndex group;
 };
 using Work = std::variant<MeshRequest, WeightsRequest, ImageRequest, CodebookRequest, PlaneRequest,
                           LightWeightsRequest, ProxyRequest, BrdfRequest, DensityRequest, VoxelsRequest>;

@@ -37,23 +37,29 @@ struct WeightsChunk {
 };
 
 struct CodebookChunk {
-  std::uint32_t group = 0, cell = 0, transfer = 0;  // transfer is an index into Cell::transfers
+  bundle::GroupIndex group;
+  bundle::CellIndex cell;
+  bundle::TransferIndex transfer;
   transfer::Codebook codebook;
   std::vector<std::uint32_t> positions;  // sample of the cell | cluster << 16, in the order of the codes
 };
 
 struct PlaneChunk {
-  std::uint32_t group = 0, cell = 0, transfer = 0, plane = 0;
+  bundle::GroupIndex group;
+  bundle::CellIndex cell;
+  bundle::TransferIndex transfer;
+  bundle::PlaneIndex plane;
   std::vector<std::byte> codes;  // 8 or 16 bits per position, little endian, as the GPU reads them
 };
 
 struct LightWeightsChunk {
-  std::uint32_t group = 0, cell = 0;
+  bundle::GroupIndex group;
+  bundle::CellIndex cell;
   std::vector<transfer::LightWeights> samples;
 };
 
 struct ProxyChunk {
-  std::uint32_t group = 0;
+  bundle::GroupIndex group;
   bundle::CaptureProxy proxy;
 };
 
@@ -64,13 +70,13 @@ struct BrdfChunk {
 };
 
 struct DensityChunk {
-  std::uint32_t group = 0;
+  bundle::GroupIndex group;
   std::vector<std::byte> codes;     // VolumeGrid::bits per voxel, little endian
   std::vector<float> block_maxima;  // volume_blocks.hpp
 };
 
 struct VoxelsChunk {
-  std::uint32_t group = 0;
+  bundle::GroupIndex group;
   std::vector<std::uint32_t> voxels;  // voxel of the transfer grid for each sample of the volume
 };
 

@@ -71,11 +71,11 @@ void add(Step& step, const Work& work, std::uint64_t bytes) {
 
 }  // namespace
 
-std::uint32_t Parts::planesIn(std::uint32_t group, std::uint32_t steps, std::uint32_t cell,
-                              std::uint32_t transfer) const {
+std::uint32_t Parts::planesIn(bundle::GroupIndex group, std::uint32_t steps, bundle::CellIndex cell,
+                              bundle::TransferIndex transfer) const {
   std::uint32_t count = 0;
-  for (std::uint32_t s = 0; s < std::min<std::size_t>(steps, units[1 + group].size()); ++s)
-    for (const Work& work : units[1 + group][s].work)
+  for (std::uint32_t s = 0; s < std::min<std::size_t>(steps, units[1 + group.value].size()); ++s)
+    for (const Work& work : units[1 + group.value][s].work)
       if (const auto* plane = std::get_if<PlaneRequest>(&work))
         count += plane->cell == cell && plane->transfer == transfer ? 1u : 0u;
   return count;
@@ -108,11 +108,11 @@ Result<Parts> partsOf(const bundle::Reader& reader, bool limited) {
   std::vector<std::vector<PlaneRequest>> planes(d.groups.size());
   for (const Work& work : requestsOf(d)) {
     if (const auto* plane = std::get_if<PlaneRequest>(&work)) {
-      planes[plane->group].push_back(*plane);
+      planes[plane->group.value].push_back(*plane);
     } else if (const auto* codebook = std::get_if<CodebookRequest>(&work)) {
-      add(codebooks[codebook->group], work, 0);
+      add(codebooks[codebook->group.value], work, 0);
     } else if (const auto* weights = std::get_if<LightWeightsRequest>(&work)) {
-      add(codebooks[weights->group], work, 0);
+      add(codebooks[weights->group.value], work, 0);
     } else if (const auto* proxy = std::get_if<ProxyRequest>(&work); proxy != nullptr && limited) {
       add(proxy_lod, work, proxyLodBytes(d, proxy->group));
     } else if (const auto* image = std::get_if<ImageRequest>(&work); image != nullptr && limited) {
@@ -147,7 +147,8 @@ Result<Parts> partsOf(const bundle::Reader& reader, bool limited) {
       for (std::size_t p = share * planes[g].size() / shares; p < (share + 1) * planes[g].size() / shares;
            ++p) {
         const PlaneRequest& at = planes[g][p];
-        add(step, at, planeBytes(d.groups[g].cells[at.cell].transfers[at.transfer].planes[at.plane]));
+        add(step, at,
+            planeBytes(d.groups[g].cells[at.cell.value].transfers[at.transfer.value].planes[at.plane.value]));
       }
     }
   }

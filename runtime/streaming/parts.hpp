@@ -45,8 +45,8 @@ struct Parts {
   bool hasProxyLod() const { return surfaceSteps() > 1; }
 
   // Returns the number of planes of a transfer in the first `steps` steps of the group's unit.
-  std::uint32_t planesIn(std::uint32_t group, std::uint32_t steps, std::uint32_t cell,
-                         std::uint32_t transfer) const;
+  std::uint32_t planesIn(bundle::GroupIndex group, std::uint32_t steps, bundle::CellIndex cell,
+                         bundle::TransferIndex transfer) const;
   // Returns the number of mip levels that an image has after the first `steps` steps of its unit.
   std::uint32_t levelsIn(std::size_t unit, std::uint32_t steps) const;
 

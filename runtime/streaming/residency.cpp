@@ -76,8 +76,8 @@ gpu::Texture makeDensityTexture(const bundle::VolumeGrid& grid, const std::vecto
   return texture;
 }
 
-ResidentVolume& volumeOf(ResidentTables& tables, const ResidentBundle& bundle, std::uint32_t group) {
-  return tables.volumes[static_cast<std::size_t>(tables.groups[bundle.first.groups + group].volume)];
+ResidentVolume& volumeOf(ResidentTables& tables, const ResidentBundle& bundle, bundle::GroupIndex group) {
+  return tables.volumes[static_cast<std::size_t>(tables.groups[bundle.first.groups + group.value].volume)];
 }
 
 }  // namespace
@@ -102,7 +102,7 @@ Result<ResidentTables> Residency::make(const bundle::Description& description) {
   radiance_.setPageBytes(page_bytes(needs.radiance));
   ResidentTables tables = tablesOf(description, ++version_, next_id_);
   for (ResidentGroup& group : tables.groups) {
-    const std::uint64_t sample_count = samplesOf(description.groups[group.index]);
+    const std::uint64_t sample_count = samplesOf(description.groups[group.index.value]);
     if (sample_count == 0) continue;
     const Result<gpu::Allocation> samples = samples_.allocate(16 * sample_count);
     if (!samples) {
@@ -252,10 +252,10 @@ Result<void> Residency::moveCell(ResidentCell& cell) {
 Result<void> Residency::put(At at, const PlaneChunk& item) {
   ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
-  ResidentTransfer& transfer = cell.transfers[item.transfer];
+  ResidentTransfer& transfer = cell.transfers[item.transfer.value];
   // The loader delivers the planes of a cell in order, so the loaded planes are always the first ones.
-  assert(item.plane == transfer.planes_resident);
-  ResidentPlane& plane = transfer.planes[item.plane];
+  assert(item.plane.value == transfer.planes_resident);
+  ResidentPlane& plane = transfer.planes[item.plane.value];
   std::optional<gpu::Allocation> block = transfer_.allocateIn(cell.block.page, planeBytesOf(plane));
   if (!block) {  // other cells have filled the page
     if (Result<void> moved = moveCell(cell); !moved) return moved;
@@ -264,7 +264,7 @@ Result<void> Residency::put(At at, const PlaneChunk& item) {
   plane.block = *block;
   plane.word = block->word();
   transfer_.write(plane.block, 0, item.codes);
-  transfer.planes_resident = item.plane + 1;
+  transfer.planes_resident = item.plane.value + 1;
   cell.version = version_;
   return {};
 }
@@ -281,7 +281,7 @@ Result<void> Residency::put(At at, const LightWeightsChunk& item) {
 }
 
 Result<void> Residency::put(At at, const ProxyChunk& item) {
-  at.tables.groups[at.bundle.first.groups + item.group].proxy = item.proxy;
+  at.tables.groups[at.bundle.first.groups + item.group.value].proxy = item.proxy;
   return {};
 }
 

@@ -40,8 +40,8 @@ class Residency {
     return slot < tables_.bundles.size() && tables_.bundles[slot].present;
   }
   // Returns the number of planes of a transfer to keep.
-  using PlanesToKeep = std::function<std::uint32_t(std::uint32_t cell, std::uint32_t transfer)>;
-  void dropPlanes(std::uint32_t bundle, std::uint32_t group, const PlanesToKeep& keep);
+  using PlanesToKeep = std::function<std::uint32_t(bundle::CellIndex, bundle::TransferIndex)>;
+  void dropPlanes(std::uint32_t bundle, bundle::GroupIndex group, const PlanesToKeep& keep);
   // Returns whether an item can be uploaded in pieces over several frames. These are images, meshes and
   // codebooks. The item is shown when it is complete. Each bundle has at most one such item at a time.
   static bool comesInPieces(const Ready& item);
@@ -55,7 +55,7 @@ class Residency {
   // Keeps only this many of the coarsest mip levels of an image.
   void dropLevels(std::uint32_t bundle, std::uint32_t image, std::uint32_t levels);
   // Drops all transfer and light weights of a group, which is then shown without shadows.
-  void dropTransfer(std::uint32_t bundle, std::uint32_t group);
+  void dropTransfer(std::uint32_t bundle, bundle::GroupIndex group);
 
   // Identifies a bundle that is staged, so not in the tables yet.
   using Staged = std::uint32_t;

@@ -7,8 +7,8 @@ namespace lambent::streaming {
 
 namespace {
 
-ResidentGroup& groupOf(ResidentTables& tables, std::uint32_t bundle, std::uint32_t group) {
-  return tables.groups[tables.bundles[bundle].first.groups + group];
+ResidentGroup& groupOf(ResidentTables& tables, std::uint32_t bundle, bundle::GroupIndex group) {
+  return tables.groups[tables.bundles[bundle].first.groups + group.value];
 }
 
 }  // namespace
@@ -21,7 +21,7 @@ void Residency::forgetShading(const ResidentGroup& group) {
     if (&tables_.groups[draw.group] == &group) draw.version = version_;
 }
 
-void Residency::dropPlanes(std::uint32_t bundle, std::uint32_t group, const PlanesToKeep& keep) {
+void Residency::dropPlanes(std::uint32_t bundle, bundle::GroupIndex group, const PlanesToKeep& keep) {
   ++version_;
   const ResidentGroup& resident = groupOf(tables_, bundle, group);
   bool forget = false;
@@ -30,7 +30,7 @@ void Residency::dropPlanes(std::uint32_t bundle, std::uint32_t group, const Plan
     const bool usable = cell.usable();
     for (std::uint32_t t = 0; t < cell.transfers.size(); ++t) {
       ResidentTransfer& transfer = cell.transfers[t];
-      while (transfer.planes_resident > keep(c, t)) {
+      while (transfer.planes_resident > keep(bundle::CellIndex{c}, bundle::TransferIndex{t})) {
         ResidentPlane& plane = transfer.planes[--transfer.planes_resident];
         transfer_.release(plane.block);
         plane.block = {};
@@ -43,8 +43,8 @@ void Residency::dropPlanes(std::uint32_t bundle, std::uint32_t group, const Plan
   if (forget) forgetShading(resident);
 }
 
-void Residency::dropTransfer(std::uint32_t bundle, std::uint32_t group) {
-  dropPlanes(bundle, group, [](std::uint32_t, std::uint32_t) { return 0u; });
+void Residency::dropTransfer(std::uint32_t bundle, bundle::GroupIndex group) {
+  dropPlanes(bundle, group, [](bundle::CellIndex, bundle::TransferIndex) { return 0u; });
   const ResidentGroup& resident = groupOf(tables_, bundle, group);
   for (std::uint32_t c = 0; c < resident.cell_count; ++c) {
     ResidentCell& cell = tables_.cells[resident.first_cell + c];

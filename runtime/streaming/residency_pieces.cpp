@@ -196,7 +196,7 @@ Result<void> Residency::put(At at, MeshChunk item) {
 Result<void> Residency::writeTables(At at, const CodebookChunk& item) {
   ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
-  const ResidentTransfer& transfer = cell.transfers[item.transfer];
+  const ResidentTransfer& transfer = cell.transfers[item.transfer.value];
   const transfer::Codebook& codebook = item.codebook;
   assert(codebook.clusters() == transfer.clusters && codebook.axes.size() == transfer.axes &&
          item.positions.size() == cell.sample_count);
@@ -222,7 +222,7 @@ std::uint64_t Residency::proceed(At at, CodebookUpload& upload, std::uint64_t ma
   const ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   const std::span<const std::byte> left = bytesOf(item.codebook.vectors).subspan(upload.bytes_done);
   const std::span<const std::byte> piece = left.first(std::min<std::uint64_t>(max_bytes, left.size()));
-  const std::uint32_t first_word = cell.transfers[item.transfer].vectors_word - cell.block.word();
+  const std::uint32_t first_word = cell.transfers[item.transfer.value].vectors_word - cell.block.word();
   transfer_.write(cell.block, 4ull * first_word + upload.bytes_done, piece);
   upload.bytes_done += piece.size();
   return piece.size();
@@ -230,7 +230,7 @@ std::uint64_t Residency::proceed(At at, CodebookUpload& upload, std::uint64_t ma
 
 void Residency::finish(At at, const CodebookUpload& upload) {
   ResidentCell& cell = cellOf(at.tables, at.bundle, upload.item.group, upload.item.cell);
-  cell.transfers[upload.item.transfer].codebook_resident = true;
+  cell.transfers[upload.item.transfer.value].codebook_resident = true;
   cell.version = version_;
 }
 

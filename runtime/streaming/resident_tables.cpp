@@ -171,7 +171,7 @@ ResidentTables tablesOf(const bundle::Description& description, std::uint64_t ve
     const auto index = static_cast<std::uint32_t>(tables.groups.size());
     ResidentGroup& resident = tables.groups.emplace_back(describe(group));
     resident.id = next_id++;
-    resident.index = index;
+    resident.index = bundle::GroupIndex{index};
     resident.first_cell = static_cast<std::uint32_t>(tables.cells.size());
     std::uint32_t next_output = 0;
     for (const bundle::Cell& cell : group.cells) {

@@ -12,6 +12,7 @@
 
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
+#include "runtime/bundle/indices.hpp"
 #include "runtime/gpu/arena.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/streaming/brdf_texture.hpp"
@@ -110,7 +111,8 @@ struct SampleStretch {
 
 struct ResidentGroup {
   std::uint64_t id = 0;
-  std::uint32_t bundle = 0, index = 0;  // slot of the bundle, and index in its description
+  std::uint32_t bundle = 0;  // slot of the bundle
+  bundle::GroupIndex index;
   std::uint32_t order = 1, light_columns = 0;
   std::uint32_t first_cell = 0, cell_count = 0;  // range of cells()
   // Samples of surfaces are ordered by outputs: those with one, with nine, and glossy ones. The samples of
@@ -201,9 +203,9 @@ struct ResidentTables {
   std::vector<ResidentVolume> volumes;
 };
 
-inline ResidentCell& cellOf(ResidentTables& tables, const ResidentBundle& bundle, std::uint32_t group,
-                            std::uint32_t cell) {
-  return tables.cells[tables.groups[bundle.first.groups + group].first_cell + cell];
+inline ResidentCell& cellOf(ResidentTables& tables, const ResidentBundle& bundle, bundle::GroupIndex group,
+                            bundle::CellIndex cell) {
+  return tables.cells[tables.groups[bundle.first.groups + group.value].first_cell + cell.value];
 }
 
 // Makes the tables of one bundle with nothing loaded. Ids start at next_id, which it advances.

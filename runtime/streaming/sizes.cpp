@@ -57,8 +57,8 @@ std::uint64_t volumeLightBytes(const bundle::Group& group) {
   return std::uint64_t{8} * size.x * size.y * size.z * group.cells.front().outputs();
 }
 
-std::uint64_t proxyLodBytes(const bundle::Description& description, std::uint32_t group) {
-  const std::int32_t payload = description.groups[group].proxy;
+std::uint64_t proxyLodBytes(const bundle::Description& description, bundle::GroupIndex group) {
+  const std::int32_t payload = description.groups[group.value].proxy;
   if (payload < 0) return 0;
   // A payload has at least emission, corners, light and flags of each triangle (docs/format.md).
   constexpr std::uint64_t kStoredBytes = 12 + 6 + 2 + 1;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "runtime/bundle/description.hpp"
+#include "runtime/bundle/indices.hpp"
 #include "runtime/transfer/seen_sky_shared.h"
 
 namespace lambent::streaming {
@@ -47,7 +48,7 @@ std::uint64_t volumeLightBytes(const bundle::Group& group);
 // Size limits for a group that is drawn as its capture proxy (surface/proxy_lods.hpp).
 inline constexpr std::uint64_t kProxyLodTriangleBytes = 64, kProxyLodGroupBytes = 208;
 // Returns an upper bound of the memory of such a group.
-std::uint64_t proxyLodBytes(const bundle::Description& description, std::uint32_t group);
+std::uint64_t proxyLodBytes(const bundle::Description& description, bundle::GroupIndex group);
 
 struct Needs {
   std::uint64_t geometry = 0, transfer = 0, samples = 0, rows = 0, radiance = 0, volumes = 0;

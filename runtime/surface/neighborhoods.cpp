@@ -23,7 +23,7 @@ namespace {
 
 const bundle::Group& describedGroup(const World& world, std::size_t group) {
   const streaming::ResidentGroup& resident = world.residency().groups()[group];
-  return world.description(resident.bundle).groups[resident.index];
+  return world.description(resident.bundle).groups[resident.index.value];
 }
 
 // Returns the box of the grid's points. If `grown` is set, it is larger by the distance of two points on each

@@ -67,9 +67,9 @@ void ProxyLods::write(Body& body, std::uint32_t slot, const bundle::CaptureProxy
   counters.uploaded_bytes += records.size() * sizeof(ProxyLodTriangle);
 }
 
-Result<void> ProxyLods::bring(const World& world, const ProxyLod& proxy_lod, std::uint32_t group,
+Result<void> ProxyLods::bring(const World& world, const ProxyLod& proxy_lod, bundle::GroupIndex group,
                               gpu::Counters& counters) {
-  const bundle::CaptureProxy& proxy = *proxy_lod.proxies[group];
+  const bundle::CaptureProxy& proxy = *proxy_lod.proxies[group.value];
   const Result<gpu::Allocation> block =
       triangles_.allocate(sizeof(ProxyLodTriangle) * proxy.levels.front().triangle_count);
   if (!block) return failAgain(block.error());
@@ -91,12 +91,12 @@ Result<void> ProxyLods::follow(const World& world, gpu::Counters& counters) {
   const std::vector<ProxyLod> proxy_lods = world.proxyLods();
   for (const ProxyLod& proxy_lod : proxy_lods)
     for (std::uint32_t g = 0; g < proxy_lod.proxies.size(); ++g) {
-      const auto found = slots_.find({proxy_lod.id, g});
+      const auto found = slots_.find({proxy_lod.id, bundle::GroupIndex{g}});
       if (found == slots_.end()) continue;
       stays[found->second] = true;
       Body& body = bodies_[found->second];
       if (body.lamps.empty()) continue;
-      std::vector<glm::vec3> lamps = world.lampsOf(proxy_lod.bundle, g);
+      std::vector<glm::vec3> lamps = world.lampsOf(proxy_lod.bundle, body.group);
       if (lamps == body.lamps) continue;
       body.lamps = std::move(lamps);
       write(body, found->second, *proxy_lod.proxies[g], counters);
@@ -110,8 +110,8 @@ Result<void> ProxyLods::follow(const World& world, gpu::Counters& counters) {
   }
   for (const ProxyLod& proxy_lod : proxy_lods)
     for (std::uint32_t g = 0; g < proxy_lod.proxies.size(); ++g)
-      if (proxy_lod.proxies[g] && !slots_.contains({proxy_lod.id, g}))
-        if (Result<void> done = bring(world, proxy_lod, g, counters); !done) return done;
+      if (proxy_lod.proxies[g] && !slots_.contains({proxy_lod.id, bundle::GroupIndex{g}}))
+        if (Result<void> done = bring(world, proxy_lod, bundle::GroupIndex{g}, counters); !done) return done;
   batches_.clear();
   for (const Body& body : bodies_) {
     if (!body.triangles) continue;
@@ -131,7 +131,7 @@ void ProxyLods::light(const World& world, const lighting::Environment& environme
   for (std::size_t slot = 0; slot < bodies_.size(); ++slot) {
     const Body& place = bodies_[slot];
     if (!place.triangles) continue;
-    const bundle::Group& described = world.description(place.bundle).groups[place.group];
+    const bundle::Group& described = world.description(place.bundle).groups[place.group.value];
     const std::uint32_t order = std::min(orderOf(described), options.order);
     if (!windowed[order]) {
       const sh::LightVector all = environment.light().truncated(static_cast<int>(order));

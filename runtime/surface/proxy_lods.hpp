@@ -50,7 +50,8 @@ class ProxyLods {
   // Describes a group in a slot of the table of groups.
   struct Body {
     std::uint64_t id = 0;  // id of its proxies
-    std::uint32_t bundle = 0, group = 0;
+    std::uint32_t bundle = 0;
+    bundle::GroupIndex group;
     gpu::Allocation triangles;     // empty: the slot is free
     std::vector<glm::vec3> lamps;  // strengths of its lamps, as its triangles show them
   };
@@ -61,7 +62,7 @@ class ProxyLods {
   };
   // Uploads new triangles and removes those that are gone.
   Result<void> follow(const World& world, gpu::Counters& counters);
-  Result<void> bring(const World& world, const ProxyLod& proxy_lod, std::uint32_t group,
+  Result<void> bring(const World& world, const ProxyLod& proxy_lod, bundle::GroupIndex group,
                      gpu::Counters& counters);
   void write(Body& body, std::uint32_t slot, const bundle::CaptureProxy& proxy, gpu::Counters& counters);
   void light(const World& world, const lighting::Environment& environment,
@@ -71,9 +72,9 @@ class ProxyLods {
   std::optional<gpu::Program> program_;  // compiled when it is first needed
   gpu::VertexArray no_vertices_;
   std::vector<Body> bodies_;
-  std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> slots_;  // keyed by id and group
-  std::map<std::uint32_t, Batch> batches_;                                  // keyed by page
-  std::vector<ProxyLodGroup> groups_;                                       // as uploaded
+  std::map<std::pair<std::uint64_t, bundle::GroupIndex>, std::uint32_t> slots_;  // keyed by id
+  std::map<std::uint32_t, Batch> batches_;                                       // keyed by page
+  std::vector<ProxyLodGroup> groups_;                                            // as uploaded
   std::array<sh::CachedWindow, sh::kMaxOrder + 1> windows_;  // of the environment, indexed by order
   ChangeGate<std::uint64_t> proxy_lods_changed_;
   ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t> scene_changed_;  // lamps, local lights, transforms

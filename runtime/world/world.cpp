@@ -75,12 +75,12 @@ void World::updateTransforms() {
 
 std::uint64_t World::keyOf(std::size_t group) const {
   const streaming::ResidentGroup& resident = residency_.groups()[group];
-  const ecs::Entity entity = bundles_[resident.bundle]->instance.groups[resident.index];
+  const ecs::Entity entity = bundles_[resident.bundle]->instance.groups[resident.index.value];
   return std::uint64_t{entity.generation} << 32 | entity.index;
 }
 
-const scene::RigidGroupComponent* World::rigidGroup(std::uint32_t bundle, std::uint32_t group) const {
-  return registry_.tryGet<scene::RigidGroupComponent>(bundles_[bundle]->instance.groups[group]);
+const scene::RigidGroupComponent* World::rigidGroup(std::uint32_t bundle, bundle::GroupIndex group) const {
+  return registry_.tryGet<scene::RigidGroupComponent>(bundles_[bundle]->instance.groups[group.value]);
 }
 
 const scene::RigidGroupComponent* World::rigidGroup(std::size_t group) const {
@@ -98,7 +98,7 @@ glm::mat4 World::worldFromGroup(std::size_t group) const {
   return worldFromGroup(resident.bundle, resident.index);
 }
 
-glm::mat4 World::worldFromGroup(std::uint32_t bundle, std::uint32_t group) const {
+glm::mat4 World::worldFromGroup(std::uint32_t bundle, bundle::GroupIndex group) const {
   const auto* rigid = rigidGroup(bundle, group);
   if (!rigid) return glm::mat4(1.0f);
   glm::mat4 rest = glm::mat4_cast(rigid->rest_rotation);
@@ -106,9 +106,9 @@ glm::mat4 World::worldFromGroup(std::uint32_t bundle, std::uint32_t group) const
   return rigid->world_from_rest * rest;
 }
 
-bool World::inPlace(std::uint32_t slot, std::uint32_t group, std::size_t column) const {
+bool World::inPlace(std::uint32_t slot, bundle::GroupIndex group, std::size_t column) const {
   const Bundle& bundle = *bundles_[slot];
-  const bundle::Group& described = bundle.reader->description().groups[group];
+  const bundle::Group& described = bundle.reader->description().groups[group.value];
   const bundle::GroupLight& light = described.lights[column];
   if (light.kind == bundle::GroupLight::Kind::Material) return true;
   const auto* now = registry_.tryGet<scene::WorldTransform>(bundle.instance.nodes[light.index]);
@@ -134,16 +134,16 @@ std::vector<glm::vec3> World::lampsOf(std::size_t group) const {
   return lampsOf(resident.bundle, resident.index);
 }
 
-std::vector<glm::vec3> World::lampsOf(std::uint32_t bundle, std::uint32_t group) const {
+std::vector<glm::vec3> World::lampsOf(std::uint32_t bundle, bundle::GroupIndex group) const {
   std::vector<glm::vec3> lamps;
-  for (const ecs::Entity lamp : bundles_[bundle]->instance.lamps[group])
+  for (const ecs::Entity lamp : bundles_[bundle]->instance.lamps[group.value])
     lamps.push_back(inPlace(bundle, group, lamps.size()) ? radianceOf(registry_, lamp) : glm::vec3(0.0f));
   return lamps;
 }
 
 bool World::litByColumn(std::size_t group, ecs::Entity light) const {
   const streaming::ResidentGroup& resident = residency_.groups()[group];
-  const auto& lamps = bundles_[resident.bundle]->instance.lamps[resident.index];
+  const auto& lamps = bundles_[resident.bundle]->instance.lamps[resident.index.value];
   for (std::size_t k = 0; k < lamps.size(); ++k)
     if (lamps[k] == light) return inPlace(resident.bundle, resident.index, k);
   return false;

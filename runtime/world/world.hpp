@@ -173,13 +173,13 @@ class World {
   // Returns the current placement of the group's frame, with any scale that it was given since the bake.
   glm::mat4 worldFromGroup(std::size_t group) const;
   // Returns the same for a group of a bundle's description, resident or not.
-  glm::mat4 worldFromGroup(std::uint32_t bundle, std::uint32_t group) const;
+  glm::mat4 worldFromGroup(std::uint32_t bundle, bundle::GroupIndex group) const;
   // Returns the bounds in the group's frame, as baked.
   const scene::Box& groupBounds(std::size_t group) const { return group_bounds_[group]; }
   // Returns the current strength of the group's own lights, by light column. A lamp that was moved from its
   // place in the group gives 0 here, because its column is no longer valid.
   std::vector<glm::vec3> lampsOf(std::size_t group) const;
-  std::vector<glm::vec3> lampsOf(std::uint32_t bundle, std::uint32_t group) const;
+  std::vector<glm::vec3> lampsOf(std::uint32_t bundle, bundle::GroupIndex group) const;
   // Returns whether the light is one of the group's own and stands in its place.
   bool litByColumn(std::size_t group, ecs::Entity light) const;
   // Returns the entity of the draw's material as a lamp of its group; null if it is none.
@@ -270,9 +270,9 @@ class World {
   }
   void measureRate(std::uint64_t bytes);
   std::vector<scene::AnimatedBundle> animatedBundles() const;
-  const scene::RigidGroupComponent* rigidGroup(std::uint32_t bundle, std::uint32_t group) const;
+  const scene::RigidGroupComponent* rigidGroup(std::uint32_t bundle, bundle::GroupIndex group) const;
   const scene::RigidGroupComponent* rigidGroup(std::size_t group) const;
-  bool inPlace(std::uint32_t bundle, std::uint32_t group, std::size_t column) const;
+  bool inPlace(std::uint32_t bundle, bundle::GroupIndex group, std::size_t column) const;
   // These handle proxy levels of detail.
   static bool hasSurfaces(const streaming::Parts& parts, const std::vector<std::uint32_t>& steps) {
     return steps.front() == parts.surfaceSteps();

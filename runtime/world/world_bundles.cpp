@@ -145,7 +145,7 @@ void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::
   for (streaming::Ready& item : items) {
     const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
     if (const auto* ready = std::get_if<streaming::ProxyChunk>(&item))
-      next.proxies[ready->group] = ready->proxy;
+      next.proxies[ready->group.value] = ready->proxy;
     // An item larger than the budget is uploaded alone.
     const bool in_pieces =
         bytes > budget_bytes && items.size() == 1 && streaming::Residency::comesInPieces(item);

@@ -32,7 +32,7 @@ Result<void> World::accept(std::uint32_t slot, streaming::Ready item) {
   auto* ready = std::get_if<streaming::ProxyChunk>(&item);
   if (ready == nullptr || !bundle.parts.hasProxyLod()) return residency_.upload(slot, std::move(item));
   bundle.proxies.resize(bundle.reader->description().groups.size());
-  bundle.proxies[ready->group] = std::move(ready->proxy);
+  bundle.proxies[ready->group.value] = std::move(ready->proxy);
   bundle.proxies_id = next_proxies_id_++;
   return {};
 }
@@ -43,7 +43,9 @@ Result<void> World::beginSurfaces(std::uint32_t slot) {
   rebuildTables();
   for (std::uint32_t g = 0; g < bundle.proxies.size(); ++g)
     if (bundle.proxies[g])
-      if (Result<void> done = residency_.upload(slot, streaming::ProxyChunk{g, *bundle.proxies[g]}); !done)
+      if (Result<void> done =
+              residency_.upload(slot, streaming::ProxyChunk{bundle::GroupIndex{g}, *bundle.proxies[g]});
+          !done)
         return done;
   return {};
 }

@@ -162,11 +162,11 @@ void World::dropTo(std::uint32_t slot, std::uint32_t unit, std::uint32_t steps) 
                           bundle.parts.levelsIn(unit, steps));
     return;
   }
-  const std::uint32_t group = unit - 1;
+  const bundle::GroupIndex group{unit - 1};
   if (steps == 0)
     residency_.dropTransfer(slot, group);
   else
-    residency_.dropPlanes(slot, group, [&](std::uint32_t cell, std::uint32_t transfer) {
+    residency_.dropPlanes(slot, group, [&](bundle::CellIndex cell, bundle::TransferIndex transfer) {
       return bundle.parts.planesIn(group, steps, cell, transfer);
     });
 }

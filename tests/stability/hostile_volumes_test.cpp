@@ -75,14 +75,16 @@ class HostileVolume : public testing::ProgramTest {
   static Baked decode(const bundle::Reader& reader, std::uint32_t g) {
     Baked baked{.group = reader.description().groups[g], .vectors = {}};
     for (std::uint32_t c = 0; c < baked.group.cells.size(); ++c) {
+      const bundle::GroupIndex group{g};
+      const bundle::CellIndex cell{c};
       const bundle::CellTransfer& transfer = baked.group.cells[c].transfers.at(0);
       EXPECT_EQ(baked.group.cells[c].domain, transfer::Domain::Voxel);
       baked.size = transfer.shape.size();
       baked.full_channels = transfer.shape.full_channels;
       std::vector<std::vector<std::uint32_t>> planes;
       for (std::uint32_t j = 0; j < transfer.planes.size(); ++j)
-        planes.push_back(*reader.readPlane(g, c, 0, j));
-      const auto codes = reader.readCodebook(g, c, 0);
+        planes.push_back(*reader.readPlane(group, cell, {}, bundle::PlaneIndex{j}));
+      const auto codes = reader.readCodebook(group, cell, {});
       EXPECT_TRUE(codes) << codes.error().line();
       const auto vectors =
           transfer::decodeTransfer(transfer.shape, codes->codebook, codes->cluster_of, planes);

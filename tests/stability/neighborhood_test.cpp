@@ -59,11 +59,14 @@ class NeighborhoodBundle : public testing::ProgramTest {
         if (cell.domain != transfer::Domain::GridPoint) continue;
         for (std::uint32_t t = 0; t < cell.transfers.size(); ++t) {
           const transfer::TransferShape& shape = cell.transfers[t].shape;
-          const auto codes = reader->readCodebook(g, c, t);
+          const bundle::GroupIndex group{g};
+          const bundle::CellIndex of{c};
+          const bundle::TransferIndex part{t};
+          const auto codes = reader->readCodebook(group, of, part);
           EXPECT_TRUE(codes);
           std::vector<std::vector<std::uint32_t>> planes;
           for (std::uint32_t j = 0; j < cell.transfers[t].planes.size(); ++j)
-            planes.push_back(*reader->readPlane(g, c, t, j));
+            planes.push_back(*reader->readPlane(group, of, part, bundle::PlaneIndex{j}));
           const auto values = transfer::decodeTransfer(shape, codes->codebook, codes->cluster_of, planes);
           (shape.isVisibility() ? stored.visibility : stored.bounced) = values;
           stored.shape.order = static_cast<int>(shape.order);

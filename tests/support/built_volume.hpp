@@ -155,7 +155,8 @@ inline std::uint32_t addVolume(bundle::Description& description, std::vector<bun
 }
 
 // Returns density, voxels and codebook as the loader delivers them.
-inline std::vector<streaming::Ready> partsOf(const BuiltVolume& volume, std::uint32_t group) {
+inline std::vector<streaming::Ready> partsOf(const BuiltVolume& volume, std::uint32_t index) {
+  const bundle::GroupIndex group{index};
   const BuiltVolume::Clusters clusters = volume.clusters();
   std::vector<std::uint32_t> positions =
       transfer::positionsOf(clusters.of_sample, static_cast<std::uint32_t>(clusters.codebook.clusters()));
@@ -163,7 +164,7 @@ inline std::vector<streaming::Ready> partsOf(const BuiltVolume& volume, std::uin
   const std::vector<std::byte> codes = volume.codes();
   return {streaming::DensityChunk{group, codes, streaming::blockMaxima(codes, volume.bits, volume.size)},
           streaming::VoxelsChunk{group, volume.voxels()},
-          streaming::CodebookChunk{group, 0, 0, clusters.codebook, std::move(positions)}};
+          streaming::CodebookChunk{group, {}, {}, clusters.codebook, std::move(positions)}};
 }
 
 }  // namespace lambent::testing

@@ -42,11 +42,12 @@ inline Result<std::vector<DecodedDraw>> decodeBundle(const std::filesystem::path
     for (std::uint32_t c = 0; c < d.groups[g].cells.size(); ++c) {
       const bundle::CellTransfer& transfer = d.groups[g].cells[c].transfers.at(0);
       const transfer::TransferShape& shape = transfer.shape;
-      const auto codes = reader->readCodebook(g, c, 0);
+      const auto codes = reader->readCodebook(bundle::GroupIndex{g}, bundle::CellIndex{c}, {});
       if (!codes) return failAgain(codes.error());
       std::vector<std::vector<std::uint32_t>> planes;
       for (std::uint32_t j = 0; j < transfer.planes.size(); ++j) {
-        auto plane = reader->readPlane(g, c, 0, j);
+        auto plane =
+            reader->readPlane(bundle::GroupIndex{g}, bundle::CellIndex{c}, {}, bundle::PlaneIndex{j});
         if (!plane) return failAgain(plane.error());
         planes.push_back(std::move(*plane));
       }

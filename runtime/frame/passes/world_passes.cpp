@@ -2,7 +2,7 @@
 #include <chrono>
 #include <optional>
 
-#include "runtime/frame/frame_times.hpp"
+#include "runtime/world/frame_times.hpp"
 #include "runtime/frame/passes/passes.hpp"
 
 namespace lambent::frame {

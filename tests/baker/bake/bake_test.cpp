@@ -100,10 +100,11 @@ TEST_F(Bake, StoresTransferThatDecodesToTheScene) {
   const bundle::Description& d = reader->description();
   const bundle::Cell& cell = d.groups[0].cells.at(0);
   const bundle::CellTransfer& transfer = cell.transfers.at(0);
-  const auto found = reader->readCodebook(0, 0, 0);
+  const auto found = reader->readCodebook({}, {}, {});
   ASSERT_TRUE(found) << found.error().line();
   std::vector<std::vector<std::uint32_t>> codes;
-  for (std::uint32_t j = 0; j < transfer.planes.size(); ++j) codes.push_back(*reader->readPlane(0, 0, 0, j));
+  for (std::uint32_t j = 0; j < transfer.planes.size(); ++j)
+    codes.push_back(*reader->readPlane({}, {}, {}, bundle::PlaneIndex{j}));
   const auto vectors = transfer::decodeTransfer(transfer.shape, found->codebook, found->cluster_of, codes);
 
   const auto mesh = reader->readMesh(d.draws[0].mesh, 0);
@@ -150,8 +151,8 @@ TEST_F(Bake, StoresLightProbesAndProxiesInTheGroupsFrame) {
       EXPECT_TRUE(glm::all(glm::lessThanEqual(glm::abs(point), glm::vec3(2.0f))))
           << "not in the world's frame";
     ASSERT_EQ(group.cells.size(), 1u);
-    EXPECT_EQ(reader->readLightWeights(g, 0)->size(), group.sample_count);
-    const auto proxy = reader->readProxy(g);
+    EXPECT_EQ(reader->readLightWeights(bundle::GroupIndex{g}, {})->size(), group.sample_count);
+    const auto proxy = reader->readProxy(bundle::GroupIndex{g});
     ASSERT_TRUE(proxy) << proxy.error().line();
     ASSERT_FALSE(proxy->levels.empty());
     EXPECT_LE(proxy->levels[0].triangle_count, bundle::kMaxProxyTriangles);

@@ -47,7 +47,7 @@ class BakeQueueTest : public testing::PipelineTest {
 
 // Returns the light that a sample receives, by a cell's only vector.
 std::vector<float> vectorOf(const bundle::Reader& reader, std::uint32_t group, std::uint32_t cell) {
-  const auto codes = reader.readCodebook(group, cell, 0);
+  const auto codes = reader.readCodebook(bundle::GroupIndex{group}, bundle::CellIndex{cell}, {});
   EXPECT_TRUE(codes);
   return transfer::decodeTransfer(reader.description().groups[group].cells[cell].transfers[0].shape,
                                   codes->codebook, codes->cluster_of, {});

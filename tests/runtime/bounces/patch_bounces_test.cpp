@@ -38,7 +38,7 @@ struct RoomStage : LiveStage {
   explicit RoomStage(const BundleBuilder& builder)
       : LiveStage(builder, {spec::ConstantLight{.radiance = glm::vec3(0.0f)}}) {
     bundle::CaptureProxy proxy = RoomBuilder().sphere(10, 14, glm::vec3(kAlbedo)).proxy();
-    EXPECT_TRUE(world.residency().upload(0, streaming::ProxyChunk{0, std::move(proxy)}));
+    EXPECT_TRUE(world.residency().upload(0, streaming::ProxyChunk{{}, std::move(proxy)}));
     lamp = world.registry().create();
     world.registry().emplace<scene::Transform>(lamp, scene::Transform{});
     world.registry().emplace<scene::LocalLightComponent>(lamp, scene::LocalLightComponent{.strength = 4.0f});

@@ -173,14 +173,14 @@ TEST_F(BundleFile, GivesBackClustersLampsAndNormalMappedCells) {
   }
   EXPECT_TRUE(group.cells[0].transfers[0].fromEnvironment());
   EXPECT_FALSE(group.cells[0].transfers[1].fromEnvironment());
-  const auto codes = reader->readCodebook(0, 0, 0);
+  const auto codes = reader->readCodebook({}, {}, {});
   ASSERT_TRUE(codes) << codes.error().line();
   EXPECT_EQ(codes->codebook.axis_counts, (std::vector<std::uint32_t>{2, 0}));
   EXPECT_EQ(codes->codebook.axes[1].scale, 0.001f);
   EXPECT_EQ(codes->cluster_of, (std::vector<std::uint32_t>{0, 1, 0}));
-  EXPECT_EQ(*reader->readPlane(0, 0, 0, 0), (std::vector<std::uint32_t>{65535, 7}));
-  EXPECT_EQ(*reader->readPlane(0, 0, 0, 1), (std::vector<std::uint32_t>{3, 255}));
-  EXPECT_EQ(reader->readCodebook(0, 1, 0)->cluster_of, (std::vector<std::uint32_t>{0, 0}));
+  EXPECT_EQ(*reader->readPlane({}, {}, {}, {}), (std::vector<std::uint32_t>{65535, 7}));
+  EXPECT_EQ(*reader->readPlane({}, {}, {}, PlaneIndex{1}), (std::vector<std::uint32_t>{3, 255}));
+  EXPECT_EQ(reader->readCodebook({}, CellIndex{1}, {})->cluster_of, (std::vector<std::uint32_t>{0, 0}));
   EXPECT_TRUE(reader->checkAll());
 }
 
@@ -194,15 +194,16 @@ TEST_F(BundleFile, GivesBackLightProbesAndProxies) {
   EXPECT_EQ(group.light_probes, wanted.light_probes);
   EXPECT_EQ(group.cells[0].light_probes, wanted.cells[0].light_probes);
   EXPECT_EQ(group.cells[1].light_probes, wanted.cells[1].light_probes);
-  EXPECT_EQ(*reader->readLightWeights(0, 0), kWeights);
-  EXPECT_EQ(*reader->readLightWeights(0, 1), (std::vector<transfer::LightWeights>(2, transfer::kOneLight)));
-  const auto proxy = reader->readProxy(0);
+  EXPECT_EQ(*reader->readLightWeights({}, {}), kWeights);
+  EXPECT_EQ(*reader->readLightWeights({}, CellIndex{1}),
+            (std::vector<transfer::LightWeights>(2, transfer::kOneLight)));
+  const auto proxy = reader->readProxy({});
   ASSERT_TRUE(proxy) << proxy.error().line();
   ASSERT_EQ(proxy->entries.size(), 1u);
   EXPECT_EQ(proxy->entries[0].sample, 4u);
   EXPECT_EQ(proxy->triangles[0].light, 1);
   EXPECT_EQ(reader->description().groups[1].light_probes.size(), 1u);
-  EXPECT_TRUE(reader->readProxy(1)->levels.empty());
+  EXPECT_TRUE(reader->readProxy(GroupIndex{1})->levels.empty());
   EXPECT_TRUE(reader->checkAll());
 }
 
@@ -410,7 +411,7 @@ TEST_F(BundleFile, ClustersThatContradictThePlanesAreRefusedBeforeUse) {
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   auto reader = Reader::open(path_);
   ASSERT_TRUE(reader) << reader.error().line();
-  const auto codes = reader->readCodebook(0, 0, 0);
+  const auto codes = reader->readCodebook({}, {}, {});
   ASSERT_FALSE(codes);
   EXPECT_NE(codes.error().line().find("group 0 cell 0: has weight planes of other sizes"), std::string::npos)
       << codes.error().line();
@@ -424,7 +425,7 @@ TEST_F(BundleFile, CodebooksOfAnotherSizeThanDescribedAreRefusedBeforeUse) {
     ASSERT_TRUE(write(path_, sample.description, sample.blobs));
     auto reader = Reader::open(path_);
     ASSERT_TRUE(reader) << reader.error().line();
-    const auto codes = reader->readCodebook(0, 0, 0);
+    const auto codes = reader->readCodebook({}, {}, {});
     ASSERT_FALSE(codes);
     EXPECT_NE(codes.error().line().find("group 0 cell 0: has a"), std::string::npos) << codes.error().line();
   };

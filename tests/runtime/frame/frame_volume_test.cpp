@@ -283,7 +283,7 @@ TEST_F(FrameVolume, TheSurfacesThatItStandsInAreNotCapturedAtItsLightProbes) {
     const LitScene before = gatherLitScene(stage.world, 1.0f);
     EXPECT_FALSE(before.needsSampling()) << "there is no body yet";
     bundle::CaptureProxy proxy;
-    ASSERT_TRUE(stage.world.residency().upload(0, streaming::ProxyChunk{0, proxy}));
+    ASSERT_TRUE(stage.world.residency().upload(0, streaming::ProxyChunk{{}, proxy}));
     const LitScene scene = gatherLitScene(stage.world, 1.0f);
     ASSERT_EQ(scene.bodies.size(), 1u);
     EXPECT_EQ(scene.groups[0].body, 0u);

@@ -27,18 +27,18 @@ struct Name {
   std::string operator()(const ImageChunk& r) const { return "image " + join({r.image}); }
   std::string operator()(const WeightsChunk& r) const { return "rows " + join({r.draw}); }
   std::string operator()(const CodebookChunk& r) const {
-    return "codebook " + join({r.group, r.cell, r.transfer});
+    return "codebook " + join({r.group.value, r.cell.value, r.transfer.value});
   }
   std::string operator()(const PlaneChunk& r) const {
-    return "plane " + join({r.group, r.cell, r.transfer, r.plane});
+    return "plane " + join({r.group.value, r.cell.value, r.transfer.value, r.plane.value});
   }
   std::string operator()(const LightWeightsChunk& r) const {
-    return "light weights " + join({r.group, r.cell});
+    return "light weights " + join({r.group.value, r.cell.value});
   }
-  std::string operator()(const ProxyChunk& r) const { return "proxy " + join({r.group}); }
+  std::string operator()(const ProxyChunk& r) const { return "proxy " + join({r.group.value}); }
   std::string operator()(const BrdfChunk& r) const { return "brdf " + join({r.table}); }
-  std::string operator()(const DensityChunk& r) const { return "density " + join({r.group}); }
-  std::string operator()(const VoxelsChunk& r) const { return "voxels " + join({r.group}); }
+  std::string operator()(const DensityChunk& r) const { return "density " + join({r.group.value}); }
+  std::string operator()(const VoxelsChunk& r) const { return "voxels " + join({r.group.value}); }
   static std::string join(std::initializer_list<std::uint32_t> numbers) {
     std::string text;
     for (const std::uint32_t n : numbers) {
@@ -274,7 +274,8 @@ TEST_F(LoaderTest, RefusesRowsOfANormalMappedDrawIntoPlainSamples) {
 TEST_F(LoaderTest, BringsThePartsThatAreAskedForInTheirOrder) {
   write(testing::sampleBundle());
   Loader loader(open(),
-                {ImageRequest{1}, MeshRequest{1, 1}, CodebookRequest{1, 0, 0}, PlaneRequest{1, 0, 0, 0}},
+                {ImageRequest{1}, MeshRequest{1, 1}, CodebookRequest{bundle::GroupIndex{1}, {}, {}},
+                 PlaneRequest{bundle::GroupIndex{1}, {}, {}, {}}},
                 threads_, 2);
   EXPECT_EQ(names(drain(loader, 1 << 20)),
             (std::vector<std::string>{"image 1", "mesh 1.1", "codebook 1.0.0", "plane 1.0.0.0"}));
@@ -315,9 +316,12 @@ TEST_F(LoaderTest, PartsOfABundleAreAllOfItEachOnceInAnOrderThatShows) {
     const bundle::Group& group = reader->description().groups[g];
     for (std::uint32_t c = 0; c < group.cells.size(); ++c)
       for (std::uint32_t t = 0; t < group.cells[c].transfers.size(); ++t) {
-        const auto steps = static_cast<std::uint32_t>(parts->units[1 + g].size());
-        EXPECT_EQ(parts->planesIn(g, steps, c, t), group.cells[c].transfers[t].planes.size());
-        EXPECT_EQ(parts->planesIn(g, 1, c, t), 0u) << "codebooks first";
+        const auto planesIn = [&](std::size_t steps) {
+          return parts->planesIn(bundle::GroupIndex{g}, static_cast<std::uint32_t>(steps),
+                                 bundle::CellIndex{c}, bundle::TransferIndex{t});
+        };
+        EXPECT_EQ(planesIn(parts->units[1 + g].size()), group.cells[c].transfers[t].planes.size());
+        EXPECT_EQ(planesIn(1), 0u) << "codebooks first";
       }
   }
 }

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/frame/frame_times.hpp"
+#include "runtime/world/frame_times.hpp"
 #include "tests/support/frame/world_stage.hpp"
 
 namespace lambent::frame {

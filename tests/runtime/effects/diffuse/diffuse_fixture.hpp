@@ -107,7 +107,8 @@ class BundleMaker {
       addDraw(made, options, g, glossy_outputs, mapped, surface_cells * options.samples);
     if (options.proxy_triangles > 0) {
       group.proxy = 0;
-      made.proxies.push_back({.group = g, .proxy = makeProxy(options, group.sample_count)});
+      made.proxies.push_back(
+          {.group = bundle::GroupIndex{g}, .proxy = makeProxy(options, group.sample_count)});
     }
     description.groups.push_back(std::move(group));
   }
@@ -172,7 +173,8 @@ class BundleMaker {
       cell.light_probes.clear();
       for (std::uint32_t k = 1; k < options.light_probes; ++k) cell.light_probes.push_back(k);
       cell.light_weights = 0;
-      streaming::LightWeightsChunk ready{.group = g, .cell = c, .samples = {}};
+      streaming::LightWeightsChunk ready{
+          .group = bundle::GroupIndex{g}, .cell = bundle::CellIndex{c}, .samples = {}};
       for (std::uint32_t s = 0; s < options.samples; ++s)
         ready.samples.push_back(lightWeights(options.light_probes - 1));
       made.light_weights.push_back(std::move(ready));
@@ -227,7 +229,11 @@ class BundleMaker {
       cluster_of.push_back(s == 0 ? 0 : below(options.clusters));
     const std::vector<std::uint32_t> counts = transfer::planeCounts(codebook, cluster_of);
     for (std::uint32_t j = 0; j < counts.size(); ++j) {
-      streaming::PlaneChunk plane{.group = g, .cell = c, .transfer = transfer_index, .plane = j, .codes = {}};
+      streaming::PlaneChunk plane{.group = bundle::GroupIndex{g},
+                                  .cell = bundle::CellIndex{c},
+                                  .transfer = bundle::TransferIndex{transfer_index},
+                                  .plane = bundle::PlaneIndex{j},
+                                  .codes = {}};
       for (std::uint32_t i = 0; i < counts[j] * bitsOf(j) / 8; ++i)
         plane.codes.push_back(static_cast<std::byte>(below(256)));
       made.planes.back().push_back(std::move(plane));
@@ -236,9 +242,9 @@ class BundleMaker {
     }
     std::vector<std::uint32_t> positions = transfer::positionsOf(cluster_of, options.clusters);
     for (std::uint32_t& position : positions) position |= cluster_of[position] << 16;
-    made.codebooks.back().push_back({.group = g,
-                                     .cell = c,
-                                     .transfer = transfer_index,
+    made.codebooks.back().push_back({.group = bundle::GroupIndex{g},
+                                     .cell = bundle::CellIndex{c},
+                                     .transfer = bundle::TransferIndex{transfer_index},
                                      .codebook = std::move(codebook),
                                      .positions = std::move(positions)});
     return transfer;

@@ -59,7 +59,7 @@ struct ShadingBench {
     if (!made.light_weights.empty()) upload(made.light_weights[cell]);
     for (const auto& item : made.codebooks[cell]) upload(item);
     for (const auto& plane : made.planes[cell])
-      if (plane.plane < count) upload(plane);
+      if (plane.plane.value < count) upload(plane);
   }
   // Shades once and returns the number of dispatches.
   template <typename Mode>

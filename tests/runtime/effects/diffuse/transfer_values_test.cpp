@@ -42,7 +42,7 @@ struct Bench : testing::ShadingBench<Asked> {
     for (const streaming::PlaneChunk& plane : made.planes[cell]) {
       if (plane.transfer != t) continue;
       const bundle::CellTransfer& described = transferOf(cell, t);
-      const std::size_t bytes = described.planes[plane.plane].bits / 8;
+      const std::size_t bytes = described.planes[plane.plane.value].bits / 8;
       auto& codes = planes.emplace_back(plane.codes.size() / bytes, 0u);
       for (std::size_t i = 0; i < codes.size(); ++i)
         std::memcpy(&codes[i], plane.codes.data() + i * bytes, bytes);

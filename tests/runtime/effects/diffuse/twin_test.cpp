@@ -102,7 +102,7 @@ struct Page {
     words.insert(words.end(), positions.begin(), positions.end());
     for (const streaming::PlaneChunk& plane : made.planes[0]) {
       if (plane.transfer != transfer_index) continue;
-      places.push_back(size() | (transfer.planes[plane.plane].bits == 16 ? transfer::kCodes16Bit : 0u));
+      places.push_back(size() | (transfer.planes[plane.plane.value].bits == 16 ? transfer::kCodes16Bit : 0u));
       words.resize(words.size() + (plane.codes.size() + 3) / 4);
       std::memcpy(&words[places.back() & ~transfer::kCodes16Bit], plane.codes.data(), plane.codes.size());
     }
@@ -132,7 +132,7 @@ std::vector<std::vector<std::uint32_t>> codesOf(const testing::RandomBundle& mad
   for (const streaming::PlaneChunk& plane : made.planes[0]) {
     if (plane.transfer != transfer) continue;
     const std::size_t bytes =
-        made.description.groups[0].cells[0].transfers[transfer].planes[plane.plane].bits / 8;
+        made.description.groups[0].cells[0].transfers[transfer].planes[plane.plane.value].bits / 8;
     auto& codes = all.emplace_back(plane.codes.size() / bytes, 0u);
     for (std::size_t i = 0; i < codes.size(); ++i) std::memcpy(&codes[i], &plane.codes[i * bytes], bytes);
   }

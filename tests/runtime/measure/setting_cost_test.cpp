@@ -1,5 +1,5 @@
 // Tests the measured cost and error of settings, beside a frame that goes on unchanged.
-#include "runtime/frame/setting_cost.hpp"
+#include "runtime/measure/setting_cost.hpp"
 
 #include <gtest/gtest.h>
 

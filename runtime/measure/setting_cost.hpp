@@ -12,9 +12,9 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/frame/frame_settings.hpp"
-#include "runtime/frame/measured_frame.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/lighting/environment.hpp"
+#include "runtime/measure/measured_frame.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/world/world.hpp"
 

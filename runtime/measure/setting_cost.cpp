@@ -1,4 +1,4 @@
-#include "runtime/frame/setting_cost.hpp"
+#include "runtime/measure/setting_cost.hpp"
 
 #include <optional>
 #include <string>

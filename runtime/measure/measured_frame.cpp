@@ -1,4 +1,4 @@
-#include "runtime/frame/measured_frame.hpp"
+#include "runtime/measure/measured_frame.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runtime/frame/frame_times.hpp"
+#include "runtime/world/frame_times.hpp"
 
 #include <algorithm>
 #include <cmath>
