@@ -81,5 +81,7 @@ function(lambent_test name)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   # Tests find the shared data beside the checkout, if it is there; LAMBENT_SHARED_DATA overrides.
   target_compile_definitions(${name} PRIVATE "LAMBENT_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" "LAMBENT_BINARY_DIR=\"${CMAKE_BINARY_DIR}\"")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
+  # ctest begins with the tests of the highest cost, so that the longest does not run alone at the end.
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
+    PROPERTIES TIMEOUT ${TEST_TIMEOUT} COST ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
 endfunction()
