@@ -11,6 +11,7 @@
 #include "assets/shapes.hpp"
 #include "baker/bake/option_rows.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/require.hpp"
 #include "tests/support/x_server.hpp"
 
 namespace lambent {
@@ -56,7 +57,7 @@ class EditorProgram : public testing::ProgramTest {
     if (display)
       ::setenv("DISPLAY", display->display().c_str(), 1);
     else if (const char* given = std::getenv("DISPLAY"); !given || !*given)
-      GTEST_SKIP() << "there is no display: " << why;
+      LAMBENT_LACKS("display", "there is no display: " << why);
     std::filesystem::copy(LAMBENT_BINARY_DIR "/assets/hello.glb", folder / "hello.glb");
   }
 
