@@ -482,6 +482,16 @@ TEST_F(LambentProgram, BundlesPassTheKhronosValidator) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
+TEST_F(LambentProgram, SaysThatABakeCannotBeResumedAndBakesOn) {
+  std::filesystem::create_directories(folder / "cache");
+  writeBytes(folder / "cache/journal", "a file where the journal's folder has to be");
+  const Outcome baked = bakeHello("hello.lmb.glb", {"--cache", path("cache")});
+  EXPECT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_NE(baked.err.find("journal"), std::string::npos) << baked.err;
+  EXPECT_NE(baked.err.find("--resume will not know of this bake"), std::string::npos) << baked.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "hello.lmb.glb"));
+}
+
 // Kills the bake as soon as this many results are in the cache, whatever it does at that moment.
 TEST_F(LambentProgram, GoesOnWhereItWasKilled) {
   const std::string cache = path("cache");

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """validate_bundle.py SCHEMA BUNDLE...: holds what bundles say against the schema of the extension.
 
 Readers ignore properties that they do not know, and so does the schema. What this program writes must all be in it,

@@ -130,7 +130,7 @@ std::array<CaptureError, 2> captureErrors(int order, int size, double degrees) {
     }
     for (std::size_t which = 0; which < 2; ++which) {
       errors[which].average += 100 * squared[which] / norm / kDirections;
-      errors[which].worst = testing::larger(errors[which].worst, 100 * squared[which] / norm);
+      errors[which].worst = lambent::testing::larger(errors[which].worst, 100 * squared[which] / norm);
     }
   }
   return errors;

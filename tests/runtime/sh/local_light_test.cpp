@@ -35,7 +35,7 @@ double largestDifference(const LightVector& light, const Coefficients& expected,
   double largest = 0;
   for (int i = 0; i < coefficientCount(order); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    largest = testing::larger(largest, std::abs(static_cast<double>(light.c[k].r) - expected[k]));
+    largest = lambent::testing::larger(largest, std::abs(static_cast<double>(light.c[k].r) - expected[k]));
   }
   return largest;
 }

@@ -53,7 +53,7 @@ TEST(ShRotation, TurnsTheBasisIn11Bands) {
     evaluate(kMaxBasisOrder, dir, y);
     evaluate(kMaxBasisOrder, q * dir, expected);
     rotation.apply(y, std::span<double>(turned));
-    EXPECT_LE(testing::largestDifference(turned, expected), 1e-12);
+    EXPECT_LE(lambent::testing::largestDifference(turned, expected), 1e-12);
   }
 }
 
@@ -67,7 +67,7 @@ TEST(ShRotation, TurnsTheBasisUpToOrder8NearThePoles) {
          {glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1), random.direction(), random.direction()}) {
       std::array<double, kMaxCoefficients> turned;
       rotation.apply(evaluated(dir), std::span<double>(turned));
-      EXPECT_LE(testing::largestDifference(turned, evaluated(matrix * dir)), 1e-12)
+      EXPECT_LE(lambent::testing::largestDifference(turned, evaluated(matrix * dir)), 1e-12)
           << "quaternion " << q.w << " " << q.x << " " << q.y << " " << q.z;
     }
   }
@@ -98,7 +98,7 @@ TEST(ShRotation, ComposesAsRotationsDo) {
     Rotation(b, kMaxOrder).apply(y, std::span<double>(once));
     Rotation(a, kMaxOrder).apply(once, std::span<double>(twice));
     Rotation(a * b, kMaxOrder).apply(y, std::span<double>(together));
-    EXPECT_LE(testing::largestDifference(twice, together), 1e-12);
+    EXPECT_LE(lambent::testing::largestDifference(twice, together), 1e-12);
   }
 }
 
@@ -150,7 +150,8 @@ TEST(ShRotation, TurnsLightVectorsAsTheirDirectionsTo1e5AtEveryOrder) {
       double error = 0;
       for (std::size_t i = 0; i < turned.c.size(); ++i) {
         const glm::dvec3 away = glm::dvec3(turned.c[i]) - expected[i];
-        for (int channel = 0; channel < 3; ++channel) error = testing::larger(error, std::abs(away[channel]));
+        for (int channel = 0; channel < 3; ++channel)
+          error = lambent::testing::larger(error, std::abs(away[channel]));
       }
       ASSERT_LE(error, 1e-5) << "order " << order << ", quaternion " << q.w << " " << q.x << " " << q.y << " "
                              << q.z;
@@ -191,7 +192,7 @@ TEST(ShRotation, DoesNotDriftOver100000SmallTurns) {
   const auto y = evaluated(glm::normalize(glm::dvec3(-1, 0.5, 0.2)));
   std::array<double, kMaxCoefficients> turned;
   Rotation(q, kMaxOrder).apply(y, std::span<double>(turned));
-  EXPECT_LE(testing::largestDifference(turned, y), 1e-9) << "100 full turns bring the function back";
+  EXPECT_LE(lambent::testing::largestDifference(turned, y), 1e-9) << "100 full turns bring the function back";
 }
 
 TEST(ShRotation, RefusesWhatIsNoRotation) {

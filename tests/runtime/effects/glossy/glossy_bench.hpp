@@ -64,8 +64,8 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
       }
       for (uint e = fill.first_output; e < fill.first_output + fill.output_count; ++e)
         for (int c = 0; c < 4; ++c) {
-          largest = testing::larger(largest, std::abs(wanted[e][c]));
-          difference = testing::larger(difference, std::abs(wanted[e][c] - got[e][c]));
+          largest = lambent::testing::larger(largest, std::abs(wanted[e][c]));
+          difference = lambent::testing::larger(difference, std::abs(wanted[e][c] - got[e][c]));
         }
     }
     return difference / largest;

@@ -72,7 +72,7 @@ void expectAlike(const std::vector<glm::vec4>& found, const std::vector<glm::vec
     ASSERT_TRUE(std::isfinite(glm::dot(found[i], found[i]))) << what;
     change += glm::dot(apart, apart);
     power += glm::dot(expected[i], expected[i]);
-    most = testing::larger(most, glm::length(apart));
+    most = lambent::testing::larger(most, glm::length(apart));
   }
   EXPECT_LT(std::sqrt(change / power), 1e-3) << what;
   // GPUs interpolate with weights of 8 bits.
@@ -200,8 +200,8 @@ TEST_F(VolumeGpu, ShowsTheLightItselfUntilTransferIsThere) {
   const std::vector<glm::vec4> after = bench.picture(view);
   float most = 0.0f, brightest = 0.0f;
   for (std::size_t i = 0; i < after.size(); ++i) {
-    most = testing::larger(most, glm::distance(before[i], after[i]));
-    brightest = testing::larger(brightest, after[i].g);
+    most = lambent::testing::larger(most, glm::distance(before[i], after[i]));
+    brightest = lambent::testing::larger(brightest, after[i].g);
   }
   EXPECT_LT(most, 1e-4f);
   EXPECT_GT(brightest, 0.2f);
