@@ -85,5 +85,7 @@ function(lambent_test name)
   if("fast" IN_LIST TEST_LABELS)
     add_dependencies(fast-tests ${name})
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
+  # ctest begins with the tests of the highest cost, so that the longest does not run alone at the end.
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
+    PROPERTIES TIMEOUT ${TEST_TIMEOUT} COST ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
 endfunction()
