@@ -61,6 +61,8 @@ int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::st
                                                   .output = a.output,
                                                   .options = a.options,
                                                   .import = {.allow_outside = a.allow_outside}});
+  if (record.error())
+    fmt::print(stderr, "lambent: {}; --resume will not know of this bake\n", record.error()->line());
   Progress progress;
   progress.begin("import");
   auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});

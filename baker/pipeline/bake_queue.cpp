@@ -38,6 +38,7 @@ struct Job {
   bool tried = false;  // the trial was made
   bool begun = false;
   Journal::Entry record;
+  std::optional<std::string> unrecorded;     // says that the journal could not be written
   StageSeconds expected;                     // for the final bake
   std::shared_ptr<const Progress> progress;  // of the step that runs
 
@@ -245,7 +246,12 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
 
   const std::stop_callback stop_too(closing, [stop]() mutable { stop.request_stop(); });
   Journal::Entry entry;
-  if (record) entry = journal.begin(request);
+  std::optional<std::string> unrecorded;
+  if (record) {
+    entry = journal.begin(request);
+    if (entry.error())
+      unrecorded = entry.error()->line() + "; if this bake is cut short, no later session goes on with it";
+  }
   bool up_to_date = false;
   std::vector<std::string> warnings;
   const Result<BakeReport> result = [&]() -> Result<BakeReport> {
@@ -283,13 +289,14 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
     if (job->state.phase == JobPhase::Cancelled) entry.done();
     return;
   }
-  if (record) job->record = std::move(entry);
+  if (record) job->record = std::move(entry), job->unrecorded = std::move(unrecorded);
   JobState& state = job->state;
   const std::vector<Progress::Stage> stages = progress->finished();
   state.fraction = snapshot(*job).fraction;
   state.seconds += total(stages);
   job->progress = nullptr;
   state.warnings = warnings;
+  if (job->unrecorded) state.warnings.push_back(*job->unrecorded);
   if (!result) {
     if (!stop.stop_requested()) {
       state.phase = JobPhase::Failed;

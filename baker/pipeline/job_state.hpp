@@ -39,7 +39,7 @@ struct JobState {
   std::optional<double> seconds_left;  // of the whole job; nothing while it is unknown
 
   std::optional<Error> error;         // of a job that failed
-  std::vector<std::string> warnings;  // of the import, followed by the bake's notices
+  std::vector<std::string> warnings;  // of the import and the journal, then the bake's notices
   bool up_to_date = false;            // true if the job was done without baking
   std::optional<BakeReport> report;   // of `reached`, if it was baked here
 };

@@ -26,13 +26,16 @@ fs::path lockOf(const fs::path& entry) {
   return fs::path(entry).replace_extension(kLock);
 }
 
-// Locks an entry and returns the file, or -1 if another process has it. The holder of a lock may remove the
-// file, so this tries again until the locked file is the one that has the name.
+constexpr int kTaken = -1, kUnwritable = -2;
+
+// Locks an entry and returns the file, kTaken if another process has it, or kUnwritable if there can be no
+// such file. The holder of a lock may remove the file, so this tries again until the locked file is the one
+// that has the name.
 int lock(const fs::path& entry) {
   const fs::path path = lockOf(entry);
   for (int attempt = 0; attempt < 16; ++attempt) {
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (file < 0) return -1;
+    if (file < 0) return kUnwritable;
     struct stat held {
     }, named{};
     errno = 0;
@@ -41,9 +44,9 @@ int lock(const fs::path& entry) {
       return file;
     const bool taken = errno == EWOULDBLOCK;
     ::close(file);
-    if (taken) return -1;
+    if (taken) return kTaken;
   }
-  return -1;
+  return kTaken;
 }
 
 void unlock(const fs::path& entry, int file) {
@@ -59,11 +62,14 @@ void removeEntry(const fs::path& entry) {
 }  // namespace
 
 Journal::Entry::Entry(Entry&& other) noexcept
-    : file_(std::exchange(other.file_, {})), lock_(std::exchange(other.lock_, -1)) {}
+    : file_(std::exchange(other.file_, {})),
+      lock_(std::exchange(other.lock_, -1)),
+      error_(std::move(other.error_)) {}
 
 Journal::Entry& Journal::Entry::operator=(Entry&& other) noexcept {
   std::swap(file_, other.file_);
   std::swap(lock_, other.lock_);
+  std::swap(error_, other.error_);
   return *this;
 }
 
@@ -82,18 +88,28 @@ Journal::Entry Journal::begin(const BakeRequest& request) const {
   if (folder_.empty()) return entry;
   std::error_code failed;
   fs::create_directories(folder_, failed);
-  if (failed) return entry;
+  if (failed) {
+    entry.error_ = Error{folder_.string(), "cannot be made: " + failed.message(), {}};
+    return entry;
+  }
   const fs::path path = folder_ / (requestKey(request) + kEntry);
   int held = lock(path);
   // A process in unfinished() holds the lock for a moment only.
-  for (int attempt = 0; held < 0 && attempt < 10; ++attempt) {
+  for (int attempt = 0; held == kTaken && attempt < 10; ++attempt) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     held = lock(path);
   }
+  if (held == kUnwritable) entry.error_ = Error{folder_.string(), "cannot be written to", {}};
   if (held < 0) return entry;
   entry.file_ = path;
   entry.lock_ = held;
-  if (auto file = AtomicFile::open(path); file && file->write(requestText(request))) (void)file->commit();
+  const Result<void> written = [&]() -> Result<void> {
+    auto file = AtomicFile::open(path);
+    if (!file) return failAgain(file.error());
+    if (auto wrote = file->write(requestText(request)); !wrote) return wrote;
+    return file->commit();
+  }();
+  if (!written) entry.error_ = written.error();
   return entry;
 }
 

@@ -4,7 +4,7 @@
 // lock ends with the process, so no other process takes the bake for cut short. Any number of processes may
 // use one folder.
 //
-// If the journal cannot be written, the bake runs all the same.
+// If the journal cannot be written, the bake runs all the same, and its entry says why it has no record.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "baker/pipeline/bake_request.hpp"
+#include "runtime/base/result.hpp"
 
 namespace lambent::baker {
 
@@ -33,15 +34,19 @@ class Journal {
     Entry& operator=(Entry&& other) noexcept;
     ~Entry();
     void done();
+    // Returns why the bake has no record, if that is not since another process bakes the same: were it cut
+    // short, nothing would resume it.
+    const std::optional<Error>& error() const { return error_; }
 
    private:
     friend class Journal;
     std::filesystem::path file_;
     int lock_ = -1;
+    std::optional<Error> error_;
   };
 
-  // Returns an entry without a record (file_ empty) if another process bakes the same, or the folder cannot
-  // be written.
+  // Returns an entry without a record (file_ empty) if another process bakes the same, and one with an error
+  // if the record cannot be written.
   Entry begin(const BakeRequest& request) const;
   // Returns the bakes that no process works on, in the order in which they began.
   std::vector<BakeRequest> unfinished() const;

@@ -123,7 +123,13 @@ Result<void> Scenes::open(const BundleEntry& entry, const std::filesystem::path&
   if (!entry.source.empty()) {
     const std::filesystem::path source = plain(folder / entry.source);
     const auto edits = entry.bake_options.find(kEditsOption);
-    const auto read = edits == entry.bake_options.end() ? std::nullopt : baker::readEdits(edits->second);
+    const bool edited = edits != entry.bake_options.end();
+    const auto read = edited ? baker::readEdits(edits->second) : std::nullopt;
+    if (edited && !read)
+      log_.warn(
+          entry.id +
+          ": the world file's edits cannot be read; the scene is baked as its own file says, and the next "
+          "save of the world drops them");
     if (std::filesystem::exists(source, ignored))
       return openScene(source, entry.id, optionsOf(entry), read.value_or(baker::SceneEdits{}));
   }

@@ -8,7 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/spec/image.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/require.hpp"
 
 namespace lambent {
 namespace {
@@ -47,7 +49,7 @@ class HelloPicture : public testing::ProgramTest {
         (folder / "hello.lmb.glb").string(), "--size", "128x96", "--window", "off", "--headless", path};
     words.insert(words.end(), options.begin(), options.end());
     const auto outcome = run(LAMBENT_DEMO, words);
-    if (testing::lacksDevice(outcome)) GTEST_SKIP() << outcome.err;
+    if (testing::lacksDevice(outcome)) LAMBENT_LACKS("gl", outcome.err);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     auto read = spec::readExr(path);
     ASSERT_TRUE(read) << read.error().line();
@@ -100,7 +102,7 @@ TEST_F(HelloPicture, UnderUniformLightIsNeverBrighterThanItsAlbedo) {
     // Without shadows every pixel shows the albedo of one of the three materials.
     float nearest = 1e9f;
     for (const glm::vec3& albedo : albedos)
-      nearest = std::min(nearest, glm::distance(glm::vec3(open.texels[i]), albedo));
+      nearest = testing::smaller(nearest, glm::distance(glm::vec3(open.texels[i]), albedo));
     EXPECT_LT(nearest, 1e-3f) << i;
     for (int c = 0; c < 3; ++c) {
       EXPECT_GE(shadowed.texels[i][c], 0.0f) << i;

@@ -14,6 +14,7 @@
 #include "runtime/spec/image.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
+#include "tests/support/require.hpp"
 
 namespace lambent {
 namespace {
@@ -59,9 +60,10 @@ class DemoProgram : public ::testing::Test {
   std::filesystem::path folder;
 };
 
-bool deviceHere() {
-  return gpu::Context::createHeadless().has_value();
-}
+// Ends the calling TEST if there is no device that draws.
+#define LAMBENT_NEEDS_DEVICE()                                                 \
+  if (const Result<gpu::Context> made = gpu::Context::createHeadless(); !made) \
+  LAMBENT_LACKS("gl", "no OpenGL 4.5 here: " << made.error().line())
 
 void expectOneLine(const std::string& text) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
@@ -137,7 +139,7 @@ TEST_F(DemoProgram, AMissingFileIsExitCode1AndNamed) {
 }
 
 TEST_F(DemoProgram, WritesPicturesAndPrintsWhere) {
-  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  LAMBENT_NEEDS_DEVICE();
   const std::string png = (folder / "a.png").string(), exr = (folder / "a.exr").string();
   const Outcome display = run(bundle() + " --light constant:1,1,1 --size 96x64 --headless " + quoted(png));
   ASSERT_EQ(display.exit_code, 0) << display.err;
@@ -155,7 +157,7 @@ TEST_F(DemoProgram, WritesPicturesAndPrintsWhere) {
 }
 
 TEST_F(DemoProgram, ANumberedNameGetsEveryFrameEachAsThePictureByItself) {
-  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  LAMBENT_NEEDS_DEVICE();
   const std::string light = bundle() + " --light sun:0,30,20,5 --size 64x64 --rotate-light ";
   const Outcome all = run(light + "90 --frames 2 --headless " + quoted(folder / "f-##.exr"));
   ASSERT_EQ(all.exit_code, 0) << all.err;
@@ -171,7 +173,7 @@ TEST_F(DemoProgram, ANumberedNameGetsEveryFrameEachAsThePictureByItself) {
 }
 
 TEST_F(DemoProgram, KeepsToItsMemoryAndDimsLamps) {
-  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  LAMBENT_NEEDS_DEVICE();
   const std::filesystem::path lit = folder / "lit.lmb.glb", exr = folder / "a.exr";
   testing::BundleBuilder()
       .lamp({.kind = bundle::GroupLight::Kind::Node, .index = 0, .color = glm::vec3(2.0f)}, 0.5f)
@@ -201,7 +203,7 @@ TEST_F(DemoProgram, KeepsToItsMemoryAndDimsLamps) {
 }
 
 TEST_F(DemoProgram, FadesFromOneLightToAnother) {
-  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  LAMBENT_NEEDS_DEVICE();
   const std::filesystem::path exr = folder / "a.exr";
   const Outcome outcome =
       run(bundle() + " --light constant:1,0,0 --fade-to constant:0,2,0 --fade 0.25 --size 64x64" +
@@ -215,7 +217,7 @@ TEST_F(DemoProgram, FadesFromOneLightToAnother) {
 }
 
 TEST_F(DemoProgram, MovesAndDimsAKeyLightOfAProbe) {
-  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  LAMBENT_NEEDS_DEVICE();
   // The sky is grey, with one bright texel at azimuth -40, elevation 40.
   spec::RgbImage sky{.width = 128, .height = 64, .texels = std::vector<glm::vec3>(128 * 64, glm::vec3(0.5f))};
   sky.texels[18 * 128 + 50] = glm::vec3(9000.0f);
@@ -248,7 +250,7 @@ TEST_F(DemoProgram, MovesAndDimsAKeyLightOfAProbe) {
 }
 
 TEST_F(DemoProgram, ALightInTheSceneShinesByTheSquareOfItsDistance) {
-  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  LAMBENT_NEEDS_DEVICE();
   const std::filesystem::path exr = folder / "a.exr";
   const auto centre = [&](const std::string& light) {
     const Outcome outcome =
@@ -269,7 +271,7 @@ TEST_F(DemoProgram, ALightInTheSceneShinesByTheSquareOfItsDistance) {
 }
 
 TEST_F(DemoProgram, ReportsAsJson) {
-  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  LAMBENT_NEEDS_DEVICE();
   const std::string png = (folder / "a.png").string();
   const Outcome outcome =
       run(bundle() + " --light sun:0,40,5,50 --size 64x64 --frames 3 --json --headless " + quoted(png));
@@ -303,7 +305,7 @@ TEST_F(DemoProgram, ReportsAsJson) {
 }
 
 TEST_F(DemoProgram, LeavesNoPictureWhereItCannotWrite) {
-  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  LAMBENT_NEEDS_DEVICE();
   const Outcome outcome =
       run(bundle() + " --light constant:1,1,1 --size 16x16 --headless " + quoted(folder / "no/such/a.png"));
   EXPECT_EQ(outcome.exit_code, 1);

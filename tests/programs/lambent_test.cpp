@@ -9,6 +9,7 @@
 
 #include "runtime/bundle/description.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/require.hpp"
 
 namespace lambent {
 namespace {
@@ -456,7 +457,7 @@ TEST_F(DamagedBundle, IsToldByTheDemoInOneLineAndGivesNoPicture) {
                {path(name), "--light", "constant:1,1,1", "--size", "32x32", "--headless", path("a.png")});
   };
   const Outcome intact = show("hello.lmb.glb");
-  if (testing::lacksDevice(intact)) GTEST_SKIP() << intact.err;
+  if (testing::lacksDevice(intact)) LAMBENT_LACKS("gl", intact.err);
   ASSERT_EQ(intact.exit_code, 0) << intact.err;
   ASSERT_TRUE(std::filesystem::remove(folder / "a.png"));
   auto bundles = damaged();
@@ -477,8 +478,18 @@ TEST_F(LambentProgram, BundlesPassTheKhronosValidator) {
   ASSERT_EQ(gallery.exit_code, 0) << gallery.err;
   const Outcome outcome = run(LAMBENT_SOURCE_DIR "/tests/support/validate_gltf.sh",
                               {path("hello.lmb.glb"), path("gallery.lmb.glb")});
-  if (outcome.exit_code == 77) GTEST_SKIP() << outcome.out;
+  if (outcome.exit_code == 77) LAMBENT_LACKS("validator", outcome.out);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+}
+
+TEST_F(LambentProgram, SaysThatABakeCannotBeResumedAndBakesOn) {
+  std::filesystem::create_directories(folder / "cache");
+  writeBytes(folder / "cache/journal", "a file where the journal's folder has to be");
+  const Outcome baked = bakeHello("hello.lmb.glb", {"--cache", path("cache")});
+  EXPECT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_NE(baked.err.find("journal"), std::string::npos) << baked.err;
+  EXPECT_NE(baked.err.find("--resume will not know of this bake"), std::string::npos) << baked.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "hello.lmb.glb"));
 }
 
 // Kills the bake as soon as this many results are in the cache, whatever it does at that moment.

@@ -7,6 +7,7 @@
 #include "reference/warp.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/reference/quadrature.hpp"
+#include "tests/support/differences.hpp"
 
 namespace lambent::baker::reference {
 namespace {
@@ -86,8 +87,8 @@ TEST(Horizons, ARayAboveTheTriangleStandsForTheDirectionThatItAnswers) {
     float nearest = 2.0f;
     horizons.forAbove(ray, [&](const glm::vec3& above) {
       EXPECT_GT(glm::dot(above, horizons.smooth), 0.0f) << n;
-      nearest = std::min({nearest, glm::distance(above, dir),
-                          glm::distance(Horizons::mirrored(above, horizons.smooth), dir)});
+      for (const glm::vec3& from : {above, Horizons::mirrored(above, horizons.smooth)})
+        nearest = testing::smaller(nearest, glm::distance(from, dir));
     });
     EXPECT_LT(nearest, 1e-5f) << n;
   }

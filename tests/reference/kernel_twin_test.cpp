@@ -10,6 +10,7 @@
 #include "reference/warp.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/reference/measure.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace lambent::baker::reference {
@@ -81,7 +82,7 @@ double apart(const Scene& scene) {
           away += (a - b) * (a - b);
           all += a * a;
         }
-      worst = std::max(worst, std::sqrt(away / all));
+      worst = testing::larger(worst, std::sqrt(away / all));
     }
   }
   return worst;

@@ -167,10 +167,18 @@ TEST_F(Progressive, StopsInTheMidstOfAPictureWithoutEnd) {
   testing::place(scene, testing::even(40.0f, glm::vec3(1), 0.3f, {0, 0.8f, 0}));
   request.options.size = {4096, 2160};
   request.options.spp = kMaxSpp;
-  ProgressiveReference reference(shared(), request);
-  untilTracing(reference);
-  reference.restart(request);
-  untilTracing(reference);
+  const auto traced = shared();
+  const std::weak_ptr<const Scene> watch = traced;
+  {
+    ProgressiveReference reference(traced, request);
+    untilTracing(reference);
+    EXPECT_EQ(reference.status().phase, ProgressivePhase::Tracing);
+    EXPECT_EQ(reference.restart(request), 2u);
+    untilTracing(reference);
+    EXPECT_EQ(reference.status().phase, ProgressivePhase::Tracing) << "it would take days";
+    EXPECT_EQ(reference.status().generation, 2u);
+  }
+  EXPECT_EQ(watch.use_count(), 1) << "nothing traces on after the end";
 }
 
 TEST_F(Progressive, PausesAndGoesOn) {

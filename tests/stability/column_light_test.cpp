@@ -7,6 +7,7 @@
 
 #include "reference/reference.hpp"
 #include "tests/stability/show.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent {
@@ -125,7 +126,7 @@ TEST_F(ColumnLight, WithoutShadowCubesAllOfItGoesByTheColumn) {
     const glm::vec3 place(x, 0, 0.1f);
     const float column = show.patch(kEye, place).g;
     EXPECT_NEAR(column / openAt(place), 1.0f, 0.06f) << "the column at vertices, " << x;
-    worst = std::max(worst, std::abs(column - openAt(place)));
+    worst = testing::larger(worst, std::abs(column - openAt(place)));
   }
   EXPECT_EQ(show.frame->counts()["shadowed_lights"], 0u);
   EXPECT_GT(worst, 0.0f);

@@ -4,6 +4,7 @@
 
 #include "baker/bake/bake.hpp"
 #include "tests/support/decoded_bundle.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -43,8 +44,8 @@ class EndToEndBake : public ProgramTest {
     std::pair<float, float> range{1e30f, -1e30f};
     for (const DecodedDraw& draw : draws)
       for (std::size_t v = 0; v < draw.mesh.positions.size(); ++v) {
-        range.first = std::min(range.first, draw.uniformRadiance(v));
-        range.second = std::max(range.second, draw.uniformRadiance(v));
+        range.first = smaller(range.first, draw.uniformRadiance(v));
+        range.second = larger(range.second, draw.uniformRadiance(v));
       }
     return range;
   }

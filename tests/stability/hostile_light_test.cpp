@@ -40,14 +40,28 @@ TEST_F(HostileLight, TexelsThatAreNotFiniteCountAsBlackAndAreTold) {
   }
 }
 
-TEST_F(HostileLight, TexelsOfAbsurdRadianceGiveFiniteLight) {
-  for (const float poison : {1e30f, 3e38f, -1e30f}) {
+// Radiance up to 1e15 is taken as it is; with more, squares of it leave the range of floats.
+TEST_F(HostileLight, TexelsOfAbsurdRadianceCountAsBlackAndAreTold) {
+  for (const float poison : {1.1e15f, 1e30f, 3e38f, -1e30f}) {
     auto sky = skyWith(poison);
-    if (!sky) continue;  // refused in one line is as good
-    EXPECT_TRUE(isFinite(sky->light())) << poison;
+    ASSERT_TRUE(sky) << sky.error().line();
+    ASSERT_EQ(sky->notices().size(), 1u) << poison;
+    EXPECT_NE(sky->notices()[0].find("2 texels"), std::string::npos) << sky->notices()[0];
+    EXPECT_NEAR(sky->light().c[0].x, 3.5449077f, 3.5449077f * 2.0f / 512.0f * 1.6f) << poison;
     sky->setTurn(33.0f);
     EXPECT_TRUE(isFinite(sky->light())) << poison;
   }
+}
+
+TEST_F(HostileLight, TexelsOfRadianceThatIsStillLightAreTaken) {
+  auto sky = skyWith(1e15f);
+  ASSERT_TRUE(sky) << sky.error().line();
+  EXPECT_TRUE(sky->notices().empty());
+  EXPECT_TRUE(isFinite(sky->light()));
+  // Two texels of 32 x 16 in the fourth row from the top.
+  const float solid_angle =
+      2.0f * (2.0f * 3.14159265f / 32.0f) * (3.14159265f / 16.0f) * std::sin(3.5f * 3.14159265f / 16.0f);
+  EXPECT_NEAR(sky->light().c[0].x / (0.28209479f * 1e15f * solid_angle), 1.0f, 0.01f);
 }
 
 }  // namespace lambent

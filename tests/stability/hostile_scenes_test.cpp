@@ -123,6 +123,26 @@ TEST_F(HostileScene, OfSliversIsOpen) {
               0.02f);
 }
 
+// Rays start 2.5e-5 m off these faces: a hundred times the walls' thickness.
+TEST_F(HostileScene, WithWallsThinnerThanItsRaysStandOffIsDarkInside) {
+  constexpr float kThick = 2.5e-7f;
+  const auto draws = bakeAndDecode(sceneOf(
+      {box({0, 0, 0}, glm::vec3(2.0f), 8), flipped(box({0, 0, 0}, glm::vec3(2.0f - 2.0f * kThick), 8))}));
+  ASSERT_EQ(draws.size(), 2u);
+  EXPECT_NEAR(range({draws[0]}).first, 1.0f, kCodingTolerance) << "outside";
+  EXPECT_NEAR(range({draws[1]}).second, 0.0f, kCodingTolerance) << "inside";
+}
+
+// One surface is the wall for both sides.
+TEST_F(HostileScene, OfASheetOfTwoSidesIsOpenOutsideAndDarkInside) {
+  baker::Scene scene = sceneOf({box({0, 0, 0}, glm::vec3(2.0f), 8)});
+  scene.materials[0].double_sided = true;
+  const auto draws = bakeAndDecode(scene);
+  ASSERT_EQ(draws.size(), 2u);
+  EXPECT_NEAR(range({draws[0]}).first, 1.0f, kCodingTolerance) << "outside";
+  EXPECT_NEAR(range({draws[1]}).second, 0.0f, kCodingTolerance) << "inside";
+}
+
 TEST_F(HostileScene, OfALongThinTerrainKeepsItsSlopes) {
   bundle::MeshData strip;
   constexpr int kLength = 2000;

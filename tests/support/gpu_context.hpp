@@ -1,5 +1,6 @@
-// Provides a headless OpenGL context with debug output, or the sentence with which a test skips if there is
-// none. There is one per process and test, and a test's GL objects must be destroyed before its context.
+// Provides a headless OpenGL context with debug output. Where there is none the test skips, or fails if
+// LAMBENT_REQUIRE has gl (require.hpp). There is one per process and test, and a test's GL objects must be
+// destroyed before its context.
 #pragma once
 
 #include <optional>
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/gpu/context.hpp"
+#include "tests/support/require.hpp"
 
 namespace lambent::testing {
 
@@ -14,7 +16,7 @@ class GpuTest : public ::testing::Test {
  protected:
   void SetUp() override {
     Result<gpu::Context> made = gpu::Context::createHeadless({.debug = true});
-    if (!made) GTEST_SKIP() << "no OpenGL 4.5 here: " << made.error().line();
+    if (!made) LAMBENT_LACKS("gl", "no OpenGL 4.5 here: " << made.error().line());
     context.emplace(std::move(*made));
   }
   void TearDown() override {

@@ -1,5 +1,6 @@
 // Finds the models and light probes that the project does not ship. They are in ../shared/data beside the
-// checkout, or where LAMBENT_SHARED_DATA points. Tests that need them skip if they are absent.
+// checkout, or where LAMBENT_SHARED_DATA points. Tests that need them skip if they are absent, or fail if
+// LAMBENT_REQUIRE has data (require.hpp).
 #pragma once
 
 #include <cstdlib>
@@ -7,6 +8,8 @@
 #include <string>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/require.hpp"
 
 namespace lambent::testing {
 
@@ -21,7 +24,8 @@ inline std::filesystem::path sharedFile(const std::string& name) {
 
 }  // namespace lambent::testing
 
-// Skips the calling TEST, with the reason, if the file does not exist.
+// Ends the calling TEST, with the reason, if the file does not exist.
 #define LAMBENT_NEEDS_SHARED(path)    \
   if (!std::filesystem::exists(path)) \
-  GTEST_SKIP() << (path) << " is not here; set LAMBENT_SHARED_DATA to the folder with models/ and probes/"
+  LAMBENT_LACKS("data",               \
+                (path) << " is not here; set LAMBENT_SHARED_DATA to the folder with models/ and probes/")

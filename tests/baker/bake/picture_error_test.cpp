@@ -8,6 +8,7 @@
 
 #include "baker/bake/bake.hpp"
 #include "runtime/bundle/reader.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/transport.hpp"
@@ -99,7 +100,7 @@ TEST(PictureError, EyesStandInRoomsAndAroundBodies) {
   ASSERT_GT(around.eyes.size(), 300u);
   float least = 1.0f, most = -1.0f;
   for (const glm::vec3& point : around.points.samples.positions)
-    least = std::min(least, point.y), most = std::max(most, point.y);
+    least = testing::smaller(least, point.y), most = testing::larger(most, point.y);
   EXPECT_LT(least, -0.8f);
   EXPECT_GT(most, 0.8f);
 }

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/differences.hpp"
+
 namespace lambent::baker {
 namespace {
 
@@ -42,8 +44,9 @@ std::map<Edge, int> edges(const MeshData& mesh) {
 float longestEdge(const MeshData& mesh) {
   float longest = 0.0f;
   for (const auto& [edge, count] : edges(mesh))
-    longest = std::max(longest, std::hypot(edge.first[0] - edge.second[0], edge.first[1] - edge.second[1],
-                                           edge.first[2] - edge.second[2]));
+    longest =
+        testing::larger(longest, std::hypot(edge.first[0] - edge.second[0], edge.first[1] - edge.second[1],
+                                            edge.first[2] - edge.second[2]));
   return longest;
 }
 

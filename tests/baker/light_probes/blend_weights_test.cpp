@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/support/differences.hpp"
+
 namespace lambent::baker {
 namespace {
 
@@ -64,7 +66,7 @@ TEST(BlendWeights, ChangeWithoutAJumpAlongAPath) {
       auto here = byLight(blendWeights(place, points, kEps));
       if (i > 0)
         for (std::uint32_t k = 0; k < points.size(); ++k)
-          largest = std::max(largest, std::abs(here[k] - before[k]));
+          largest = testing::larger(largest, std::abs(here[k] - before[k]));
       before = std::move(here);
     }
     return largest;
@@ -86,7 +88,8 @@ TEST(BlendWeights, FollowEvenChangeAmongLightProbes) {
     for (std::size_t k = 0; k < 4; ++k) there += weights.weight[k] * glm::dvec3(points[weights.light[k]]);
     blended += glm::dot(there - glm::dvec3(place), there - glm::dvec3(place));
     double least = 100.0;
-    for (const glm::vec3& point : points) least = std::min(least, double{glm::distance(point, place)});
+    for (const glm::vec3& point : points)
+      least = testing::smaller(least, double{glm::distance(point, place)});
     nearest += least * least;
   }
   EXPECT_LT(std::sqrt(blended / nearest), 0.2);

@@ -11,6 +11,7 @@
 #include "baker/jobs/parallel.hpp"
 #include "baker/transport/sample_areas.hpp"
 #include "runtime/bundle/description.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
@@ -102,9 +103,9 @@ TEST(LightProbes, BlendWithoutASeamWhereCellsMeet) {
   for (std::uint32_t row = 0; row < 40; ++row) {
     for (std::uint32_t c = 0; c < 3; ++c)
       for (std::uint32_t i = 0; i + 1 < 40; ++i)
-        inside = std::max(inside, std::abs(blended(c, row * 40 + i) - blended(c, row * 40 + i + 1)));
+        inside = testing::larger(inside, std::abs(blended(c, row * 40 + i) - blended(c, row * 40 + i + 1)));
     for (std::uint32_t c = 0; c + 1 < 3; ++c)
-      across = std::max(across, std::abs(blended(c, row * 40 + 39) - blended(c + 1, row * 40)));
+      across = testing::larger(across, std::abs(blended(c, row * 40 + 39) - blended(c + 1, row * 40)));
   }
   EXPECT_LE(across, inside);
   EXPECT_LT(inside, 0.35)

@@ -1,6 +1,8 @@
 // Tests that unfinished bakes are found again once no process works on them.
 #include "baker/pipeline/journal.hpp"
 
+#include <fstream>
+
 #include "tests/baker/pipeline/pipeline_test.hpp"
 
 namespace lambent::baker {
@@ -75,6 +77,20 @@ TEST_F(JournalTest, WithoutAFolderNothingIsRecordedAndNothingFails) {
   const Journal journal{std::filesystem::path()};
   { const Journal::Entry entry = journal.begin(request("a")); }
   EXPECT_TRUE(journal.unfinished().empty());
+}
+
+TEST_F(JournalTest, SaysThatItCannotBeWritten) {
+  std::ofstream(folder / "file") << "no folder";
+  const Journal under_a_file(folder / "file" / "journal"), is_a_file(folder / "file");
+  for (const Journal& journal : {under_a_file, is_a_file}) {
+    const Journal::Entry entry = journal.begin(request("a"));
+    ASSERT_TRUE(entry.error());
+    EXPECT_NE(entry.error()->line().find("file"), std::string::npos) << entry.error()->line();
+  }
+  const Journal journal(folder / "journal");
+  const Journal::Entry entry = journal.begin(request("a"));
+  EXPECT_FALSE(entry.error());
+  EXPECT_FALSE(journal.begin(request("a")).error()) << "another bakes the same: that is no error";
 }
 
 }  // namespace lambent::baker

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/jobs/parallel.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
@@ -139,7 +140,7 @@ TEST(ChangingTriangles, AreThoseAcrossAStep) {
     float least = 1.0f, most = -1.0f;
     for (int c = 0; c < 3; ++c) {
       const float x = t.geometry.positions[t.geometry.triangles[i][c]].x;
-      least = std::min(least, x), most = std::max(most, x);
+      least = testing::smaller(least, x), most = testing::larger(most, x);
     }
     EXPECT_LT(least, 0.1f);
     EXPECT_GT(most, 0.1f);

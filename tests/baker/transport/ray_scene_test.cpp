@@ -49,6 +49,31 @@ TEST(RayScene, BlocksExactlyTheDirectionsUnderARoof) {
   }
 }
 
+// Embree asks for denormals to be flushed. What the thread computes afterwards must not be.
+TEST(RayScene, FlushesDenormalsOnlyWhileItTraces) {
+  const Transport t(sceneOf({grid({0, 1, 0}, 4.0f, 2)}));
+  const SampleOrigin origin{{0, 0, 0}, {0, 1, 0}, 1.0f};
+  const DirectionTable table = cosineTable(64);
+  std::vector<std::uint16_t> masks(table.packets());
+  std::vector<RayHit> hits;
+  MetShares met;
+  FirstHit hit;
+  std::uint8_t blocked = 0;
+  const RaySegment segment{.origin = {0, 0, 0}, .direction = {0, 1, 0}, .length = 2.0f};
+  volatile float small = 1e-38f;
+  const auto expectKept = [&](const char* after) { EXPECT_GT(small * 0.01f, 0.0f) << after; };
+  t.rays.trace({std::span(&origin, 1), upright(), table}, masks);
+  expectKept("trace");
+  t.rays.traceHits({std::span(&origin, 1), upright(), table}, false, masks, hits);
+  expectKept("traceHits");
+  t.rays.meet({std::span(&origin, 1), upright(), table}, std::span(&met, 1));
+  expectKept("meet");
+  t.rays.occluded(std::span(&segment, 1), std::span(&blocked, 1));
+  expectKept("occluded");
+  t.rays.firstHits(std::span(&segment, 1), std::span(&hit, 1));
+  expectKept("firstHits");
+}
+
 TEST(RayScene, BlocksBelowTheGeometricHorizonWithoutTracing) {
   const Transport t(sceneOf({grid({0, -100, 0}, 1.0f, 1)}));
   const glm::vec3 tilted = glm::normalize(glm::vec3(1, 1, 0));

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/scene/affine.hpp"
+#include "tests/support/differences.hpp"
 #include "views.hpp"
 
 namespace lambent::editor {
@@ -289,7 +290,7 @@ TEST(Gizmo, EveryHandleThatIsSeenCanBeTakenByItsPlaceAndHasTheSameSizeAtAnyDista
       float reach = 0.0f;
       for (const Stroke& stroke : gizmo.paint())
         for (const glm::vec2& point : stroke.points)
-          reach = std::max(reach, glm::length(point - *gizmo.pivotScreenPoint()));
+          reach = lambent::testing::larger(reach, glm::length(point - *gizmo.pivotScreenPoint()));
       EXPECT_GT(reach, 0.7f * gizmo.options.size_px);
       EXPECT_LT(reach, 1.6f * gizmo.options.size_px);
     }

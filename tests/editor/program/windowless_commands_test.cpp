@@ -1,6 +1,8 @@
 // Tests commands on a session without window and OpenGL.
 #include "tests/editor/program/windowless.hpp"
 
+#include <fstream>
+
 namespace lambent::editor {
 namespace {
 
@@ -127,6 +129,21 @@ TEST_F(WindowlessCommands, SaveAWorldThatComesBack) {
   answer("select", {"has:Transform sphere"});
   EXPECT_NEAR(answer("get", {"Transform.translation"})[1].get<double>(), 0.6, 1e-6);
   EXPECT_NEAR(answer("get", {"point:Transform.translation"})[1].get<double>(), 2.0, 1e-6);
+}
+
+TEST_F(WindowlessCommands, SayThatTheEditsOfAWorldFileCannotBeRead) {
+  openHello();
+  const std::string file = (folder.path() / "world.json").string();
+  answer("save", {file});
+  json world = json::parse(std::ifstream(file));
+  world["bundles"][0]["bake_options"]["edits"] = "cut o";
+  std::ofstream(file) << world.dump();
+  session = makeSession();
+  answer("open", {file});
+  std::string told;
+  for (const LogEntry& entry : session->log.entries())
+    if (entry.severity == Severity::Warning) told += entry.text + '\n';
+  EXPECT_NE(told.find("the world file's edits cannot be read"), std::string::npos) << told;
 }
 
 TEST_F(WindowlessCommands, AskInADialogWhatHasNotBeenSaid) {

@@ -14,12 +14,20 @@ TEST(ThreadPool, WorkThatWaitsForOtherWorkIsAllDone) {
   for (int round = 0; round < 50; ++round) {
     constexpr int kCount = 9;
     std::latch all_run(kCount), ended(kCount);
+    std::mutex mutex;
+    std::multiset<std::thread::id> on;
     for (int i = 0; i < kCount; ++i)
       threads.run([&] {
         all_run.arrive_and_wait();  // would wait for ever if one stood behind another
+        {
+          const std::lock_guard lock(mutex);
+          on.insert(std::this_thread::get_id());
+        }
         ended.count_down();
       });
     ended.wait();
+    EXPECT_EQ(on.size(), 9u) << "each ran once";
+    EXPECT_EQ(std::set<std::thread::id>(on.begin(), on.end()).size(), 9u) << "each on a thread of its own";
   }
 }
 

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/differences.hpp"
+
 namespace lambent::bundle {
 namespace {
 
@@ -125,7 +127,7 @@ TEST(BrdfTable, ComesBackFromItsPayload) {
     for (std::size_t lobe = 0; lobe < lobes; ++lobe) {
       float largest = 0.0f;
       for (std::size_t k = 0; k < coefficients; ++k)
-        largest = std::max(largest, std::abs(table.values[lobe * coefficients + k]));
+        largest = testing::larger(largest, std::abs(table.values[lobe * coefficients + k]));
       for (std::size_t k = lobe * coefficients; k < (lobe + 1) * coefficients; ++k)
         EXPECT_NEAR(back->values[k], table.values[k], 1.01e-4f * largest);
     }

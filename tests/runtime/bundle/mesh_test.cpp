@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/compress/draco_encode.hpp"
+#include "tests/support/differences.hpp"
 
 namespace lambent::bundle {
 namespace {
@@ -119,8 +120,8 @@ TEST(DracoMesh, NormalsAreUnitAndWithinATwentiethOfADegree) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const glm::vec3 decoded = normal_at.at(bits(glm::round(mesh.positions[i] / kStep) * kStep + 0.0f));
     EXPECT_NEAR(glm::length(decoded), 1.0f, 1e-6f);
-    worst =
-        std::max(worst, std::asin(glm::length(glm::cross(glm::dvec3(decoded), glm::dvec3(mesh.normals[i])))));
+    worst = testing::larger(
+        worst, std::asin(glm::length(glm::cross(glm::dvec3(decoded), glm::dvec3(mesh.normals[i])))));
   }
   RecordProperty("worst_degrees", std::to_string(worst * 180.0 / std::numbers::pi));
   EXPECT_LT(worst * 180.0 / std::numbers::pi, 0.05);
@@ -204,7 +205,8 @@ TEST(DracoMesh, TangentsAreUnitWithinAThirtiethOfADegreeAndKeepTheirSign) {
     const glm::vec4 decoded = tangent_at.at(bits(glm::round(mesh.positions[i] / kStep) * kStep + 0.0f));
     EXPECT_EQ(decoded.w, mesh.tangents[i].w);
     EXPECT_NEAR(glm::length(glm::vec3(decoded)), 1.0f, 1e-6f);
-    worst = std::max(worst, glm::length(glm::cross(glm::dvec3(decoded), glm::dvec3(mesh.tangents[i]))));
+    worst =
+        testing::larger(worst, glm::length(glm::cross(glm::dvec3(decoded), glm::dvec3(mesh.tangents[i]))));
   }
   RecordProperty("worst_degrees", std::to_string(std::asin(worst) * 180.0 / std::numbers::pi));
   // The tolerance is half a step of 2/4095 on two of the axes.

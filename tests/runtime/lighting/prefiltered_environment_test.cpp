@@ -12,6 +12,7 @@
 #include "runtime/sh/cube_map.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::lighting {
@@ -96,7 +97,7 @@ TEST_F(PrefilteredEnvironmentTest, ASunIsBlurredToTheLobesShareOfIt) {
       const std::vector<glm::vec4> texels = levelOf(reflected->cube(0), level);
       const auto side = static_cast<int>(reflected->cube(0).desc().width >> level);
       double brightest = 0.0;
-      for (const glm::vec4& texel : texels) brightest = std::max<double>(brightest, texel.r);
+      for (const glm::vec4& texel : texels) brightest = testing::larger(brightest, texel.r);
       for (int i = 0; i < 6 * side * side; i += 1 + 6 * side * side / 23) {
         const glm::dvec3 direction =
             sh::cubeTexelDirection(side, i / (side * side), i % side, i / side % side);
@@ -149,7 +150,7 @@ TEST_F(PrefilteredEnvironmentTest, LightOfFewBandsLeavesNothing) {
         known += y[k] * reflected->values().bands[row][l % 4] * glm::vec3(reflected->values().light[k]);
       }
       difference =
-          std::max<double>(difference, glm::distance(known, glm::vec3(texels[static_cast<std::size_t>(i)])));
+          testing::larger(difference, glm::distance(known, glm::vec3(texels[static_cast<std::size_t>(i)])));
     }
     // The radiance goes up to 3, and passes several half-float look-ups in an environment map of 64 texels
     // per face.

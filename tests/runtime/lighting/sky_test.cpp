@@ -61,6 +61,21 @@ TEST_F(SkyTest, ShowsTheMixOfBothSets) {
   expectSeen(60, 60, between + glm::vec3(3.0f, 0.0f, 1.5f));
 }
 
+// An infinite texel of half floats would make its neighbours NaN, and so would it times a fade of 0.
+TEST_F(SkyTest, ShowsRadianceBeyondHalfFloatsAsTheLargest) {
+  auto environment = Environment::create({spec::ConstantLight{.radiance = {1e6f, 1.0f, 1e9f}}},
+                                         {spec::ConstantLight{.radiance = {0, 0, 8}}});
+  ASSERT_TRUE(environment);
+  const auto sky = Sky::create(*environment);
+  ASSERT_TRUE(sky) << sky.error().line();
+  const glm::vec3 brightest = seen(*sky, *environment, {0, 0, 1});
+  EXPECT_NEAR(brightest.r, 65504.0f, 1.0f);
+  EXPECT_NEAR(brightest.g, 1.0f, 1e-3f);
+  EXPECT_NEAR(brightest.b, 65504.0f, 1.0f);
+  environment->setFade(1.0f);
+  EXPECT_LT(glm::distance(seen(*sky, *environment, {0, 0, 1}), glm::vec3(0, 0, 8)), 1e-3f);
+}
+
 // A key light that was moved is visible in its new place, and no longer in the old.
 TEST_F(SkyTest, ShowsAMovedKeyLightAsADiscInPlaceOfItsTexels) {
   const glm::vec3 sun = spec::directionFromAzimuthElevation(40, 50);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/scene/components.hpp"
+#include "tests/support/differences.hpp"
 
 namespace lambent::scene {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 float largestDifference(const glm::mat4& a, const glm::mat4& b) {
   float largest = 0.0f;
   for (int j = 0; j < 4; ++j) {
-    for (int i = 0; i < 4; ++i) largest = std::max(largest, std::abs(a[j][i] - b[j][i]));
+    for (int i = 0; i < 4; ++i) largest = testing::larger(largest, std::abs(a[j][i] - b[j][i]));
   }
   return largest;
 }

@@ -11,6 +11,7 @@
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/sh/sphere.hpp"
+#include "tests/support/differences.hpp"
 
 namespace lambent::sh {
 namespace {
@@ -129,7 +130,7 @@ std::array<CaptureError, 2> captureErrors(int order, int size, double degrees) {
     }
     for (std::size_t which = 0; which < 2; ++which) {
       errors[which].average += 100 * squared[which] / norm / kDirections;
-      errors[which].worst = std::max(errors[which].worst, 100 * squared[which] / norm);
+      errors[which].worst = lambent::testing::larger(errors[which].worst, 100 * squared[which] / norm);
     }
   }
   return errors;

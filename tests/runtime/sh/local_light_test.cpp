@@ -11,6 +11,7 @@
 
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/sh/sphere.hpp"
+#include "tests/support/differences.hpp"
 
 namespace lambent::sh {
 namespace {
@@ -34,7 +35,7 @@ double largestDifference(const LightVector& light, const Coefficients& expected,
   double largest = 0;
   for (int i = 0; i < coefficientCount(order); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    largest = std::max(largest, std::abs(static_cast<double>(light.c[k].r) - expected[k]));
+    largest = lambent::testing::larger(largest, std::abs(static_cast<double>(light.c[k].r) - expected[k]));
   }
   return largest;
 }

@@ -13,6 +13,7 @@
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/window.hpp"
 #include "runtime/sh/zonal.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace lambent::sh {
@@ -74,8 +75,8 @@ TEST(ShProbes, AutoWindowLeavesNoNegativeIrradianceUnderARealSun) {
       const glm::vec3 normal(texelDirection(ImageLayout::LatLong, 256, 128, x, y));
       const glm::vec3 value = irradiance.evaluate(normal), before = cosineConvolved(light).evaluate(normal);
       for (int channel = 0; channel < 3; ++channel) {
-        least = std::min(least, value[channel]);
-        least_unwindowed = std::min(least_unwindowed, before[channel]);
+        least = lambent::testing::smaller(least, value[channel]);
+        least_unwindowed = lambent::testing::smaller(least_unwindowed, before[channel]);
       }
     }
   EXPECT_GE(least, -1e-5f);

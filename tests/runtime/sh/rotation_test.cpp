@@ -9,6 +9,7 @@
 
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/sh/sphere.hpp"
+#include "tests/support/differences.hpp"
 
 namespace lambent::sh {
 namespace {
@@ -42,12 +43,6 @@ std::vector<glm::dquat> rotations() {
   return list;
 }
 
-double largestDifference(std::span<const double> a, std::span<const double> b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < b.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
-
 // Visibility is rotated in 6 + 6 - 1 bands, the most that the basis functions support.
 TEST(ShRotation, TurnsTheBasisIn11Bands) {
   Random random(60);
@@ -58,7 +53,7 @@ TEST(ShRotation, TurnsTheBasisIn11Bands) {
     evaluate(kMaxBasisOrder, dir, y);
     evaluate(kMaxBasisOrder, q * dir, expected);
     rotation.apply(y, std::span<double>(turned));
-    EXPECT_LE(largestDifference(turned, expected), 1e-12);
+    EXPECT_LE(lambent::testing::largestDifference(turned, expected), 1e-12);
   }
 }
 
@@ -72,7 +67,7 @@ TEST(ShRotation, TurnsTheBasisUpToOrder8NearThePoles) {
          {glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1), random.direction(), random.direction()}) {
       std::array<double, kMaxCoefficients> turned;
       rotation.apply(evaluated(dir), std::span<double>(turned));
-      EXPECT_LE(largestDifference(turned, evaluated(matrix * dir)), 1e-12)
+      EXPECT_LE(lambent::testing::largestDifference(turned, evaluated(matrix * dir)), 1e-12)
           << "quaternion " << q.w << " " << q.x << " " << q.y << " " << q.z;
     }
   }
@@ -103,7 +98,7 @@ TEST(ShRotation, ComposesAsRotationsDo) {
     Rotation(b, kMaxOrder).apply(y, std::span<double>(once));
     Rotation(a, kMaxOrder).apply(once, std::span<double>(twice));
     Rotation(a * b, kMaxOrder).apply(y, std::span<double>(together));
-    EXPECT_LE(largestDifference(twice, together), 1e-12);
+    EXPECT_LE(lambent::testing::largestDifference(twice, together), 1e-12);
   }
 }
 
@@ -155,7 +150,8 @@ TEST(ShRotation, TurnsLightVectorsAsTheirDirectionsTo1e5AtEveryOrder) {
       double error = 0;
       for (std::size_t i = 0; i < turned.c.size(); ++i) {
         const glm::dvec3 away = glm::dvec3(turned.c[i]) - expected[i];
-        error = std::max({error, std::abs(away.x), std::abs(away.y), std::abs(away.z)});
+        for (int channel = 0; channel < 3; ++channel)
+          error = lambent::testing::larger(error, std::abs(away[channel]));
       }
       ASSERT_LE(error, 1e-5) << "order " << order << ", quaternion " << q.w << " " << q.x << " " << q.y << " "
                              << q.z;
@@ -196,7 +192,7 @@ TEST(ShRotation, DoesNotDriftOver100000SmallTurns) {
   const auto y = evaluated(glm::normalize(glm::dvec3(-1, 0.5, 0.2)));
   std::array<double, kMaxCoefficients> turned;
   Rotation(q, kMaxOrder).apply(y, std::span<double>(turned));
-  EXPECT_LE(largestDifference(turned, y), 1e-9) << "100 full turns bring the function back";
+  EXPECT_LE(lambent::testing::largestDifference(turned, y), 1e-9) << "100 full turns bring the function back";
 }
 
 TEST(ShRotation, RefusesWhatIsNoRotation) {

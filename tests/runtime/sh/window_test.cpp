@@ -8,6 +8,7 @@
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/sh/sphere.hpp"
+#include "tests/support/differences.hpp"
 
 namespace lambent::sh {
 namespace {
@@ -22,7 +23,7 @@ float leastRadiance(const LightVector& light) {
   for (int k = 0; k < 20000; ++k) {
     const glm::vec3 value = light.evaluate(glm::vec3(testing::fibonacciDirection(k, 20000)));
     for (int channel = 0; channel < 3; ++channel)
-      least = std::min(least, value[channel] / (light.c[0][channel] * 0.28209479f));
+      least = lambent::testing::smaller(least, value[channel] / (light.c[0][channel] * 0.28209479f));
   }
   return least;
 }
@@ -68,7 +69,7 @@ TEST(ShWindow, PositiveKernelIsNowhereNegativeAndKeepsMostOfBandOne) {
       double sum = 0;
       for (int l = 0; l < order; ++l)
         sum += (2 * l + 1) * double{weights[static_cast<std::size_t>(l)]} * legendre(l, t);
-      least = std::min(least, sum), most = std::max(most, sum);
+      least = lambent::testing::smaller(least, sum), most = lambent::testing::larger(most, sum);
     }
     EXPECT_GE(least, -1e-5 * most) << order;
   }

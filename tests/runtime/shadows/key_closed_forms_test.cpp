@@ -16,6 +16,7 @@
 
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/zonal.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/frame/live_stage.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -157,7 +158,7 @@ double seenPastTower(const DiscByAzimuth& disc, const glm::vec3& sun, const glm:
   for (const float x : {-kTower, kTower})
     for (const float z : {-kTower, kTower}) {
       const double beside = wrapped(azimuthOf(x - place.x, z - place.z) - middle);
-      low = std::min(low, beside), high = std::max(high, beside);
+      low = testing::smaller(low, beside), high = testing::larger(high, beside);
     }
   const double from = wrapped(middle - to_sun);
   return 1.0 - (disc.below(from + high) - disc.below(from + low));
@@ -170,8 +171,8 @@ struct Changes {
 
   void add(double change, double expected) {
     constexpr double kFarOff = 0.1;
-    largest = std::max(largest, std::abs(change));
-    expected_largest = std::max(expected_largest, std::abs(expected));
+    largest = testing::larger(largest, std::abs(change));
+    expected_largest = testing::larger(expected_largest, std::abs(expected));
     square_sum += (change - expected) * (change - expected);
     far_off += std::abs(change - expected) > kFarOff ? 1 : 0;
     ++count;

@@ -19,6 +19,7 @@
 #include "runtime/sh/zonal.hpp"
 #include "runtime/shadows/key_shadows.hpp"
 #include "runtime/shadows/shadowed_light_ref.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -144,13 +145,13 @@ glm::vec3 placeAt(const spec::RgbaImage& image, const spec::View& view, std::uin
 double largestApart(const spec::RgbaImage& a, const spec::RgbaImage& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.texels.size(); ++i)
-    largest = std::max(largest, double{glm::distance(a.texels[i], b.texels[i])});
+    largest = testing::larger(largest, double{glm::distance(a.texels[i], b.texels[i])});
   return largest;
 }
 double brightest(const spec::RgbaImage& image) {
   double most = 0.0;
   for (const glm::vec4& texel : image.texels)
-    if (texel.a > 0.0f) most = std::max(most, double{std::max({texel.r, texel.g, texel.b})});
+    if (texel.a > 0.0f) most = testing::larger(most, double{std::max({texel.r, texel.g, texel.b})});
   return most;
 }
 
@@ -291,7 +292,7 @@ TEST_F(KeyFrame, UnderAWhiteSkyAndSunsAnOpenSphereHasEachLightOnce) {
         const float expected = bounces ? 1.5f + direct + bounced : 1.0f + direct;
         const double apart = std::abs(double{at(image, x, y).r} - double{expected});
         error += apart;
-        largest = std::max(largest, apart);
+        largest = testing::larger(largest, apart);
         ++count;
       }
     // Triangles for the sphere show where suns rise over its horizon.
@@ -483,7 +484,7 @@ TEST_F(KeyFrame, ATurningProbeMovesShadowsWithoutJumps) {
       if (!before) continue;
       const double apart = double{glm::distance(glm::vec3(image.texels[i]), glm::vec3(before->texels[i]))};
       apart_sum += apart;
-      largest = std::max(largest, apart);
+      largest = testing::larger(largest, apart);
     }
     light /= count;
     if (before) {

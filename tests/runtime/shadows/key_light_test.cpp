@@ -11,6 +11,7 @@
 
 #include "runtime/shadows/key_light_ref.hpp"
 #include "tests/runtime/shadows/key_maps.hpp"
+#include "tests/support/differences.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -94,7 +95,7 @@ struct Errors {
   double largest = 0.0, sum = 0.0, signed_sum = 0.0, squares = 0.0;
   int count = 0;
   void add(double error) {
-    largest = std::max(largest, std::abs(error));
+    largest = testing::larger(largest, std::abs(error));
     sum += std::abs(error);
     signed_sum += error;
     squares += error * error;

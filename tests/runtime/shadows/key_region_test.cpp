@@ -11,6 +11,8 @@
 #include <glm/vec4.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/support/differences.hpp"
+
 namespace lambent::frame {
 namespace {
 
@@ -43,9 +45,10 @@ bool sees(const glm::mat4& clip_from_world, glm::dvec3 p) {
 double outside(const KeyRegion& region, glm::dvec3 p, double tan_radius) {
   const glm::dvec2 place(glm::dot(region.right, p), glm::dot(region.up, p));
   const double along = glm::dot(region.towards, p), reach = tan_radius * (region.top - along);
-  double most = std::max(along - region.top, region.top - region.range - along);
+  double most = testing::larger(along - region.top, region.top - region.range - along);
   for (int i = 0; i < 2; ++i)
-    most = std::max({most, place[i] + reach - region.max[i], region.min[i] - (place[i] - reach)});
+    for (const double by : {place[i] + reach - region.max[i], region.min[i] - (place[i] - reach)})
+      most = testing::larger(most, by);
   return most;
 }
 
@@ -110,7 +113,7 @@ TEST(KeyRegion, IsHardlyLargerThanWhatMustBeShown) {
         low = glm::min(low, place - reach);
         high = glm::max(high, place + reach);
       }
-      least = std::min(least, (high.x - low.x) * (high.y - low.y));
+      least = testing::smaller(least, (high.x - low.x) * (high.y - low.y));
     }
     EXPECT_LT(region->area(), 1.3 * least);
     EXPECT_GE(region->area(), 0.999 * least);

@@ -106,8 +106,9 @@ TEST_F(LocalShader, DoesWhatItsTwinDoes) {
     if (radiance.y > 0.02f * whole && radiance.y < 0.98f * whole) ++partly;
     // A tap on the border of two texels may fall to either side by rounding: one or two taps of sixteen,
     // rarely.
-    if (std::abs(results[i].y - radiance.y) > 0.01f * whole + 0.02f) ++apart;
-    EXPECT_NEAR(results[i].y, radiance.y, 0.5f * whole + 0.02f) << "case " << i << " kind " << c.light.kind;
+    if (!(std::abs(results[i].y - radiance.y) <= 0.01f * whole + 0.02f)) ++apart;  // so that NaN counts
+    EXPECT_NEAR(results[i].y, radiance.y, 2.5f / 16.0f * whole + 0.02f)
+        << "case " << i << " kind " << c.light.kind;
   }
   EXPECT_LT(apart, cases.size() / 100);
   EXPECT_GT(partly, cases.size() / 20) << "the world must have penumbras to tell anything";

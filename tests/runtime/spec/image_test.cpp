@@ -18,6 +18,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/spec/display.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace lambent::spec {
@@ -287,7 +288,7 @@ TEST_F(SpecImage, SharedProbesHaveTheirKnownExtremes) {
     ASSERT_TRUE(image) << image.error().line();
     float largest = 0.0f;
     for (const glm::vec3 t : image->texels)
-      largest = std::max(largest, 0.2126f * t.x + 0.7152f * t.y + 0.0722f * t.z);
+      largest = testing::larger(largest, 0.2126f * t.x + 0.7152f * t.y + 0.0722f * t.z);
     EXPECT_NEAR(largest, maximum, 0.005f * maximum) << name;
   }
 }

@@ -200,14 +200,21 @@ TEST_F(LoaderTest, DecodesNoFurtherAheadThanItsMemory) {
 TEST_F(LoaderTest, IsDestroyedMidWayWithoutHanging) {
   write(testing::manyImages(40, 1024));  // more than its memory: workers wait for room
   const auto reader = open();
-  for (int take = 0; take < 4; ++take) {
+  const std::uint64_t file_bytes = testing::manyImages(1, 1024).blobs[0].size();
+  for (std::size_t take = 0; take < 4; ++take) {
     Loader loader(reader, threads_, 4);
-    for (int i = 0; i < take; ++i) {
+    std::size_t taken = 0;
+    while (taken < take) {
       loader.waitForMore();
-      loader.take(1);
+      taken += loader.take(1).size();
     }
     Loader moved = std::move(loader);
+    EXPECT_EQ(taken, take) << "one at a time";
+    EXPECT_FALSE(moved.finished()) << "it is mid way";
+    EXPECT_FALSE(moved.error());
+    EXPECT_LT(moved.bytesRead(), 40 * file_bytes);
   }
+  EXPECT_EQ(reader.use_count(), 1) << "no worker is left that holds the file";
 }
 
 TEST_F(LoaderTest, StopsAtADamagedPayloadAndNamesTheFileWhateverTheThreads) {

@@ -1,6 +1,7 @@
 // Tests local lights on glossy surfaces: their highlight and the diffuse part.
 #include "baker/brdf/brdf.hpp"
 #include "tests/runtime/effects/glossy/random_table.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/frame/local_stage.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -32,7 +33,7 @@ TEST_F(LocalGlossyTest, APointLightOnAMetalFloorGivesItsGgxHighlight) {
       // The table's frame has its normal along z; the camera looks straight down.
       ggx->value({.roughness = kRoughness, .strength = 0.0f}, {0, 0, 1}, {s.x, s.z, s.y}, f);
       const auto wanted = static_cast<float>((f[0] + f[1]) * 10.0 / d2 * s.y);
-      brightest = std::max(brightest, wanted);
+      brightest = testing::larger(brightest, wanted);
       ASSERT_NEAR(picture[y * kSize + x].r, wanted, 0.01f * wanted + 1e-3f) << x << ", " << y;
     }
   EXPECT_GT(brightest, 5.0f);

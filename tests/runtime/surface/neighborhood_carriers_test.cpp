@@ -1,6 +1,7 @@
 // Tests that each pair of bodies uses one carrier, grid or capture, and that nothing pops when it changes.
 
 #include "runtime/shadows/lit_scene.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/frame/neighborhood_checks.hpp"
 
 namespace lambent::frame {
@@ -71,7 +72,7 @@ TEST_F(NeighborhoodFrame, NothingPopsWhereCarriersChange) {
     const auto column = static_cast<std::uint32_t>((x / 8.0f + 1.0f) / 2.0f * NeighborhoodStage::kSide);
     const spec::RgbaImage image = stage.frame->readLinear();
     const float now = image.texels[31 * NeighborhoodStage::kSide + column].r;
-    if (before >= 0.0f) largest = std::max(largest, std::abs(now - before));
+    if (before >= 0.0f) largest = testing::larger(largest, std::abs(now - before));
     before = now;
   }
   EXPECT_EQ(pairs.front(), 0u);

@@ -1,5 +1,6 @@
 // Tests neighborhoods in whole frames: black spheres over floors, with light known in closed form.
 
+#include "tests/support/differences.hpp"
 #include "tests/support/frame/neighborhood_checks.hpp"
 
 namespace lambent::frame {
@@ -95,7 +96,8 @@ TEST_F(NeighborhoodFrame, OverlappingNeighborhoodsAddAndNeverTakeMoreThanThereIs
   // Two spheres at one place would take more light than there is.
   stage.edit("body").translation = stage.edit("other").translation = {0.0f, 1.06f, 0.0f};
   float least = 1.0f;
-  for (const glm::vec4& texel : stage.picture().texels) least = std::min({least, texel.r, texel.g, texel.b});
+  for (const glm::vec4& texel : stage.picture().texels)
+    for (int c = 0; c < 3; ++c) least = testing::smaller(least, texel[c]);
   EXPECT_EQ(least, 0.0f);
   EXPECT_EQ(stage.frame->negativePixels(), 0u);
 }
@@ -114,8 +116,8 @@ TEST_F(NeighborhoodFrame, AReceiverThatPassesTheBorderHasNoStep) {
   for (std::uint32_t y = 0; y < n; ++y)
     for (std::uint32_t x = 0; x + 1 < n; ++x) {
       const glm::vec4 here = image.texels[y * n + x], next = image.texels[y * n + x + 1];
-      step = std::max<double>(step, std::abs(here.r - next.r));
-      depth = std::max<double>(depth, open.r - here.r);
+      step = testing::larger(step, std::abs(here.r - next.r));
+      depth = testing::larger(depth, open.r - here.r);
       const glm::vec3 place = stage.placeOf(x, y);
       if (std::max(std::abs(place.x), std::abs(place.z)) <= 2.2f) continue;
       for (int c = 0; c < 3; ++c) ASSERT_NEAR(here[c], open[c], 2e-4f) << place.x << " " << place.z;

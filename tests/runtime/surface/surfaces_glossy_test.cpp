@@ -15,6 +15,7 @@
 #include "runtime/surface/surface_normal_ref.hpp"
 #include "runtime/surface/surface_program.hpp"
 #include "tests/runtime/effects/glossy/random_table.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {
@@ -269,8 +270,8 @@ class GlossySurface : public testing::GpuTest {
         const glm::vec3 place((2.0f * static_cast<float>(x) + 1.0f) / kSize - 1.0f,
                               (2.0f * static_cast<float>(y) + 1.0f) / kSize - 1.0f, 0.0f);
         const glm::vec3 expected = expectedAt(scene, place);
-        largest = std::max<double>(largest, glm::length(expected));
-        difference = std::max<double>(difference, glm::distance(expected, glm::vec3(picture[y * kSize + x])));
+        largest = testing::larger(largest, glm::length(expected));
+        difference = testing::larger(difference, glm::distance(expected, glm::vec3(picture[y * kSize + x])));
       }
     // Hardware interpolates the table with 8 bits between nodes, an error of 0.6 % on an H100; the shader's
     // own interpolation agrees there to 0.003 %.

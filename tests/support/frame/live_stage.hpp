@@ -13,6 +13,7 @@
 
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/bounds.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 
 namespace lambent::testing {
@@ -91,7 +92,7 @@ struct LiveStage {
 inline float farthest(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b) {
   float most = a.size() == b.size() ? 0.0f : 1e9f;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    for (int k = 0; k < 4; ++k) most = std::max(most, std::abs(a[i][k] - b[i][k]));
+    for (int k = 0; k < 4; ++k) most = larger(most, std::abs(a[i][k] - b[i][k]));
   return most;
 }
 

@@ -9,6 +9,7 @@
 
 #include "baker/brdf/brdf.hpp"
 #include "runtime/effects/glossy/glossy_kernel_ref.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/frame/neighborhood_stage.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -64,7 +65,7 @@ inline double worst(const NeighborhoodStage& stage, const spec::RgbaImage& image
       const glm::vec3 got(image.texels[y * NeighborhoodStage::kSide + x]), wanted = expected(place);
       for (int c = 0; c < 3; ++c)
         largest =
-            std::max<double>(largest, std::abs(got[c] - wanted[c]) / (open[c] > 0.0f ? open[c] : wanted[c]));
+            testing::larger(largest, std::abs(got[c] - wanted[c]) / (open[c] > 0.0f ? open[c] : wanted[c]));
     }
   return largest;
 }
@@ -72,8 +73,7 @@ inline double worst(const NeighborhoodStage& stage, const spec::RgbaImage& image
 inline double worstDifference(const spec::RgbaImage& a, const spec::RgbaImage& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.texels.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      largest = std::max<double>(largest, std::abs(a.texels[i][c] - b.texels[i][c]));
+    for (int c = 0; c < 3; ++c) largest = testing::larger(largest, std::abs(a.texels[i][c] - b.texels[i][c]));
   return largest;
 }
 

@@ -18,6 +18,7 @@
 
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/components.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/frame/neighborhood_scene.hpp"
 #include "tests/support/gpu_context.hpp"
@@ -27,7 +28,7 @@ namespace lambent::testing {
 inline double worst(const spec::RgbaImage& a, const spec::RgbaImage& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.texels.size(); ++i)
-    largest = std::max(largest, double{glm::distance(a.texels[i], b.texels[i])});
+    largest = larger(largest, double{glm::distance(a.texels[i], b.texels[i])});
   return largest;
 }
 

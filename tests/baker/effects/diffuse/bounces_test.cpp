@@ -4,6 +4,7 @@
 #include "baker/jobs/parallel.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
@@ -143,7 +144,7 @@ TEST(Bounces, NeverHaveMoreEnergyThanAlbedoTimesTheBounceBefore) {
     float largest = 0.0f;
     for (std::size_t s = 0; s < t.samples.size(); ++s) {
       const float all = uniformRadiance(baked.bounced.field.at(s));
-      largest = std::max(largest, all - sum[s]);
+      largest = testing::larger(largest, all - sum[s]);
       EXPECT_GE(all - sum[s], -1e-6f);
       sum[s] = all;
     }

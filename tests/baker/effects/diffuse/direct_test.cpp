@@ -7,6 +7,7 @@
 
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
@@ -18,6 +19,7 @@ using testing::flipped;
 using testing::grid;
 using testing::icosphere;
 using testing::joined;
+using testing::largestDifference;
 using testing::sceneOf;
 using testing::soup;
 using testing::transformed;
@@ -26,12 +28,6 @@ using testing::turned;
 using testing::uniformRadiance;
 
 constexpr float kPi = std::numbers::pi_v<float>;
-
-float largestDifference(std::span<const float> a, std::span<const float> b) {
-  float largest = 0.0f;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
 
 std::vector<float> open(int order, glm::vec3 normal) {
   std::vector<float> out(static_cast<std::size_t>(sh::coefficientCount(order)));

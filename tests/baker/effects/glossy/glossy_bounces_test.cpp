@@ -3,6 +3,7 @@
 
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/jobs/parallel.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/glossy_transport.hpp"
 
 namespace lambent::baker {
@@ -348,9 +349,9 @@ TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
       // l' of uniform light is a function whose mean over the sphere is checked, and its E/pi on the sample's
       // own plane.
       const double mean = double{shadowMatrix(field, s)[0]} + double{field.bounced[s * 625]};
-      largest = std::max(largest, mean);
-      most = std::max(most, double{uniformRadiance(baked.direct.field.at(s)) +
-                                   uniformRadiance(baked.bounced.field.at(s))});
+      largest = testing::larger(largest, mean);
+      most = testing::larger(most, double{uniformRadiance(baked.direct.field.at(s)) +
+                                          uniformRadiance(baked.bounced.field.at(s))});
       EXPECT_GT(field.bounced[s * 625], -1e-6f);
     }
     // The tolerance is 2 % for what five bands lose of narrow lobes and sharp edges, and 5 % of light that is

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "baker/jobs/parallel.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/glossy_transport.hpp"
 
 namespace lambent::baker {
@@ -16,6 +17,7 @@ using testing::glossyScene;
 using testing::grid;
 using testing::icosphere;
 using testing::lambertKernels;
+using testing::largestDifference;
 using testing::shadowMatrix;
 using testing::soup;
 using testing::transformed;
@@ -27,12 +29,6 @@ const float kUniform = std::sqrt(4.0f * kPi);  // the coefficient of the functio
 
 std::span<const float> visibilityOf(const GlossyField& field, std::size_t s) {
   return std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize());
-}
-
-float largestDifference(std::span<const float> a, std::span<const float> b) {
-  float largest = 0.0f;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
 }
 
 // Returns the SH of a cone of half angle `a` about `axis`, in this many bands.

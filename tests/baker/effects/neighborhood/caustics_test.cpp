@@ -2,6 +2,7 @@
 #include "baker/brdf/follow_highlight.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/neighborhood/surface_body.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/glossy_transport.hpp"
 #include "tests/support/neighborhood.hpp"
 
@@ -79,7 +80,7 @@ TEST(Caustics, OfAPerfectMirrorRingLeaveLightAboutItsAxisAsItIs) {
         EXPECT_NEAR(matrix[i * 25 + static_cast<std::size_t>(sh::coefficientIndex(l, 0))], 0.0f, 0.02f)
             << "r " << r << " l " << l << " output " << i;
     for (std::size_t at = 0; at < matrix.size(); ++at)
-      others = std::max(others, std::abs(double{matrix[at]}));
+      others = testing::larger(others, std::abs(double{matrix[at]}));
   }
   EXPECT_GT(others, 0.3);
 }

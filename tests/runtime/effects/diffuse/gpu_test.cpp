@@ -7,6 +7,7 @@
 #include "runtime/effects/diffuse/diffuse_ref.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
 #include "tests/runtime/effects/diffuse/shading_bench.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::effects::diffuse {
@@ -78,8 +79,8 @@ struct Bench : testing::ShadingBench<Diffuse> {
         for (int k = 0; k < 4 && samples[page][i] != glm::vec4(0.0f); ++k) {
           const double wanted = double{samples[page][i][k]};
           const double got = double{std::bit_cast<float>(shaded[page][4 * i + static_cast<std::size_t>(k)])};
-          largest = std::max(largest, std::abs(wanted));
-          difference = std::max(difference, std::abs(got - wanted));
+          largest = testing::larger(largest, std::abs(wanted));
+          difference = testing::larger(difference, std::abs(got - wanted));
         }
     for (std::size_t i = 0; i < tables.draws.size(); ++i) {
       const streaming::ResidentDraw& resident = residency.draws()[i];
@@ -101,8 +102,8 @@ struct Bench : testing::ShadingBench<Diffuse> {
             const auto got =
                 std::bit_cast<float>(result[draw.radiance_word + 3 * (draw.outputs * v + j) + k]);
             const float wanted = expected[j][static_cast<int>(k)];
-            largest = std::max<double>(largest, std::abs(wanted));
-            difference = std::max<double>(difference, std::abs(got - wanted));
+            largest = testing::larger(largest, std::abs(wanted));
+            difference = testing::larger(difference, std::abs(got - wanted));
           }
       }
     }

@@ -7,6 +7,7 @@
 
 #include "runtime/transfer/transfer_measures.hpp"
 #include "tests/runtime/effects/diffuse/shading_bench.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::effects::diffuse {
@@ -105,19 +106,21 @@ TEST_F(TransferValuesTest, DcAndBandsAreThoseOfTheDecodedVectorsOfEveryKindOfSam
           const bool bounced = dc && mode == evaluate::TransferMode::Full && shape.isVisibility();
           std::vector<std::uint32_t> others;
           const std::vector<float> bounces = bounced ? bench.decoded(cell, 1, others) : std::vector<float>();
-          const transfer::TransferBlock block = transfer::blockOf(shape, mode == evaluate::TransferMode::Full);
+          const transfer::TransferBlock block =
+              transfer::blockOf(shape, mode == evaluate::TransferMode::Full);
           for (std::size_t s = 0; s < cluster_of.size(); ++s) {
             const auto vector = std::span(vectors).subspan(s * shape.size(), shape.size());
-            float expected = dc ? transfer::transferDc(shape, block, vector)
-                                : transfer::transferBandEnergy(shape, block, vector, static_cast<std::uint32_t>(band));
+            float expected =
+                dc ? transfer::transferDc(shape, block, vector)
+                   : transfer::transferBandEnergy(shape, block, vector, static_cast<std::uint32_t>(band));
             if (bounced) {
               const transfer::TransferShape& added = bench.transferOf(cell, 1).shape;
               expected += transfer::transferDc(added, transfer::blockOf(added, true),
-                                     std::span(bounces).subspan(s * added.size(), added.size()));
+                                               std::span(bounces).subspan(s * added.size(), added.size()));
             }
             const float got = valueOf(values[bench.firstValue(cell) + s]);
-            worst = std::max(worst, static_cast<double>(std::abs(got - expected)));
-            largest = std::max(largest, static_cast<double>(std::abs(expected)));
+            worst = testing::larger(worst, static_cast<double>(std::abs(got - expected)));
+            largest = testing::larger(largest, static_cast<double>(std::abs(expected)));
           }
         }
       }
@@ -189,8 +192,10 @@ TEST(TransferMeasures, OpenSurfacesOfEveryKindHaveTheSameNumbers) {
   EXPECT_NEAR(transfer::transferDc(visibility, {}, open), transfer::openDc(), 1e-6f);
   for (std::uint32_t band = 0; band < 3; ++band) {
     EXPECT_NEAR(transfer::transferBandEnergy(plain, {}, row, band), transfer::openBandEnergy(band), 1e-6f);
-    EXPECT_NEAR(transfer::transferBandEnergy(mapped, {}, matrix, band), transfer::openBandEnergy(band), 1e-6f);
-    EXPECT_NEAR(transfer::transferBandEnergy(visibility, {}, open, band), transfer::openBandEnergy(band), 1e-6f);
+    EXPECT_NEAR(transfer::transferBandEnergy(mapped, {}, matrix, band), transfer::openBandEnergy(band),
+                1e-6f);
+    EXPECT_NEAR(transfer::transferBandEnergy(visibility, {}, open, band), transfer::openBandEnergy(band),
+                1e-6f);
   }
 }
 

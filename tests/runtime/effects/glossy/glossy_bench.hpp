@@ -7,6 +7,7 @@
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/glossy/glossy_ref.hpp"
 #include "tests/runtime/effects/diffuse/shading_bench.hpp"
+#include "tests/support/differences.hpp"
 
 namespace lambent::effects::glossy::testing {
 
@@ -63,8 +64,8 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
       }
       for (uint e = fill.first_output; e < fill.first_output + fill.output_count; ++e)
         for (int c = 0; c < 4; ++c) {
-          largest = std::max<double>(largest, std::abs(wanted[e][c]));
-          difference = std::max<double>(difference, std::abs(wanted[e][c] - got[e][c]));
+          largest = lambent::testing::larger(largest, std::abs(wanted[e][c]));
+          difference = lambent::testing::larger(difference, std::abs(wanted[e][c] - got[e][c]));
         }
     }
     return difference / largest;

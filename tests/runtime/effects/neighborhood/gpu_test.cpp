@@ -9,6 +9,7 @@
 #include "runtime/effects/neighborhood/neighborhood_ref.hpp"
 #include "test_effects_neighborhood_gpu_embedded.hpp"
 #include "tests/runtime/effects/diffuse/shading_bench.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::effects::neighborhood {
@@ -101,7 +102,7 @@ TEST_F(NeighborhoodGpu, WritesAndLooksUpAsItsTwinDoes) {
     float largest = 0.0f;
     for (std::size_t i = 0; i < got.texels.size(); ++i)
       for (int c = 0; c < 4; ++c) {
-        largest = std::max(largest, std::abs(wanted.texels[i][c]));
+        largest = testing::larger(largest, std::abs(wanted.texels[i][c]));
         ASSERT_NEAR(got.texels[i][c], wanted.texels[i][c],
                     1e-3f * std::max(1.0f, std::abs(wanted.texels[i][c])));
       }

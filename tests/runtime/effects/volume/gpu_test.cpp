@@ -1,5 +1,6 @@
 // Compares the kernels with their CPU twin, and tests what makes them run.
 #include "tests/runtime/effects/volume/volume_bench.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::effects::volume {
@@ -71,7 +72,7 @@ void expectAlike(const std::vector<glm::vec4>& found, const std::vector<glm::vec
     ASSERT_TRUE(std::isfinite(glm::dot(found[i], found[i]))) << what;
     change += glm::dot(apart, apart);
     power += glm::dot(expected[i], expected[i]);
-    most = std::max(most, glm::length(apart));
+    most = lambent::testing::larger(most, glm::length(apart));
   }
   EXPECT_LT(std::sqrt(change / power), 1e-3) << what;
   // GPUs interpolate with weights of 8 bits.
@@ -199,8 +200,8 @@ TEST_F(VolumeGpu, ShowsTheLightItselfUntilTransferIsThere) {
   const std::vector<glm::vec4> after = bench.picture(view);
   float most = 0.0f, brightest = 0.0f;
   for (std::size_t i = 0; i < after.size(); ++i) {
-    most = std::max(most, glm::distance(before[i], after[i]));
-    brightest = std::max(brightest, after[i].g);
+    most = lambent::testing::larger(most, glm::distance(before[i], after[i]));
+    brightest = lambent::testing::larger(brightest, after[i].g);
   }
   EXPECT_LT(most, 1e-4f);
   EXPECT_GT(brightest, 0.2f);
