@@ -44,7 +44,7 @@ TEST_P(OldFormats, StillSayTheSame) {
     EXPECT_TRUE(mesh->fans.empty());
     EXPECT_TRUE(reader->readRows(d));
   }
-  const auto codes = reader->readCodebook(1, 0, 0);
+  const auto codes = reader->readCodebook(bundle::GroupIndex{1}, {}, {});
   ASSERT_TRUE(codes) << codes.error().line();
   EXPECT_EQ(codes->codebook.axis_counts, (std::vector<std::uint32_t>{3, 0}));
   EXPECT_EQ(codes->codebook.vectors[1], 1.0f + 0.5f * 10.0f);

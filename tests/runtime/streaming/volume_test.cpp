@@ -73,7 +73,7 @@ TEST_F(VolumeLoading, BringsGridsAsTheyWereWrittenBeforeImagesAndTransfer) {
     EXPECT_LT(voxels, image);
     ASSERT_LT(image, static_cast<std::ptrdiff_t>(items.size()));
     const auto& found = std::get<DensityChunk>(items[static_cast<std::size_t>(density)]);
-    EXPECT_EQ(found.group, group);
+    EXPECT_EQ(found.group, bundle::GroupIndex{group});
     EXPECT_EQ(found.codes, volume.codes());
     EXPECT_EQ(found.block_maxima.size(), 2u * 2u * 3u);
     EXPECT_EQ(std::get<VoxelsChunk>(items[static_cast<std::size_t>(voxels)]).voxels, volume.voxels());

@@ -41,7 +41,7 @@ struct Bench : testing::ShadingBench<Asked> {
     for (const std::uint32_t place : ready.positions) cluster_of[place & 0xffffu] = place >> 16u;
     std::vector<std::vector<std::uint32_t>> planes;
     for (const streaming::PlaneChunk& plane : made.planes[cell]) {
-      if (plane.transfer != t) continue;
+      if (plane.transfer.value != t) continue;
       const bundle::CellTransfer& described = transferOf(cell, t);
       const std::size_t bytes = described.planes[plane.plane.value].bits / 8;
       auto& codes = planes.emplace_back(plane.codes.size() / bytes, 0u);

@@ -101,7 +101,7 @@ struct Page {
     record.positions_word = size();
     words.insert(words.end(), positions.begin(), positions.end());
     for (const streaming::PlaneChunk& plane : made.planes[0]) {
-      if (plane.transfer != transfer_index) continue;
+      if (plane.transfer.value != transfer_index) continue;
       places.push_back(size() | (transfer.planes[plane.plane.value].bits == 16 ? transfer::kCodes16Bit : 0u));
       words.resize(words.size() + (plane.codes.size() + 3) / 4);
       std::memcpy(&words[places.back() & ~transfer::kCodes16Bit], plane.codes.data(), plane.codes.size());
@@ -130,7 +130,7 @@ struct Page {
 std::vector<std::vector<std::uint32_t>> codesOf(const testing::RandomBundle& made, std::size_t transfer) {
   std::vector<std::vector<std::uint32_t>> all;
   for (const streaming::PlaneChunk& plane : made.planes[0]) {
-    if (plane.transfer != transfer) continue;
+    if (plane.transfer.value != transfer) continue;
     const std::size_t bytes =
         made.description.groups[0].cells[0].transfers[transfer].planes[plane.plane.value].bits / 8;
     auto& codes = all.emplace_back(plane.codes.size() / bytes, 0u);
