@@ -1,6 +1,7 @@
 #include "baker/transport/ray_scene.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "baker/transport/frame.hpp"
 #include "tests/support/shapes.hpp"
@@ -46,6 +47,26 @@ TEST(RayScene, BlocksExactlyTheDirectionsUnderARoof) {
   for (std::size_t r = 0; r < table.size(); ++r) {
     const glm::vec3 d = upright() * glm::vec3(table.x[r], table.y[r], table.z[r]);
     EXPECT_EQ(masks[r / 16] >> (r % 16) & 1, d.x > 0.0f ? 1 : 0) << d.x;
+  }
+}
+
+// In a plane that is not parallel to an axis, the rounding of vertices and origins puts half of the origins
+// behind it. Nothing may block a ray here.
+TEST(RayScene, RaysLeaveTheirOwnFacesAtEveryScaleAndFarFromTheOrigin) {
+  for (const float scale : {1e-4f, 1.0f, 1e6f}) {
+    const glm::mat4 tilted =
+        glm::rotate(glm::translate(glm::scale(glm::mat4(1.0f), glm::vec3(scale)), glm::vec3(100, -40, 70)),
+                    0.7f, glm::normalize(glm::vec3(0.3f, 0.5f, 0.8f)));
+    const Transport t(sceneOf({testing::transformed(grid({0, 0, 0}, 4.0f, 16), tilted)}));
+    const DirectionTable table = cosineTable(128);
+    std::vector<std::uint16_t> masks(table.packets());
+    std::size_t blocked = 0;
+    for (std::size_t s = 0; s < t.samples.size(); ++s) {
+      const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(t.samples.normals[s]))));
+      t.rays.trace({t.samples.originsOf(s), frame, table}, masks);
+      for (const std::uint16_t mask : masks) blocked += static_cast<std::size_t>(std::popcount(mask));
+    }
+    EXPECT_EQ(blocked, 0u) << "scale " << scale << ", " << t.samples.size() << " samples";
   }
 }
 

@@ -1,7 +1,7 @@
 // Tests commands on a session without window and OpenGL.
-#include "tests/editor/program/windowless.hpp"
-
 #include <fstream>
+
+#include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {
 namespace {
@@ -134,6 +134,8 @@ TEST_F(WindowlessCommands, SaveAWorldThatComesBack) {
 TEST_F(WindowlessCommands, SayThatTheEditsOfAWorldFileCannotBeRead) {
   openHello();
   const std::string file = (folder.path() / "world.json").string();
+  const SceneEntry& entry = session->scenes.entries().front();
+  std::filesystem::copy(entry.shown, entry.bundle);
   answer("save", {file});
   json world = json::parse(std::ifstream(file));
   world["bundles"][0]["bake_options"]["edits"] = "cut o";
@@ -141,8 +143,8 @@ TEST_F(WindowlessCommands, SayThatTheEditsOfAWorldFileCannotBeRead) {
   session = makeSession();
   answer("open", {file});
   std::string told;
-  for (const LogEntry& entry : session->log.entries())
-    if (entry.severity == Severity::Warning) told += entry.text + '\n';
+  for (const LogEntry& line : session->log.entries())
+    if (line.severity == Severity::Warning) told += line.text + '\n';
   EXPECT_NE(told.find("the world file's edits cannot be read"), std::string::npos) << told;
 }
 
