@@ -1,5 +1,5 @@
 // Tests the container: what is written is read back, and nothing damaged is accepted.
-#include <chrono>
+#include <ctime>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -304,9 +304,9 @@ TEST_F(BundleFile, ADeepChainOfNodesIsReadInNoTime) {
     nodes[nodes.size() - 2].children.push_back(static_cast<std::int32_t>(nodes.size() - 1));
   }
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();  // processor time, which other work on the machine does not change
   EXPECT_TRUE(Reader::open(path_));
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  EXPECT_LT(std::clock() - begin, 5 * CLOCKS_PER_SEC);
 }
 
 TEST_F(BundleFile, AnEmptyListOfScenesIsRefused) {
