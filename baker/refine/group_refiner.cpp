@@ -122,6 +122,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, double bound, 
   const auto by_few = measureBy(few_, geometry, samples, allOf(count), context);
   if (!by_few || !*by_few) return by_few;
   const double allowed = bound * bound * seenArea();
+  if (!chosen_ && squareError() <= allowed) return true;
   return measureBy(many_, geometry, samples, trianglesThatMatter(std::max(allowed, squareError())), context);
 }
 
@@ -243,9 +244,10 @@ void GroupRefiner::addLacks(const DrawGeometry& draw, FaceLacks& lacks) const {
 }
 
 std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
-                                    std::size_t& room, MarkedEdges& edges) const {
+                                    std::size_t& room, MarkedEdges& edges) {
   const double allowed = bound * bound * seenArea(), square_error = squareError();
   if (square_error <= allowed) return 0;
+  chosen_ = true;
   std::vector<std::uint32_t> order = allOf(geometry.triangles.size());
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return measured_[a].square_error > measured_[b].square_error;

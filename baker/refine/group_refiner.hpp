@@ -50,7 +50,7 @@ class GroupRefiner {
   // Marks edges of the worst triangles, until the remaining error is within the bound or `room` new vertices
   // are spent. Returns how many edges were marked.
   std::size_t markWorst(std::size_t group, const GroupGeometry& geometry, double bound, std::size_t& room,
-                        MarkedEdges& edges) const;
+                        MarkedEdges& edges);
 
   // Appends what interpolation lacked inside the triangles of `draw` when last measured: values of some low
   // bands, and areas, per triangle.
@@ -83,6 +83,7 @@ class GroupRefiner {
   bool for_wedges_;
   std::optional<ProbedScene> scene_;
   float diagonal_ = 0.0f;
+  bool chosen_ = false;             // triangles were marked, so that few rays are no longer right on average
   std::vector<Measured> measured_;  // of each triangle
   std::vector<double> triangle_area_;
   std::vector<float> triangle_lack_;
