@@ -123,7 +123,11 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, double bound, 
   if (!by_few || !*by_few) return by_few;
   const double allowed = bound * bound * seenArea();
   if (!chosen_ && squareError() <= allowed) return true;
-  return measureBy(many_, geometry, samples, trianglesThatMatter(std::max(allowed, squareError())), context);
+  std::vector<std::uint32_t> again = trianglesThatMatter(std::max(allowed, squareError()));
+  std::erase_if(again, [&](std::uint32_t t) {
+    return samples.vertex_sample[geometry.triangles[t].x] >= samples.glossy.begin;
+  });
+  return measureBy(many_, geometry, samples, again, context);
 }
 
 std::vector<std::uint32_t> GroupRefiner::trianglesThatMatter(double square_error) const {

@@ -22,7 +22,8 @@ namespace lambent::baker {
 
 // Few rays tell where something may be wrong. Their noise is as large as small errors are: the triangles that
 // it makes look worst are split and those that it makes look right stay, so that in the end the figure is
-// under the bound and the error is not. Many rays therefore look again before anything is split.
+// under the bound and the error is not. Many rays therefore look again before anything is split. Glossy
+// surfaces are not looked at again: their pictures gain nothing from it, and their probes cost most.
 struct RefineProbes {
   const ShadowProbe &few, &many;
 };

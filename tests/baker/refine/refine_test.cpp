@@ -113,6 +113,13 @@ TEST(Refinement, DoesNotTakeTheNoiseOfFewRaysForASmallError) {
   EXPECT_LT(errorByMoreRays(scene, by_many.meshes), 0.035);
 }
 
+TEST(Refinement, LooksOnceAtWhatIsWithinTheBoundFromTheStart) {
+  const RefineOptions twice{.bound = 0.5f};
+  RefineOptions once = twice;
+  once.many_rays = once.rays;
+  EXPECT_EQ(refined(floorUnderSlab(), twice).report.rays, refined(floorUnderSlab(), once).report.rays);
+}
+
 TEST(Refinement, BringsWhatAGlossyFloorReflectsUnderTheBound) {
   Scene scene = floorUnderSlab();
   scene.materials[0].metallic = 1.0f;
