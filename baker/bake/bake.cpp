@@ -32,6 +32,8 @@ namespace {
 static_assert(BakeOptions::kMostBounces == kMostBounces);
 constexpr int kMostGlossyOrder = 6;
 constexpr int kMostNeighborhoodOrder = 6;
+// What refinement looks at twice is looked at by so many times the rays.
+constexpr std::size_t kTimesTheRays = 8;
 
 Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, const BakeContext& context) {
   context.progress.begin("BRDF tables");
@@ -53,8 +55,10 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
   if (!split) return failAgain(split.error());
   const bool with_glossy = !tables.entries.empty();
   if (const float bound = options.effectiveRefineBound(); bound > 0.0f) {
+    const std::size_t rays = std::min(RefineOptions{}.rays, options.effectiveRays());
     RefineOptions refine{.bound = bound,
-                         .rays = std::min(RefineOptions{}.rays, options.effectiveRays()),
+                         .rays = rays,
+                         .many_rays = kTimesTheRays * rays,
                          .most_growth = options.refineGrowth(),
                          .most_added = options.refineAdded(),
                          .most_wedges = options.refineWedges()};

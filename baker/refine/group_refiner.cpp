@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
 #include <glm/geometric.hpp>
 
 #include "baker/jobs/parallel.hpp"
-#include "baker/jobs/stage.hpp"
 #include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/sample_areas.hpp"
@@ -31,6 +29,9 @@ constexpr float kSplitShare = 0.6f;
 // A round splits triangles until the remaining square error is this share of what is allowed, or this share
 // of all of it if that is more, because what the first splits show decides where the next ones go.
 constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.35;
+// Many rays do not look at the triangles whose errors, as few rays show them with noise, make up this share
+// of all error, or of what is allowed if that is more.
+constexpr double kOverlooked = 0.1;
 
 // An InnerPoint is a point inside a triangle, by the weights of its corners.
 struct InnerPoint {
@@ -53,96 +54,124 @@ std::vector<InnerPoint> innerPoints(int n) {
   return points;
 }
 
+// Returns all numbers below `count`.
+std::vector<std::uint32_t> allOf(std::size_t count) {
+  std::vector<std::uint32_t> all(count);
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
+
+std::vector<SampleKind> kindsOf(const SampleSet& samples) {
+  std::vector<SampleKind> kinds(samples.size());
+  for (const SampleCell& cell : samples.cells) std::fill_n(kinds.begin() + cell.first, cell.count, cell.kind);
+  return kinds;
+}
+
+// Squares of what is wrong at a point, relative to the light there.
+struct PointError {
+  double square = 0.0;      // without bias from noise
+  double with_noise = 0.0;  // of what all rays together show
+};
+
+PointError pointError(const ShadowProbe::Difference& wrong, const ShadowProbe::Difference& arriving) {
+  const double light = std::max(ShadowProbe::squareError(arriving), 0.0) + kLeastLight * kLeastLight;
+  PointError error{.square = ShadowProbe::squareError(wrong) / light};
+  for (std::size_t i = 0; i < ShadowProbe::kMostValues; ++i) {
+    const double both = 0.5 * (double{wrong[0][i]} + double{wrong[1][i]});
+    error.with_noise += both * both / light;
+  }
+  return error;
+}
+
 }  // namespace
 
 void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene, const AlphaMaps& alpha_maps) {
   diagonal_ = glm::distance(geometry.bounds_min, geometry.bounds_max);
-  build_rays_ = [geometry, &scene, &alpha_maps] { return RayScene::build(geometry, scene, alpha_maps); };
   KeyMaker key = KeyMaker::ofStage("refinement probes");
   addShape(geometry, key);
   addOpacity(scene, geometry, key);
-  key_ = key.add(std::uint64_t{probe_.rays()}).key();
+  scene_.emplace(key.key(),
+                 [geometry, &scene, &alpha_maps] { return RayScene::build(geometry, scene, alpha_maps); });
 }
 
-std::uint32_t GroupRefiner::shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
-                                     std::span<const SampleOrigin> origins, std::vector<Point>& missing) {
-  const auto next = static_cast<std::uint32_t>(seen_.size() + missing.size());
-  // A vertex looks from a little inside the faces around it. Once these are split it looks from elsewhere,
-  // and is another point.
-  std::uint32_t from = 0;
-  for (const SampleOrigin& origin : origins)
-    for (int k = 0; k < 3; ++k) from = from * 0x9E3779B1u + std::bit_cast<std::uint32_t>(origin.position[k]);
-  VertexKey key = vertexKey(position, normal, kind);
-  key.back() = from;
-  const auto [entry, is_new] = known_.try_emplace(key, next);
-  if (is_new) missing.push_back({normal, kind, {origins.begin(), origins.end()}, next});
-  return entry->second;
+double GroupRefiner::squareError() const {
+  double sum = 0.0;
+  for (const Measured& measured : measured_) sum += measured.square_error;
+  return sum;
 }
 
-Result<bool> GroupRefiner::probe(const std::vector<Point>& missing, const BakeContext& context) {
-  const std::size_t size = probe_.packets(), first = seen_.size();  // missing ones are in order
-  seen_.resize(first + missing.size());
-  masks_.resize(seen_.size() * size);
-  const auto masks = std::span(masks_).subspan(first * size);
-  const auto compute = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Point& point = missing[i];
-      seen_[point.shadow] =
-          probe_.look(*rays_, point.origins, point.normal, point.kind, masks.subspan(i * size, size));
-    }
-  };
-  const Stage stage{.count = missing.size(),
-                    .grain = kPointsPerRange,
-                    .writes = {rowsOf(masks, size), rowsOf(seen_, 1, static_cast<std::ptrdiff_t>(first))},
-                    .compute = compute,
-                    .keep = KeepWhen::Always};
-  KeyMaker key;
-  key.add(key_);
-  for (const Point& point : missing) key.add(point.normal).add(point.kind).addList(point.origins);
-  const BakeContext own = context.keyed(key.key());
-  if (restoreStage(stage, own)) {
-    rays_kept_ += missing.size() * probe_.rays();
-    return true;
-  }
-  if (!rays_) {
-    auto built = build_rays_();
-    if (!built) return failAgain(built.error());
-    rays_ = std::move(*built);
-  }
-  const auto done = runStage(stage, own);
-  if (!done) return false;
-  traced_ += done->computed * probe_.rays();
-  rays_kept_ += done->found * probe_.rays();
-  return true;
+double GroupRefiner::seenArea() const {
+  double sum = 0.0;
+  for (const Measured& measured : measured_) sum += measured.seen;
+  return sum;
 }
 
-Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, const BakeContext& context) {
+double GroupRefiner::relativeError() const {
+  const double area = seenArea();
+  return area > 0.0 ? std::sqrt(std::max(0.0, squareError()) / area) : 0.0;
+}
+
+Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, double bound, const BakeContext& context) {
   const SampleSet samples = buildSamples(geometry);
-  std::vector<Point> missing;
-  std::vector<std::uint32_t> of_sample(samples.size());
-  std::vector<SampleKind> kinds(samples.size());
-  for (const SampleCell& cell : samples.cells) std::fill_n(kinds.begin() + cell.first, cell.count, cell.kind);
-  for (std::size_t s = 0; s < samples.size(); ++s)
-    of_sample[s] =
-        shadowAt(samples.positions[s], samples.normals[s], kinds[s], samples.originsOf(s), missing);
+  const std::size_t count = geometry.triangles.size();
+  measured_.assign(count, {});
+  if (for_wedges_) {
+    triangle_area_.assign(count, 0.0);
+    triangle_lack_.assign(count * 2 * kLackValues, 0.0f);
+  }
+  const auto by_few = measureBy(few_, geometry, samples, allOf(count), context);
+  if (!by_few || !*by_few) return by_few;
+  const double allowed = bound * bound * seenArea();
+  if (!chosen_ && squareError() <= allowed) return true;
+  std::vector<std::uint32_t> again = trianglesThatMatter(std::max(allowed, squareError()));
+  std::erase_if(again, [&](std::uint32_t t) {
+    return samples.vertex_sample[geometry.triangles[t].x] >= samples.glossy.begin;
+  });
+  return measureBy(many_, geometry, samples, again, context);
+}
 
+std::vector<std::uint32_t> GroupRefiner::trianglesThatMatter(double square_error) const {
+  std::vector<std::uint32_t> order = allOf(measured_.size());
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return measured_[a].with_noise < measured_[b].with_noise;
+  });
+  double overlooked = 0.0;
+  const auto matters = std::find_if(order.begin(), order.end(), [&](std::uint32_t t) {
+    overlooked += measured_[t].with_noise;
+    return overlooked > kOverlooked * square_error;
+  });
+  order.erase(order.begin(), matters);
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+Result<bool> GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry,
+                                     const SampleSet& samples, std::span<const std::uint32_t> triangles,
+                                     const BakeContext& context) {
+  const std::vector<SampleKind> kinds = kindsOf(samples);
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  std::vector<std::uint32_t> of_sample(samples.size(), kUnused);
   std::vector<Inner> inner;
-  for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
+  for (const std::uint32_t t : triangles) {
     const glm::uvec3 corners = geometry.triangles[t];
     const SampleKind kind = kinds[samples.vertex_sample[corners.x]];
+    for (int c = 0; c < 3; ++c)
+      if (const std::uint32_t s = samples.vertex_sample[corners[c]]; of_sample[s] == kUnused)
+        of_sample[s] =
+            points.numberOf(samples.positions[s], samples.normals[s], kinds[s], samples.originsOf(s));
     const int along =
         std::clamp(static_cast<int>(std::ceil(longestEdge(geometry, corners) / (kProbeSpacing * diagonal_))),
                    1, kMostProbesAlong);
     for (const InnerPoint& point : innerPoints(along)) {
       const FacePoint at = facePoint(geometry, corners, point.weights);
-      inner.push_back({t, shadowAt(at.position, at.normal, kind, std::span(&at.origin, 1), missing),
-                       point.weights, at.normal, kind});
+      inner.push_back({t, points.numberOf(at.position, at.normal, kind, std::span(&at.origin, 1)),
+                       point.weights, at.normal});
     }
   }
+  if (auto probed = points.probe(*scene_, context); !probed || !*probed) return probed;
 
-  if (auto probed = probe(missing, context); !probed || !*probed) return probed;
-
-  std::vector<double> error_at(inner.size());
+  const ShadowProbe& probe = points.shadowProbe();
+  std::vector<PointError> error_at(inner.size());
   std::vector<float> lack_at(for_wedges_ ? inner.size() * 2 * kLackValues : 0);
   std::vector<std::uint8_t> seen_at(inner.size(), 0);
   // Points that cannot be seen have no error, and unseen corners take the values of their neighbours
@@ -153,43 +182,40 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, const BakeCont
     float shares = 0.0f;
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t sample = samples.vertex_sample[geometry.triangles[point.triangle][c]],
-                          shadow = of_sample[sample];
+                          number = of_sample[sample];
       HiddenFrom& corner = corners[static_cast<std::size_t>(c)];
-      corner = {masksAt(shadow), samples.normals[sample], seen_[shadow] != 0 ? point.weights[c] : 0.0f};
+      corner = {points.masksAt(number), samples.normals[sample],
+                points.seen(number) ? point.weights[c] : 0.0f};
       shares += corner.share;
     }
-    if (seen_[point.shadow] == 0 || !(shares > 0.0f)) return 0.0;
+    if (!points.seen(point.point) || !(shares > 0.0f)) return;
     for (HiddenFrom& corner : corners) corner.share /= shares;
-    const auto wrong = probe_.difference(corners, {masksAt(point.shadow), point.normal}, point.kind);
-    const double light =
-        ShadowProbe::squareError(probe_.arriving({masksAt(point.shadow), point.normal}, point.kind));
+    const HiddenFrom truth{points.masksAt(point.point), point.normal};
+    const SampleKind kind = kinds[samples.vertex_sample[geometry.triangles[point.triangle].x]];
+    const auto wrong = probe.difference(corners, truth, kind);
+    error_at[i] = pointError(wrong, probe.arriving(truth, kind));
     seen_at[i] = 1;
     if (for_wedges_)
       for (std::size_t half = 0; half < 2; ++half)
         std::copy_n(wrong[half].begin(), kLackValues, lack_at.begin() + (2 * i + half) * kLackValues);
-    return ShadowProbe::squareError(wrong) / (std::max(light, 0.0) + kLeastLight * kLeastLight);
   };
-  const bool measured =
+  const bool done =
       parallelRanges(inner.size(), kPointsPerRange, context.stop, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) error_at[i] = measureAt(i);
+        for (std::size_t i = begin; i < end; ++i) measureAt(i);
       });
-  if (!measured) return false;
+  if (!done) return false;
 
-  triangle_error_.assign(geometry.triangles.size(), 0.0);
-  square_error_ = area_ = 0.0;
-  for (std::size_t first = 0; first < inner.size();) {
+  for (std::size_t first = 0, last = 0; first < inner.size(); first = last) {
     const std::uint32_t t = inner[first].triangle;
-    std::size_t last = first;
-    double sum = 0.0;
-    std::size_t seen = 0;
-    for (; last < inner.size() && inner[last].triangle == t; ++last)
-      sum += error_at[last], seen += seen_at[last];
-    const glm::uvec3 corners = geometry.triangles[t];
-    const double area = triangleArea(geometry, corners);
-    triangle_error_[t] = area * sum / static_cast<double>(last - first);
-    square_error_ += triangle_error_[t];
-    area_ += area * static_cast<double>(seen) / static_cast<double>(last - first);
-    first = last;
+    Measured sums;
+    for (; last < inner.size() && inner[last].triangle == t; ++last) {
+      sums.square_error += error_at[last].square;
+      sums.with_noise += error_at[last].with_noise;
+      sums.seen += seen_at[last];
+    }
+    const double part =
+        triangleArea(geometry, geometry.triangles[t]) / static_cast<double>(last - first);  // of a point
+    measured_[t] = {part * sums.square_error, part * sums.with_noise, part * sums.seen};
   }
   if (for_wedges_) keepLacks(geometry, inner, seen_at, lack_at);
   return true;
@@ -199,16 +225,17 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, const BakeCont
 void GroupRefiner::keepLacks(const GroupGeometry& geometry, std::span<const Inner> inner,
                              std::span<const std::uint8_t> seen, std::span<const float> lacks) {
   constexpr std::size_t kSize = 2 * kLackValues;
-  triangle_area_.assign(geometry.triangles.size(), 0.0);
-  triangle_lack_.assign(geometry.triangles.size() * kSize, 0.0f);
   for (std::size_t first = 0, last = 0; first < inner.size(); first = last) {
     const std::uint32_t t = inner[first].triangle;
     float counted = 0.0f;
     for (last = first; last < inner.size() && inner[last].triangle == t; ++last) counted += seen[last];
+    const auto lack = std::span(triangle_lack_).subspan(t * kSize, kSize);
+    std::fill(lack.begin(), lack.end(), 0.0f);
+    triangle_area_[t] = 0.0;
     if (counted == 0.0f) continue;
     triangle_area_[t] = triangleArea(geometry, geometry.triangles[t]);
     for (std::size_t i = first; i < last; ++i)
-      for (std::size_t k = 0; k < kSize; ++k) triangle_lack_[t * kSize + k] += lacks[i * kSize + k] / counted;
+      for (std::size_t k = 0; k < kSize; ++k) lack[k] += lacks[i * kSize + k] / counted;
   }
 }
 
@@ -221,22 +248,23 @@ void GroupRefiner::addLacks(const DrawGeometry& draw, FaceLacks& lacks) const {
 }
 
 std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
-                                    std::size_t& room, MarkedEdges& edges) const {
-  const double allowed = bound * bound * area_;
-  if (square_error_ <= allowed) return 0;
-  std::vector<std::uint32_t> order(geometry.triangles.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return triangle_error_[a] > triangle_error_[b]; });
-  const double enough = std::max(kLeftOfAllowed * allowed, kLeftOfAll * square_error_);
-  double left = square_error_;
+                                    std::size_t& room, MarkedEdges& edges) {
+  const double allowed = bound * bound * seenArea(), square_error = squareError();
+  if (square_error <= allowed) return 0;
+  chosen_ = true;
+  std::vector<std::uint32_t> order = allOf(geometry.triangles.size());
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return measured_[a].square_error > measured_[b].square_error;
+  });
+  const double enough = std::max(kLeftOfAllowed * allowed, kLeftOfAll * square_error);
+  double left = square_error;
   std::size_t marked = 0;
   for (const std::uint32_t t : order) {
     if (left <= enough || room < 3) break;
     const glm::uvec3 corners = geometry.triangles[t];
     const float longest = longestEdge(geometry, corners);
     if (longest < kShortestEdge * diagonal_) continue;
-    left -= triangle_error_[t];
+    left -= measured_[t].square_error;
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t a = corners[c], b = corners[(c + 1) % 3];
       if (glm::distance(geometry.positions[a], geometry.positions[b]) < kSplitShare * longest) continue;

@@ -29,7 +29,8 @@ Key outcomeKey(const RefineScene& from, const std::vector<GroupGeometry>& geomet
                const RefineOptions& options, const std::vector<std::vector<bundle::MeshData>>& meshes) {
   const auto& groups = from.groups;
   KeyMaker key = KeyMaker::ofStage("refinement");
-  key.add(from.with_glossy).add(options.bound).add(std::uint64_t{options.rays}).add(options.rounds);
+  key.add(from.with_glossy).add(options.bound).add(std::uint64_t{options.rays});
+  key.add(std::uint64_t{options.many_rays}).add(options.rounds);
   key.add(options.most_growth).add(std::uint64_t{options.most_added}).add(options.most_wedges);
   key.add(std::uint64_t{options.most_vertices}).add(std::uint64_t{meshes.size()});
   for (const auto& primitives : meshes) {
@@ -107,9 +108,10 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
     report.vertices_after = report.vertices_before;
     return report;
   }
-  const ShadowProbe probe(options.rays);
+  const ShadowProbe few(options.rays), many(options.many_rays);
   std::vector<GroupRefiner> refiners;
-  for (std::size_t g = 0; g < groups.size(); ++g) refiners.emplace_back(probe, options.most_wedges > 0.0);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    refiners.emplace_back(RefineProbes{few, many}, options.most_wedges > 0.0);
 
   for (int round = 0;; ++round) {
     if (round > 0) build();
@@ -117,7 +119,7 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
     for (std::size_t g = 0; g < groups.size(); ++g) {
       if (groups[g].draws.empty()) continue;
       if (round == 0) refiners[g].prepare(geometries[g], scene, alpha_maps);
-      const auto measured = refiners[g].measure(geometries[g], context);
+      const auto measured = refiners[g].measure(geometries[g], double{options.bound}, context);
       if (!measured) return failAgain(measured.error());
       if (!*measured) return fail(scene.source.string(), "stopped; nothing was written");
       report.error_after = std::max(report.error_after, refiners[g].relativeError());

@@ -19,9 +19,10 @@
 namespace lambent::baker {
 
 struct RefineOptions {
-  float bound = 0.01f;     // on each group's error: relative RMS over its visible surface, see GroupRefiner
-  std::size_t rays = 512;  // per probe, over the sphere
-  int rounds = 24;         // at most this many
+  float bound = 0.01f;  // on each group's error: relative RMS over its visible surface, see GroupRefiner
+  // Rays of a probe over the sphere: few tell where much is wrong, many where little is.
+  std::size_t rays = 512, many_rays = 2048;
+  int rounds = 24;  // at most this many
   // The scene gets at most most_growth times as many vertices as it had and most_added more, and never more
   // than most_vertices in all.
   double most_growth = 1.5;

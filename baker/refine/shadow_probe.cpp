@@ -22,6 +22,8 @@ namespace {
 constexpr int kOrder = 5, kVisibilityBands = 2 * kOrder - 1;
 constexpr std::size_t kPlainValues = kOrder * kOrder, kGlossyValues = kVisibilityBands * kVisibilityBands;
 static_assert(kGlossyValues == ShadowProbe::kMostValues);
+// Normals with a larger dot product differ by rounding only.
+constexpr float kSameNormal = 1.0f - 1e-6f;
 
 // Adds both halves of the sphere by the points of one, rotated by `turn`.
 void addSphere(const DirectionTable& half, const glm::mat3& turn, DirectionTable& table) {
@@ -123,12 +125,15 @@ bool ShadowProbe::look(const RayScene& scene, std::span<const SampleOrigin> orig
 ShadowProbe::Difference ShadowProbe::difference(std::span<const HiddenFrom, 3> corners,
                                                 const HiddenFrom& truth, SampleKind kind) const {
   const bool plain = kind == SampleKind::Diffuse;
+  const bool cosines_differ = plain && std::ranges::any_of(corners, [&](const HiddenFrom& corner) {
+                                return glm::dot(corner.normal, truth.normal) < kSameNormal;
+                              });
   Difference wrong{};
   for (std::size_t p = 0; p < packets(); ++p) {
     const unsigned in_any = corners[0].masks[p] | corners[1].masks[p] | corners[2].masks[p] | truth.masks[p],
                    in_all = corners[0].masks[p] & corners[1].masks[p] & corners[2].masks[p] & truth.masks[p];
     // What is hidden from all of them makes no difference, unless their cosines differ.
-    for (unsigned left = plain ? in_any : in_any & ~in_all; left != 0; left &= left - 1) {
+    for (unsigned left = cosines_differ ? in_any : in_any & ~in_all; left != 0; left &= left - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
       const std::size_t r = p * kPacketWidth + k;
       const glm::vec3 direction(directions_.x[r], directions_.y[r], directions_.z[r]);
