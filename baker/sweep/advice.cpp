@@ -27,10 +27,10 @@ bool isDrawn(const Measured& measured) {
 }
 
 constexpr std::array kCosts = {
-    Cost{"bake-time", "time of a bake", "time of a bake", "Bake with", seconds,
-         [](const Measured& m) { return m.bake.seconds; }, isBaked},
+    Cost{"bake-time", "processor time of a bake, all threads together", "time of a bake", "Bake with",
+         seconds, [](const Measured& m) { return m.bake.processor_seconds; }, isBaked},
     Cost{"frame-time", "time of a frame under turning light", "time of a frame", "Draw with", milliseconds,
-         [](const Measured& m) { return m.picture.frame_ms; }, isDrawn},
+         [](const Measured& m) { return m.picture.costMs(); }, isDrawn},
     Cost{"bundle-bytes", "bytes of the bundle", "bytes of the bundle", "Bake with", bytes,
          [](const Measured& m) { return static_cast<double>(m.bake.bytes); }, isBaked},
     Cost{"gpu-bytes", "bytes on the GPU", "bytes on the GPU", "Draw with", bytes,
@@ -94,8 +94,8 @@ std::string effectOf(std::span<const Measured* const> of_knob) {
                        percent(error(most)));
   const Measured &first = *of_knob.front(), &last = *of_knob.back();
   const bool baked = isBaked(first);
-  const double times =
-      baked ? last.bake.seconds / first.bake.seconds : last.picture.frame_ms / first.picture.frame_ms;
+  const double times = baked ? last.bake.processor_seconds / first.bake.processor_seconds
+                             : last.picture.costMs() / first.picture.costMs();
   return fmt::format("From {} to {} the error goes from {} to {}, at {:.2g} times the time of a {}.",
                      first.setting.value, last.setting.value, percent(error(&first)), percent(error(&last)),
                      times, baked ? "bake" : "frame");

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -85,6 +86,10 @@ void collect(Pipe& out, Pipe& err, ::pid_t id, const std::stop_token& stop, std:
   }
 }
 
+double secondsOf(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
 std::string lastLine(std::string text) {
   while (text.ends_with('\n')) text.pop_back();
   const std::size_t before = text.rfind('\n');
@@ -93,8 +98,8 @@ std::string lastLine(std::string text) {
 
 }  // namespace
 
-Result<std::string> runProgram(const std::filesystem::path& program, const std::vector<std::string>& words,
-                               const std::stop_token& stop) {
+Result<Ran> runProgram(const std::filesystem::path& program, const std::vector<std::string>& words,
+                       const std::stop_token& stop) {
   const std::string name = program.filename().string();
   Pipe out, err;
   if (!out.open() || !err.open())
@@ -107,10 +112,12 @@ Result<std::string> runProgram(const std::filesystem::path& program, const std::
   std::string out_text, err_text;
   collect(out, err, id, stop, out_text, err_text);
   int status = 0;
-  while (::waitpid(id, &status, 0) < 0 && errno == EINTR) {
+  rusage used{};
+  while (::wait4(id, &status, 0, &used) < 0 && errno == EINTR) {
   }
   if (stop.stop_requested()) return fail(name, "stopped", "run it again, and it goes on from where it was");
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return out_text;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
+    return Ran{std::move(out_text), secondsOf(used.ru_utime) + secondsOf(used.ru_stime)};
   const std::string said = lastLine(err_text);
   if (!said.empty()) return fail(name + (words.empty() ? "" : " " + words.front()), "failed: " + said);
   return fail(name, WIFEXITED(status) ? fmt::format("ended with code {}", WEXITSTATUS(status))

@@ -1,6 +1,7 @@
 #include "baker/sweep/csv.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include <fmt/format.h>
@@ -26,12 +27,38 @@ std::string number(const std::optional<double>& value) {
 std::string settingsCsv(const SweepResults& results) {
   std::vector<Advice> advice;
   for (const Cost& cost : costs()) advice.push_back(adviceOn(cost, results.settings));
-  std::string out =
-      "scene,knob,value,error,error_spread,percentile_99,visible,bias,bands_error,bands_percentile_99,bands_"
-      "visible,"
-      "noise,codes,interpolation,beyond_bands,bake_s,bake_least_s,bake_most_s,bake_runs,frame_ms,frame_"
-      "slowest_ms,"
-      "bundle_bytes,transfer_bytes,gpu_bytes,vertices,key_lights,on_front,machine,renderer\n";
+  static constexpr std::array kColumns = {"scene",
+                                          "knob",
+                                          "value",
+                                          "error",
+                                          "error_spread",
+                                          "percentile_99",
+                                          "visible",
+                                          "bias",
+                                          "bands_error",
+                                          "bands_percentile_99",
+                                          "bands_visible",
+                                          "noise",
+                                          "codes",
+                                          "interpolation",
+                                          "beyond_bands",
+                                          "bake_processor_s",
+                                          "bake_s",
+                                          "bake_least_s",
+                                          "bake_most_s",
+                                          "bake_runs",
+                                          "frame_ms",
+                                          "frame_slowest_ms",
+                                          "frame_processor_ms",
+                                          "bundle_bytes",
+                                          "transfer_bytes",
+                                          "gpu_bytes",
+                                          "vertices",
+                                          "key_lights",
+                                          "on_front",
+                                          "machine",
+                                          "renderer"};
+  std::string out = fmt::format("{}\n", fmt::join(kColumns, ","));
   for (std::size_t i = 0; i < results.settings.size(); ++i) {
     const Measured& m = results.settings[i];
     const Figures &lit = m.picture.as_light_is, &banded = m.picture.as_bands_can;
@@ -54,12 +81,14 @@ std::string settingsCsv(const SweepResults& results) {
                                              number(parts.codes),
                                              number(parts.interpolation),
                                              number(parts.beyond_bands),
+                                             number(m.bake.processor_seconds),
                                              number(m.bake.seconds),
                                              number(m.bake.least_seconds),
                                              number(m.bake.most_seconds),
                                              std::to_string(m.bake.runs),
                                              number(m.picture.frame_ms),
                                              number(m.picture.slowest_ms),
+                                             number(m.picture.processor_ms),
                                              std::to_string(m.bake.bytes),
                                              std::to_string(m.bake.transfer_bytes),
                                              std::to_string(m.picture.gpu_bytes),

@@ -25,9 +25,9 @@ using nlohmann::json;
 constexpr int kMostRuns = 3;
 constexpr double kRepeatWithinSeconds = 10.0;
 
-Result<json> parsed(const Result<std::string>& text, const char* program) {
-  if (!text) return failAgain(text.error());
-  json value = json::parse(*text, nullptr, /*exceptions=*/false);
+Result<json> parsed(const Result<Ran>& ran, const char* program) {
+  if (!ran) return failAgain(ran.error());
+  json value = json::parse(ran->out, nullptr, /*exceptions=*/false);
   if (!value.is_object())
     return fail(program, "printed no JSON", "see that both programs are of one version");
   return value;
@@ -194,28 +194,38 @@ Result<BakeRow> Measurer::runBake(const Setting& setting) {
                                     "--quality", qualityName(setting.bake.quality)};
   append(words, setting.bake_words);
   if (job_.allow_outside) words.push_back("--allow-outside");
-  std::vector<json> reports;
-  for (double spent = 0.0; reports.size() < kMostRuns && (reports.empty() || spent < kRepeatWithinSeconds);) {
-    auto report = parsed(runProgram(job_.programs.lambent, words, stop_), "lambent bake");
+  struct Run {
+    json report;
+    double seconds = 0.0, processor_seconds = 0.0;
+  };
+  std::vector<Run> runs;
+  for (double spent = 0.0; runs.size() < kMostRuns && (runs.empty() || spent < kRepeatWithinSeconds);) {
+    const auto ran = runProgram(job_.programs.lambent, words, stop_);
+    auto report = parsed(ran, "lambent bake");
     if (!report) return failAgain(report.error());
-    if (auto read = reading("lambent bake", [&] { spent += secondsOf(*report); }); !read)
+    Run run{.report = std::move(*report), .processor_seconds = ran->processor_seconds};
+    if (auto read = reading("lambent bake", [&] { run.seconds = secondsOf(run.report); }); !read)
       return failAgain(read.error());
-    reports.push_back(std::move(*report));
+    spent += run.seconds;
+    runs.push_back(std::move(run));
   }
+  std::ranges::sort(runs, {}, &Run::processor_seconds);
+  const double processor_seconds = runs[runs.size() / 2].processor_seconds;
+  std::ranges::sort(runs, {}, &Run::seconds);
+  const Run& median = runs[runs.size() / 2];
   BakeRow row;
   const auto read = reading("lambent bake", [&] {
-    std::ranges::sort(reports, {}, secondsOf);
-    const json& median = reports[reports.size() / 2];
-    row = {.seconds = secondsOf(median),
-           .least_seconds = secondsOf(reports.front()),
-           .most_seconds = secondsOf(reports.back()),
-           .runs = static_cast<int>(reports.size()),
-           .stages = stagesOf(median),
-           .bytes = median.at("fileBytes").get<std::uint64_t>(),
-           .transfer_bytes = median.at("transferBytes").get<std::uint64_t>(),
-           .vertices = median.at("vertices").get<std::uint64_t>(),
-           .samples = median.at("samples").get<std::uint64_t>(),
-           .parts = partsOf(median)};
+    row = {.seconds = median.seconds,
+           .least_seconds = runs.front().seconds,
+           .most_seconds = runs.back().seconds,
+           .runs = static_cast<int>(runs.size()),
+           .processor_seconds = processor_seconds,
+           .stages = stagesOf(median.report),
+           .bytes = median.report.at("fileBytes").get<std::uint64_t>(),
+           .transfer_bytes = median.report.at("transferBytes").get<std::uint64_t>(),
+           .vertices = median.report.at("vertices").get<std::uint64_t>(),
+           .samples = median.report.at("samples").get<std::uint64_t>(),
+           .parts = partsOf(median.report)};
   });
   if (!read) return failAgain(read.error());
   return row;
@@ -244,11 +254,11 @@ Result<Measurer::Drawn> Measurer::draw(const Setting& setting, const Words& word
   const auto view = viewWords();
   all.insert(all.end(), view.begin(), view.end());
   append(all, words);
-  auto json = runProgram(job_.programs.demo, all, stop_);
-  if (!json) return failAgain(json.error());
+  auto ran = runProgram(job_.programs.demo, all, stop_);
+  if (!ran) return failAgain(ran.error());
   auto picture = spec::readExr(file);
   if (!picture) return failAgain(picture.error());
-  return Drawn{std::move(*json), std::move(*picture)};
+  return Drawn{std::move(*ran), std::move(*picture)};
 }
 
 Result<Figures> Measurer::compare(const spec::RgbaImage& picture, const Reference& reference,
@@ -295,11 +305,12 @@ Result<PictureRow> Measurer::picture(const Setting& setting, std::uint64_t gpu_b
   std::filesystem::remove(bands_file, ignored);
 
   PictureRow row;
-  const auto report = parsed(shown->json, "lambent-demo");
+  const auto report = parsed(shown->ran, "lambent-demo");
   if (!report) return failAgain(report.error());
   const auto read = reading("lambent-demo", [&] {
     row.frame_ms = report->at("frame_ms").at("median").get<double>();
     row.slowest_ms = report->at("frame_ms").at("max").get<double>();
+    row.processor_ms = report->at("frame_processor_ms").get<double>();
     row.frames = std::max(1, job_.view.frames - 1);  // the first one also waits for what is made once
     for (const json& pass : report->at("last_frame").at("passes")) {
       const json& gpu = pass.at("gpu_ms");

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/sweep/child.hpp"
 #include "baker/sweep/knobs.hpp"
 #include "baker/sweep/programs.hpp"
 #include "baker/sweep/rows.hpp"
@@ -21,8 +22,8 @@ namespace lambent::baker {
 
 // View is what all pictures of a sweep have in common.
 struct SweepView {
-  std::vector<std::string> lights;  // as on the command line
-  std::string camera, size;
+  std::vector<std::string> lights = {};  // as on the command line
+  std::string camera = {}, size = {};
   std::uint32_t spp = 64;  // of each of two references
   int frames = 5;          // over which frame times are taken
 };
@@ -63,7 +64,7 @@ class Measurer {
 
  private:
   struct Drawn {
-    std::string json;
+    Ran ran;
     spec::RgbaImage picture;
   };
   using Words = std::map<std::string, std::string>;

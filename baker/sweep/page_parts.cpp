@@ -125,14 +125,6 @@ std::string timeBars(const std::vector<const Measured*>& list, NamedTimes (*time
   return barsOf(bars, names, "all others");
 }
 
-std::string lightsText(const SweepView& view) {
-  if (view.lights.empty()) return "the programs' default lights";
-  std::vector<std::string> names;
-  for (const std::string& light : view.lights)
-    names.push_back(std::filesystem::path(light).filename().string());
-  return fmt::format("{}", fmt::join(names, " + "));
-}
-
 }  // namespace
 
 Plot plotOf(const SweepResults& results, const Cost& cost, const Advice& advice) {
@@ -211,8 +203,8 @@ std::string knobsPart(const SweepResults& results) {
           {.value = m->setting.value,
            .error = m->picture.as_light_is.rms,
            .error_of_bands = m->picture.as_bands_can.rms,
-           .cost = baked ? m->bake.seconds : m->picture.frame_ms,
-           .cost_text = baked ? seconds(m->bake.seconds) : milliseconds(m->picture.frame_ms),
+           .cost = baked ? m->bake.processor_seconds : m->picture.costMs(),
+           .cost_text = baked ? seconds(m->bake.processor_seconds) : milliseconds(m->picture.costMs()),
            .other_text = bytes(static_cast<double>(baked ? m->bake.bytes : m->picture.gpu_bytes)),
            .id = m->key,
            .base = m->key == results.settings.front().key});
@@ -246,55 +238,6 @@ std::string causesPart(const SweepResults& results) {
          timeBars(
              frames, [](const Measured& m) { return m.picture.passes; }, milliseconds) +
          "</div>\n";
-}
-
-std::string methodPart(const SweepResults& results) {
-  const PictureRow& base = results.settings.front().picture;
-  std::string out = fmt::format(
-      "<p>Pictures of {} under {} are compared with two path-traced references of {} samples a pixel each, "
-      "whose noise "
-      "cancels. <b>Light as it is</b>: without a band limit, against the picture that a user sees. <b>As the "
-      "bands can "
-      "show</b>: light cut to as many bands as the bake has, against the picture without key lights. The "
-      "error is relative "
-      "RMS of linear radiance over the pixels that the scene covers, with its standard error. <b>Visible</b> "
-      "is the share of "
-      "pixels that Yee’s model of the eye tells from the reference on a screen of 100 cd/m²; the noise of "
-      "the reference "
-      "counts there and in the 99th percentile. One knob is turned at a time from {} quality, so that good "
-      "combinations are "
-      "not among the points. A bake is repeated up to three times while it has taken less than ten seconds, "
-      "and a frame is "
-      "the median of {} under turning light.</p>\n<p>Measured with lambent {} on {}; frames by {}. Times of "
-      "other machines "
-      "differ, their ratios less.</p>\n",
-      htmlText(results.view.size), htmlText(lightsText(results.view)), results.view.spp,
-      qualityName(results.quality), base.frames, LAMBENT_VERSION, htmlText(results.machine),
-      htmlText(base.renderer));
-  for (const std::string& failure : results.failures)
-    out += fmt::format("<p><b>Not measured</b>: {}</p>\n", htmlText(failure));
-  out +=
-      "<details><summary>All figures</summary><div "
-      "class=\"scroll\"><table><tr><th>setting</th><th>error</th><th>±</th>"
-      "<th>99th percentile</th><th>visible</th><th>bias</th><th>bands’ error</th><th>bake</th><th>from "
-      "to</th><th>frame</th>"
-      "<th>slowest</th><th>bundle</th><th>GPU</th><th>vertices</th></tr>\n";
-  for (const Measured& m : results.settings) {
-    const Figures& f = m.picture.as_light_is;
-    out += fmt::format(
-        "<tr{}><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:+.1f} "
-        "%</td><td>{}</td><td>{}</td><td>{}</td>"
-        "<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        m.key == results.settings.front().key ? " class=\"base\"" : "", htmlText(titleOf(m)), percent(f.rms),
-        percent(f.rms_spread), percent(f.percentile_99), percent(f.visible), 100.0 * f.bias,
-        percent(m.picture.as_bands_can.rms), seconds(m.bake.seconds),
-        m.bake.runs > 1 ? fmt::format("{} – {}", seconds(m.bake.least_seconds), seconds(m.bake.most_seconds))
-                        : "once",
-        milliseconds(m.picture.frame_ms), milliseconds(m.picture.slowest_ms),
-        bytes(static_cast<double>(m.bake.bytes)), bytes(static_cast<double>(m.picture.gpu_bytes)),
-        m.bake.vertices);
-  }
-  return out + "</table></div></details>\n";
 }
 
 }  // namespace lambent::baker

@@ -35,6 +35,12 @@ static void from_json(const json& in, Figures& f) {
   in.at("visible").get_to(f.visible);
 }
 
+double PictureRow::costMs() const {
+  const bool on_processor =
+      renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos;
+  return on_processor ? processor_ms : frame_ms;
+}
+
 void to_json(json& out, const ReferenceRow& row) {
   out = {{"seconds", row.seconds}, {"noise", row.noise}};
 }
@@ -49,6 +55,7 @@ void to_json(json& out, const BakeRow& row) {
          {"leastSeconds", row.least_seconds},
          {"mostSeconds", row.most_seconds},
          {"runs", row.runs},
+         {"processorSeconds", row.processor_seconds},
          {"stages", timesJson(row.stages)},
          {"bytes", row.bytes},
          {"transferBytes", row.transfer_bytes},
@@ -66,6 +73,7 @@ void from_json(const json& in, BakeRow& row) {
   in.at("leastSeconds").get_to(row.least_seconds);
   in.at("mostSeconds").get_to(row.most_seconds);
   in.at("runs").get_to(row.runs);
+  in.at("processorSeconds").get_to(row.processor_seconds);
   row.stages = timesFrom(in.at("stages"));
   in.at("bytes").get_to(row.bytes);
   in.at("transferBytes").get_to(row.transfer_bytes);
@@ -77,9 +85,10 @@ void from_json(const json& in, BakeRow& row) {
 }
 
 void to_json(json& out, const PictureRow& row) {
-  out = {{"frameMs", row.frame_ms},         {"slowestMs", row.slowest_ms}, {"frames", row.frames},
-         {"passes", timesJson(row.passes)}, {"gpuBytes", row.gpu_bytes},   {"wholeBytes", row.whole_bytes},
-         {"keyLights", row.key_lights},     {"renderer", row.renderer}};
+  out = {
+      {"frameMs", row.frame_ms},       {"slowestMs", row.slowest_ms},     {"processorMs", row.processor_ms},
+      {"frames", row.frames},          {"passes", timesJson(row.passes)}, {"gpuBytes", row.gpu_bytes},
+      {"wholeBytes", row.whole_bytes}, {"keyLights", row.key_lights},     {"renderer", row.renderer}};
   to_json(out["asLightIs"], row.as_light_is);
   to_json(out["asBandsCan"], row.as_bands_can);
 }
@@ -87,6 +96,7 @@ void to_json(json& out, const PictureRow& row) {
 void from_json(const json& in, PictureRow& row) {
   in.at("frameMs").get_to(row.frame_ms);
   in.at("slowestMs").get_to(row.slowest_ms);
+  in.at("processorMs").get_to(row.processor_ms);
   in.at("frames").get_to(row.frames);
   row.passes = timesFrom(in.at("passes"));
   in.at("gpuBytes").get_to(row.gpu_bytes);

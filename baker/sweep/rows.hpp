@@ -33,25 +33,29 @@ struct ReferenceRow {
 struct BakeRow {
   double seconds = 0.0, least_seconds = 0.0, most_seconds = 0.0;  // the median and the spread of `runs`
   int runs = 0;
-  NamedTimes stages;  // in seconds, of the median run
+  double processor_seconds = 0.0;  // of all threads together, in the median run
+  NamedTimes stages = {};          // in seconds, of the median run
   std::uint64_t bytes = 0, transfer_bytes = 0, vertices = 0, samples = 0;
   // What the bake says of its own error (picture_error.hpp), the RMS over groups by their points. Nothing if
   // it has no diffuse surfaces.
   struct Parts {
     double noise = 0.0, codes = 0.0, interpolation = 0.0;
   };
-  std::optional<Parts> parts;
+  std::optional<Parts> parts = {};
 };
 
 struct PictureRow {
-  double frame_ms = 0.0, slowest_ms = 0.0;  // the median and the slowest of `frames` under turning light
+  // The median and the slowest of `frames` under turning light, by the clock, and the median processor time.
+  double frame_ms = 0.0, slowest_ms = 0.0, processor_ms = 0.0;
   int frames = 0;
-  NamedTimes passes;  // of the last frame, in ms
+  NamedTimes passes = {};  // of the last frame, in ms
   std::uint64_t gpu_bytes = 0, whole_bytes = 0;
   int key_lights = 0;
-  std::string renderer;
-  Figures as_light_is;   // default settings of the frame against light without a band limit
-  Figures as_bands_can;  // without key lights against light of as many bands
+  std::string renderer = {};
+  // Returns the time that the frame costs: of the processor if it draws, where other work disturbs the clock.
+  double costMs() const;
+  Figures as_light_is = {};   // default settings of the frame against light without a band limit
+  Figures as_bands_can = {};  // without key lights against light of as many bands
 };
 
 void to_json(nlohmann::json& json, const ReferenceRow& row);

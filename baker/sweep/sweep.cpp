@@ -23,7 +23,7 @@ struct Effort {
 Effort effortOf(Quality quality) {
   switch (quality) {
     case Quality::Draft:
-      return {"320x180", 64, 4};
+      return {"320x180", 64, 6};
     case Quality::Standard:
       return {"480x270", 256, 9};
     case Quality::High:

@@ -39,9 +39,10 @@ struct Measured {
 
 // The parts of an error as light is, as far as they are known. Their squares add up to its square.
 struct ErrorParts {
-  std::optional<double> noise = {}, codes = {}, interpolation = {};  // the bake's own figures, scaled to this picture
-  double within_bands = 0.0;                          // these three, or what stands for them together
-  double beyond_bands = 0.0;                          // truncation, and what key lights add or miss
+  std::optional<double> noise = {}, codes = {},
+                        interpolation = {};  // the bake's own figures, scaled to this picture
+  double within_bands = 0.0;                 // these three, or what stands for them together
+  double beyond_bands = 0.0;                 // truncation, and what key lights add or miss
 };
 ErrorParts partsOf(const Measured& measured);
 
@@ -55,8 +56,8 @@ struct SweepResults {
   float exposure = 1.0f;
   ReferenceRow reference_row = {};
   std::vector<std::string> failures = {};  // one sentence each
-  std::size_t asked = 0;              // settings, of which some may not be measured yet
-  std::size_t rows_measured = 0;      // in this run
+  std::size_t asked = 0;                   // settings, of which some may not be measured yet
+  std::size_t rows_measured = 0;           // in this run
   bool stopped = false;
 };
 

@@ -10,7 +10,7 @@ namespace {
 TEST(Child, ReturnsWhatAProgramPrintsWithoutAShellBetween) {
   const auto out = runProgram("/bin/echo", {"a b", "$HOME", "'"}, {});
   ASSERT_TRUE(out) << out.error().line();
-  EXPECT_EQ(*out, "a b $HOME '\n");
+  EXPECT_EQ(out->out, "a b $HOME '\n");
 }
 
 TEST(Child, FailsWithTheLastLineOfTheErrors) {
@@ -33,7 +33,7 @@ TEST(Child, ReadsBothStreamsToTheirEnds) {
                   "echo 0123456789012345678901234567890123456789 >&2; i=$((i+1)); done"},
                  {});
   ASSERT_TRUE(out) << out.error().line();
-  EXPECT_EQ(out->size(), 3000u * 41u);
+  EXPECT_EQ(out->out.size(), 3000u * 41u);
 }
 
 TEST(Child, EndsWhenAStopIsRequested) {
