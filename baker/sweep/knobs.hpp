@@ -28,12 +28,11 @@ struct SceneFacts {
 struct Knob {
   enum class Side : std::uint8_t { Bake, Frame };
 
-  std::string_view name;   // as in --knob; the option's own name unless `options` says otherwise
+  std::string_view name;   // as in --knob; for most the option's own name
   std::string_view title;  // as a heading
   std::string_view about;  // what it trades, one sentence
   Side side = Side::Bake;
-  // Values by how thoroughly to measure, separated by commas, coarse first: draft, then what standard and
-  // high turn it to.
+  // Its values, coarse first, separated by commas: fewer for a draft, else all.
   std::string_view draft_values, values;
   std::string_view usual{};  // the value that stands for the default, for which no option is given
   bool (*called_for)(const SceneFacts&) = nullptr;  // null: always

@@ -222,14 +222,15 @@ std::string causesPart(const SweepResults& results) {
   for (const Measured& m : results.settings) {
     const bool drawn = m.setting.knob->name == "keys" || m.setting.knob->name == "frame-quality";
     if (drawn && m.key != results.settings.front().key) frames.push_back(&m);
-    if (m.setting.knob->name == "order" || m.setting.knob->name == "keys")
-      if (m.key != results.settings.front().key) errors.push_back(&m);
+    const bool without_keys = m.setting.knob->name == "keys" && m.setting.value == "off";
+    if ((m.setting.knob->name == "order" || without_keys) && m.key != results.settings.front().key)
+      errors.push_back(&m);
   }
   return "<div class=\"card\"><h3>Of the error</h3>"
          "<p class=\"faint\">A bar is as long as the error; its parts are shares of the squares, which add "
          "up. "
          "Beyond the bands lies what they cannot carry, less what key lights bring back.</p>" +
-         errorBars(errors) + "</div>\n<div class=\"card\"><h3>Of a bake</h3>" +
+         errorBars(errors) + "</div>\n<div class=\"card\"><h3>Of a bake, by the clock</h3>" +
          timeBars(
              presets, [](const Measured& m) { return m.bake.stages; }, seconds) +
          "</div>\n<div class=\"card\"><h3>Of a frame</h3>"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 
@@ -26,20 +27,23 @@ struct Axis {
   double at(double value) const {
     return start + (end - start) * std::log(value / least) / std::log(most / least);
   }
-  // Returns the values 1, 2 and 5 times powers of ten that lie on it; only the powers where there are many.
-  std::vector<double> ticks() const {
-    std::vector<double> all, powers;
+  // Returns the values on it that are these digits times powers of ten.
+  std::vector<double> ticksOf(std::initializer_list<double> digits) const {
+    std::vector<double> ticks;
     const int first = static_cast<int>(std::floor(std::log10(least)));
     const int last = static_cast<int>(std::ceil(std::log10(most)));
     for (int power = first; power <= last; ++power)
-      for (const double digit : {1.0, 2.0, 5.0}) {
-        const double value = digit * std::pow(10.0, power);
-        if (value < least || value > most) continue;
-        all.push_back(value);
-        if (digit == 1.0) powers.push_back(value);
-      }
-    constexpr std::size_t kMany = 9;
-    return all.size() > kMany && powers.size() > 1 ? powers : all;
+      for (const double digit : digits)
+        if (const double value = digit * std::pow(10.0, power); value >= least && value <= most)
+          ticks.push_back(value);
+    return ticks;
+  }
+  // Returns four to nine round values, if there are so many.
+  std::vector<double> ticks() const {
+    constexpr std::size_t kFew = 4, kMany = 9;
+    std::vector<double> ticks = ticksOf({1.0, 2.0, 5.0});
+    if (ticks.size() > kMany) return ticksOf({1.0});
+    return ticks.size() < kFew ? ticksOf({1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) : ticks;
   }
 };
 
