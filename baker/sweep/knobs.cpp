@@ -128,10 +128,11 @@ constexpr std::array kKnobs = {
          .called_for = hasManyBodies},
     Knob{.name = kMemory,
          .title = "Streaming detail",
-         .about = "GPU memory that a bundle may take, as a share of all that it has.",
+         .about = "GPU memory for planes of transfer, as a share of what they take in all; meshes are always "
+                  "there.",
          .side = Side::Frame,
-         .draft_values = "25%,50%,75%",
-         .values = "10%,25%,50%,75%,90%"}};
+         .draft_values = "0%,50%,75%,90%",
+         .values = "0%,25%,50%,75%,90%,95%"}};
 
 std::vector<std::string> listed(std::string_view words) {
   std::vector<std::string> list;
@@ -148,7 +149,7 @@ std::optional<double> shareFrom(std::string_view word) {
   double percent = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), percent);
   if (error != std::errc{} || std::string_view(end, word.data() + word.size()) != "%") return std::nullopt;
-  return percent > 0.0 && percent <= 100.0 ? std::optional(percent / 100.0) : std::nullopt;
+  return percent >= 0.0 && percent <= 100.0 ? std::optional(percent / 100.0) : std::nullopt;
 }
 
 // Returns the option's name of lambent-demo for a knob.
@@ -225,7 +226,7 @@ Result<std::vector<Setting>> settingsOf(const SceneFacts& facts, Quality quality
     for (const Knob& knob : kKnobs)
       if (knob.called_for == nullptr || knob.called_for(facts))
         list.push_back({&knob, listed(quality == Quality::Draft ? knob.draft_values : knob.values)});
-  // The base comes first: shares of memory are shares of what it takes.
+  // The base comes first.
   std::vector<Setting> settings = {*settingOf(kKnobs.front(), qualityName(quality), quality)};
   for (const Asked& one : list)
     for (const std::string& value : one.values) {

@@ -49,7 +49,7 @@ struct Setting {
   BakeOptions bake;
   std::map<std::string, std::string> bake_words;   // options of lambent bake that differ from the base
   std::map<std::string, std::string> frame_words;  // options of lambent-demo
-  double memory_share = 1.0;                       // of the GPU memory that the whole bundle takes
+  double memory_share = 1.0;                       // of the GPU memory that planes of transfer take
 
   std::string name() const;  // "rays 512"
 };

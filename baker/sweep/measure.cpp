@@ -119,17 +119,19 @@ std::string Measurer::bakeKey(const Setting& setting) const {
   return key("bake", json(setting.bake.settings()).dump());
 }
 
-std::string Measurer::keyOf(const Setting& setting, std::uint64_t gpu_bytes) const {
-  return key("picture", fmt::format("{} {} {} {}", bakeKey(setting), json(setting.frame_words).dump(),
-                                    gpu_bytes, job_.view.frames));
+std::string Measurer::keyOf(const Setting& setting) const {
+  const std::string memory =
+      setting.memory_share < 1.0 ? fmt::format("{} of the planes", setting.memory_share) : "0";
+  return key("picture", fmt::format("{} {} {} {}", bakeKey(setting), json(setting.frame_words).dump(), memory,
+                                    job_.view.frames));
 }
 
 std::filesystem::path Measurer::bundleOf(const Setting& setting) const {
   return job_.work / fmt::format("bake-{}.lmb.glb", shortened(bakeKey(setting)));
 }
 
-std::filesystem::path Measurer::pictureFile(const Setting& setting, std::uint64_t gpu_bytes) const {
-  return job_.work / fmt::format("picture-{}.exr", shortened(keyOf(setting, gpu_bytes)));
+std::filesystem::path Measurer::pictureFile(const Setting& setting) const {
+  return job_.work / fmt::format("picture-{}.exr", shortened(keyOf(setting)));
 }
 
 std::string Measurer::bandsOf(const Setting& setting) const {
@@ -261,6 +263,29 @@ Result<Measurer::Drawn> Measurer::draw(const Setting& setting, const Words& word
   return Drawn{std::move(*ran), std::move(*picture)};
 }
 
+Result<MemoryRow> Measurer::memory(const Setting& setting) {
+  const std::string row_key = key("memory", bakeKey(setting));
+  if (auto row = store_.find<MemoryRow>(row_key)) return *row;
+  const std::filesystem::path file = job_.work / "memory.exr";
+  const auto drawn = draw(setting, {{"max-memory", "1"}}, file, 1);
+  if (!drawn) return failAgain(drawn.error());
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  const auto report = parsed(drawn->ran, "lambent-demo");
+  if (!report) return failAgain(report.error());
+  MemoryRow row;
+  const auto read = reading("lambent-demo", [&] {
+    for (const json& bundle : report->at("streaming").at("bundles")) {
+      row.least += bundle.at("bytes_resident").get<std::uint64_t>();
+      row.most += bundle.at("bytes_whole").get<std::uint64_t>();
+    }
+  });
+  if (!read) return failAgain(read.error());
+  row.most = std::max(row.least, row.most);
+  if (auto added = store_.add(row_key, "least memory", row); !added) return failAgain(added.error());
+  return row;
+}
+
 Result<Figures> Measurer::compare(const spec::RgbaImage& picture, const Reference& reference,
                                   const std::string& subject) const {
   const auto error = comparePictures(picture, reference.a, &reference.b, subject);
@@ -278,11 +303,11 @@ Result<Figures> Measurer::compare(const spec::RgbaImage& picture, const Referenc
   return figures;
 }
 
-Result<PictureRow> Measurer::picture(const Setting& setting, std::uint64_t gpu_bytes) {
+Result<PictureRow> Measurer::picture(const Setting& setting) {
   const auto as_it_is = reference("");
   if (!as_it_is) return failAgain(as_it_is.error());
-  const std::string row_key = keyOf(setting, gpu_bytes);
-  const std::filesystem::path file = pictureFile(setting, gpu_bytes);
+  const std::string row_key = keyOf(setting);
+  const std::filesystem::path file = pictureFile(setting);
   if (auto row = store_.find<PictureRow>(row_key); row && std::filesystem::exists(file))
     return std::move(*row);
   const auto of_bands = reference(bandsOf(setting));
@@ -291,7 +316,13 @@ Result<PictureRow> Measurer::picture(const Setting& setting, std::uint64_t gpu_b
   const std::string what = "pictures of " + setting.name();
   job_.begin(what);
   Words words = setting.frame_words;
-  if (gpu_bytes > 0) words["max-memory"] = std::to_string(gpu_bytes);
+  if (setting.memory_share < 1.0) {
+    const auto range = memory(setting);
+    if (!range) return failAgain(range.error());
+    words["max-memory"] = std::to_string(
+        range->least +
+        static_cast<std::uint64_t>(setting.memory_share * static_cast<double>(range->most - range->least)));
+  }
   const auto shown = draw(setting, words, file, job_.view.frames);
   if (!shown) return failAgain(shown.error());
   // Only what bands carry: neither key lights nor mirrors of what the bands leave out.
@@ -317,8 +348,8 @@ Result<PictureRow> Measurer::picture(const Setting& setting, std::uint64_t gpu_b
       row.passes.emplace_back(pass.at("name").get<std::string>(),
                               gpu.is_null() ? pass.at("cpu_ms").get<double>() : gpu.get<double>());
     }
-    row.whole_bytes = report->at("bytes_resident").get<std::uint64_t>();
-    row.gpu_bytes = row.whole_bytes + report->at("key_shadow_bytes").get<std::uint64_t>();
+    row.gpu_bytes = report->at("bytes_resident").get<std::uint64_t>() +
+                    report->at("key_shadow_bytes").get<std::uint64_t>();
     row.key_lights = static_cast<int>(report->at("key_lights").size());
     row.renderer = report->at("renderer").get<std::string>();
   });

@@ -53,13 +53,12 @@ class Measurer {
   std::string bandsOf(const Setting& setting) const;
 
   Result<BakeRow> bake(const Setting& setting);
-  // `gpu_bytes` is what the setting may take on the GPU; 0: no limit.
-  Result<PictureRow> picture(const Setting& setting, std::uint64_t gpu_bytes);
+  Result<PictureRow> picture(const Setting& setting);
 
   // Returns where the linear picture of a setting lies.
-  std::filesystem::path pictureFile(const Setting& setting, std::uint64_t gpu_bytes) const;
+  std::filesystem::path pictureFile(const Setting& setting) const;
   // Two settings with the same keys have the same rows.
-  std::string keyOf(const Setting& setting, std::uint64_t gpu_bytes) const;
+  std::string keyOf(const Setting& setting) const;
   float exposure() const { return exposure_; }
 
  private:
@@ -73,6 +72,8 @@ class Measurer {
   std::string bakeKey(const Setting& setting) const;
   std::filesystem::path bundleOf(const Setting& setting) const;
   std::vector<std::string> viewWords() const;
+  // Returns what the bundle of a setting takes on the GPU without planes, and whole.
+  Result<MemoryRow> memory(const Setting& setting);
   Result<BakeRow> runBake(const Setting& setting);
   Result<Drawn> draw(const Setting& setting, const Words& words, const std::filesystem::path& file,
                      int frames);

@@ -41,6 +41,15 @@ double PictureRow::costMs() const {
   return on_processor ? processor_ms : frame_ms;
 }
 
+void to_json(json& out, const MemoryRow& row) {
+  out = {{"least", row.least}, {"most", row.most}};
+}
+
+void from_json(const json& in, MemoryRow& row) {
+  in.at("least").get_to(row.least);
+  in.at("most").get_to(row.most);
+}
+
 void to_json(json& out, const ReferenceRow& row) {
   out = {{"seconds", row.seconds}, {"noise", row.noise}};
 }
@@ -85,10 +94,9 @@ void from_json(const json& in, BakeRow& row) {
 }
 
 void to_json(json& out, const PictureRow& row) {
-  out = {
-      {"frameMs", row.frame_ms},       {"slowestMs", row.slowest_ms},     {"processorMs", row.processor_ms},
-      {"frames", row.frames},          {"passes", timesJson(row.passes)}, {"gpuBytes", row.gpu_bytes},
-      {"wholeBytes", row.whole_bytes}, {"keyLights", row.key_lights},     {"renderer", row.renderer}};
+  out = {{"frameMs", row.frame_ms},     {"slowestMs", row.slowest_ms},     {"processorMs", row.processor_ms},
+         {"frames", row.frames},        {"passes", timesJson(row.passes)}, {"gpuBytes", row.gpu_bytes},
+         {"keyLights", row.key_lights}, {"renderer", row.renderer}};
   to_json(out["asLightIs"], row.as_light_is);
   to_json(out["asBandsCan"], row.as_bands_can);
 }
@@ -100,7 +108,6 @@ void from_json(const json& in, PictureRow& row) {
   in.at("frames").get_to(row.frames);
   row.passes = timesFrom(in.at("passes"));
   in.at("gpuBytes").get_to(row.gpu_bytes);
-  in.at("wholeBytes").get_to(row.whole_bytes);
   in.at("keyLights").get_to(row.key_lights);
   in.at("renderer").get_to(row.renderer);
   from_json(in.at("asLightIs"), row.as_light_is);

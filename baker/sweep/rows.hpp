@@ -49,7 +49,7 @@ struct PictureRow {
   double frame_ms = 0.0, slowest_ms = 0.0, processor_ms = 0.0;
   int frames = 0;
   NamedTimes passes = {};  // of the last frame, in ms
-  std::uint64_t gpu_bytes = 0, whole_bytes = 0;
+  std::uint64_t gpu_bytes = 0;
   int key_lights = 0;
   std::string renderer = {};
   // Returns the time that the frame costs: of the processor if it draws, where other work disturbs the clock.
@@ -58,6 +58,13 @@ struct PictureRow {
   Figures as_bands_can = {};  // without key lights against light of as many bands
 };
 
+// What a bundle takes on the GPU: what can never be left out, and all.
+struct MemoryRow {
+  std::uint64_t least = 0, most = 0;
+};
+
+void to_json(nlohmann::json& json, const MemoryRow& row);
+void from_json(const nlohmann::json& json, MemoryRow& row);
 void to_json(nlohmann::json& json, const ReferenceRow& row);
 void to_json(nlohmann::json& json, const BakeRow& row);
 void to_json(nlohmann::json& json, const PictureRow& row);

@@ -56,17 +56,13 @@ bool hasNothingToTurn(const Setting& setting, const Measured& base) {
   return of_keys && base.picture.key_lights == 0;
 }
 
-Result<Measured> measure(Measurer& measurer, const Setting& setting, std::uint64_t whole_bytes) {
-  const std::uint64_t gpu_bytes =
-      setting.memory_share < 1.0
-          ? static_cast<std::uint64_t>(setting.memory_share * static_cast<double>(whole_bytes))
-          : 0;
+Result<Measured> measure(Measurer& measurer, const Setting& setting) {
   auto bake = measurer.bake(setting);
   if (!bake) return failAgain(bake.error());
-  auto picture = measurer.picture(setting, gpu_bytes);
+  auto picture = measurer.picture(setting);
   if (!picture) return failAgain(picture.error());
-  return Measured{setting, measurer.keyOf(setting, gpu_bytes), std::move(*bake), std::move(*picture),
-                  measurer.pictureFile(setting, gpu_bytes)};
+  return Measured{setting, measurer.keyOf(setting), std::move(*bake), std::move(*picture),
+                  measurer.pictureFile(setting)};
 }
 
 }  // namespace
@@ -128,8 +124,7 @@ Result<SweepResults> runSweep(const SweepRequest& request, const SweepListener& 
       --results.asked;
       continue;
     }
-    auto measured = measure(measurer, setting,
-                            results.settings.empty() ? 0 : results.settings.front().picture.whole_bytes);
+    auto measured = measure(measurer, setting);
     if (stop.stop_requested()) break;
     if (!measured) {
       if (results.settings.empty()) return failAgain(measured.error());

@@ -70,7 +70,7 @@ TEST(Knobs, TheUsualValueOfAFrameGivesNoOption) {
 }
 
 TEST(Knobs, UnknownNamesAndValuesAreErrors) {
-  for (const char* word : {"knob", "rays=few", "order=9", "max-memory=half", "max-memory=0%"}) {
+  for (const char* word : {"knob", "rays=few", "order=9", "max-memory=half", "max-memory=101%"}) {
     const std::vector<std::string> asked = {word};
     EXPECT_FALSE(settingsOf({}, Quality::Draft, asked)) << word;
   }
