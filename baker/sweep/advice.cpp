@@ -21,20 +21,23 @@ bool isBaked(const Measured& measured) {
   return measured.setting.knob->side == Knob::Side::Bake;
 }
 
-// The bundle of the base at other settings of the frame; a smaller bundle would be another question.
-bool isDrawn(const Measured& measured) {
-  return !isBaked(measured) || isPreset(measured) || measured.setting.knob->name == "order";
+bool changesTheBake(const Measured& measured, const Measured& base) {
+  return isBaked(measured) || measured.key == base.key;
+}
+
+bool changesTheFrame(const Measured& measured, const Measured& base) {
+  return !isBaked(measured) || measured.key == base.key;
 }
 
 constexpr std::array kCosts = {
     Cost{"bake-time", "processor time of a bake, all threads together", "time of a bake", "Bake with",
-         seconds, [](const Measured& m) { return m.bake.processor_seconds; }, isBaked},
+         seconds, [](const Measured& m) { return m.bake.processor_seconds; }, changesTheBake},
     Cost{"frame-time", "time of a frame under turning light", "time of a frame", "Draw with", milliseconds,
-         [](const Measured& m) { return m.picture.costMs(); }, isDrawn},
+         [](const Measured& m) { return m.picture.costMs(); }, changesTheFrame},
     Cost{"bundle-bytes", "bytes of the bundle", "bytes of the bundle", "Bake with", bytes,
-         [](const Measured& m) { return static_cast<double>(m.bake.bytes); }, isBaked},
+         [](const Measured& m) { return static_cast<double>(m.bake.bytes); }, changesTheBake},
     Cost{"gpu-bytes", "bytes on the GPU", "bytes on the GPU", "Draw with", bytes,
-         [](const Measured& m) { return static_cast<double>(m.picture.gpu_bytes); }, isDrawn}};
+         [](const Measured& m) { return static_cast<double>(m.picture.gpu_bytes); }, changesTheFrame}};
 
 }  // namespace
 
@@ -51,12 +54,13 @@ Advice adviceOn(const Cost& cost, std::span<const Measured> settings) {
   std::set<std::string> seen;
   for (const bool presets : {true, false})  // of equal ones the preset is the better name
     for (std::size_t i = 0; i < settings.size(); ++i)
-      if (isPreset(settings[i]) == presets && cost.competes(settings[i]) &&
+      if (isPreset(settings[i]) == presets && cost.competes(settings[i], settings.front()) &&
           seen.insert(settings[i].key).second)
         advice.competing.push_back(i);
   std::vector<CostAndError> points;
   for (const std::size_t i : advice.competing)
-    points.push_back({cost.of(settings[i]), settings[i].picture.as_light_is.rms});
+    points.push_back({cost.of(settings[i]), settings[i].picture.as_light_is.rms,
+                      settings[i].picture.as_light_is.rms_spread});
   std::vector<std::size_t> front = paretoFront(points);
   const std::optional<std::size_t> knee = kneeOf(points, front);
   if (!knee) return advice;
@@ -96,9 +100,13 @@ std::string effectOf(std::span<const Measured* const> of_knob) {
   const bool baked = isBaked(first);
   const double times = baked ? last.bake.processor_seconds / first.bake.processor_seconds
                              : last.picture.costMs() / first.picture.costMs();
-  return fmt::format("From {} to {} the error goes from {} to {}, at {:.2g} times the time of a {}.",
-                     first.setting.value, last.setting.value, percent(error(&first)), percent(error(&last)),
-                     times, baked ? "bake" : "frame");
+  const char* of = baked ? "a bake" : "a frame";
+  constexpr double kAlike = 1.1;
+  const std::string time = times < kAlike && times > 1.0 / kAlike
+                               ? "in about the same time"
+                               : fmt::format("at {:.2g} times the time of {}", times, of);
+  return fmt::format("From {} to {} the error goes from {} to {}, {}.", first.setting.value,
+                     last.setting.value, percent(error(&first)), percent(error(&last)), time);
 }
 
 }  // namespace lambent::baker

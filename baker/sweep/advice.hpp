@@ -20,7 +20,7 @@ struct Cost {
   const char* verb;   // how its setting is used
   std::string (*text)(double);
   double (*of)(const Measured&);
-  bool (*competes)(const Measured&);
+  bool (*competes)(const Measured& setting, const Measured& base);
 };
 
 // Returns time of a bake, time of a frame, bytes of a bundle, bytes on the GPU.

@@ -131,8 +131,8 @@ constexpr std::array kKnobs = {
          .about = "GPU memory for planes of transfer, as a share of what they take in all; meshes are always "
                   "there.",
          .side = Side::Frame,
-         .draft_values = "0%,50%,75%,90%",
-         .values = "0%,25%,50%,75%,90%,95%"}};
+         .draft_values = "0%,50%,75%,100%",
+         .values = "0%,25%,50%,75%,90%,100%"}};
 
 std::vector<std::string> listed(std::string_view words) {
   std::vector<std::string> list;

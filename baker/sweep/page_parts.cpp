@@ -144,9 +144,8 @@ Plot plotOf(const SweepResults& results, const Cost& cost, const Advice& advice)
                     .y_spread = m.picture.as_light_is.rms_spread,
                     .id = m.key,
                     .about = fmt::format("{}: {} for {}", titleOf(m), percent(y), cost.text(x)),
-                    .label = isPreset(m) ? m.setting.value
-                             : on_front  ? titleOf(m)
-                                         : "",
+                    .label = isPreset(m) ? m.setting.value : titleOf(m),
+                    .always_labelled = isPreset(m) || on_front,
                     .on_front = on_front,
                     .chosen = advice.chosen == i};
     plot.points.push_back(std::move(point));
@@ -233,7 +232,7 @@ std::string causesPart(const SweepResults& results) {
          errorBars(errors) + "</div>\n<div class=\"card\"><h3>Of a bake, by the clock</h3>" +
          timeBars(
              presets, [](const Measured& m) { return m.bake.stages; }, seconds) +
-         "</div>\n<div class=\"card\"><h3>Of a frame</h3>"
+         "</div>\n<div class=\"card\"><h3>Of a frame, by the clock</h3>"
          "<p class=\"faint\">The last of some frames under turning light, so that nothing is kept from the "
          "one before.</p>" +
          timeBars(

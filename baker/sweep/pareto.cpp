@@ -31,9 +31,12 @@ double gainPerDoubling(const CostAndError& from, const CostAndError& to) {
 
 std::optional<std::size_t> kneeOf(std::span<const CostAndError> points, std::span<const std::size_t> front) {
   for (std::size_t i = 0; i < front.size(); ++i) {
-    const bool worth = std::any_of(
-        front.begin() + static_cast<std::ptrdiff_t>(i) + 1, front.end(),
-        [&](std::size_t later) { return gainPerDoubling(points[front[i]], points[later]) >= kLeastGain; });
+    const bool worth =
+        std::any_of(front.begin() + static_cast<std::ptrdiff_t>(i) + 1, front.end(), [&](std::size_t later) {
+          const CostAndError &from = points[front[i]], &to = points[later];
+          const bool certain = from.error - to.error > std::max(from.spread, to.spread);
+          return certain && gainPerDoubling(from, to) >= kLeastGain;
+        });
     if (!worth) return front[i];
   }
   return std::nullopt;

@@ -10,8 +10,9 @@
 namespace lambent::baker {
 
 struct CostAndError {
-  double cost = 0.0;   // in seconds or bytes; > 0
-  double error = 0.0;  // relative; >= 0
+  double cost = 0.0;    // in seconds or bytes; > 0
+  double error = 0.0;   // relative; >= 0
+  double spread = 0.0;  // how far the error may be off; a smaller difference is none
 };
 
 // Returns the indices of the front, in the order of cost. Of equal ones the first counts. Values that are not
@@ -26,7 +27,8 @@ inline constexpr double kLeastGain = 0.1;
 // which costs more and errs less.
 double gainPerDoubling(const CostAndError& from, const CostAndError& to);
 
-// Returns the cheapest point of the front from which no later one is worth its cost. Nothing for no front.
+// Returns the cheapest point of the front from which no later one is worth its cost. A later one whose error
+// may be as large counts for nothing. Nothing for no front.
 std::optional<std::size_t> kneeOf(std::span<const CostAndError> points, std::span<const std::size_t> front);
 
 }  // namespace lambent::baker

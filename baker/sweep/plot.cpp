@@ -78,8 +78,8 @@ class Labels {
  public:
   void occupy(double x, double y) { taken_.push_back({x - 6.0, y - 6.0, x + 6.0, y + 6.0}); }
 
-  std::string put(double x, double y, const std::string& text, bool strong, double top) {
-    const double width = kTextWidth * static_cast<double>(text.size());
+  std::string put(const PlotPoint& point, double x, double y, double top) {
+    const double width = kTextWidth * static_cast<double>(point.label.size());
     struct Place {
       double dx, dy;
       const char* anchor;
@@ -102,9 +102,13 @@ class Labels {
       place = tried;
       break;
     }
+    if (!found && !point.always_labelled) return {};
     if (found) taken_.push_back(*found);
     return fmt::format("<text class=\"label{}\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n",
-                       strong ? " strong" : "", x + place.dx, y + place.dy, place.anchor, htmlText(text));
+                       point.chosen            ? " strong"
+                       : point.always_labelled ? ""
+                                               : " quiet",
+                       x + place.dx, y + place.dy, place.anchor, htmlText(point.label));
   }
 
  private:
@@ -178,10 +182,15 @@ std::string svgOf(const Plot& plot, PlotPlace place) {
       labels.occupy(x.at(point.x), y.at(point.y));
       out += pointText(point, x, y);
     }
-  for (const bool chosen : {true, false})
+  // Labels that must stand take their places first, and that of the chosen point before all.
+  const auto putLabels = [&](auto&& which) {
     for (const PlotPoint& point : plot.points)
-      if (point.chosen == chosen && !point.label.empty() && drawable(point))
-        out += labels.put(x.at(point.x), y.at(point.y), point.label, chosen, top);
+      if (which(point) && !point.label.empty() && drawable(point))
+        out += labels.put(point, x.at(point.x), y.at(point.y), top);
+  };
+  putLabels([](const PlotPoint& p) { return p.chosen; });
+  putLabels([](const PlotPoint& p) { return !p.chosen && p.always_labelled; });
+  putLabels([](const PlotPoint& p) { return !p.chosen && !p.always_labelled; });
   return out + "</svg>\n";
 }
 

@@ -10,11 +10,12 @@
 namespace lambent::baker {
 
 struct PlotPoint {
-  double x = 0.0, y = 0.0;  // both > 0; others are left out
-  double y_spread = 0.0;    // drawn as a bar up and down
-  std::string id;           // by which a page finds its picture; may be empty
-  std::string about;        // shown when the mouse rests on it
-  std::string label;        // written beside it; empty: none
+  double x = 0.0, y = 0.0;       // both > 0; others are left out
+  double y_spread = 0.0;         // drawn as a bar up and down
+  std::string id;                // by which a page finds its picture; may be empty
+  std::string about;             // shown when the mouse rests on it
+  std::string label;             // written beside it; empty: none
+  bool always_labelled = false;  // else only where there is room
   bool on_front = false, chosen = false;
 };
 

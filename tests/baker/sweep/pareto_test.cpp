@@ -52,6 +52,13 @@ TEST(Pareto, KneeLooksBehindASmallStepToALargeOne) {
   EXPECT_EQ(kneeOf(points, paretoFront(points)), 2u);
 }
 
+TEST(Pareto, ADifferenceWithinTheSpreadIsNoGain) {
+  std::vector<CostAndError> points = {{1.0, 0.40, 0.06}, {2.0, 0.35, 0.06}};
+  EXPECT_EQ(kneeOf(points, paretoFront(points)), 0u);
+  points[0].spread = points[1].spread = 0.01;
+  EXPECT_EQ(kneeOf(points, paretoFront(points)), 1u);
+}
+
 TEST(Pareto, NoPointsHaveNoKneeAndOneIsItsOwn) {
   EXPECT_FALSE(kneeOf({}, {}));
   const std::vector<CostAndError> one = {{1.0, 0.4}};
