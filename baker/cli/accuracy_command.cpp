@@ -95,6 +95,7 @@ void printJson(const SweepResults& results, const std::vector<std::filesystem::p
                         {"value", m.setting.value},
                         {"bake", m.bake},
                         {"picture", m.picture},
+                        {"visible", m.visible},
                         {"beyondBands", partsOf(m).beyond_bands}});
   for (const Cost& cost : costs()) {
     const Advice said = adviceOn(cost, results.settings);

@@ -290,13 +290,9 @@ Result<Figures> Measurer::compare(const spec::RgbaImage& picture, const Referenc
                                   const std::string& subject) const {
   const auto error = comparePictures(picture, reference.a, &reference.b, subject);
   if (!error) return failAgain(error.error());
-  const auto visible =
-      visibleShare(shownWith(picture, exposure_), shownWith(reference.mean, exposure_), subject);
-  if (!visible) return failAgain(visible.error());
   Figures figures{.rms = error->relative_rms,
                   .percentile_99 = error->percentile_99,
-                  .bias = *std::ranges::max_element(error->bias, {}, [](double b) { return std::abs(b); }),
-                  .visible = *visible};
+                  .bias = *std::ranges::max_element(error->bias, {}, [](double b) { return std::abs(b); })};
   // d(e) = d(e²) / 2e, but never more than what all of e² drowning in noise would mean.
   const double of_square = error->relative_square_error;
   figures.rms_spread = std::min(std::sqrt(of_square), of_square / (2.0 * std::max(figures.rms, 1e-9)));
@@ -362,6 +358,15 @@ Result<PictureRow> Measurer::picture(const Setting& setting) {
   row.as_bands_can = *limited;
   if (auto added = store_.add(row_key, what, row); !added) return failAgain(added.error());
   return row;
+}
+
+Result<double> Measurer::visible(const Setting& setting) {
+  const auto as_it_is = reference("");
+  if (!as_it_is) return failAgain(as_it_is.error());
+  const auto picture = spec::readExr(pictureFile(setting));
+  if (!picture) return failAgain(picture.error());
+  return visibleShare(shownWith(*picture, exposure_), shownWith((*as_it_is)->mean, exposure_),
+                      setting.name());
 }
 
 }  // namespace lambent::baker

@@ -54,6 +54,9 @@ class Measurer {
 
   Result<BakeRow> bake(const Setting& setting);
   Result<PictureRow> picture(const Setting& setting);
+  // Returns the share of the pixels of its picture that an eye sees as different (perceptual.hpp). The
+  // picture is there once picture() was called.
+  Result<double> visible(const Setting& setting);
 
   // Returns where the linear picture of a setting lies.
   std::filesystem::path pictureFile(const Setting& setting) const;

@@ -50,7 +50,7 @@ Result<Pictures> picturesOf(const SweepResults& results) {
     const Figures& f = m.picture.as_light_is;
     const std::string about =
         fmt::format("error {}, {} of the pixels visibly different; bake {}, frame {}, bundle {}",
-                    percent(f.rms), percent(f.visible), seconds(m.bake.processor_seconds),
+                    percent(f.rms), percent(m.visible), seconds(m.bake.processor_seconds),
                     milliseconds(m.picture.costMs()), bytes(static_cast<double>(m.bake.bytes)));
     if (auto added = add(pictures, m.key, titleOf(m), about, shownWith(*picture, results.exposure)); !added)
       return failAgain(added.error());

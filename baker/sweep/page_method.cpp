@@ -57,7 +57,7 @@ light.</p>
     out += m.key == results.settings.front().key ? "<tr class=\"base\">" : "<tr>";
     for (const std::string& field :
          {htmlText(titleOf(m)), percent(f.rms), percent(f.rms_spread), percent(f.percentile_99),
-          percent(f.visible), fmt::format("{:+.1f} %", 100.0 * f.bias), percent(m.picture.as_bands_can.rms),
+          percent(m.visible), fmt::format("{:+.1f} %", 100.0 * f.bias), percent(m.picture.as_bands_can.rms),
           seconds(m.bake.processor_seconds), seconds(m.bake.seconds), spread,
           milliseconds(m.picture.processor_ms), milliseconds(m.picture.frame_ms),
           milliseconds(m.picture.slowest_ms), bytes(static_cast<double>(m.bake.bytes)),

@@ -20,11 +20,7 @@ static NamedTimes timesFrom(const json& list) {
 }
 
 static void to_json(json& out, const Figures& f) {
-  out = {{"rms", f.rms},
-         {"rmsSpread", f.rms_spread},
-         {"percentile99", f.percentile_99},
-         {"bias", f.bias},
-         {"visible", f.visible}};
+  out = {{"rms", f.rms}, {"rmsSpread", f.rms_spread}, {"percentile99", f.percentile_99}, {"bias", f.bias}};
 }
 
 static void from_json(const json& in, Figures& f) {
@@ -32,7 +28,6 @@ static void from_json(const json& in, Figures& f) {
   in.at("rmsSpread").get_to(f.rms_spread);
   in.at("percentile99").get_to(f.percentile_99);
   in.at("bias").get_to(f.bias);
-  in.at("visible").get_to(f.visible);
 }
 
 double PictureRow::costMs() const {

@@ -22,7 +22,6 @@ struct Figures {
   double rms_spread = 0.0;     // its standard error, by the noise of the references
   double percentile_99 = 0.0;  // of pixels
   double bias = 0.0;           // of the channel that is farthest off
-  double visible = 0.0;        // share of the pixels that an eye sees as different (perceptual.hpp)
 };
 
 struct ReferenceRow {

@@ -61,8 +61,10 @@ Result<Measured> measure(Measurer& measurer, const Setting& setting) {
   if (!bake) return failAgain(bake.error());
   auto picture = measurer.picture(setting);
   if (!picture) return failAgain(picture.error());
-  return Measured{setting, measurer.keyOf(setting), std::move(*bake), std::move(*picture),
-                  measurer.pictureFile(setting)};
+  const auto visible = measurer.visible(setting);
+  if (!visible) return failAgain(visible.error());
+  return Measured{setting,  measurer.keyOf(setting),      std::move(*bake), std::move(*picture),
+                  *visible, measurer.pictureFile(setting)};
 }
 
 }  // namespace

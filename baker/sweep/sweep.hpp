@@ -34,6 +34,7 @@ struct Measured {
   std::string key;  // equal for settings that come to the same
   BakeRow bake;
   PictureRow picture;
+  double visible = 0.0;  // share of the pixels that an eye sees as different from the reference
   std::filesystem::path picture_file;
 };
 

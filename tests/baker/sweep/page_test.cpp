@@ -26,7 +26,7 @@ Measured measured(const std::string& knob, const std::string& value, double bake
   m.bake.bytes = 1000;
   m.bake.parts = BakeRow::Parts{0.03, 0.0, 0.04};
   m.picture.gpu_bytes = 2000;
-  m.picture.as_light_is = {.rms = error, .rms_spread = 0.001, .percentile_99 = 0.2, .visible = 0.1};
+  m.picture.as_light_is = {.rms = error, .rms_spread = 0.001, .percentile_99 = 0.2};
   m.picture.as_bands_can = {.rms = 0.5 * error, .percentile_99 = 0.1};
   return m;
 }
