@@ -30,10 +30,18 @@ struct AccuracyArguments {
   bool json = false;
 };
 
+// Lists the names in lines as long as those of the help.
 std::string knobNames() {
-  std::vector<std::string_view> names;
-  for (const Knob& knob : knobs()) names.push_back(knob.name);
-  return fmt::format("{}", fmt::join(names, ", "));
+  constexpr std::size_t kLine = 66;
+  std::string all, line;
+  for (const Knob& knob : knobs()) {
+    if (line.size() + knob.name.size() > kLine) {
+      all += line + "\n";
+      line.clear();
+    }
+    line += fmt::format("{}{}", knob.name, &knob == &knobs().back() ? "" : ", ");
+  }
+  return all + line;
 }
 
 Result<void> checkWords(const SweepRequest& request) {
@@ -180,7 +188,7 @@ void addAccuracyCommand(CLI::App& app, Command& run) {
   command
       ->add_option(
           "-o,--output", request.output,
-          "Folder for index.html, CSV and SVG files. What it holds of an earlier run is not measured again")
+          "Folder for index.html, CSV and SVG files. What it holds of an\nearlier run is not measured again")
       ->required()
       ->type_name("DIR");
   // As an option of its own: here it says how thoroughly to measure, too.
@@ -196,9 +204,10 @@ void addAccuracyCommand(CLI::App& app, Command& run) {
           "default draft")
       ->type_name("draft|standard|high");
   command
-      ->add_option("--knob", request.knobs,
-                   "Turn only this knob (" + knobNames() +
-                       "); =V1,V2 turns it to\nthese values. Several are given one by one")
+      ->add_option(
+          "--knob", request.knobs,
+          "Turn only this knob; =V1,V2 turns it to these values. Several are\ngiven one by one. Knobs: " +
+              ("\n" + knobNames()))
       ->type_name("KNOB[=VALUES]")
       ->take_all()
       ->expected(1);
