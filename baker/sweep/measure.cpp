@@ -102,6 +102,7 @@ Measurer::Measurer(Job job, Store& store, std::stop_token stop)
     : job_(std::move(job)), store_(store), stop_(std::move(stop)) {
   KeyMaker maker;
   maker.addText(LAMBENT_VERSION).addText(programDigest()).add(job_.scene_digest);
+  bakes_ = maker.key().hex();
   // An environment map counts by what is in it, wherever it lies.
   for (const std::string& light : job_.view.lights) {
     const Result<std::string> file = readTextFile(light);
@@ -116,7 +117,7 @@ std::string Measurer::key(const std::string& kind, const std::string& text) cons
 }
 
 std::string Measurer::bakeKey(const Setting& setting) const {
-  return key("bake", json(setting.bake.settings()).dump());
+  return KeyMaker().addText("bake").addText(bakes_).addText(json(setting.bake.settings()).dump()).key().hex();
 }
 
 std::string Measurer::keyOf(const Setting& setting) const {

@@ -86,7 +86,7 @@ class Measurer {
   Job job_;
   Store& store_;
   std::stop_token stop_;
-  std::string common_;                           // what every key depends on
+  std::string bakes_, common_;                   // what keys of bakes depend on, and all other keys
   std::map<std::string, Reference> references_;  // by bands
   float exposure_ = 1.0f;
 };
