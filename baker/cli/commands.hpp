@@ -24,6 +24,7 @@ void addPlanCommand(CLI::App& app, Command& run);
 void addInfoCommand(CLI::App& app, Command& run);
 void addReferenceCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
+void addAccuracyCommand(CLI::App& app, Command& run);
 
 // Adds the options of a bake from their table (baker/bake/option_rows.hpp): all of them, or one by name.
 void addBakeOptions(CLI::App& command, BakeOptions& options);

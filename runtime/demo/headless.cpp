@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 
 #include <fmt/format.h>
 
@@ -22,6 +23,13 @@ using Clock = std::chrono::steady_clock;
 
 double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Returns what all threads of this program have worked.
+double processorMilliseconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
 Result<void> writePicture(const frame::Frame& frame, const Options& options, std::uint32_t number) {
@@ -98,9 +106,11 @@ Result<void> runHeadless(const Options& options) {
       world.setAnimationTime(
           std::max(0.0f, *options.time_s - options.step_s * static_cast<float>(options.frames - 1 - i)));
     const auto frame_start = Clock::now();
+    const double processor_start = processorMilliseconds();
     if (Result<void> rendered = render(); !rendered) return rendered;
     glFinish();
     report.frame_ms.push_back(millisecondsSince(frame_start));
+    report.processor_ms.push_back(processorMilliseconds() - processor_start);
     if (i == 0) {
       frame->timers().finish();
       report.first_frame = {frame->timers().latest(), frame->counts()};

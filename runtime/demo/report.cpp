@@ -15,6 +15,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Returns the median, without the first frame.
+double medianOf(std::vector<double> times) {
+  if (times.size() > 1) times.erase(times.begin());
+  if (times.empty()) return 0.0;
+  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+  std::ranges::nth_element(times, middle);
+  return *middle;
+}
+
 Json countsJson(const frame::StepCounts& counts) {
   Json json = Json::object();
   for (const frame::StepCounts::Count& count : counts) json[std::string(count.name)] = count.value;
@@ -148,6 +157,7 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"negative_pixels", report.negative_pixels},
                      {"frames", options.frames},
                      {"frame_ms", frameTimesJson(report.frame_ms)},
+                     {"frame_processor_ms", medianOf(report.processor_ms)},
                      {"rest_steps", report.rest_steps},
                      {"first_frame", frameJson(report.first_frame)},
                      {"last_frame", frameJson(report.last_frame)}};

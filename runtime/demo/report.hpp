@@ -21,9 +21,10 @@ struct FrameReport {
 
 struct Report {
   FrameReport first_frame, last_frame;
-  std::vector<double> frame_ms;  // per frame, until the GPU was done
-  std::uint32_t rest_steps = 0;  // steps after the last frame until no light changed any more
-  double load_ms = 0.0;          // from opening the bundles until everything was resident
+  std::vector<double> frame_ms;      // per frame, until the GPU was done
+  std::vector<double> processor_ms;  // per frame, of all threads; where the processor draws, its cost
+  std::uint32_t rest_steps = 0;      // steps after the last frame until no light changed any more
+  double load_ms = 0.0;              // from opening the bundles until everything was resident
   std::uint64_t bytes_resident = 0;
   frame::LoadedParts parts;
   frame::StreamingStatus streaming;

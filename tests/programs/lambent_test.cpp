@@ -54,6 +54,9 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
         "--json"}},
       {"plan", {"SCENE", "--effects", "--light-probes", "--json"}},
       {"info", {"BUNDLE", "--json"}},
+      {"accuracy",
+       {"SCENE", "--output", "--quality", "--knob", "--light", "--camera", "--size", "--spp", "--force",
+        "--json"}},
       {"compare",
        {"PICTURE", "REFERENCE", "--reference2", "--heat", "--heat-map", "--heat-range", "--json"}}};
   for (const auto& [command, options] : commands) {

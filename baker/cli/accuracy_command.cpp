@@ -1,0 +1,231 @@
+// Implements lambent accuracy [SCENE] -o DIR.
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "baker/bake/option_rows.hpp"
+#include "baker/cli/commands.hpp"
+#include "baker/cli/output.hpp"
+#include "baker/sweep/advice.hpp"
+#include "baker/sweep/sweep.hpp"
+#include "baker/sweep/write_results.hpp"
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/light.hpp"
+#include "runtime/spec/size.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+struct AccuracyArguments {
+  SweepRequest request;
+  BakeOptions quality{.quality = Quality::Draft};  // only its quality is asked for
+  bool json = false;
+};
+
+// Lists the names in lines as long as those of the help.
+std::string knobNames() {
+  constexpr std::size_t kLine = 66;
+  std::string all, line;
+  for (const Knob& knob : knobs()) {
+    if (line.size() + knob.name.size() > kLine) {
+      all += line + "\n";
+      line.clear();
+    }
+    line += fmt::format("{}{}", knob.name, &knob == &knobs().back() ? "" : ", ");
+  }
+  return all + line;
+}
+
+Result<void> checkWords(const SweepRequest& request) {
+  for (const std::string& word : request.lights)
+    if (const auto light = spec::parseLight(word); !light) return failAgain(light.error());
+  if (!request.camera.empty())
+    if (const auto camera = spec::parseCamera(request.camera); !camera) return failAgain(camera.error());
+  if (!request.size.empty())
+    if (const auto size = spec::parseSize(request.size); !size) return failAgain(size.error());
+  // Names of knobs and their values; which ones the scene calls for shows later.
+  if (const auto known = settingsOf({}, request.quality, request.knobs); !known)
+    return failAgain(known.error());
+  return {};
+}
+
+// Prints one line that changes on a terminal, and a line for each setting elsewhere.
+class Lines {
+ public:
+  SweepListener listener() {
+    return {
+        .begin = [this](std::size_t done, std::size_t all,
+                        const std::string& what) { begin(done, all, what); },
+        .measured = [this](std::size_t done, std::size_t all, const Measured& m) { measured(done, all, m); }};
+  }
+  void end() const {
+    if (terminal_) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void begin(std::size_t done, std::size_t all, const std::string& what) const {
+    if (!terminal_) return;
+    fmt::print(stderr, "\r\033[Klambent: {} of {}  {}{}", done + 1, all, what, left(done, all));
+    std::fflush(stderr);
+  }
+  void measured(std::size_t done, std::size_t all, const Measured& m) const {
+    const Figures& f = m.picture.as_light_is;
+    fmt::print(stderr, "{}lambent: {} of {}  {}: {:.2f} % wrong, bake {}, frame {:.1f} ms, {}\n",
+               terminal_ ? "\r\033[K" : "", done, all, titleOf(m), 100.0 * f.rms,
+               durationText(m.bake.seconds), m.picture.frame_ms,
+               bytesText(static_cast<double>(m.bake.bytes)));
+  }
+  std::string left(std::size_t done, std::size_t all) const {
+    if (done == 0) return {};
+    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
+    return fmt::format(", about {} left", durationText(spent / double(done) * double(all - done)));
+  }
+
+  bool terminal_ = ::isatty(STDERR_FILENO) != 0;
+  Clock::time_point start_ = Clock::now();
+};
+
+void printJson(const SweepResults& results, const std::vector<std::filesystem::path>& files) {
+  using nlohmann::json;
+  json settings = json::array(), names = json::array(), advice = json::array();
+  for (const Measured& m : results.settings)
+    settings.push_back({{"knob", m.setting.knob->name},
+                        {"value", m.setting.value},
+                        {"bake", m.bake},
+                        {"picture", m.picture},
+                        {"visible", m.visible},
+                        {"beyondBands", partsOf(m).beyond_bands}});
+  for (const Cost& cost : costs()) {
+    const Advice said = adviceOn(cost, results.settings);
+    json front = json::array();
+    for (const std::size_t i : said.front) front.push_back(titleOf(results.settings[i]));
+    advice.push_back({{"cost", cost.id},
+                      {"take", said.chosen ? json(titleOf(results.settings[*said.chosen])) : json()},
+                      {"reason", said.reason},
+                      {"front", front}});
+  }
+  for (const auto& file : files) names.push_back(file.string());
+  const json all = {{"scene", results.scene},
+                    {"machine", results.machine},
+                    {"size", results.view.size},
+                    {"spp", results.view.spp},
+                    {"asked", results.asked},
+                    {"rowsMeasured", results.rows_measured},
+                    {"stopped", results.stopped},
+                    {"failures", results.failures},
+                    {"settings", settings},
+                    {"advice", advice},
+                    {"files", names}};
+  fmt::print("{}\n", all.dump(2, ' ', false, json::error_handler_t::replace));
+}
+
+void print(const SweepResults& results, const std::vector<std::filesystem::path>& files) {
+  for (const Cost& cost : costs().first(2)) {
+    const Advice advice = adviceOn(cost, results.settings);
+    if (advice.chosen)
+      fmt::print("{} {}. {}\n", cost.verb, titleOf(results.settings[*advice.chosen]), advice.reason);
+  }
+  fmt::print("{}\n", files.front().string());
+}
+
+int runAccuracy(AccuracyArguments a) {
+  constexpr int kWrongUsage = 2;
+  a.request.quality = a.quality.quality;
+  if (const auto checked = checkWords(a.request); !checked) {
+    reportError(checked.error());
+    return kWrongUsage;
+  }
+  auto programs = findPrograms();
+  if (!programs) return reportError(programs.error());
+  a.request.programs = *programs;
+  if (a.request.scene.empty()) {
+    auto scene = findSampleScene(*programs);
+    if (!scene) return reportError(scene.error());
+    a.request.scene = *scene;
+  }
+  if (const auto readable = checkRegularFile(a.request.scene, "a scene, .gltf or .glb"); !readable)
+    return reportError(readable.error());
+  const std::stop_source stop;
+  const InterruptGuard interrupts(stop);
+  Lines lines;
+  const auto results = runSweep(a.request, lines.listener(), stop.get_token());
+  lines.end();
+  if (!results) return reportError(results.error());
+  const auto files = writeResults(*results, a.request.output);
+  if (!files) return reportError(files.error());
+  for (const std::string& failure : results->failures) reportNotice(a.request.scene, failure);
+  if (a.json)
+    printJson(*results, *files);
+  else
+    print(*results, *files);
+  if (results->stopped)
+    return reportError(
+        {a.request.output.string(),
+         fmt::format("stopped after {} of {} settings", results->settings.size(), results->asked),
+         "run it again, and it goes on from where it was"});
+  return results->failures.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+void addAccuracyCommand(CLI::App& app, Command& run) {
+  auto a = std::make_shared<AccuracyArguments>();
+  SweepRequest& request = a->request;
+  CLI::App* command = app.add_subcommand(
+      "accuracy",
+      "Measure what each knob costs and how exact it makes the picture, and write a page about it");
+  command->add_option("SCENE", request.scene, "The scene, .gltf or .glb; default: a sample scene");
+  command
+      ->add_option(
+          "-o,--output", request.output,
+          "Folder for index.html, CSV and SVG files. What it holds of an\nearlier run is not measured again")
+      ->required()
+      ->type_name("DIR");
+  // As an option of its own: here it says how thoroughly to measure, too.
+  command
+      ->add_option_function<std::string>(
+          "--quality",
+          [a](const std::string& word) {
+            if (auto put = putOption(a->quality, "quality", word); !put)
+              throw CLI::ValidationError("--quality", put.error().problem);
+          },
+          "The base from which knobs are turned, the number of their values, and the\nsize and paths of "
+          "references; "
+          "default draft")
+      ->type_name("draft|standard|high");
+  command
+      ->add_option(
+          "--knob", request.knobs,
+          "Turn only this knob; =V1,V2 turns it to these values. Several are\ngiven one by one. Knobs: " +
+              ("\n" + knobNames()))
+      ->type_name("KNOB[=VALUES]")
+      ->take_all()
+      ->expected(1);
+  command->add_option("--light", request.lights, "Light, as lambent reference takes it; several add up")
+      ->type_name("LIGHT")
+      ->take_all()
+      ->expected(1);
+  command->add_option("--camera", request.camera, "Camera, as lambent reference takes it")->type_name("CAM");
+  command->add_option("--size", request.size, "Pictures in pixels; default by --quality, 320x180 for draft")
+      ->type_name("WxH");
+  command->add_option("--spp", request.spp, "Samples a pixel of each of two references; default by --quality")
+      ->check(CLI::Range(2u, 1u << 20).description(""))
+      ->type_name("N");
+  command->add_flag("--allow-outside", request.allow_outside,
+                    "Read buffers and images outside the scene's folder too");
+  command->add_flag("--force", request.force, "Measure all anew");
+  command->add_flag("--json", a->json, "Print figures as JSON");
+  command->callback([a, &run] { run = [a] { return runAccuracy(*a); }; });
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,48 @@
+#include "baker/sweep/child.hpp"
+
+#include <chrono>
+
+#include <gtest/gtest.h>
+
+namespace lambent::baker {
+namespace {
+
+TEST(Child, ReturnsWhatAProgramPrintsWithoutAShellBetween) {
+  const auto out = runProgram("/bin/echo", {"a b", "$HOME", "'"}, {});
+  ASSERT_TRUE(out) << out.error().line();
+  EXPECT_EQ(out->out, "a b $HOME '\n");
+}
+
+TEST(Child, FailsWithTheLastLineOfTheErrors) {
+  const auto out = runProgram("/bin/sh", {"-c", "echo one >&2; echo two >&2; exit 3"}, {});
+  ASSERT_FALSE(out);
+  EXPECT_NE(out.error().line().find("two"), std::string::npos) << out.error().line();
+  EXPECT_EQ(out.error().line().find("one"), std::string::npos) << out.error().line();
+}
+
+TEST(Child, FailsIfThereIsNoSuchProgram) {
+  EXPECT_FALSE(runProgram("/no/such/program", {}, {}));
+}
+
+// Far more than a pipe holds, on both streams.
+TEST(Child, ReadsBothStreamsToTheirEnds) {
+  const auto out =
+      runProgram("/bin/sh",
+                 {"-c",
+                  "i=0; while [ $i -lt 3000 ]; do echo 0123456789012345678901234567890123456789; echo e >&2; "
+                  "echo 0123456789012345678901234567890123456789 >&2; i=$((i+1)); done"},
+                 {});
+  ASSERT_TRUE(out) << out.error().line();
+  EXPECT_EQ(out->out.size(), 3000u * 41u);
+}
+
+TEST(Child, EndsWhenAStopIsRequested) {
+  std::stop_source stop;
+  stop.request_stop();
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_FALSE(runProgram("/bin/sleep", {"60"}, stop.get_token()));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+}  // namespace
+}  // namespace lambent::baker

@@ -1,0 +1,80 @@
+#include "baker/sweep/knobs.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "baker/bake/option_rows.hpp"
+
+namespace lambent::baker {
+namespace {
+
+std::set<std::string> knobsOf(const SceneFacts& facts) {
+  std::set<std::string> names;
+  const auto settings = settingsOf(facts, Quality::Draft, {});
+  if (!settings) return names;
+  for (const Setting& setting : *settings) names.insert(std::string(setting.knob->name));
+  return names;
+}
+
+TEST(Knobs, OnlyThoseAreTurnedThatTheSceneCallsFor) {
+  const std::set<std::string> plain = knobsOf({.surfaces = true});
+  for (const char* name :
+       {"volume-grid", "glossy-order", "neighborhood-grid", "light-probes", "capture-size"})
+    EXPECT_FALSE(plain.contains(name)) << name;
+  EXPECT_TRUE(plain.contains("refine"));
+  EXPECT_TRUE(knobsOf({.volumes = true}).contains("volume-grid"));
+  EXPECT_FALSE(knobsOf({.volumes = true}).contains("refine"));
+  EXPECT_TRUE(knobsOf({.glossy = true}).contains("glossy-order"));
+  EXPECT_TRUE(knobsOf({.many_bodies = true}).contains("capture-size"));
+}
+
+TEST(Knobs, AllValuesOfAllKnobsAreUnderstoodByTheBake) {
+  const SceneFacts all{true, true, true, true, true, true};
+  for (const Quality quality : {Quality::Draft, Quality::Standard, Quality::High}) {
+    const auto settings = settingsOf(all, quality, {});
+    ASSERT_TRUE(settings) << settings.error().line();
+    for (const Setting& setting : *settings) EXPECT_TRUE(checkOptions(setting.bake)) << setting.name();
+  }
+}
+
+TEST(Knobs, TheBaseComesFirstAndOnce) {
+  const auto settings = settingsOf({.surfaces = true}, Quality::Standard, {});
+  ASSERT_TRUE(settings);
+  EXPECT_EQ(settings->front().name(), "quality standard");
+  EXPECT_EQ(std::ranges::count(*settings, "quality standard", &Setting::name), 1);
+  EXPECT_EQ(std::ranges::count(*settings, "quality high", &Setting::name), 1);
+}
+
+TEST(Knobs, GlossyScenesHaveAtMostSixBands) {
+  const auto settings = settingsOf({.surfaces = true, .glossy = true}, Quality::Draft, {});
+  ASSERT_TRUE(settings);
+  for (const Setting& setting : *settings) EXPECT_LE(setting.bake.order, 6) << setting.name();
+}
+
+TEST(Knobs, AskedOnesComeWithTheValuesThatAreNamed) {
+  const std::vector<std::string> asked = {"rays=128,300", "keys=off"};
+  const auto settings = settingsOf({}, Quality::Draft, asked);
+  ASSERT_TRUE(settings);
+  ASSERT_EQ(settings->size(), 4u);
+  EXPECT_EQ((*settings)[2].bake.rays, 300u);
+  EXPECT_EQ((*settings)[3].frame_words.at("keys"), "off");
+}
+
+TEST(Knobs, TheUsualValueOfAFrameGivesNoOption) {
+  const std::vector<std::string> asked = {"keys=auto"};
+  const auto settings = settingsOf({}, Quality::Draft, asked);
+  ASSERT_TRUE(settings);
+  EXPECT_TRUE(settings->back().frame_words.empty());
+}
+
+TEST(Knobs, UnknownNamesAndValuesAreErrors) {
+  for (const char* word : {"knob", "rays=few", "order=9", "max-memory=half", "max-memory=101%"}) {
+    const std::vector<std::string> asked = {word};
+    EXPECT_FALSE(settingsOf({}, Quality::Draft, asked)) << word;
+  }
+}
+
+}  // namespace
+}  // namespace lambent::baker

@@ -1,0 +1,94 @@
+#include "baker/sweep/store.hpp"
+
+#include <fstream>
+
+#include "baker/sweep/rows.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace lambent::baker {
+namespace {
+
+BakeRow someBake() {
+  return {.seconds = 2.5,
+          .least_seconds = 2.0,
+          .most_seconds = 3.0,
+          .runs = 3,
+          .stages = {{"import", 0.5}, {"direct light", 2.0}},
+          .bytes = 1000,
+          .transfer_bytes = 400,
+          .vertices = 20,
+          .samples = 30,
+          .parts = BakeRow::Parts{0.01, 0.02, 0.03}};
+}
+
+TEST(Store, FindsInTheNextRunWhatWasAdded) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "results.jsonl";
+  {
+    auto store = Store::open(file);
+    ASSERT_TRUE(store);
+    EXPECT_FALSE(store->find<BakeRow>("a"));
+    ASSERT_TRUE(store->add("a", "a bake", someBake()));
+    EXPECT_EQ(store->added(), 1u);
+  }
+  const auto store = Store::open(file);
+  ASSERT_TRUE(store);
+  const auto row = store->find<BakeRow>("a");
+  ASSERT_TRUE(row);
+  EXPECT_EQ(row->seconds, 2.5);
+  EXPECT_EQ(row->runs, 3);
+  EXPECT_EQ(row->stages, someBake().stages);
+  ASSERT_TRUE(row->parts);
+  EXPECT_EQ(row->parts->interpolation, 0.03);
+  EXPECT_EQ(store->added(), 0u);
+}
+
+TEST(Store, LeavesOutALineThatWasCutShortAndGoesOnBehindIt) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "results.jsonl";
+  {
+    auto store = Store::open(file);
+    ASSERT_TRUE(store && store->add("a", "a bake", someBake()));
+  }
+  std::ofstream(file, std::ios::app) << R"({"key": "b", "row": {"seco)";
+  {
+    auto store = Store::open(file);
+    ASSERT_TRUE(store);
+    EXPECT_TRUE(store->find<BakeRow>("a"));
+    EXPECT_FALSE(store->find<BakeRow>("b"));
+    ASSERT_TRUE(store->add("c", "a bake", someBake()));
+  }
+  const auto store = Store::open(file);
+  ASSERT_TRUE(store);
+  EXPECT_TRUE(store->find<BakeRow>("a"));
+  EXPECT_TRUE(store->find<BakeRow>("c"));
+}
+
+TEST(Store, TakesARowOfAnotherFormForNone) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "results.jsonl";
+  std::ofstream(file) << R"({"key": "a", "row": {"seconds": "two"}})"
+                      << "\n"
+                      << "[1, 2]\n"
+                      << "\n"
+                      << R"({"key": 7, "row": {}})"
+                      << "\n";
+  const auto store = Store::open(file);
+  ASSERT_TRUE(store);
+  EXPECT_FALSE(store->find<BakeRow>("a"));
+}
+
+TEST(Store, ALaterRowTakesThePlaceOfAnEarlierOne) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "results.jsonl";
+  auto store = Store::open(file);
+  ASSERT_TRUE(store);
+  BakeRow row = someBake();
+  ASSERT_TRUE(store->add("a", "a bake", row));
+  row.seconds = 7.0;
+  ASSERT_TRUE(store->add("a", "a bake", row));
+  EXPECT_EQ(Store::open(file)->find<BakeRow>("a")->seconds, 7.0);
+}
+
+}  // namespace
+}  // namespace lambent::baker
