@@ -85,8 +85,10 @@ TEST_F(SharedScenes, BakeAndShowOrAreRefusedInOneRightLine) {
   std::size_t shown = 0;
   for (const std::filesystem::path& file : files) {
     const std::string name = file.generic_string();
-    const Outcome baked = run(LAMBENT_PROGRAM, {"bake", (scenes / file).string(), "-o", bundle.string(),
-                                                "--quality", "draft", "--rays", "128", "--force"});
+    // Few rays and bounces suffice to see that scenes bake, and this is the longest of all tests.
+    const Outcome baked =
+        run(LAMBENT_PROGRAM, {"bake", (scenes / file).string(), "-o", bundle.string(), "--quality", "draft",
+                              "--rays", "128", "--bounces", "2", "--force"});
     const auto refused = kRefused.find(name);
     if (refused != kRefused.end() || isPointsOrLines(name)) {
       const std::string why = refused != kRefused.end() ? refused->second : "has no triangles";
