@@ -123,7 +123,7 @@ TEST(OptionRows, CheckValuesThatCameFromNoWord) {
 }
 
 TEST(OptionRows, SayInTheHelpWhatEachQualityComesTo) {
-  EXPECT_NE(findOption("refine")->help.find("0.02, 0.01 or 0.005 by quality"), std::string::npos);
+  EXPECT_NE(findOption("refine")->help.find("0.04, 0.02 or 0.01 by quality"), std::string::npos);
   EXPECT_NE(findOption("error")->help.find("glossy surfaces 0.03, 0.015 or 0.005"), std::string::npos);
   for (const OptionRow& row : optionRows()) EXPECT_EQ(row.help.find("{}"), std::string::npos) << row.name;
 }
