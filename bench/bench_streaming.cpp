@@ -27,11 +27,11 @@
 #include <glm/ext/matrix_transform.hpp>
 
 #include "runtime/frame/frame.hpp"
-#include "runtime/world/frame_times.hpp"
 #include "runtime/gpu/context.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/spec/light.hpp"
+#include "runtime/world/frame_times.hpp"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/measure/setting_cost.hpp"
 #include "runtime/gpu/context.hpp"
+#include "runtime/measure/setting_cost.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/lights.hpp"
 #include "runtime/spec/light.hpp"

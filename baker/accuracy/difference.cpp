@@ -9,6 +9,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "runtime/spec/rec709.hpp"
+
 namespace lambent::baker {
 
 namespace {
@@ -41,11 +43,6 @@ constexpr std::array<Color, 11> kMagnitude = {{{0, 0, 4},
 constexpr Color kUncovered = {48, 48, 48}, kApart = {150, 60, 220};
 constexpr float kFloor = 0.05f;  // relative to the picture's RMS luminance
 
-// Returns Rec. 709 luminance.
-float luminance(const glm::vec4& texel) {
-  return 0.2126f * texel.r + 0.7152f * texel.g + 0.0722f * texel.b;
-}
-
 struct Pixels {
   std::vector<float> values;  // values of the map in pixels that all pictures cover
   std::vector<std::uint32_t> at, apart;
@@ -69,7 +66,7 @@ void measure(Pixels& pixels, const spec::RgbaImage& picture, const spec::RgbaIma
   const auto mean = [&](std::uint32_t i) { return 0.5f * (a.texels[i] + b.texels[i]); };
   double squares = 0.0;
   for (const std::uint32_t i : pixels.at) {
-    const double y = double{luminance(mean(i))};
+    const double y = double{spec::luminanceOf(mean(i))};
     squares +=
         map == HeatMap::Signed ? y * y : double{glm::dot(glm::vec3(a.texels[i]), glm::vec3(b.texels[i]))};
   }
@@ -78,9 +75,9 @@ void measure(Pixels& pixels, const spec::RgbaImage& picture, const spec::RgbaIma
   pixels.values.reserve(pixels.at.size());
   for (const std::uint32_t i : pixels.at) {
     const glm::vec4 apart = picture.texels[i] - mean(i);
-    pixels.values.push_back(map == HeatMap::Signed
-                                ? luminance(apart) / std::max(luminance(mean(i)), kFloor * scale)
-                                : glm::length(glm::vec3(apart)) / scale);
+    pixels.values.push_back(map == HeatMap::Signed ? spec::luminanceOf(apart) /
+                                                         std::max(spec::luminanceOf(mean(i)), kFloor * scale)
+                                                   : glm::length(glm::vec3(apart)) / scale);
   }
 }
 

@@ -12,6 +12,8 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
+#include "runtime/spec/rec709.hpp"
+
 namespace lambent::baker {
 
 namespace {
@@ -46,11 +48,7 @@ float masking(float contrast) {
   return std::pow(1.0f + b, 0.25f);
 }
 
-float linearFromSrgb(float c) {
-  return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-}
-
-// a and b of CIE L*a*b* under the white of Rec. 709.
+// Returns a and b of CIE L*a*b* under the white of Rec. 709.
 glm::vec2 chromaOf(const glm::vec3& xyz) {
   const auto root = [](float t) { return t > 0.008856f ? std::cbrt(t) : 7.787f * t + 16.0f / 116.0f; };
   const float x = root(xyz.x / 0.9505f), y = root(xyz.y), z = root(xyz.z / 1.0891f);
@@ -59,7 +57,7 @@ glm::vec2 chromaOf(const glm::vec3& xyz) {
 
 using Plane = std::vector<float>;
 
-// What an eye gets of a picture: luminance in cd/m², ever more blurred, and chroma.
+// An eye gets this of a picture: luminance in cd/m², ever more blurred, and chroma.
 struct Seen {
   std::array<Plane, kLevels> luminance;
   std::vector<glm::vec2> chroma;
@@ -94,7 +92,8 @@ Seen seen(const spec::Rgba8Image& picture) {
   for (std::size_t i = 0; i < picture.texels.size(); i += 4) {
     glm::vec3 rgb;
     for (int c = 0; c < 3; ++c)
-      rgb[c] = linearFromSrgb(static_cast<float>(picture.texels[i + static_cast<std::size_t>(c)]) / 255.0f);
+      rgb[c] =
+          spec::linearFromSrgb(static_cast<float>(picture.texels[i + static_cast<std::size_t>(c)]) / 255.0f);
     const glm::vec3 xyz = xyz_from_rgb * rgb;
     out.luminance.front().push_back(kWhite * xyz.y);
     out.chroma.push_back(chromaOf(xyz));

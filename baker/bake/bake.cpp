@@ -32,7 +32,7 @@ namespace {
 static_assert(BakeOptions::kMostBounces == kMostBounces);
 constexpr int kMostGlossyOrder = 6;
 constexpr int kMostNeighborhoodOrder = 6;
-// What refinement looks at twice is looked at by so many times the rays.
+// The second look of refinement has so many times the rays of the first.
 constexpr std::size_t kTimesTheRays = 8;
 
 Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, const BakeContext& context) {

@@ -191,7 +191,7 @@ void addAccuracyCommand(CLI::App& app, Command& run) {
           "Folder for index.html, CSV and SVG files. What it holds of an\nearlier run is not measured again")
       ->required()
       ->type_name("DIR");
-  // As an option of its own: here it says how thoroughly to measure, too.
+  // This is an option of its own, since it also says how thoroughly to measure.
   command
       ->add_option_function<std::string>(
           "--quality",

@@ -12,6 +12,7 @@
 
 #include "baker/import/png_chunks.hpp"
 #include "baker/import/reason.hpp"
+#include "runtime/spec/rec709.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -19,15 +20,11 @@ namespace {
 constexpr int kLargestSide = 1 << 15;
 constexpr std::uint32_t kClampToEdge = 33071, kMirroredRepeat = 33648, kNearest = 9728;
 
-// Decodes sRGB (IEC 61966-2-1).
-float linearFromSrgb(float c) {
-  return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-}
-
 const std::array<float, 256>& srgbTable() {
   static const std::array<float, 256> kTable = [] {
     std::array<float, 256> table{};
-    for (std::size_t i = 0; i < table.size(); ++i) table[i] = linearFromSrgb(static_cast<float>(i) / 255.0f);
+    for (std::size_t i = 0; i < table.size(); ++i)
+      table[i] = spec::linearFromSrgb(static_cast<float>(i) / 255.0f);
     return table;
   }();
   return kTable;

@@ -63,7 +63,7 @@ class GroupRefiner {
     std::uint32_t triangle = 0, point = 0;
     glm::vec3 weights{0.0f}, normal{0.0f};  // of the corners; the shading normal
   };
-  // What rays say of a triangle, times its area.
+  // Rays say this of a triangle; all is times its area.
   struct Measured {
     double square_error = 0.0;  // without bias from noise, so it may be below 0
     double with_noise = 0.0;    // the square that all rays together show, which noise makes larger

@@ -13,20 +13,12 @@ namespace lambent::baker {
 
 namespace {
 
-bool isPreset(const Measured& measured) {
-  return measured.setting.knob->name == "quality";
-}
-
-bool isBaked(const Measured& measured) {
-  return measured.setting.knob->side == Knob::Side::Bake;
-}
-
 bool changesTheBake(const Measured& measured, const Measured& base) {
-  return isBaked(measured) || measured.key == base.key;
+  return measured.setting.isBaked() || measured.key == base.key;
 }
 
 bool changesTheFrame(const Measured& measured, const Measured& base) {
-  return !isBaked(measured) || measured.key == base.key;
+  return !measured.setting.isBaked() || measured.key == base.key;
 }
 
 constexpr std::array kCosts = {
@@ -46,7 +38,7 @@ std::span<const Cost> costs() {
 }
 
 std::string titleOf(const Measured& measured) {
-  return isPreset(measured) ? measured.setting.value + " quality" : measured.setting.name();
+  return measured.setting.isPreset() ? measured.setting.value + " quality" : measured.setting.name();
 }
 
 Advice adviceOn(const Cost& cost, std::span<const Measured> settings) {
@@ -54,7 +46,7 @@ Advice adviceOn(const Cost& cost, std::span<const Measured> settings) {
   std::set<std::string> seen;
   for (const bool presets : {true, false})  // of equal ones the preset is the better name
     for (std::size_t i = 0; i < settings.size(); ++i)
-      if (isPreset(settings[i]) == presets && cost.competes(settings[i], settings.front()) &&
+      if (settings[i].setting.isPreset() == presets && cost.competes(settings[i], settings.front()) &&
           seen.insert(settings[i].key).second)
         advice.competing.push_back(i);
   std::vector<CostAndError> points;
@@ -97,7 +89,7 @@ std::string effectOf(std::span<const Measured* const> of_knob) {
     return fmt::format("Here it hardly matters: between {} and {}.", percent(error(least)),
                        percent(error(most)));
   const Measured &first = *of_knob.front(), &last = *of_knob.back();
-  const bool baked = isBaked(first);
+  const bool baked = first.setting.isBaked();
   const double times = baked ? last.bake.processor_seconds / first.bake.processor_seconds
                              : last.picture.costMs() / first.picture.costMs();
   const char* of = baked ? "a bake" : "a frame";

@@ -4,20 +4,18 @@
 #include <cmath>
 #include <cstddef>
 
-#include <glm/geometric.hpp>
-
 #include "runtime/spec/display.hpp"
+#include "runtime/spec/rec709.hpp"
 
 namespace lambent::baker {
 
 float exposureOf(const spec::RgbaImage& reference) {
   constexpr double kMiddle = 1.0 / 3.0;
-  const glm::vec3 weights(0.2126f, 0.7152f, 0.0722f);  // Rec. 709
   double sum = 0.0, covered = 0.0;
   for (const glm::vec4& texel : reference.texels) {
     if (!(texel.w >= spec::kLeastCoverage)) continue;
     // Highlights are clipped on a screen and should not darken all else.
-    sum += std::min(10.0, static_cast<double>(std::max(0.0f, glm::dot(glm::vec3(texel), weights))));
+    sum += std::min(10.0, static_cast<double>(std::max(0.0f, spec::luminanceOf(texel))));
     covered += 1.0;
   }
   return sum > 0.0 ? static_cast<float>(kMiddle * covered / sum) : 1.0f;

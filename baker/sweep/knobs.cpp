@@ -34,7 +34,8 @@ bool hasManyProbes(const SceneFacts& facts) {
   return facts.many_probes;
 }
 
-constexpr std::string_view kPresets = "quality", kMemory = "max-memory";
+constexpr std::string_view kPresets = "quality", kMemory = "max-memory", kKeys = "keys",
+                           kFrameQuality = "frame-quality";
 
 constexpr std::array kKnobs = {
     Knob{.name = kPresets,
@@ -47,14 +48,14 @@ constexpr std::array kKnobs = {
          .about = "Bands of spherical harmonics that carry soft light: order n has n² coefficients.",
          .draft_values = "2,3,4,5,6,8",
          .values = "2,3,4,5,6,7,8"},
-    Knob{.name = "keys",
+    Knob{.name = kKeys,
          .title = "Key lights",
          .about = "Suns and windows that are taken out of the bands and cast shadows per pixel.",
          .side = Side::Frame,
          .draft_values = "off,1,4,auto,32",
          .values = "off,1,2,4,8,auto,32",
          .usual = "auto"},
-    Knob{.name = "frame-quality",
+    Knob{.name = kFrameQuality,
          .title = "Quality of key shadows",
          .about = "--quality of lambent-demo: how many key lights there are and how finely they shadow.",
          .side = Side::Frame,
@@ -154,7 +155,7 @@ std::optional<double> shareFrom(std::string_view word) {
 
 // Returns the option's name of lambent-demo for a knob.
 std::string frameOption(const Knob& knob) {
-  return knob.name == "frame-quality" ? "quality" : std::string(knob.name);
+  return knob.name == kFrameQuality ? "quality" : std::string(knob.name);
 }
 
 Result<Setting> settingOf(const Knob& knob, const std::string& value, Quality quality) {
@@ -214,6 +215,14 @@ std::string Setting::name() const {
   return fmt::format("{} {}", knob->name, value);
 }
 
+bool Setting::isPreset() const {
+  return knob->name == kPresets;
+}
+
+bool Setting::isOfKeyLights() const {
+  return knob->name == kKeys || knob->name == kFrameQuality;
+}
+
 Result<std::vector<Setting>> settingsOf(const SceneFacts& facts, Quality quality,
                                         std::span<const std::string> asked) {
   std::vector<Asked> list;
@@ -232,7 +241,7 @@ Result<std::vector<Setting>> settingsOf(const SceneFacts& facts, Quality quality
     for (const std::string& value : one.values) {
       auto setting = settingOf(*one.knob, value, quality);
       if (!setting) return failAgain(std::move(setting.error()));
-      const bool is_base = one.knob->name == kPresets && value == settings.front().value;
+      const bool is_base = setting->isPreset() && value == settings.front().value;
       if (!is_base && possible(*setting, facts)) settings.push_back(std::move(*setting));
     }
   return settings;

@@ -52,6 +52,9 @@ struct Setting {
   double memory_share = 1.0;                       // of the GPU memory that planes of transfer take
 
   std::string name() const;  // "rays 512"
+  bool isPreset() const;     // a --quality of the bake
+  bool isBaked() const { return knob->side == Knob::Side::Bake; }
+  bool isOfKeyLights() const;  // comes to nothing where no key lights are found
 };
 
 // Returns the settings to measure at this quality, the base first. `asked` is a list of KNOB or KNOB=V1,V2;

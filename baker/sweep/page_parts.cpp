@@ -16,14 +16,6 @@ namespace lambent::baker {
 
 namespace {
 
-bool isPreset(const Measured& measured) {
-  return measured.setting.knob->name == "quality";
-}
-
-bool isBaked(const Measured& measured) {
-  return measured.setting.knob->side == Knob::Side::Bake;
-}
-
 std::vector<const Measured*> ofKnob(const SweepResults& results, const Knob& knob) {
   std::vector<const Measured*> list;
   for (const Measured& measured : results.settings)
@@ -33,10 +25,10 @@ std::vector<const Measured*> ofKnob(const SweepResults& results, const Knob& kno
   return list;
 }
 
-// A command line that gives this setting.
+// Returns a command line that gives this setting.
 std::string commandOf(const Measured& measured) {
   const Setting& setting = measured.setting;
-  std::string words = isBaked(measured)
+  std::string words = setting.isBaked()
                           ? fmt::format("lambent bake --quality {}", qualityName(setting.bake.quality))
                           : "lambent-demo";
   for (const auto* options : {&setting.bake_words, &setting.frame_words})
@@ -76,7 +68,7 @@ std::string barsOf(const std::vector<Bar>& bars, const std::vector<std::string>&
   return out + "</div>\n";
 }
 
-// Bars of the errors of some settings: lengths are errors, segments shares of their squares.
+// Draws bars of the errors of some settings: lengths are errors, segments shares of their squares.
 std::string errorBars(const std::vector<const Measured*>& list) {
   std::vector<Bar> bars;
   bool any_unknown = false;
@@ -144,8 +136,8 @@ Plot plotOf(const SweepResults& results, const Cost& cost, const Advice& advice)
                     .y_spread = m.picture.as_light_is.rms_spread,
                     .id = m.key,
                     .about = fmt::format("{}: {} for {}", titleOf(m), percent(y), cost.text(x)),
-                    .label = isPreset(m) ? m.setting.value : titleOf(m),
-                    .always_labelled = isPreset(m) || on_front,
+                    .label = m.setting.isPreset() ? m.setting.value : titleOf(m),
+                    .always_labelled = m.setting.isPreset() || on_front,
                     .on_front = on_front,
                     .chosen = advice.chosen == i};
     plot.points.push_back(std::move(point));
@@ -197,7 +189,7 @@ std::string knobsPart(const SweepResults& results) {
     if (list.empty()) continue;
     std::vector<ChartColumn> columns;
     for (const Measured* m : list) {
-      const bool baked = isBaked(*m);
+      const bool baked = m->setting.isBaked();
       columns.push_back(
           {.value = m->setting.value,
            .error = m->picture.as_light_is.rms,
@@ -219,8 +211,7 @@ std::string causesPart(const SweepResults& results) {
   std::vector<const Measured*> presets = ofKnob(results, *findKnob("quality"));
   std::vector<const Measured*> errors = presets, frames = {&results.settings.front()};
   for (const Measured& m : results.settings) {
-    const bool drawn = m.setting.knob->name == "keys" || m.setting.knob->name == "frame-quality";
-    if (drawn && m.key != results.settings.front().key) frames.push_back(&m);
+    if (m.setting.isOfKeyLights() && m.key != results.settings.front().key) frames.push_back(&m);
     const bool without_keys = m.setting.knob->name == "keys" && m.setting.value == "off";
     if ((m.setting.knob->name == "order" || without_keys) && m.key != results.settings.front().key)
       errors.push_back(&m);

@@ -16,7 +16,7 @@ namespace lambent::baker {
 // Named times in the order in which they came.
 using NamedTimes = std::vector<std::pair<std::string, double>>;
 
-// A picture against the reference.
+// These figures hold a picture against the reference.
 struct Figures {
   double rms = 0.0;            // relative
   double rms_spread = 0.0;     // its standard error, by the noise of the references
@@ -35,8 +35,8 @@ struct BakeRow {
   double processor_seconds = 0.0;  // of all threads together, in the median run
   NamedTimes stages = {};          // in seconds, of the median run
   std::uint64_t bytes = 0, transfer_bytes = 0, vertices = 0, samples = 0;
-  // What the bake says of its own error (picture_error.hpp), the RMS over groups by their points. Nothing if
-  // it has no diffuse surfaces.
+  // The bake says this of its own error (picture_error.hpp); it is the RMS over groups by their points, and
+  // nothing if there are no diffuse surfaces.
   struct Parts {
     double noise = 0.0, codes = 0.0, interpolation = 0.0;
   };
@@ -57,7 +57,7 @@ struct PictureRow {
   Figures as_bands_can = {};  // without key lights against light of as many bands
 };
 
-// What a bundle takes on the GPU: what can never be left out, and all.
+// A bundle takes this on the GPU: `least` can never be left out, `most` is all of it.
 struct MemoryRow {
   std::uint64_t least = 0, most = 0;
 };

@@ -52,8 +52,7 @@ Result<void> makeFolder(const std::filesystem::path& folder) {
 
 // The base comes to the same with any number of key lights if there are none to find.
 bool hasNothingToTurn(const Setting& setting, const Measured& base) {
-  const bool of_keys = setting.knob->name == "keys" || setting.knob->name == "frame-quality";
-  return of_keys && base.picture.key_lights == 0;
+  return setting.isOfKeyLights() && base.picture.key_lights == 0;
 }
 
 Result<Measured> measure(Measurer& measurer, const Setting& setting) {

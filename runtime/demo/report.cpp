@@ -15,13 +15,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Returns the median, without the first frame.
-double medianOf(std::vector<double> times) {
-  if (times.size() > 1) times.erase(times.begin());
-  if (times.empty()) return 0.0;
-  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-  std::ranges::nth_element(times, middle);
-  return *middle;
+// Leaves out the first frame, which also waits for what is made once.
+frame::FrameTimes timesOf(const std::vector<double>& of_frames) {
+  frame::FrameTimes times(of_frames.size());
+  for (std::size_t i = of_frames.size() > 1 ? 1 : 0; i < of_frames.size(); ++i) times.add(of_frames[i]);
+  return times;
 }
 
 Json countsJson(const frame::StepCounts& counts) {
@@ -30,12 +28,8 @@ Json countsJson(const frame::StepCounts& counts) {
   return json;
 }
 
-// Leaves out the first frame, which also waits for what is made once.
-Json frameTimesJson(std::vector<double> frame_ms) {
-  if (frame_ms.size() > 1) frame_ms.erase(frame_ms.begin());
-  if (frame_ms.empty()) return Json();
-  frame::FrameTimes times(frame_ms.size());
-  for (const double time : frame_ms) times.add(time);
+Json frameTimesJson(const frame::FrameTimes& times) {
+  if (times.count() == 0) return Json();
   const double median = times.median();
   return {{"median", median},
           {"p95", times.quantile(0.95)},
@@ -156,8 +150,8 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"streaming", streamingJson(report.streaming)},
                      {"negative_pixels", report.negative_pixels},
                      {"frames", options.frames},
-                     {"frame_ms", frameTimesJson(report.frame_ms)},
-                     {"frame_processor_ms", medianOf(report.processor_ms)},
+                     {"frame_ms", frameTimesJson(timesOf(report.frame_ms))},
+                     {"frame_processor_ms", timesOf(report.processor_ms).median()},
                      {"rest_steps", report.rest_steps},
                      {"first_frame", frameJson(report.first_frame)},
                      {"last_frame", frameJson(report.last_frame)}};

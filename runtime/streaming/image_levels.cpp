@@ -6,14 +6,13 @@
 #include <cassert>
 #include <cmath>
 
+#include "runtime/spec/rec709.hpp"
+
 namespace lambent::streaming {
 
 namespace {
 
-// The transfer functions of sRGB are those of IEC 61966-2-1.
-float fromSrgb(float code) {
-  return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f);
-}
+// Codes by sRGB (IEC 61966-2-1).
 float toSrgb(float light) {
   return light <= 0.0031308f ? 12.92f * light : 1.055f * std::pow(light, 1.0f / 2.4f) - 0.055f;
 }
@@ -64,7 +63,7 @@ std::vector<std::uint8_t> shrink(std::span<const std::uint8_t> rgba, const Image
   std::array<float, 256> codes{}, light{};  // values of codes as numbers and as colours
   for (std::size_t code = 0; code < 256; ++code) {
     codes[code] = static_cast<float>(code) / 255.0f;
-    light[code] = color ? fromSrgb(codes[code]) : codes[code];
+    light[code] = color ? spec::linearFromSrgb(codes[code]) : codes[code];
   }
   std::vector<Span> across;
   for (std::uint32_t x = 0; x < small.width; ++x) across.push_back(spanOf(x, small.width, size.width));

@@ -2,8 +2,8 @@
 #include <chrono>
 #include <optional>
 
-#include "runtime/world/frame_times.hpp"
 #include "runtime/frame/passes/passes.hpp"
+#include "runtime/world/frame_times.hpp"
 
 namespace lambent::frame {
 

@@ -1,8 +1,8 @@
 // Tests the container: what is written is read back, and nothing damaged is accepted.
-#include <ctime>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <ctime>
 
 #include <gtest/gtest.h>
 
