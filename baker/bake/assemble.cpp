@@ -13,7 +13,6 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr int kZstdLevel = 19;
 constexpr std::uint32_t kRowsPriority = 1, kCodebookPriority = 2, kFirstPlanePriority = 3;
 
 std::uint32_t outputsOf(SampleKind kind, int glossy_order) {
@@ -158,7 +157,7 @@ class Assembler {
   // Compresses the payload if that makes it smaller.
   std::uint32_t addPayload(bundle::PayloadType type, bundle::Blob raw, std::uint32_t priority) {
     bundle::Payload payload{type, bundle::PayloadCodec::Raw, 0, raw.size(), priority};
-    if (bundle::Blob packed = bundle::compressZstd(raw, kZstdLevel); packed.size() < raw.size()) {
+    if (bundle::Blob packed = bundle::compressZstd(raw, options_.zstdLevel()); packed.size() < raw.size()) {
       payload.codec = bundle::PayloadCodec::Zstd;
       raw = std::move(packed);
     }

@@ -83,11 +83,9 @@ void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, Ba
 // Bakes the neighborhood of surfaces whose light is baked. Returns false if stopped.
 bool bakeAroundSurfaces(const Around& around, const GroupScene& group, const SurfaceTransport& light,
                         const BakeContext& context, std::optional<BakedNeighborhood>& out) {
-  std::optional<SurfaceBrdfs> shown;
-  if (group.brdfs()) shown = group.brdfs()->firstBands(group.bake.options.glossy_order);
   const SurfaceBody body(group.view(), {.direct = light.direct.field,
                                         .bounced = light.bounced ? &light.bounced->field : nullptr,
-                                        .brdfs = shown ? &*shown : nullptr,
+                                        .brdfs = group.brdfs(),
                                         .glossy = light.glossy ? &light.glossy->field : nullptr});
   return bakeAround(around, body, {group.geometry.bounds_min, group.geometry.bounds_max}, context, out);
 }

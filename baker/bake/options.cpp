@@ -26,11 +26,12 @@ struct QualityRow {
   bool fits_glossy;
   float glossy_looseness;
   int exit_bands;  // for exitOrder() with five bands of incident light
+  int zstd_level;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f, 0.03f, 0.04f, 1.2, 10'000, 0.0, false, 0.0f, 7},
-    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.02f, 1.5, 20'000, 0.5, true, 1.5f, 7},
-    QualityRow{"high", 4096, 0.001f, 0.005f, 0.01f, 4.0, 60'000, 0.5, true, 3.0f, 9},
+    QualityRow{"draft", 256, 0.01f, 0.03f, 0.04f, 1.2, 5'000, 0.0, false, 0.0f, 5, 12},
+    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.02f, 1.5, 20'000, 0.5, true, 1.5f, 7, 19},
+    QualityRow{"high", 4096, 0.001f, 0.005f, 0.01f, 4.0, 60'000, 0.5, true, 3.0f, 9, 19},
 };
 static_assert(kQualities.back().exit_bands <= sh::kMaxFactoredOrder);
 
@@ -90,6 +91,10 @@ int BakeOptions::exitOrder() const {
 
 float BakeOptions::effectiveRefineBound() const {
   return refine_bound >= 0.0f ? refine_bound : row(quality).refine_bound;
+}
+
+int BakeOptions::zstdLevel() const {
+  return row(quality).zstd_level;
 }
 
 bool BakeOptions::fitsDiffuse() const {

@@ -56,9 +56,10 @@ struct BakeOptions {
   float glossyLooseness() const;
   float effectiveRefineBound() const;
   // Returns the number of bands of the light at hits from which exit radiance is computed: 4..9, by quality,
-  // or glossy_order without bounces. It is more than glossy_order because exit kernels meet shadow edges
-  // there that few bands cannot represent.
+  // or glossy_order without bounces. Except in drafts it is more than glossy_order, because exit kernels meet
+  // shadow edges there that few bands cannot represent.
   int exitOrder() const;
+  int zstdLevel() const;  // with which payloads are compressed
   bool fitsDiffuse() const;
   bool fitsGlossy() const;
   // Limits on refinement: the factor on the number of vertices, and the number of vertices added beyond that.

@@ -34,13 +34,12 @@ std::array<double, 6> kernelPower(const GroupGeometry& geometry, const SurfaceBr
     if (brdfs.glossy(t)) glossy.push_back(t);
   const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
   std::vector<float> kernel(3 * count);
-  const SurfaceBrdfs shown = brdfs.firstBands(order);
   std::array<double, 6> power{};
   const std::size_t places = std::min(kPlaces, glossy.size());
   for (std::size_t p = 0; p < places; ++p) {
     const std::uint32_t triangle = glossy[p * glossy.size() / places];
     for (const float cosine : kCosines) {
-      shown.exitKernel(triangle, 1.0f / 3.0f, 1.0f / 3.0f,
+      brdfs.exitKernel(triangle, 1.0f / 3.0f, 1.0f / 3.0f,
                        viewOf(geometry, triangle, cosine, kGoldenAngle * static_cast<float>(p)), kernel);
       for (std::size_t i = 0; i < kernel.size(); ++i)
         power[static_cast<std::size_t>(sh::bandOf(static_cast<int>(i % count)))] +=

@@ -117,6 +117,14 @@ ViewFrame frameOf(const glm::vec3& normal, const glm::vec3& tangent, const glm::
   return frame;
 }
 
+// Returns the number of bands of a kernel of three channels.
+int bandsOf(std::span<const float> kernel) {
+  int order = 1;
+  while (3 * static_cast<std::size_t>(sh::coefficientCount(order)) < kernel.size()) ++order;
+  assert(3 * static_cast<std::size_t>(sh::coefficientCount(order)) == kernel.size());
+  return order;
+}
+
 constexpr std::size_t inWholeVectors(std::size_t lanes) {
   return (lanes + 7) / 8 * 8;
 }
@@ -423,7 +431,7 @@ Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry&
                 static_cast<std::uint32_t>(state->surfaces.size()));
     state->surfaces.push_back(std::move(surface));
   }
-  return SurfaceBrdfs(std::move(state), order);
+  return SurfaceBrdfs(std::move(state));
 }
 
 bool SurfaceBrdfs::glossy(std::uint32_t triangle) const {
@@ -436,16 +444,15 @@ bool SurfaceBrdfs::grey() const {
 
 void SurfaceBrdfs::exitKernel(std::uint32_t triangle, float u, float v, const glm::vec3& to,
                               std::span<float> out) const {
-  const auto all = 3 * static_cast<std::size_t>(sh::coefficientCount(order_));
-  assert(out.size() >= all);
-  std::fill_n(out.begin(), all, 0.0f);
+  const int order = bandsOf(out);
+  std::fill(out.begin(), out.end(), 0.0f);
   const Surface& surface = state_->surfaces[state_->surface_of[triangle]];
   if (surface.material.unlit || glm::dot(state_->geometricNormal(triangle), to) <= 0.0f) return;
   const glm::vec3 normal = state_->normalAt(triangle, u, v);
   if (surface.glossy)
-    state_->glossyKernel(surface, order_, {triangle, u, v, normal}, to, out);
+    state_->glossyKernel(surface, order, {triangle, u, v, normal}, to, out);
   else
-    state_->diffuseKernel(albedoUnderLayer(state_->baseColor(surface, triangle, u, v), surface.layer), order_,
+    state_->diffuseKernel(albedoUnderLayer(state_->baseColor(surface, triangle, u, v), surface.layer), order,
                           normal, out);
 }
 

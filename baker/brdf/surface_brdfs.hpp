@@ -57,19 +57,16 @@ class SurfaceBrdfs {
   static Result<SurfaceBrdfs> load(const Scene& scene, const GroupGeometry& geometry,
                                    const BrdfTables& tables, DecodedImages& images, int order);
 
-  // Returns the same surfaces with kernels of only so many bands, at most as many as were loaded.
-  SurfaceBrdfs firstBands(int order) const { return {state_, order}; }
-
   // Returns whether the triangle has glossy samples. It has none if its material is glossy but its samples
   // were planned as diffuse.
   bool glossy(std::uint32_t triangle) const;
   // Returns whether all kernels are the same in red, green and blue.
   bool grey() const;
   // Computes the kernel of a point towards the unit direction `to` (group frame, away from the surface):
-  // out[channel * order² + k], with three channels. u and v are barycentric weights of the triangle's corners
-  // 1 and 2. The kernel is zero if `to` lies behind the triangle; a view above it but below the plane of the
-  // interpolated normal counts as cos(theta_v) = kLeastViewCosine. May be called from any thread; allocates
-  // nothing.
+  // out[channel * order² + k], with three channels, of at most as many bands as were loaded. u and v are
+  // barycentric weights of the triangle's corners 1 and 2. The kernel is zero if `to` lies behind the
+  // triangle; a view above it but below the plane of the interpolated normal counts as cos(theta_v) =
+  // kLeastViewCosine. May be called from any thread; allocates nothing.
   void exitKernel(std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) const;
 
   // Returns the perceptual roughness of a glossy point, or 1 if its BRDF is measured or it is diffuse.
@@ -79,9 +76,8 @@ class SurfaceBrdfs {
 
  private:
   struct State;
-  SurfaceBrdfs(std::shared_ptr<const State> state, int order) : state_(std::move(state)), order_(order) {}
+  explicit SurfaceBrdfs(std::shared_ptr<const State> state) : state_(std::move(state)) {}
   std::shared_ptr<const State> state_;
-  int order_;
 };
 
 }  // namespace lambent::baker

@@ -2,6 +2,7 @@
 // test.
 #pragma once
 
+#include <cmath>
 #include <memory>
 
 #include "baker/effects/glossy/glossy_bounces.hpp"
@@ -73,26 +74,28 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
 
 // Describes Lambert surfaces of the scene's own albedo by kernels: albedo A_l/pi y_k(n), where n is the
 // face's normal.
-inline baker::ExitKernels lambertKernels(const Transport& t, int order_out = 5) {
-  return {
-      t.colors.grey(),
-      [&t, order_out](std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) {
-        const glm::uvec3 c = t.geometry.triangles[triangle];
-        const glm::vec3 normal = glm::normalize((1.0f - u - v) * t.geometry.normals[c.x] +
-                                                u * t.geometry.normals[c.y] + v * t.geometry.normals[c.z]);
-        const glm::vec3 albedo = t.colors.albedo(triangle, u, v);
-        EXPECT_NEAR(glm::length(to), 1.0f, 1e-4f);
-        const std::size_t size = out.size() / 3;
-        sh::unoccludedTransfer(order_out, normal, out.first(size));
-        for (std::size_t k = 0; k < size; ++k) {
-          const float value = out[k];
-          for (std::size_t channel = 0; channel < 3; ++channel)
-            out[channel * size + k] = albedo[static_cast<int>(channel)] * value;
-        }
-      }};
+inline baker::ExitKernels lambertKernels(const Transport& t) {
+  return {t.colors.grey(),
+          [&t](std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) {
+            const glm::uvec3 c = t.geometry.triangles[triangle];
+            const glm::vec3 normal =
+                glm::normalize((1.0f - u - v) * t.geometry.normals[c.x] + u * t.geometry.normals[c.y] +
+                               v * t.geometry.normals[c.z]);
+            const glm::vec3 albedo = t.colors.albedo(triangle, u, v);
+            EXPECT_NEAR(glm::length(to), 1.0f, 1e-4f);
+            const std::size_t size = out.size() / 3;
+            const auto order = static_cast<int>(std::lround(std::sqrt(static_cast<double>(size))));
+            sh::unoccludedTransfer(order, normal, out.first(size));
+            for (std::size_t k = 0; k < size; ++k) {
+              const float value = out[k];
+              for (std::size_t channel = 0; channel < 3; ++channel)
+                out[channel * size + k] = albedo[static_cast<int>(channel)] * value;
+            }
+          }};
 }
 
-// Returns M of the environment at glossy sample `s` (counted from the first glossy one), channel 0, without bounces.
+// Returns M of the environment at glossy sample `s` (counted from the first glossy one), channel 0, without
+// bounces.
 inline std::vector<float> shadowMatrix(const baker::GlossyField& field, std::size_t s) {
   const auto table = sh::makeGauntTable(field.order_in, field.order_out);
   std::vector<float> matrix(

@@ -262,11 +262,10 @@ glm::vec3 GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners
 }
 
 glm::vec3 GlossyBounces::albedo(const GatherHit& hit, const glm::vec3& to) const {
-  const std::size_t outputs = before_.environment.outputs;
-  std::array<float, 3 * kMostOutputs> kernel;
+  std::array<float, 3> constant;  // the kernel's first band alone
   kernels_.at(hit.triangle, static_cast<float>(hit.u) * (1.0f / 65535.0f),
-              static_cast<float>(hit.v) * (1.0f / 65535.0f), to, std::span(kernel).first(3 * outputs));
-  return kUniform * glm::vec3(kernel[0], kernel[outputs], kernel[2 * outputs]);
+              static_cast<float>(hit.v) * (1.0f / 65535.0f), to, constant);
+  return kUniform * glm::vec3(constant[0], constant[1], constant[2]);
 }
 
 void GlossyBounces::visitHits(std::size_t sample, const ExitRadiance& exit, const TakeHit& take) const {

@@ -106,7 +106,7 @@ void SurfaceBody::addDiffuse(const FirstHit& hit, const glm::vec3& scale, std::s
 void SurfaceBody::addKernel(const FirstHit& hit, const glm::vec3& along, float chance, const glm::vec3& scale,
                             std::span<float> out) const {
   std::array<float, 3 * 36> kernel;
-  brdfs_->exitKernel(hit.triangle, hit.u, hit.v, -along, kernel);
+  brdfs_->exitKernel(hit.triangle, hit.u, hit.v, -along, std::span(kernel).first(3 * matrix_outputs_));
   const glm::uvec3 t = scene_.geometry.triangles[hit.triangle];
   const std::uint32_t corner = chance < hit.u ? t.y : chance < hit.u + hit.v ? t.z : t.x;
   const std::size_t sample = scene_.samples.vertex_sample[corner] - scene_.samples.glossy.begin;

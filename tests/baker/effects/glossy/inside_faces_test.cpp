@@ -85,7 +85,7 @@ TEST(GlossyInsideFaces, GiveTheSameBouncesForAnyMemoryAndNumberOfThreads) {
   const Transport t(slot(8), true);
   const auto baked = [&](std::size_t memory) {
     return bakeGlossy(
-        t, lambertKernels(t, 7),
+        t, lambertKernels(t),
         {.exit_order = 7, .rays = 128, .bounces = 3, .hit_memory = memory, .fit = Fit::AllLight});
   };
   const GlossyBake all = baked(std::size_t{1} << 30);
