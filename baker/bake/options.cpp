@@ -29,7 +29,7 @@ struct QualityRow {
   int zstd_level;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f, 0.03f, 0.04f, 1.2, 5'000, 0.0, false, 0.0f, 5, 12},
+    QualityRow{"draft", 256, 0.01f, 0.03f, 0.04f, 1.2, 10'000, 0.0, false, 0.0f, 5, 12},
     QualityRow{"standard", 1024, 0.003f, 0.015f, 0.02f, 1.5, 20'000, 0.5, true, 1.5f, 7, 19},
     QualityRow{"high", 4096, 0.001f, 0.005f, 0.01f, 4.0, 60'000, 0.5, true, 3.0f, 9, 19},
 };

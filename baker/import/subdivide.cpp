@@ -20,32 +20,41 @@ double squaredLength(const glm::vec3& a, const glm::vec3& b) {
   return glm::dot(d, d);
 }
 
-// a + b is the same to the bit from either end, so vertices that are doubled at a seam get the same midpoint.
-template <typename Vector>
-void pushMidpoint(std::vector<Vector>& values, std::uint32_t a, std::uint32_t b) {
-  if (values.empty()) return;
-  const Vector middle = (values[a] + values[b]) * 0.5f;
-  values.push_back(middle);
-}
+// An EdgePoint lies between two vertices.
+struct EdgePoint {
+  std::uint32_t a, b;
+  float share;  // of the way from a to b
 
-// isMarked(a, b) says whether the edge between two vertices is to be split.
-template <typename IsMarked>
+  template <typename Vector>
+  Vector of(const Vector& at_a, const Vector& at_b) const {
+    return at_a * (1.0f - share) + at_b * share;
+  }
+  template <typename Vector>
+  void push(std::vector<Vector>& values) const {
+    if (values.empty()) return;
+    const Vector between = of(values[a], values[b]);
+    values.push_back(between);
+  }
+};
+
+// shareOf(a, b) is 0 if the edge between two vertices is not to be split, else where (EdgePoint::share).
+template <typename ShareOf>
 class Splitter {
  public:
-  Splitter(MeshData& mesh, IsMarked is_marked) : mesh_(mesh), is_marked_(std::move(is_marked)) {}
+  Splitter(MeshData& mesh, ShareOf share_of) : mesh_(mesh), share_of_(std::move(share_of)) {}
 
   // Returns how many triangles one pass would leave; as many as now if no edge is marked.
   std::size_t countAfter() const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < mesh_.indices.size(); i += 3) {
       const Corners v = corners(i);
-      count += 1u + is_marked_(v[0], v[1]) + is_marked_(v[1], v[2]) + is_marked_(v[2], v[0]);
+      count += 1u + isMarked(v[0], v[1]) + isMarked(v[1], v[2]) + isMarked(v[2], v[0]);
     }
     return count;
   }
 
   void pass(std::size_t triangles_after) {
-    midpoints_.clear();
+    points_.clear();
     out_.clear();
     out_.reserve(triangles_after * 3);
     for (std::size_t i = 0; i < mesh_.indices.size(); i += 3) split(corners(i));
@@ -53,12 +62,14 @@ class Splitter {
   }
 
  private:
+  bool isMarked(std::uint32_t a, std::uint32_t b) const { return share_of_(a, b) > 0.0f; }
+
   Corners corners(std::size_t i) const {
     return {mesh_.indices[i], mesh_.indices[i + 1], mesh_.indices[i + 2]};
   }
 
   void split(Corners v) {
-    const std::array<bool, 3> marked{is_marked_(v[0], v[1]), is_marked_(v[1], v[2]), is_marked_(v[2], v[0])};
+    const std::array<bool, 3> marked{isMarked(v[0], v[1]), isMarked(v[1], v[2]), isMarked(v[2], v[0])};
     const int count = marked[0] + marked[1] + marked[2];
     if (count == 0) return emit(v[0], v[1], v[2]);
     // The corners are rotated so that the odd edge has a fixed place: the only marked one first, the only
@@ -68,15 +79,15 @@ class Splitter {
     if (count == 2) turn = !marked[2] ? 0 : !marked[0] ? 1 : 2;
     v = {v[turn], v[(turn + 1) % 3], v[(turn + 2) % 3]};
 
-    const std::uint32_t m01 = midpoint(v[0], v[1]);
+    const std::uint32_t m01 = between(v[0], v[1]);
     if (count == 1) {
       emit(v[0], m01, v[2]);
       return emit(m01, v[1], v[2]);
     }
-    const std::uint32_t m12 = midpoint(v[1], v[2]);
+    const std::uint32_t m12 = between(v[1], v[2]);
     emit(m01, v[1], m12);
     if (count == 2) return emitQuad(v[0], m01, m12, v[2]);
-    const std::uint32_t m20 = midpoint(v[2], v[0]);
+    const std::uint32_t m20 = between(v[2], v[0]);
     emit(v[0], m01, m20);
     emit(m20, m12, v[2]);
     emit(m01, m12, m20);
@@ -102,21 +113,33 @@ class Splitter {
     }
   }
 
-  std::uint32_t midpoint(std::uint32_t a, std::uint32_t b) {
+  // Vertices that are doubled at a seam get the same point to the bit, since positions say which end is
+  // first.
+  EdgePoint pointOn(std::uint32_t a, std::uint32_t b) const {
+    const auto key = [&](std::uint32_t v) {
+      const glm::vec3& p = mesh_.positions[v];
+      return std::tuple(p.x, p.y, p.z);
+    };
+    if (key(b) < key(a)) std::swap(a, b);
+    return {a, b, share_of_(a, b)};
+  }
+
+  std::uint32_t between(std::uint32_t a, std::uint32_t b) {
     const auto [low, high] = std::minmax(a, b);
     const auto next = static_cast<std::uint32_t>(mesh_.positions.size());
-    const auto [entry, added] = midpoints_.try_emplace((std::uint64_t{low} << 32) | high, next);
+    const auto [entry, added] = points_.try_emplace((std::uint64_t{low} << 32) | high, next);
     if (!added) return entry->second;
-    pushMidpoint(mesh_.positions, low, high);
-    pushMidpoint(mesh_.texcoords0, low, high);
-    pushMidpoint(mesh_.texcoords1, low, high);
-    pushMidpoint(mesh_.colors, low, high);
+    const EdgePoint at = pointOn(low, high);
+    at.push(mesh_.positions);
+    at.push(mesh_.texcoords0);
+    at.push(mesh_.texcoords1);
+    at.push(mesh_.colors);
     if (!mesh_.normals.empty()) {
       // The mean is weighted, so that interpolation over the parts equals that over the whole
       // (MeshData::normal_weights).
       mesh_.normal_weights.resize(next, 1.0f);
-      const glm::vec3 mean = 0.5f * (mesh_.normal_weights[low] * mesh_.normals[low] +
-                                     mesh_.normal_weights[high] * mesh_.normals[high]);
+      const glm::vec3 mean = at.of(mesh_.normal_weights[low] * mesh_.normals[low],
+                                   mesh_.normal_weights[high] * mesh_.normals[high]);
       const float length = glm::length(mean);
       const bool any = length > 1e-6f;  // opposite normals have no mean
       mesh_.normals.push_back(any ? mean / length : mesh_.normals[low]);
@@ -124,17 +147,17 @@ class Splitter {
     }
     if (!mesh_.tangents.empty()) {
       const glm::vec4 first = mesh_.tangents[low];
-      const glm::vec3 sum = glm::vec3(first) + glm::vec3(mesh_.tangents[high]);
-      const float length = glm::length(sum);
-      mesh_.tangents.emplace_back(length > 1e-6f ? sum / length : glm::vec3(first), first.w);
+      const glm::vec3 mean = at.of(glm::vec3(first), glm::vec3(mesh_.tangents[high]));
+      const float length = glm::length(mean);
+      mesh_.tangents.emplace_back(length > 1e-6f ? mean / length : glm::vec3(first), first.w);
     }
     return next;
   }
 
   MeshData& mesh_;
-  IsMarked is_marked_;
+  ShareOf share_of_;
   std::vector<std::uint32_t> out_;
-  std::unordered_map<std::uint64_t, std::uint32_t> midpoints_;
+  std::unordered_map<std::uint64_t, std::uint32_t> points_;
 };
 
 }  // namespace
@@ -144,7 +167,7 @@ bool splitLongEdges(bundle::MeshData& mesh, float max_edge, std::size_t max_tria
   MeshData refined = mesh;
   const double limit = static_cast<double>(max_edge) * static_cast<double>(max_edge);
   Splitter splitter(refined, [&](std::uint32_t a, std::uint32_t b) {
-    return squaredLength(refined.positions[a], refined.positions[b]) > limit;
+    return squaredLength(refined.positions[a], refined.positions[b]) > limit ? 0.5f : 0.0f;
   });
   for (;;) {
     const std::size_t after = splitter.countAfter();
@@ -157,8 +180,8 @@ bool splitLongEdges(bundle::MeshData& mesh, float max_edge, std::size_t max_tria
 }
 
 void splitMarkedEdges(bundle::MeshData& mesh,
-                      const std::function<bool(std::uint32_t a, std::uint32_t b)>& marked) {
-  Splitter splitter(mesh, std::cref(marked));
+                      const std::function<float(std::uint32_t a, std::uint32_t b)>& share) {
+  Splitter splitter(mesh, std::cref(share));
   splitter.pass(splitter.countAfter());
 }
 

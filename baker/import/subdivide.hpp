@@ -1,4 +1,4 @@
-// Refines meshes by splitting edges in half. Whether an edge is split must follow from its end points only,
+// Refines meshes by splitting edges. Whether and where an edge is split must follow from its end points only,
 // so that neighbours agree and no crack opens, also across seams of normals or texture coordinates.
 #pragma once
 
@@ -13,8 +13,10 @@ namespace lambent::baker {
 // renormalised. Returns false, with the mesh unchanged, if there would be more than max_triangles.
 bool splitLongEdges(bundle::MeshData& mesh, float max_edge, std::size_t max_triangles);
 
-// Splits each marked edge once. `marked` gets the vertices at its ends in either order.
+// Splits each marked edge once. `share` gets the vertices at its ends in either order, and returns 0 if the
+// edge is not marked, else where it is split: this share of the way from a to b. It must return exactly
+// 1 - share if the ends change places.
 void splitMarkedEdges(bundle::MeshData& mesh,
-                      const std::function<bool(std::uint32_t a, std::uint32_t b)>& marked);
+                      const std::function<float(std::uint32_t a, std::uint32_t b)>& share);
 
 }  // namespace lambent::baker

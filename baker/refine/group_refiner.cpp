@@ -26,6 +26,12 @@ constexpr float kShortestEdge = 1.0f / 1024.0f;
 constexpr double kLeastLight = 0.07;
 // A split triangle splits its edges of at least this share of the longest one.
 constexpr float kSplitShare = 0.6f;
+// A vertex stands before a surface that cuts its face by this share of the diagonal, which is a few steps of
+// the lattice of positions. An edge that begins nearer than this many times as far before it is not cut
+// again.
+constexpr float kBeforeCut = 1.0f / 32768.0f, kLeastCut = 2.0f;
+// Edges longer than this share of the diagonal are halved: light changes on both sides of a cut, too.
+constexpr float kLongestCut = 1.0f / 16.0f;
 // A round splits triangles until the remaining square error is this share of what is allowed, or this share
 // of all of it if that is more, because what the first splits show decides where the next ones go.
 constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.35;
@@ -52,6 +58,19 @@ std::vector<InnerPoint> innerPoints(int n) {
       if (i + j + 1 < n) add(3 * i + 2, 3 * j + 2);
     }
   return points;
+}
+
+struct Facing {
+  glm::vec3 normal;  // unit, or 0 for a triangle without area
+  float area;
+};
+
+Facing facingOf(const GroupGeometry& geometry, std::uint32_t triangle) {
+  const glm::uvec3 t = geometry.triangles[triangle];
+  const glm::vec3 p = geometry.positions[t.x];
+  const glm::vec3 cross = glm::cross(geometry.positions[t.y] - p, geometry.positions[t.z] - p);
+  const float length = glm::length(cross);
+  return {length > 0.0f ? cross / length : glm::vec3(0.0f), 0.5f * length};
 }
 
 // Returns all numbers below `count`.
@@ -87,6 +106,9 @@ PointError pointError(const ShadowProbe::Difference& wrong, const ShadowProbe::D
 
 void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene, const AlphaMaps& alpha_maps) {
   diagonal_ = glm::distance(geometry.bounds_min, geometry.bounds_max);
+  scene_normals_.clear();
+  for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t)
+    scene_normals_.push_back(facingOf(geometry, t).normal);
   KeyMaker key = KeyMaker::ofStage("refinement probes");
   addShape(geometry, key);
   addOpacity(scene, geometry, key);
@@ -247,8 +269,8 @@ void GroupRefiner::addLacks(const DrawGeometry& draw, FaceLacks& lacks) const {
   lacks.areas.insert(lacks.areas.end(), areas.begin(), areas.end());
 }
 
-std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
-                                    std::size_t& room, MarkedEdges& edges) {
+Result<std::size_t> GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
+                                            std::size_t& room, MarkedEdges& edges) {
   const double allowed = bound * bound * seenArea(), square_error = squareError();
   if (square_error <= allowed) return 0;
   chosen_ = true;
@@ -258,7 +280,7 @@ std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geom
   });
   const double enough = std::max(kLeftOfAllowed * allowed, kLeftOfAll * square_error);
   double left = square_error;
-  std::size_t marked = 0;
+  std::vector<Edge> marked;
   for (const std::uint32_t t : order) {
     if (left <= enough || room < 3) break;
     const glm::uvec3 corners = geometry.triangles[t];
@@ -269,11 +291,49 @@ std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geom
       const std::uint32_t a = corners[c], b = corners[(c + 1) % 3];
       if (glm::distance(geometry.positions[a], geometry.positions[b]) < kSplitShare * longest) continue;
       if (!edges.mark(group, a, b)) continue;
-      ++marked;
+      marked.push_back({a, b, t});
       --room;
     }
   }
-  return marked;
+  const auto cuts = cutsOf(geometry, marked);
+  if (!cuts) return failAgain(cuts.error());
+  for (std::size_t i = 0; i < marked.size(); ++i)
+    if ((*cuts)[i] > 0.0f) edges.splitAt(group, marked[i].a, marked[i].b, (*cuts)[i]);
+  return marked.size();
+}
+
+// A face that another surface cuts is lit on one side of it and dark on the other. No vertex may mix both,
+// and none should stand in the cut: each side gets a vertex of its own, a little before it.
+Result<std::vector<float>> GroupRefiner::cutsOf(const GroupGeometry& geometry, std::span<const Edge> list) {
+  const auto rays = scene_->rays();
+  if (!rays) return failAgain(rays.error());
+  std::vector<RaySegment> ways;
+  for (const Edge& edge : list) {
+    const glm::vec3 a = geometry.positions[edge.a], b = geometry.positions[edge.b];
+    const Facing face = facingOf(geometry, edge.triangle);
+    const glm::vec3 off = standOff(a, std::sqrt(face.area)) * face.normal, along = glm::normalize(b - a);
+    ways.push_back({a + off, along, glm::distance(a, b)});
+    ways.push_back({b + off, -along, glm::distance(a, b)});
+  }
+  std::vector<FirstHit> hits(ways.size());
+  (*rays)->firstHits(ways, hits);
+  const float before = kBeforeCut * diagonal_;
+  // Returns the share of a way that lies before the surface that cuts it, less what its vertex keeps away, or
+  // 0 if none does: surfaces that touch an end, as walls do the rim of a floor, cut nothing.
+  const auto shareBefore = [&](std::size_t way) {
+    const auto& [triangle, u, v, distance, back] = hits[way];
+    if (!hits[way].any() || ways[way].length > kLongestCut * diagonal_) return 0.0f;
+    const float steep = std::abs(glm::dot(scene_normals_[triangle], ways[way].direction));
+    const bool cuts =
+        distance * steep > kLeastCut * before && (ways[way].length - distance) * steep > 0.5f * before;
+    return cuts ? (distance - before / steep) / ways[way].length : 0.0f;
+  };
+  std::vector<float> cuts(list.size(), 0.0f);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    cuts[i] = shareBefore(2 * i);
+    if (const float other = shareBefore(2 * i + 1); cuts[i] == 0.0f && other > 0.0f) cuts[i] = 1.0f - other;
+  }
+  return cuts;
 }
 
 }  // namespace lambent::baker

@@ -49,9 +49,9 @@ class GroupRefiner {
   std::uint64_t raysKept() const { return few_.raysKept() + many_.raysKept(); }
 
   // Marks edges of the worst triangles, until the remaining error is within the bound or `room` new vertices
-  // are spent. Returns how many edges were marked.
-  std::size_t markWorst(std::size_t group, const GroupGeometry& geometry, double bound, std::size_t& room,
-                        MarkedEdges& edges);
+  // are spent. Returns how many edges were marked. Errors: no memory for the hierarchy.
+  Result<std::size_t> markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
+                                std::size_t& room, MarkedEdges& edges);
 
   // Appends what interpolation lacked inside the triangles of `draw` when last measured: values of some low
   // bands, and areas, per triangle.
@@ -77,12 +77,19 @@ class GroupRefiner {
   std::vector<std::uint32_t> trianglesThatMatter(double square_error) const;
   double squareError() const;
   double seenArea() const;
+  struct Edge {
+    std::uint32_t a, b, triangle;
+  };
+  // Returns for each edge the share of the way from a to b at which it is split because another surface cuts
+  // it, or 0. Errors: no memory for the hierarchy.
+  Result<std::vector<float>> cutsOf(const GroupGeometry& geometry, std::span<const Edge> list);
   void keepLacks(const GroupGeometry& geometry, std::span<const Inner> inner,
                  std::span<const std::uint8_t> seen, std::span<const float> lacks);
 
   ProbedPoints few_, many_;
   bool for_wedges_;
   std::optional<ProbedScene> scene_;
+  std::vector<glm::vec3> scene_normals_;  // of the scene's triangles, which are never split
   float diagonal_ = 0.0f;
   bool chosen_ = false;             // triangles were marked, so that few rays are no longer right on average
   std::vector<Measured> measured_;  // of each triangle

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <map>
 
 #include "baker/import/subdivide.hpp"
@@ -10,6 +11,10 @@
 namespace lambent::baker {
 
 namespace {
+
+// Shares of edges are multiples of its inverse, so that 1 - share has the same bits whichever end comes
+// first.
+constexpr float kShareSteps = 65536.0f;
 
 std::uint64_t pairOf(std::uint32_t a, std::uint32_t b) {
   const auto [low, high] = std::minmax(a, b);
@@ -54,7 +59,12 @@ std::uint64_t MarkedEdges::placesOf(std::size_t group, std::uint32_t a, std::uin
 }
 
 bool MarkedEdges::mark(std::size_t group, std::uint32_t a, std::uint32_t b) {
-  return in_group_[group].insert(placesOf(group, a, b)).second;
+  return in_group_[group].try_emplace(placesOf(group, a, b), 0.5f).second;
+}
+
+void MarkedEdges::splitAt(std::size_t group, std::uint32_t a, std::uint32_t b, float share) {
+  const float rounded = std::round(share * kShareSteps) / kShareSteps;
+  in_group_[group][placesOf(group, a, b)] = place_[group][a] < place_[group][b] ? rounded : 1.0f - rounded;
 }
 
 // Carries marks from groups to the meshes that are drawn there, and back. Returns false once nothing is new.
@@ -67,11 +77,13 @@ bool MarkedEdges::spread() {
       auto& marked = in_mesh_[draw.mesh][draw.primitive];
       if (in_group_[g].empty() && marked.empty()) continue;
       forEdges(meshes_[draw.mesh][draw.primitive], [&](std::uint32_t a, std::uint32_t b) {
-        const std::uint64_t places = placesOf(g, first + a, first + b);
-        if (in_group_[g].contains(places))
-          any |= marked.insert(pairOf(a, b)).second;
-        else if (marked.contains(pairOf(a, b)))
-          any |= in_group_[g].insert(places).second;
+        const bool turned = (place_[g][first + a] < place_[g][first + b]) != (a < b);
+        const auto across = [&](float share) { return turned ? 1.0f - share : share; };
+        const std::uint64_t places = placesOf(g, first + a, first + b), vertices = pairOf(a, b);
+        if (const auto found = in_group_[g].find(places); found != in_group_[g].end())
+          any |= marked.try_emplace(vertices, across(found->second)).second;
+        else if (const auto own = marked.find(vertices); own != marked.end())
+          any |= in_group_[g].try_emplace(places, across(own->second)).second;
       });
     }
   return any;
@@ -84,8 +96,10 @@ void MarkedEdges::split(std::vector<std::vector<bundle::MeshData>>& meshes) {
     for (std::size_t p = 0; p < in_mesh_[m].size(); ++p) {
       const auto& marked = in_mesh_[m][p];
       if (marked.empty()) continue;
-      splitMarkedEdges(meshes[m][p],
-                       [&](std::uint32_t a, std::uint32_t b) { return marked.contains(pairOf(a, b)); });
+      splitMarkedEdges(meshes[m][p], [&](std::uint32_t a, std::uint32_t b) {
+        const auto found = marked.find(pairOf(a, b));
+        return found == marked.end() ? 0.0f : a < b ? found->second : 1.0f - found->second;
+      });
     }
 }
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_set>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -20,23 +20,28 @@ class MarkedEdges {
   MarkedEdges(const std::vector<RigidGroup>& groups, const std::vector<GroupGeometry>& geometries,
               const std::vector<std::vector<bundle::MeshData>>& meshes);
 
-  // Marks the edge between two vertices of a group's geometry. Returns true if it was not marked before.
+  // Marks the edge between two vertices of a group's geometry, to be split in half. Returns true if it was
+  // not marked before.
   bool mark(std::size_t group, std::uint32_t a, std::uint32_t b);
+  // Has a marked edge split at this share of the way from `a` to `b`, which is rounded.
+  void splitAt(std::size_t group, std::uint32_t a, std::uint32_t b, float share);
 
   // Splits the marked edges in all meshes, and with them the same edges where a mesh is drawn elsewhere.
   void split(std::vector<std::vector<bundle::MeshData>>& meshes);
 
  private:
+  // Shares are those of the way from the lower place or vertex of a pair.
+  using Shares = std::unordered_map<std::uint64_t, float>;
+
   std::uint64_t placesOf(std::size_t group, std::uint32_t a, std::uint32_t b) const;
   bool spread();
 
   const std::vector<RigidGroup>& groups_;
   const std::vector<GroupGeometry>& geometries_;
   const std::vector<std::vector<bundle::MeshData>>& meshes_;
-  std::vector<std::vector<std::uint32_t>> place_;            // place number of each vertex of each group
-  std::vector<std::unordered_set<std::uint64_t>> in_group_;  // pairs of places
-  std::vector<std::vector<std::unordered_set<std::uint64_t>>>
-      in_mesh_;  // [mesh][primitive] pairs of vertices
+  std::vector<std::vector<std::uint32_t>> place_;  // place number of each vertex of each group
+  std::vector<Shares> in_group_;                   // by pairs of places
+  std::vector<std::vector<Shares>> in_mesh_;       // [mesh][primitive] by pairs of vertices
 };
 
 }  // namespace lambent::baker

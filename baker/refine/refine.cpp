@@ -129,9 +129,12 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
     if (round == options.rounds || report.vertices_after >= most) break;
     MarkedEdges edges(groups, geometries, meshes);
     std::size_t room = most - report.vertices_after, marked = 0;
-    for (std::size_t g = 0; g < groups.size(); ++g)
-      if (!groups[g].draws.empty())
-        marked += refiners[g].markWorst(g, geometries[g], double{options.bound}, room, edges);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (groups[g].draws.empty()) continue;
+      const auto more = refiners[g].markWorst(g, geometries[g], double{options.bound}, room, edges);
+      if (!more) return failAgain(more.error());
+      marked += *more;
+    }
     if (marked == 0) break;
     edges.split(meshes);
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include <glm/geometric.hpp>
+
 namespace lambent::baker {
 
 namespace {
@@ -19,6 +21,35 @@ constexpr std::size_t kInsideTestRays = 16, kLookRays = 64;
 // If no origin is seen, all of them move into their faces by these shares of the way to the middle, until
 // one is.
 constexpr std::array kMovedInto = {0.0f, 0.1f, 0.3f, 1.0f};
+// Whether an origin and its vertex see each other is asked from this share of the origin's reach away from
+// the vertex, which may itself lie in another surface.
+constexpr float kBeginOfWay = 0.001f;
+
+// Drops origins that something hides from their vertex, unless all are: they stand behind a wall that cuts
+// their face, and the light there is not the vertex's.
+void dropHiddenFromVertex(const RayScene& rays, std::vector<SampleOrigin>& origins) {
+  if (origins.size() < 2) return;
+  std::vector<RaySegment> ways;
+  for (const SampleOrigin& origin : origins) {
+    const glm::vec3 pull = kPullIntoFace / (1.0f - kPullIntoFace) * origin.inward;
+    const float whole = glm::length(pull), length = std::max(0.0f, whole - kBeginOfWay * origin.reach);
+    const glm::vec3 along = whole > 0.0f ? pull / whole : origin.geometric_normal;
+    ways.push_back({origin.position - length * along, along, length});
+  }
+  std::vector<std::uint8_t> hidden(ways.size(), 0);
+  rays.occluded(ways, hidden);
+  const auto seen = static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), 0));
+  if (seen == 0 || seen == origins.size()) return;
+  float weight = 0.0f;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    if (hidden[i] != 0) continue;
+    weight += origins[i].weight;
+    origins[kept++] = origins[i];
+  }
+  origins.resize(kept);
+  for (SampleOrigin& origin : origins) origin.weight /= weight;
+}
 
 }  // namespace
 
@@ -37,7 +68,7 @@ void findSeenOrigins(std::span<const SampleOrigin> all, const glm::mat3& frame, 
   seen.valid = std::all_of(shares.begin(), shares.end(), [](const MetShares& met) {
     return met.back == 0.0f && met.near <= kCoveredShare;
   });
-  if (seen.valid) return;
+  if (seen.valid) return dropHiddenFromVertex(rays, seen.origins);
   for (const float share : kMovedInto) {
     seen.origins.clear();
     float weight = 0.0f;
@@ -55,6 +86,7 @@ void findSeenOrigins(std::span<const SampleOrigin> all, const glm::mat3& frame, 
     }
     seen.valid = !seen.origins.empty();
     for (SampleOrigin& origin : seen.origins) origin.weight /= weight;
+    if (seen.valid && share == 0.0f) dropHiddenFromVertex(rays, seen.origins);
     if (seen.valid) return;
   }
   seen.origins.assign(all.begin(), all.end());

@@ -84,6 +84,22 @@ TEST(SeenOrigins, LeaveOutWhatSomethingLiesOn) {
   EXPECT_TRUE(found.valid);
 }
 
+TEST(SeenOrigins, LeaveOutWhatAThinWallHidesFromTheVertex) {
+  const Transport t(sceneOf({grid({0, 0, 0}, 4.0f, 4), box({0.05f, 0.5f, 0}, {0.02f, 1.0f, 4.0f}, 1)}));
+  // The vertex is (0, 0, 0); origins stand 3 % of the way to the middles of their faces.
+  const SampleOrigin here{{-0.03f, 1e-4f, 0}, {0, 1, 0}, 0.25f, 0.1f, {-0.97f, 0, 0}},
+      beyond{{0.12f, 1e-4f, 0}, {0, 1, 0}, 0.75f, 0.1f, {3.88f, 0, 0}};
+  const InsideTestTables glances;
+  SeenOrigins found;
+  findSeenOrigins(std::array{here, beyond}, upright(), t.rays, glances, found);
+  ASSERT_TRUE(found.valid);
+  ASSERT_EQ(found.origins.size(), 1u);
+  EXPECT_EQ(found.origins[0].position, here.position);
+  EXPECT_EQ(found.origins[0].weight, 1.0f);
+  findSeenOrigins(std::span(&beyond, 1), upright(), t.rays, glances, found);
+  EXPECT_TRUE(found.valid);
+}
+
 TEST(SeenOrigins, AreJudgedByAllRaysHoweverSmallTheirFaceIs) {
   // Rays that are dealt out by weight leave none for the face that is a sliver at the vertex, and what no ray
   // tests would pass as seen.
