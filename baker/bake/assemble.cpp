@@ -138,6 +138,11 @@ class Assembler {
       stored.push_back(addCodebook(coded));
       most_planes = std::max(most_planes, coded.planes.size());
     });
+    for (std::size_t g = 0; g < baked.size(); ++g)
+      for (std::size_t c = 0; c < baked[g].cells.size(); ++c)
+        for (bundle::CellTransfer& stored : description_.groups[g].cells[c].transfers)
+          if (!stored.shape.beyondDiffuse() && baked[g].codes_bound > 0.0f)
+            stored.error_bound = baked[g].codes_bound;
     addBrdfTables();
     addLightWeights(baked);
     addProxies(baked);

@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "baker/bake/options.hpp"
+#include "baker/bake/picture_budget.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/plan/effect_plan.hpp"
@@ -53,6 +54,7 @@ struct BakeReport {
     };
     std::vector<Effect> effects;
     std::optional<bundle::PictureError> picture_error = {};  // of diffuse surfaces
+    float codes_bound = 0.0f;                                // that of diffuse codes
   };
   std::vector<Group> groups;
   struct Neighborhood {
@@ -65,6 +67,9 @@ struct BakeReport {
   };
   std::vector<Neighborhood> neighborhoods;
   RefineReport refinement;
+  // What was chosen to keep BakeOptions::picture_bound, and at which try; 0 tries: nothing was to be chosen.
+  PictureSettings chosen;
+  int tries = 0;
   struct Volume {
     std::string name;
     std::uint64_t voxels = 0, samples = 0;

@@ -45,7 +45,7 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
   EXPECT_EQ(help.exit_code, 0);
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
       {"bake", {"SCENE",          "--output",     "--quality",     "--order",
-                "--rays",         "--bounces",    "--error",       "--max-edge",
+                "--rays",         "--bounces",    "--error",       "--codes",       "--max-edge",
                 "--light-probes", "--refine",     "--volume-grid", "--neighborhood-grid",
                 "--effects",      "--threads",    "--max-memory",  "--allow-outside",
                 "--cache",        "--cache-size", "--force",       "--json"}},
