@@ -87,10 +87,15 @@ Result<Tried> bakeAll(const SceneBake& whole, PictureTry* trying, const AlphaMap
   }
   Tried tried{std::move(*meshes), {}, {}};
   for (std::size_t g = 0; g < whole.plan.groups.size() && !tried.next; ++g) {
+    context.progress.end();
+    const std::size_t first_stage = context.progress.finished().size();
     auto group = whole.plan.groups[g].volume >= 0
                      ? bakeVolume(whole, alpha_maps, g, tried.groups, context)
                      : bakeGroup(whole, {tried.meshes, alpha_maps, images}, g, context);
     if (!group) return failAgain(group.error());
+    context.progress.end();
+    whole.report.groups.back().first_stage = first_stage;
+    whole.report.groups.back().stage_count = context.progress.finished().size() - first_stage;
     tried.next = group->next_try;
     tried.groups.push_back(std::move(*group));
   }
@@ -105,8 +110,10 @@ BakeReport spentOn(const BakeReport& report) {
   return spent;
 }
 
+// Writes nothing if there is no output; the report's file has the size that its parts have.
 Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
-                                      const std::filesystem::path& output, const BakeContext& context) {
+                                      const std::optional<std::filesystem::path>& output,
+                                      const BakeContext& context) {
   BakeReport report;
   context.progress.begin("plan");
   const auto plan = planFor(scene, options);
@@ -146,11 +153,14 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
     if (const auto reader = bundle::Reader::open(part); !reader) return failAgain(reader.error());
     return {};
   };
-  if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs, opens); !written)
+  if (!output) {
+    for (const bundle::Blob& blob : bundle.blobs) report.file_bytes += blob.size();
+  } else if (auto written = bundle::write(*output, std::move(bundle.description), bundle.blobs, opens);
+             !written) {
     return failAgain(written.error());
+  }
   context.progress.end();
-  std::error_code ignored;
-  report.file_bytes = std::filesystem::file_size(output, ignored);
+  if (std::error_code ignored; output) report.file_bytes = std::filesystem::file_size(*output, ignored);
   report.stages = context.progress.finished();
   if (const Cache* cache = context.cache) {
     report.cache = cache->figures();
@@ -231,6 +241,12 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const st
   std::optional<Result<BakeReport>> result;
   if (context.cache) context.cache->beginBake();
   withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, context); });
+  return std::move(*result);
+}
+
+Result<BakeReport> rehearse(const Scene& scene, const BakeOptions& options, const BakeContext& context) {
+  std::optional<Result<BakeReport>> result;
+  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, std::nullopt, context); });
   return std::move(*result);
 }
 

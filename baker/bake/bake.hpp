@@ -55,6 +55,9 @@ struct BakeReport {
     std::vector<Effect> effects;
     std::optional<bundle::PictureError> picture_error = {};  // of diffuse surfaces
     float codes_bound = 0.0f;                                // that of diffuse codes
+    std::uint64_t samples = 0, transfer_bytes = 0;
+    std::uint64_t hit_bytes = 0;  // memory of the hits kept for the bounces
+    std::size_t first_stage = 0, stage_count = 0;  // in `stages`
   };
   std::vector<Group> groups;
   struct Neighborhood {
@@ -92,6 +95,10 @@ struct BakeReport {
 // output that cannot be written, "stopped" if a stop was requested.
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
                         const BakeContext& context);
+
+// Bakes without writing, to learn what a bake with other options will take. Options may be out of range.
+// Errors: as those of bake().
+Result<BakeReport> rehearse(const Scene& scene, const BakeOptions& options, const BakeContext& context);
 
 // Checks what can be checked before the scene is read and rays are traced; bake() begins with it. Errors:
 // options out of range, an effect that is not known, an output that cannot be written.

@@ -12,7 +12,7 @@
 #include "baker/cli/output.hpp"
 #include "baker/cli/watch.hpp"
 #include "baker/import/gltf.hpp"
-#include "baker/pipeline/job_estimate.hpp"
+#include "baker/pipeline/bake_estimate.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/source_watch.hpp"
 #include "runtime/base/atomic_file.hpp"
@@ -32,20 +32,10 @@ struct BakeArguments {
   std::uint64_t cache_bytes = kCacheBytes;
 };
 
-// A bake without a cache is only slower, so a problem with its folder is reported and no error.
-std::optional<Cache> openCache(const BakeArguments& a) {
-  if (a.cache == "off") return std::nullopt;
-  const std::filesystem::path folder =
-      a.cache.empty() ? Cache::defaultFolder() : std::filesystem::path(a.cache);
-  if (folder.empty()) return std::nullopt;
-  auto cache = Cache::open(folder, a.cache_bytes);
-  if (!cache) {
-    fmt::print(stderr, "lambent: {}; baking without it\n", cache.error().line());
-    return std::nullopt;
-  }
-  cache->setReading(!a.force);
-  if (a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
-  return std::move(*cache);
+std::optional<Cache> cacheOf(const BakeArguments& a) {
+  auto cache = openCache(a.cache, a.cache_bytes);
+  if (cache && a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
+  return cache;
 }
 
 // The journal of this program lies in the cache's folder.
@@ -79,8 +69,10 @@ int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::st
       fmt::print("{} is up to date; --force bakes it again\n", a.output.string());
     return 0;
   }
+  const auto estimate = cache ? findEstimate(*scene, a.options, *cache) : std::nullopt;
+  if (cache) cache->setReading(!a.force);
   Result<BakeReport> report = [&] {
-    const ProgressLine line(progress, guessSeconds(*scene, a.options));
+    const ProgressLine line(progress, estimate ? estimate->stages : guessSeconds(*scene, a.options));
     return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
   }();
   if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
@@ -92,9 +84,9 @@ int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::st
   }
   for (const std::string& notice : report->notices) reportNotice(a.scene, notice);
   if (a.json)
-    printReportJson({a.output, a.options, *report});
+    printReportJson({a.output, a.options, *report, estimate});
   else
-    printReport({a.output, a.options, *report});
+    printReport({a.output, a.options, *report, estimate});
   return 0;
 }
 
@@ -127,7 +119,7 @@ int runBake(BakeArguments a) {
   if (!a.watch.empty()) {
     if (!a.scene.empty() || a.resume || a.force)
       return wrongUsage({"--watch", "is given with a scene, --resume or --force", "give it a folder alone"});
-    std::optional<Cache> cache = openCache(a);
+    std::optional<Cache> cache = cacheOf(a);
     return watchFolder({a.watch, a.output, a.options, {.allow_outside = a.allow_outside}, a.json},
                        cache ? &*cache : nullptr);
   }
@@ -139,7 +131,7 @@ int runBake(BakeArguments a) {
   if (a.output.empty()) a.output = bundleBeside(a.scene);
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
-  std::optional<Cache> cache = openCache(a);
+  std::optional<Cache> cache = cacheOf(a);
   return a.scene.empty() ? resumeBakes(a, cache, stop.get_token()) : bakeScene(a, cache, stop.get_token());
 }
 

@@ -33,6 +33,33 @@ std::string stagesText(const std::vector<Progress::Stage>& stages) {
   return text;
 }
 
+double secondsOf(const BakeReport& report) {
+  double seconds = 0.0;
+  for (const Progress::Stage& stage : report.stages) seconds += stage.seconds;
+  return seconds;
+}
+
+// A Held is one figure of the estimate against what it came to.
+struct Held {
+  const char* name;
+  double estimated, measured;
+};
+std::vector<Held> heldAgainst(const BakeEstimate& estimate, const BakeReport& report) {
+  return {{"seconds", estimate.seconds, secondsOf(report)},
+          {"samples", estimate.samples, static_cast<double>(report.samples)},
+          {"rays", estimate.rays, static_cast<double>(report.rays)},
+          {"memory", estimate.memory_bytes, peakMemory()},
+          {"bytes", estimate.bytes, static_cast<double>(report.file_bytes)}};
+}
+
+nlohmann::json estimateJson(const FinishedBake& bake) {
+  if (!bake.estimate || bake.report.rays_kept > 0) return nullptr;
+  nlohmann::json json;
+  for (const Held& held : heldAgainst(*bake.estimate, bake.report))
+    json[held.name] = {{"estimated", held.estimated}, {"measured", held.measured}};
+  return json;
+}
+
 // Returns the bound on diffuse codes: the widest, where it was chosen for each group.
 double codesBoundOf(const FinishedBake& bake) {
   double bound = 0.0;
@@ -144,6 +171,7 @@ void printReportJson(const FinishedBake& bake) {
                                                {"refine", r.chosen.refine_bound},
                                                {"codes", codesBoundOf(bake)},
                                                {"tries", r.tries}}},
+      {"estimate", estimateJson(bake)},
       {"vertices", r.vertices},
       {"triangles", r.triangles},
       {"samples", r.samples},
@@ -189,10 +217,8 @@ void printReportJson(const FinishedBake& bake) {
 
 void printReport(const FinishedBake& bake) {
   const BakeReport& r = bake.report;
-  double seconds = 0.0;
-  for (const Progress::Stage& stage : r.stages) seconds += stage.seconds;
   fmt::print("{}: {} vertices, {} triangles, {} samples in {}\n", bake.output.string(), r.vertices,
-             r.triangles, r.samples, durationText(seconds));
+             r.triangles, r.samples, durationText(secondsOf(r)));
   if (const RefineReport& refined = r.refinement; refined.vertices_after > refined.vertices_before)
     fmt::print("  refined   {} vertices to {}: shadows between them {:.2f} % wrong, before {:.2f} %{}\n",
                refined.vertices_before, refined.vertices_after, 100.0 * refined.error_after,
@@ -243,6 +269,13 @@ void printReport(const FinishedBake& bake) {
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
     fmt::print("  around    {}: {} x {} x {} points, {:.3f} % of irradiance, {:.1f} % of the change\n",
                n.name, n.size.x, n.size.y, n.size.z, 100.0 * n.error, 100.0 * n.change_error);
+  if (bake.estimate && r.rays_kept == 0) {
+    std::string text;
+    for (const Held& held : heldAgainst(*bake.estimate, r))
+      text += fmt::format("{}{} {:.2f}", text.empty() ? "" : ", ", held.name,
+                          held.measured > 0.0 ? held.estimated / held.measured : 1.0);
+    fmt::print("  estimate  times what it came to: {}\n", text);
+  }
   if (const std::string missed = missedText(bake); !missed.empty()) fmt::print("  missed    {}\n", missed);
 }
 

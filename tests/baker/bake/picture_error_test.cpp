@@ -89,6 +89,34 @@ TEST(PictureError, GrowsWithTheBoundOnCodes) {
   EXPECT_GT(rough.all, rough.codes * 0.9f);
 }
 
+// Room and box need different rays and vertices for one bound.
+Scene boxAboveFloor() {
+  return testing::sceneOf({testing::grid({0.0f, 0.0f, 0.0f}, 4.0f, 6),
+                           testing::box({0.13f, 0.6f, -0.21f}, {0.7f, 0.8f, 0.7f}, 4)});
+}
+
+TEST(PictureError, IsWithinTheBoundThatWasAskedForAndNotFarBelow) {
+  for (const Scene& scene : {openRoom(), boxAboveFloor()})
+    for (const float bound : {0.03f, 0.015f}) {
+      BakeOptions options;
+      options.picture_bound = bound;
+      const bundle::PictureError error = errorOf(scene, options);
+      EXPECT_EQ(error.bound, bound);
+      EXPECT_LE(error.all, bound) << "rays " << error.samples << ", codes " << error.codes
+                                  << ", interpolation " << error.interpolation;
+      EXPECT_GE(error.all, 0.5f * bound);
+    }
+}
+
+TEST(PictureError, IsLargerThanItsBoundWhereRaysAreFixed) {
+  BakeOptions options = plainOptions();
+  options.rays = 128;
+  options.picture_bound = 0.002f;
+  const bundle::PictureError error = errorOf(openRoom(), options);
+  EXPECT_GT(error.samples, options.picture_bound) << "noise of so few rays cannot be taken away by codes";
+  EXPECT_GT(error.all, error.bound);
+}
+
 TEST(PictureError, EyesStandInRoomsAndAroundBodies) {
   const Transport room(openRoom());
   const ViewPoints in_room = viewPoints(room.diffuse());
