@@ -129,11 +129,11 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   BakeOptions chosen = options;
   Result<Tried> tried;
   for (int tries = 1; tries == 1 || (tried && tried->next); ++tries) {
-    PictureTry trying{.made_with = {static_cast<std::uint32_t>(chosen.effectiveRays()),
-                                    chosen.effectiveRefineBound()},
-                      .shown = {},
-                      .keeps_rays = options.rays != 0,
-                      .keeps_refinement = options.refine_bound >= 0.0f};
+    PictureTry trying{
+        .made_with = {static_cast<std::uint32_t>(chosen.effectiveRays()), chosen.effectiveRefineBound()},
+        .shown = {},
+        .keeps_rays = options.rays != 0,
+        .keeps_refinement = options.refine_bound >= 0.0f};
     report = spentOn(report);
     if (chooses) report.chosen = trying.made_with, report.tries = tries;
     PictureTry* const may_ask = chooses && tries < kMostTries ? &trying : nullptr;

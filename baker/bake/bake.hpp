@@ -56,7 +56,7 @@ struct BakeReport {
     std::optional<bundle::PictureError> picture_error = {};  // of diffuse surfaces
     float codes_bound = 0.0f;                                // that of diffuse codes
     std::uint64_t samples = 0, transfer_bytes = 0;
-    std::uint64_t hit_bytes = 0;  // memory of the hits kept for the bounces
+    std::uint64_t hit_bytes = 0;                   // memory of the hits kept for the bounces
     std::size_t first_stage = 0, stage_count = 0;  // in `stages`
   };
   std::vector<Group> groups;

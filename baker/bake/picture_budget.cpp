@@ -9,7 +9,8 @@ namespace {
 
 // So much of the bound is aimed at, since what is measured at a thousand points is a few per cent off.
 constexpr double kAim = 0.95;
-// Rays and refinement share what codes leave: so many vertices as interpolation asks for have so many rays each.
+// Rays and refinement share what codes leave: so many vertices as interpolation asks for have so many rays
+// each.
 constexpr double kLight = 0.88;  // of the bound, aimed at by rays and refinement together
 constexpr double kEnough = 0.93;
 constexpr double kInterpolation = 0.6, kMostInterpolation = 0.72;  // of the bound
@@ -57,8 +58,9 @@ std::optional<PictureSettings> nextTry(const PictureTry& tried, float picture_bo
   }
   if (!keeps_rays) {
     // Where vertices alone miss the bound, more rays take little of the error away.
-    const double noise = std::sqrt(std::max(light * light - interpolation * interpolation,
-                                            0.25 * std::max(light, interpolation) * std::max(light, interpolation)));
+    const double noise =
+        std::sqrt(std::max(light * light - interpolation * interpolation,
+                           0.25 * std::max(light, interpolation) * std::max(light, interpolation)));
     const double ratio = double{shown.samples} / noise;
     next.rays = std::max(made_with.rays, wholePackets(double(made_with.rays) * ratio * ratio));
   }
@@ -79,8 +81,8 @@ std::optional<float> nextCodesBound(float bound, const bundle::PictureError& sho
   if (!(shown.codes > 0.0f)) return std::nullopt;
   bundle::PictureError without = shown;
   without.all = std::sqrt(std::max(0.0f, shown.all * shown.all - shown.codes * shown.codes));
-  const float next = std::clamp(bound * codesBound(without, picture_bound) / shown.codes,
-                                0.1f * bound, std::min(kMostCodes, 8.0f * bound));
+  const float next = std::clamp(bound * codesBound(without, picture_bound) / shown.codes, 0.1f * bound,
+                                std::min(kMostCodes, 8.0f * bound));
   // A bound that was already the least, or the most, has nothing to gain.
   constexpr float kSame = 0.05f;
   if (std::abs(next - bound) < kSame * bound) return std::nullopt;

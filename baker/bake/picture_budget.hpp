@@ -1,8 +1,8 @@
-// Divides a bound on the error of pictures (BakeOptions::picture_bound) among its three causes: noise of rays,
-// interpolation between vertices, and codes. Squares of the three add up. Before anything is known of a scene,
-// rays and refinement come from the bound alone, so few that most bakes begin too cheap and not too dear; what
-// a try then shows says what the next one needs. Codes come last and get what the others left. All functions
-// are pure.
+// Divides a bound on the error of pictures (BakeOptions::picture_bound) among its three causes: noise of
+// rays, interpolation between vertices, and codes. Squares of the three add up. Before anything is known of a
+// scene, rays and refinement come from the bound alone, so few that most bakes begin too cheap and not too
+// dear; what a try then shows says what the next one needs. Codes come last and get what the others left. All
+// functions are pure.
 #pragma once
 
 #include <cstdint>

@@ -82,8 +82,7 @@ std::vector<CodedTransfer> CellCoder::codeDiffuse(const SampleCell& cell, Surfac
   for (const CellVectors& vectors :
        cellVectors(cell, group_.samples, light_.direct, light_.bounced ? &*light_.bounced : nullptr,
                    grey_emission_)) {
-    coded.push_back(
-        coding_.code(vectors.vectors, cell.count, vectors.shape, {.bound = figures.codes_bound}));
+    coded.push_back(coding_.code(vectors.vectors, cell.count, vectors.shape, {.bound = figures.codes_bound}));
     figures.worst_error = std::max(figures.worst_error, double{coded.back().error});
   }
   return coded;
@@ -105,12 +104,11 @@ void write(const SurfaceCells& cells, ByteWriter& out) {
 bool read(ByteReader& in, SurfaceCells& cells) {
   SurfaceFigures& figures = cells.figures;
   bundle::PictureError error;
-  const bool whole = read(in, cells.cells) && in.read(figures.filled_samples) &&
-                     in.read(figures.glossy_samples) && in.read(figures.hit_bytes) &&
-                     in.read(figures.worst_error) && in.read(figures.worst_glossy_error) &&
-                     in.read(figures.left_out) && in.readList(figures.pass_energy) &&
-                     in.read(figures.diffuse.kept) && in.read(figures.glossy.kept) && in.read(error) &&
-                     in.read(figures.codes_bound);
+  const bool whole =
+      read(in, cells.cells) && in.read(figures.filled_samples) && in.read(figures.glossy_samples) &&
+      in.read(figures.hit_bytes) && in.read(figures.worst_error) && in.read(figures.worst_glossy_error) &&
+      in.read(figures.left_out) && in.readList(figures.pass_energy) && in.read(figures.diffuse.kept) &&
+      in.read(figures.glossy.kept) && in.read(error) && in.read(figures.codes_bound);
   if (whole && error.points > 0) figures.picture_error = error;
   return whole;
 }

@@ -15,6 +15,7 @@
 #include "baker/pipeline/bake_estimate.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/source_watch.hpp"
+#include "baker/pipeline/time_budget.hpp"
 #include "runtime/base/atomic_file.hpp"
 
 namespace lambent::baker {
@@ -26,6 +27,7 @@ struct BakeArguments {
   std::filesystem::path watch;  // a folder; empty means none
   bool resume = false;
   double checkpoint_s = 0.0;  // 0 keeps the cache's own interval
+  double time_s = 0.0;        // 0: the options say all
   BakeOptions options;
   bool force = false, json = false, allow_outside = false;
   std::string cache;  // a folder, "off", or empty for the default one
@@ -90,6 +92,20 @@ int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::st
   return 0;
 }
 
+// Replaces the options by those with which the bake takes about the time that was asked for.
+Result<void> chooseByTime(BakeArguments& a, const std::stop_token& stop) {
+  const auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
+  if (!scene) return failAgain(scene.error());
+  Progress unused;
+  const auto chosen = optionsForTime(*scene, a.options, a.time_s, {unused, stop});
+  if (!chosen) return failAgain(chosen.error());
+  a.options = chosen->options;
+  reportNotice(a.scene, fmt::format("baked with {}, which takes about {}{}", chosen->words,
+                                    durationText(chosen->seconds),
+                                    chosen->seconds > a.time_s ? "; nothing coarser takes less" : ""));
+  return {};
+}
+
 // Reports an error in the command line and returns the exit code 2.
 int wrongUsage(const Error& error) {
   reportError(error);
@@ -117,8 +133,9 @@ int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::
 
 int runBake(BakeArguments a) {
   if (!a.watch.empty()) {
-    if (!a.scene.empty() || a.resume || a.force)
-      return wrongUsage({"--watch", "is given with a scene, --resume or --force", "give it a folder alone"});
+    if (!a.scene.empty() || a.resume || a.force || a.time_s > 0.0)
+      return wrongUsage(
+          {"--watch", "is given with a scene, --resume, --force or --time", "give it a folder alone"});
     std::optional<Cache> cache = cacheOf(a);
     return watchFolder({a.watch, a.output, a.options, {.allow_outside = a.allow_outside}, a.json},
                        cache ? &*cache : nullptr);
@@ -128,9 +145,15 @@ int runBake(BakeArguments a) {
   if (a.scene.empty() && !a.output.empty())
     return wrongUsage(
         {"--output", "is given with --resume alone", "leave it out: each bake knows its bundle"});
+  if (a.time_s > 0.0 && (a.scene.empty() || a.options.picture_bound > 0.0f))
+    return wrongUsage({"--time", "is given with --resume or --error", "give it with a scene, and one bound"});
   if (a.output.empty()) a.output = bundleBeside(a.scene);
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
+  if (a.time_s > 0.0) {
+    if (const auto checked = checkRequest(a.options, a.output); !checked) return reportError(checked.error());
+    if (const auto done = chooseByTime(a, stop.get_token()); !done) return reportError(done.error());
+  }
   std::optional<Cache> cache = cacheOf(a);
   return a.scene.empty() ? resumeBakes(a, cache, stop.get_token()) : bakeScene(a, cache, stop.get_token());
 }
@@ -169,6 +192,14 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->add_option("--checkpoint", a->checkpoint_s,
                    "How many seconds of work a bake that is killed may lose, about; default 8")
       ->check(CLI::Range(0.05, 600.0))
+      ->type_name("S");
+  command
+      ->add_option(
+          "--time", a->time_s,
+          "Choose --quality, and --rays, --refine and --codes as far as they are not given, so that the "
+          "bake takes about so many seconds here, its rehearsals included, on a machine that does "
+          "nothing else: mostly 0.5 to 1.3 times as many. Says which were chosen")
+      ->check(CLI::Range(0.1, 1e6))
       ->type_name("S");
   command->add_flag("--force", a->force,
                     "Bake all anew, even if the bundle is up to date and whatever the cache holds");

@@ -109,8 +109,8 @@ std::string pictureErrorText(const bundle::PictureError& error) {
       "{:.2f} % wrong{} at {} points that eyes see: {:.2f} % by too few rays, {:.2f} % by codes, {:.2f} % "
       "between vertices",
       100.0 * double{error.all},
-      error.bound > 0.0f ? fmt::format(" (bound {:.2f} %)", 100.0 * double{error.bound}) : "", error.points, 100.0 * double{error.samples}, 100.0 * double{error.codes},
-      100.0 * double{error.interpolation});
+      error.bound > 0.0f ? fmt::format(" (bound {:.2f} %)", 100.0 * double{error.bound}) : "", error.points,
+      100.0 * double{error.samples}, 100.0 * double{error.codes}, 100.0 * double{error.interpolation});
 }
 
 nlohmann::json pictureErrorJson(const std::optional<bundle::PictureError>& error) {

@@ -179,7 +179,8 @@ void addPlanCommand(CLI::App& app, Command& run) {
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--json", a->json, "Print as JSON");
   command->footer(
-      "With an option of the bake beside --effects and --light-probes, such as --quality draft, the plan also "
+      "With an option of the bake beside --effects and --light-probes, such as --quality draft, the plan "
+      "also "
       "estimates samples, rays, time, memory and bytes: it rehearses the bake with an eighth of the rays or "
       "less, which takes a tenth to a third of its time.");
   command->callback([a, command, &run] {

@@ -11,17 +11,26 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::uint32_t kFewerRays = 8, kLeastRays = 32, kMostRays = 128;  // of a rehearsal
+constexpr std::uint32_t kFewerRays = 8, kLeastRays = 64, kMostRays = 128;  // of a rehearsal
 constexpr double kMostCodesBound = 0.1;
 // Noise of rays takes bytes where codes keep it. With the square root of so many fewer rays as the bound on
 // codes is wider, they keep as little; what is left of the difference was measured on the sample scenes.
 constexpr double kBytesPower = 0.2;
 // Light of a sample in memory: direct, bounced in three channels, and both once more to be coded.
 constexpr double kCopiesOfLight = 8.0;
+// Hits of the points at which the error of pictures is measured take so many times what those of samples do.
+constexpr double kHitsOfView = 6.0;
+
+// Rays of each such point, of both looks (picture_error.cpp).
+double raysOfView(const BakeOptions& options) {
+  const auto rays = static_cast<double>(options.effectiveRays());
+  return rays + std::max(2.0 * rays, std::clamp(8.0 * rays, 1024.0, 4096.0));
+}
 
 BakeOptions rehearsalOf(const BakeOptions& options, bool glossy) {
   BakeOptions few = options;
-  few.rays = std::clamp(static_cast<std::uint32_t>(options.effectiveRays()) / kFewerRays, kLeastRays, kMostRays);
+  few.rays =
+      std::clamp(static_cast<std::uint32_t>(options.effectiveRays()) / kFewerRays, kLeastRays, kMostRays);
   few.refine_bound = options.effectiveRefineBound();
   // A bound that is given is kept at any price where surfaces are glossy, which says little about the bake.
   if (glossy && options.error_bound == 0.0f) return few;
@@ -47,11 +56,12 @@ std::optional<PictureSettings> nextTryAfter(const BakeReport& report, const Bake
   const double times = static_cast<double>(options.effectiveRays()) / static_cast<double>(few.rays);
   for (const BakeReport::Group& group : report.groups) {
     if (!group.picture_error) continue;
-    const PictureTry tried{.made_with = {static_cast<std::uint32_t>(options.effectiveRays()), few.refine_bound},
-                           .refined_to = report.refinement.error_after,
-                           .shown = withRays(*group.picture_error, times),
-                           .keeps_rays = asked.rays != 0,
-                           .keeps_refinement = asked.refine_bound >= 0.0f || report.refinement.at_limit};
+    const PictureTry tried{
+        .made_with = {static_cast<std::uint32_t>(options.effectiveRays()), few.refine_bound},
+        .refined_to = report.refinement.error_after,
+        .shown = withRays(*group.picture_error, times),
+        .keeps_rays = asked.rays != 0,
+        .keeps_refinement = asked.refine_bound >= 0.0f || report.refinement.at_limit};
     if (leavesEnough(tried.shown, asked.picture_bound)) continue;
     if (auto next = nextTry(tried, asked.picture_bound)) return next;
   }
@@ -75,12 +85,19 @@ void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions&
     BakeEstimate::Group& of = groups.emplace_back();
     of.name = group.name;
     of.samples = static_cast<double>(group.samples);
-    for (const auto& effect : group.effects) of.rays += static_cast<double>(effect.rays) * times;
+    double rays = 0.0;
+    for (const auto& effect : group.effects) rays += static_cast<double>(effect.rays);
+    of.rays = rays * times;
     const auto stages = std::span(report.stages).subspan(group.first_stage, group.stage_count);
     for (const auto& [stage, seconds] : scaleSeconds(stages, few, options)) of.seconds += seconds;
     const double hits = std::min(static_cast<double>(group.hit_bytes) * times,
                                  0.5 * static_cast<double>(options.effectiveMemory()));
-    more_hits = std::max(more_hits, hits - static_cast<double>(group.hit_bytes));
+    const double of_view = group.picture_error && rays > 0.0
+                               ? kHitsOfView * static_cast<double>(group.hit_bytes) / rays *
+                                     static_cast<double>(group.picture_error->points) *
+                                     (raysOfView(options) - raysOfView(few))
+                               : 0.0;
+    more_hits = std::max(more_hits, hits - static_cast<double>(group.hit_bytes) + of_view);
     of.memory_bytes =
         hits + of.samples * kCopiesOfLight * double(options.order * options.order) * double{sizeof(float)};
     of.bytes = static_cast<double>(group.transfer_bytes) * of_codes;
@@ -118,11 +135,13 @@ bool read(ByteReader& in, BakeEstimate& estimate) {
     return false;
   std::vector<char> stage;
   for (std::uint64_t i = 0; i < count; ++i)
-    if (!in.readList(stage) || !in.read(estimate.stages[std::string(stage.begin(), stage.end())])) return false;
+    if (!in.readList(stage) || !in.read(estimate.stages[std::string(stage.begin(), stage.end())]))
+      return false;
   return true;
 }
 
-Result<BakeEstimate> estimateBake(const Scene& scene, const BakeOptions& options, const BakeContext& context) {
+Result<BakeEstimate> estimateBake(const Scene& scene, const BakeOptions& options,
+                                  const BakeContext& context) {
   const auto plan = planFor(scene, options);
   if (!plan) return failAgain(plan.error());
   BakeEstimate estimate;

@@ -1,6 +1,6 @@
 // Says beforehand what a bake will take, for each group: samples, rays, time, memory and bytes. It rehearses
-// the bake with an eighth of the rays or less, refinement included, and scales what was measured. This takes a
-// tenth to a third of the bake, on the same machine. An estimate can be kept in the cache, so that the bake
+// the bake with an eighth of the rays or less, refinement included, and scales what was measured. This takes
+// a tenth to a third of the bake, on the same machine. An estimate can be kept in the cache, so that the bake
 // that follows says how far off it was. Errors: those of the bake.
 #pragma once
 

@@ -41,7 +41,8 @@ double cells(const glm::uvec3& grid) {
 // Returns how much longer a stage takes with other options; these are rough rules that the stage names
 // explain.
 double growth(const std::string& stage, const BakeOptions& of, const BakeOptions& to) {
-  const auto before = static_cast<double>(of.effectiveRays()), after = static_cast<double>(to.effectiveRays());
+  const auto before = static_cast<double>(of.effectiveRays()),
+             after = static_cast<double>(to.effectiveRays());
   const double rays = (after + kRaysOfASample) / (before + kRaysOfASample);
   const double voxels = cells(to.volume_grid) / cells(of.volume_grid);
   if (stage == "scattering" || stage == "scattered light")

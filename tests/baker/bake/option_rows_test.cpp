@@ -10,12 +10,22 @@ namespace lambent::baker {
 namespace {
 
 // Returns another value for each option; a new row needs one here.
-const std::map<std::string_view, std::string_view> kOthers = {
-    {"quality", "high"},      {"order", "4"},         {"glossy-order", "6"},
-    {"rays", "777"},          {"bounces", "3"},       {"max-memory", "1048576"},
-    {"error", "0.0125"},      {"codes", "0.003"},      {"max-edge", "0.1"},    {"refine", "0.07"},
-    {"fit", "off"},           {"light-probes", "9"},  {"neighborhood-grid", "3x4x5"},
-    {"volume-grid", "6x7x8"}, {"effects", "diffuse"}, {"threads", "2"}};
+const std::map<std::string_view, std::string_view> kOthers = {{"quality", "high"},
+                                                              {"order", "4"},
+                                                              {"glossy-order", "6"},
+                                                              {"rays", "777"},
+                                                              {"bounces", "3"},
+                                                              {"max-memory", "1048576"},
+                                                              {"error", "0.0125"},
+                                                              {"codes", "0.003"},
+                                                              {"max-edge", "0.1"},
+                                                              {"refine", "0.07"},
+                                                              {"fit", "off"},
+                                                              {"light-probes", "9"},
+                                                              {"neighborhood-grid", "3x4x5"},
+                                                              {"volume-grid", "6x7x8"},
+                                                              {"effects", "diffuse"},
+                                                              {"threads", "2"}};
 
 TEST(OptionRows, HaveNamesOfTheirOwnAndSayWhatTheyDo) {
   std::set<std::string_view> names, settings;
