@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "baker/bake/assemble.hpp"
 #include "baker/bake/bake_group.hpp"
@@ -110,10 +111,8 @@ BakeReport spentOn(const BakeReport& report) {
   return spent;
 }
 
-// Writes nothing if there is no output; the report's file has the size that its parts have.
 Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
-                                      const std::optional<std::filesystem::path>& output,
-                                      const BakeContext& context) {
+                                      const std::filesystem::path& output, const BakeContext& context) {
   BakeReport report;
   context.progress.begin("plan");
   const auto plan = planFor(scene, options);
@@ -153,14 +152,11 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
     if (const auto reader = bundle::Reader::open(part); !reader) return failAgain(reader.error());
     return {};
   };
-  if (!output) {
-    for (const bundle::Blob& blob : bundle.blobs) report.file_bytes += blob.size();
-  } else if (auto written = bundle::write(*output, std::move(bundle.description), bundle.blobs, opens);
-             !written) {
+  if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs, opens); !written)
     return failAgain(written.error());
-  }
   context.progress.end();
-  if (std::error_code ignored; output) report.file_bytes = std::filesystem::file_size(*output, ignored);
+  std::error_code ignored;
+  report.file_bytes = std::filesystem::file_size(output, ignored);
   report.stages = context.progress.finished();
   if (const Cache* cache = context.cache) {
     report.cache = cache->figures();
@@ -245,8 +241,12 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const st
 }
 
 Result<BakeReport> rehearse(const Scene& scene, const BakeOptions& options, const BakeContext& context) {
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(ignored);
+  const std::filesystem::path output = folder / fmt::format("lambent-rehearsal-{}.lmb.glb", getpid());
   std::optional<Result<BakeReport>> result;
-  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, std::nullopt, context); });
+  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, context); });
+  std::filesystem::remove(output, ignored);
   return std::move(*result);
 }
 

@@ -96,8 +96,8 @@ struct BakeReport {
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
                         const BakeContext& context);
 
-// Bakes without writing, to learn what a bake with other options will take. Options may be out of range.
-// Errors: as those of bake().
+// Bakes into a temporary file that is removed, to learn what a bake with other options will take. Errors: as
+// those of bake().
 Result<BakeReport> rehearse(const Scene& scene, const BakeOptions& options, const BakeContext& context);
 
 // Checks what can be checked before the scene is read and rays are traced; bake() begins with it. Errors:

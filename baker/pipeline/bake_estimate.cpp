@@ -11,7 +11,8 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::uint32_t kFewerRays = 8, kLeastRays = 64, kMostRays = 128;  // of a rehearsal
+// Of a rehearsal. Refinement with fewer probes stops too early in rooms.
+constexpr std::size_t kRays = 128;
 constexpr double kMostCodesBound = 0.1;
 // Noise of rays takes bytes where codes keep it. With the square root of so many fewer rays as the bound on
 // codes is wider, they keep as little; what is left of the difference was measured on the sample scenes.
@@ -29,8 +30,7 @@ double raysOfView(const BakeOptions& options) {
 
 BakeOptions rehearsalOf(const BakeOptions& options, bool glossy) {
   BakeOptions few = options;
-  few.rays =
-      std::clamp(static_cast<std::uint32_t>(options.effectiveRays()) / kFewerRays, kLeastRays, kMostRays);
+  few.rays = static_cast<std::uint32_t>(std::min(options.effectiveRays(), kRays));
   few.refine_bound = options.effectiveRefineBound();
   // A bound that is given is kept at any price where surfaces are glossy, which says little about the bake.
   if (glossy && options.error_bound == 0.0f) return few;
