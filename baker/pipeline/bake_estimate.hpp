@@ -1,7 +1,7 @@
 // Says beforehand what a bake will take, for each group: samples, rays, time, memory and bytes. It rehearses
-// the bake with an eighth of the rays or less, refinement included, and scales what was measured. This takes
-// a tenth to a third of the bake, on the same machine. An estimate can be kept in the cache, so that the bake
-// that follows says how far off it was. Errors: those of the bake.
+// the bake with 128 rays, refinement included, and scales what was measured. This takes half as long as a
+// draft and a fifth to a third of a bake of higher quality. An estimate can be kept in the cache, so that the
+// bake that follows says how far off it was. Errors: those of the bake.
 #pragma once
 
 #include <optional>
