@@ -198,7 +198,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
           "--time", a->time_s,
           "Choose --quality, and --rays, --refine and --codes as far as they are not given, so that the "
           "bake takes about so many seconds here, its rehearsals included, on a machine that does "
-          "nothing else: mostly 0.5 to 1.3 times as many. Says which were chosen")
+          "nothing else: measured 0.6 to 1.1 times as many. Says which were chosen")
       ->check(CLI::Range(0.1, 1e6))
       ->type_name("S");
   command->add_flag("--force", a->force,

@@ -179,9 +179,10 @@ void addPlanCommand(CLI::App& app, Command& run) {
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--json", a->json, "Print as JSON");
   command->footer(
-      "With an option of the bake beside --effects and --light-probes, such as --quality draft, the plan also "
-      "estimates samples, rays, time, memory and bytes. It rehearses the bake with 128 rays, which takes half "
-      "as long as a draft and a fifth to a third of a bake of higher quality.");
+      "With an option of the bake beside --effects and --light-probes, such as --quality draft, the plan "
+      "also "
+      "estimates samples, rays, time, memory and bytes. It rehearses the bake with 128 rays, which takes "
+      "about as long as a draft, and a third to a half of a bake of standard quality.");
   command->callback([a, command, &run] {
     for (const OptionRow& row : optionRows())
       a->estimate |= row.name != "effects" && row.name != "light-probes" &&

@@ -1,6 +1,6 @@
 // Says beforehand what a bake will take, for each group: samples, rays, time, memory and bytes. It rehearses
-// the bake with 128 rays, refinement included, and scales what was measured. This takes half as long as a
-// draft and a fifth to a third of a bake of higher quality. An estimate can be kept in the cache, so that the
+// the bake with 128 rays, refinement included, and scales what was measured. This takes about
+// as long as a draft, and a third to a half of a bake of standard quality. An estimate can be kept in the cache, so that the
 // bake that follows says how far off it was. Errors: those of the bake.
 #pragma once
 
