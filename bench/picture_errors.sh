@@ -29,7 +29,7 @@ mkdir -p "$out"
 
 bounces=(--bounces 3)
 "$build"/bin/lambent bake "$scene" -o "$out/$name.lmb.glb" "${bounces[@]}" >/dev/null
-"$build"/bin/lambent bake "$scene" -o "$out/$name.fine.lmb.glb" "${bounces[@]}" --rays 8192 --error 0.0003 >/dev/null
+"$build"/bin/lambent bake "$scene" -o "$out/$name.fine.lmb.glb" "${bounces[@]}" --rays 8192 --codes 0.0003 >/dev/null
 
 percent() { # JSON file -> relative RMS in percent
   sed -n 's/^  "relativeRms": \([0-9.e+-]*\).*/\1/p' "$1" | awk '{ printf "%.2f", 100 * $1 }'

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "baker/bake/assemble.hpp"
 #include "baker/bake/bake_group.hpp"
@@ -50,7 +51,7 @@ Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, 
 // coded.
 Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_maps,
                                const BakeContext& context) {
-  const auto& [scene, options, plan, tables, report] = bake;
+  const auto& [scene, options, plan, tables, report, trying] = bake;
   auto split = splitMeshes(scene, plan.groups, options.max_edge_m);
   if (!split) return failAgain(split.error());
   const bool with_glossy = !tables.entries.empty();
@@ -70,6 +71,46 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
   return shipMeshes(scene, plan.groups, *split, context);
 }
 
+// A Tried is all that a bundle needs, unless a group asks for another try.
+struct Tried {
+  ShippedMeshes meshes;
+  std::vector<BakedGroup> groups;
+  std::optional<PictureSettings> next;
+};
+
+Result<Tried> bakeAll(const SceneBake& whole, PictureTry* trying, const AlphaMaps& alpha_maps,
+                      DecodedImages& images, const BakeContext& context) {
+  auto meshes = meshesOf(whole, alpha_maps, context);
+  if (!meshes) return failAgain(meshes.error());
+  if (trying) {
+    trying->refined_to = whole.report.refinement.error_after;
+    trying->keeps_refinement |= whole.report.refinement.at_limit;
+  }
+  Tried tried{std::move(*meshes), {}, {}};
+  for (std::size_t g = 0; g < whole.plan.groups.size() && !tried.next; ++g) {
+    context.progress.end();
+    const std::size_t first_stage = context.progress.finished().size();
+    auto group = whole.plan.groups[g].volume >= 0
+                     ? bakeVolume(whole, alpha_maps, g, tried.groups, context)
+                     : bakeGroup(whole, {tried.meshes, alpha_maps, images}, g, context);
+    if (!group) return failAgain(group.error());
+    context.progress.end();
+    whole.report.groups.back().first_stage = first_stage;
+    whole.report.groups.back().stage_count = context.progress.finished().size() - first_stage;
+    tried.next = group->next_try;
+    tried.groups.push_back(std::move(*group));
+  }
+  if (context.stopped()) return whole.stopped();
+  return tried;
+}
+
+// Returns what a report says of work that was given up: its rays were traced all the same.
+BakeReport spentOn(const BakeReport& report) {
+  BakeReport spent;
+  spent.rays = report.rays, spent.rays_kept = report.rays_kept, spent.ray_seconds = report.ray_seconds;
+  return spent;
+}
+
 Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
                                       const std::filesystem::path& output, const BakeContext& context) {
   BakeReport report;
@@ -82,21 +123,30 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   Result<BrdfTables> tables;
   if (plan->bakes("glossy")) tables = brdfTablesOf(scene, options, context);
   if (!tables) return failAgain(tables.error());
-  const SceneBake whole{scene, options, *plan, *tables, report};
-  auto meshes = meshesOf(whole, *alpha_maps, context);
-  if (!meshes) return failAgain(meshes.error());
 
-  std::vector<BakedGroup> baked;
-  for (std::size_t g = 0; g < plan->groups.size(); ++g) {
-    auto group = plan->groups[g].volume >= 0 ? bakeVolume(whole, *alpha_maps, g, baked, context)
-                                             : bakeGroup(whole, {*meshes, *alpha_maps, images}, g, context);
-    if (!group) return failAgain(group.error());
-    baked.push_back(std::move(*group));
+  const bool chooses = options.picture_bound > 0.0f;
+  BakeOptions chosen = options;
+  Result<Tried> tried;
+  for (int tries = 1; tries == 1 || (tried && tried->next); ++tries) {
+    PictureTry trying{
+        .made_with = {static_cast<std::uint32_t>(chosen.effectiveRays()), chosen.effectiveRefineBound()},
+        .shown = {},
+        .keeps_rays = options.rays != 0,
+        .keeps_refinement = options.refine_bound >= 0.0f};
+    report = spentOn(report);
+    if (chooses) report.chosen = trying.made_with, report.tries = tries;
+    PictureTry* const may_ask = chooses && tries < kMostTries ? &trying : nullptr;
+    tried = bakeAll({scene, chosen, *plan, *tables, report, may_ask}, may_ask, *alpha_maps, images, context);
+    if (tried && tried->next)
+      chosen.rays = tried->next->rays, chosen.refine_bound = tried->next->refine_bound;
   }
-  if (context.stopped()) return whole.stopped();
+  if (!tried) return failAgain(tried.error());
 
+  const SceneBake whole{scene, options, *plan, *tables, report};
+  ShippedMeshes& meshes = tried->meshes;
+  const std::vector<BakedGroup>& baked = tried->groups;
   context.progress.begin("writing");
-  AssembledBundle bundle = assemble(whole, std::move(*meshes), baked);
+  AssembledBundle bundle = assemble(whole, std::move(meshes), baked);
   // What cannot be opened must not take the place of a bundle that can.
   const auto opens = [](const std::filesystem::path& part) -> Result<void> {
     if (const auto reader = bundle::Reader::open(part); !reader) return failAgain(reader.error());
@@ -187,6 +237,16 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const st
   std::optional<Result<BakeReport>> result;
   if (context.cache) context.cache->beginBake();
   withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, context); });
+  return std::move(*result);
+}
+
+Result<BakeReport> rehearse(const Scene& scene, const BakeOptions& options, const BakeContext& context) {
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(ignored);
+  const std::filesystem::path output = folder / fmt::format("lambent-rehearsal-{}.lmb.glb", getpid());
+  std::optional<Result<BakeReport>> result;
+  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, context); });
+  std::filesystem::remove(output, ignored);
   return std::move(*result);
 }
 

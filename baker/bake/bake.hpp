@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "baker/bake/options.hpp"
+#include "baker/bake/picture_budget.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/plan/effect_plan.hpp"
@@ -53,6 +54,10 @@ struct BakeReport {
     };
     std::vector<Effect> effects;
     std::optional<bundle::PictureError> picture_error = {};  // of diffuse surfaces
+    float codes_bound = 0.0f;                                // that of diffuse codes
+    std::uint64_t samples = 0, transfer_bytes = 0;
+    std::uint64_t hit_bytes = 0;                   // memory of the hits kept for the bounces
+    std::size_t first_stage = 0, stage_count = 0;  // in `stages`
   };
   std::vector<Group> groups;
   struct Neighborhood {
@@ -65,6 +70,9 @@ struct BakeReport {
   };
   std::vector<Neighborhood> neighborhoods;
   RefineReport refinement;
+  // What was chosen to keep BakeOptions::picture_bound, and at which try; 0 tries: nothing was to be chosen.
+  PictureSettings chosen;
+  int tries = 0;
   struct Volume {
     std::string name;
     std::uint64_t voxels = 0, samples = 0;
@@ -87,6 +95,10 @@ struct BakeReport {
 // output that cannot be written, "stopped" if a stop was requested.
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
                         const BakeContext& context);
+
+// Bakes into a temporary file that is removed, to learn what a bake with other options will take. Errors: as
+// those of bake().
+Result<BakeReport> rehearse(const Scene& scene, const BakeOptions& options, const BakeContext& context);
 
 // Checks what can be checked before the scene is read and rays are traced; bake() begins with it. Errors:
 // options out of range, an effect that is not known, an output that cannot be written.

@@ -51,6 +51,7 @@ BakeReport::Group& tell(const GroupScene& group, const BakedGroup& baked) {
   report.lights += group.lights.size();
   BakeReport::Group& told = report.groups.emplace_back();
   told.name = group.group.name;
+  told.samples = group.samples.size();
   told.light_probes = baked.light_probes.points.size();
   for (const bundle::ProxyLevel& level : baked.proxy.levels)
     told.proxy_triangles.push_back(level.triangle_count);
@@ -67,6 +68,7 @@ void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, Ba
   report.worst_glossy_error = std::max(report.worst_glossy_error, figures.worst_glossy_error);
   report.left_out = std::max(report.left_out, figures.left_out);
   told.picture_error = figures.picture_error;
+  told.codes_bound = figures.codes_bound, told.hit_bytes = figures.hit_bytes;
   if (figures.pass_energy.size() > report.pass_energy.size()) report.pass_energy = figures.pass_energy;
   report.ray_seconds += figures.ray_seconds;
   const auto add = [&](const char* name, const SurfaceFigures::Rays& rays) {
@@ -78,6 +80,14 @@ void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, Ba
   };
   if (group.anyDiffuse()) add("diffuse", figures.diffuse);
   if (group.anyGlossy()) add("glossy", figures.glossy);
+}
+
+// Returns what the next try needs if this one shows too much error without codes, and there may be one.
+std::optional<PictureSettings> nextTryAfter(const SceneBake& bake, const bundle::PictureError& shown) {
+  if (!bake.trying || leavesEnough(shown, bake.options.picture_bound)) return std::nullopt;
+  PictureTry tried = *bake.trying;
+  tried.shown = shown;
+  return nextTry(tried, bake.options.picture_bound);
 }
 
 // Bakes the neighborhood of surfaces whose light is baked. Returns false if stopped.
@@ -118,12 +128,26 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
   if (found) tell(group, cells.figures, found, told);
   const bool any_around = bake.plan.neighborhoods[index].baked && !group.geometry.triangles.empty();
   const bool around_found = any_around && findAround(around, around_context, baked.neighborhood);
-  if (found) baked.cells = std::move(cells.cells), baked.picture_error = cells.figures.picture_error;
+  const auto take = [&](SurfaceCells& from) {
+    baked.cells = std::move(from.cells);
+    baked.picture_error = from.figures.picture_error, baked.codes_bound = from.figures.codes_bound;
+  };
+  if (found) take(cells);
   if (found && (!any_around || around_found)) return finished();
+  const BakeContext given_up = cells_context.part("given up");
+  if (bundle::PictureError shown; bake.trying && findKept(given_up, shown))
+    if ((baked.next_try = nextTryAfter(bake, shown))) return finished();
 
   if (auto prepared = group.prepareRays(context); !prepared) return failAgain(prepared.error());
   const auto light = transportLight(group, context);
   if (!light) return bake.stopped();
+  if (const auto shown = bake.trying && !found ? shownBy(group, *light, nullptr) : std::nullopt)
+    if ((baked.next_try = nextTryAfter(bake, *shown))) {
+      bake.report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
+      keepValue(given_up, *shown);
+      dropTransport(group, *light, context);
+      return finished();
+    }
   if (!found) {
     CachedCoding coding(context);
     auto coded = codeSurfaces(group, *light, coding, context.progress);
@@ -131,8 +155,7 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
     tell(group, coded->figures, found, told);
     keepValue(cells_context, *coded);
     coding.drop();
-    baked.cells = std::move(coded->cells);
-    baked.picture_error = coded->figures.picture_error;
+    take(*coded);
   } else {
     bake.report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
   }

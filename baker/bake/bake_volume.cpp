@@ -279,6 +279,7 @@ void tell(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDe
                             .residual = coded.residual,
                             .row_bytes = coded.row_bytes});
   report.groups.push_back({.name = name, .light_probes = 1, .proxy_triangles = {}, .effects = {}});
+  report.groups.back().samples = coded.voxels.size();
 }
 
 }  // namespace
@@ -330,7 +331,7 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
 
 Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
                               const std::vector<BakedGroup>& baked, const BakeContext& context) {
-  const auto& [scene, options, plan, tables, report] = bake;
+  const auto& [scene, options, plan, tables, report, trying] = bake;
   const RigidGroup& group = plan.groups[index];
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
   context.progress.begin("density");

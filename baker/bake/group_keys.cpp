@@ -125,6 +125,8 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
                    .add(keys.bounces)
                    .add(options.bounces)
                    .add(options.effectiveErrorBound())
+                   .add(options.picture_bound)
+                   .add(options.error_bound > 0.0f)
                    .add(options.effectiveGlossyErrorBound())
                    .key();
   return keys;

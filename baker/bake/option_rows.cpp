@@ -22,17 +22,20 @@ using namespace typed_options;
 
 using B = BakeOptions;
 
+// What a bound on pictures chooses is recorded as "auto": the bundle says of each group what was chosen.
 std::string recordRays(const BakeOptions& o) {
-  return fmt::format("{}", o.effectiveRays());
+  return o.picture_bound > 0.0f && o.rays == 0 ? "auto" : fmt::format("{}", o.effectiveRays());
 }
-std::string recordError(const BakeOptions& o) {
-  return fmt::format("{}", o.effectiveErrorBound());
+std::string recordCodes(const BakeOptions& o) {
+  return o.picture_bound > 0.0f && o.error_bound == 0.0f ? "auto"
+                                                         : fmt::format("{}", o.effectiveErrorBound());
 }
 std::string recordGlossyError(const BakeOptions& o) {
   return fmt::format("{}", o.effectiveGlossyErrorBound());
 }
 std::string recordRefine(const BakeOptions& o) {
-  return fmt::format("{}", o.effectiveRefineBound());
+  return o.picture_bound > 0.0f && o.refine_bound < 0.0f ? "auto"
+                                                         : fmt::format("{}", o.effectiveRefineBound());
 }
 std::string recordFit(const BakeOptions& o) {
   return o.fitsGlossy() ? "on" : o.fitsDiffuse() ? "diffuse" : "off";
@@ -101,15 +104,25 @@ constexpr std::tuple kRows{
                                         .hint = "give bytes or a unit, as 4GB"}},
     TypedRow<float>{
         .name = "error",
+        .setting = "pictureBound",
+        .kind = "E",
+        .member = &B::picture_bound,
+        .help = "Bound on the error of pictures of diffuse surfaces, relative RMS over real lights, by rays, "
+                "interpolation and codes together. The bake chooses --rays, --refine and --codes, as far as "
+                "they are not given, and says what it reached",
+        .words = {{{"none", 0.0f}}},
+        .limits = Limits<float>{.least = 0.0f, .greatest = 1.0f, .open = true, .hint = "0.01 means 1 %"}},
+    TypedRow<float>{
+        .name = "codes",
         .setting = "errorBound",
         .kind = "E",
         .member = &B::error_bound,
-        .help = "Bound on the coding error, relative RMS of shaded radiance; default {} by quality, "
+        .help = "Bound on the error of codes alone, relative RMS of shaded radiance; default {} by quality, "
                 "of glossy surfaces {}",
         .words = {{{"auto", 0.0f}}},
         .limits = Limits<float>{.least = 0.0f, .greatest = 1.0f, .open = true, .hint = "0.003 means 0.3 %"},
-        .record = &recordError,
-        .help_values = {&recordError, &recordGlossyError}},
+        .record = &recordCodes,
+        .help_values = {&recordCodes, &recordGlossyError}},
     TypedRow<float>{
         .name = "max-edge",
         .setting = "maxEdge",
@@ -195,8 +208,8 @@ constexpr std::tuple kRows{
 
 // A member of BakeOptions without a row does not compile, since it changes how many names this needs.
 [[maybe_unused]] auto membersOf(const BakeOptions& options) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = options;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = options;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
 }
 static_assert(std::tuple_size_v<decltype(membersOf(BakeOptions()))> == std::tuple_size_v<decltype(kRows)>,
               "every member of BakeOptions has a row");

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "baker/bake/option_rows.hpp"
+#include "baker/bake/picture_budget.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal_factors.hpp"
 
@@ -66,15 +67,18 @@ const char* qualityName(Quality quality) {
 }
 
 std::size_t BakeOptions::effectiveRays() const {
-  return rays != 0 ? rays : row(quality).rays;
+  if (rays != 0) return rays;
+  return picture_bound > 0.0f ? firstRays(picture_bound) : row(quality).rays;
 }
 
 float BakeOptions::effectiveErrorBound() const {
-  return error_bound > 0.0f ? error_bound : row(quality).error_bound;
+  if (error_bound > 0.0f) return error_bound;
+  return picture_bound > 0.0f ? kCodesShare * picture_bound : row(quality).error_bound;
 }
 
 float BakeOptions::effectiveGlossyErrorBound() const {
-  return error_bound > 0.0f ? error_bound : row(quality).glossy_error_bound;
+  if (error_bound > 0.0f) return error_bound;
+  return picture_bound > 0.0f ? kGlossyCodesShare * picture_bound : row(quality).glossy_error_bound;
 }
 
 float BakeOptions::glossyLooseness() const {
@@ -90,7 +94,8 @@ int BakeOptions::exitOrder() const {
 }
 
 float BakeOptions::effectiveRefineBound() const {
-  return refine_bound >= 0.0f ? refine_bound : row(quality).refine_bound;
+  if (refine_bound >= 0.0f) return refine_bound;
+  return picture_bound > 0.0f ? firstRefineBound(picture_bound) : row(quality).refine_bound;
 }
 
 int BakeOptions::zstdLevel() const {
@@ -106,11 +111,11 @@ bool BakeOptions::fitsGlossy() const {
 }
 
 double BakeOptions::refineGrowth() const {
-  return row(quality).refine_growth;
+  return row(picture_bound > 0.0f ? Quality::High : quality).refine_growth;
 }
 
 std::size_t BakeOptions::refineAdded() const {
-  return row(quality).refine_added;
+  return row(picture_bound > 0.0f ? Quality::High : quality).refine_added;
 }
 
 double BakeOptions::refineWedges() const {

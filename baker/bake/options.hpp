@@ -26,7 +26,10 @@ struct BakeOptions {
   // Bounces between surfaces. -1: as many as the error bound asks for. 0: direct light with shadows, and only
   // single scattering in volumes; any other value computes all scattering there.
   int bounces = -1;
-  float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: as the quality says
+  // Of pictures of diffuse surfaces, relative RMS: by rays, interpolation and codes together. The bake
+  // chooses those of the three that are not given (picture_budget.hpp). 0: they are as the quality says.
+  float picture_bound = 0.0f;
+  float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: as picture_bound or the quality says
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: no limit
   // Points of neighborhood grids along their longest, middle and shortest side, unless the scene asks for
   // others. 0: 64 x 64 x 8 for a slab, else 32 each, and a quarter as many for bodies that the scene does not
@@ -45,10 +48,11 @@ struct BakeOptions {
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // limit on what passes keep in memory; 0: half of the machine's
 
+  // Where picture_bound chooses, these are what the first try begins with.
   std::size_t effectiveRays() const;
   float effectiveErrorBound() const;
-  // Returns the bound for glossy transfer, which takes more bytes: error_bound if it is set, else the
-  // quality's.
+  // Returns the bound for glossy transfer, which takes more bytes: error_bound if it is set, else a share of
+  // picture_bound, else the quality's.
   float effectiveGlossyErrorBound() const;
   // If few components of bounced light leave an error of more than this many times that bound, all components
   // are coded, to within that many times the bound. 0 switches this off: if error_bound was given, which is
@@ -63,6 +67,7 @@ struct BakeOptions {
   bool fitsDiffuse() const;
   bool fitsGlossy() const;
   // Limits on refinement: the factor on the number of vertices, and the number of vertices added beyond that.
+  // With picture_bound they are those of high quality.
   double refineGrowth() const;
   std::size_t refineAdded() const;
   double refineWedges() const;  // fans at glossy vertices, relative to the number of vertices

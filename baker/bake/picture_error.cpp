@@ -11,8 +11,8 @@ namespace lambent::baker {
 
 namespace {
 
-// Points are looked at by so many times the rays of vertices, within these limits.
-constexpr std::size_t kTimesTheRays = 8, kLeastRays = 1024, kMostRays = 4096;
+// Points are looked at by so many times the rays of vertices, within these limits, but always by more.
+constexpr std::size_t kTimesTheRays = 8, kLeastRays = 1024, kMostRays = 4096, kLeastTimes = 2;
 constexpr std::size_t kLeastPoints = 64;  // that a figure can be told from
 // Eyes that get less than this share of the light of the mean eye, in squares, stand in the dark between
 // walls.
@@ -21,8 +21,11 @@ constexpr double kLeastLight = 1.0 / 400.0;
 // Collects what of the light at points is wrong. A vector holds the coefficients of red, green and blue.
 class Sums {
  public:
-  Sums(int order, std::size_t eyes)
-      : coefficients_(static_cast<std::size_t>(sh::coefficientCount(order))), of_eye_(eyes) {}
+  // Of the squared difference between few and many rays, `noise_of_exact` is noise of the many.
+  Sums(int order, std::size_t eyes, double noise_of_exact)
+      : coefficients_(static_cast<std::size_t>(sh::coefficientCount(order))),
+        noise_of_exact_(noise_of_exact),
+        of_eye_(eyes) {}
 
   std::size_t coefficients() const { return coefficients_; }
 
@@ -36,9 +39,9 @@ class Sums {
     const double noise = square(shown.noisy, shown.exact);
     OfEye& sums = of_eye_[eye];
     sums.light += square(shown.exact, {});
-    sums.all += square(shown.codes, shown.exact) - kNoiseOfExact * noise;
+    sums.all += square(shown.codes, shown.exact) - noise_of_exact_ * noise;
     sums.codes += square(shown.codes, shown.fields);
-    sums.samples += double{glm::dot(weights, weights)} * (1.0 - kNoiseOfExact) * noise;
+    sums.samples += double{glm::dot(weights, weights)} * (1.0 - noise_of_exact_) * noise;
     ++sums.points;
   }
 
@@ -66,9 +69,6 @@ class Sums {
   }
 
  private:
-  // Of the squared difference between few and many rays, this share is noise of the many.
-  static constexpr double kNoiseOfExact = 1.0 / (kTimesTheRays + 1.0);
-
   double squareOf(const glm::vec3& albedo, std::span<const float> a, std::span<const float> b) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -85,6 +85,7 @@ class Sums {
     std::size_t points = 0;
   };
   std::size_t coefficients_;
+  double noise_of_exact_;
   std::vector<OfEye> of_eye_;
 };
 
@@ -135,7 +136,7 @@ std::optional<TracedView> traceView(const DirectPass& vertices, const TracedScen
   };
   const std::size_t few = vertices.settings().rays;
   traced.noisy = trace(few);
-  traced.exact = trace(std::max(few, std::clamp(kTimesTheRays * few, kLeastRays, kMostRays)));
+  traced.exact = trace(std::max(kLeastTimes * few, std::clamp(kTimesTheRays * few, kLeastRays, kMostRays)));
   if (!traced.noisy || !traced.exact) return std::nullopt;
   return traced;
 }
@@ -151,10 +152,13 @@ std::optional<bundle::PictureError> measurePictureError(const TracedView& traced
   };
   Decoded decoded;
   for (std::size_t p = 0; p < view.eyes.size(); ++p)
-    for (int c = 0; seen(p) && c < 3; ++c) decoded[sampleOf(p, c)];
-  decode(scene, baked.cells, decoded);
+    for (int c = 0; baked.cells && seen(p) && c < 3; ++c) decoded[sampleOf(p, c)];
+  if (baked.cells) decode(scene, *baked.cells, decoded);
 
-  Sums sums(baked.direct.order, view.eyes.empty() ? 0 : view.eyes.back() + 1);
+  const auto few_rays = static_cast<double>(traced.noisy->pass().settings().rays),
+             many_rays = static_cast<double>(traced.exact->pass().settings().rays);
+  Sums sums(baked.direct.order, view.eyes.empty() ? 0 : view.eyes.back() + 1,
+            few_rays / (few_rays + many_rays));
   const std::size_t size = 3 * sums.coefficients();
   std::vector<float> many(size), few(size), fields(size), codes(size);
   for (std::size_t p = 0; p < view.eyes.size(); ++p) {
@@ -171,9 +175,11 @@ std::optional<bundle::PictureError> measurePictureError(const TracedView& traced
       const float weight = view.weights[p][c];
       addField(baked.direct, sample, weight, fields);
       if (baked.bounced) addField(*baked.bounced, sample, weight, fields);
+      if (!baked.cells) continue;
       const std::vector<float>& of_codes = decoded.at(sample);
       for (std::size_t i = 0; i < size; ++i) codes[i] += weight * of_codes[i];
     }
+    if (!baked.cells) codes = fields;
     sums.add(view.eyes[p], view.albedos[p], view.weights[p],
              {.exact = many, .noisy = few, .fields = fields, .codes = codes});
   }

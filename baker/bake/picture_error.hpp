@@ -11,12 +11,22 @@
 
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/view_points.hpp"
+#include "baker/cache/bytes.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/diffuse/traced_points.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
+
+template <>
+inline constexpr bool kPlainBytes<bundle::PictureError> = true;
+inline void write(const bundle::PictureError& error, ByteWriter& out) {
+  out.add(error);
+}
+inline bool read(ByteReader& in, bundle::PictureError& error) {
+  return in.read(error);
+}
 
 // The same points, traced with as many rays as vertices, whose noise they tell, and with many.
 struct TracedView {
@@ -34,7 +44,8 @@ struct BakedVertices {
   const TransferField& direct;
   const TransferField* bounced;
   std::span<const TransferField> bounced_at_points;
-  const std::vector<std::vector<CodedTransfer>>& cells;  // as in SurfaceCells
+  // As in SurfaceCells. Null: codes do not count, as if they were exact.
+  const std::vector<std::vector<CodedTransfer>>* cells;
 };
 
 // Returns nothing if too few points are seen for a figure.

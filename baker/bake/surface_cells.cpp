@@ -9,15 +9,14 @@
 
 namespace lambent::baker {
 
-template <>
-inline constexpr bool kPlainBytes<bundle::PictureError> = true;
-
 namespace {
 
 // The share of visibility in the bound on glossy light, where light bounces: halving the error costs
 // visibility a dozen bytes a vertex, and bounced light of sharp metals a hundred
 // (docs/decisions/compression.md, "Glossy matrices").
 constexpr float kOfVisibility = 0.35f;
+// Eyes may see other errors of codes than those of all samples, so codes are made again with a better bound.
+constexpr int kMostCodings = 3;
 
 class CellCoder {
  public:
@@ -31,14 +30,10 @@ class CellCoder {
                           ? kernelPower(group.geometry, *group.brdfs(), group.bake.options.glossy_order)
                           : BandPower(kLobePower)) {}
 
-  std::vector<CodedTransfer> code(const SampleCell& cell, SurfaceFigures& figures) {
-    return cell.kind == SampleKind::Glossy ? codeGlossy(cell, figures) : codeDiffuse(cell, figures);
-  }
-
- private:
   std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, SurfaceFigures& figures);
   std::vector<CodedTransfer> codeDiffuse(const SampleCell& cell, SurfaceFigures& figures);
 
+ private:
   const GroupScene& group_;
   const SurfaceTransport& light_;
   const BakeOptions& options_;
@@ -87,8 +82,7 @@ std::vector<CodedTransfer> CellCoder::codeDiffuse(const SampleCell& cell, Surfac
   for (const CellVectors& vectors :
        cellVectors(cell, group_.samples, light_.direct, light_.bounced ? &*light_.bounced : nullptr,
                    grey_emission_)) {
-    coded.push_back(
-        coding_.code(vectors.vectors, cell.count, vectors.shape, {.bound = options_.effectiveErrorBound()}));
+    coded.push_back(coding_.code(vectors.vectors, cell.count, vectors.shape, {.bound = figures.codes_bound}));
     figures.worst_error = std::max(figures.worst_error, double{coded.back().error});
   }
   return coded;
@@ -104,39 +98,53 @@ void write(const SurfaceCells& cells, ByteWriter& out) {
   out.addList(figures.pass_energy);
   out.add(figures.diffuse.traced + figures.diffuse.kept);
   out.add(figures.glossy.traced + figures.glossy.kept);
-  out.add(figures.picture_error.value_or(bundle::PictureError{}));
+  out.add(figures.picture_error.value_or(bundle::PictureError{})), out.add(figures.codes_bound);
 }
 
 bool read(ByteReader& in, SurfaceCells& cells) {
   SurfaceFigures& figures = cells.figures;
   bundle::PictureError error;
-  const bool whole = read(in, cells.cells) && in.read(figures.filled_samples) &&
-                     in.read(figures.glossy_samples) && in.read(figures.hit_bytes) &&
-                     in.read(figures.worst_error) && in.read(figures.worst_glossy_error) &&
-                     in.read(figures.left_out) && in.readList(figures.pass_energy) &&
-                     in.read(figures.diffuse.kept) && in.read(figures.glossy.kept) && in.read(error);
+  const bool whole =
+      read(in, cells.cells) && in.read(figures.filled_samples) && in.read(figures.glossy_samples) &&
+      in.read(figures.hit_bytes) && in.read(figures.worst_error) && in.read(figures.worst_glossy_error) &&
+      in.read(figures.left_out) && in.readList(figures.pass_energy) && in.read(figures.diffuse.kept) &&
+      in.read(figures.glossy.kept) && in.read(error) && in.read(figures.codes_bound);
   if (whole && error.points > 0) figures.picture_error = error;
   return whole;
 }
 
 std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceTransport& light,
                                          CachedCoding& coding, Progress& progress) {
-  progress.begin("coding", group.samples.size(), "samples");
+  const BakeOptions& options = group.bake.options;
   SurfaceCells out{{}, light.figures};
+  out.cells.resize(group.samples.cells.size());
   CellCoder coder(group, light, coding);
-  for (const SampleCell& cell : group.samples.cells) {
-    out.cells.push_back(coder.code(cell, out.figures));
-    if (coding.stopped()) return std::nullopt;
-    progress.add(cell.count);
+  // Returns false if stopped.
+  const auto code = [&](bool glossy) {
+    progress.begin("coding", glossy ? group.samples.glossy.size() : group.samples.glossy.begin, "samples");
+    for (std::size_t c = 0; c < out.cells.size(); ++c) {
+      const SampleCell& cell = group.samples.cells[c];
+      if ((cell.kind == SampleKind::Glossy) != glossy) continue;
+      out.cells[c] = glossy ? coder.codeGlossy(cell, out.figures) : coder.codeDiffuse(cell, out.figures);
+      if (coding.stopped()) return false;
+      progress.add(cell.count);
+    }
+    return true;
+  };
+  if (group.anyGlossy() && !code(/*glossy=*/true)) return std::nullopt;
+
+  const bool chooses = options.picture_bound > 0.0f && options.error_bound == 0.0f;
+  std::optional<float> bound = options.effectiveErrorBound();
+  if (chooses)
+    if (const auto shown = shownBy(group, light, nullptr)) bound = codesBound(*shown, options.picture_bound);
+  for (int codings = 1; bound; ++codings) {
+    out.figures.codes_bound = *bound, out.figures.worst_error = light.figures.worst_error;
+    if (!code(/*glossy=*/false)) return std::nullopt;
+    auto& shown = out.figures.picture_error = shownBy(group, light, &out.cells);
+    bound.reset();
+    if (chooses && shown && codings < kMostCodings)
+      bound = nextCodesBound(out.figures.codes_bound, *shown, options.picture_bound);
   }
-  if (light.view)
-    out.figures.picture_error = measurePictureError(
-        *light.view, group.view(),
-        {.direct = light.direct.field,
-         .bounced = light.bounced ? &light.bounced->field : nullptr,
-         .bounced_at_points = light.bounced ? std::span(std::as_const(light.bounced->at_watched))
-                                            : std::span<const TransferField>(),
-         .cells = out.cells});
   return out;
 }
 

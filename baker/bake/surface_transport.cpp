@@ -123,6 +123,20 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
   return light;
 }
 
+std::optional<bundle::PictureError> shownBy(const GroupScene& group, const SurfaceTransport& light,
+                                            const std::vector<std::vector<CodedTransfer>>* cells) {
+  if (!light.view) return std::nullopt;
+  auto shown = measurePictureError(
+      *light.view, group.view(),
+      {.direct = light.direct.field,
+       .bounced = light.bounced ? &light.bounced->field : nullptr,
+       .bounced_at_points = light.bounced ? std::span<const TransferField>(light.bounced->at_watched)
+                                          : std::span<const TransferField>(),
+       .cells = cells});
+  if (shown) shown->bound = group.bake.options.picture_bound;
+  return shown;
+}
+
 void dropTransport(const GroupScene& group, const SurfaceTransport& light, const BakeContext& context) {
   const BakeContext bounces = context.keyed(group.keys.bounces);
   if (light.bounced && bounces.keeps())

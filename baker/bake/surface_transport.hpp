@@ -25,6 +25,7 @@ struct SurfaceFigures {
   Rays diffuse, glossy;
   double ray_seconds = 0.0;                           // of this run
   std::optional<bundle::PictureError> picture_error;  // of diffuse surfaces
+  float codes_bound = 0.0f;                           // that of diffuse codes
 };
 
 struct SurfaceTransport {
@@ -40,6 +41,9 @@ struct SurfaceTransport {
 // The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay until
 // dropTransport().
 std::optional<SurfaceTransport> transportLight(const GroupScene& group, const BakeContext& context);
+// Measures how wrong pictures of diffuse surfaces are, as codes show them; without codes, if they are null.
+std::optional<bundle::PictureError> shownBy(const GroupScene& group, const SurfaceTransport& light,
+                                            const std::vector<std::vector<CodedTransfer>>* cells);
 void dropTransport(const GroupScene& group, const SurfaceTransport& light, const BakeContext& context);
 
 }  // namespace lambent::baker

@@ -12,9 +12,10 @@
 #include "baker/cli/output.hpp"
 #include "baker/cli/watch.hpp"
 #include "baker/import/gltf.hpp"
-#include "baker/pipeline/job_estimate.hpp"
+#include "baker/pipeline/bake_estimate.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/source_watch.hpp"
+#include "baker/pipeline/time_budget.hpp"
 #include "runtime/base/atomic_file.hpp"
 
 namespace lambent::baker {
@@ -26,26 +27,17 @@ struct BakeArguments {
   std::filesystem::path watch;  // a folder; empty means none
   bool resume = false;
   double checkpoint_s = 0.0;  // 0 keeps the cache's own interval
+  double time_s = 0.0;        // 0: the options say all
   BakeOptions options;
   bool force = false, json = false, allow_outside = false;
   std::string cache;  // a folder, "off", or empty for the default one
   std::uint64_t cache_bytes = kCacheBytes;
 };
 
-// A bake without a cache is only slower, so a problem with its folder is reported and no error.
-std::optional<Cache> openCache(const BakeArguments& a) {
-  if (a.cache == "off") return std::nullopt;
-  const std::filesystem::path folder =
-      a.cache.empty() ? Cache::defaultFolder() : std::filesystem::path(a.cache);
-  if (folder.empty()) return std::nullopt;
-  auto cache = Cache::open(folder, a.cache_bytes);
-  if (!cache) {
-    fmt::print(stderr, "lambent: {}; baking without it\n", cache.error().line());
-    return std::nullopt;
-  }
-  cache->setReading(!a.force);
-  if (a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
-  return std::move(*cache);
+std::optional<Cache> cacheOf(const BakeArguments& a) {
+  auto cache = openCache(a.cache, a.cache_bytes);
+  if (cache && a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
+  return cache;
 }
 
 // The journal of this program lies in the cache's folder.
@@ -79,8 +71,10 @@ int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::st
       fmt::print("{} is up to date; --force bakes it again\n", a.output.string());
     return 0;
   }
+  const auto estimate = cache ? findEstimate(*scene, a.options, *cache) : std::nullopt;
+  if (cache) cache->setReading(!a.force);
   Result<BakeReport> report = [&] {
-    const ProgressLine line(progress, guessSeconds(*scene, a.options));
+    const ProgressLine line(progress, estimate ? estimate->stages : guessSeconds(*scene, a.options));
     return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
   }();
   if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
@@ -92,10 +86,24 @@ int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::st
   }
   for (const std::string& notice : report->notices) reportNotice(a.scene, notice);
   if (a.json)
-    printReportJson({a.output, a.options, *report});
+    printReportJson({a.output, a.options, *report, estimate});
   else
-    printReport({a.output, a.options, *report});
+    printReport({a.output, a.options, *report, estimate});
   return 0;
+}
+
+// Replaces the options by those with which the bake takes about the time that was asked for.
+Result<void> chooseByTime(BakeArguments& a, const std::stop_token& stop) {
+  const auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
+  if (!scene) return failAgain(scene.error());
+  Progress unused;
+  const auto chosen = optionsForTime(*scene, a.options, a.time_s, {unused, stop});
+  if (!chosen) return failAgain(chosen.error());
+  a.options = chosen->options;
+  reportNotice(a.scene, fmt::format("baked with {}, which takes about {}{}", chosen->words,
+                                    durationText(chosen->seconds),
+                                    chosen->seconds > a.time_s ? "; nothing coarser takes less" : ""));
+  return {};
 }
 
 // Reports an error in the command line and returns the exit code 2.
@@ -125,9 +133,10 @@ int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::
 
 int runBake(BakeArguments a) {
   if (!a.watch.empty()) {
-    if (!a.scene.empty() || a.resume || a.force)
-      return wrongUsage({"--watch", "is given with a scene, --resume or --force", "give it a folder alone"});
-    std::optional<Cache> cache = openCache(a);
+    if (!a.scene.empty() || a.resume || a.force || a.time_s > 0.0)
+      return wrongUsage(
+          {"--watch", "is given with a scene, --resume, --force or --time", "give it a folder alone"});
+    std::optional<Cache> cache = cacheOf(a);
     return watchFolder({a.watch, a.output, a.options, {.allow_outside = a.allow_outside}, a.json},
                        cache ? &*cache : nullptr);
   }
@@ -136,10 +145,16 @@ int runBake(BakeArguments a) {
   if (a.scene.empty() && !a.output.empty())
     return wrongUsage(
         {"--output", "is given with --resume alone", "leave it out: each bake knows its bundle"});
+  if (a.time_s > 0.0 && (a.scene.empty() || a.options.picture_bound > 0.0f))
+    return wrongUsage({"--time", "is given with --resume or --error", "give it with a scene, and one bound"});
   if (a.output.empty()) a.output = bundleBeside(a.scene);
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
-  std::optional<Cache> cache = openCache(a);
+  if (a.time_s > 0.0) {
+    if (const auto checked = checkRequest(a.options, a.output); !checked) return reportError(checked.error());
+    if (const auto done = chooseByTime(a, stop.get_token()); !done) return reportError(done.error());
+  }
+  std::optional<Cache> cache = cacheOf(a);
   return a.scene.empty() ? resumeBakes(a, cache, stop.get_token()) : bakeScene(a, cache, stop.get_token());
 }
 
@@ -177,6 +192,14 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->add_option("--checkpoint", a->checkpoint_s,
                    "How many seconds of work a bake that is killed may lose, about; default 8")
       ->check(CLI::Range(0.05, 600.0))
+      ->type_name("S");
+  command
+      ->add_option(
+          "--time", a->time_s,
+          "Choose --quality, and --rays, --refine and --codes as far as they are not given, so that the "
+          "bake takes about so many seconds here, its rehearsals included, on a machine that does "
+          "nothing else: measured 0.6 to 1.1 times as many. Says which were chosen")
+      ->check(CLI::Range(0.1, 1e6))
       ->type_name("S");
   command->add_flag("--force", a->force,
                     "Bake all anew, even if the bundle is up to date and whatever the cache holds");

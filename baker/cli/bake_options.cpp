@@ -38,8 +38,4 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
   for (const OptionRow& row : optionRows()) add(command, row, options);
 }
 
-void addBakeOption(CLI::App& command, std::string_view name, BakeOptions& options) {
-  add(command, *findOption(name), options);
-}
-
 }  // namespace lambent::baker

@@ -33,16 +33,65 @@ std::string stagesText(const std::vector<Progress::Stage>& stages) {
   return text;
 }
 
-// Says which bounds the codes miss; empty if they keep all.
+double secondsOf(const BakeReport& report) {
+  double seconds = 0.0;
+  for (const Progress::Stage& stage : report.stages) seconds += stage.seconds;
+  return seconds;
+}
+
+// A Held is one figure of the estimate against what it came to.
+struct Held {
+  const char* name;
+  double estimated, measured;
+};
+std::vector<Held> heldAgainst(const BakeEstimate& estimate, const BakeReport& report) {
+  return {{"seconds", estimate.seconds, secondsOf(report)},
+          {"samples", estimate.samples, static_cast<double>(report.samples)},
+          {"rays", estimate.rays, static_cast<double>(report.rays)},
+          {"memory", estimate.memory_bytes, peakMemory()},
+          {"bytes", estimate.bytes, static_cast<double>(report.file_bytes)}};
+}
+
+nlohmann::json estimateJson(const FinishedBake& bake) {
+  if (!bake.estimate || bake.report.rays_kept > 0) return nullptr;
+  nlohmann::json json;
+  for (const Held& held : heldAgainst(*bake.estimate, bake.report))
+    json[held.name] = {{"estimated", held.estimated}, {"measured", held.measured}};
+  return json;
+}
+
+// Returns the bound on diffuse codes: the widest, where it was chosen for each group.
+double codesBoundOf(const FinishedBake& bake) {
+  double bound = 0.0;
+  for (const BakeReport::Group& group : bake.report.groups)
+    bound = std::max(bound, double{group.codes_bound});
+  return bound > 0.0 ? bound : double{bake.options.effectiveErrorBound()};
+}
+
+// Says why pictures of a group are further off than was asked for.
+std::string whyMissed(const FinishedBake& bake, const bundle::PictureError& error) {
+  if (bake.report.refinement.at_limit && error.interpolation > error.samples)
+    return "refinement ended at its limit of vertices";
+  if (error.interpolation > error.samples)
+    return "more vertices where shadows change do not take the rest away";
+  return bake.options.rays != 0 ? "--rays is fixed" : "rays ended at their limit";
+}
+
+// Says which bounds are missed; empty if all are kept.
 std::string missedText(const FinishedBake& bake) {
-  const double bound = bake.options.effectiveErrorBound(),
-               glossy_bound = bake.options.effectiveGlossyErrorBound();
+  const double bound = codesBoundOf(bake), glossy_bound = bake.options.effectiveGlossyErrorBound();
   std::string text;
-  if (missesBound(bake.report.worst_error, bound))
+  for (const BakeReport::Group& group : bake.report.groups)
+    if (const auto& error = group.picture_error;
+        error && error->bound > 0.0f && missesBound(error->all, error->bound))
+      text += fmt::format("{}the error of pictures of \"{}\": {:.2f} instead of {:.2f} %; {}",
+                          text.empty() ? "" : ", ", group.name, 100.0 * double{error->all},
+                          100.0 * double{error->bound}, whyMissed(bake, *error));
+  if (bake.options.picture_bound == 0.0f && missesBound(bake.report.worst_error, bound))
     text = fmt::format("the error bound: {:.2f} instead of {:.2f} %", 100.0 * bake.report.worst_error,
                        100.0 * bound);
   if (missesBound(bake.report.worst_glossy_error, glossy_bound))
-    text += fmt::format("{}: {:.2f} instead of {:.2f} %; --error keeps more, at a price in bytes and time",
+    text += fmt::format("{}: {:.2f} instead of {:.2f} %; --codes keeps more, at a price in bytes and time",
                         text.empty() ? "the error bound of glossy surfaces" : ", of glossy surfaces",
                         100.0 * bake.report.worst_glossy_error, 100.0 * glossy_bound);
   return text;
@@ -57,11 +106,11 @@ bool missesBound(double error, double bound) {
 
 std::string pictureErrorText(const bundle::PictureError& error) {
   return fmt::format(
-      "{:.2f} % wrong at {} points that eyes see: {:.2f} % by too few rays, {:.2f} % by codes, {:.2f} % "
-      "between "
-      "vertices",
-      100.0 * double{error.all}, error.points, 100.0 * double{error.samples}, 100.0 * double{error.codes},
-      100.0 * double{error.interpolation});
+      "{:.2f} % wrong{} at {} points that eyes see: {:.2f} % by too few rays, {:.2f} % by codes, {:.2f} % "
+      "between vertices",
+      100.0 * double{error.all},
+      error.bound > 0.0f ? fmt::format(" (bound {:.2f} %)", 100.0 * double{error.bound}) : "", error.points,
+      100.0 * double{error.samples}, 100.0 * double{error.codes}, 100.0 * double{error.interpolation});
 }
 
 nlohmann::json pictureErrorJson(const std::optional<bundle::PictureError>& error) {
@@ -70,7 +119,8 @@ nlohmann::json pictureErrorJson(const std::optional<bundle::PictureError>& error
           {"samples", error->samples},
           {"codes", error->codes},
           {"interpolation", error->interpolation},
-          {"points", error->points}};
+          {"points", error->points},
+          {"bound", error->bound > 0.0f ? nlohmann::json(error->bound) : nlohmann::json()}};
 }
 
 void printReportJson(const FinishedBake& bake) {
@@ -91,7 +141,8 @@ void printReportJson(const FinishedBake& bake) {
                       {"lightSamples", group.light_probes},
                       {"proxyTriangles", group.proxy_triangles},
                       {"effects", effects},
-                      {"pictureError", pictureErrorJson(group.picture_error)}});
+                      {"pictureError", pictureErrorJson(group.picture_error)},
+                      {"codesBound", group.codes_bound}});
   }
   nlohmann::json neighborhoods = nlohmann::json::array();
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
@@ -115,6 +166,12 @@ void printReportJson(const FinishedBake& bake) {
   const nlohmann::json json = {
       {"output", bake.output.string()},
       {"settings", bake.options.settings()},
+      {"chosen", r.tries == 0 ? nlohmann::json()
+                              : nlohmann::json{{"rays", r.chosen.rays},
+                                               {"refine", r.chosen.refine_bound},
+                                               {"codes", codesBoundOf(bake)},
+                                               {"tries", r.tries}}},
+      {"estimate", estimateJson(bake)},
       {"vertices", r.vertices},
       {"triangles", r.triangles},
       {"samples", r.samples},
@@ -160,10 +217,8 @@ void printReportJson(const FinishedBake& bake) {
 
 void printReport(const FinishedBake& bake) {
   const BakeReport& r = bake.report;
-  double seconds = 0.0;
-  for (const Progress::Stage& stage : r.stages) seconds += stage.seconds;
   fmt::print("{}: {} vertices, {} triangles, {} samples in {}\n", bake.output.string(), r.vertices,
-             r.triangles, r.samples, durationText(seconds));
+             r.triangles, r.samples, durationText(secondsOf(r)));
   if (const RefineReport& refined = r.refinement; refined.vertices_after > refined.vertices_before)
     fmt::print("  refined   {} vertices to {}: shadows between them {:.2f} % wrong, before {:.2f} %{}\n",
                refined.vertices_before, refined.vertices_after, 100.0 * refined.error_after,
@@ -173,6 +228,10 @@ void printReport(const FinishedBake& bake) {
     if (group.picture_error)
       fmt::print("  pictures  {}{}\n", r.groups.size() > 1 ? fmt::format("\"{}\": ", group.name) : "",
                  pictureErrorText(*group.picture_error));
+  if (r.tries > 0)
+    fmt::print("  chosen    {} rays, refinement to {:.2f} %, codes to {:.2f} %{}\n", r.chosen.rays,
+               100.0 * double{r.chosen.refine_bound}, 100.0 * codesBoundOf(bake),
+               r.tries == 1 ? "" : fmt::format(", after {} tries", r.tries));
   fmt::print("  time      {}\n", stagesText(r.stages));
   fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
              durationText(r.ray_seconds),
@@ -203,13 +262,20 @@ void printReport(const FinishedBake& bake) {
       static_cast<double>(r.transfer_bytes) / static_cast<double>(std::max<std::uint64_t>(r.vertices, 1)),
       bytesText(static_cast<double>(r.proxy_bytes)), bytesText(static_cast<double>(r.image_bytes)));
   fmt::print("  coding    {:.2f} % relative error of shaded radiance (bound {:.2f} %)\n",
-             100.0 * r.worst_error, 100.0 * double{bake.options.effectiveErrorBound()});
+             100.0 * r.worst_error, 100.0 * codesBoundOf(bake));
   if (r.worst_glossy_error > 0.0)
     fmt::print("            {:.2f} % of glossy surfaces (bound {:.2f} %)\n", 100.0 * r.worst_glossy_error,
                100.0 * double{bake.options.effectiveGlossyErrorBound()});
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
     fmt::print("  around    {}: {} x {} x {} points, {:.3f} % of irradiance, {:.1f} % of the change\n",
                n.name, n.size.x, n.size.y, n.size.z, 100.0 * n.error, 100.0 * n.change_error);
+  if (bake.estimate && r.rays_kept == 0) {
+    std::string text;
+    for (const Held& held : heldAgainst(*bake.estimate, r))
+      text += fmt::format("{}{} {:.2f}", text.empty() ? "" : ", ", held.name,
+                          held.measured > 0.0 ? held.estimated / held.measured : 1.0);
+    fmt::print("  estimate  times what it came to: {}\n", text);
+  }
   if (const std::string missed = missedText(bake); !missed.empty()) fmt::print("  missed    {}\n", missed);
 }
 

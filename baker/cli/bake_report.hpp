@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "baker/bake/bake.hpp"
+#include "baker/pipeline/bake_estimate.hpp"
 
 namespace lambent::baker {
 
@@ -15,6 +16,8 @@ struct FinishedBake {
   const std::filesystem::path& output;
   const BakeOptions& options;
   const BakeReport& report;
+  // What `lambent plan` had said, if it had. It is held against bakes that found nothing in the cache.
+  const std::optional<BakeEstimate>& estimate;
 };
 
 // Returns whether codes with this error miss the bound.

@@ -26,8 +26,7 @@ void addReferenceCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
 void addAccuracyCommand(CLI::App& app, Command& run);
 
-// Adds the options of a bake from their table (baker/bake/option_rows.hpp): all of them, or one by name.
+// Adds the options of a bake from their table (baker/bake/option_rows.hpp).
 void addBakeOptions(CLI::App& command, BakeOptions& options);
-void addBakeOption(CLI::App& command, std::string_view name, BakeOptions& options);
 
 }  // namespace lambent::baker

@@ -158,15 +158,17 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
   if (!d.brdf_tables.empty()) line("BRDF tables", sizes.brdf_tables);
   if (sizes.densities > 0) line("densities", sizes.densities);
   line("whole file", reader.fileBytes());
-  std::size_t missed = 0, transfers = 0;
+  std::size_t missed = 0, transfers = 0, pictures_missed = 0;
   for (const bundle::Group& group : d.groups) {
     fmt::print("group \"{}\": {} in {}\n", group.name, counted(group.sample_count, "sample"),
                counted(group.cells.size(), "cell"));
     const std::vector<std::uint32_t> proxy = proxyTriangles(reader, group);
     fmt::print("  {}, {}\n", counted(group.light_probes.size(), "light probe"),
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
-    if (group.picture_error)
-      fmt::print("  diffuse surfaces are {}\n", pictureErrorText(*group.picture_error));
+    if (const auto& error = group.picture_error) {
+      fmt::print("  diffuse surfaces are {}\n", pictureErrorText(*error));
+      pictures_missed += error->bound > 0.0f && missesBound(error->all, error->bound);
+    }
     if (const auto& around = group.neighborhood)
       fmt::print(
           "  neighborhood of {} x {} x {} points, ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, {:.2f}, {:.2f})\n",
@@ -190,6 +192,8 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
         ++transfers;
       }
   }
+  if (pictures_missed > 0)
+    fmt::print("pictures of {} miss the bound on their error\n", counted(pictures_missed, "group"));
   if (missed > 0) fmt::print("{} of {} miss their error bound\n", missed, counted(transfers, "part"));
 }
 

@@ -55,6 +55,16 @@ std::string durationText(double seconds) {
   return fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
+std::optional<Cache> openCache(const std::string& folder, std::uint64_t most_bytes) {
+  if (folder == "off") return std::nullopt;
+  const std::filesystem::path path = folder.empty() ? Cache::defaultFolder() : std::filesystem::path(folder);
+  if (path.empty()) return std::nullopt;
+  auto cache = Cache::open(path, most_bytes);
+  if (cache) return std::move(*cache);
+  fmt::print(stderr, "lambent: {}; going on without it\n", cache.error().line());
+  return std::nullopt;
+}
+
 int reportError(const Error& error) {
   fmt::print(stderr, "lambent: {}\n", error.line());
   return 1;

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
 
+#include "baker/cache/cache.hpp"
 #include "baker/jobs/progress.hpp"
 #include "baker/pipeline/whole_progress.hpp"
 #include "runtime/base/result.hpp"
@@ -18,6 +20,10 @@ namespace lambent::baker {
 std::string countText(double count);
 std::string bytesText(double bytes);
 std::string durationText(double seconds);
+
+// Opens the cache in this folder, in the default one if it is empty, or none if it is "off". A bake without a
+// cache is only slower, so a problem with the folder is reported and no error.
+std::optional<Cache> openCache(const std::string& folder, std::uint64_t most_bytes = kCacheBytes);
 
 // Prints "lambent: SUBJECT: PROBLEM; MEND" to stderr and returns the exit code 1.
 int reportError(const Error& error);

@@ -1,5 +1,7 @@
 // Implements lambent plan SCENE.
+#include <cmath>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -7,9 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/bake/bake.hpp"
+#include "baker/bake/option_rows.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/pipeline/bake_estimate.hpp"
 #include "baker/plan/counted.hpp"
 
 namespace lambent::baker {
@@ -20,6 +24,8 @@ struct PlanArguments {
   std::filesystem::path scene;
   BakeOptions options;
   bool json = false, allow_outside = false;
+  bool estimate = false;
+  std::string cache;  // as that of the bake
 };
 
 struct GroupSize {
@@ -36,7 +42,25 @@ GroupSize sizeOf(const Scene& scene, const RigidGroup& group) {
   return size;
 }
 
-void printJson(const Scene& scene, const EffectPlan& plan) {
+nlohmann::json estimateJson(const BakeEstimate& estimate) {
+  const auto figures = [](const auto& of) {
+    return nlohmann::json{{"samples", std::llround(of.samples)},
+                          {"rays", std::llround(of.rays)},
+                          {"seconds", of.seconds},
+                          {"memoryBytes", std::llround(of.memory_bytes)},
+                          {"bytes", std::llround(of.bytes)}};
+  };
+  nlohmann::json json = figures(estimate);
+  json["stages"] = estimate.stages;
+  json["groups"] = nlohmann::json::array();
+  for (const BakeEstimate::Group& group : estimate.groups) {
+    json["groups"].push_back(figures(group));
+    json["groups"].back()["name"] = group.name;
+  }
+  return json;
+}
+
+void printJson(const Scene& scene, const EffectPlan& plan, const std::optional<BakeEstimate>& estimate) {
   nlohmann::json groups = nlohmann::json::array(), effects = nlohmann::json::array();
   for (std::size_t g = 0; g < plan.groups.size(); ++g) {
     const RigidGroup& group = plan.groups[g];
@@ -62,7 +86,8 @@ void printJson(const Scene& scene, const EffectPlan& plan) {
                                {"groups", groups},
                                {"effects", effects},
                                {"nearLights", plan.shadowed_lights},
-                               {"leftOut", plan.left_out}};
+                               {"leftOut", plan.left_out},
+                               {"estimate", estimate ? estimateJson(*estimate) : nlohmann::json()}};
   fmt::print("{}\n", json.dump(2));
 }
 
@@ -78,7 +103,18 @@ void printNeighborhood(const EffectPlan& plan, std::size_t group) {
   }
 }
 
-void printText(const Scene& scene, const EffectPlan& plan) {
+void printEstimate(const BakeEstimate& estimate) {
+  const auto line = [](const std::string& name, const auto& of, const char* what) {
+    fmt::print("    {}: {} samples, {} rays, {}, {} of memory, {} {}\n", name, std::llround(of.samples),
+               countText(of.rays), durationText(of.seconds), bytesText(of.memory_bytes), bytesText(of.bytes),
+               what);
+  };
+  fmt::print("  estimate\n");
+  for (const BakeEstimate::Group& group : estimate.groups) line(group.name, group, "of transfer");
+  line("all, with refinement and meshes", estimate, "of bundle");
+}
+
+void printText(const Scene& scene, const EffectPlan& plan, const std::optional<BakeEstimate>& estimate) {
   fmt::print("{}\n", scene.source.string());
   for (const EffectChoice& choice : plan.effects)
     fmt::print("  {:<10} {}: {}\n", choice.effect, choice.baked ? "baked" : "not baked", choice.reason);
@@ -105,6 +141,7 @@ void printText(const Scene& scene, const EffectPlan& plan) {
   for (const std::string& sentence : plan.shadowed_lights) fmt::print("    {}\n", sentence);
   if (!plan.left_out.empty()) fmt::print("  left out\n");
   for (const std::string& sentence : plan.left_out) fmt::print("    {}\n", sentence);
+  if (estimate) printEstimate(*estimate);
 }
 
 int runPlan(const PlanArguments& a) {
@@ -112,7 +149,18 @@ int runPlan(const PlanArguments& a) {
   if (!scene) return reportError(scene.error());
   const auto plan = planFor(*scene, a.options);
   if (!plan) return reportError(plan.error());
-  (a.json ? printJson : printText)(*scene, *plan);
+  std::optional<BakeEstimate> estimate;
+  if (a.estimate) {
+    if (const auto checked = checkOptions(a.options); !checked) return reportError(checked.error());
+    const std::stop_source stop;
+    const InterruptGuard interrupts(stop);
+    Progress unused;
+    auto made = estimateBake(*scene, a.options, {unused, stop.get_token()});
+    if (!made) return reportError(made.error());
+    if (auto cache = openCache(a.cache)) keepEstimate(*scene, a.options, *made, *cache);
+    estimate = std::move(*made);
+  }
+  (a.json ? printJson : printText)(*scene, *plan, estimate);
   return 0;
 }
 
@@ -122,11 +170,25 @@ void addPlanCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "Say what would be baked, what not, and why");
   command->add_option("SCENE", a->scene, "The scene, .gltf or .glb")->required();
-  for (const char* name : {"effects", "light-probes"}) addBakeOption(*command, name, a->options);
+  addBakeOptions(*command, a->options);
+  command
+      ->add_option("--cache", a->cache,
+                   "Folder where the estimate is kept for the bake, as that of `lambent bake`; off: none")
+      ->type_name("DIR|off");
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--json", a->json, "Print as JSON");
-  command->callback([a, &run] { run = [a] { return runPlan(*a); }; });
+  command->footer(
+      "With an option of the bake beside --effects and --light-probes, such as --quality draft, the plan "
+      "also "
+      "estimates samples, rays, time, memory and bytes. It rehearses the bake with 128 rays, which takes "
+      "about as long as a draft, and a third to a half of a bake of standard quality.");
+  command->callback([a, command, &run] {
+    for (const OptionRow& row : optionRows())
+      a->estimate |= row.name != "effects" && row.name != "light-probes" &&
+                     command->count("--" + std::string(row.name)) > 0;
+    run = [a] { return runPlan(*a); };
+  });
 }
 
 }  // namespace lambent::baker

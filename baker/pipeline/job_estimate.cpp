@@ -15,6 +15,9 @@ constexpr double kGuessedRaysPerSecond = 3e6, kGuessedCodedPerSecond = 2e4;
 constexpr int kMostGathered = 2;
 constexpr const char* kBetweenPatches = "bounce between patches";
 constexpr double kPatchShare = 0.3;  // of a pass
+// What is done once for a sample, whatever its rays, takes as long as so many rays.
+constexpr double kRaysOfASample = 200.0;
+constexpr double kMostProbeRays = 512.0;  // of a probe of refinement
 
 int gathered(const BakeOptions& options) {
   return options.bounces < 0 ? kMostGathered : std::min(options.bounces, kMostGathered);
@@ -38,12 +41,23 @@ double cells(const glm::uvec3& grid) {
 // Returns how much longer a stage takes with other options; these are rough rules that the stage names
 // explain.
 double growth(const std::string& stage, const BakeOptions& of, const BakeOptions& to) {
-  const double rays = static_cast<double>(to.effectiveRays()) / static_cast<double>(of.effectiveRays());
+  const auto before = static_cast<double>(of.effectiveRays()),
+             after = static_cast<double>(to.effectiveRays());
+  const double rays = (after + kRaysOfASample) / (before + kRaysOfASample);
   const double voxels = cells(to.volume_grid) / cells(of.volume_grid);
   if (stage == "scattering" || stage == "scattered light")
     return voxels * (stage == "scattering" ? rays : voxels);
   if (stage == "light into volumes") return rays * voxels;
+  if (stage == kBetweenPatches) return std::sqrt(rays);
   if (goesWithRays(stage)) return rays;
+  if (stage == "refinement") {  // has few rays, of which there is a limit
+    const auto limited = [](double of_bake) { return std::min(of_bake, kMostProbeRays) + kRaysOfASample; };
+    return limited(after) / limited(before);
+  }
+  if (stage == "error of pictures") {  // the rays of samples, and many
+    const auto both = [](double n) { return n + std::max(2.0 * n, std::clamp(8.0 * n, 1024.0, 4096.0)); };
+    return both(after) / both(before);
+  }
   if (stage.starts_with("coding"))
     return std::sqrt(double{of.effectiveErrorBound()} / double{to.effectiveErrorBound()});
   return 1.0;

@@ -27,6 +27,7 @@ BakeOptions previewLevelOptions(PreviewLevel preview_level, const BakeOptions& a
   options.quality = Quality::Draft;
   options.rays = kCoarseRays;
   options.bounces = asked.bounces == 0 ? 0 : 1;
+  options.picture_bound = 0.0f;
   options.error_bound = std::max(kCoarseErrorBound, asked.effectiveErrorBound());
   options.refine_bound = 0.0f;
   options.fit = false;

@@ -56,7 +56,8 @@ void write(const Outcome& outcome, ByteWriter& out) {
   const RefineReport& report = outcome.report;
   out.add(std::uint64_t{report.vertices_before}), out.add(std::uint64_t{report.vertices_after});
   out.add(std::uint64_t{report.fans});
-  out.add(report.error_before), out.add(report.error_after), out.add(report.rays + report.rays_kept);
+  out.add(report.error_before), out.add(report.error_after), out.add(report.at_limit);
+  out.add(report.rays + report.rays_kept);
   for (const auto& primitives : outcome.meshes)
     for (const bundle::MeshData& mesh : primitives) writeMesh(mesh, out);
 }
@@ -66,7 +67,7 @@ bool read(ByteReader& in, Outcome& outcome) {
   RefineReport report;
   std::uint64_t before = 0, after = 0, fans = 0;
   in.read(before), in.read(after), in.read(fans), in.read(report.error_before), in.read(report.error_after);
-  in.read(report.rays_kept);
+  in.read(report.at_limit), in.read(report.rays_kept);
   std::vector<std::vector<bundle::MeshData>> found;
   for (const auto& primitives : outcome.meshes) {
     found.emplace_back(primitives.size());
@@ -106,6 +107,7 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
   const std::size_t most = std::min(grown, options.most_vertices);
   if (report.vertices_before >= most) {  // probing is not worth its rays if nothing may be split
     report.vertices_after = report.vertices_before;
+    report.at_limit = true;
     return report;
   }
   const ShadowProbe few(options.rays), many(options.many_rays);
@@ -126,6 +128,8 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
     }
     if (round == 0) report.error_before = report.error_after;
     report.vertices_after = countVertices(meshes);
+    report.at_limit = report.error_after > double{options.bound} &&
+                      (round == options.rounds || report.vertices_after >= most);
     if (round == options.rounds || report.vertices_after >= most) break;
     MarkedEdges edges(groups, geometries, meshes);
     std::size_t room = most - report.vertices_after, marked = 0;

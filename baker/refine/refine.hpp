@@ -38,6 +38,7 @@ struct RefineReport {
   std::size_t fans = 0;  // values beyond one for each position and normal
   // These are interpolation errors of the worst group; `error_after` is measured before fans are added.
   double error_before = 0.0, error_after = 0.0;
+  bool at_limit = false;        // of vertices or rounds, before the bound was reached
   std::uint64_t rays = 0;       // traced
   std::uint64_t rays_kept = 0;  // rays that results in the cache saved
 };

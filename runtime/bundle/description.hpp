@@ -198,6 +198,7 @@ struct PictureError {
   float codes = 0.0f;          // compression
   float interpolation = 0.0f;  // too few vertices
   std::uint32_t points = 0;    // where it was measured
+  float bound = 0.0f;          // what `all` was to stay below; 0: no such bound was asked for
   bool operator==(const PictureError&) const = default;
 };
 

@@ -254,11 +254,13 @@ Json groupLightJson(const GroupLight& light) {
 }
 
 Json pictureErrorJson(const PictureError& error) {
-  return {{"all", error.all},
-          {"samples", error.samples},
-          {"codes", error.codes},
-          {"interpolation", error.interpolation},
-          {"points", error.points}};
+  Json json = {{"all", error.all},
+               {"samples", error.samples},
+               {"codes", error.codes},
+               {"interpolation", error.interpolation},
+               {"points", error.points}};
+  if (error.bound > 0.0f) json["bound"] = error.bound;
+  return json;
 }
 
 PictureError readPictureError(const Field& field) {
@@ -271,7 +273,8 @@ PictureError readPictureError(const Field& field) {
           .samples = share("samples"),
           .codes = share("codes"),
           .interpolation = share("interpolation"),
-          .points = static_cast<std::uint32_t>(field["points"].count(0xffffffffu))};
+          .points = static_cast<std::uint32_t>(field["points"].count(0xffffffffu)),
+          .bound = field.has("bound") ? share("bound") : 0.0f};
 }
 
 Json groupJson(const Group& group) {

@@ -86,7 +86,7 @@ class KilledBake : public testing::ProgramTest {
             "4",
             "--glossy-order",
             "4",
-            "--error",
+            "--codes",
             "0.03",
             "--volume-grid",
             "8",

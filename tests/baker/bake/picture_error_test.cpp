@@ -89,6 +89,27 @@ TEST(PictureError, GrowsWithTheBoundOnCodes) {
   EXPECT_GT(rough.all, rough.codes * 0.9f);
 }
 
+TEST(PictureError, IsWithinTheBoundThatWasAskedForAndNotFarBelow) {
+  for (const float bound : {0.03f, 0.015f}) {
+    BakeOptions options;
+    options.picture_bound = bound;
+    const bundle::PictureError error = errorOf(openRoom(), options);
+    EXPECT_EQ(error.bound, bound);
+    EXPECT_LE(error.all, bound) << "rays " << error.samples << ", codes " << error.codes << ", interpolation "
+                                << error.interpolation;
+    EXPECT_GE(error.all, 0.5f * bound);
+  }
+}
+
+TEST(PictureError, IsLargerThanItsBoundWhereRaysAreFixed) {
+  BakeOptions options = plainOptions();
+  options.rays = 128;
+  options.picture_bound = 0.002f;
+  const bundle::PictureError error = errorOf(openRoom(), options);
+  EXPECT_GT(error.samples, options.picture_bound) << "noise of so few rays cannot be taken away by codes";
+  EXPECT_GT(error.all, error.bound);
+}
+
 TEST(PictureError, EyesStandInRoomsAndAroundBodies) {
   const Transport room(openRoom());
   const ViewPoints in_room = viewPoints(room.diffuse());

@@ -27,6 +27,7 @@ TEST_F(JournalTest, KeepsEveryOptionOfARequest) {
                    .glossy_order = 4,
                    .rays = 333,
                    .bounces = 3,
+                   .picture_bound = 0.025f,
                    .error_bound = 0.0125f,
                    .max_edge_m = 0.1f,
                    .neighborhood_grid = {3, 4, 5},

@@ -1,0 +1,180 @@
+#include "baker/pipeline/bake_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <sys/resource.h>
+
+#include "baker/jobs/kept_value.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// Of a rehearsal. Refinement with fewer probes stops too early in rooms.
+constexpr std::size_t kRays = 128;
+constexpr double kMostCodesBound = 0.1;
+// Noise of rays takes bytes where codes keep it. With the square root of so many fewer rays as the bound on
+// codes is wider, they keep as little; what is left of the difference was measured on the sample scenes.
+constexpr double kBytesPower = 0.2;
+// Light of a sample in memory: direct, bounced in three channels, and both once more to be coded.
+constexpr double kCopiesOfLight = 8.0;
+// Hits of the points at which the error of pictures is measured take so many times what those of samples do.
+constexpr double kHitsOfView = 6.0;
+
+// Rays of each such point, of both looks (picture_error.cpp).
+double raysOfView(const BakeOptions& options) {
+  const auto rays = static_cast<double>(options.effectiveRays());
+  return rays + std::max(2.0 * rays, std::clamp(8.0 * rays, 1024.0, 4096.0));
+}
+
+BakeOptions rehearsalOf(const BakeOptions& options, bool glossy) {
+  BakeOptions few = options;
+  few.rays = static_cast<std::uint32_t>(std::min(options.effectiveRays(), kRays));
+  few.refine_bound = options.effectiveRefineBound();
+  // A bound that is given is kept at any price where surfaces are glossy, which says little about the bake.
+  if (glossy && options.error_bound == 0.0f) return few;
+  const double fewer = static_cast<double>(options.effectiveRays()) / static_cast<double>(few.rays);
+  few.error_bound =
+      static_cast<float>(std::min(kMostCodesBound, double{options.effectiveErrorBound()} * std::sqrt(fewer)));
+  return few;
+}
+
+// A rehearsal shows what error a bake with more rays has.
+bundle::PictureError withRays(bundle::PictureError shown, double times) {
+  const float between = shown.interpolation;
+  shown.samples = static_cast<float>(double{shown.samples} / std::sqrt(times));
+  shown.codes = 0.0f;
+  shown.all = std::hypot(shown.samples, between);
+  return shown;
+}
+
+// Returns what the bake's next try begins with, if it has a bound on pictures and this one does not meet it.
+std::optional<PictureSettings> nextTryAfter(const BakeReport& report, const BakeOptions& asked,
+                                            const BakeOptions& options, const BakeOptions& few) {
+  if (asked.picture_bound == 0.0f) return std::nullopt;
+  const double times = static_cast<double>(options.effectiveRays()) / static_cast<double>(few.rays);
+  for (const BakeReport::Group& group : report.groups) {
+    if (!group.picture_error) continue;
+    const PictureTry tried{
+        .made_with = {static_cast<std::uint32_t>(options.effectiveRays()), few.refine_bound},
+        .refined_to = report.refinement.error_after,
+        .shown = withRays(*group.picture_error, times),
+        .keeps_rays = asked.rays != 0,
+        .keeps_refinement = asked.refine_bound >= 0.0f || report.refinement.at_limit};
+    if (leavesEnough(tried.shown, asked.picture_bound)) continue;
+    if (auto next = nextTry(tried, asked.picture_bound)) return next;
+  }
+  return std::nullopt;
+}
+
+// Adds to an estimate what a try takes, all of its groups included.
+void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions& options,
+            BakeEstimate& estimate) {
+  const double times = static_cast<double>(options.effectiveRays()) / static_cast<double>(few.rays);
+  for (const auto& [stage, seconds] : scaleSeconds(report.stages, few, options))
+    estimate.stages[stage] += seconds, estimate.seconds += seconds;
+  const double of_codes = std::pow(times, few.error_bound > 0.0f ? kBytesPower : 0.0);
+  estimate.samples = static_cast<double>(report.samples);
+  estimate.rays += static_cast<double>(report.rays) * times;
+  estimate.bytes = static_cast<double>(report.file_bytes - report.transfer_bytes) +
+                   static_cast<double>(report.transfer_bytes) * of_codes;
+  double more_hits = 0.0;
+  std::vector<BakeEstimate::Group> groups;
+  for (const BakeReport::Group& group : report.groups) {
+    BakeEstimate::Group& of = groups.emplace_back();
+    of.name = group.name;
+    of.samples = static_cast<double>(group.samples);
+    double rays = 0.0;
+    for (const auto& effect : group.effects) rays += static_cast<double>(effect.rays);
+    of.rays = rays * times;
+    const auto stages = std::span(report.stages).subspan(group.first_stage, group.stage_count);
+    for (const auto& [stage, seconds] : scaleSeconds(stages, few, options)) of.seconds += seconds;
+    const double hits = std::min(static_cast<double>(group.hit_bytes) * times,
+                                 0.5 * static_cast<double>(options.effectiveMemory()));
+    const double of_view = group.picture_error && rays > 0.0
+                               ? kHitsOfView * static_cast<double>(group.hit_bytes) / rays *
+                                     static_cast<double>(group.picture_error->points) *
+                                     (raysOfView(options) - raysOfView(few))
+                               : 0.0;
+    more_hits = std::max(more_hits, hits - static_cast<double>(group.hit_bytes) + of_view);
+    of.memory_bytes =
+        hits + of.samples * kCopiesOfLight * double(options.order * options.order) * double{sizeof(float)};
+    of.bytes = static_cast<double>(group.transfer_bytes) * of_codes;
+  }
+  for (std::size_t g = 0; g < std::min(groups.size(), estimate.groups.size()); ++g)
+    groups[g].rays += estimate.groups[g].rays, groups[g].seconds += estimate.groups[g].seconds;
+  estimate.groups = std::move(groups);
+  estimate.memory_bytes = peakMemory() + more_hits;
+}
+
+Key keyOf(const Scene& scene, const BakeOptions& options) {
+  KeyMaker key = KeyMaker::ofStage("estimate");
+  key.add(sceneDigest(scene));
+  for (const auto& [name, word] : options.settings()) key.addText(name).addText(word);
+  return key.add(options.threads).add(options.memory_bytes).key();
+}
+
+}  // namespace
+
+void write(const BakeEstimate& estimate, ByteWriter& out) {
+  out.add(estimate.samples), out.add(estimate.rays), out.add(estimate.seconds);
+  out.add(estimate.memory_bytes), out.add(estimate.bytes);
+  out.add(std::uint64_t{estimate.stages.size()});
+  for (const auto& [stage, seconds] : estimate.stages) {
+    out.addList(std::vector<char>(stage.begin(), stage.end()));
+    out.add(seconds);
+  }
+}
+
+// The whole is kept, not its groups.
+bool read(ByteReader& in, BakeEstimate& estimate) {
+  std::uint64_t count = 0;
+  if (!in.read(estimate.samples) || !in.read(estimate.rays) || !in.read(estimate.seconds) ||
+      !in.read(estimate.memory_bytes) || !in.read(estimate.bytes) || !in.read(count))
+    return false;
+  std::vector<char> stage;
+  for (std::uint64_t i = 0; i < count; ++i)
+    if (!in.readList(stage) || !in.read(estimate.stages[std::string(stage.begin(), stage.end())]))
+      return false;
+  return true;
+}
+
+Result<BakeEstimate> estimateBake(const Scene& scene, const BakeOptions& options,
+                                  const BakeContext& context) {
+  const auto plan = planFor(scene, options);
+  if (!plan) return failAgain(plan.error());
+  BakeEstimate estimate;
+  BakeOptions chosen = options;
+  for (int tries = 1;; ++tries) {
+    const BakeOptions few = rehearsalOf(chosen, plan->bakes("glossy"));
+    Progress progress;
+    const auto report = rehearse(scene, few, {progress, context.stop});
+    if (!report) return failAgain(report.error());
+    const auto next = tries < kMostTries ? nextTryAfter(*report, options, chosen, few) : std::nullopt;
+    addTry(*report, few, chosen, estimate);
+    if (!next) return estimate;
+    chosen.rays = next->rays, chosen.refine_bound = next->refine_bound;
+  }
+}
+
+void keepEstimate(const Scene& scene, const BakeOptions& options, const BakeEstimate& estimate,
+                  Cache& cache) {
+  Progress unused;
+  keepValue({unused, {}, &cache, keyOf(scene, options)}, estimate);
+}
+
+std::optional<BakeEstimate> findEstimate(const Scene& scene, const BakeOptions& options, Cache& cache) {
+  Progress unused;
+  BakeEstimate estimate;
+  if (!findKept({unused, {}, &cache, keyOf(scene, options)}, estimate)) return std::nullopt;
+  return estimate;
+}
+
+double peakMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+}  // namespace lambent::baker

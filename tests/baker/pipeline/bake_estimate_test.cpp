@@ -1,0 +1,87 @@
+// Tests what is said beforehand of a bake, and which options a time buys.
+#include "baker/pipeline/bake_estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include "baker/bake/option_rows.hpp"
+#include "baker/pipeline/time_budget.hpp"
+#include "tests/support/shapes.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/transport.hpp"
+
+namespace lambent::baker {
+namespace {
+
+Scene boxAboveFloor() {
+  return testing::sceneOf({testing::grid({0.0f, 0.0f, 0.0f}, 4.0f, 12),
+                           testing::box({0.13f, 0.6f, -0.21f}, {0.7f, 0.8f, 0.7f}, 4)});
+}
+
+// Seconds depend on what else the machine does, so they are not held against each other here.
+TEST(BakeEstimate, IsWithinAFactorOfOneAndAHalf) {
+  const Scene scene = boxAboveFloor();
+  const BakeOptions options{.quality = Quality::Draft};
+  const testing::TemporaryFolder folder;
+  Progress progress;
+  const auto estimate = estimateBake(scene, options, {progress});
+  ASSERT_TRUE(estimate) << estimate.error().line();
+  const auto report = bake(scene, options, folder.path() / "scene.lmb.glb", {progress});
+  ASSERT_TRUE(report) << report.error().line();
+  const auto near = [](double estimated, std::uint64_t measured, const char* what) {
+    EXPECT_LT(estimated, 1.5 * static_cast<double>(measured)) << what;
+    EXPECT_GT(1.5 * estimated, static_cast<double>(measured)) << what;
+  };
+  near(estimate->samples, report->samples, "samples");
+  near(estimate->rays, report->rays, "rays");
+  near(estimate->bytes, report->file_bytes, "bytes");
+  ASSERT_EQ(estimate->groups.size(), 1u);
+  near(estimate->groups[0].samples, report->groups[0].samples, "samples of the group");
+  near(estimate->groups[0].bytes, report->groups[0].transfer_bytes, "bytes of the group");
+  EXPECT_GT(estimate->seconds, estimate->groups[0].seconds) << "refinement and meshes are of no group";
+}
+
+TEST(BakeEstimate, IsFoundForTheSameSceneAndOptionsOnly) {
+  const testing::TemporaryFolder folder;
+  auto cache = Cache::open(folder.path());
+  ASSERT_TRUE(cache);
+  const Scene scene = boxAboveFloor();
+  const BakeOptions options{.quality = Quality::Draft};
+  BakeEstimate estimate;
+  estimate.seconds = 12.5, estimate.bytes = 77.0, estimate.stages = {{"coding", 2.0}};
+  keepEstimate(scene, options, estimate, *cache);
+  const auto found = findEstimate(scene, options, *cache);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->seconds, 12.5);
+  EXPECT_EQ(found->bytes, 77.0);
+  EXPECT_EQ(found->stages, estimate.stages);
+  EXPECT_FALSE(findEstimate(scene, {.quality = Quality::High}, *cache));
+}
+
+TEST(OptionsForTime, LieBetweenThePresetsAndAreWhatTheirWordsSay) {
+  const BakeOptions draft{.quality = Quality::Draft}, standard;
+  const BakeOptions middle = between(draft, standard, {}, 0.5);
+  EXPECT_EQ(middle.rays, 512u);
+  EXPECT_GT(middle.refine_bound, standard.effectiveRefineBound());
+  EXPECT_LT(middle.refine_bound, draft.effectiveRefineBound());
+  EXPECT_GT(middle.error_bound, standard.effectiveErrorBound());
+  EXPECT_LT(middle.error_bound, draft.effectiveErrorBound());
+  BakeOptions typed;
+  for (const char* name : {"quality", "rays", "refine", "codes"})
+    ASSERT_TRUE(putOption(typed, name, findOption(name)->word(middle)));
+  EXPECT_EQ(typed.settings(), middle.settings()) << "the same bytes";
+  const BakeOptions asked{.rays = 300};
+  EXPECT_EQ(between({.rays = 300}, {.rays = 300}, asked, 0.5).rays, 300u) << "what is given stays";
+}
+
+// No machine bakes this in a hundredth of a second.
+TEST(OptionsForTime, AreTheCoarsestWhereNothingFits) {
+  Progress progress;
+  const auto timed = optionsForTime(boxAboveFloor(), {}, 0.01, {progress});
+  ASSERT_TRUE(timed) << timed.error().line();
+  EXPECT_EQ(timed->options.quality, Quality::Draft);
+  EXPECT_EQ(timed->options.rays, 128u);
+  EXPECT_GT(timed->seconds, 0.01);
+}
+
+}  // namespace
+}  // namespace lambent::baker
