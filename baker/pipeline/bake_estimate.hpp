@@ -1,7 +1,7 @@
 // Says beforehand what a bake will take, for each group: samples, rays, time, memory and bytes. It rehearses
 // the bake with 128 rays, refinement included, and scales what was measured. This takes about
-// as long as a draft, and a third to a half of a bake of standard quality. An estimate can be kept in the cache, so that the
-// bake that follows says how far off it was. Errors: those of the bake.
+// as long as a draft, and a third to a half of a bake of standard quality. An estimate can be kept in the
+// cache, so that the bake that follows says how far off it was. Errors: those of the bake.
 #pragma once
 
 #include <optional>
