@@ -38,10 +38,10 @@ std::string missedText(const FinishedBake& bake) {
   const double bound = bake.options.effectiveErrorBound(),
                glossy_bound = bake.options.effectiveGlossyErrorBound();
   std::string text;
-  if (missesBound(bake.report.worst_error, bound))
+  if (bundle::missesBound(bake.report.worst_error, bound))
     text = fmt::format("the error bound: {:.2f} instead of {:.2f} %", 100.0 * bake.report.worst_error,
                        100.0 * bound);
-  if (missesBound(bake.report.worst_glossy_error, glossy_bound))
+  if (bundle::missesBound(bake.report.worst_glossy_error, glossy_bound))
     text += fmt::format("{}: {:.2f} instead of {:.2f} %; --error keeps more, at a price in bytes and time",
                         text.empty() ? "the error bound of glossy surfaces" : ", of glossy surfaces",
                         100.0 * bake.report.worst_glossy_error, 100.0 * glossy_bound);
@@ -49,11 +49,6 @@ std::string missedText(const FinishedBake& bake) {
 }
 
 }  // namespace
-
-bool missesBound(double error, double bound) {
-  constexpr double kRounded = 1.005;  // reports have three figures, and what they round away is no miss
-  return error > kRounded * bound;
-}
 
 std::string pictureErrorText(const bundle::PictureError& error) {
   return fmt::format(

@@ -17,9 +17,6 @@ struct FinishedBake {
   const BakeReport& report;
 };
 
-// Returns whether codes with this error miss the bound.
-bool missesBound(double error, double bound);
-
 // Returns what the bake measured of its pictures' error, as a sentence's end and as JSON, which is null if
 // nothing was measured.
 std::string pictureErrorText(const bundle::PictureError& error);

@@ -186,7 +186,7 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
                    partName(transfer.shape), counted(cell.sample_count, "sample"),
                    counted(transfer.clusters, "cluster"), counted(transfer.planes.size(), "plane"),
                    100.0 * double{transfer.error}, 100.0 * double{transfer.error_bound});
-        missed += missesBound(transfer.error, transfer.error_bound);
+        missed += bundle::missesBound(transfer.error, transfer.error_bound);
         ++transfers;
       }
   }

@@ -17,18 +17,6 @@ constexpr float kToastWidth = 420.0f;
 
 }  // namespace
 
-ImVec4 severityColor(Severity severity) {
-  switch (severity) {
-    case Severity::Error:
-      return kErrorColor;
-    case Severity::Warning:
-      return kWarningColor;
-    case Severity::Note:
-      break;
-  }
-  return kNoteColor;
-}
-
 void drawLog(Session& session, Marks& marks) {
   const auto entries = session.log.entries();
   if (ImGui::Button("Clear")) session.log.clear();

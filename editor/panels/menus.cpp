@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -5,8 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
+#include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/session/scene_status.hpp"
 #include "editor/session/status.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -56,6 +60,28 @@ void drawPanelItems(Session& session) {
     if (ImGui::MenuItem(panel.name)) session.window.wanted_panels.emplace_back(panel.name);
 }
 
+// Draws at the right end what scenes lack, which a click explains in the Bakes panel, and the picture's time.
+void drawStatus(Session& session, Marks& marks) {
+  const SceneStatus scenes = worstStatus(session);
+  const std::string picture = pictureStatus(session);
+  const float gap = em(1.0f), picture_width = ImGui::CalcTextSize(picture.c_str()).x + gap;
+  const float room = ImGui::GetWindowWidth() - ImGui::GetCursorPosX() - picture_width - gap;
+  const std::string shown = ellipsized(scenes.text, std::max(0.0f, room));
+  const float width = scenes.text.empty() ? 0.0f : ImGui::CalcTextSize(shown.c_str()).x + gap;
+  ImGui::SameLine(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - width - picture_width));
+  if (!scenes.text.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, standingColor(scenes.standing));
+    ImGui::TextUnformatted(shown.c_str());
+    ImGui::PopStyleColor();
+    marks.put("status.scenes");
+    if (ImGui::IsItemClicked()) session.window.wanted_panels.emplace_back("Bakes");
+    tooltip(scenes.detail.empty() ? scenes.text : scenes.text + "\n" + scenes.detail);
+    ImGui::SameLine(ImGui::GetWindowWidth() - picture_width);
+  }
+  ImGui::TextDisabled("%s", picture.c_str());
+  marks.put("status");
+}
+
 }  // namespace
 
 void drawMenus(Session& session, Marks& marks) {
@@ -77,11 +103,7 @@ void drawMenus(Session& session, Marks& marks) {
     if (std::strcmp(menu, "View") == 0) drawPanelItems(session);
     ImGui::EndMenu();
   }
-  const std::string status = statusOf(session);
-  const float width = ImGui::CalcTextSize(status.c_str()).x;
-  ImGui::SameLine(ImGui::GetWindowWidth() - width - 16.0f);
-  ImGui::TextDisabled("%s", status.c_str());
-  marks.put("status");
+  drawStatus(session, marks);
   ImGui::EndMainMenuBar();
 }
 

@@ -3,7 +3,9 @@
 #include <imgui_stdlib.h>
 
 #include "editor/document/tree.hpp"
+#include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -47,6 +49,22 @@ void select(Session& session, const std::vector<TreeRow>& rows, const TreeRow& r
   session.viewing.changed = true;
 }
 
+// Writes behind the row of a bundle what its picture lacks.
+void drawStatus(Session& session, Marks& marks, const TreeRow& row) {
+  const auto& entries = session.scenes.entries();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (!entries[i].slot || session.stage.world().instance(*entries[i].slot).root != row.entity) continue;
+    const SceneStatus status = statusOf(session, i);
+    if (status.standing == Standing::Good) return;
+    const float name = ImGui::CalcTextSize(row.name.c_str()).x + em(0.5f);
+    ImGui::SameLine(ImGui::GetItemRectMin().x - ImGui::GetWindowPos().x + name);
+    ImGui::PushStyleColor(ImGuiCol_Text, standingColor(status.standing));
+    fittedText(status.text, status.detail);
+    ImGui::PopStyleColor();
+    marks.put("scene." + row.name + ".state");
+  }
+}
+
 void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector<TreeRow>& rows,
              const TreeRow& row) {
   ImGui::PushID(static_cast<int>(row.id.value ^ row.id.value >> 32));
@@ -88,6 +106,7 @@ void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector
     }
     ImGui::EndDragDropTarget();
   }
+  if (row.kind == "bundle") drawStatus(session, marks, row);
   ImGui::PopID();
 }
 

@@ -11,6 +11,7 @@
 #include "assets/glb.hpp"
 #include "assets/shapes.hpp"
 #include "baker/bake/option_rows.hpp"
+#include "baker/pipeline/journal.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/require.hpp"
 #include "tests/support/x_server.hpp"
@@ -204,6 +205,60 @@ TEST_F(EditorProgram, TakesADroppedSceneAndShowsItBeforeItIsBaked) {
   EXPECT_EQ(played.answer("state")["scenes"][0]["bake"]["reached"], "final");
   EXPECT_EQ(played.answer("state")["errors"], 0);
   EXPECT_EQ(played.answer("plan")["ready"], true);
+}
+
+// What another scene's bake left behind must not stand in the scene that is opened.
+TEST_F(EditorProgram, ShowsTheOpenedSceneAloneAndOffersUnfinishedBakes) {
+  std::filesystem::copy(path("hello.glb"), path("other.glb"));
+  baker::Journal(folder / "cache" / baker::kJournalFolder)
+      .begin({.scene = path("other.glb"), .output = path("other.lmb.glb")});
+  const Played played = play(R"(
+wait baked 240
+state
+tree type:bundle
+click bakes.other.glb.go-on
+wait frames 3
+wait baked 240
+state
+tree type:bundle
+)",
+                             {path("hello.glb"), "--fresh"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> states = played.all("state"), trees = played.all("tree");
+  ASSERT_EQ(trees.size(), 2u);
+  for (const json& tree : trees) EXPECT_EQ(tree.size(), 1u) << tree.dump();
+  EXPECT_EQ(states[0]["unfinished"], json::array({path("other.glb")}));
+  EXPECT_EQ(states[1]["unfinished"], json::array());
+  EXPECT_EQ(states[1]["unseen"][0]["phase"], "done") << states[1].dump();
+  EXPECT_TRUE(std::filesystem::exists(path("other.lmb.glb")));
+}
+
+// The tree, the status bar and the Bakes panel tell the same, and go on to tell it without a selection.
+TEST_F(EditorProgram, TellsEverywhereThatThePictureNeedsARebake) {
+  const Played played = play(fmt::format(R"(
+open {0}
+wait baked 240
+wait frames 3
+marks
+select "has:Transform sphere"
+set Transform.translation 0.1 0.6 0.2
+select-none
+wait frames 5
+marks
+state
+)",
+                                         path("hello.glb")));
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> marks = played.all("marks");
+  ASSERT_EQ(marks.size(), 2u);
+  const auto has = [](const json& names, const char* name) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  for (const char* name : {"status.scenes", "scene.hello.state"}) {
+    EXPECT_FALSE(has(marks[0], name)) << name;
+    EXPECT_TRUE(has(marks[1], name)) << name;
+  }
+  EXPECT_EQ(played.answer("state")["scenes"][0]["status"], "needs a rebake");
 }
 
 TEST_F(EditorProgram, EditsAMaterialByItsWidgetAndBakesItWithOneButton) {
