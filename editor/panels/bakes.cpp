@@ -65,7 +65,7 @@ std::string errorText(const Session& session, const SceneEntry& entry) {
   double worst = -1.0;
   for (const bundle::Group& group : session.stage.world().description(*entry.slot).groups)
     if (group.picture_error) worst = std::max(worst, double{group.picture_error->all});
-  return worst < 0.0 ? std::string() : fmt::format("pictures err by {:.1f} %; ", 100.0 * worst);
+  return worst < 0.0 ? std::string() : fmt::format("pictures err by {:.1f} %", 100.0 * worst);
 }
 
 void drawState(const SceneStatus& status) {
@@ -117,7 +117,10 @@ bool drawScene(Session& session, Marks& marks, std::size_t i) {
   ImGui::TableNextColumn();
   if (working) drawProgress(*job);
   marks.put(mark + "progress");
-  if (job) fittedText(working ? newsOf(*job) : errorText(session, entry) + newsOf(*job));
+  std::string news = job ? newsOf(*job) : std::string();
+  if (const std::string error = errorText(session, entry); !working && !error.empty())
+    news = news.empty() ? error : error + "; " + news;
+  fittedText(news);
   ImGui::TableNextColumn();
   return drawButtons(session, marks, i, working);
 }

@@ -150,23 +150,10 @@ void drawStand(Session& session, Marks& marks) {
   number("rotation", "turn", -180.0f, 180.0f, "%.1f deg");
   number("intensity", "intensity", 0.0f, 4.0f, "%.3f");
   if (!session.document.world().fade_lights.empty()) number("fade", "fade", 0.0f, 1.0f, "%.3f");
-  std::optional<float> exposure = session.document.world().exposure_ev;
-  bool automatic = !exposure.has_value();
-  if (ImGui::Checkbox("automatic exposure", &automatic))
-    session.history.editWorld("exposure", [&](WorldState& world) {
-      world.exposure_ev = automatic ? std::nullopt : std::optional(session.picture.exposure_ev);
-    });
-  marks.put("environment.automatic");
-  if (automatic) {
-    ImGui::SameLine();
-    ImGui::TextDisabled("%.2f EV", session.picture.exposure_ev);
-    return;
-  }
-  float ev = *exposure;
-  if (ImGui::SliderFloat("exposure", &ev, -12.0f, 12.0f, "%.2f EV"))
-    session.history.editWorld("exposure", [&](WorldState& world) { world.exposure_ev = ev; });
-  asOneStep(session, "exposure");
-  marks.put("environment.exposure");
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("exposure");
+  ImGui::SameLine();
+  drawExposure(session, marks, "environment");
 }
 
 }  // namespace

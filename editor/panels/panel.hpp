@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "editor/session/session.hpp"
 #include "editor/ui/marks.hpp"
@@ -28,6 +29,8 @@ void drawSceneTree(Session& session, Marks& marks);
 void drawInspector(Session& session, Marks& marks);
 void drawEnvironment(Session& session, Marks& marks);
 void drawKeyLights(Session& session, Marks& marks);  // part of drawEnvironment
+// Part of drawEnvironment and of the inspector of lights. Its widgets have marks that begin with `mark`.
+void drawExposure(Session& session, Marks& marks, const std::string& mark);
 void drawSettings(Session& session, Marks& marks);
 void drawPlan(Session& session, Marks& marks);
 void drawBakes(Session& session, Marks& marks);

@@ -263,9 +263,8 @@ void Scenes::take(const baker::BakeEvent& event) {
     return;
   if (job) found->shown_edits = job->request.edits;
   show(*found, event.bundle);
-  if (event.preview_level == baker::PreviewLevel::Final)
-    log_.note(
-        fmt::format("{}: baked in {:.0f} s", found->bundle.filename().string(), job ? job->seconds : 0.0));
+  if (event.preview_level == baker::PreviewLevel::Final && job && !job->up_to_date)
+    log_.note(fmt::format("{}: baked in {:.0f} s", found->bundle.filename().string(), job->seconds));
 }
 
 // Returns whether a watched folder contains the scene.
