@@ -38,6 +38,7 @@ void drawBakeOptions(Session& session, Marks& marks, std::size_t scene);  // par
 void drawCost(Session& session, Marks& marks);
 void drawAccuracy(Session& session, Marks& marks);
 void drawStreaming(Session& session, Marks& marks);
+void drawHistory(Session& session, Marks& marks);
 void drawLog(Session& session, Marks& marks);
 
 // These are not in a dock: the menu bar, the view in the middle, and what is drawn above everything.
@@ -45,5 +46,9 @@ void drawMenus(Session& session, Marks& marks);
 void drawViewport(Session& session, Renderer& renderer, Marks& marks);
 void drawToasts(Session& session, Marks& marks);
 void drawDialogs(Session& session, Marks& marks);
+void drawKeys(Session& session, Marks& marks);
+void drawPalette(Session& session, Marks& marks);
+// Draws the items of a menu about what is selected, for rows of the tree and the view.
+void drawSelectionMenu(Session& session, Marks& marks);
 
 }  // namespace lambent::editor

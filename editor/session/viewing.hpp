@@ -38,6 +38,7 @@ class Viewing {
   bool frame_when_loaded = true;  // place the camera when the first bundle is loaded
   bool changed = true;            // the picture must be drawn anew
   bool flying = false;            // the keys move the camera
+  bool hovered = false;           // the pointer is over the view
 
   // Eases the camera towards its goal; call it once a frame.
   void update(const Document& document, double seconds);

@@ -17,6 +17,8 @@ struct WindowRequests {
   // Ids of commands to run in the next frame, when fields that were open have taken over what was typed.
   std::vector<std::string> wanted_commands;
   bool palette = false;  // the list of commands is open
+  bool keys = false;     // the list of keys is open
+  std::string palette_words;
   bool quit = false;
 };
 

@@ -58,6 +58,13 @@ void fittedText(std::string_view text, std::string_view more) {
   fittedTextBeside(text, 0.0f, more);
 }
 
+void sameLineIfFits(std::string_view button) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float end =
+      ImGui::GetItemRectMax().x + style.ItemSpacing.x + widthOf(button) + 2.0f * style.FramePadding.x;
+  if (end <= ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+}
+
 const char* numberFormat(float value, float width, int digits) {
   constexpr std::array kFormats = {"%.0f", "%.1f", "%.2f", "%.3f", "%.4f"};
   const float room = width - 2.0f * ImGui::GetStyle().FramePadding.x;
