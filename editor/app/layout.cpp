@@ -16,6 +16,7 @@ constexpr float kEdge = 5.0f;  // width in pixels of the edges between areas
 constexpr float kLeastShare = 0.08f, kMostShare = 0.6f;
 // Panels have at least this room in heights of the font, but at most this share of the window.
 constexpr float kLeftEms = 13.0f, kRightEms = 22.0f, kBottomEms = 10.0f;
+constexpr float kWideEms = 36.0f;
 constexpr float kLeftShare = 0.28f, kRightShare = 0.44f, kBottomShare = 0.4f;
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
@@ -113,9 +114,12 @@ void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
   drawViewport(session, renderer, marks);
   ImGui::End();
 
+  // Where the view is narrow, the tables below it take the left column's room too.
+  const bool wide = p.show_bottom && middle < em(kWideEms);
+  const float left_height = wide ? height - bottom : height;
   if (p.show_left) {
-    drawDock("left", Dock::Left, {{0.0f, top}, {left, height}}, p.left_tab, session, marks);
-    drag(p.left, left, drawEdge("left edge", {{left - kEdge, top}, {kEdge, height}}, true), screen.x);
+    drawDock("left", Dock::Left, {{0.0f, top}, {left, left_height}}, p.left_tab, session, marks);
+    drag(p.left, left, drawEdge("left edge", {{left - kEdge, top}, {kEdge, left_height}}, true), screen.x);
   }
   if (p.show_right) {
     drawDock("right", Dock::Right, {{screen.x - right, top}, {right, height}}, p.right_tab, session, marks);
@@ -123,8 +127,9 @@ void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
   }
   if (p.show_bottom) {
     const float at = top + height - bottom;
-    drawDock("bottom", Dock::Bottom, {{left, at}, {middle, bottom}}, p.bottom_tab, session, marks);
-    drag(p.bottom, bottom, -drawEdge("bottom edge", {{left, at}, {middle, kEdge}}, false), height);
+    const Area area = wide ? Area{{0.0f, at}, {left + middle, bottom}} : Area{{left, at}, {middle, bottom}};
+    drawDock("bottom", Dock::Bottom, area, p.bottom_tab, session, marks);
+    drag(p.bottom, bottom, -drawEdge("bottom edge", {area.at, {area.size.x, kEdge}}, false), height);
   }
   session.window.raise_tabs = false;
   drawDialogs(session, marks);

@@ -198,8 +198,11 @@ void drawBakes(Session& session, Marks& marks) {
     return;
   }
   constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
-                                     ImGuiTableFlags_Resizable | ImGuiTableFlags_ScrollY;
-  if (!ImGui::BeginTable("bakes", 4, kTable)) return;
+                                     ImGuiTableFlags_Resizable | ImGuiTableFlags_ScrollY |
+                                     ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable("bakes", 4, kTable, ImVec2(0.0f, 0.0f),
+                         std::max(ImGui::GetContentRegionAvail().x, em(34.0f))))
+    return;
   ImGui::TableSetupColumn("Scene", ImGuiTableColumnFlags_WidthStretch, 0.2f);
   ImGui::TableSetupColumn("State", ImGuiTableColumnFlags_WidthStretch, 0.25f);
   ImGui::TableSetupColumn("Bake", ImGuiTableColumnFlags_WidthStretch, 0.55f);

@@ -231,10 +231,10 @@ void drawField(Session& session, Marks& marks, const FieldInfo& field,
 
 }  // namespace
 
-bool beginFieldTable(const char* id) {
+bool beginFieldTable(const char* id, float labels) {
   if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp)) return false;
-  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.38f);
-  ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.62f);
+  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, labels);
+  ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1.0f - labels);
   return true;
 }
 

@@ -14,8 +14,9 @@ namespace lambent::editor {
 void drawFields(Session& session, Marks& marks, const scene::ComponentInfo& component,
                 std::span<const ecs::Entity> entities);
 
-// Begins a table of labels and values, ended by ImGui::EndTable(). Returns whether it is shown.
-bool beginFieldTable(const char* id);
+// Begins a table of labels, which take this share of the width, and values. It is ended by ImGui::EndTable().
+// Returns whether it is shown.
+bool beginFieldTable(const char* id, float labels = 0.38f);
 // Begins a row: draws its label, and goes to its value.
 void beginFieldRow(std::string_view label, std::string_view help);
 

@@ -11,7 +11,8 @@ void drawHistory(Session& session, Marks& marks) {
   const std::vector<std::string> names = history.stepNames();
   const std::size_t done = history.stepsDone();
   std::size_t wanted = done;
-  if (ImGui::Selectable("The world as it was opened", done == 0)) wanted = 0;
+  const std::string first = ellipsized("The world as it was opened", ImGui::GetContentRegionAvail().x);
+  if (ImGui::Selectable(first.c_str(), done == 0)) wanted = 0;
   marks.put("history.0");
   for (std::size_t i = 0; i < names.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));

@@ -160,7 +160,7 @@ void drawRows(Session& session, Marks& marks) {
 void drawSettings(Session& session, Marks& marks) {
   drawQuality(session, marks);
   ImGui::Separator();
-  if (beginFieldTable("settings")) {
+  if (beginFieldTable("settings", 0.56f)) {
     drawRows(session, marks);
     ImGui::EndTable();
   }

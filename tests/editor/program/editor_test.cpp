@@ -261,6 +261,85 @@ state
   EXPECT_EQ(played.answer("state")["scenes"][0]["status"], "needs a rebake");
 }
 
+// With automatic exposure, a light that is seen makes the meter go down.
+TEST_F(EditorProgram, ShowsANewLightOfEachKindAtOnce) {
+  std::string script = fmt::format("open {}\nwait loaded 60\nwait rest 60\nstate\n", path("hello.glb"));
+  for (const char* kind : {"point", "spot", "directional", "sphere", "disc"})
+    script += fmt::format("create-{}\nwait rest 60\nstate\nundo\nwait rest 60\n", kind);
+  const Played played = play(script, {"--no-bake"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> states = played.all("state");
+  ASSERT_EQ(states.size(), 6u);
+  const double before = states[0]["exposureEv"];
+  for (std::size_t i = 1; i < states.size(); ++i)
+    EXPECT_LT(states[i]["exposureEv"].get<double>(), before - 0.1) << states[i]["selected"].dump();
+}
+
+TEST_F(EditorProgram, CommitsAnOpenFieldBeforeUndoAndSaysWhatItUndoes) {
+  const Played played = play(R"(
+create-empty
+panel Inspector
+wait frames 3
+click inspector.Name.name
+key Ctrl+A
+type "lamp"
+wait frames 3
+get Name.name
+key Ctrl+Z
+wait frames 3
+get Name.name
+state
+key Ctrl+Shift+Z
+wait frames 3
+get Name.name
+click menu.Edit
+wait frames 3
+click menu.undo@0.05,0.5
+wait frames 3
+get Name.name
+state
+)");
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> names = played.all("get Name.name");
+  EXPECT_EQ(names, (std::vector<json>{"lamp", "empty", "lamp", "empty"}));
+  EXPECT_EQ(played.answer("state")["undo"], "Undo creation of empty");
+  EXPECT_EQ(played.answer("state")["redo"], "Redo Name of empty");
+}
+
+TEST_F(EditorProgram, ChoosesAUnitAndRunsACommandOfThePalette) {
+  const Played played = play(R"(
+create-point
+set Light.strength 10
+panel Inspector
+wait frames 3
+marks
+click inspector.Light.unit
+wait frames 3
+click inspector.Light.unit.lm
+wait frames 3
+get Light.strength
+key Ctrl+P
+wait frames 3
+type "camera"
+wait frames 3
+click palette.create-camera
+wait frames 3
+state
+right-click scene.camera
+wait frames 3
+click context.delete
+wait frames 3
+state
+)");
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::string marks = played.answer("marks").dump();
+  EXPECT_NE(marks.find("inspector.Light.range"), std::string::npos);
+  EXPECT_EQ(marks.find("inspector.Light.radius"), std::string::npos) << "a point has none";
+  EXPECT_EQ(played.answer("get Light.strength"), 10.0) << "a unit changes no light";
+  EXPECT_EQ(played.all("state")[0]["selected"], json::array({"camera"}));
+  EXPECT_EQ(played.all("state")[1]["undo"], "Undo removal of camera");
+}
+
 TEST_F(EditorProgram, EditsAMaterialByItsWidgetAndBakesItWithOneButton) {
   const Played played = play(fmt::format(R"(
 open {0}
