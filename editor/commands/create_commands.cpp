@@ -35,7 +35,7 @@ Answer create(Session& session, const EntitySnapshot& snapshot) {
 Answer put(Session& session, const EntitySnapshot& snapshot, Words words) {
   const auto at = placeOf(words);
   if (!at) return failAgain(at.error());
-  session.history.begin("create");
+  session.history.begin("creation of " + std::get<std::string>(*snapshot.find("Name", "name")));
   const auto made = create(session, snapshot);
   const ecs::Entity entity = session.selection.primaryEntity(session.document);
   const auto moved =
