@@ -1,5 +1,7 @@
 #include "editor/document/field_use.hpp"
 
+#include <glm/geometric.hpp>
+
 #include "runtime/scene/components.hpp"
 
 namespace lambent::editor {
@@ -27,9 +29,9 @@ bool isUsed(const ecs::Registry& registry, ecs::Entity entity, const scene::Fiel
     return isUsed(registry.get<scene::LocalLightComponent>(entity), field.name);
   if (field.component == scene::CameraComponent::kComponentName)
     return isUsed(registry.get<scene::CameraComponent>(entity), field.name);
-  // Only matrices of files have shear, and a turned parent that is scaled.
+  // Only matrices of files have shear; taken apart, others have a rounding error.
   if (field.component == scene::Transform::kComponentName && field.name == "shear")
-    return registry.get<scene::Transform>(entity).shear != glm::vec3(0.0f);
+    return glm::length(registry.get<scene::Transform>(entity).shear) > 1e-6f;
   if (field.component == scene::MaterialComponent::kComponentName && field.name == "anisotropy_rotation")
     return registry.get<scene::MaterialComponent>(entity).anisotropy > 0.0f;
   return true;
