@@ -45,6 +45,7 @@ void drawLog(Session& session, Marks& marks);
 void drawMenus(Session& session, Marks& marks);
 void drawViewport(Session& session, Renderer& renderer, Marks& marks);
 void drawToasts(Session& session, Marks& marks);
+void drawStartPage(Session& session, Marks& marks);  // in the view while nothing is open
 void drawDialogs(Session& session, Marks& marks);
 void drawKeys(Session& session, Marks& marks);
 void drawPalette(Session& session, Marks& marks);

@@ -151,12 +151,6 @@ void drawViewMenu(Session& session, Marks& marks) {
   ImGui::EndPopup();
 }
 
-void drawEmpty(const ImVec2& low, const ImVec2& high) {
-  const char* text = "Drop a glTF scene here, or File > Open";
-  const ImVec2 size = ImGui::CalcTextSize(text);
-  textOver(ImVec2(0.5f * (low.x + high.x - size.x), 0.5f * (low.y + high.y - size.y)), text);
-}
-
 }  // namespace
 
 void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
@@ -181,7 +175,10 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
   if (clicked) pick(session, renderer, scale * *clicked);
   drawLegends(session, marks, low, high);
   drawViewMenu(session, marks);
-  if (session.scenes.entries().empty()) drawEmpty(low, high);
+  if (session.scenes.entries().empty()) {
+    ImGui::SetCursorScreenPos(low);
+    drawStartPage(session, marks);
+  }
 }
 
 }  // namespace lambent::editor

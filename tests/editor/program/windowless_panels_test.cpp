@@ -174,6 +174,18 @@ TEST_F(WindowlessPanels, KeepTheirWidgetsWithinNarrowRoomAtALargeFont) {
   }
 }
 
+TEST_F(WindowlessPanels, TheStartPageOpensARecentScene) {
+  const std::filesystem::path file = folder.path() / "hello.glb";
+  ASSERT_TRUE(assets::writeGlb(file, assets::hello()));
+  session->preferences.recent = {"/nowhere/else.glb", file.string()};
+  const Panel start{"start", Dock::Left, "", &drawStartPage};
+  EXPECT_NE(textOf(start).find("Drop a glTF scene"), std::string::npos);
+  settle(start);
+  click(start, "start.hello.glb");
+  ASSERT_EQ(session->scenes.entries().size(), 1u);
+  EXPECT_EQ(session->scenes.entries().front().source, file);
+}
+
 TEST_F(WindowlessPanels, AClickInTheHistoryGoesToThatStep) {
   answer("create-point");
   answer("create-camera");
