@@ -88,6 +88,20 @@ TEST_F(WindowlessCommands, LookAtTheWorldAsTheyAreTold) {
   EXPECT_EQ(session->reference.band_limit, 5);
 }
 
+// The plain picture must not be shown under the name of a difference before there is one.
+TEST_F(WindowlessCommands, ShowADifferenceOnlyOnceThereIsOne) {
+  ReferenceView& reference = session->reference;
+  answer("heat");
+  EXPECT_FALSE(reference.shows());
+  reference.shown(std::make_shared<const baker::reference::Snapshot>());
+  EXPECT_FALSE(reference.shows()) << "samples are no difference yet";
+  answer("split");
+  EXPECT_TRUE(reference.shows());
+  answer("heat");
+  reference.compared(baker::Difference{});
+  EXPECT_TRUE(reference.shows());
+}
+
 TEST_F(WindowlessCommands, ChangeAMaterialOfABundle) {
   openHello();
   answer("select", {"type:material floor"});
