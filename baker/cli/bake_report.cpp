@@ -83,14 +83,14 @@ std::string missedText(const FinishedBake& bake) {
   std::string text;
   for (const BakeReport::Group& group : bake.report.groups)
     if (const auto& error = group.picture_error;
-        error && error->bound > 0.0f && missesBound(error->all, error->bound))
+        error && error->bound > 0.0f && bundle::missesBound(error->all, error->bound))
       text += fmt::format("{}the error of pictures of \"{}\": {:.2f} instead of {:.2f} %; {}",
                           text.empty() ? "" : ", ", group.name, 100.0 * double{error->all},
                           100.0 * double{error->bound}, whyMissed(bake, *error));
-  if (bake.options.picture_bound == 0.0f && missesBound(bake.report.worst_error, bound))
+  if (bake.options.picture_bound == 0.0f && bundle::missesBound(bake.report.worst_error, bound))
     text = fmt::format("the error bound: {:.2f} instead of {:.2f} %", 100.0 * bake.report.worst_error,
                        100.0 * bound);
-  if (missesBound(bake.report.worst_glossy_error, glossy_bound))
+  if (bundle::missesBound(bake.report.worst_glossy_error, glossy_bound))
     text += fmt::format("{}: {:.2f} instead of {:.2f} %; --codes keeps more, at a price in bytes and time",
                         text.empty() ? "the error bound of glossy surfaces" : ", of glossy surfaces",
                         100.0 * bake.report.worst_glossy_error, 100.0 * glossy_bound);
@@ -98,11 +98,6 @@ std::string missedText(const FinishedBake& bake) {
 }
 
 }  // namespace
-
-bool missesBound(double error, double bound) {
-  constexpr double kRounded = 1.005;  // reports have three figures, and what they round away is no miss
-  return error > kRounded * bound;
-}
 
 std::string pictureErrorText(const bundle::PictureError& error) {
   return fmt::format(

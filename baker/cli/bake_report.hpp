@@ -20,9 +20,6 @@ struct FinishedBake {
   const std::optional<BakeEstimate>& estimate;
 };
 
-// Returns whether codes with this error miss the bound.
-bool missesBound(double error, double bound);
-
 // Returns what the bake measured of its pictures' error, as a sentence's end and as JSON, which is null if
 // nothing was measured.
 std::string pictureErrorText(const bundle::PictureError& error);

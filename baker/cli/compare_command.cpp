@@ -126,7 +126,7 @@ void addCompareCommand(CLI::App& app, Command& run) {
       ->type_name("N");
   command
       ->add_option("--heat", a->heat,
-                   "Write where they differ as colours. Grey: neither shows the\nscene, violet: one of them")
+                   "Write where they differ as colors. Gray: neither shows the\nscene, violet: one of them")
       ->type_name("PNG");
   command
       ->add_option(
@@ -137,7 +137,7 @@ void addCompareCommand(CLI::App& app, Command& run) {
       ->type_name("MAP");
   command
       ->add_option("--heat-range", a->heat_range,
-                   "Where the colours end, as a share (0.1: 10 %; default: by the\npicture)")
+                   "Where the colors end, as a share (0.1: 10 %; default: by the\npicture)")
       ->check(CLI::PositiveNumber)
       ->type_name("SHARE");
   command->add_flag("--json", a->json, "Print figures as JSON");

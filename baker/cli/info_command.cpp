@@ -167,7 +167,7 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
     if (const auto& error = group.picture_error) {
       fmt::print("  diffuse surfaces are {}\n", pictureErrorText(*error));
-      pictures_missed += error->bound > 0.0f && missesBound(error->all, error->bound);
+      pictures_missed += error->bound > 0.0f && bundle::missesBound(error->all, error->bound);
     }
     if (const auto& around = group.neighborhood)
       fmt::print(
@@ -188,7 +188,7 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
                    partName(transfer.shape), counted(cell.sample_count, "sample"),
                    counted(transfer.clusters, "cluster"), counted(transfer.planes.size(), "plane"),
                    100.0 * double{transfer.error}, 100.0 * double{transfer.error_bound});
-        missed += missesBound(transfer.error, transfer.error_bound);
+        missed += bundle::missesBound(transfer.error, transfer.error_bound);
         ++transfers;
       }
   }

@@ -65,6 +65,13 @@ Result<void> run(const Options& options) {
     return std::string(text ? text : "");
   };
 
+  s.viewing.surface_ahead = [&s, &r = *renderer]() -> std::optional<glm::vec3> {
+    const spec::Size size = s.viewing.size;
+    const auto picked =
+        r.pick(s, 0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height));
+    return picked && *picked ? std::optional((*picked)->position_ws) : std::nullopt;
+  };
+
   Clock::time_point last = Clock::now();
   bool moving = true;
   std::string title;

@@ -38,6 +38,36 @@ Answer option(Session& session, Words words) {
   return answerOf(session.scenes.setOption(*entry, words[0], words[1]));
 }
 
+// Finds an unfinished bake by its scene's file name, or by its number.
+Result<std::size_t> findUnfinished(const Session& session, const std::string& word) {
+  const auto& unfinished = session.scenes.unfinished();
+  for (std::size_t i = 0; i < unfinished.size(); ++i)
+    if (unfinished[i].scene == word || unfinished[i].scene.filename() == word || std::to_string(i) == word)
+      return i;
+  return fail(word, "is no unfinished bake", "\"state\" lists them");
+}
+
+Answer goOn(Session& session, Words words) {
+  if (words.empty()) {
+    while (!session.scenes.unfinished().empty()) session.scenes.goOn(0);
+    return nullptr;
+  }
+  const auto found = findUnfinished(session, words[0]);
+  if (!found) return failAgain(found.error());
+  session.scenes.goOn(*found);
+  return nullptr;
+}
+
+Answer forget(Session& session, Words words) {
+  const auto found = findUnfinished(session, words[0]);
+  if (!found) return failAgain(found.error());
+  session.scenes.forget(*found);
+  return nullptr;
+}
+
+bool anyUnfinished(const Session& session) {
+  return !session.scenes.unfinished().empty();
+}
 bool baking(const Session& session) {
   return session.scenes.busy();
 }
@@ -72,6 +102,24 @@ constexpr std::array kRows = {
             .most_words = 1,
             .run = &cancel,
             .enabled = &baking},
+    Command{.id = "go-on",
+            .title = "Go on with unfinished bakes",
+            .menu = "Bake",
+            .shortcut = "",
+            .help = "Finish bakes that an earlier session left unfinished, without opening their scenes",
+            .arguments = "[SCENE]",
+            .most_words = 1,
+            .run = &goOn,
+            .enabled = &anyUnfinished},
+    Command{.id = "forget",
+            .title = "",
+            .menu = "Bake",
+            .shortcut = "",
+            .help = "Give an unfinished bake of an earlier session up; what it kept stays in the cache",
+            .arguments = "SCENE",
+            .least_words = 1,
+            .most_words = 1,
+            .run = &forget},
     Command{.id = "bake-option",
             .title = "",
             .menu = "Bake",

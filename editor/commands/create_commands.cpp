@@ -2,39 +2,59 @@
 
 #include "editor/commands/rows.hpp"
 #include "editor/document/snapshot.hpp"
+#include "editor/session/new_lights.hpp"
 #include "runtime/spec/numbers.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
-// Creates the entity at the place that the words give, by default at the camera's target.
-Answer put(Session& session, EntitySnapshot snapshot, Words words) {
-  glm::vec3 at = session.viewing.goal.target_ws;
-  for (int axis = 0; axis < 3 && !words.empty(); ++axis) {
+// Returns the place that the words give, or none without words.
+Result<std::optional<glm::vec3>> placeOf(Words words) {
+  if (words.empty()) return std::nullopt;
+  glm::vec3 at(0.0f);
+  for (int axis = 0; axis < 3; ++axis) {
     const auto number =
         words.size() == 3 ? spec::parseNumber(words[static_cast<std::size_t>(axis)]) : std::nullopt;
-    if (!number) return fail("create", "is no place", "give three numbers, or none: where the eye looks");
+    if (!number)
+      return fail("create", "is no place", "give three numbers, or none: in front of what the camera sees");
     at[axis] = *number;
   }
-  session.history.begin("create");
+  return at;
+}
+
+Answer create(Session& session, const EntitySnapshot& snapshot) {
   const auto made = session.history.create(snapshot);
-  if (!made) {
-    session.history.cancel();
-    return failAgain(made.error());
-  }
-  const auto moved = session.history.setField(*made, "Transform", "translation", at);
-  session.history.commit();
-  if (!moved) return failAgain(moved.error());
+  if (!made) return failAgain(made.error());
   const StableId id = session.document.idOf(*made);
   session.selection.set(id);
   return nlohmann::json{{"id", idText(id)}, {"name", session.document.nameOf(*made)}};
 }
 
-template <std::size_t Kind>
+// Creates the entity at the place that the words give, or where a new light would stand.
+Answer put(Session& session, const EntitySnapshot& snapshot, Words words) {
+  const auto at = placeOf(words);
+  if (!at) return failAgain(at.error());
+  session.history.begin("creation of " + std::get<std::string>(*snapshot.find("Name", "name")));
+  const auto made = create(session, snapshot);
+  const ecs::Entity entity = session.selection.primaryEntity(session.document);
+  const auto moved =
+      made ? session.history.setField(entity, "Transform", "translation", at->value_or(newPlace(session)))
+           : Result<void>();
+  if (!made || !moved) {
+    session.history.cancel();
+    return failAgain(made ? moved.error() : made.error());
+  }
+  session.history.commit();
+  return made;
+}
+
+template <scene::LocalLightComponent::Kind Kind>
 Answer light(Session& session, Words words) {
-  constexpr std::array kKinds = {"point", "spot", "directional", "sphere", "disc"};
-  return put(session, lightEntity(kKinds[Kind], freshName(session, kKinds[Kind])), words);
+  const auto at = placeOf(words);
+  if (!at) return failAgain(at.error());
+  const std::string word(scene::kLightKindWords[static_cast<std::size_t>(Kind)]);
+  return create(session, newLight(session, Kind, freshName(session, word), *at));
 }
 Answer camera(Session& session, Words words) {
   return put(session, cameraEntity(freshName(session, "camera")), words);
@@ -55,12 +75,17 @@ constexpr Command row(const char* id, const char* title, const char* help,
           .run = run};
 }
 
+using Kind = scene::LocalLightComponent::Kind;
+
 constexpr std::array kRows = {
-    row("create-point", "Point light", "A lamp without size, where the eye looks", &light<0>),
-    row("create-spot", "Spot light", "A lamp that shines along its -Z", &light<1>),
-    row("create-directional", "Directional light", "Light from one direction, without end", &light<2>),
-    row("create-sphere", "Sphere of light", "A lamp with a radius: soft shadows", &light<3>),
-    row("create-disc", "Disc of light", "A flat lamp that shines to one side", &light<4>),
+    row("create-point", "Point light", "A lamp without size, in front of what the camera sees",
+        &light<Kind::Point>),
+    row("create-spot", "Spot light", "A lamp that shines along its -Z, at what the camera sees",
+        &light<Kind::Spot>),
+    row("create-directional", "Directional light", "Light from one direction, without end",
+        &light<Kind::Directional>),
+    row("create-sphere", "Sphere of light", "A lamp with a radius: soft shadows", &light<Kind::Sphere>),
+    row("create-disc", "Disc of light", "A flat lamp that shines to one side", &light<Kind::Disc>),
     separator("Create"),
     row("create-camera", "Camera", "A camera that stands in the world", &camera),
     row("create-empty", "Empty", "A place to hang other things from", &empty),

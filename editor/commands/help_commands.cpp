@@ -7,19 +7,13 @@ namespace lambent::editor {
 namespace {
 
 Answer shortcuts(Session& session, Words) {
-  std::string text;
-  for (const Command& command : commandList())
-    if (*command.shortcut != '\0') text += fmt::format("{:<14} {}\n", command.shortcut, command.title);
-  text +=
-      "\nMiddle button, or Alt and left: turn the eye; with Shift: shift it; wheel: nearer, farther\n"
-      "Right button: look around; with W A S D Q E: fly, with Shift faster\n"
-      "Click: select; with Ctrl or Shift: several; double click in the tree: frame";
-  Dialog show;
-  show.kind = Dialog::Kind::Confirm;
-  show.title = "Keys and pointer";
-  show.question = text;
-  show.yes = "Close", show.no = "OK";
-  session.window.dialog = std::move(show);
+  session.window.keys = true;
+  return nullptr;
+}
+
+Answer palette(Session& session, Words) {
+  session.window.palette = true;
+  session.window.palette_words.clear();
   return nullptr;
 }
 
@@ -56,6 +50,13 @@ constexpr std::array kRows = {
             .help = "All keys, and what the pointer does in the view",
             .arguments = "",
             .run = &shortcuts},
+    Command{.id = "palette",
+            .title = "Command palette",
+            .menu = "Help",
+            .shortcut = "Ctrl+P",
+            .help = "Find a command by its words, and run it",
+            .arguments = "",
+            .run = &palette},
     Command{.id = "about",
             .title = "About",
             .menu = "Help",

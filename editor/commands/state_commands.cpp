@@ -3,6 +3,7 @@
 
 #include "editor/commands/rows.hpp"
 #include "editor/document/actions.hpp"
+#include "editor/session/scene_status.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/spec/numbers.hpp"
 
@@ -149,18 +150,26 @@ Answer state(Session& session, Words) {
                 {"shown", entry.shown.string()},
                 {"open", entry.slot.has_value()},
                 {"bakeOptions", entry.options.settings()},
-                {"needsRebake", session.changes.needsRebake(i)}};
+                {"needsRebake", session.changes.needsRebake(i)},
+                {"status", statusOf(session, i).text}};
     if (const auto job = session.scenes.jobOf(i)) row["bake"] = jobJson(*job);
     scenes.push_back(std::move(row));
   }
   json selected = json::array();
   for (const ecs::Entity entity : session.selection.entities(session.document))
     selected.push_back(session.document.nameOf(entity));
+  json unfinished = json::array();
+  for (const baker::BakeRequest& request : session.scenes.unfinished())
+    unfinished.push_back(request.scene.string());
+  json unseen = json::array();
+  for (const baker::JobState& job : session.scenes.unseen()) unseen.push_back(jobJson(job));
   const frame::StepCounts& counts = session.picture.counts;
   json settings = json::object();
   for (const frame::SettingRow& row : frame::settingRows())
     settings[std::string(row.name)] = frame::settingWord(row, session.stage.settings());
   return json{{"scenes", scenes},
+              {"unfinished", unfinished},
+              {"unseen", unseen},
               {"selected", selected},
               {"lights", session.document.world().lights},
               {"view", frame::wordOf(session.viewing.surfaces)},

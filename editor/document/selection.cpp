@@ -1,8 +1,12 @@
 #include "editor/document/selection.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "runtime/scene/components.hpp"
 
@@ -92,6 +96,30 @@ std::vector<ecs::Entity> Selection::topmost(const Document& document) const {
   return tops;
 }
 
+namespace {
+
+// Returns a small box around an entity that only has a position, in world space.
+scene::Box boxAround(const ecs::Registry& registry, ecs::Entity entity) {
+  const glm::vec3 at(worldFromNode(registry, entity)[3]);
+  const auto* light = registry.tryGet<scene::LocalLightComponent>(entity);
+  const glm::vec3 around(light ? std::max(0.1f, light->radius_m) : 0.1f);
+  return {at - around, at + around};
+}
+
+// Returns the rotation and position of an entity's node without its scale, which boxes of draws contain.
+glm::mat4 frameOf(const ecs::Registry& registry, ecs::Entity entity) {
+  const auto* draw = registry.tryGet<scene::DrawItem>(entity);
+  glm::mat4 frame = worldFromNode(registry, draw ? draw->node : entity);
+  for (int axis = 0; axis < 3; ++axis) {
+    const float length = glm::length(glm::vec3(frame[axis]));
+    if (!(length > 0.0f)) return glm::mat4(1.0f);
+    frame[axis] /= length;
+  }
+  return std::abs(glm::determinant(frame)) > 1e-3f ? frame : glm::mat4(1.0f);
+}
+
+}  // namespace
+
 scene::Box selectionBounds(const Document& document, const Selection& selection) {
   scene::Box bounds;
   const ecs::Registry& registry = document.registry();
@@ -101,14 +129,31 @@ scene::Box selectionBounds(const Document& document, const Selection& selection)
     for (const auto [draw, item] : registry.view<const scene::DrawItem>())
       if (draw == selected || item.node == selected || isBelow(registry, item.node, selected))
         bounds.add(scene::drawBounds(registry, draw));
-    if (bounds.empty() && registry.has<scene::Transform>(selected)) {
-      const glm::vec3 at(worldFromNode(registry, selected)[3]);
-      const auto* light = registry.tryGet<scene::LocalLightComponent>(selected);
-      const glm::vec3 around(light ? std::max(0.1f, light->radius_m) : 0.1f);
-      bounds.add(at - around), bounds.add(at + around);
-    }
+    if (bounds.empty() && registry.has<scene::Transform>(selected)) bounds.add(boxAround(registry, selected));
   }
   return bounds;
+}
+
+std::vector<TurnedBox> selectionBoxes(const Document& document, const Selection& selection) {
+  std::vector<TurnedBox> boxes;
+  const ecs::Registry& registry = document.registry();
+  for (const ecs::Entity selected : selection.entities(document)) {
+    TurnedBox turned;
+    if (registry.has<scene::RigidGroupComponent>(selected)) {
+      turned.box = scene::groupBounds(registry, selected);
+    } else {
+      turned.world_from_box = frameOf(registry, selected);
+      const glm::mat4 box_from_world = glm::inverse(turned.world_from_box);
+      for (const auto [draw, item] : registry.view<const scene::DrawItem>())
+        if (draw == selected || item.node == selected || isBelow(registry, item.node, selected))
+          turned.box.add(
+              scene::transformed(item.bounds, box_from_world * worldFromNode(registry, item.node)));
+    }
+    if (turned.box.empty() && registry.has<scene::Transform>(selected))
+      turned = {glm::mat4(1.0f), boxAround(registry, selected)};
+    if (!turned.box.empty()) boxes.push_back(turned);
+  }
+  return boxes;
 }
 
 void Selection::prune(const Document& document) {

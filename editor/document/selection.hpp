@@ -49,4 +49,12 @@ class Selection {
 // an entity that only has a position. The box is empty if nothing selected has a position.
 scene::Box selectionBounds(const Document& document, const Selection& selection);
 
+// A box that is turned with what it encloses.
+struct TurnedBox {
+  glm::mat4 world_from_box{1.0f};
+  scene::Box box;
+};
+// Returns a box around each selected entity, in the frame of its node or group.
+std::vector<TurnedBox> selectionBoxes(const Document& document, const Selection& selection);
+
 }  // namespace lambent::editor

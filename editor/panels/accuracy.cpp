@@ -8,6 +8,7 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/fitting.hpp"
 #include "runtime/frame/frame_settings.hpp"
 
 namespace lambent::editor {
@@ -32,7 +33,7 @@ void drawSweep(const frame::SettingRow& row, const std::vector<frame::SettingPoi
                          milliseconds(point));
   }
   ImGui::PlotLines("##sweep", errors.data(), static_cast<int>(errors.size()), 0, nullptr, 0.0f, FLT_MAX,
-                   ImVec2(130.0f, 24.0f));
+                   ImVec2(em(8.7f), em(1.6f)));
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", table.c_str());
 }
 
@@ -72,17 +73,22 @@ void drawAccuracy(Session& session, Marks& marks) {
     session.settings.measureAll();
   marks.put("accuracy.measure");
   ImGui::SameLine();
-  ImGui::TextDisabled(
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+  fittedText(
       "error against the knob's finest value, same view at rest; times of a frame that shades everything");
+  ImGui::PopStyleColor();
   constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
-                                     ImGuiTableFlags_ScrollY | ImGuiTableFlags_Resizable;
-  if (!ImGui::BeginTable("knobs", 6, kTable)) return;
+                                     ImGuiTableFlags_ScrollY | ImGuiTableFlags_Resizable |
+                                     ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable("knobs", 6, kTable, ImVec2(0.0f, 0.0f),
+                         std::max(ImGui::GetContentRegionAvail().x, em(44.0f))))
+    return;
   ImGui::TableSetupColumn("Knob", ImGuiTableColumnFlags_WidthStretch, 0.24f);
   ImGui::TableSetupColumn("Value", ImGuiTableColumnFlags_WidthStretch, 0.26f);
-  ImGui::TableSetupColumn("Error", ImGuiTableColumnFlags_WidthFixed, 75.0f);
-  ImGui::TableSetupColumn("ms now", ImGuiTableColumnFlags_WidthFixed, 60.0f);
-  ImGui::TableSetupColumn("ms finest", ImGuiTableColumnFlags_WidthFixed, 65.0f);
-  ImGui::TableSetupColumn("Error over values", ImGuiTableColumnFlags_WidthFixed, 190.0f);
+  ImGui::TableSetupColumn("Error", ImGuiTableColumnFlags_WidthFixed, em(5.0f));
+  ImGui::TableSetupColumn("ms now", ImGuiTableColumnFlags_WidthFixed, em(4.0f));
+  ImGui::TableSetupColumn("ms finest", ImGuiTableColumnFlags_WidthFixed, em(4.3f));
+  ImGui::TableSetupColumn("Error over values", ImGuiTableColumnFlags_WidthFixed, em(12.7f));
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableHeadersRow();
   for (const frame::SettingRow& row : frame::settingRows()) {
@@ -91,8 +97,7 @@ void drawAccuracy(Session& session, Marks& marks) {
     ImGui::PushID(row.name.data());
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(std::string(row.label).c_str());
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.help).c_str());
+    fittedText(row.label, fmt::format("{}\n{}", row.name, row.help));
     ImGui::TableNextColumn();
     drawSetting(session, marks, row);
     const bool known = found != session.settings.rows().end() && !found->second.cost.now.passes.empty();

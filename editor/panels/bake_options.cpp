@@ -9,6 +9,7 @@
 #include "baker/bake/option_rows.hpp"
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -16,17 +17,12 @@ namespace {
 
 // Shows a tooltip for the last widget.
 void tellHelp(const baker::OptionRow& row) {
-  if (!ImGui::IsItemHovered()) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(30.0f * ImGui::GetFontSize());
-  ImGui::TextUnformatted((std::string(row.kind) + ": " + row.help).c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
+  tooltip(std::string(row.kind) + ": " + row.help);
 }
 
 // Returns true when another word was chosen or typed.
 bool editWord(Marks& marks, const baker::OptionRow& row, const std::string& mark, std::string& word) {
-  ImGui::SetNextItemWidth(160.0f);
+  ImGui::SetNextItemWidth(em(10.7f));
   if (!row.only_words) {
     const bool changed = ImGui::InputText(
         "##word", &word, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -8,6 +9,8 @@
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/panels/text.hpp"
+#include "editor/session/scene_status.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -28,36 +31,16 @@ std::string stageText(const baker::JobState& job) {
   return text;
 }
 
-void drawProgress(const baker::JobState& job) {
+bool works(const baker::JobState& job) {
   using Phase = baker::JobPhase;
-  const ImVec2 size(-1.0f, 0.0f);
-  switch (job.phase) {
-    case Phase::Done: {
-      ImGui::PushStyleColor(ImGuiCol_Text, kGoodColor);
-      ImGui::TextUnformatted(job.up_to_date ? "up to date"
-                                            : fmt::format("done in {}", timeText(job.seconds)).c_str());
-      ImGui::PopStyleColor();
-      break;
-    }
-    case Phase::Failed:
-      ImGui::PushStyleColor(ImGuiCol_Text, kErrorColor);
-      ImGui::TextWrapped("%s", job.error ? job.error->line().c_str() : "failed");
-      ImGui::PopStyleColor();
-      break;
-    case Phase::Cancelled:
-      ImGui::TextDisabled("cancelled");
-      break;
-    case Phase::Waiting:
-      ImGui::ProgressBar(static_cast<float>(job.fraction), size, "waits");
-      break;
-    case Phase::Importing:
-    case Phase::Baking: {
-      const std::string left =
-          job.seconds_left ? ", " + timeText(*job.seconds_left) + " left" : std::string();
-      ImGui::ProgressBar(static_cast<float>(job.fraction), size,
-                         fmt::format("{:.0f} %{}", 100.0 * job.fraction, left).c_str());
-    }
-  }
+  return job.phase == Phase::Waiting || job.phase == Phase::Importing || job.phase == Phase::Baking;
+}
+
+void drawProgress(const baker::JobState& job) {
+  const std::string left = job.seconds_left ? ", " + timeText(*job.seconds_left) + " left" : std::string();
+  const std::string text =
+      job.phase == baker::JobPhase::Waiting ? "waits" : fmt::format("{:.0f} %{}", 100.0 * job.fraction, left);
+  ImGui::ProgressBar(static_cast<float>(job.fraction), ImVec2(-1.0f, 0.0f), text.c_str());
 }
 
 std::string reportText(const baker::BakeReport& r) {
@@ -68,81 +51,180 @@ std::string reportText(const baker::BakeReport& r) {
   return text;
 }
 
+// Returns what the bake does now, or what came of it.
+std::string newsOf(const baker::JobState& job) {
+  if (std::string now = stageText(job); !now.empty()) return now;
+  if (job.phase == baker::JobPhase::Done && job.report)
+    return fmt::format("{}, {}", timeText(job.seconds), reportText(*job.report));
+  return {};
+}
+
+// Returns how wrong the pictures of the shown bundle are by what its bake measured, in percent.
+std::string errorText(const Session& session, const SceneEntry& entry) {
+  if (!entry.slot) return {};
+  double worst = -1.0;
+  for (const bundle::Group& group : session.stage.world().description(*entry.slot).groups)
+    if (group.picture_error) worst = std::max(worst, double{group.picture_error->all});
+  return worst < 0.0 ? std::string() : fmt::format("pictures err by {:.1f} %", 100.0 * worst);
+}
+
+void drawState(const SceneStatus& status) {
+  ImGui::PushStyleColor(ImGuiCol_Text, standingColor(status.standing));
+  fittedText(status.text, status.detail);
+  ImGui::PopStyleColor();
+}
+
+// Draws the buttons of an open scene. Returns false if it was closed.
+bool drawButtons(Session& session, Marks& marks, std::size_t i, bool working) {
+  const SceneEntry& entry = session.scenes.entries()[i];
+  const std::string number = std::to_string(i), mark = fmt::format("bakes.{}.", entry.id);
+  if (working) {
+    if (ImGui::SmallButton("Cancel")) report(session, runCommand(session, "cancel", std::array{number}));
+    marks.put(mark + "cancel");
+    ImGui::SameLine();
+  } else if (!entry.source.empty()) {
+    if (ImGui::SmallButton("Bake")) report(session, runCommand(session, "bake", std::array{number}));
+    marks.put(mark + "bake");
+    ImGui::SameLine();
+  }
+  if (!entry.source.empty()) {
+    if (ImGui::SmallButton("Options")) ImGui::OpenPopup("options");
+    marks.put(mark + "options");
+    if (ImGui::BeginPopup("options")) {
+      drawBakeOptions(session, marks, i);
+      ImGui::EndPopup();
+    }
+    ImGui::SameLine();
+  }
+  const bool close = ImGui::SmallButton("Close");
+  marks.put(mark + "close");
+  if (close) report(session, runCommand(session, "close", std::array{number}));
+  return !close;
+}
+
+// Draws the row of an open scene. Returns false if it was closed.
+bool drawScene(Session& session, Marks& marks, std::size_t i) {
+  const SceneEntry& entry = session.scenes.entries()[i];
+  const auto job = session.scenes.jobOf(i);
+  const bool working = job && works(*job);
+  const std::string mark = fmt::format("bakes.{}.", entry.id);
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  fittedText(entry.id, fmt::format("{}\n{}", entry.source.string(), entry.bundle.string()));
+  ImGui::TableNextColumn();
+  drawState(statusOf(session, i));
+  marks.put(mark + "state");
+  ImGui::TableNextColumn();
+  if (working) drawProgress(*job);
+  marks.put(mark + "progress");
+  std::string news = job ? newsOf(*job) : std::string();
+  if (const std::string error = errorText(session, entry); !working && !error.empty())
+    news = news.empty() ? error : error + "; " + news;
+  fittedText(news);
+  ImGui::TableNextColumn();
+  return drawButtons(session, marks, i, working);
+}
+
+// Draws a bake of a scene that is not open.
+void drawUnseen(Session& session, Marks& marks, const baker::JobState& job) {
+  const std::string name = job.request.scene.filename().string(), mark = fmt::format("bakes.{}.", name);
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  fittedText(name, job.request.scene.string() + "\nnot open: it is baked unseen");
+  ImGui::TableNextColumn();
+  ImGui::TextDisabled("%s", baker::phaseName(job.phase));
+  ImGui::TableNextColumn();
+  if (works(job)) drawProgress(job);
+  fittedText(job.error ? job.error->line() : newsOf(job));
+  ImGui::TableNextColumn();
+  if (works(job)) {
+    if (ImGui::SmallButton("Cancel")) session.scenes.cancelUnseen(job.id);
+    marks.put(mark + "cancel");
+    ImGui::SameLine();
+  }
+  if (ImGui::SmallButton("Open"))
+    report(session, runCommand(session, "open", std::array{job.request.scene.string()}));
+  marks.put(mark + "open");
+}
+
+// Draws a bake that an earlier session left unfinished. Returns false if it is on the list no more.
+bool drawUnfinished(Session& session, Marks& marks, std::size_t i) {
+  const std::filesystem::path scene = session.scenes.unfinished()[i].scene;
+  const std::string name = scene.filename().string(), mark = fmt::format("bakes.{}.", name);
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  fittedText(name, scene.string());
+  ImGui::TableNextColumn();
+  drawState({Standing::Wanting, "cut short", "An earlier session ended before this bake was done."});
+  ImGui::TableNextColumn();
+  fittedText("its bake can go on from where it was");
+  ImGui::TableNextColumn();
+  const bool go_on = ImGui::SmallButton("Go on");
+  tooltip("Bake it without opening it");
+  marks.put(mark + "go-on");
+  ImGui::SameLine();
+  const bool open = ImGui::SmallButton("Open");
+  tooltip("Show it, and bake it with the options of this session");
+  marks.put(mark + "open");
+  ImGui::SameLine();
+  const bool forget = ImGui::SmallButton("Forget");
+  tooltip("Offer it no more; what it kept stays in the cache");
+  marks.put(mark + "forget");
+  const std::string number = std::to_string(i);
+  if (go_on) report(session, runCommand(session, "go-on", std::array{number}));
+  if (open) report(session, runCommand(session, "open", std::array{scene.string()}));
+  if (forget) report(session, runCommand(session, "forget", std::array{number}));
+  return !go_on && !open && !forget;
+}
+
+// Returns the width of the widest row of buttons.
+float buttonsWidth() {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  float width = 2.0f * style.ItemSpacing.x + style.CellPadding.x;
+  for (const char* text : {"Cancel", "Options", "Forget"})
+    width += ImGui::CalcTextSize(text).x + 2.0f * style.FramePadding.x;
+  return width;
+}
+
 }  // namespace
 
 void drawBakes(Session& session, Marks& marks) {
-  const auto& entries = session.scenes.entries();
-  if (entries.empty()) {
+  if (session.scenes.entries().empty() && session.scenes.unfinished().empty() &&
+      session.scenes.unseen().empty()) {
+    ImGui::PushTextWrapPos(0.0f);
     ImGui::TextDisabled(
         "Nothing is open. Drop a .gltf, .glb or .lmb.glb file onto the window, or File > Open.");
+    ImGui::PopTextWrapPos();
     return;
   }
   constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
-                                     ImGuiTableFlags_Resizable | ImGuiTableFlags_ScrollY;
-  if (!ImGui::BeginTable("bakes", 5, kTable)) return;
+                                     ImGuiTableFlags_Resizable | ImGuiTableFlags_ScrollY |
+                                     ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable("bakes", 4, kTable, ImVec2(0.0f, 0.0f),
+                         std::max(ImGui::GetContentRegionAvail().x, em(34.0f))))
+    return;
   ImGui::TableSetupColumn("Scene", ImGuiTableColumnFlags_WidthStretch, 0.2f);
-  ImGui::TableSetupColumn("Shown", ImGuiTableColumnFlags_WidthFixed, 90.0f);
-  ImGui::TableSetupColumn("Bake", ImGuiTableColumnFlags_WidthStretch, 0.3f);
-  ImGui::TableSetupColumn("Now, or what came of it", ImGuiTableColumnFlags_WidthStretch, 0.5f);
-  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 230.0f);
+  ImGui::TableSetupColumn("State", ImGuiTableColumnFlags_WidthStretch, 0.25f);
+  ImGui::TableSetupColumn("Bake", ImGuiTableColumnFlags_WidthStretch, 0.55f);
+  ImGui::TableSetupColumn("##buttons", ImGuiTableColumnFlags_WidthFixed, buttonsWidth());
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableHeadersRow();
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const SceneEntry& entry = entries[i];
-    const auto job = session.scenes.jobOf(i);
-    const std::string number = std::to_string(i), mark = fmt::format("bakes.{}.", entry.id);
-    ImGui::PushID(static_cast<int>(i));
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(entry.id.c_str());
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s\n%s", entry.source.string().c_str(), entry.bundle.string().c_str());
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(job && job->reached      ? baker::previewLevelName(*job->reached)
-                           : entry.slot.has_value() ? "bundle"
-                                                    : "nothing yet");
-    ImGui::TableNextColumn();
-    if (job)
-      drawProgress(*job);
-    else
-      ImGui::TextDisabled(entry.source.empty() ? "no source" : "not asked for");
-    marks.put(mark + "progress");
-    ImGui::TableNextColumn();
-    if (job) {
-      const std::string now = stageText(*job);
-      ImGui::TextUnformatted(!now.empty()  ? now.c_str()
-                             : job->report ? reportText(*job->report).c_str()
-                                           : "");
-    }
-    ImGui::TableNextColumn();
-    const bool working =
-        job && (job->phase == baker::JobPhase::Waiting || job->phase == baker::JobPhase::Importing ||
-                job->phase == baker::JobPhase::Baking);
-    if (working) {
-      if (ImGui::SmallButton("Cancel")) report(session, runCommand(session, "cancel", std::array{number}));
-      marks.put(mark + "cancel");
-    } else if (!entry.source.empty()) {
-      if (ImGui::SmallButton("Bake")) report(session, runCommand(session, "bake", std::array{number}));
-      marks.put(mark + "bake");
-    }
-    ImGui::SameLine();
-    if (!entry.source.empty()) {
-      if (ImGui::SmallButton("Options")) ImGui::OpenPopup("options");
-      marks.put(mark + "options");
-      if (ImGui::BeginPopup("options")) {
-        drawBakeOptions(session, marks, i);
-        ImGui::EndPopup();
-      }
-      ImGui::SameLine();
-    }
-    if (ImGui::SmallButton("Close")) {
-      report(session, runCommand(session, "close", std::array{number}));
+  int id = 0;
+  const auto rows = [&](std::size_t count, auto draw) {
+    for (std::size_t i = 0; i < count; ++i) {
+      ImGui::PushID(id++);
+      const bool stays = draw(i);
       ImGui::PopID();
-      break;
+      if (!stays) return;
     }
-    marks.put(mark + "close");
-    ImGui::PopID();
-  }
+  };
+  rows(session.scenes.entries().size(), [&](std::size_t i) { return drawScene(session, marks, i); });
+  const std::vector<baker::JobState> unseen = session.scenes.unseen();
+  rows(unseen.size(), [&](std::size_t i) {
+    drawUnseen(session, marks, unseen[i]);
+    return true;
+  });
+  rows(session.scenes.unfinished().size(), [&](std::size_t i) { return drawUnfinished(session, marks, i); });
   ImGui::EndTable();
 }
 

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "editor/session/log.hpp"
+#include "editor/session/scene_status.hpp"
 
 namespace lambent::editor {
 
@@ -13,5 +14,6 @@ inline const ImVec4 kNoteColor(0.82f, 0.82f, 0.82f, 1.0f);
 inline const ImVec4 kGoodColor(0.5f, 0.8f, 0.5f, 1.0f);
 
 ImVec4 severityColor(Severity severity);
+ImVec4 standingColor(Standing standing);
 
 }  // namespace lambent::editor

@@ -1,8 +1,11 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include "editor/panels/panel.hpp"
 #include "editor/panels/text.hpp"
+#include "editor/ui/fitting.hpp"
 #include "runtime/effects/volume/volume.hpp"
 
 namespace lambent::editor {
@@ -17,15 +20,18 @@ void milliseconds(double value) {
 }
 
 void drawPasses(const std::vector<gpu::PassTime>& passes) {
-  constexpr ImGuiTableFlags kTable =
-      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_Resizable;
-  if (!ImGui::BeginTable("passes", 7, kTable)) return;
-  ImGui::TableSetupColumn("Pass", ImGuiTableColumnFlags_WidthFixed, 100.0f);
-  ImGui::TableSetupColumn("CPU ms", ImGuiTableColumnFlags_WidthFixed, 60.0f);
-  ImGui::TableSetupColumn("GPU ms", ImGuiTableColumnFlags_WidthFixed, 60.0f);
-  ImGui::TableSetupColumn("Dispatches", ImGuiTableColumnFlags_WidthFixed, 75.0f);
-  ImGui::TableSetupColumn("Draws", ImGuiTableColumnFlags_WidthFixed, 50.0f);
-  ImGui::TableSetupColumn("Uploaded", ImGuiTableColumnFlags_WidthFixed, 75.0f);
+  constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
+                                     ImGuiTableFlags_Resizable | ImGuiTableFlags_ScrollY |
+                                     ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable("passes", 7, kTable, ImVec2(0.0f, 0.0f),
+                         std::max(ImGui::GetContentRegionAvail().x, em(40.0f))))
+    return;
+  ImGui::TableSetupColumn("Pass", ImGuiTableColumnFlags_WidthFixed, em(6.7f));
+  ImGui::TableSetupColumn("CPU ms", ImGuiTableColumnFlags_WidthFixed, em(4.0f));
+  ImGui::TableSetupColumn("GPU ms", ImGuiTableColumnFlags_WidthFixed, em(4.0f));
+  ImGui::TableSetupColumn("Dispatches", ImGuiTableColumnFlags_WidthFixed, em(5.0f));
+  ImGui::TableSetupColumn("Draws", ImGuiTableColumnFlags_WidthFixed, em(3.3f));
+  ImGui::TableSetupColumn("Uploaded", ImGuiTableColumnFlags_WidthFixed, em(5.0f));
   ImGui::TableSetupColumn("Why it ran", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableHeadersRow();
   double cpu = 0.0, gpu = 0.0;
@@ -65,7 +71,7 @@ void drawPasses(const std::vector<gpu::PassTime>& passes) {
 void drawCost(Session& session, Marks& marks) {
   const frame::StepCounts& counts = session.picture.counts;
   const auto number = [](const char* label, std::uint64_t value) {
-    ImGui::SameLine(0.0f, 18.0f);
+    ImGui::SameLine(0.0f, em(1.2f));
     ImGui::TextDisabled("%s", label);
     ImGui::SameLine();
     ImGui::Text("%llu", static_cast<unsigned long long>(value));

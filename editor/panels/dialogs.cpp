@@ -5,6 +5,7 @@
 
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -40,13 +41,13 @@ std::vector<std::filesystem::directory_entry> listing(const Dialog& dialog) {
 bool drawFiles(Dialog& dialog, Marks& marks) {
   bool chosen = false;
   std::string folder = dialog.folder.string();
-  ImGui::SetNextItemWidth(-60.0f);
+  ImGui::SetNextItemWidth(-em(4.0f));
   if (ImGui::InputText("##folder", &folder, ImGuiInputTextFlags_EnterReturnsTrue)) dialog.folder = folder;
   marks.put("dialog.folder");
   ImGui::SameLine();
   if (ImGui::Button("Up")) dialog.folder = dialog.folder.parent_path();
   marks.put("dialog.up");
-  ImGui::BeginChild("files", ImVec2(0.0f, 260.0f), true);
+  ImGui::BeginChild("files", ImVec2(0.0f, std::min(em(17.3f), 0.5f * ImGui::GetIO().DisplaySize.y)), true);
   std::filesystem::path enter;
   for (const auto& entry : listing(dialog)) {
     std::error_code ignored;
@@ -88,7 +89,9 @@ void drawDialogs(Session& session, Marks& marks) {
   const std::string title = dialog.title + "###dialog";
   if (!ImGui::IsPopupOpen(title.c_str())) ImGui::OpenPopup(title.c_str());
   ImGui::SetNextWindowSize(
-      ImVec2(dialog.kind == Kind::Confirm || dialog.kind == Kind::Text ? 420.0f : 620.0f, 0.0f));
+      ImVec2(std::min(em(dialog.kind == Kind::Confirm || dialog.kind == Kind::Text ? 28.0f : 41.0f),
+                      0.96f * ImGui::GetIO().DisplaySize.x),
+             0.0f));
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.4f * screen.y), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
   if (!ImGui::BeginPopupModal(title.c_str(), nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
@@ -107,15 +110,15 @@ void drawDialogs(Session& session, Marks& marks) {
   } else if (dialog.kind != Kind::Confirm) {
     yes = drawFiles(dialog, marks);
   }
-  yes |= ImGui::Button(dialog.yes.c_str(), ImVec2(110.0f, 0.0f));
+  yes |= ImGui::Button(dialog.yes.c_str(), ImVec2(em(7.4f), 0.0f));
   marks.put("dialog.yes");
   if (!dialog.third.empty()) {
     ImGui::SameLine();
-    third = ImGui::Button(dialog.third.c_str(), ImVec2(110.0f, 0.0f));
+    third = ImGui::Button(dialog.third.c_str(), ImVec2(em(7.4f), 0.0f));
     marks.put("dialog.third");
   }
   ImGui::SameLine();
-  no = ImGui::Button(dialog.no.c_str(), ImVec2(110.0f, 0.0f)) ||
+  no = ImGui::Button(dialog.no.c_str(), ImVec2(em(7.4f), 0.0f)) ||
        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
   marks.put("dialog.no");
   if (yes || no || third) ImGui::CloseCurrentPopup();

@@ -8,13 +8,15 @@
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/session/environment_map_shelf.hpp"
+#include "editor/ui/fitting.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
-constexpr float kThumbWidth = 128.0f, kThumbHeight = 64.0f;
+constexpr float kThumbWidthEms = 8.5f, kThumbHeightEms = 4.25f;
+constexpr float kLabelEms = 5.0f;  // room for the labels behind widgets
 
 void run(Session& session, const char* command, std::initializer_list<std::string> words) {
   const std::vector<std::string> list(words);
@@ -44,9 +46,9 @@ void asOneStep(Session& session, const char* name) {
 bool editRadiance(Session& session, Marks& marks, const std::string& mark, glm::vec3& radiance) {
   float strength = std::max({radiance.r, radiance.g, radiance.b, 1e-6f});
   glm::vec3 color = radiance / strength;
-  bool changed = ImGui::ColorEdit3("colour", &color.x, ImGuiColorEditFlags_Float);
-  asOneStep(session, "colour of light");
-  marks.put(mark + ".colour");
+  bool changed = ImGui::ColorEdit3("color", &color.x, ImGuiColorEditFlags_Float);
+  asOneStep(session, "color of light");
+  marks.put(mark + ".color");
   changed |= ImGui::DragFloat("radiance", &strength, 0.01f * std::max(0.1f, strength), 0.0f, 1e7f, "%.4g",
                               ImGuiSliderFlags_AlwaysClamp);
   asOneStep(session, "strength of light");
@@ -57,15 +59,15 @@ bool editRadiance(Session& session, Marks& marks, const std::string& mark, glm::
 
 void drawSun(Session& session, Marks& marks, std::size_t index, spec::SunLight sun) {
   const std::string mark = fmt::format("environment.{}", index);
-  bool changed = ImGui::DragFloat("azimuth", &sun.azimuth_deg, 0.5f, -360.0f, 360.0f, "%.1f deg");
+  bool changed = ImGui::DragFloat("azimuth", &sun.azimuth_deg, 0.5f, -360.0f, 360.0f, "%.1f°");
   asOneStep(session, "turn of sun");
   marks.put(mark + ".azimuth");
-  changed |= ImGui::DragFloat("elevation", &sun.elevation_deg, 0.25f, -90.0f, 90.0f, "%.1f deg",
+  changed |= ImGui::DragFloat("elevation", &sun.elevation_deg, 0.25f, -90.0f, 90.0f, "%.1f°",
                               ImGuiSliderFlags_AlwaysClamp);
   asOneStep(session, "height of sun");
   marks.put(mark + ".elevation");
-  changed |= ImGui::DragFloat("radius", &sun.angle_deg, 0.05f, 0.05f, 180.0f, "%.2f deg",
-                              ImGuiSliderFlags_AlwaysClamp);
+  changed |=
+      ImGui::DragFloat("radius", &sun.angle_deg, 0.05f, 0.05f, 180.0f, "%.2f°", ImGuiSliderFlags_AlwaysClamp);
   asOneStep(session, "size of sun");
   marks.put(mark + ".radius");
   changed |= editRadiance(session, marks, mark, sun.radiance);
@@ -84,7 +86,7 @@ void drawLight(Session& session, Marks& marks, std::size_t index, const std::str
   const bool open = ImGui::CollapsingHeader(
       title.c_str(), ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap);
   marks.put(mark);
-  ImGui::SameLine(ImGui::GetWindowWidth() - 34.0f);
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - em(1.2f));
   if (ImGui::SmallButton("x")) run(session, "remove-light", {std::to_string(index)});
   marks.put(mark + ".remove");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Take this light away");
@@ -105,7 +107,8 @@ void drawShelf(Session& session, Marks& marks) {
   if (session.environment_maps.environment_maps().empty())
     ImGui::TextDisabled("None beside the open files; add a folder of .hdr or .exr files.");
   const float room = ImGui::GetContentRegionAvail().x;
-  const int columns = std::max(1, static_cast<int>(room / (kThumbWidth + 10.0f)));
+  const int columns = std::max(1, static_cast<int>(room / em(kThumbWidthEms + 0.7f)));
+  const ImVec2 thumb(em(kThumbWidthEms), em(kThumbHeightEms));
   int column = 0;
   for (const EnvironmentMapShelf::EnvironmentMap& environment_map :
        session.environment_maps.environment_maps()) {
@@ -114,9 +117,8 @@ void drawShelf(Session& session, Marks& marks) {
     const auto id = reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(environment_map.texture));
     const std::string name = environment_map.file.stem().string();
     if (environment_map.texture != 0
-            ? ImGui::ImageButton(id, ImVec2(kThumbWidth, kThumbHeight), ImVec2(0, 0), ImVec2(1, 1), 1)
-            : ImGui::Button(environment_map.error.empty() ? "..." : "cannot be read",
-                            ImVec2(kThumbWidth, kThumbHeight)))
+            ? ImGui::ImageButton(id, thumb, ImVec2(0, 0), ImVec2(1, 1), 1)
+            : ImGui::Button(environment_map.error.empty() ? "..." : "cannot be read", thumb))
       run(session, "environment-map", {environment_map.file.string()});
     marks.put("environment-map." + name);
     if (ImGui::IsItemHovered())
@@ -124,7 +126,7 @@ void drawShelf(Session& session, Marks& marks) {
                         environment_map.error.empty()
                             ? "Click: the light from outside is this environment map"
                             : environment_map.error.c_str());
-    ImGui::TextDisabled("%.18s", name.c_str());
+    ImGui::TextDisabled("%s", ellipsized(name, thumb.x).c_str());
     ImGui::EndGroup();
     if (++column % columns != 0) ImGui::SameLine();
     ImGui::PopID();
@@ -147,44 +149,33 @@ void drawStand(Session& session, Marks& marks) {
     asOneStep(session, label);
     marks.put(fmt::format("environment.{}", field));
   };
-  number("rotation", "turn", -180.0f, 180.0f, "%.1f deg");
+  number("rotation", "turn", -180.0f, 180.0f, "%.1f°");
   number("intensity", "intensity", 0.0f, 4.0f, "%.3f");
   if (!session.document.world().fade_lights.empty()) number("fade", "fade", 0.0f, 1.0f, "%.3f");
-  std::optional<float> exposure = session.document.world().exposure_ev;
-  bool automatic = !exposure.has_value();
-  if (ImGui::Checkbox("automatic exposure", &automatic))
-    session.history.editWorld("exposure", [&](WorldState& world) {
-      world.exposure_ev = automatic ? std::nullopt : std::optional(session.picture.exposure_ev);
-    });
-  marks.put("environment.automatic");
-  if (automatic) {
-    ImGui::SameLine();
-    ImGui::TextDisabled("%.2f EV", session.picture.exposure_ev);
-    return;
-  }
-  float ev = *exposure;
-  if (ImGui::SliderFloat("exposure", &ev, -12.0f, 12.0f, "%.2f EV"))
-    session.history.editWorld("exposure", [&](WorldState& world) { world.exposure_ev = ev; });
-  asOneStep(session, "exposure");
-  marks.put("environment.exposure");
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("exposure");
+  ImGui::SameLine();
+  drawExposure(session, marks, "environment");
 }
 
 }  // namespace
 
 void drawEnvironment(Session& session, Marks& marks) {
+  ImGui::PushItemWidth(-em(kLabelEms));
   drawStand(session, marks);
   ImGui::Separator();
   const std::vector<std::string> lights = session.document.world().lights;
   for (std::size_t i = 0; i < lights.size(); ++i) drawLight(session, marks, i, lights[i]);
   if (ImGui::Button("Add sun")) run(session, "add-light", {"sun:35,45,6,30,28,25"});
   marks.put("environment.add-sun");
-  ImGui::SameLine();
+  sameLineIfFits("Add constant");
   if (ImGui::Button("Add constant")) run(session, "add-light", {"constant:0.3,0.35,0.45"});
   marks.put("environment.add-constant");
-  ImGui::SameLine();
+  sameLineIfFits("Add environment map...");
   if (ImGui::Button("Add environment map...")) run(session, "environment-map", {});
   marks.put("environment.add-map");
   drawKeyLights(session, marks);
+  ImGui::PopItemWidth();
   drawShelf(session, marks);
 }
 

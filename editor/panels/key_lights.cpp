@@ -7,6 +7,7 @@
 #include <imgui.h>
 
 #include "editor/panels/panel.hpp"
+#include "editor/ui/fitting.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
@@ -26,8 +27,8 @@ void tell(Session& session, const Result<void>& done) {
 void swatch(const glm::vec3& radiance) {
   const float peak = std::max({radiance.r, radiance.g, radiance.b, 1e-6f});
   const ImVec4 color(radiance.r / peak, radiance.g / peak, radiance.b / peak, 1.0f);
-  ImGui::ColorButton("##colour", color, ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoBorder,
-                     ImVec2(12.0f, 12.0f));
+  ImGui::ColorButton("##color", color, ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoBorder,
+                     ImVec2(em(0.8f), em(0.8f)));
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("radiance %.4g %.4g %.4g", double{radiance.r}, double{radiance.g}, double{radiance.b});
 }
@@ -61,7 +62,7 @@ void drawTable(Session& session, Marks& marks, const std::vector<KeyLight>& keys
     ImGui::TableNextColumn();
     ImGui::Text("%.1f %%", 100.0 * key.share);
     ImGui::TableNextColumn();
-    ImGui::Text("%s%s", key.source().c_str(), key.edited ? " *" : "");
+    fittedText(key.edited ? key.source() + " *" : key.source());
     ImGui::PopID();
   }
   ImGui::EndTable();
@@ -70,17 +71,19 @@ void drawTable(Session& session, Marks& marks, const std::vector<KeyLight>& keys
 void drawFields(Session& session, Marks& marks, std::size_t index, const KeyLight& key) {
   const std::string mark = fmt::format("key.{}", index);
   float azimuth = key.azimuth_deg, elevation = key.elevation_deg;
-  bool moved = ImGui::DragFloat("azimuth##key", &azimuth, 0.5f, -360.0f, 360.0f, "%.1f deg");
+  bool moved = ImGui::DragFloat("azimuth##key", &azimuth, 0.5f, -360.0f, 360.0f, "%.1f°");
   asOneStep(session, "turn of key light");
   marks.put(mark + ".azimuth");
-  moved |= ImGui::DragFloat("elevation##key", &elevation, 0.25f, -89.9f, 89.9f, "%.1f deg",
+  moved |= ImGui::DragFloat("elevation##key", &elevation, 0.25f, -89.9f, 89.9f, "%.1f°",
                             ImGuiSliderFlags_AlwaysClamp);
   asOneStep(session, "height of key light");
   marks.put(mark + ".elevation");
   if (moved)
     tell(session, moveKeyLight(session, index, spec::directionFromAzimuthElevation(azimuth, elevation)));
   if (!key.in_map) {
-    ImGui::TextDisabled("Strength and colour are those of %s, above.", key.source().c_str());
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextDisabled("Strength and color are those of %s, above.", key.source().c_str());
+    ImGui::PopTextWrapPos();
     return;
   }
   // The factor is edited as a colour and a strength, like radiance.
@@ -91,7 +94,7 @@ void drawFields(Session& session, Marks& marks, std::size_t index, const KeyLigh
   asOneStep(session, "strength of key light");
   marks.put(mark + ".strength");
   changed |= ImGui::ColorEdit3("tint##key", &tint.x, ImGuiColorEditFlags_Float);
-  asOneStep(session, "colour of key light");
+  asOneStep(session, "color of key light");
   marks.put(mark + ".tint");
   if (changed) tell(session, dimKeyLight(session, index, strength * glm::max(tint, 0.0f)));
   if (!key.edited) return;

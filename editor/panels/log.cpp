@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <ctime>
 
 #include <fmt/chrono.h>
@@ -6,6 +7,7 @@
 
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -13,21 +15,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kToastAge{6000};
 constexpr std::size_t kMostToasts = 4;
-constexpr float kToastWidth = 420.0f;
+constexpr float kToastEms = 28.0f;
 
 }  // namespace
-
-ImVec4 severityColor(Severity severity) {
-  switch (severity) {
-    case Severity::Error:
-      return kErrorColor;
-    case Severity::Warning:
-      return kWarningColor;
-    case Severity::Note:
-      break;
-  }
-  return kNoteColor;
-}
 
 void drawLog(Session& session, Marks& marks) {
   const auto entries = session.log.entries();
@@ -59,11 +49,12 @@ void drawToasts(Session& session, Marks& marks) {
   if (recent.size() > kMostToasts)
     recent.erase(recent.begin(), recent.end() - static_cast<std::ptrdiff_t>(kMostToasts));
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float width = std::min(em(kToastEms), 0.9f * screen.x);
   float bottom = screen.y - 12.0f;
   for (std::size_t i = recent.size(); i-- > 0;) {
     const LogEntry& entry = recent[i];
     ImGui::SetNextWindowPos(ImVec2(screen.x - 12.0f, bottom), ImGuiCond_Always, ImVec2(1.0f, 1.0f));
-    ImGui::SetNextWindowSize(ImVec2(kToastWidth, 0.0f));
+    ImGui::SetNextWindowSize(ImVec2(width, 0.0f));
     ImGui::SetNextWindowBgAlpha(0.94f);
     ImGui::PushStyleColor(ImGuiCol_Border, severityColor(entry.severity));
     const std::string id = fmt::format("##toast{}", entry.number);
@@ -76,7 +67,7 @@ void drawToasts(Session& session, Marks& marks) {
     ImGui::End();
     ImGui::PopStyleColor();
   }
-  if (!recent.empty()) marks.put("toasts", {{screen.x - kToastWidth, bottom}, {screen.x, screen.y}});
+  if (!recent.empty()) marks.put("toasts", {{screen.x - width, bottom}, {screen.x, screen.y}});
 }
 
 }  // namespace lambent::editor

@@ -1,12 +1,18 @@
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
+#include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/session/scene_status.hpp"
 #include "editor/session/status.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -16,27 +22,48 @@ void report(Session& session, const Result<nlohmann::json>& done) {
   if (!done) session.log.error(done.error());
 }
 
+// Returns the command's title; of undo and redo, what they would change.
+std::string titleOf(const Session& session, const Command& command) {
+  if (std::strcmp(command.id, "undo") == 0) return session.history.undoName();
+  if (std::strcmp(command.id, "redo") == 0) return session.history.redoName();
+  return command.title;
+}
+
+// Runs the command in the next frame. A field that is open is left first and takes over what was typed, so
+// that undo takes this back and not the step before.
+void runAfterFields(Session& session, const Command& command) {
+  ImGui::ClearActiveID();
+  session.window.wanted_commands.emplace_back(command.id);
+}
+
 void drawItem(Session& session, Marks& marks, const Command& command) {
   const bool enabled = !command.enabled || command.enabled(session);
   const bool checked = command.checked && command.checked(session);
-  if (ImGui::MenuItem(command.title, command.shortcut, checked, enabled))
-    report(session, runCommand(session, command.id, {}));
+  if (ImGui::MenuItem(titleOf(session, command).c_str(), command.shortcut, checked, enabled))
+    runAfterFields(session, command);
   marks.put(std::string("menu.") + command.id);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", command.help);
+  tooltip(command.help);
 }
 
-// Runs shortcuts, except while text is being typed.
+bool isUndoOrRedo(const Command& command) {
+  return std::strcmp(command.id, "undo") == 0 || std::strcmp(command.id, "redo") == 0;
+}
+
+// Runs shortcuts. While text is being typed, only undo and redo are any.
 void runShortcuts(Session& session) {
   const ImGuiIO& io = ImGui::GetIO();
   // W, A, S and D fly the camera while the right button is held.
-  if (io.WantTextInput || ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
-      ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId))
+  if (ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId))
     return;
   for (const Command& command : commandList()) {
-    if (*command.shortcut == '\0') continue;
+    if (*command.shortcut == '\0' || (io.WantTextInput && !isUndoOrRedo(command))) continue;
     const auto keys = parseShortcut(command.shortcut);
     if (!keys || io.KeyCtrl != keys->ctrl || io.KeyShift != keys->shift || io.KeyAlt != keys->alt) continue;
     if (!ImGui::IsKeyPressed(keys->key, /*repeat=*/false)) continue;
+    if (isUndoOrRedo(command) && ImGui::IsAnyItemActive()) {
+      runAfterFields(session, command);
+      continue;
+    }
     if (command.enabled && !command.enabled(session)) continue;
     report(session, runCommand(session, command.id, {}));
   }
@@ -56,9 +83,33 @@ void drawPanelItems(Session& session) {
     if (ImGui::MenuItem(panel.name)) session.window.wanted_panels.emplace_back(panel.name);
 }
 
+// Draws at the right end what scenes lack, which a click explains in the Bakes panel, and the picture's time.
+void drawStatus(Session& session, Marks& marks) {
+  const SceneStatus scenes = worstStatus(session);
+  const std::string picture = pictureStatus(session);
+  const float gap = em(1.0f), picture_width = ImGui::CalcTextSize(picture.c_str()).x + gap;
+  const float room = ImGui::GetWindowWidth() - ImGui::GetCursorPosX() - picture_width - gap;
+  const std::string shown = ellipsized(scenes.text, std::max(0.0f, room));
+  const float width = scenes.text.empty() ? 0.0f : ImGui::CalcTextSize(shown.c_str()).x + gap;
+  ImGui::SameLine(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - width - picture_width));
+  if (!scenes.text.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, standingColor(scenes.standing));
+    ImGui::TextUnformatted(shown.c_str());
+    ImGui::PopStyleColor();
+    marks.put("status.scenes");
+    if (ImGui::IsItemClicked()) session.window.wanted_panels.emplace_back("Bakes");
+    tooltip(scenes.detail.empty() ? scenes.text : scenes.text + "\n" + scenes.detail);
+    ImGui::SameLine(ImGui::GetWindowWidth() - picture_width);
+  }
+  ImGui::TextDisabled("%s", picture.c_str());
+  marks.put("status");
+}
+
 }  // namespace
 
 void drawMenus(Session& session, Marks& marks) {
+  for (const std::string& id : std::exchange(session.window.wanted_commands, {}))
+    report(session, runCommand(session, id, {}));
   runShortcuts(session);
   if (!ImGui::BeginMainMenuBar()) return;
   constexpr std::array kMenus = {"File", "Edit", "Create", "View", "Bake", "Help"};
@@ -77,11 +128,7 @@ void drawMenus(Session& session, Marks& marks) {
     if (std::strcmp(menu, "View") == 0) drawPanelItems(session);
     ImGui::EndMenu();
   }
-  const std::string status = statusOf(session);
-  const float width = ImGui::CalcTextSize(status.c_str()).x;
-  ImGui::SameLine(ImGui::GetWindowWidth() - width - 16.0f);
-  ImGui::TextDisabled("%s", status.c_str());
-  marks.put("status");
+  drawStatus(session, marks);
   ImGui::EndMainMenuBar();
 }
 

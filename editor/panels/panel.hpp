@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "editor/session/session.hpp"
 #include "editor/ui/marks.hpp"
@@ -28,6 +29,8 @@ void drawSceneTree(Session& session, Marks& marks);
 void drawInspector(Session& session, Marks& marks);
 void drawEnvironment(Session& session, Marks& marks);
 void drawKeyLights(Session& session, Marks& marks);  // part of drawEnvironment
+// Part of drawEnvironment and of the inspector of lights. Its widgets have marks that begin with `mark`.
+void drawExposure(Session& session, Marks& marks, const std::string& mark);
 void drawSettings(Session& session, Marks& marks);
 void drawPlan(Session& session, Marks& marks);
 void drawBakes(Session& session, Marks& marks);
@@ -35,12 +38,18 @@ void drawBakeOptions(Session& session, Marks& marks, std::size_t scene);  // par
 void drawCost(Session& session, Marks& marks);
 void drawAccuracy(Session& session, Marks& marks);
 void drawStreaming(Session& session, Marks& marks);
+void drawHistory(Session& session, Marks& marks);
 void drawLog(Session& session, Marks& marks);
 
 // These are not in a dock: the menu bar, the view in the middle, and what is drawn above everything.
 void drawMenus(Session& session, Marks& marks);
 void drawViewport(Session& session, Renderer& renderer, Marks& marks);
 void drawToasts(Session& session, Marks& marks);
+void drawStartPage(Session& session, Marks& marks);  // in the view while nothing is open
 void drawDialogs(Session& session, Marks& marks);
+void drawKeys(Session& session, Marks& marks);
+void drawPalette(Session& session, Marks& marks);
+// Draws the items of a menu about what is selected, for rows of the tree and the view.
+void drawSelectionMenu(Session& session, Marks& marks);
 
 }  // namespace lambent::editor

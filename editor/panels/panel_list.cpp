@@ -19,6 +19,7 @@ constexpr std::array kPanels = {
           &drawAccuracy},
     Panel{"Streaming", Dock::Bottom, "What is on the GPU, what is on its way, how even frames are",
           &drawStreaming},
+    Panel{"History", Dock::Bottom, "The steps that undo takes back; a click goes there", &drawHistory},
     Panel{"Log", Dock::Bottom, "Notices and errors", &drawLog},
 };
 

@@ -4,6 +4,7 @@
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/session/names.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -48,25 +49,27 @@ void drawGroup(const baker::EffectPlan& plan, std::size_t g) {
 void drawPlan(Session& session, Marks& marks) {
   const auto entry = sceneAtHand(session);
   if (!entry) {
-    ImGui::TextDisabled("Open a scene to see what its bake simulates, and why.");
+    sentence("Open a scene to see what its bake simulates, and why.");
     return;
   }
   const SceneEntry& scene = session.scenes.entries()[*entry];
   if (scene.source.empty()) {
-    ImGui::TextDisabled("%s is a bundle alone: its plan was made when it was baked.", scene.id.c_str());
+    sentence(scene.id + " is a bundle alone: its plan was made when it was baked.");
     return;
   }
   const Result<ScenePlan>* made = session.plans.find(scene.source, scene.options);
   if (!made) {
-    ImGui::TextDisabled("Reads the scene...");
+    sentence("Reads the scene...");
     return;
   }
   if (!*made) {
-    ImGui::TextColored(kErrorColor, "%s", made->error().line().c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, kErrorColor);
+    sentence(made->error().line());
+    ImGui::PopStyleColor();
     return;
   }
   const baker::EffectPlan& plan = (*made)->plan;
-  ImGui::TextUnformatted(scene.source.filename().string().c_str());
+  fittedText(scene.source.filename().string(), scene.source.string());
   marks.put("plan.scene");
   drawEffects(plan);
   if (ImGui::CollapsingHeader("Rigid groups", ImGuiTreeNodeFlags_DefaultOpen))

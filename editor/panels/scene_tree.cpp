@@ -3,7 +3,9 @@
 #include <imgui_stdlib.h>
 
 #include "editor/document/tree.hpp"
+#include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -47,10 +49,34 @@ void select(Session& session, const std::vector<TreeRow>& rows, const TreeRow& r
   session.viewing.changed = true;
 }
 
+// Writes behind the row of a bundle what its picture lacks.
+void drawStatus(Session& session, Marks& marks, const TreeRow& row) {
+  const auto& entries = session.scenes.entries();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (!entries[i].slot || session.stage.world().instance(*entries[i].slot).root != row.entity) continue;
+    const SceneStatus status = statusOf(session, i);
+    if (status.standing == Standing::Good) return;
+    const float name = ImGui::CalcTextSize(row.name.c_str()).x + em(0.5f);
+    ImGui::SameLine(ImGui::GetItemRectMin().x - ImGui::GetWindowPos().x + name);
+    ImGui::PushStyleColor(ImGuiCol_Text, standingColor(status.standing));
+    fittedText(status.text, status.detail);
+    ImGui::PopStyleColor();
+    marks.put("scene." + row.name + ".state");
+  }
+}
+
+// Draws the menu that a right click on a row opens.
+void drawRowMenu(Session& session, Marks& marks, const TreeRow& row) {
+  if (!ImGui::BeginPopupContextItem("row")) return;
+  if (!session.selection.contains(row.id)) session.selection.set(row.id);
+  drawSelectionMenu(session, marks);
+  ImGui::EndPopup();
+}
+
 void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector<TreeRow>& rows,
              const TreeRow& row) {
   ImGui::PushID(static_cast<int>(row.id.value ^ row.id.value >> 32));
-  const float indent = 12.0f * static_cast<float>(row.depth);
+  const float indent = em(0.8f) * static_cast<float>(row.depth);
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
   if (row.has_children) {
     if (ImGui::ArrowButton("open", row.open ? ImGuiDir_Down : ImGuiDir_Right)) {
@@ -66,9 +92,12 @@ void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector
   drawSign(row.kind);
   ImGui::SameLine(0.0f, 6.0f);
   if (!row.matches) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
-  if (ImGui::Selectable(row.name.c_str(), session.selection.contains(row.id))) select(session, rows, row);
+  const std::string shown = ellipsized(row.name, ImGui::GetContentRegionAvail().x);
+  if (ImGui::Selectable(shown.c_str(), session.selection.contains(row.id))) select(session, rows, row);
   if (!row.matches) ImGui::PopStyleColor();
   marks.put("scene." + row.name);
+  if (shown != row.name) tooltip(row.name);
+  drawRowMenu(session, marks, row);
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
     session.viewing.frame(session.document, selectionBounds(session.document, session.selection));
   if (ImGui::BeginDragDropSource()) {
@@ -88,6 +117,7 @@ void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector
     }
     ImGui::EndDragDropTarget();
   }
+  if (row.kind == "bundle") drawStatus(session, marks, row);
   ImGui::PopID();
 }
 
@@ -96,12 +126,16 @@ void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector
 void drawSceneTree(Session& session, Marks& marks) {
   TreeQuery& query = session.tree.query;
   ImGui::SetNextItemWidth(-1.0f);
-  ImGui::InputTextWithHint("##search", "search: ball, type:light, has:Lamp", &query.filter);
+  ImGui::InputTextWithHint("##search", "search", &query.filter);
   marks.put("scene.search");
-  ImGui::Checkbox("draws and groups", &query.show_parts);
+  tooltip("Part of a name, as ball; a kind, as type:light; a component, as has:Lamp");
+  ImGui::Checkbox("parts", &query.show_parts);
   marks.put("scene.parts");
+  tooltip("Also show primitives and rigid groups, which cannot be edited");
   ImGui::SameLine();
-  ImGui::TextDisabled("%zu selected", session.selection.ids().size());
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+  fittedText(fmt::format("{} selected", session.selection.ids().size()));
+  ImGui::PopStyleColor();
   const std::vector<TreeRow>& rows = session.tree.of(session.document);
   ImGui::BeginChild("rows");
   ImGuiListClipper clipper;

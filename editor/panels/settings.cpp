@@ -1,11 +1,14 @@
 #include <array>
+#include <cctype>
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
+#include "editor/panels/fields.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/fitting.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/frame/quality.hpp"
 
@@ -18,6 +21,12 @@ void put(Session& session, const frame::SettingRow& row, const frame::FrameSetti
   if (auto done = runCommand(session, "setting", words); !done) session.log.error(done.error());
 }
 
+std::string capitalized(std::string_view label) {
+  std::string text(label);
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
 void drawRow(Session& session, Marks& marks, const frame::SettingRow& row) {
   using Kind = frame::SettingRow::Kind;
   frame::FrameSettings settings = session.stage.settings();
@@ -25,38 +34,34 @@ void drawRow(Session& session, Marks& marks, const frame::SettingRow& row) {
   const std::string label(row.label), name(row.name);
   bool changed = false;
   double to = value;
+  if (row.name == "exposure") return;  // the environment's panel shows it
   ImGui::PushID(name.c_str());
+  beginFieldRow(capitalized(row.label), fmt::format("{}\n{}", name, row.help));
+  ImGui::SetNextItemWidth(-1.0f);
   if (row.kind == Kind::Switch) {
     bool on = value != 0.0;
-    changed = ImGui::Checkbox(label.c_str(), &on);
+    changed = ImGui::Checkbox("##value", &on);
     to = on ? 1.0 : 0.0;
   } else if (row.kind == Kind::Choice) {
-    ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
-    if (ImGui::BeginCombo(label.c_str(), frame::settingWord(row, settings).c_str())) {
+    if (ImGui::BeginCombo("##value", frame::settingWord(row, settings).c_str())) {
       for (std::size_t i = 0; i < row.words.size(); ++i)
         if (ImGui::Selectable(std::string(row.words[i]).c_str(), static_cast<double>(i) == value))
           to = static_cast<double>(i), changed = true;
       ImGui::EndCombo();
     }
   } else if (row.kind == Kind::Whole) {
-    ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
     int whole = static_cast<int>(value);
-    changed =
-        ImGui::SliderInt(label.c_str(), &whole, static_cast<int>(row.least), static_cast<int>(row.greatest),
-                         frame::settingWord(row, settings).c_str(), ImGuiSliderFlags_AlwaysClamp);
+    changed = ImGui::SliderInt("##value", &whole, static_cast<int>(row.least), static_cast<int>(row.greatest),
+                               frame::settingWord(row, settings).c_str(), ImGuiSliderFlags_AlwaysClamp);
     to = whole;
-  } else if (row.name != "exposure") {  // the environment's panel shows the exposure
-    ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
+  } else {
     float real = static_cast<float>(value);
-    changed = ImGui::SliderFloat(label.c_str(), &real, static_cast<float>(row.least),
+    changed = ImGui::SliderFloat("##value", &real, static_cast<float>(row.least),
                                  static_cast<float>(row.greatest), "%.3g", ImGuiSliderFlags_AlwaysClamp);
     to = double{real};
-  } else {
-    ImGui::PopID();
-    return;
   }
   marks.put("setting." + name);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.help).c_str());
+  tooltip(row.help);
   if (ImGui::IsItemActivated()) session.history.beginDrag(label);
   if (changed) {
     row.put(settings, to);
@@ -70,8 +75,11 @@ void drawRow(Session& session, Marks& marks, const frame::SettingRow& row) {
 // costs.
 void drawQuality(Session& session, Marks& marks) {
   const std::string now(frame::qualityOf(session.stage.settings()));
-  ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
-  const bool open = ImGui::BeginCombo("quality", now.empty() ? "own" : now.c_str());
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("Quality");
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(em(6.5f));
+  const bool open = ImGui::BeginCombo("##quality", now.empty() ? "own" : now.c_str());
   marks.put("quality");
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("How many key lights there are and how finely they shadow: time against error");
@@ -125,14 +133,26 @@ void drawQuality(Session& session, Marks& marks) {
 void drawSlice(Session& session, Marks& marks) {
   constexpr std::array kAxes = {"x", "y", "z"};
   frame::NeighborhoodSlice& slice = session.viewing.overlays.slice;
-  ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
-  bool changed = ImGui::Combo("slice across", &slice.axis, kAxes.data(), static_cast<int>(kAxes.size()));
+  beginFieldRow("Slice across", "Axis of the slice through what bodies change around them");
+  ImGui::SetNextItemWidth(-1.0f);
+  bool changed = ImGui::Combo("##axis", &slice.axis, kAxes.data(), static_cast<int>(kAxes.size()));
   marks.put("slice.axis");
-  ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
-  changed |= ImGui::SliderFloat("place of the slice", &slice.position, 0.0f, 1.0f, "%.2f",
-                                ImGuiSliderFlags_AlwaysClamp);
+  beginFieldRow("Place of the slice", "");
+  ImGui::SetNextItemWidth(-1.0f);
+  changed |= ImGui::SliderFloat("##place", &slice.position, 0.0f, 1.0f, "%.2f", ImGuiSliderFlags_AlwaysClamp);
   marks.put("slice.position");
   if (changed) session.viewing.changed = true;
+}
+
+void drawRows(Session& session, Marks& marks) {
+  for (const frame::SettingRow& row : frame::settingRows()) drawRow(session, marks, row);
+  beginFieldRow("Pixels", "Pixels of the picture for each of the window along an edge: less is faster");
+  ImGui::SetNextItemWidth(-1.0f);
+  if (ImGui::SliderFloat("##pixels", &session.viewing.scale.whole, 0.25f, 2.0f, "%.2f",
+                         ImGuiSliderFlags_AlwaysClamp))
+    session.viewing.changed = true;
+  marks.put("setting.pixels");
+  if (session.viewing.overlays.neighborhoods) drawSlice(session, marks);
 }
 
 }  // namespace
@@ -140,16 +160,10 @@ void drawSlice(Session& session, Marks& marks) {
 void drawSettings(Session& session, Marks& marks) {
   drawQuality(session, marks);
   ImGui::Separator();
-  for (const frame::SettingRow& row : frame::settingRows()) drawRow(session, marks, row);
-  ImGui::Separator();
-  ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
-  if (ImGui::SliderFloat("pixels of the picture", &session.viewing.scale.whole, 0.25f, 2.0f, "%.2f",
-                         ImGuiSliderFlags_AlwaysClamp))
-    session.viewing.changed = true;
-  marks.put("setting.pixels");
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("For each pixel of the window along an edge: less is faster, more is smoother");
-  if (session.viewing.overlays.neighborhoods) drawSlice(session, marks);
+  if (beginFieldTable("settings", 0.56f)) {
+    drawRows(session, marks);
+    ImGui::EndTable();
+  }
   if (ImGui::Button("All to their defaults"))
     session.history.editWorld("settings to default", [](WorldState& world) { world.settings.clear(); });
   marks.put("setting.defaults");

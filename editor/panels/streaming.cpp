@@ -6,6 +6,7 @@
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/panels/text.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -32,7 +33,7 @@ void drawTimes(const frame::FrameTimes& times) {
   const std::vector<std::size_t> bins = times.histogram();
   std::vector<float> heights(bins.begin(), bins.end());
   ImGui::PlotHistogram("##times", heights.data(), static_cast<int>(heights.size()), 0, nullptr, 0.0f, FLT_MAX,
-                       ImVec2(ImGui::GetContentRegionAvail().x, 70.0f));
+                       ImVec2(ImGui::GetContentRegionAvail().x, em(4.6f)));
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("Frames by their time, in quarters of the median; the last bar: all beyond");
   ImGui::Text("median %.1f ms, worst %.1f ms, %zu of %zu over twice the median", times.median(),
@@ -40,12 +41,14 @@ void drawTimes(const frame::FrameTimes& times) {
 }
 
 void drawBundles(const frame::StreamingStatus& status, Marks& marks) {
-  constexpr ImGuiTableFlags kTable =
-      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollY;
-  if (!ImGui::BeginTable("bundles", 4, kTable)) return;
+  constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
+                                     ImGuiTableFlags_ScrollY | ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable("bundles", 4, kTable, ImVec2(0.0f, 0.0f),
+                         std::max(ImGui::GetContentRegionAvail().x, em(32.0f))))
+    return;
   ImGui::TableSetupColumn("Bundle", ImGuiTableColumnFlags_WidthStretch, 0.3f);
   ImGui::TableSetupColumn("Resident", ImGuiTableColumnFlags_WidthStretch, 0.4f);
-  ImGui::TableSetupColumn("Size in view", ImGuiTableColumnFlags_WidthFixed, 90.0f);
+  ImGui::TableSetupColumn("Size in view", ImGuiTableColumnFlags_WidthFixed, em(6.0f));
   ImGui::TableSetupColumn("State", ImGuiTableColumnFlags_WidthStretch, 0.3f);
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableHeadersRow();

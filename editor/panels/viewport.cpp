@@ -7,12 +7,14 @@
 #include "editor/panels/manipulate.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/render/renderer.hpp"
+#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
 constexpr float kBarWidth = 3.0f;
+constexpr float kClickPixels = 4.0f;  // a press that moves no further is a click
 constexpr float kFlyFast = 4.0f;
 
 ImTextureID handleOf(const gpu::Texture& texture) {
@@ -50,9 +52,15 @@ void drawPicture(const Session& session, const Renderer& renderer, const ImVec2&
   // Row 0 of the frame's pictures is the bottom.
   canvas->AddImage(handleOf(renderer.picture()), low, high, ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
   const ReferenceView& reference = session.reference;
+  if (!reference.on()) return;
   const gpu::Texture& beside = renderer.reference(reference.split);
-  if (!reference.on() || !beside) return;
   const float at = low.x + reference.split_at * (high.x - low.x);
+  if (!beside || !reference.shows()) {
+    // The plain picture must not pass for a reference or a difference.
+    canvas->AddRectFilled(ImVec2(at, low.y), high, IM_COL32(38, 38, 40, 255));
+    canvas->AddLine(ImVec2(at, low.y), ImVec2(at, high.y), IM_COL32(255, 255, 255, 200), kBarWidth);
+    return;
+  }
   canvas->AddImage(handleOf(beside), ImVec2(at, low.y), high, ImVec2(reference.split_at, 0.0f),
                    ImVec2(1.0f, 1.0f));
   canvas->AddLine(ImVec2(at, low.y), ImVec2(at, high.y), IM_COL32(255, 255, 255, 200), kBarWidth);
@@ -93,8 +101,13 @@ void drawLegends(Session& session, Marks& marks, const ImVec2& low, const ImVec2
   if (!session.reference.on()) return;
   const ReferenceView& reference = session.reference;
   std::string right = reference.split == SplitView::Heat ? "Difference" : "Reference";
-  right += ": " + reference.notice();
-  textOver(ImVec2(low.x + reference.split_at * (high.x - low.x) + 12.0f, low.y + 10.0f), right);
+  right += ": ";
+  if (!reference.shows())
+    right += reference.split == SplitView::Heat ? "it comes with the first full pass; now "
+                                                : "not there yet; now ";
+  right += reference.notice();
+  const float begins = low.x + reference.split_at * (high.x - low.x) + 12.0f;
+  textOver(ImVec2(begins, low.y + 10.0f), ellipsized(right, std::max(0.0f, high.x - begins - 12.0f)));
   if (const auto& difference = reference.difference()) {
     const baker::PictureError& e = difference->figures;
     std::string figures =
@@ -103,10 +116,11 @@ void drawLegends(Session& session, Marks& marks, const ImVec2& low, const ImVec2
                     100.0 * e.percentile_99);
     if (reference.split == SplitView::Heat)
       figures +=
-          fmt::format("   colours to {}{:.0f} %", reference.heat_map == baker::HeatMap::Signed ? "±" : "",
+          fmt::format("   colors to {}{:.0f} %", reference.heat_map == baker::HeatMap::Signed ? "±" : "",
                       100.0 * difference->range);
-    textOver(ImVec2(low.x + 12.0f, high.y - 26.0f), figures);
-    marks.put("difference", {{low.x, high.y - 26.0f}, {high.x, high.y}});
+    const float line = em(1.75f);
+    textOver(ImVec2(low.x + 12.0f, high.y - line), ellipsized(figures, high.x - low.x - 24.0f));
+    marks.put("difference", {{low.x, high.y - line}, {high.x, high.y}});
   }
 }
 
@@ -127,10 +141,14 @@ void pick(Session& session, Renderer& renderer, const glm::vec2& pixel) {
     session.selection.set(id);
 }
 
-void drawEmpty(const ImVec2& low, const ImVec2& high) {
-  const char* text = "Drop a glTF scene here, or File > Open";
-  const ImVec2 size = ImGui::CalcTextSize(text);
-  textOver(ImVec2(0.5f * (low.x + high.x - size.x), 0.5f * (low.y + high.y - size.y)), text);
+// Draws the menu that a right click in the view opens. A drag with that button looks around and opens none.
+void drawViewMenu(Session& session, Marks& marks) {
+  const bool clicked = ImGui::IsMouseReleased(ImGuiMouseButton_Right) && session.viewing.hovered &&
+                       ImGui::GetIO().MouseDragMaxDistanceSqr[1] < kClickPixels * kClickPixels;
+  if (clicked) ImGui::OpenPopup("view menu");
+  if (!ImGui::BeginPopup("view menu")) return;
+  drawSelectionMenu(session, marks);
+  ImGui::EndPopup();
 }
 
 }  // namespace
@@ -151,12 +169,16 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   marks.put("viewport");
-  const bool hovered = ImGui::IsItemHovered();
+  const bool hovered = session.viewing.hovered = ImGui::IsItemHovered();
   moveEye(session, viewport, hovered);
   const auto clicked = over_split ? std::nullopt : manipulate(session, marks, viewport, hovered);
   if (clicked) pick(session, renderer, scale * *clicked);
   drawLegends(session, marks, low, high);
-  if (session.scenes.entries().empty()) drawEmpty(low, high);
+  drawViewMenu(session, marks);
+  if (session.scenes.entries().empty()) {
+    ImGui::SetCursorScreenPos(low);
+    drawStartPage(session, marks);
+  }
 }
 
 }  // namespace lambent::editor

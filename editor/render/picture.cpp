@@ -29,22 +29,24 @@ std::vector<std::uint32_t> selectedGroups(const Session& session) {
   return found;
 }
 
-// Returns the overlays that are asked for, with a box around what is selected.
+// Returns the overlays that are asked for, with boxes around what is selected.
 frame::OverlayOptions overlaysOf(const Session& session) {
   frame::OverlayOptions overlays = session.viewing.overlays;
   if (overlays.neighborhoods) overlays.foremost_groups = selectedGroups(session);
   overlays.key = session.viewing.key_at_hand;
   if (!session.handles.shown) return overlays;
-  const scene::Box box = selectionBounds(session.document, session.selection);
-  if (box.empty()) return overlays;
   constexpr glm::vec4 kColor(1.0f, 0.62f, 0.2f, 0.9f);
-  const auto corner = [&](int i) {
-    return glm::vec3((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
-                     (i & 4) != 0 ? box.max.z : box.min.z);
-  };
-  for (int i = 0; i < 8; ++i)
-    for (const int bit : {1, 2, 4})
-      if ((i & bit) == 0) overlays.lines.push_back({corner(i), corner(i | bit), kColor});
+  for (const TurnedBox& turned : selectionBoxes(session.document, session.selection)) {
+    const scene::Box& box = turned.box;
+    const auto corner = [&](int i) {
+      return glm::vec3(turned.world_from_box * glm::vec4((i & 1) != 0 ? box.max.x : box.min.x,
+                                                         (i & 2) != 0 ? box.max.y : box.min.y,
+                                                         (i & 4) != 0 ? box.max.z : box.min.z, 1.0f));
+    };
+    for (int i = 0; i < 8; ++i)
+      for (const int bit : {1, 2, 4})
+        if ((i & bit) == 0) overlays.lines.push_back({corner(i), corner(i | bit), kColor});
+  }
   return overlays;
 }
 

@@ -16,6 +16,7 @@ void Renderer::update(Session& session, spec::Size size) {
   session.settings.update(session);
   session.qualities.update(session);
   thumbnails_.update(session.environment_maps);
+  materials_.update(session);
 }
 
 }  // namespace lambent::editor

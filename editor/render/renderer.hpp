@@ -3,6 +3,7 @@
 // Main thread; it must not outlive the window's OpenGL context. Errors: no OpenGL 4.5.
 #pragma once
 
+#include "editor/render/material_pictures.hpp"
 #include "editor/render/picture.hpp"
 #include "editor/render/reference_picture.hpp"
 #include "editor/render/thumbnails.hpp"
@@ -31,6 +32,7 @@ class Renderer {
   Picture picture_;
   ReferencePicture reference_;
   Thumbnails thumbnails_;
+  MaterialPainter materials_;
 };
 
 }  // namespace lambent::editor

@@ -51,6 +51,7 @@ Preferences loadPreferences(const std::filesystem::path& file) {
     read(json, "showLeft", p.show_left), read(json, "showRight", p.show_right);
     read(json, "showBottom", p.show_bottom);
     read(json, "scale", p.scale), read(json, "recent", p.recent);
+    read(json, "lightUnit", p.light_unit);
   } catch (const nlohmann::json::exception&) {
     return {};
   }
@@ -67,12 +68,13 @@ void savePreferences(const std::filesystem::path& file, const Preferences& p) {
   std::filesystem::create_directories(file.parent_path(), ignored);
   auto out = AtomicFile::open(file);
   if (!out) return;
-  const std::string text = nlohmann::json{
-      {"width", p.width},          {"height", p.height},          {"left", p.left},
-      {"right", p.right},          {"bottom", p.bottom},          {"leftTab", p.left_tab},
-      {"rightTab", p.right_tab},   {"bottomTab", p.bottom_tab},   {"showLeft", p.show_left},
-      {"showRight", p.show_right}, {"showBottom", p.show_bottom}, {"scale", p.scale},
-      {"recent", p.recent}}.dump(2);
+  const std::string text =
+      nlohmann::json{{"width", p.width},          {"height", p.height},          {"left", p.left},
+                     {"right", p.right},          {"bottom", p.bottom},          {"leftTab", p.left_tab},
+                     {"rightTab", p.right_tab},   {"bottomTab", p.bottom_tab},   {"showLeft", p.show_left},
+                     {"showRight", p.show_right}, {"showBottom", p.show_bottom}, {"scale", p.scale},
+                     {"recent", p.recent},        {"lightUnit", p.light_unit}}
+          .dump(2);
   if (out->write(text)) (void)out->commit();
 }
 

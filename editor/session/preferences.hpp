@@ -15,7 +15,8 @@ struct Preferences {
   float left = 0.17f, right = 0.24f, bottom = 0.24f;
   std::string left_tab = "Scene", right_tab = "Inspector", bottom_tab = "Bakes";
   bool show_left = true, show_right = true, show_bottom = true;
-  float scale = 1.0f;  // of text and widgets
+  float scale = 1.0f;             // of text and widgets
+  std::string light_unit = "cd";  // in which lights are given that can be given in it
   std::vector<std::string> recent;
 
   void addRecent(const std::filesystem::path& file);

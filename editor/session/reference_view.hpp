@@ -38,6 +38,9 @@ class ReferenceView {
   bool on() const { return split != SplitView::Off; }
   // Returns whether all requested samples are shown, or tracing cannot go on.
   bool done() const;
+  // Returns whether there is what the view is named after: any samples, or for a heat map a difference of
+  // whole pictures.
+  bool shows() const { return split == SplitView::Heat ? difference_.has_value() : seen_ != nullptr; }
   // Says why the reference cannot be traced, or else what it is doing.
   std::string notice() const;
   std::shared_ptr<const baker::reference::Snapshot> snapshot() const;

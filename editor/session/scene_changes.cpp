@@ -118,12 +118,14 @@ std::vector<std::string> SceneChanges::needsRebake(std::size_t entry) const {
 }
 
 const std::vector<std::string>& SceneChanges::needsRebakeNow(std::size_t entry) {
+  if (rebakes_.size() <= entry) rebakes_.resize(entry + 1);
+  Rebake& known = rebakes_[entry];
   // Until all is loaded, a bundle may replace another in any frame.
-  const Asked now{entry, history_.version(), scenes_.version()};
-  if (rebake_of_ == now && world_.loaded()) return rebake_;
-  rebake_ = needsRebake(entry);
-  rebake_of_ = world_.loaded() ? std::optional(now) : std::nullopt;
-  return rebake_;
+  const std::pair now{history_.version(), scenes_.version()};
+  if (known.of_edits_and_scenes == now && world_.loaded()) return known.sentences;
+  known.sentences = needsRebake(entry);
+  known.of_edits_and_scenes = world_.loaded() ? std::optional(now) : std::nullopt;
+  return known.sentences;
 }
 
 }  // namespace lambent::editor

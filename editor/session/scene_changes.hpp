@@ -30,6 +30,7 @@ class SceneChanges {
   // Returns a sentence for each edit of the entry that the picture only approximates until the next bake.
   std::vector<std::string> needsRebake(std::size_t entry) const;
   // Returns the same, but recomputes it only when edits or scenes have changed. Panels call it every frame.
+  // The result is valid until the next call.
   const std::vector<std::string>& needsRebakeNow(std::size_t entry);
 
  private:
@@ -40,13 +41,12 @@ class SceneChanges {
   Baseline baseline_;
   // The version of the scenes and the descriptions that the baseline was built from.
   std::pair<std::uint64_t, std::vector<const void*>> baseline_of_{0, {}};
-  struct Asked {
-    std::size_t entry = 0;
-    std::uint64_t edits = 0, scenes = 0;
-    bool operator==(const Asked&) const = default;
+  struct Rebake {
+    // The versions that the sentences belong to; none: they are to be made anew.
+    std::optional<std::pair<std::uint64_t, std::uint64_t>> of_edits_and_scenes;
+    std::vector<std::string> sentences;
   };
-  std::optional<Asked> rebake_of_;
-  std::vector<std::string> rebake_;
+  std::vector<Rebake> rebakes_;  // by entry
 };
 
 }  // namespace lambent::editor

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "baker/bake/bake.hpp"
-#include "baker/pipeline/journal.hpp"
 
 namespace lambent::editor {
 
@@ -180,6 +179,7 @@ Result<void> Scenes::openScene(const std::filesystem::path& scene, std::string i
     if (const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id}))
       entry.slot = *slot, entry.shown = entry.bundle;
   }
+  std::erase_if(unfinished_, [&](const baker::BakeRequest& left) { return plain(left.scene) == scene; });
   entries_.push_back(std::move(entry));
   ++version_;
   request(entries_.back());
@@ -249,7 +249,7 @@ void Scenes::show(SceneEntry& entry, const std::filesystem::path& bundle) {
 void Scenes::take(const baker::BakeEvent& event) {
   const auto found = std::find_if(entries_.begin(), entries_.end(),
                                   [&](const SceneEntry& entry) { return entry.job == event.job; });
-  if (found == entries_.end()) return;
+  if (found == entries_.end()) return takeUnseen(event);
   using Kind = baker::BakeEvent::Kind;
   const auto job = jobOf(static_cast<std::size_t>(found - entries_.begin()));
   if (event.kind == Kind::Failed && job && job->error) log_.error(*job->error);
@@ -263,9 +263,8 @@ void Scenes::take(const baker::BakeEvent& event) {
     return;
   if (job) found->shown_edits = job->request.edits;
   show(*found, event.bundle);
-  if (event.preview_level == baker::PreviewLevel::Final)
-    log_.note(
-        fmt::format("{}: baked in {:.0f} s", found->bundle.filename().string(), job ? job->seconds : 0.0));
+  if (event.preview_level == baker::PreviewLevel::Final && job && !job->up_to_date)
+    log_.note(fmt::format("{}: baked in {:.0f} s", found->bundle.filename().string(), job->seconds));
 }
 
 // Returns whether a watched folder contains the scene.
@@ -317,19 +316,6 @@ void Scenes::cancel(std::size_t entry) {
 
 bool Scenes::busy() const {
   return queue_->busy() || idle_updates_ < 2;
-}
-
-std::size_t Scenes::resume() {
-  std::size_t count = 0;
-  if (settings_.cache_folder.empty()) return count;
-  for (const baker::BakeRequest& request :
-       baker::Journal(settings_.cache_folder / baker::kJournalFolder).unfinished()) {
-    if (find(plain(request.scene))) continue;
-    log_.note(request.scene.filename().string() + ": goes on where an earlier session stopped");
-    if (auto opened = open(request.scene); !opened) log_.error(opened.error());
-    ++count;
-  }
-  return count;
 }
 
 void Scenes::close(std::size_t index) {

@@ -67,8 +67,16 @@ class Scenes {
   void cancel(std::size_t entry);
   // Returns whether bakes are running or have results that update() has not applied yet.
   bool busy() const;
-  // Opens the scenes whose bakes an earlier session left unfinished, and returns their number.
-  std::size_t resume();
+
+  // Bakes that an earlier session left unfinished and whose scenes are not open. They are offered, and
+  // nothing of them is shown: goOn() bakes one unseen, open() of its scene goes on too, forget() gives it up.
+  void findUnfinished();
+  const std::vector<baker::BakeRequest>& unfinished() const { return unfinished_; }
+  void goOn(std::size_t unfinished);
+  void forget(std::size_t unfinished);
+  // Returns the bakes that goOn() has begun and whose scenes are not open.
+  std::vector<baker::JobState> unseen() const;
+  void cancelUnseen(baker::JobId job) { queue_->cancel(job); }
 
   const std::vector<SceneEntry>& entries() const { return entries_; }
   std::vector<baker::JobState> jobs() const { return queue_->states(); }
@@ -88,6 +96,7 @@ class Scenes {
   Result<void> openFolder(const std::filesystem::path& folder);
   void show(SceneEntry& entry, const std::filesystem::path& bundle);
   void take(const baker::BakeEvent& event);
+  void takeUnseen(const baker::BakeEvent& event);
   void take(const baker::WatchEvent& event);
   void watch();
   bool isWatched(const std::filesystem::path& scene) const;
@@ -104,6 +113,8 @@ class Scenes {
   std::unique_ptr<baker::SourceWatch> watch_;
   std::vector<std::filesystem::path> watched_;  // folders
   std::vector<SceneEntry> entries_;
+  std::vector<baker::BakeRequest> unfinished_;
+  std::vector<baker::JobId> unseen_;
   std::uint64_t version_ = 1;
   std::uint64_t idle_updates_ = 0;  // consecutive calls of update() with nothing to bake
 };

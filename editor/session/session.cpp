@@ -52,7 +52,7 @@ Result<std::unique_ptr<Session>> Session::create(const SessionOptions& options, 
   std::unique_ptr<Session> session(new Session(options, std::move(preferences), std::move(*stage)));
   session->followDocument();
   for (const std::filesystem::path& file : options.files) session->files.openLogged(file);
-  if (options.bake) session->scenes.resume();
+  session->scenes.findUnfinished();
   session->history.clear();
   return session;
 }

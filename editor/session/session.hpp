@@ -17,7 +17,9 @@
 #include "editor/session/environment_map_shelf.hpp"
 #include "editor/session/files.hpp"
 #include "editor/session/handles.hpp"
+#include "editor/session/held_angles.hpp"
 #include "editor/session/log.hpp"
+#include "editor/session/object_materials.hpp"
 #include "editor/session/picture_facts.hpp"
 #include "editor/session/plans.hpp"
 #include "editor/session/playback.hpp"
@@ -85,7 +87,9 @@ class Session {
   QualityStudy qualities;
   Plans plans;
   EnvironmentMapShelf environment_maps;
+  MaterialPictures material_pictures;
   Clipboard clipboard;
+  HeldAngles angles;  // of the inspector
   WindowRequests window;
 
  private:

@@ -13,15 +13,9 @@ std::string titleOf(const Session& session) {
   return fmt::format("{}{} - Lambent", name, session.files.modified() ? "*" : "");
 }
 
-std::string statusOf(const Session& session) {
-  std::string text = fmt::format("{:.1f} ms", session.picture.times.median());
-  std::size_t working = 0;
-  for (const baker::JobState& job : session.scenes.jobs())
-    working += job.phase == baker::JobPhase::Baking || job.phase == baker::JobPhase::Waiting ||
-               job.phase == baker::JobPhase::Importing;
-  if (working > 0) text = fmt::format("bakes: {}   {}", working, text);
-  if (!session.picture.settled) text = "light settles   " + text;
-  return text;
+std::string pictureStatus(const Session& session) {
+  const std::string time = fmt::format("{:.1f} ms", session.picture.times.median());
+  return session.picture.settled ? time : "light settles   " + time;
 }
 
 }  // namespace lambent::editor

@@ -9,7 +9,8 @@ class Session;
 
 // Returns for example "hello* - Lambent"; the asterisk means unsaved changes.
 std::string titleOf(const Session& session);
-// Returns for example "bakes: 1   light settles   12.3 ms"; only the time is always present.
-std::string statusOf(const Session& session);
+// Returns for example "light settles   12.3 ms"; only the time is always present. What scenes lack is told by
+// scene_status.hpp.
+std::string pictureStatus(const Session& session);
 
 }  // namespace lambent::editor

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,10 +31,14 @@ class Viewing {
   // The index into Environment::keys() of the key light whose fields are shown.
   std::optional<std::size_t> key_at_hand;
   PictureScale scale;
+  // Returns the surface point in the middle of the picture, or none where the sky is. It is empty without a
+  // window.
+  std::function<std::optional<glm::vec3>()> surface_ahead;
 
   bool frame_when_loaded = true;  // place the camera when the first bundle is loaded
   bool changed = true;            // the picture must be drawn anew
   bool flying = false;            // the keys move the camera
+  bool hovered = false;           // the pointer is over the view
 
   // Eases the camera towards its goal; call it once a frame.
   void update(const Document& document, double seconds);

@@ -14,6 +14,11 @@ struct WindowRequests {
   std::optional<Dialog> dialog;            // at most one at a time
   std::vector<std::string> wanted_panels;  // names of panels to bring to the front
   bool raise_tabs = true;                  // also bring the preferences' tabs to the front
+  // Ids of commands to run in the next frame, when fields that were open have taken over what was typed.
+  std::vector<std::string> wanted_commands;
+  bool palette = false;  // the list of commands is open
+  bool keys = false;     // the list of keys is open
+  std::string palette_words;
   bool quit = false;
 };
 

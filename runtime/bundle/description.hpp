@@ -98,6 +98,12 @@ struct WeightPlane {
   float variance = 0.0f;    // share of the cell's weighted variance about its mean that this plane carries
 };
 
+// Returns whether codes with this error miss the bound that they were made under.
+constexpr bool missesBound(double error, double bound) {
+  constexpr double kRounded = 1.005;  // reports have three figures, and what they round away is no miss
+  return error > kRounded * bound;
+}
+
 // Describes one part of the transfer of a cell, stored as a codebook and a few weights per sample
 // (codebook.hpp).
 struct CellTransfer {

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "runtime/demo/zoom.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/components.hpp"
 
@@ -15,7 +16,6 @@ namespace lambent::demo {
 namespace {
 
 constexpr float kDegreesPerWindow = 220.0f;  // for a drag over the window's height
-constexpr float kZoomPerNotch = 0.9f;
 constexpr float kMaxElevationDeg = 89.0f;
 
 std::optional<std::uint32_t> firstCameraNode(const bundle::Description& description) {
@@ -104,7 +104,8 @@ Result<spec::View> ViewController::view(const frame::World& world, float aspect)
                           bounds_.max, aspect);
 }
 
-void ViewController::move(const frame::World& world, const gpu::Input& input) {
+void ViewController::move(const frame::World& world, const gpu::Input& input,
+                          std::optional<float> surface_m) {
   if (input.reset) {
     file_camera_ = first_file_camera_;
     orbit_ = first_orbit_;
@@ -126,8 +127,9 @@ void ViewController::move(const frame::World& world, const gpu::Input& input) {
   orbit_.azimuth_deg = std::remainder(orbit_.azimuth_deg - kDegreesPerWindow * input.drag_x, 360.0f);
   orbit_.elevation_deg = std::clamp(orbit_.elevation_deg + kDegreesPerWindow * input.drag_y,
                                     -kMaxElevationDeg, kMaxElevationDeg);
-  orbit_.distance_radii =
-      std::clamp(orbit_.distance_radii * std::pow(kZoomPerNotch, input.scroll), 0.05f, 100.0f);
+  const float radius = std::max(bounds_.radius(), 1e-6f);
+  if (surface_m) *surface_m /= radius;
+  orbit_.distance_radii = zoomed(orbit_.distance_radii, input.scroll, surface_m);
 }
 
 }  // namespace lambent::demo

@@ -20,7 +20,9 @@ class ViewController {
                                        float aspect);
 
   Result<spec::View> view(const frame::World& world, float aspect) const;
-  void move(const frame::World& world, const gpu::Input& input);
+  // surface_m: from the camera to the surface in the middle of the picture, through which the wheel does not
+  // move it.
+  void move(const frame::World& world, const gpu::Input& input, std::optional<float> surface_m = {});
 
  private:
   struct FileCamera {

@@ -277,8 +277,8 @@ std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
   app.footer(
       "In the window: drag turns the camera, the wheel moves it, R resets it; the right button drags the "
       "first "
-      "light that stands in the scene; space stops lights and animations, A and D turn the lights; Esc "
-      "quits.\nExit codes: 0 done, 1 failed, 2 wrong usage.");
+      "light that stands in the scene; space stops lights and animations, A and D turn the lights; H shows "
+      "the keys; Esc quits.\nExit codes: 0 done, 1 failed, 2 wrong usage.");
   Words words;
   declare(app, words);
   try {

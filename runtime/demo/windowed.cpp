@@ -1,14 +1,19 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <set>
+#include <string_view>
 
+#include <epoxy/gl.h>
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "runtime/demo/camera.hpp"
 #include "runtime/demo/run.hpp"
 #include "runtime/demo/stage.hpp"
 #include "runtime/frame/frame.hpp"
+#include "runtime/gpu/plain_text.hpp"
 #include "runtime/gpu/window.hpp"
 
 namespace lambent::demo {
@@ -53,12 +58,31 @@ std::string titleOf(const std::string& title, const frame::StreamingStatus& stat
   return status.queued == 0 ? text : fmt::format("{}, {} parts to come", text, status.queued);
 }
 
+constexpr std::string_view kKeys =
+    "drag          turn the camera\n"
+    "wheel         nearer, farther\n"
+    "right drag    move the first light\n"
+    "R             first view again\n"
+    "A, D          turn the lights\n"
+    "space         stop lights and animations\n"
+    "H             hide these keys\n"
+    "Esc           quit";
+
+// Returns the distance to the surface in the middle of the picture, or none where the sky is.
+std::optional<float> surfaceAhead(frame::Frame& frame, frame::World& world, const spec::View& view,
+                                  spec::Size size) {
+  const auto picked =
+      frame.pick(world, view, 0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height));
+  if (!picked || !*picked) return std::nullopt;
+  return glm::length((*picked)->position_ws - view.eye_ws);
+}
+
 }  // namespace
 
 Result<void> runWindowed(const Options& options) {
   Result<lighting::Environment> environment = loadEnvironment(options);
   if (!environment) return failAgain(environment.error());
-  const std::string title = "Lambent - " + options.bundles.front().filename().string();
+  const std::string title = "Lambent - " + options.bundles.front().filename().string() + " - H: keys";
   Result<gpu::Window> window = gpu::Window::create(title, options.size.width, options.size.height, {});
   if (!window) return failAgain(window.error());
   Result<Stage> stage = Stage::create(options, std::move(*environment));
@@ -78,7 +102,8 @@ Result<void> runWindowed(const Options& options) {
   if (!frame) return failAgain(frame.error());
 
   float turn_deg = options.rotate_light_deg;
-  bool turning = true;
+  bool turning = true, shows_keys = false;
+  std::optional<spec::View> last_view;
   world.setAnimationTime(options.time_s.value_or(0.0f));
   TitleClock title_clock;
   std::set<std::string> reported;  // errors of bundles, each reported once
@@ -96,7 +121,11 @@ Result<void> runWindowed(const Options& options) {
     turn_deg = std::remainder(turn_deg, 360.0f);
     stage->turnLight(turn_deg);
     if (turning) world.playAnimations(seconds);
-    controller->move(world, input);
+    if (input.help) shows_keys = !shows_keys;
+    // Only the wheel asks what is ahead, since the answer waits for the GPU.
+    controller->move(
+        world, input,
+        input.scroll > 0.0f && last_view ? surfaceAhead(*frame, world, *last_view, size) : std::nullopt);
 
     window->framebufferSize(size.width, size.height);
     frame->resize(size);
@@ -105,6 +134,11 @@ Result<void> runWindowed(const Options& options) {
     if (!view) return failAgain(view.error());
     if (input.light_x != 0.0f || input.light_y != 0.0f) stage->dragLight(*view, input.light_x, input.light_y);
     if (Result<void> rendered = frame->render(world, stage->environment(), *view); !rendered) return rendered;
+    last_view = *view;
+    if (shows_keys) {
+      glBindFramebuffer(GL_FRAMEBUFFER, 0);
+      gpu::drawPlainText(kKeys, size.height);
+    }
     window->swap();
     for (const frame::BundleError& wrong : world.errors())
       if (reported.insert(wrong.error.line()).second) printError(wrong.error);

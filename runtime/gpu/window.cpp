@@ -32,6 +32,7 @@ struct Window::State {
     if (key == GLFW_KEY_ESCAPE) input.quit = true;
     if (key == GLFW_KEY_R) input.reset = true;
     if (key == GLFW_KEY_SPACE) input.pause = true;
+    if (key == GLFW_KEY_H) input.help = true;
   }
   static void onDrop(GLFWwindow* window, int count, const char** paths) {
     for (int i = 0; i < count; ++i) of(window).pending.dropped.emplace_back(paths[i]);

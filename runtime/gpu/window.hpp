@@ -23,6 +23,7 @@ struct Input {
   float scroll = 0.0f;                         // notches; away from the user is positive
   bool reset = false;                          // the R key was pressed
   bool pause = false;                          // the space bar was pressed
+  bool help = false;                           // the H key was pressed
   int turn = 0;                                // -1 while A is held, +1 while D is held
   bool quit = false;                           // Esc was pressed or the window is being closed
   std::vector<std::filesystem::path> dropped;  // files and folders that were dropped onto the window

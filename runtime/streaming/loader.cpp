@@ -177,6 +177,12 @@ void Loader::waitForMore() {
   state_->more.wait(lock, [&] { return state_->frontIsReady() || state_->next_take >= state_->end(); });
 }
 
+void Loader::waitForMore(std::chrono::milliseconds most) {
+  std::unique_lock lock(state_->mutex);
+  state_->more.wait_for(lock, most,
+                        [&] { return state_->frontIsReady() || state_->next_take >= state_->end(); });
+}
+
 bool Loader::finished() const {
   const std::lock_guard lock(state_->mutex);
   return state_->next_take >= state_->end();

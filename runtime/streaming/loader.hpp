@@ -3,6 +3,7 @@
 // (residency.hpp). Items are delivered in the order of their priority, whatever the number of threads.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -33,6 +34,7 @@ class Loader {
   std::vector<Ready> take(std::size_t max_bytes);
   // Waits until an item is ready or no more will come.
   void waitForMore();
+  void waitForMore(std::chrono::milliseconds most);
   // Returns true once every item has been taken, or loading has stopped at an error.
   bool finished() const;
   // Returns the first error, at which loading stops.

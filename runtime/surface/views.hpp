@@ -49,7 +49,7 @@ inline constexpr std::array<SurfaceViewRow, 8> kSurfaceViews = {{
     {SurfaceView::Final, "final", "Final", "the light as it is", ViewColors::Light},
     {SurfaceView::Irradiance, "irradiance", "Irradiance",
      "E/pi that arrives at surfaces, without their own colour", ViewColors::Light},
-    {SurfaceView::TransferDc, "transfer-dc", "Transfer, DC",
+    {SurfaceView::TransferDc, "transfer-dc", "Average visibility",
      "coefficient 0 of the transfer: what of uniform light arrives", ViewColors::Scale},
     {SurfaceView::TransferBand, "transfer-band", "Transfer, band",
      "energy of one band of the transfer: transfer-band:BAND", ViewColors::Scale},

@@ -12,6 +12,8 @@ constexpr double kGrow = 1.1, kShrink = 0.5;
 constexpr double kFirstBytes = 1 << 20, kLeastBytes = 128 << 10;
 // Holds however slow frames are: else a scene whose frames take seconds would take minutes to load.
 constexpr double kLeastBytesPerSecond = 8 << 20;
+// Nobody sees a quarter more in a frame that is no movement anyway.
+constexpr double kSlowSeconds = 0.25, kWaitShare = 0.25;
 
 }  // namespace
 
@@ -52,6 +54,11 @@ std::vector<std::size_t> FrameTimes::histogram(std::size_t bins) const {
 std::uint64_t UploadPacer::budget(std::uint64_t most_bytes) const {
   if (bytes_ == 0.0) return std::min(most_bytes, static_cast<std::uint64_t>(kFirstBytes));
   return std::min(most_bytes, static_cast<std::uint64_t>(bytes_));
+}
+
+double UploadPacer::waitSeconds() const {
+  const double last_s = 1e-3 * times_.last();
+  return last_s > kSlowSeconds ? kWaitShare * last_s : 0.0;
 }
 
 void UploadPacer::frameTook(double milliseconds, bool uploaded, std::uint64_t most_bytes) {

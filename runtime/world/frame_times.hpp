@@ -39,6 +39,9 @@ class FrameTimes {
 class UploadPacer {
  public:
   std::uint64_t budget(std::uint64_t most_bytes) const;
+  // Returns for how many seconds a frame may wait for what is being loaded: a share of the last frame if that
+  // was slow, so that loading takes few frames, and else 0.
+  double waitSeconds() const;
   // Records the time of the last frame, and whether it uploaded anything.
   void frameTook(double milliseconds, bool uploaded, std::uint64_t most_bytes);
   const FrameTimes& times() const { return times_; }

@@ -143,8 +143,9 @@ class World {
   std::uint64_t proxyLodsVersion() const { return proxy_lods_version_; }
   bool showsSurfaces(std::uint32_t bundle) const;
 
-  // Uploads up to about `budget_bytes` of what is ready. Never waits.
-  Result<void> upload(std::uint64_t budget_bytes, gpu::Counters& counters);
+  // Uploads up to about `budget_bytes` of what is ready. It waits for more, for about this many seconds at
+  // most, while there is budget left; 0: it never waits.
+  Result<void> upload(std::uint64_t budget_bytes, gpu::Counters& counters, double most_wait_s = 0.0);
   // Waits until everything that there is room for is resident and every replacement is shown. Fails with the
   // first of errors(), after everything else has arrived.
   Result<void> uploadAll(gpu::Counters& counters);

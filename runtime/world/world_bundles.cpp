@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <thread>
 
 #include "runtime/scene/exchange.hpp"
@@ -193,15 +194,34 @@ void World::swapIn(std::uint32_t slot) {
   playAnimations(0.0f);  // moves nodes that the old bundle's animations had placed
 }
 
-Result<void> World::upload(std::uint64_t budget_bytes, gpu::Counters& counters) {
+Result<void> World::upload(std::uint64_t budget_bytes, gpu::Counters& counters, double most_wait_s) {
   const std::uint64_t uploaded_before = counters.uploaded_bytes;
   std::erase_if(retired_, [](const streaming::Loader& loader) { return loader.idle(); });
   chooseTargets();
   for (std::uint32_t i = 0; i < bundles_.size(); ++i)
     if (bundles_[i]) evict(i);
   request();
-  for (std::uint32_t i = 0; i < bundles_.size() && budget_bytes > 0; ++i)
-    if (bundles_[i] && bundles_[i]->batch) takeFrom(i, budget_bytes, counters);
+  const auto take = [&] {
+    for (std::uint32_t i = 0; i < bundles_.size() && budget_bytes > 0; ++i)
+      if (bundles_[i] && bundles_[i]->batch) takeFrom(i, budget_bytes, counters);
+  };
+  take();
+  // A batch is small, so that what matters most can change from frame to frame. Where frames take long,
+  // several of them come in one.
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begun = Clock::now();
+  const auto left = [&] {
+    const std::chrono::duration<double> most(most_wait_s);
+    return std::chrono::duration_cast<std::chrono::milliseconds>(most - (Clock::now() - begun));
+  };
+  while (budget_bytes > 0 && left().count() > 0) {
+    request();
+    const auto loading =
+        std::ranges::find_if(bundles_, [](const auto& bundle) { return bundle && bundle->batch; });
+    if (loading == bundles_.end()) break;
+    (*loading)->batch->loader.waitForMore(left());
+    take();
+  }
   for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
     if (!bundles_[i] || !bundles_[i]->replacement) continue;
     if (budget_bytes > 0) uploadReplacement(*bundles_[i], budget_bytes, counters);

@@ -20,8 +20,9 @@ class UploadPass final : public FramePass {
   Result<void> update(FrameContext& frame) override {
     const std::uint64_t most = frame.options.upload_budget_bytes;
     if (frame.view) noticeFrame(most);
-    Result<void> done =
-        frame.world.upload(frame.options.pace_uploads ? pacer_.budget(most) : most, frame.counters());
+    Result<void> done = frame.options.pace_uploads
+                            ? frame.world.upload(pacer_.budget(most), frame.counters(), pacer_.waitSeconds())
+                            : frame.world.upload(most, frame.counters());
     uploaded_bytes_ += frame.counters().uploaded_bytes;
     frame.log.noticeArrivals(frame.world, frame.counters().uploaded_bytes);
     frame.because();

@@ -46,6 +46,20 @@ TEST_F(Actions, CopiesOfComponentsGoOntoSeveralEntitiesInOneStep) {
   EXPECT_FALSE(world.registry.has<scene::LocalLightComponent>(stand));
 }
 
+TEST_F(Actions, SelectionBoxesTurnWithWhatTheyEnclose) {
+  const ecs::Entity table = world.node("table");
+  Selection selection;
+  selection.set(document.adopt(table));
+  const glm::quat turned = glm::angleAxis(0.7f, glm::vec3(0.0f, 1.0f, 0.0f));
+  ASSERT_TRUE(history.setField(table, "Transform", "rotation", turned));
+  const std::vector<TurnedBox> boxes = selectionBoxes(document, selection);
+  ASSERT_EQ(boxes.size(), 1u);
+  const glm::vec3 size = boxes[0].box.max - boxes[0].box.min;
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(size[axis], 2.0f, 1e-5f) << "1 m, scaled by 2";
+  const glm::vec3 x(boxes[0].world_from_box[0]);
+  EXPECT_NEAR(glm::length(x - turned * glm::vec3(1.0f, 0.0f, 0.0f)), 0.0f, 1e-5f);
+}
+
 TEST_F(Actions, WhatDoesNotFitChangesNothing) {
   const ecs::Entity lamp = world.node("lamp"), ball = world.node("ball");
   const std::string text = *copyComponent(document, lamp, "Light");

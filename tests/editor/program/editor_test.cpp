@@ -11,6 +11,7 @@
 #include "assets/glb.hpp"
 #include "assets/shapes.hpp"
 #include "baker/bake/option_rows.hpp"
+#include "baker/pipeline/journal.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/require.hpp"
 #include "tests/support/x_server.hpp"
@@ -204,6 +205,139 @@ TEST_F(EditorProgram, TakesADroppedSceneAndShowsItBeforeItIsBaked) {
   EXPECT_EQ(played.answer("state")["scenes"][0]["bake"]["reached"], "final");
   EXPECT_EQ(played.answer("state")["errors"], 0);
   EXPECT_EQ(played.answer("plan")["ready"], true);
+}
+
+// What another scene's bake left behind must not stand in the scene that is opened.
+TEST_F(EditorProgram, ShowsTheOpenedSceneAloneAndOffersUnfinishedBakes) {
+  std::filesystem::copy(path("hello.glb"), path("other.glb"));
+  baker::Journal(folder / "cache" / baker::kJournalFolder)
+      .begin({.scene = path("other.glb"), .output = path("other.lmb.glb")});
+  const Played played = play(R"(
+wait baked 240
+state
+tree type:bundle
+click bakes.other.glb.go-on
+wait frames 3
+wait baked 240
+state
+tree type:bundle
+)",
+                             {path("hello.glb"), "--fresh"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> states = played.all("state"), trees = played.all("tree");
+  ASSERT_EQ(trees.size(), 2u);
+  for (const json& tree : trees) EXPECT_EQ(tree.size(), 1u) << tree.dump();
+  EXPECT_EQ(states[0]["unfinished"], json::array({path("other.glb")}));
+  EXPECT_EQ(states[1]["unfinished"], json::array());
+  EXPECT_EQ(states[1]["unseen"][0]["phase"], "done") << states[1].dump();
+  EXPECT_TRUE(std::filesystem::exists(path("other.lmb.glb")));
+}
+
+// The tree, the status bar and the Bakes panel tell the same, and go on to tell it without a selection.
+TEST_F(EditorProgram, TellsEverywhereThatThePictureNeedsARebake) {
+  const Played played = play(fmt::format(R"(
+open {0}
+wait baked 240
+wait frames 3
+marks
+select "has:Transform sphere"
+set Transform.translation 0.1 0.6 0.2
+select-none
+wait frames 5
+marks
+state
+)",
+                                         path("hello.glb")));
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> marks = played.all("marks");
+  ASSERT_EQ(marks.size(), 2u);
+  const auto has = [](const json& names, const char* name) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  for (const char* name : {"status.scenes", "scene.hello.state"}) {
+    EXPECT_FALSE(has(marks[0], name)) << name;
+    EXPECT_TRUE(has(marks[1], name)) << name;
+  }
+  EXPECT_EQ(played.answer("state")["scenes"][0]["status"], "needs a rebake");
+}
+
+// With automatic exposure, a light that is seen makes the meter go down.
+TEST_F(EditorProgram, ShowsANewLightOfEachKindAtOnce) {
+  std::string script = fmt::format("open {}\nwait loaded 60\nwait rest 60\nstate\n", path("hello.glb"));
+  for (const char* kind : {"point", "spot", "directional", "sphere", "disc"})
+    script += fmt::format("create-{}\nwait rest 60\nstate\nundo\nwait rest 60\n", kind);
+  const Played played = play(script, {"--no-bake"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> states = played.all("state");
+  ASSERT_EQ(states.size(), 6u);
+  const double before = states[0]["exposureEv"];
+  for (std::size_t i = 1; i < states.size(); ++i)
+    EXPECT_LT(states[i]["exposureEv"].get<double>(), before - 0.1) << states[i]["selected"].dump();
+}
+
+TEST_F(EditorProgram, CommitsAnOpenFieldBeforeUndoAndSaysWhatItUndoes) {
+  const Played played = play(R"(
+create-empty
+panel Inspector
+wait frames 3
+click inspector.Name.name
+key Ctrl+A
+type "lamp"
+wait frames 3
+get Name.name
+key Ctrl+Z
+wait frames 3
+get Name.name
+state
+key Ctrl+Shift+Z
+wait frames 3
+get Name.name
+click menu.Edit
+wait frames 3
+click menu.undo@0.05,0.5
+wait frames 3
+get Name.name
+state
+)");
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> names = played.all("get Name.name");
+  EXPECT_EQ(names, (std::vector<json>{"lamp", "empty", "lamp", "empty"}));
+  EXPECT_EQ(played.answer("state")["undo"], "Undo creation of empty");
+  EXPECT_EQ(played.answer("state")["redo"], "Redo Name of empty");
+}
+
+TEST_F(EditorProgram, ChoosesAUnitAndRunsACommandOfThePalette) {
+  const Played played = play(R"(
+create-point
+set Light.strength 10
+panel Inspector
+wait frames 3
+marks
+click inspector.Light.unit
+wait frames 3
+click inspector.Light.unit.lm
+wait frames 3
+get Light.strength
+key Ctrl+P
+wait frames 3
+type "camera"
+wait frames 3
+click palette.create-camera
+wait frames 3
+state
+right-click scene.camera
+wait frames 3
+click context.delete
+wait frames 3
+state
+)");
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::string marks = played.answer("marks").dump();
+  EXPECT_NE(marks.find("inspector.Light.range"), std::string::npos);
+  EXPECT_EQ(marks.find("inspector.Light.radius"), std::string::npos) << "a point has none";
+  EXPECT_EQ(played.answer("get Light.strength"), 10.0) << "a unit changes no light";
+  EXPECT_EQ(played.all("state")[0]["selected"], json::array({"camera"}));
+  EXPECT_EQ(played.all("state")[1]["undo"], "Undo removal of camera");
 }
 
 TEST_F(EditorProgram, EditsAMaterialByItsWidgetAndBakesItWithOneButton) {

@@ -1,6 +1,8 @@
 // Tests commands on a session without window and OpenGL.
 #include <fstream>
 
+#include "baker/pipeline/journal.hpp"
+#include "editor/session/scene_status.hpp"
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {
@@ -86,6 +88,20 @@ TEST_F(WindowlessCommands, LookAtTheWorldAsTheyAreTold) {
   EXPECT_EQ(session->reference.band_limit, 5);
 }
 
+// The plain picture must not be shown under the name of a difference before there is one.
+TEST_F(WindowlessCommands, ShowADifferenceOnlyOnceThereIsOne) {
+  ReferenceView& reference = session->reference;
+  answer("heat");
+  EXPECT_FALSE(reference.shows());
+  reference.shown(std::make_shared<const baker::reference::Snapshot>());
+  EXPECT_FALSE(reference.shows()) << "samples are no difference yet";
+  answer("split");
+  EXPECT_TRUE(reference.shows());
+  answer("heat");
+  reference.compared(baker::Difference{});
+  EXPECT_TRUE(reference.shows());
+}
+
 TEST_F(WindowlessCommands, ChangeAMaterialOfABundle) {
   openHello();
   answer("select", {"type:material floor"});
@@ -146,6 +162,65 @@ TEST_F(WindowlessCommands, SayThatTheEditsOfAWorldFileCannotBeRead) {
   for (const LogEntry& line : session->log.entries())
     if (line.severity == Severity::Warning) told += line.text + '\n';
   EXPECT_NE(told.find("the world file's edits cannot be read"), std::string::npos) << told;
+}
+
+TEST_F(WindowlessCommands, SayInOnePlaceThatASceneNeedsARebake) {
+  openHello();
+  const auto status = [&] { return statusOf(*session, 0); };
+  // Only a preview was made of it.
+  EXPECT_EQ(status().standing, Standing::Wanting) << status().text;
+  const SceneEntry& entry = session->scenes.entries().front();
+  std::filesystem::copy(entry.shown, entry.bundle);
+  answer("close");
+  answer("open", {(folder.path() / "hello.glb").string()});
+  for (int i = 0; i < 3000 && session->scenes.busy(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    session->update(0.0);
+  }
+  EXPECT_EQ(status().standing, Standing::Good) << status().text;
+  EXPECT_TRUE(worstStatus(*session).text.empty());
+  answer("select", {"has:Transform sphere"});
+  answer("set", {"Transform.translation", "0.1", "0.6", "0.2"});
+  session->update(0.0);
+  answer("select-none");
+  EXPECT_EQ(status().text, "needs a rebake");
+  EXPECT_NE(status().detail.find("sphere"), std::string::npos) << status().detail;
+  EXPECT_EQ(worstStatus(*session).text, "hello: needs a rebake");
+  answer("undo");
+  session->update(0.0);
+  EXPECT_EQ(status().standing, Standing::Good) << status().text;
+  answer("bake-option", {"rays", "300"});
+  EXPECT_EQ(status().text, "needs a rebake") << "other options are no less a reason";
+}
+
+TEST_F(WindowlessCommands, OfferUnfinishedBakesAndShowNothingOfThem) {
+  const std::filesystem::path other = folder.path() / "other.glb";
+  ASSERT_TRUE(assets::writeGlb(other, assets::hello()));
+  const baker::Journal journal(folder.path() / baker::kJournalFolder);
+  const baker::BakeRequest request{
+      .scene = other, .output = folder.path() / "other.lmb.glb", .last = baker::PreviewLevel::Unshadowed};
+  journal.begin(request);  // the entry is never done, as that of a process that was killed
+  session = makeSession();
+  EXPECT_EQ(answer("state")["unfinished"], json::array({other.string()}));
+  openHello();
+  EXPECT_EQ(session->scenes.entries().size(), 1u) << "only what was opened is there";
+  answer("go-on", {"other.glb"});
+  EXPECT_EQ(answer("state")["unfinished"], json::array());
+  for (int i = 0; i < 3000 && session->scenes.busy(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    session->update(0.0);
+  }
+  EXPECT_EQ(answer("state")["unseen"][0]["phase"], "done");
+  EXPECT_EQ(session->scenes.entries().size(), 1u);
+
+  journal.begin(request);
+  session = makeSession();
+  answer("forget", {"other.glb"});
+  EXPECT_TRUE(journal.unfinished().empty());
+  journal.begin(request);
+  session = makeSession();
+  answer("open", {other.string()});
+  EXPECT_EQ(answer("state")["unfinished"], json::array()) << "opening it goes on with it";
 }
 
 TEST_F(WindowlessCommands, AskInADialogWhatHasNotBeenSaid) {

@@ -1,5 +1,6 @@
 // Tests panels in a Dear ImGui context without window and OpenGL, whose only input comes from the test.
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include "editor/panels/panel.hpp"
 #include "tests/editor/program/windowless.hpp"
@@ -46,6 +47,22 @@ class WindowlessPanels : public testing::Windowless {
       draw(panel);
     }
   }
+  // Returns the text that the panel shows, parts that are scrolled away left out.
+  std::string textOf(const Panel& row) {
+    settle(row);
+    marks.beginFrame();
+    ImGui::NewFrame();
+    ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
+    ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
+    ImGui::Begin(row.name, nullptr, ImGuiWindowFlags_NoMove);
+    ImGui::LogToBuffer();
+    row.draw(*session, marks);
+    const std::string text = ImGui::GetCurrentContext()->LogBuffer.c_str();
+    ImGui::LogFinish();
+    ImGui::End();
+    ImGui::EndFrame();
+    return text;
+  }
   const Panel& panel(std::string_view name) const {
     for (const Panel& row : panelList())
       if (name == row.name) return row;
@@ -73,6 +90,113 @@ TEST_F(WindowlessPanels, AClickInTheTreeSelects) {
   settle(tree);
   click(tree, "scene.point");
   EXPECT_EQ(answer("state")["selected"], nlohmann::json::array({"point"}));
+}
+
+TEST_F(WindowlessPanels, AnObjectLeadsToItsMaterial) {
+  openHello();
+  answer("select", {"has:Transform box"});
+  const Panel& inspector = panel("Inspector");
+  settle(inspector);
+  click(inspector, "inspector.material.box");
+  settle(inspector);
+  EXPECT_TRUE(marks.find("inspector.Material.roughness")) << "it is edited in place";
+  EXPECT_TRUE(session->material_pictures.wanted.size() == 1u) << "its picture is asked for";
+  click(inspector, "inspector.material.box.select");
+  const ecs::Entity primary = session->selection.primaryEntity(session->document);
+  EXPECT_TRUE(session->document.registry().has<scene::MaterialComponent>(primary));
+  EXPECT_EQ(session->document.nameOf(primary), "box");
+}
+
+TEST_F(WindowlessPanels, APrimitiveSaysWhatItIs) {
+  openHello();
+  answer("select", {"type:draw"});
+  const std::string text = textOf(panel("Inspector"));
+  for (const char* word : {"primitive 0 of sphere", "Mesh", "Triangles", "diffuse"})
+    EXPECT_NE(text.find(word), std::string::npos) << word << " in\n" << text;
+}
+
+TEST_F(WindowlessPanels, ZeroHasNoSignAndBrdfsHaveNames) {
+  openHello();
+  answer("select", {"has:Transform box"});
+  answer("set", {"Transform.rotation", "0", "-0.00001", "0", "1"});
+  std::string text = textOf(panel("Inspector"));
+  EXPECT_EQ(text.find("-0.0"), std::string::npos) << text;
+  EXPECT_NE(text.find("0.0"), std::string::npos) << text;
+  answer("select", {"type:material box"});
+  text = textOf(panel("Inspector"));
+  EXPECT_EQ(text.find("-1"), std::string::npos) << text;
+  EXPECT_NE(text.find("none"), std::string::npos) << text;
+}
+
+TEST_F(WindowlessPanels, FieldsStayWhileAnEditBringsAReasonToRebake) {
+  openHello();
+  answer("select", {"type:material box"});
+  const Panel& inspector = panel("Inspector");
+  settle(inspector);
+  const auto before = marks.find("inspector.Material.metallic");
+  answer("set", {"Material.metallic", "1"});
+  settle(inspector);
+  ASSERT_TRUE(marks.find("inspector.rebake"));
+  const auto after = marks.find("inspector.Material.metallic");
+  ASSERT_TRUE(before && after);
+  EXPECT_EQ(before->min, after->min);
+}
+
+TEST_F(WindowlessPanels, ARotationDoesNotJumpBeyondAQuarterTurn) {
+  answer("create-empty");
+  const Panel& inspector = panel("Inspector");
+  // Euler angles that are made of this rotation anew would be 180, 80, 180.
+  session->angles.degrees = {0.0f, 100.0f, 0.0f};
+  session->angles.rotation = glm::quat(glm::radians(session->angles.degrees));
+  const glm::quat& q = session->angles.rotation;
+  answer("set", {"Transform.rotation", std::to_string(q.x), std::to_string(q.y), std::to_string(q.z),
+                 std::to_string(q.w)});
+  EXPECT_NE(textOf(inspector).find("100.0"), std::string::npos) << textOf(inspector);
+}
+
+// Draws all panels in little room for a large font: a widget may be wrapped or scrolled to, but not cut.
+TEST_F(WindowlessPanels, KeepTheirWidgetsWithinNarrowRoomAtALargeFont) {
+  openHello();
+  answer("create-spot");
+  answer("select", {"type:material box"});
+  ImGui::GetIO().FontGlobalScale = 2.0f;
+  ImGui::GetStyle().ScaleAllSizes(2.0f);
+  for (const char* name : {"Scene", "Inspector", "Environment", "Settings", "Plan", "History", "Log"}) {
+    const Panel& row = panel(name);
+    const float width = (row.dock == Dock::Left ? 13.0f : 22.0f) * 26.0f;
+    ImGui::GetIO().DisplaySize = ImVec2(width, 900.0f);
+    settle(row);
+    for (const std::string& mark : marks.names()) {
+      const auto where = marks.find(mark);
+      EXPECT_LE(where->max.x, width + 1.0f) << name << ": " << mark;
+      EXPECT_LT(where->min.x, where->max.x) << name << ": " << mark;
+    }
+  }
+}
+
+TEST_F(WindowlessPanels, TheStartPageOpensARecentScene) {
+  const std::filesystem::path file = folder.path() / "hello.glb";
+  ASSERT_TRUE(assets::writeGlb(file, assets::hello()));
+  session->preferences.recent = {"/nowhere/else.glb", file.string()};
+  const Panel start{"start", Dock::Left, "", &drawStartPage};
+  EXPECT_NE(textOf(start).find("Drop a glTF scene"), std::string::npos);
+  settle(start);
+  click(start, "start.hello.glb");
+  ASSERT_EQ(session->scenes.entries().size(), 1u);
+  EXPECT_EQ(session->scenes.entries().front().source, file);
+}
+
+TEST_F(WindowlessPanels, AClickInTheHistoryGoesToThatStep) {
+  answer("create-point");
+  answer("create-camera");
+  answer("create-empty");
+  const Panel& history = panel("History");
+  settle(history);
+  click(history, "history.1");
+  EXPECT_EQ(session->history.stepsDone(), 1u);
+  settle(history);
+  click(history, "history.3");
+  EXPECT_EQ(session->history.stepsDone(), 3u);
 }
 
 TEST_F(WindowlessPanels, AButtonOfTheEnvironmentAddsASunAsOneStep) {

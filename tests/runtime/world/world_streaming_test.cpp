@@ -150,6 +150,28 @@ TEST(FrameTimesTest, UploadsShrinkWhereFramesTakeLongerAndGrowAgain) {
 }
 
 // A scene that has partly arrived takes far longer to draw than the empty world before it.
+// Frames of seconds bring several batches each, for a share of their time; fast ones never wait.
+TEST_F(WorldStreaming, OneSlowFrameBringsSeveralBatches) {
+  WorldStage stage(lights);
+  openAll(stage);
+  stage.world.updateTransforms();
+  gpu::Counters counters;
+  ASSERT_TRUE(stage.world.upload(std::uint64_t{1} << 30, counters));
+  EXPECT_FALSE(stage.world.loaded()) << "no more than a batch each comes without waiting";
+  ASSERT_TRUE(stage.world.upload(std::uint64_t{1} << 30, counters, /*most_wait_s=*/60.0));
+  EXPECT_TRUE(stage.world.loaded());
+  EXPECT_TRUE(stage.world.errors().empty());
+}
+
+TEST(FrameTimesTest, OnlySlowFramesWaitForWhatLoads) {
+  UploadPacer pacer;
+  EXPECT_EQ(pacer.waitSeconds(), 0.0);
+  pacer.frameTook(16.0, true, 16 << 20);
+  EXPECT_EQ(pacer.waitSeconds(), 0.0);
+  pacer.frameTook(4000.0, true, 16 << 20);
+  EXPECT_DOUBLE_EQ(pacer.waitSeconds(), 1.0);
+}
+
 TEST(FrameTimesTest, SlowFramesDoNotStarveWhatLoads) {
   UploadPacer pacer;
   constexpr std::uint64_t kMost = 16 << 20;

@@ -1,0 +1,41 @@
+#include <array>
+#include <string>
+
+#include <imgui.h>
+#include <nlohmann/json.hpp>
+
+#include "editor/commands/command.hpp"
+#include "editor/panels/panel.hpp"
+#include "editor/ui/fitting.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+// An empty id is a separator.
+constexpr std::array kItems = {"frame", "rename", "duplicate", "delete",    "",
+                               "copy",  "paste",  "reset",     "",          "move",
+                               "turn",  "scale",  "",          "frame-all", "select-none"};
+
+void drawItem(Session& session, Marks& marks, const Command& command) {
+  const bool enabled = !command.enabled || command.enabled(session);
+  const bool checked = command.checked && command.checked(session);
+  if (ImGui::MenuItem(command.title, command.shortcut, checked, enabled))
+    if (auto done = runCommand(session, command.id, {}); !done) session.log.error(done.error());
+  marks.put(std::string("context.") + command.id);
+  tooltip(command.help);
+}
+
+}  // namespace
+
+void drawSelectionMenu(Session& session, Marks& marks) {
+  for (const char* id : kItems) {
+    const Command* command = findCommand(id);
+    if (command)
+      drawItem(session, marks, *command);
+    else
+      ImGui::Separator();
+  }
+}
+
+}  // namespace lambent::editor

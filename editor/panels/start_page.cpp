@@ -1,0 +1,62 @@
+// Draws what is shown while nothing is open: what the program is, recent files, sample scenes.
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <nlohmann/json.hpp>
+
+#include "editor/commands/command.hpp"
+#include "editor/panels/panel.hpp"
+#include "editor/session/samples.hpp"
+#include "editor/ui/fitting.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+constexpr float kWidthEms = 30.0f;
+constexpr std::size_t kMostShown = 6;
+
+void open(Session& session, Words words) {
+  if (auto done = runCommand(session, "open", words); !done) session.log.error(done.error());
+}
+
+// Draws a list of files; a click opens one.
+void drawFiles(Session& session, Marks& marks, const char* title, std::vector<std::string> files) {
+  if (files.empty()) return;
+  ImGui::Spacing();
+  ImGui::TextDisabled("%s", title);
+  for (std::size_t i = 0; i < std::min(files.size(), kMostShown); ++i) {
+    const std::string name = std::filesystem::path(files[i]).filename().string();
+    ImGui::PushID(files[i].c_str());
+    const bool clicked = ImGui::Selectable(ellipsized(name, ImGui::GetContentRegionAvail().x).c_str());
+    ImGui::PopID();
+    marks.put(fmt::format("start.{}", name));
+    tooltip(files[i]);
+    if (clicked) open(session, std::array{files[i]});
+  }
+}
+
+}  // namespace
+
+void drawStartPage(Session& session, Marks& marks) {
+  const float width = std::min(em(kWidthEms), 0.9f * ImGui::GetWindowWidth());
+  ImGui::SetCursorPos(
+      ImVec2(0.5f * (ImGui::GetWindowWidth() - width), std::max(em(1.0f), 0.12f * ImGui::GetWindowHeight())));
+  ImGui::BeginChild("start", ImVec2(width, 0.0f));
+  ImGui::TextWrapped(
+      "Lambent bakes how a scene carries light, once; then any light can move in it at once.\n"
+      "Drop a glTF scene (.gltf, .glb) here: it shows at once, and gets shadows and bounces while it bakes.\n"
+      "Then turn the sky, add lamps, edit materials, and save it all as a world.");
+  ImGui::Spacing();
+  if (ImGui::Button("Open...")) open(session, {});
+  marks.put("start.open");
+  drawFiles(session, marks, "Recent", session.preferences.recent);
+  std::vector<std::string> samples;
+  for (const std::filesystem::path& scene : sampleScenes()) samples.push_back(scene.string());
+  drawFiles(session, marks, "Samples", samples);
+  ImGui::EndChild();
+}
+
+}  // namespace lambent::editor
