@@ -18,7 +18,7 @@ void writeReceiver(uint vertex, vec3 position) {
     radiance = vec3(radiance_of[at], radiance_of[at + 1u], radiance_of[at + 2u]);
   }
   stored_radiance = radiance;
-  irradiance_at = kTexels ? lookedAt(draws[draw_index].irradiance_set, mat3x2(1.0), vertex) : vec2(0.0);
+  irradiance_at = kHasTexels ? lookedAt(draws[draw_index].irradiance_set, mat3x2(1.0), vertex) : vec2(0.0);
   addVertexLight(vertex, radiance);
   normal_group = draws[draw_index].facing * weightedNormal(vertex);
   position_mesh = position;

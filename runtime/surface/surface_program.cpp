@@ -59,7 +59,7 @@ std::string kindText(const SurfaceKind& kind, bool finest_texels) {
   return fmt::format(
       "const bool kFinestTexels = {};\n"
       "const bool kDark = {};\n"
-      "const bool kTexels = {};\n"
+      "const bool kHasTexels = {};\n"
       "const int kShownRadiance = 0, kShownIrradiance = 1, kShownNormals = 2;\n"
       "const int kShown = {};\n",
       finest_texels, kind.dark, kind.texels, shownBy(kind.view));

@@ -5,7 +5,7 @@ layout(location = 8) in vec2 irradiance_at;
 layout(binding = kUnitIrradiance) uniform sampler2D irradiance_texture;
 
 vec3 transferredLight(vec3 at_vertices) {
-  if (!kTexels) return at_vertices;
+  if (!kHasTexels) return at_vertices;
   vec4 texel = look(irradiance_texture, irradiance_at);
   return at_vertices - texel.a * stored_radiance + texel.rgb;
 }
