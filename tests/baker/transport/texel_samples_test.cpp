@@ -2,7 +2,9 @@
 #include "baker/transport/texel_samples.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "baker/transport/face_points.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
@@ -98,6 +100,53 @@ TEST(TexelSamples, SeeTheBoxThatStandsOnThem) {
   EXPECT_GT(corner, 0.97f);
   EXPECT_NEAR(beside, 0.5f, 0.15f) << "a wall hides half of the sky";
   EXPECT_NEAR(under, beside, 0.1f) << "nothing dark leaks out from under the box";
+}
+
+// Returns how wrong direct light is shown between samples of the floor: RMS over its two triangles, relative.
+double errorOnFloor(const Transport& t) {
+  SampleSet points;
+  std::vector<std::pair<std::uint32_t, glm::vec3>> places;
+  for (std::uint32_t triangle = 0; triangle < 2; ++triangle)
+    for (int i = 0; i < 20; ++i)
+      for (int j = 0; i + j < 20; ++j) {
+        const glm::vec3 shares(1.0f - static_cast<float>(i + j + 1) / 21.0f,
+                               static_cast<float>(i) / 21.0f + 0.02f,
+                               static_cast<float>(j + 1) / 21.0f - 0.02f);
+        const FacePoint point = facePoint(t.geometry, t.geometry.triangles[triangle], shares);
+        places.emplace_back(triangle, shares);
+        points.origin_offsets.push_back(static_cast<std::uint32_t>(points.size()));
+        points.positions.push_back(point.position);
+        points.normals.push_back(point.normal);
+        points.origins.push_back(point.origin);
+      }
+  points.origin_offsets.push_back(static_cast<std::uint32_t>(points.size()));
+  points.diffuse = {0, points.size()};
+  points.normal_mapped = points.glossy = {points.size(), points.size()};
+  const TracedScene at_points{t.scene, t.geometry, points, t.rays, t.colors, t.lights};
+  Progress progress;
+  const auto truth = bakeDirect(DirectPass(at_points, {.order = 5, .rays = 2048}), at_points, {progress});
+  const TransferField field = t.direct();
+  double wrong = 0.0, all = 0.0;
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    if (truth->looks.valid[p] == 0) continue;  // under the box
+    const auto is = truth->field.at(p);
+    const auto shown = shownSamples(t.geometry, t.samples, places[p].first, places[p].second);
+    for (std::size_t k = 0; k < is.size(); ++k) {
+      double sum = 0.0;
+      for (const auto& [sample, share] : shown) sum += double{share} * double{field.at(sample)[k]};
+      wrong += (sum - double{is[k]}) * (sum - double{is[k]});
+      all += double{is[k]} * double{is[k]};
+    }
+  }
+  return std::sqrt(wrong / all);
+}
+
+TEST(TexelSamples, ShowLightOnAFloorThatItsCornersDoNotKnow) {
+  const auto box = std::vector{testing::box({0, 0.5f, 0}, {1.1f, 1.0f, 1.1f}, 1)};
+  const double of_corners = errorOnFloor(Transport(texturedFloor(0, box))),
+               of_texels = errorOnFloor(Transport(texturedFloor(64, box)));
+  EXPECT_GT(of_corners, 0.15);
+  EXPECT_LT(of_texels, 0.03) << "noise of 512 rays is most of it";
 }
 
 // Light that bounces off the floor comes from the texel that a ray meets.
