@@ -51,8 +51,7 @@ class Raster {
     bool again = false;
     for (std::size_t y = clamped(low.y); y < clamped(std::ceil(high.y)); ++y)
       for (std::size_t x = clamped(low.x); x < clamped(std::ceil(high.x)); ++x) {
-        const glm::dvec2 at =
-            (glm::dvec2(static_cast<double>(x), static_cast<double>(y)) + 0.5) / side;
+        const glm::dvec2 at = (glm::dvec2(static_cast<double>(x), static_cast<double>(y)) + 0.5) / side;
         const double b = crossOf(at - corners[0], corners[2] - corners[0]) / area,
                      c = crossOf(corners[1] - corners[0], at - corners[0]) / area;
         if (!(b > kInside && c > kInside && 1.0 - b - c > kInside)) continue;
@@ -108,9 +107,10 @@ std::string faultOfCharts(const bundle::MeshData& mesh, std::uint32_t set, std::
 void giveTexels(std::uint32_t texels, const std::string& name, ScenePrimitive& primitive,
                 std::vector<std::string>& warnings) {
   const auto keepVertices = [&](const std::string& why) {
-    warnings.push_back(fmt::format("{}: {}, so {} is left out and it keeps transfer at vertices; unwrap it "
-                                   "without overlaps into TEXCOORD_1",
-                                   name, why, kKey));
+    warnings.push_back(
+        fmt::format("{}: {}, so {} is left out and it keeps transfer at vertices; unwrap it "
+                    "without overlaps into TEXCOORD_1",
+                    name, why, kKey));
   };
   const std::uint32_t set = primitive.mesh.texcoords1.empty() ? 0 : 1;
   if (set == 0 && primitive.mesh.texcoords0.empty()) return keepVertices("has no texture coordinates");

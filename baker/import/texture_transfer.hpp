@@ -23,8 +23,8 @@ void checkTextureTransfer(const Object& owner);
 // checked.
 std::uint32_t textureTransferOf(const nlohmann::json& mesh, const nlohmann::json& primitive);
 
-// Returns what is wrong with a set of texture coordinates as places of transfer, seen at `texels` texels along
-// a side, or an empty string if nothing is: coordinates outside 0 to 1, a triangle without area in the
+// Returns what is wrong with a set of texture coordinates as places of transfer, seen at `texels` texels
+// along a side, or an empty string if nothing is: coordinates outside 0 to 1, a triangle without area in the
 // texture, or charts that overlap.
 std::string faultOfCharts(const bundle::MeshData& mesh, std::uint32_t set, std::uint32_t texels);
 

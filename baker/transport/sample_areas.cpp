@@ -27,7 +27,8 @@ std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& s
   for (const TexelMap& map : samples.texels)
     for (std::size_t i = 0; i < map.sample_of.size(); ++i)
       if (const std::uint32_t t = map.triangle_of[i]; map.sample_of[i] != kNoSample)
-        areas[map.sample_of[i]] += static_cast<float>(triangleArea(geometry, geometry.triangles[t]) / texels_of[t]);
+        areas[map.sample_of[i]] +=
+            static_cast<float>(triangleArea(geometry, geometry.triangles[t]) / texels_of[t]);
   for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
     if (!texels_of.empty() && texels_of[t] > 0) continue;  // it is that of its texels
     const glm::uvec3& triangle = geometry.triangles[t];

@@ -85,8 +85,8 @@ float reachOf(const glm::uvec3& corners, const GroupGeometry& geometry);
 // Without texels, draws that have some get the samples of their vertices alone, as refinement needs them.
 SampleSet buildSamples(const GroupGeometry& geometry, bool with_texels = true);
 
-// Returns the pairs of samples that share an edge of a face, or of neighbouring texels, each once as (smaller,
-// larger), sorted. The list is empty if samples do not belong to vertices.
+// Returns the pairs of samples that share an edge of a face, or of neighbouring texels, each once as
+// (smaller, larger), sorted. The list is empty if samples do not belong to vertices.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> sampleEdges(const GroupGeometry& geometry,
                                                                  const SampleSet& samples);
 

@@ -123,7 +123,8 @@ std::vector<std::uint32_t> dilated(const TexelMap& map) {
       for (int step = 0; step < 4; ++step) {
         constexpr std::array<int, 4> kX = {1, -1, 0, 0}, kY = {0, 0, 1, -1};
         const auto i = static_cast<std::size_t>(step);
-        const int x = static_cast<int>(from % map.side) + kX[i], y = static_cast<int>(from / map.side) + kY[i];
+        const int x = static_cast<int>(from % map.side) + kX[i],
+                  y = static_cast<int>(from / map.side) + kY[i];
         const int side = static_cast<int>(map.side);
         if (x < 0 || y < 0 || x >= side || y >= side) continue;
         const auto texel = static_cast<std::uint32_t>(x + side * y);

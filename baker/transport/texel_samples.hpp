@@ -1,6 +1,6 @@
-// Places samples at the texels of a draw whose author asks for it (baker/import/texture_transfer.hpp). A texel
-// has a sample if the filter of a point on the surface may read it: its sample stands at its centre, or, on
-// the border of a chart, at the nearest point of the chart, a little inside.
+// Places samples at the texels of a draw whose author asks for it (baker/import/texture_transfer.hpp). A
+// texel has a sample if the filter of a point on the surface may read it: its sample stands at its centre,
+// or, on the border of a chart, at the nearest point of the chart, a little inside.
 #pragma once
 
 #include <array>
