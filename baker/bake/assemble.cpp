@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "baker/transport/texel_samples.hpp"
 #include "runtime/bundle/entropy_coder.hpp"
 #include "runtime/bundle/volume_grid.hpp"
 #include "runtime/transfer/vertex_rows.hpp"
@@ -103,8 +104,7 @@ class Assembler {
       if (baked[g].neighborhood) addNeighborhood(*baked[g].neighborhood, group);
       description_.groups.push_back(std::move(group));
       for (std::size_t d = 0; d < planned.draws.size(); ++d)
-        addDraw(planned.draws[d], static_cast<std::uint32_t>(g), baked[g].geometry.draws[d],
-                baked[g].samples);
+        addDraw(planned.draws[d], static_cast<std::uint32_t>(g), d, baked[g]);
     }
   }
 
@@ -289,8 +289,9 @@ class Assembler {
     return plane;
   }
 
-  void addDraw(const PlannedDraw& planned, std::uint32_t group, const DrawGeometry& geometry,
-               const SampleSet& samples) {
+  void addDraw(const PlannedDraw& planned, std::uint32_t group, std::size_t index, const BakedGroup& baked) {
+    const DrawGeometry& geometry = baked.geometry.draws[index];
+    const SampleSet& samples = baked.samples;
     transfer::VertexWeights rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < geometry.vertex_count; ++v) {
@@ -309,6 +310,18 @@ class Assembler {
                       planned.back,
                       0,
                       outputsOf(geometry.kind, options_.glossy_order)};
+    for (const TexelMap& map : samples.texels) {
+      if (map.draw != index) continue;
+      draw.texels = map.side;
+      draw.texel_set = scene_.meshes[planned.mesh].primitives[planned.primitive].texel_set;
+      for (const std::uint32_t sample : dilated(map)) {
+        rows.samples.push_back(sample);
+        rows.weights.push_back(1.0f);
+        rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));
+      }
+      report_.texel_samples += static_cast<std::uint64_t>(
+          std::ranges::count_if(map.sample_of, [](std::uint32_t sample) { return sample != kNoSample; }));
+    }
     draw.rows =
         addTransferPayload(bundle::PayloadType::VertexWeights, transfer::encodeRows(rows), kRowsPriority);
     description_.draws.push_back(draw);

@@ -32,8 +32,9 @@ const char* reuseName(Reuse reuse);  // "baked", "re-gathered", "found"
 
 struct BakeReport {
   std::uint64_t vertices = 0, triangles = 0, samples = 0, filled_samples = 0;
-  std::uint64_t rays = 0;       // traced in this run
-  std::uint64_t rays_kept = 0;  // rays that results of earlier runs saved
+  std::uint64_t texel_samples = 0;  // of the samples, those of texels
+  std::uint64_t rays = 0;           // traced in this run
+  std::uint64_t rays_kept = 0;      // rays that results of earlier runs saved
   std::uint64_t file_bytes = 0, mesh_bytes = 0, transfer_bytes = 0, proxy_bytes = 0, image_bytes = 0;
   double ray_seconds = 0.0;         // time of the passes that trace rays
   double worst_error = 0.0;         // of the worst cell of coded transfer, relative RMS

@@ -41,6 +41,14 @@ GroupScene::GroupScene(const SceneBake& of, const SurfaceInputs& inputs, std::si
         group.name, samples.glossy.size(), bytes >> 20, kMostBytesShaded >> 20));
     place(/*with_glossy=*/false);
   }
+  for (std::size_t d = 0; d < group.draws.size(); ++d) {
+    const PlannedDraw& draw = group.draws[d];
+    if (bake.scene.meshes[draw.mesh].primitives[draw.primitive].texels > 0 && geometry.draws[d].texels == 0)
+      bake.report.notices.push_back(fmt::format(
+          "mesh \"{}\", primitive {}: is glossy or has a normal map, so texture_transfer is left out and it "
+          "keeps transfer at vertices; give it a diffuse material without a normal map",
+          bake.scene.meshes[draw.mesh].name, draw.primitive));
+  }
   lights = findGroupLights(bake.scene, group);
   if (context.cache)
     keys = groupKeys(bake.scene, geometry, lights, bake.plan.light_probes[index].count, bake.options);

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "baker/compress/light_weights.hpp"
+#include "baker/transport/texel_samples.hpp"
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::baker {
@@ -32,7 +33,7 @@ class Sums {
   struct Shown {
     std::span<const float> exact, noisy, fields, codes;
   };
-  void add(std::uint32_t eye, const glm::vec3& albedo, const glm::vec3& weights, const Shown& shown) {
+  void add(std::uint32_t eye, const glm::vec3& albedo, double squared_shares, const Shown& shown) {
     const auto square = [&](std::span<const float> a, std::span<const float> b) {
       return squareOf(albedo, a, b);
     };
@@ -41,7 +42,7 @@ class Sums {
     sums.light += square(shown.exact, {});
     sums.all += square(shown.codes, shown.exact) - noise_of_exact_ * noise;
     sums.codes += square(shown.codes, shown.fields);
-    sums.samples += double{glm::dot(weights, weights)} * (1.0 - noise_of_exact_) * noise;
+    sums.samples += double{squared_shares} * (1.0 - noise_of_exact_) * noise;
     ++sums.points;
   }
 
@@ -147,12 +148,13 @@ std::optional<bundle::PictureError> measurePictureError(const TracedView& traced
   const auto& noisy = traced.noisy->direct();
   const auto& exact = traced.exact->direct();
   const auto seen = [&](std::size_t p) { return noisy.looks.valid[p] != 0 && exact.looks.valid[p] != 0; };
-  const auto sampleOf = [&](std::size_t p, int corner) {
-    return scene.samples.vertex_sample[scene.geometry.triangles[view.points.triangles[p]][corner]];
+  const auto shownAt = [&](std::size_t p) {
+    return shownSamples(scene.geometry, scene.samples, view.points.triangles[p], view.weights[p]);
   };
   Decoded decoded;
   for (std::size_t p = 0; p < view.eyes.size(); ++p)
-    for (int c = 0; baked.cells && seen(p) && c < 3; ++c) decoded[sampleOf(p, c)];
+    if (baked.cells && seen(p))
+      for (const SampleShare& shown : shownAt(p)) decoded[shown.sample];
   if (baked.cells) decode(scene, *baked.cells, decoded);
 
   const auto few_rays = static_cast<double>(traced.noisy->pass().settings().rays),
@@ -170,9 +172,9 @@ std::optional<bundle::PictureError> measurePictureError(const TracedView& traced
       addField(baked.bounced_at_points[0], p, 1.0f, few);
       addField(baked.bounced_at_points[1], p, 1.0f, many);
     }
-    for (int c = 0; c < 3; ++c) {
-      const std::uint32_t sample = sampleOf(p, c);
-      const float weight = view.weights[p][c];
+    float squared_shares = 0.0f;
+    for (const auto& [sample, weight] : shownAt(p)) {
+      squared_shares += weight * weight;
       addField(baked.direct, sample, weight, fields);
       if (baked.bounced) addField(*baked.bounced, sample, weight, fields);
       if (!baked.cells) continue;
@@ -180,7 +182,7 @@ std::optional<bundle::PictureError> measurePictureError(const TracedView& traced
       for (std::size_t i = 0; i < size; ++i) codes[i] += weight * of_codes[i];
     }
     if (!baked.cells) codes = fields;
-    sums.add(view.eyes[p], view.albedos[p], view.weights[p],
+    sums.add(view.eyes[p], view.albedos[p], squared_shares,
              {.exact = many, .noisy = few, .fields = fields, .codes = codes});
   }
   return sums.result();

@@ -82,6 +82,7 @@ std::uint64_t sceneDigest(const Scene& scene) {
     for (const ScenePrimitive& primitive : mesh.primitives) {
       addMesh(primitive.mesh, digest);
       digest.add(primitive.material);
+      if (primitive.texels > 0) digest.add(primitive.texels), digest.add(primitive.texel_set);
     }
   }
   for (const gltf::Material& material : scene.materials) addMaterial(material, digest);

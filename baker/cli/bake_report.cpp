@@ -171,6 +171,7 @@ void printReportJson(const FinishedBake& bake) {
       {"triangles", r.triangles},
       {"samples", r.samples},
       {"filledSamples", r.filled_samples},
+      {"texelSamples", r.texel_samples},
       {"rays", r.rays},
       {"raysKept", r.rays_kept},
       {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
@@ -214,6 +215,7 @@ void printReport(const FinishedBake& bake) {
   const BakeReport& r = bake.report;
   fmt::print("{}: {} vertices, {} triangles, {} samples in {}\n", bake.output.string(), r.vertices,
              r.triangles, r.samples, durationText(secondsOf(r)));
+  if (r.texel_samples > 0) fmt::print("  texels    {} of the samples\n", r.texel_samples);
   if (const RefineReport& refined = r.refinement; refined.vertices_after > refined.vertices_before)
     fmt::print("  refined   {} vertices to {}: shadows between them {:.2f} % wrong, before {:.2f} %{}\n",
                refined.vertices_before, refined.vertices_after, 100.0 * refined.error_after,

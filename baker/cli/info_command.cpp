@@ -24,7 +24,7 @@ struct InfoArguments {
 struct Sizes {
   std::uint64_t mesh = 0, image = 0, rows = 0, codebooks = 0, ids = 0, planes = 0, light_weights = 0,
                 proxies = 0, brdf_tables = 0, densities = 0;
-  std::uint64_t vertices = 0, triangles = 0;
+  std::uint64_t vertices = 0, triangles = 0, texels = 0;
 };
 
 Sizes sizesOf(const bundle::Description& d) {
@@ -48,6 +48,7 @@ Sizes sizesOf(const bundle::Description& d) {
     const bundle::Primitive& primitive = d.meshes[draw.mesh].primitives[draw.primitive];
     sizes.vertices += primitive.vertex_count;
     sizes.triangles += primitive.index_count / 3;
+    sizes.texels += draw.texels * draw.texels;
   }
   return sizes;
 }
@@ -120,6 +121,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
       {"draws", d.draws.size()},
       {"vertices", sizes.vertices},
       {"triangles", sizes.triangles},
+      {"texels", sizes.texels},
       {"fileBytes", reader.fileBytes()},
       {"meshBytes", sizes.mesh},
       {"imageBytes", sizes.image},
@@ -147,6 +149,7 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
   };
   fmt::print("{}, {} vertices, {} triangles\n", counted(d.draws.size(), "draw"), sizes.vertices,
              sizes.triangles);
+  if (sizes.texels > 0) fmt::print("{} texels of E/pi\n", sizes.texels);
   line("meshes", sizes.mesh);
   line("images", sizes.image);
   line("vertex rows", sizes.rows);

@@ -2,6 +2,7 @@
 
 #include "baker/import/check_fields.hpp"
 #include "baker/import/reason.hpp"
+#include "baker/import/texture_transfer.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -44,6 +45,7 @@ void checkPrimitive(const Object& primitive, const Root& root) {
     attributes->index(item.key().c_str(), accessors, "accessors");
   const auto indices = primitive.index("indices", accessors, "accessors");
   primitive.index("material", root.size("materials"), "materials");
+  checkTextureTransfer(primitive);
   if (primitive.number("mode").value_or(4) > 6)
     throw BrokenField{fmt::format("{} has an unknown mode", primitive.name)};
   const auto extensions = primitive.object("extensions");
@@ -89,6 +91,7 @@ void checkMeshes(const Root& root) {
   root.forEach("meshes", "mesh", [&](const Object& mesh) {
     std::size_t i = 0;
     checkNumbers(mesh, "weights");
+    checkTextureTransfer(mesh);
     for (const nlohmann::json& primitive : mesh.list("primitives"))
       checkPrimitive({primitive, fmt::format("{}, primitive {}", mesh.name, i++)}, root);
   });

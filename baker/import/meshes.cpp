@@ -11,6 +11,7 @@
 #include "baker/import/accessor.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/primitives.hpp"
+#include "baker/import/texture_transfer.hpp"
 #include "baker/import/tinygltf.hpp"
 
 namespace lambent::baker {
@@ -145,7 +146,11 @@ class MeshConverter {
         return fail(document_.file(),
                     fmt::format("{} brings the scene to more than {} vertices", name, kMaxVertices),
                     "import it in parts");
-      if (!data->indices.empty()) mesh.primitives.push_back({std::move(*data), primitive.material});
+      if (data->indices.empty()) continue;
+      mesh.primitives.push_back({.mesh = std::move(*data), .material = primitive.material});
+      const nlohmann::json& described = document_.json()["meshes"][m];
+      if (const std::uint32_t texels = textureTransferOf(described, described["primitives"][p]); texels > 0)
+        giveTexels(texels, name, mesh.primitives.back(), scene_.warnings);
     }
     return mesh;
   }

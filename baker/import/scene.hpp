@@ -20,6 +20,9 @@ namespace lambent::baker {
 struct ScenePrimitive {
   bundle::MeshData mesh;  // triangles; normals are always present (flat if the file has none)
   std::int32_t material = -1;
+  // The author asks for transfer at a square of so many texels along a side, by this set of texture
+  // coordinates, in which no two points share a place; 0: transfer at vertices (texture_transfer.hpp).
+  std::uint32_t texels = 0, texel_set = 0;
 };
 
 struct SceneMesh {

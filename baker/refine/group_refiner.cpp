@@ -134,14 +134,21 @@ double GroupRefiner::relativeError() const {
 }
 
 Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, double bound, const BakeContext& context) {
-  const SampleSet samples = buildSamples(geometry);
+  const SampleSet samples = buildSamples(geometry, /*with_texels=*/false);
   const std::size_t count = geometry.triangles.size();
   measured_.assign(count, {});
   if (for_wedges_) {
     triangle_area_.assign(count, 0.0);
     triangle_lack_.assign(count * 2 * kLackValues, 0.0f);
   }
-  const auto by_few = measureBy(few_, geometry, samples, allOf(count), context);
+  // Pictures do not show vertices where there are texels.
+  std::vector<std::uint32_t> shown = allOf(count);
+  for (const DrawGeometry& draw : geometry.draws)
+    if (draw.texels > 0)
+      std::erase_if(shown, [&](std::uint32_t t) {
+        return t >= draw.first_triangle && t < draw.first_triangle + draw.triangle_count;
+      });
+  const auto by_few = measureBy(few_, geometry, samples, shown, context);
   if (!by_few || !*by_few) return by_few;
   const double allowed = bound * bound * seenArea();
   if (!chosen_ && squareError() <= allowed) return true;

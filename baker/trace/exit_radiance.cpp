@@ -12,11 +12,37 @@ namespace lambent::baker {
 
 ExitRadiance::ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples,
                            const BouncePartner* partner)
-    : glossy_begin_(samples.glossy.begin), partner_(partner) {
+    : geometry_(geometry), glossy_begin_(samples.glossy.begin), partner_(partner) {
   triangle_samples_.reserve(geometry.triangles.size());
   for (const glm::uvec3& t : geometry.triangles)
     triangle_samples_.emplace_back(samples.vertex_sample[t.x], samples.vertex_sample[t.y],
                                    samples.vertex_sample[t.z]);
+  if (!samples.texels.empty()) map_of_triangle_.resize(geometry.triangles.size(), nullptr);
+  for (const TexelMap& map : samples.texels)
+    std::fill_n(map_of_triangle_.begin() + map.first_triangle, map.triangle_count, &map);
+}
+
+glm::uvec3 ExitRadiance::samplesOf(const GatherHit& hit) const {
+  const std::uint32_t texel = atTexel(hit) ? texelOf(hit) : kNoSample;
+  return texel == kNoSample ? triangle_samples_[hit.triangle] : glm::uvec3(texel);
+}
+
+std::uint32_t ExitRadiance::texelOf(const GatherHit& hit) const {
+  const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
+              v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
+  return sampleOfTexel(geometry_, *map_of_triangle_[hit.triangle], hit.triangle, {1.0f - u - v, u, v});
+}
+
+void ExitRadiance::addTexel(const GatherHit& hit, float weight, const TransferField& before,
+                            std::span<float> sum) const {
+  const std::uint32_t sample = texelOf(hit);
+  if (sample == kNoSample) return addCorners(CornerWeights::of(hit, weight), before, sum);
+  const float* in = before.at(sample).data();
+  float* out = sum.data();
+  for (std::size_t c = 0; c < before.channels; ++c, in += before.columns, out += before.columns) {
+    const float factor = weight * static_cast<float>(hit.albedo[c]) * (1.0f / 65535.0f);
+    for (std::size_t i = 0; i < before.columns; ++i) out[i] += factor * in[i];
+  }
 }
 
 void ExitRadiance::addCorners(const CornerWeights& corners, const TransferField& before,

@@ -19,6 +19,7 @@
 #include "baker/transport/direction_table.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
+#include "baker/transport/texel_samples.hpp"
 
 namespace lambent::baker {
 
@@ -87,7 +88,7 @@ struct CornerWeights {
 // ExitRadiance returns the light that leaves hits, after the previous pass.
 class ExitRadiance {
  public:
-  // `partner` is null if all surfaces are diffuse.
+  // `partner` is null if all surfaces are diffuse. Geometry and samples must outlive this.
   ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples, const BouncePartner* partner);
 
   bool isDiffuse(const GatherHit& hit) const { return triangle_samples_[hit.triangle].x < glossy_begin_; }
@@ -95,7 +96,14 @@ class ExitRadiance {
   // Adds weight * albedo * interpolated transfer to `sum`, which has the layout of a sample of `before`.
   void addDiffuse(const GatherHit& hit, float weight, const TransferField& before,
                   std::span<float> sum) const {
-    addCorners(CornerWeights::of(hit, weight), before, sum);
+    if (atTexel(hit))
+      addTexel(hit, weight, before, sum);
+    else
+      addCorners(CornerWeights::of(hit, weight), before, sum);
+  }
+  // Returns whether the light that leaves a diffuse hit is that of the texel there, and not of the corners.
+  bool atTexel(const GatherHit& hit) const {
+    return !map_of_triangle_.empty() && map_of_triangle_[hit.triangle] != nullptr;
   }
   void prefetch(const GatherHit& hit, const TransferField& before) const {
     const glm::uvec3 samples = triangle_samples_[hit.triangle];
@@ -124,10 +132,17 @@ class ExitRadiance {
         take(light.hit, weight_of(light.hit.ray), light.throughput() * albedo(light.hit, light.direction));
     }
   }
-  std::span<const glm::uvec3> triangleSamples() const { return triangle_samples_; }
+  // Returns the samples of the corners of a hit's triangle, or three times that of the texel there.
+  glm::uvec3 samplesOf(const GatherHit& hit) const;
 
  private:
+  // Requires a hit at a texel; returns kNoSample if coding has moved the chart away from it.
+  std::uint32_t texelOf(const GatherHit& hit) const;
+  void addTexel(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const;
+
+  const GroupGeometry& geometry_;
   std::vector<glm::uvec3> triangle_samples_;
+  std::vector<const TexelMap*> map_of_triangle_;  // null: has none; empty if no triangle has one
   std::size_t glossy_begin_;
   const BouncePartner* partner_;
 };
@@ -151,6 +166,8 @@ class ExitToSample {
       const float weight = weight_of(hit.ray);
       if (!bounce_.exit.isDiffuse(hit)) {
         addGlossy(hit, weight, sum);
+      } else if (bounce_.exit.atTexel(hit)) {
+        bounce_.exit.addDiffuse(hit, weight, bounce_.before, sum);
       } else if (const CornerWeights own = CornerWeights::of(hit, weight);
                  any && own.triangle == together.triangle) {
         together.add(own);

@@ -22,9 +22,8 @@ std::array<float, 3> cornerWeights(const GatherHit& hit) {
 
 }  // namespace
 
-std::optional<std::vector<float>> samplesMet(std::span<const float> areas,
-                                             std::span<const glm::uvec3> corners, const VisitHits& visit,
-                                             const BakeContext& context) {
+std::optional<std::vector<float>> samplesMet(std::span<const float> areas, const SamplesOfHit& corners,
+                                             const VisitHits& visit, const BakeContext& context) {
   // Sums in whole numbers do not depend on their order. All areas together are 2^52 of them.
   double area = 0.0;
   for (const float one : areas) area += double{one};
@@ -36,8 +35,9 @@ std::optional<std::vector<float>> samplesMet(std::span<const float> areas,
           visit(s, [&](const GatherHit& hit, float weight, const glm::vec3& albedo) {
             const std::array<float, 3> parts = cornerWeights(hit);
             const double sent = scale * double{areas[s] * weight * (albedo.x + albedo.y + albedo.z)} / 3.0;
+            const glm::uvec3 met = corners(hit);
             for (std::size_t c = 0; c < 3; ++c)
-              sums[corners[hit.triangle][static_cast<int>(c)]].fetch_add(
+              sums[met[static_cast<int>(c)]].fetch_add(
                   static_cast<std::uint64_t>(std::max(sent * double{parts[c]}, 0.0)),
                   std::memory_order_relaxed);
           });
@@ -54,7 +54,7 @@ bool PatchTransport::build(const VisitHits& visit, const BakeContext& context) {
     for (std::uint32_t i = patches_.offsets[patch]; i < patches_.offsets[patch + 1]; ++i) {
       const float share = patches_.shares[i];
       visit(patches_.samples[i], [&](const GatherHit& hit, float weight, const glm::vec3& albedo) {
-        const glm::uvec3 corners = corners_[hit.triangle];
+        const glm::uvec3 corners = corners_(hit);
         const std::array<float, 3> weights = cornerWeights(hit);
         for (int corner = 0; corner < 3; ++corner) {
           const std::uint32_t sender = patches_.of_sample[corners[corner]];

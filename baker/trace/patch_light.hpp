@@ -27,22 +27,24 @@ struct PatchRadiance {
 // much of the light that arrives at the hit it sends back.
 using TakeHit = std::function<void(const GatherHit& hit, float weight, const glm::vec3& albedo)>;
 
+// Returns the samples whose light a hit shows, by the weights of its triangle's corners.
+using SamplesOfHit = std::function<glm::uvec3(const GatherHit& hit)>;
+
 // Calls take for all hits of a sample; called from many threads.
 using VisitHits = std::function<void(std::size_t sample, const TakeHit& take)>;
 
 // Returns how much light the surface beside each sample sends to all others: the sum over hits of the
 // receiver's area times the hit's weight and albedo, a corner's part for each. Nothing if stopped. `areas`
-// are those of sampleAreas(); `corners` are each triangle's samples. The result does not depend on the number
+// are those of sampleAreas(). The result does not depend on the number
 // of threads.
-std::optional<std::vector<float>> samplesMet(std::span<const float> areas,
-                                             std::span<const glm::uvec3> corners, const VisitHits& visit,
-                                             const BakeContext& context);
+std::optional<std::vector<float>> samplesMet(std::span<const float> areas, const SamplesOfHit& corners,
+                                             const VisitHits& visit, const BakeContext& context);
 
 class PatchTransport {
  public:
-  // corners: of each triangle, its samples. Patches outlive it.
-  PatchTransport(const Patches& patches, std::span<const glm::uvec3> corners, std::size_t channels)
-      : patches_(patches), corners_(corners), channels_(channels) {}
+  // Patches outlive it.
+  PatchTransport(const Patches& patches, SamplesOfHit corners, std::size_t channels)
+      : patches_(patches), corners_(std::move(corners)), channels_(channels) {}
 
   // Follows the hits of all samples once. Returns false if stopped. Nothing is kept in the cache.
   bool build(const VisitHits& visit, const BakeContext& context);
@@ -58,7 +60,7 @@ class PatchTransport {
   }
 
   const Patches& patches_;
-  std::span<const glm::uvec3> corners_;
+  SamplesOfHit corners_;
   std::size_t channels_;
   std::vector<float> links_;  // [receiver][channel][sender]
 };

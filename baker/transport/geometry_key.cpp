@@ -20,6 +20,7 @@ void addShape(const GroupGeometry& geometry, KeyMaker& key) {
   for (const DrawGeometry& draw : geometry.draws) {
     key.add(draw.first_vertex).add(draw.vertex_count).add(draw.first_triangle).add(draw.triangle_count);
     key.add(draw.back).add(draw.kind);
+    if (draw.texels > 0) key.add(draw.texels).addList(ofDraw(geometry.chart_coordinates, draw));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 
@@ -53,13 +54,24 @@ void appendGlossy(const bundle::MeshData& mesh, const glm::mat3& linear, float s
   geometry.tangents.resize(end, glm::vec4(0.0f));
 }
 
-void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::Material* material,
-            std::int32_t material_index, bool with_glossy, GroupGeometry& geometry) {
+// Texels take the place of vertices where these hold E/pi; normal maps and glossy surfaces keep theirs.
+void appendCharts(const ScenePrimitive& primitive, const bundle::MeshData& mesh, DrawGeometry& draw,
+                  GroupGeometry& geometry) {
+  const auto& coordinates = primitive.texel_set == 1 ? mesh.texcoords1 : mesh.texcoords0;
+  if (primitive.texels == 0 || draw.kind != SampleKind::Diffuse || coordinates.empty()) return;
+  draw.texels = primitive.texels;
+  geometry.chart_coordinates.resize(draw.first_vertex, glm::vec2(0.0f));
+  for (const glm::vec2& at : coordinates)
+    geometry.chart_coordinates.push_back(glm::clamp(at, glm::vec2(0.0f), glm::vec2(1.0f)));
+}
+
+void append(const PlannedDraw& draw, const ScenePrimitive& primitive, const bundle::MeshData& mesh,
+            const gltf::Material* material, bool with_glossy, GroupGeometry& geometry) {
   DrawGeometry out{.first_vertex = static_cast<std::uint32_t>(geometry.positions.size()),
                    .vertex_count = static_cast<std::uint32_t>(mesh.positions.size()),
                    .first_triangle = static_cast<std::uint32_t>(geometry.triangles.size()),
                    .triangle_count = 0,
-                   .material = material_index,
+                   .material = primitive.material,
                    .back = draw.back,
                    .kind = kindOf(material, mesh, with_glossy),
                    .layered = with_glossy && material && isSmoothDielectric(*material)};
@@ -81,6 +93,7 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
     geometry.colors.push_back(mesh.colors.empty() ? glm::vec4(1.0f) : mesh.colors[v]);
   }
   if (out.kind == SampleKind::Glossy) appendGlossy(mesh, linear, side, out.first_vertex, geometry);
+  appendCharts(primitive, mesh, out, geometry);
   const bool reversed = (glm::determinant(linear) < 0.0f) != draw.back;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     glm::uvec3 triangle(mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]);
@@ -128,9 +141,10 @@ GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
   GroupGeometry geometry;
   geometry.origin = originOf(group, decoded);
   for (const PlannedDraw& draw : group.draws) {
-    const std::int32_t index = scene.meshes[draw.mesh].primitives[draw.primitive].material;
+    const ScenePrimitive& primitive = scene.meshes[draw.mesh].primitives[draw.primitive];
+    const std::int32_t index = primitive.material;
     const gltf::Material* material = index < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(index)];
-    append(draw, decoded[draw.mesh][draw.primitive], material, index, with_glossy, geometry);
+    append(draw, primitive, decoded[draw.mesh][draw.primitive], material, with_glossy, geometry);
   }
   if (!geometry.positions.empty()) geometry.bounds_min = geometry.bounds_max = geometry.positions.front();
   for (const glm::vec3& p : geometry.positions) {

@@ -32,6 +32,8 @@ struct DrawGeometry {
   bool back = false;  // the back of a double-sided material; the draw before it is its front
   SampleKind kind = SampleKind::Diffuse;
   bool layered = false;  // a smooth dielectric, which has no matrices (baker/plan/smooth_dielectrics.hpp)
+  // Side of the texture whose texels have samples of their own (texel_samples.hpp); 0: vertices alone.
+  std::uint32_t texels = 0;
 };
 
 struct GroupGeometry {
@@ -50,6 +52,9 @@ struct GroupGeometry {
   // w on that side of the surface; all are 0 if absent.
   std::array<std::vector<glm::vec2>, 2> texcoord_sets;
   std::vector<glm::vec4> tangents;
+  // Place of each vertex in the texture, 0 to 1, of draws with texels; 0 for those before them, and it ends
+  // with the last of them.
+  std::vector<glm::vec2> chart_coordinates;
   std::vector<glm::uvec3> triangles;             // into positions; corners 1 and 2 are swapped for back draws
   std::vector<std::uint32_t> mesh_faces;         // index of each triangle in its draw's mesh
   std::vector<DrawGeometry> draws;               // in the order of RigidGroup::draws

@@ -20,7 +20,18 @@ float longestEdge(const GroupGeometry& geometry, const glm::uvec3& corners) {
 
 std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples) {
   std::vector<float> areas(samples.size(), 0.0f);
-  for (const glm::uvec3& triangle : geometry.triangles) {
+  std::vector<std::uint32_t> texels_of(samples.texels.empty() ? 0 : geometry.triangles.size(), 0);
+  for (const TexelMap& map : samples.texels)
+    for (std::size_t i = 0; i < map.sample_of.size(); ++i)
+      if (map.sample_of[i] != kNoSample) ++texels_of[map.triangle_of[i]];
+  for (const TexelMap& map : samples.texels)
+    for (std::size_t i = 0; i < map.sample_of.size(); ++i)
+      if (const std::uint32_t t = map.triangle_of[i]; map.sample_of[i] != kNoSample)
+        areas[map.sample_of[i]] +=
+            static_cast<float>(triangleArea(geometry, geometry.triangles[t]) / texels_of[t]);
+  for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+    if (!texels_of.empty() && texels_of[t] > 0) continue;  // it is that of its texels
+    const glm::uvec3& triangle = geometry.triangles[t];
     const glm::vec3 a = geometry.positions[triangle.x], b = geometry.positions[triangle.y],
                     c = geometry.positions[triangle.z];
     const float third = glm::length(glm::cross(b - a, c - a)) / 6.0f;

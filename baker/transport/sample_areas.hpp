@@ -13,8 +13,8 @@ double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners);
 // Returns metres.
 float longestEdge(const GroupGeometry& geometry, const glm::uvec3& corners);
 
-// Returns square metres per sample; a third of each triangle goes to each of its corners. Both sides of a
-// double-sided surface count.
+// Returns square metres per sample; a third of each triangle goes to each of its corners, or all of it in
+// equal parts to its texels. Both sides of a double-sided surface count.
 std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples);
 
 }  // namespace lambent::baker

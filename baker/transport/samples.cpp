@@ -9,7 +9,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "baker/transport/face_points.hpp"
 #include "baker/transport/sample_areas.hpp"
+#include "baker/transport/texel_samples.hpp"
 #include "baker/transport/vertex_key.hpp"
 
 namespace lambent::baker {
@@ -96,8 +98,38 @@ void appendCells(const Welded& welded, std::vector<std::uint32_t> list, SampleKi
   }
 }
 
-void placeSamples(const GroupGeometry& geometry, SampleSet& samples) {
-  const Welded welded = weld(geometry, samples);
+// Adds the samples of texels after those of vertices. Returns where they lie, map by map.
+std::vector<TexelPoint> addTexels(const GroupGeometry& geometry, Welded& welded, SampleSet& samples) {
+  std::vector<TexelPoint> all;
+  for (std::uint32_t d = 0; d < geometry.draws.size(); ++d) {
+    const DrawGeometry& draw = geometry.draws[d];
+    if (draw.texels == 0) continue;
+    const std::size_t texels = std::size_t{draw.texels} * draw.texels;
+    TexelMap& map = samples.texels.emplace_back(
+        TexelMap{.draw = d,
+                 .side = draw.texels,
+                 .first_triangle = draw.first_triangle,
+                 .triangle_count = draw.triangle_count,
+                 .sample_of = std::vector<std::uint32_t>(texels, kNoSample),
+                 .triangle_of = std::vector<std::uint32_t>(texels, draw.first_triangle)});
+    for (const TexelPoint& point : texelPoints(geometry, draw)) {
+      const FacePoint at = facePoint(geometry, geometry.triangles[point.triangle], point.shares);
+      map.sample_of[point.texel] = static_cast<std::uint32_t>(welded.positions.size());
+      map.triangle_of[point.texel] = point.triangle;
+      welded.positions.push_back(at.position);
+      welded.normals.push_back(at.normal);
+      welded.kinds.push_back(SampleKind::Diffuse);
+      all.push_back(point);
+    }
+  }
+  return all;
+}
+
+// Returns where the samples of texels lie.
+std::vector<TexelPoint> placeSamples(const GroupGeometry& geometry, bool with_texels, SampleSet& samples) {
+  Welded welded = weld(geometry, samples);
+  std::vector<TexelPoint> texels;
+  if (with_texels) texels = addTexels(geometry, welded, samples);
   std::array<std::vector<std::uint32_t>, 3> lists;
   for (std::uint32_t i = 0; i < welded.positions.size(); ++i)
     lists[static_cast<std::size_t>(welded.kinds[i])].push_back(i);
@@ -111,6 +143,10 @@ void placeSamples(const GroupGeometry& geometry, SampleSet& samples) {
   samples.normal_mapped = append(SampleKind::NormalMapped);
   samples.glossy = append(SampleKind::Glossy);
   for (std::uint32_t& sample : samples.vertex_sample) sample = place[sample];
+  for (TexelMap& map : samples.texels)
+    for (std::uint32_t& sample : map.sample_of)
+      if (sample != kNoSample) sample = place[sample];
+  return texels;
 }
 
 constexpr float kLongestReach = 0.01f;  // share of the group's diagonal
@@ -120,11 +156,35 @@ float cornerAngle(glm::vec3 corner, glm::vec3 a, glm::vec3 b) {
   return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
 }
 
+// A Corner is what a sample sees from: a corner of a triangle, or the point of a texel.
 struct Corner {
   std::uint32_t sample, triangle, corner;
+  const TexelPoint* texel = nullptr;
 };
 
-void findOrigins(const GroupGeometry& geometry, SampleSet& samples) {
+// Appends the points of texels, which are in the order of the maps.
+void addTexelCorners(std::span<const TexelPoint> texels, const SampleSet& samples,
+                     std::vector<Corner>& corners) {
+  auto point = texels.begin();
+  for (const TexelMap& map : samples.texels)
+    for (const std::uint32_t sample : map.sample_of)
+      if (sample != kNoSample) corners.push_back({sample, point->triangle, 0, &*point}), ++point;
+}
+
+// A texel's origin stands above its point. Something that lies on the texel hides it; it is filled from its
+// neighbours then, and does not look for a place far away.
+void addTexelOrigin(const GroupGeometry& geometry, const Corner& corner, SampleSet& samples) {
+  const TexelPoint& texel = *corner.texel;
+  const FacePoint at = facePoint(geometry, geometry.triangles[texel.triangle], texel.shares);
+  SampleOrigin origin = at.origin;
+  if (!(glm::dot(at.normal, origin.geometric_normal) > 0.0f)) return;
+  origin.position = at.position + standOff(at.position, texel.size_m) * origin.geometric_normal;
+  origin.reach = std::min(origin.reach, texel.size_m);
+  samples.origins.push_back(origin);
+  ++samples.origin_offsets[corner.sample + 1];
+}
+
+void findOrigins(const GroupGeometry& geometry, std::span<const TexelPoint> texels, SampleSet& samples) {
   samples.origin_offsets.assign(samples.size() + 1, 0);
   std::vector<Corner> corners;
   corners.reserve(geometry.triangles.size() * 3);
@@ -133,6 +193,7 @@ void findOrigins(const GroupGeometry& geometry, SampleSet& samples) {
       const std::uint32_t sample = samples.vertex_sample[geometry.triangles[t][static_cast<int>(c)]];
       corners.push_back({sample, t, c});
     }
+  addTexelCorners(texels, samples, corners);
   std::stable_sort(corners.begin(), corners.end(),
                    [](const Corner& a, const Corner& b) { return a.sample < b.sample; });
 
@@ -145,6 +206,10 @@ void findOrigins(const GroupGeometry& geometry, SampleSet& samples) {
     if (glm::dot(area_normal, samples.normals[corner.sample]) > 0.0f) faces_up[corner.sample] = 1;
   }
   for (const Corner& corner : corners) {
+    if (corner.texel) {
+      addTexelOrigin(geometry, corner, samples);
+      continue;
+    }
     const glm::uvec3 triangle = geometry.triangles[corner.triangle];
     const int c = static_cast<int>(corner.corner);
     const glm::vec3 p = geometry.positions[triangle[c]];
@@ -188,10 +253,10 @@ float reachOf(const glm::uvec3& corners, const GroupGeometry& geometry) {
                   kLongestReach * glm::distance(geometry.bounds_min, geometry.bounds_max));
 }
 
-SampleSet buildSamples(const GroupGeometry& geometry) {
+SampleSet buildSamples(const GroupGeometry& geometry, bool with_texels) {
   SampleSet samples;
-  placeSamples(geometry, samples);
-  findOrigins(geometry, samples);
+  const std::vector<TexelPoint> texels = placeSamples(geometry, with_texels, samples);
+  findOrigins(geometry, texels, samples);
   return samples;
 }
 
@@ -206,6 +271,10 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> sampleEdges(const GroupGeom
                           b = samples.vertex_sample[triangle[(c + 1) % 3]];
       if (a != b) edges.emplace_back(std::min(a, b), std::max(a, b));
     }
+  for (const TexelMap& map : samples.texels) {
+    const auto of_map = texelEdges(geometry, map);
+    edges.insert(edges.end(), of_map.begin(), of_map.end());
+  }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;

@@ -50,6 +50,14 @@ struct SampleCell {
   SampleKind kind = SampleKind::Diffuse;
 };
 
+// A TexelMap says which sample each texel of a draw's texture has.
+struct TexelMap {
+  std::uint32_t draw = 0, side = 0;
+  std::uint32_t first_triangle = 0, triangle_count = 0;
+  std::vector<std::uint32_t> sample_of;    // side² entries, row by row; kNoSample outside charts
+  std::vector<std::uint32_t> triangle_of;  // where that sample lies
+};
+
 struct SampleSet {
   std::vector<glm::vec3> positions;          // as GroupGeometry::positions
   std::vector<glm::vec3> normals;            // unit shading normals
@@ -58,6 +66,7 @@ struct SampleSet {
   std::vector<std::uint32_t> origin_offsets;  // size() + 1; a sample without a face has no origins
   std::vector<SampleCell> cells;
   SampleStretch diffuse, normal_mapped, glossy;  // one after the other
+  std::vector<TexelMap> texels;                  // of the draws that have texels; their samples are diffuse
 
   std::size_t size() const { return positions.size(); }
   std::span<const SampleOrigin> originsOf(std::size_t sample) const {
@@ -73,10 +82,11 @@ float standOff(const glm::vec3& position, float face_size);
 // Returns SampleOrigin::reach for a face with these corners, metres.
 float reachOf(const glm::uvec3& corners, const GroupGeometry& geometry);
 
-SampleSet buildSamples(const GroupGeometry& geometry);
+// Without texels, draws that have some get the samples of their vertices alone, as refinement needs them.
+SampleSet buildSamples(const GroupGeometry& geometry, bool with_texels = true);
 
-// Returns the pairs of samples that share an edge of a face, each once as (smaller, larger), sorted. The list
-// is empty if samples do not belong to vertices.
+// Returns the pairs of samples that share an edge of a face, or of neighbouring texels, each once as
+// (smaller, larger), sorted. The list is empty if samples do not belong to vertices.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> sampleEdges(const GroupGeometry& geometry,
                                                                  const SampleSet& samples);
 

@@ -251,6 +251,10 @@ struct Draw {
   // One output is shaded per vertex. Nine (normal maps) and 16, 25 or 36 (glossy) are shaded per pixel from
   // transferred light.
   std::uint32_t outputs = 1;
+  // Side of a square texture whose texels have samples of their own, and the set of texture coordinates by
+  // which it is looked up. The rows of the texels, of one sample each, follow those of the vertices. 0: the
+  // draw has none. Only draws with one output have some.
+  std::uint32_t texels = 0, texel_set = 0;
 
   transfer::Form form() const { return transfer::formOf(transfer::Domain::Vertex, outputs); }
   bool glossy() const { return form() == transfer::Form::Matrix; }
@@ -312,5 +316,12 @@ struct Description {
 // has diffuse or normal-mapped transfer (smooth dielectrics; docs/decisions/glossy.md), in a bundle with a
 // GGX table. Bundles without tables were baked without glossy reflection, and do not show it.
 bool isLayered(const Description& description, const Draw& draw);
+
+// Largest side of a draw's texture.
+inline constexpr std::uint32_t kMostTexels = 2048;
+// Returns how many rows a draw has: one for each vertex, then one for each texel.
+inline std::uint32_t rowCount(const Description& description, const Draw& draw) {
+  return description.meshes[draw.mesh].primitives[draw.primitive].vertex_count + draw.texels * draw.texels;
+}
 
 }  // namespace lambent::bundle

@@ -109,10 +109,12 @@ Result<transfer::VertexWeights> Reader::readRows(std::uint32_t index) const {
   const std::string subject = fmt::format("{}: draw {}", path().string(), index);
   const auto bytes = readPayload(draw.rows);
   if (!bytes) return failAgain(bytes.error());
-  auto rows =
-      transfer::decodeRows(*bytes, description().meshes[draw.mesh].primitives[draw.primitive].vertex_count,
-                           group.sample_count, subject);
+  auto rows = transfer::decodeRows(*bytes, rowCount(description(), draw), group.sample_count, subject);
   if (!rows) return rows;
+  const std::size_t vertices = rowCount(description(), draw) - draw.texels * draw.texels;
+  for (std::size_t row = vertices; row + 1 < rows->offsets.size(); ++row)
+    if (rows->offsets[row + 1] != rows->offsets[row] + 1)
+      return fail(subject, "has texels of none or several samples", "bake it again");
   // Samples are ordered by rising outputs.
   std::uint32_t first = 0;
   for (const Cell& cell : group.cells)

@@ -349,6 +349,14 @@ Draw readDraw(const Field& field, const Description& d) {
   draw.back = readWord<bool>(field["side"], kSides);
   draw.rows = payloadIndex(field["rows"], d, PayloadType::VertexWeights, {});
   draw.outputs = readOutputs(field["outputs"]);
+  if (!field.has("texels")) return draw;
+  if (draw.outputs != 1) field["texels"].fault("belong to a draw that is not shaded at its vertices");
+  draw.texels = static_cast<std::uint32_t>(field["texels"]["side"].count(kMostTexels));
+  if (draw.texels == 0) field["texels"]["side"].fault("is 0");
+  draw.texel_set = field["texels"]["texcoord"].index(2);
+  const DracoAttributes& attributes = d.meshes[draw.mesh].primitives[draw.primitive].attributes;
+  if ((draw.texel_set == 1 ? attributes.texcoord1 : attributes.texcoord0) < 0)
+    field["texels"].fault("lack their texture coordinates");
   return draw;
 }
 
@@ -398,13 +406,15 @@ Json writeTransfer(const Description& d) {
                         {"rawLength", payload.raw_length},
                         {"priority", payload.priority}});
   for (const Group& group : d.groups) groups.push_back(groupJson(group));
-  for (const Draw& draw : d.draws)
+  for (const Draw& draw : d.draws) {
     draws.push_back({{"node", draw.node},
                      {"primitive", draw.primitive},
                      {"group", draw.group},
                      {"side", word(draw.back, kSides)},
                      {"rows", draw.rows},
                      {"outputs", draw.outputs}});
+    if (draw.texels > 0) draws.back()["texels"] = {{"side", draw.texels}, {"texcoord", draw.texel_set}};
+  }
   Json tables = Json::array();
   for (const BrdfTableEntry& entry : d.brdf_tables)
     tables.push_back(

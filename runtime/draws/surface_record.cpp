@@ -42,6 +42,12 @@ bool normalMapped(const World& world, std::size_t draw) {
   return world.residency().draws()[draw].form() == transfer::Form::NormalMapped;
 }
 
+bool hasTexels(const World& world, std::size_t draw) {
+  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
+  const streaming::ResidentMesh& mesh = world.residency().meshes()[resident.mesh];
+  return resident.irradiance && mesh.texcoords_word[resident.texel_set] != kAbsent;
+}
+
 SurfaceDraw describe(const World& world, std::size_t draw) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
   const streaming::ResidentMesh& mesh = world.residency().meshes()[resident.mesh];
@@ -73,9 +79,9 @@ SurfaceDraw describe(const World& world, std::size_t draw) {
           .alpha_cutoff = material.alpha_cutoff,
           .unlit = material.unlit ? 1u : 0u,
           .bounced_word = kAbsent,
+          .irradiance_set = hasTexels(world, draw) ? resident.texel_set : kAbsent,
           .pad0 = 0,
-          .pad1 = 0,
-          .pad2 = 0};
+          .pad1 = 0};
 }
 
 SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDraw& record) {

@@ -35,6 +35,9 @@ glm::vec3 emissionOf(const World& world, std::size_t draw);
 // Returns whether the draw has light in bands 0..2 at its vertices, for shading with the pixel's own normal.
 bool normalMapped(const World& world, std::size_t draw);
 
+// Returns whether the draw takes E/pi from the texels of a texture.
+bool hasTexels(const World& world, std::size_t draw);
+
 SurfaceDraw describe(const World& world, std::size_t draw);
 SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDraw& record);
 

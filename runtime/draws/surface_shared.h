@@ -38,6 +38,7 @@ LAMBENT_CONSTANT kAbsent = 0xffffffffu;
 LAMBENT_CONSTANT kUnitBaseColor = 0u;  // texture units
 LAMBENT_CONSTANT kUnitEmissive = 1u;
 LAMBENT_CONSTANT kUnitNormal = 2u;
+LAMBENT_CONSTANT kUnitIrradiance = 2u;  // in draws with texels, which have no normal map
 LAMBENT_CONSTANT kUnitMetallicRoughness = 3u;  // from here on only in glossy and layered draws
 LAMBENT_CONSTANT kUnitSpecular = 4u;
 LAMBENT_CONSTANT kUnitSpecularColor = 5u;
@@ -107,7 +108,8 @@ struct SurfaceDraw {
   float alpha_cutoff;
   uint unlit;
   uint bounced_word;  // first word of its light of patches; kAbsent: none
-  uint pad0, pad1, pad2;
+  uint irradiance_set;  // texture coordinates that look up its texels; kAbsent: has none
+  uint pad0, pad1;
 #ifdef LAMBENT_GLOSSY
   GlossyPart glossy;
 #endif

@@ -130,6 +130,7 @@ void Residency::release(const ResidentTables& tables) {
   }
   for (const ResidentDraw& draw : tables.draws) {
     give_back(rows_, draw.rows);
+    give_back(rows_, draw.texel_rows);
     give_back(radiance_, draw.radiance);
   }
 }
@@ -201,23 +202,32 @@ Result<void> Residency::uploadStaged(Staged staged, Ready item) {
 Result<void> Residency::put(At at, const WeightsChunk& item) {
   ResidentDraw& draw = at.tables.draws[at.bundle.first.draws + item.draw];
   const transfer::VertexWeights& rows = item.rows;
-  const std::size_t entries = rows.samples.size();
-  assert(rows.offsets.size() == at.tables.meshes[draw.mesh].vertex_count + 1u &&
-         rows.weights.size() == entries);
+  const std::size_t vertices = at.tables.meshes[draw.mesh].vertex_count;
+  assert(rows.offsets.size() == vertices + draw.texels * draw.texels + 1u);
+  const std::size_t entries = rows.offsets[vertices];
+  const auto offsets = std::span(rows.offsets).first(vertices + 1);
+  const auto samples = std::span(rows.samples).first(entries),
+             of_texels = std::span(rows.samples).subspan(entries);
   std::vector<std::uint16_t> weights(entries);
   // This rounds to nearest in a loop that compilers vectorize, unlike glm::packUnorm1x16.
-  std::transform(rows.weights.begin(), rows.weights.end(), weights.begin(), [](float weight) {
-    return static_cast<std::uint16_t>(std::clamp(weight, 0.0f, 1.0f) * 65535.0f + 0.5f);
-  });
-  const std::uint64_t samples_at = 4ull * rows.offsets.size(), weights_at = samples_at + 4ull * entries;
+  std::transform(rows.weights.begin(), rows.weights.begin() + static_cast<std::ptrdiff_t>(entries),
+                 weights.begin(), [](float weight) {
+                   return static_cast<std::uint16_t>(std::clamp(weight, 0.0f, 1.0f) * 65535.0f + 0.5f);
+                 });
+  const std::uint64_t samples_at = 4ull * offsets.size(), weights_at = samples_at + 4ull * entries;
   const Result<gpu::Allocation> block = rows_.allocate(weights_at + 2 * entries);
   if (!block) return failAgain(block.error());
-  rows_.write(*block, 0, bytesOf(rows.offsets));
-  rows_.write(*block, samples_at, bytesOf(rows.samples));
+  rows_.write(*block, 0, std::as_bytes(offsets));
+  rows_.write(*block, samples_at, std::as_bytes(samples));
   rows_.write(*block, weights_at, bytesOf(weights));
   draw.rows = *block;
   draw.row_entries = static_cast<std::uint32_t>(entries);
   draw.version = version_;
+  if (of_texels.empty()) return {};
+  const Result<gpu::Allocation> texels = rows_.allocate(of_texels.size_bytes());
+  if (!texels) return failAgain(texels.error());
+  rows_.write(*texels, 0, std::as_bytes(of_texels));
+  draw.texel_rows = *texels;
   return {};
 }
 

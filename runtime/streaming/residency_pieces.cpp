@@ -3,6 +3,7 @@
 // piece.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 
 #include <glm/gtc/packing.hpp>
@@ -30,6 +31,19 @@ using MeshParts = std::array<std::span<const std::byte>, kMeshParts>;
 MeshParts partsOf(const bundle::MeshData& data, const std::vector<std::uint64_t>& colors) {
   return {bytesOf(data.positions), bytesOf(data.normals),  bytesOf(data.texcoords0), bytesOf(data.texcoords1),
           bytesOf(colors),         bytesOf(data.tangents), bytesOf(data.indices)};
+}
+
+// Makes a texture of E/pi with all mip levels, in which nothing is shaded yet.
+gpu::Texture makeIrradiance(std::uint32_t side) {
+  const auto levels = static_cast<std::uint32_t>(std::bit_width(side));
+  gpu::Texture texture("irradiance", {.format = GL_RGBA16F, .width = side, .height = side, .levels = levels});
+  for (std::uint32_t level = 0; level < levels; ++level)
+    glClearTexImage(texture.id(), static_cast<GLint>(level), GL_RGBA, GL_FLOAT, nullptr);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTextureParameteri(texture.id(), axis, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return texture;
 }
 
 std::uint64_t bytesOf(const MeshParts& parts) {
@@ -179,6 +193,9 @@ Result<void> Residency::finish(At at, const MeshUpload& upload) {
         radiance_.allocate(4ull * vertexWords(draw.form(), draw.layered) * mesh.vertex_count);
     if (!radiance) return failAgain(radiance.error());
     draw.radiance = *radiance;
+    if (draw.texels == 0) continue;
+    draw.irradiance = makeIrradiance(draw.texels);
+    at.bundle.texture_bytes += irradianceBytes(draw.texels);
   }
   return {};
 }

@@ -198,6 +198,8 @@ ResidentTables tablesOf(const bundle::Description& description, std::uint64_t ve
     made.material = description.meshes[draw.mesh].primitives[draw.primitive].material;
     made.back = draw.back;
     made.outputs = draw.outputs;
+    made.texels = draw.texels;
+    made.texel_set = draw.texel_set;
     made.layered = bundle::isLayered(description, draw);
     made.group_from_mesh_normal =
         (draw.back ? -1.0f : 1.0f) * normalMatrix(description.groups[draw.group], world_from_node[draw.node]);

@@ -162,6 +162,12 @@ struct ResidentDraw {
   // radianceWords(form) floats per vertex, once the mesh is loaded; empty for glossy draws. With a layer,
   // what each vertex sees of the sky follows (transfer/seen_sky_shared.h).
   gpu::Allocation radiance;
+  // Side of its texture of E/pi, and the set of texture coordinates that looks it up; 0: it has none.
+  std::uint32_t texels = 0, texel_set = 0;
+  gpu::Allocation texel_rows;  // the sample of each texel; empty until loaded
+  // E/pi in rgb times the share of it that is shaded, and that share in alpha, with all mip levels; once the
+  // mesh is loaded.
+  gpu::Texture irradiance;
   std::uint64_t version = 0;
 
   transfer::Form form() const { return transfer::formOf(transfer::Domain::Vertex, outputs); }

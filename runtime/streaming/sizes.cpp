@@ -47,6 +47,12 @@ std::uint64_t samplesOf(const bundle::Group& group) {
   return count;
 }
 
+std::uint64_t irradianceBytes(std::uint32_t side) {
+  std::uint64_t bytes = 0;
+  for (std::uint64_t level = side; level > 0; level /= 2) bytes += 8 * level * level;
+  return bytes;
+}
+
 std::uint64_t volumeBytes(const bundle::VolumeGrid& grid, std::uint64_t sample_count) {
   return densityBytes(grid.size) + 4 * sample_count;
 }
@@ -83,7 +89,8 @@ Needs needsOf(const bundle::Description& description) {
   }
   for (const bundle::Draw& draw : description.draws) {
     const std::uint64_t vertices = description.meshes[draw.mesh].primitives[draw.primitive].vertex_count;
-    needs.rows += description.payloads[draw.rows].raw_length + 6 * vertices + 2 * kSlack;
+    needs.rows += description.payloads[draw.rows].raw_length + 6 * vertices + 3 * kSlack;
+    needs.textures += irradianceBytes(draw.texels);
     if (!draw.glossy())
       needs.radiance +=
           4ull * vertexWords(draw.form(), bundle::isLayered(description, draw)) * vertices + kSlack;

@@ -39,6 +39,8 @@ std::uint64_t samplesOf(const bundle::Group& group);
 constexpr std::uint64_t densityBytes(const glm::uvec3& size) {
   return std::uint64_t{2} * size.x * size.y * size.z;
 }
+// Returns the size of a square texture of E/pi with all mip levels.
+std::uint64_t irradianceBytes(std::uint32_t side);
 // Returns the size of the density and the list of voxels.
 std::uint64_t volumeBytes(const bundle::VolumeGrid& grid, std::uint64_t sample_count);
 // Returns the size of the light in a volume: a texel of half floats per voxel of the transfer grid and
@@ -51,9 +53,9 @@ inline constexpr std::uint64_t kProxyLodTriangleBytes = 64, kProxyLodGroupBytes 
 std::uint64_t proxyLodBytes(const bundle::Description& description, bundle::GroupIndex group);
 
 struct Needs {
-  std::uint64_t geometry = 0, transfer = 0, samples = 0, rows = 0, radiance = 0, volumes = 0;
+  std::uint64_t geometry = 0, transfer = 0, samples = 0, rows = 0, radiance = 0, textures = 0, volumes = 0;
 
-  std::uint64_t total() const { return geometry + transfer + samples + rows + radiance + volumes; }
+  std::uint64_t total() const { return geometry + transfer + samples + rows + radiance + textures + volumes; }
 };
 // Returns upper bounds, since the sizes of rows are derived from their length in the file.
 Needs needsOf(const bundle::Description& description);

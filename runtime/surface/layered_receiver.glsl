@@ -8,6 +8,7 @@ layout(location = 4) in vec3 normal_group;  // on the visible side
 layout(location = 5) in vec3 position_mesh;
 layout(location = 6) in vec4 looks_at_reflection;
 
+#include "texel_light.glsl"
 #include "layer.glsl"
 
 vec3 shadingNormal() { return unit(normal_group); }
@@ -17,5 +18,5 @@ vec3 reflectedLight(vec3 base_color) {
   lookAtLayer(base_color, TangentFrame(normal, vec3(0.0), 1.0), normal, position_mesh);
   SurfaceLight light = kNoLight;
   receiveLight(SurfacePoint(draws[draw_of].glossy.draw, position_mesh, normal_group, normal), light);
-  return throughLayer(base_color, Mirror(normal, position_mesh, vec3(0.0)), radiance, light);
+  return throughLayer(base_color, Mirror(normal, position_mesh, vec3(0.0)), transferredLight(radiance), light);
 }

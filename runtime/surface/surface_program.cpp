@@ -59,9 +59,10 @@ std::string kindText(const SurfaceKind& kind, bool finest_texels) {
   return fmt::format(
       "const bool kFinestTexels = {};\n"
       "const bool kDark = {};\n"
+      "const bool kHasTexels = {};\n"
       "const int kShownRadiance = 0, kShownIrradiance = 1, kShownNormals = 2;\n"
       "const int kShown = {};\n",
-      finest_texels, kind.dark, shownBy(kind.view));
+      finest_texels, kind.dark, kind.texels, shownBy(kind.view));
 }
 
 // Describes a function whose body calls each module's function in turn.

@@ -18,6 +18,7 @@ struct SurfaceKind {
   bool normal_mapped = false;
   bool dark = false;          // reflects nothing
   std::uint32_t modules = 0;  // a bit for each module, see bitOf()
+  bool texels = false;        // takes E/pi from a texture
   bool layered = false;       // a specular layer over diffuse or normal-mapped transfer
   GlossyKind glossy = {};
   SurfaceView view = SurfaceView::Final;  // Final, Irradiance or Normals

@@ -75,6 +75,7 @@ SurfaceKind Surfaces::kindOf(const World& world, std::size_t draw) const {
   if (world.residency().draws()[draw].glossy())
     kind.glossy = glossyKindOf(world, draw, options_.glossy_bands);
   kind.layered = layered(world, draw);
+  kind.texels = hasTexels(world, draw);
   if (kind.layered) kind.glossy = layerKindOf(world, draw);
   const SurfaceReceiver receiver = kind.receiver();
   for (std::size_t m = 0; m < modules_.size(); ++m)
@@ -102,6 +103,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                         .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
               .draw = i,
               .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};
+    if (item.state.kind.texels) item.state.irradiance = static_cast<std::int32_t>(i);
     if (item.state.kind.dark) {
       item.state.radiance_page = 0;
     } else if (item.state.kind.glossy.bands > 0) {
@@ -229,6 +231,11 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
     if (kind.glossy.bands > 0)
       units_.bindGlossy(world, run.state.textures, run.state.bundle, run.state.brdf_table);
     if (kind.layered) seen_sky_->bindKernel(kUnitSeenKernel);
+    if (kind.texels) {
+      world.residency().draws()[static_cast<std::size_t>(run.state.irradiance)].irradiance.bind(
+          kUnitIrradiance);
+      glBindSampler(kUnitIrradiance, 0);  // the texture's own sampling is used
+    }
     for (std::size_t m = 0; m < modules_.size(); ++m)
       if ((kind.modules & bitOf(m)) != 0) modules_[m]->bind(kind.receiver());
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);

@@ -69,7 +69,8 @@ class Surfaces {
     // These are used by glossy draws only, the bundle and the table by layered ones too.
     std::uint32_t bundle = 0, rows_page = 0, samples_page = 0;
     std::int32_t brdf_table = -1;
-    bool clockwise = false;  // winding of the visible side
+    std::int32_t irradiance = -1;  // draw whose texels it shows; -1: none
+    bool clockwise = false;        // winding of the visible side
     auto operator<=>(const State&) const = default;
   };
   struct Run {

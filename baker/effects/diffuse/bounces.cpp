@@ -274,8 +274,8 @@ class Passes {
       if (sample < scene_.samples.glossy.begin) return gather_.visitHits(sample, take);
       partner_->visitHits(sample, exit_, take);
     };
-    const auto met =
-        samplesMet(sampleAreas(scene_.geometry, scene_.samples), exit_.triangleSamples(), visit, context_);
+    const auto samples_of = [this](const GatherHit& hit) { return exit_.samplesOf(hit); };
+    const auto met = samplesMet(sampleAreas(scene_.geometry, scene_.samples), samples_of, visit, context_);
     if (!met) return false;
     const std::vector<float> bounced = brightnessOf(first);
     std::vector<float> brightness = brightnessOf(direct_.field);
@@ -284,7 +284,7 @@ class Passes {
         scene_.samples, glm::distance(scene_.geometry.bounds_min, scene_.geometry.bounds_max),
         {.brightness = brightness, .bounced = bounced, .weights = *met, .valid = direct_.looks.valid},
         edges_);
-    PatchTransport transport(patches, exit_.triangleSamples(), direct_.field.channels);
+    PatchTransport transport(patches, samples_of, direct_.field.channels);
     if (!transport.build(visit, context_)) return false;
     const double off = partner_ ? offBy(transport, patches, first) : 0.0;
     TransferField brought = std::move(first);

@@ -41,6 +41,10 @@ DrawRecord describeDraw(const streaming::Residency& residency, const streaming::
   record.first_output = samples.first_output;
   record.radiance_word = draw.radiance.word();
   record.outputs = draw.outputs;
+  if (draw.texel_rows && draw.irradiance) {
+    record.texels = draw.texels;
+    record.texels_word = mode != evaluate::TransferMode::Unshadowed ? draw.texel_rows.word() : kNoRows;
+  }
   return record;
 }
 
@@ -69,6 +73,7 @@ Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::Gro
   shaded_ = {};
   collectCells(residency, lights, mode, kinds);
   vertices_work_.clear();
+  texel_draws_.clear();
   if (kinds.surfaces) collectDraws(residency, lights);
   if (Result<void> run = runCells(residency, lights, counters); !run) return run;
   return runDraws(residency, lights, counters);
@@ -127,6 +132,7 @@ void Diffuse::collectDraws(const streaming::Residency& residency, const lighting
     if (!draws_changed_[i].renew(draw.version, lights.versionOf(draw.group), group_shaded_[draw.group]))
       continue;
     ++shaded_.draws;
+    if (tables_.draws[i].texels > 0) texel_draws_.push_back(i);
     const streaming::ResidentGroup& group = residency.groups()[draw.group];
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
     vertices_work_.add({variantOf(group.order), draw.outputs, draw.rows.page, mesh.block.page,
@@ -217,6 +223,32 @@ Result<void> Diffuse::runDraws(streaming::Residency& residency, const lighting::
     vertices_work_.dispatch(index++, transfer::kBindWork, counters);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return texel_draws_.empty() ? Result<void>() : runTexels(residency, counters);
+}
+
+// Samples that are not shaded leave their texels empty, as all do in the unshadowed mode, and the vertices
+// show.
+Result<void> Diffuse::runTexels(streaming::Residency& residency, gpu::Counters& counters) {
+  if (!texels_program_) {
+    Result<gpu::Program> made = gpu::Program::create(
+        "diffuse_texels.comp", {{GL_COMPUTE_SHADER, "diffuse_texels.comp"}}, kShaders, {});
+    if (!made) return failAgain(made.error());
+    texels_program_ = std::move(*made);
+  }
+  texels_program_.use();
+  for (const std::uint32_t i : texel_draws_) {
+    const streaming::ResidentDraw& draw = residency.draws()[i];
+    residency.rows().page(draw.texel_rows.page).bindStorage(kBindRows);
+    residency.samples().page(residency.groups()[draw.group].samples.page).bindStorage(transfer::kBindSamples);
+    glBindImageTexture(0, draw.irradiance.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+    glUniform1ui(0, i);
+    const GLuint groups = (draw.texels + kTexelGroupSize - 1) / kTexelGroupSize;
+    glDispatchCompute(groups, groups, 1);
+    ++counters.dispatches;
+  }
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                  GL_TEXTURE_UPDATE_BARRIER_BIT);
+  for (const std::uint32_t i : texel_draws_) glGenerateTextureMipmap(residency.draws()[i].irradiance.id());
   return {};
 }
 

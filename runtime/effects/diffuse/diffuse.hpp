@@ -2,9 +2,10 @@
 // bands 0..2) directly from the quantized transfer. It reads transfer, rows and normals in the residency's
 // arenas and the light at the groups' light probes, and writes the arenas of samples and radiance. It has
 // three stages (cluster, sample, vertex), each one indirect dispatch per arena page and kernel over what is
-// dirty: a cell if its group's light or its own codes changed, a vertex if any cell of its group or its own
-// mesh or rows did. If nothing changed, nothing is dispatched. What is not resident is shaded unshadowed.
-// Render thread only.
+// dirty (and one dispatch per texture of texels, which takes the place of interpolated vertices and gets its
+// mip levels anew): a cell if its group's light or its own codes changed, a vertex if any cell of its group
+// or its own mesh or rows did. If nothing changed, nothing is dispatched. What is not resident is shaded
+// unshadowed. Render thread only.
 #pragma once
 
 #include <array>
@@ -66,6 +67,7 @@ class Diffuse {
                         gpu::Counters& counters);
   Result<void> runDraws(streaming::Residency& residency, const lighting::GroupLights& lights,
                         gpu::Counters& counters);
+  Result<void> runTexels(streaming::Residency& residency, gpu::Counters& counters);
 
   // The key holds the order (0: any order; for the Samples stage, 1 if there are several lights) and the
   // number of outputs.
@@ -74,6 +76,8 @@ class Diffuse {
   gpu::Table transfers_table_, places_table_, draws_table_, products_;
   // A cell's first transfer writes its samples, the second one adds to them.
   gpu::WorkList project_work_, samples_work_, adding_work_, vertices_work_;
+  gpu::Program texels_program_;
+  std::vector<std::uint32_t> texel_draws_;  // draws whose textures are shaded in this frame
   KeyedState<ChangeGate<std::uint64_t, std::uint64_t>> cells_changed_;  // versions: cell, light
   KeyedState<ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t>> draws_changed_;  // draw, light, cells
   KeyedState<std::uint64_t> group_shaded_;  // rises when a cell of the group was shaded

@@ -1,13 +1,13 @@
 // Multiplies diffuse transfer with light. It holds the mathematics only and no bindings. The CPU twin is
 // diffuse_ref.hpp, with the same names and the same order of terms. An entry shader selects the stage
-// (LAMBENT_STAGE_VERTICES or _PROXIES) and defines the fetches that the stage's functions declare.
+// (LAMBENT_STAGE_VERTICES, _TEXELS or _PROXIES) and defines the fetches that the stage's functions declare.
 #include "diffuse_shared.h"
 
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);  // Rec. 709
 
 vec3 lightAt(uint index);  // coefficient of the light, RGB, group frame
 
-#if defined(LAMBENT_STAGE_VERTICES) || defined(LAMBENT_STAGE_PROXIES)
+#if defined(LAMBENT_STAGE_VERTICES) || defined(LAMBENT_STAGE_PROXIES) || defined(LAMBENT_STAGE_TEXELS)
 vec4 sampleAt(uint index);  // shaded sample; w > 0: resident
 
 float shadedShare(vec4 shaded) { return shaded.w > 0.0 ? 1.0 : 0.0; }
@@ -50,6 +50,17 @@ vec3 unshadowedRadiance(vec3 normal, uint light, int order) {
     }
   }
   return sum;
+}
+#endif
+
+#ifdef LAMBENT_STAGE_TEXELS
+uint rowWordAt(uint word);
+
+// Returns E/pi of a texel times the share of it that is shaded, and that share.
+vec4 texelRadiance(DrawRecord draw, uint texel) {
+  if (draw.texels_word == kNoRows) return vec4(0.0);
+  vec4 shaded = sampleAt(draw.first_output + rowWordAt(draw.texels_word + texel) - draw.first_sample);
+  return vec4(shadedShare(shaded) * shaded.rgb, shadedShare(shaded));
 }
 #endif
 

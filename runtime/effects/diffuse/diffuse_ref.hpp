@@ -91,6 +91,13 @@ inline glm::vec3 vertexRadiance(const Memory& memory, const DrawRecord& draw, ui
   return sum / total;
 }
 
+inline glm::vec4 texelRadiance(const Memory& memory, const DrawRecord& draw, uint texel) {
+  if (draw.texels_word == kNoRows) return glm::vec4(0.0f);
+  const glm::vec4 shaded =
+      memory.sampleAt(draw.first_output + memory.rowWordAt(draw.texels_word + texel) - draw.first_sample);
+  return glm::vec4(shadedShare(shaded) * glm::vec3(shaded), shadedShare(shaded));
+}
+
 using MappedLight = std::array<glm::vec3, transfer::kMappedOutputs>;
 
 inline MappedLight vertexLight(const Memory& memory, const DrawRecord& draw, uint vertex) {

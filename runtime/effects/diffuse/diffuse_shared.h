@@ -27,6 +27,8 @@ LAMBENT_CONSTANT kBindProxyEntries = 4u;    // ProxyEntryRecord
 LAMBENT_CONSTANT kBindProxyRadiance = 5u;   // vec4 per triangle
 LAMBENT_CONSTANT kBindProxyAdded = 7u;      // vec4 per triangle, radiance to send out in addition
 
+LAMBENT_CONSTANT kTexelGroupSize = 8u;  // side of a work group over texels
+
 LAMBENT_CONSTANT kNoRows = 0xffffffffu;
 LAMBENT_CONSTANT kNoLamp = 0xffffffffu;
 
@@ -42,7 +44,8 @@ struct DrawRecord {
   uint radiance_word;  // where the result is written
   uint outputs;
   uint first_output;
-  uint pad[2];
+  uint texels;       // side of its texture; 0: none to be shaded
+  uint texels_word;  // the sample of each texel, row by row; kNoRows: unshadowed, as the vertices show
 };
 
 // A capture proxy's triangles each send out one radiance in all directions (runtime/bundle/capture_proxy.hpp).

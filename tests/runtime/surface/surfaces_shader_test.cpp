@@ -1,5 +1,6 @@
 // Tests the surface shaders alone: one rectangle fills the picture, with a record, vertices, light and
 // textures that each test writes, and is compared with closed forms and surface_normal_ref.hpp.
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <functional>
@@ -69,9 +70,9 @@ SurfaceDraw diffuseRecord() {
           .alpha_cutoff = 0.5f,
           .unlit = 0,
           .bounced_word = kAbsent,
+          .irradiance_set = kAbsent,
           .pad0 = 0,
-          .pad1 = 0,
-          .pad2 = 0};
+          .pad1 = 0};
 }
 
 TextureSlot slot(std::uint32_t set, const gltf::TextureRef& reference = {}) {
@@ -87,8 +88,9 @@ class SurfaceShader : public testing::GpuTest {
   // words_per_vertex: 3 is radiance, 27 light for normal maps.
   Picture draw(const SurfaceDraw& record, const Vertices& vertices, const std::vector<float>& light,
                std::size_t words_per_vertex) {
-    const Result<gpu::Program> program =
-        makeSurfaceProgram({.normal_mapped = words_per_vertex == 27}, {}, /*finest_texels=*/false);
+    const Result<gpu::Program> program = makeSurfaceProgram(
+        {.normal_mapped = words_per_vertex == 27, .texels = record.irradiance_set != kAbsent}, {},
+        /*finest_texels=*/false);
     EXPECT_TRUE(program) << program.error().line();
     if (!program) return {};
     std::vector<float> geometry;
@@ -127,6 +129,7 @@ class SurfaceShader : public testing::GpuTest {
       glBindTextureUnit(unit, textures[unit].id());
       glBindSampler(unit, sampler.id());
     }
+    if (record.irradiance_set != kAbsent) glBindSampler(kUnitIrradiance, 0);
     glDrawElements(GL_TRIANGLES, 6, GL_UNSIGNED_INT, nullptr);
     for (const GLuint unit : {kUnitBaseColor, kUnitEmissive, kUnitNormal}) glBindSampler(unit, 0);
     Picture picture(kSize * kSize);
@@ -167,6 +170,46 @@ const Light kLight = [] {
 }();
 
 }  // namespace
+
+// Texels count by their share that is shaded, and vertices by the rest.
+TEST_F(SurfaceShader, TakesIrradianceFromTexelsAndTheRestFromVertices) {
+  constexpr std::uint32_t kSide = 4;
+  std::vector<glm::vec4> texels;
+  for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+    const float share = i % 3 == 0 ? 0.0f : 1.0f;
+    texels.emplace_back(share * glm::vec3(0.25f * static_cast<float>(i), static_cast<float>(i % 5), 2.0f),
+                        share);
+  }
+  textures[kUnitIrradiance] =
+      gpu::Texture("irradiance", {.format = GL_RGBA16F, .width = kSide, .height = kSide});
+  const GLuint id = textures[kUnitIrradiance].id();
+  glTextureSubImage2D(id, 0, 0, 0, kSide, kSide, GL_RGBA, GL_FLOAT, texels.data());
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTextureParameteri(id, axis, GL_CLAMP_TO_EDGE);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTextureParameteri(id, filter, GL_LINEAR);
+  SurfaceDraw record = diffuseRecord();
+  record.irradiance_set = 0;
+  const glm::vec3 at_vertices(0.5f, 1.5f, 3.0f);
+  const Picture shown = drawRadiance(record, at_vertices);
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const auto place = [](std::uint32_t i) {
+        return std::clamp((static_cast<float>(i) + 0.5f) / kSize * kSide - 0.5f, 0.0f, float{kSide - 1});
+      };
+      const float u = place(x), v = place(y);
+      const auto left = std::min(static_cast<std::uint32_t>(u), kSide - 2),
+                 top = std::min(static_cast<std::uint32_t>(v), kSide - 2);
+      const float along = u - static_cast<float>(left), down = v - static_cast<float>(top);
+      const auto texel = [&](std::uint32_t i, std::uint32_t j) {
+        return texels[left + i + kSide * (top + j)];
+      };
+      const glm::vec4 mixed = glm::mix(glm::mix(texel(0, 0), texel(1, 0), along),
+                                       glm::mix(texel(0, 1), texel(1, 1), along), down);
+      const glm::vec3 wanted = glm::vec3(mixed) + (1.0f - mixed.w) * at_vertices;
+      EXPECT_LT(glm::length(glm::vec3(at(shown, x, y)) - wanted), 0.02f) << x << ", " << y;
+    }
+}
 
 TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordinates) {
   // The base colour is one grey texel; the emissive texture has four: red green / blue white from the top.

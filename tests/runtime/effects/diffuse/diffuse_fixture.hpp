@@ -43,6 +43,7 @@ struct RandomBundleOptions {
   std::uint32_t vertices = 131;
   std::uint32_t light_probes = 1;     // per group; every cell uses all but the first
   std::uint32_t proxy_triangles = 0;  // per group
+  std::uint32_t texels = 0;           // side of the textures of draws with one output
 };
 
 class BundleMaker {
@@ -157,8 +158,14 @@ class BundleMaker {
     addMesh(made, options, g);
     made.description.draws.push_back(
         {.node = g, .mesh = g, .primitive = primitive, .group = g, .rows = 0, .outputs = outputs});
-    made.rows.push_back(
-        streaming::WeightsChunk{.draw = index, .rows = makeRows(options, first_sample, end_sample)});
+    transfer::VertexWeights rows = makeRows(options, first_sample, end_sample);
+    if (outputs == 1) made.description.draws.back().texels = options.texels;
+    for (std::uint32_t texel = 0; outputs == 1 && texel < options.texels * options.texels; ++texel) {
+      rows.samples.push_back(first_sample + below(end_sample - first_sample));
+      rows.weights.push_back(1.0f);
+      rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));
+    }
+    made.rows.push_back(streaming::WeightsChunk{.draw = index, .rows = std::move(rows)});
   }
 
   bundle::Cell makeCell(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g,

@@ -109,6 +109,16 @@ struct Bench : testing::ShadingBench<Diffuse> {
     }
     return difference / largest;
   }
+
+  // Returns the texels of a level of a draw's texture, row by row.
+  std::vector<glm::vec4> textureOf(std::size_t draw, GLint level) const {
+    const streaming::ResidentDraw& resident = residency.draws()[draw];
+    const std::size_t side = resident.texels >> level;
+    std::vector<glm::vec4> texels(side * side);
+    glGetTextureImage(resident.irradiance.id(), level, GL_RGBA, GL_FLOAT,
+                      static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)), texels.data());
+    return texels;
+  }
 };
 
 }  // namespace
@@ -127,6 +137,54 @@ TEST_F(DiffuseGpu, MatchesItsTwinAtEveryOrderAndPrefix) {
       bench.shade();
       EXPECT_LT(bench.differenceToTwin(), 1e-3) << "order " << order << ", planes " << prefix;
     }
+}
+
+TEST_F(DiffuseGpu, ShadesTexelsAsItsTwinAndAveragesThemInMipLevels) {
+  testing::BundleMaker maker(31);
+  Bench bench(maker, {.mapped_cells = 1, .samples = 97, .texels = 32});
+  bench.uploadMeshes();
+  bench.shade();
+  for (const glm::vec4& texel : bench.textureOf(0, 0))
+    EXPECT_EQ(texel, glm::vec4(0.0f)) << "vertices show until rows are there";
+  bench.uploadRows();
+  bench.uploadTransfer(4);
+  bench.shade();
+  EXPECT_LT(bench.differenceToTwin(), 1e-3) << "vertices are shaded as without texels";
+  const Bench::Pages samples = Bench::pagesOf(bench.residency.samples()),
+                     rows = Bench::pagesOf(bench.residency.rows());
+  std::size_t textures = 0;
+  for (std::size_t d = 0; d < bench.diffuse.tables().draws.size(); ++d) {
+    const DrawRecord& draw = bench.diffuse.tables().draws[d];
+    const streaming::ResidentDraw& resident = bench.residency.draws()[d];
+    EXPECT_EQ(draw.texels, draw.outputs == 1 ? 32u : 0u);
+    if (draw.texels == 0) continue;
+    ++textures;
+    std::vector<glm::vec4> shaded;
+    for (const auto& page = samples[bench.residency.groups()[resident.group].samples.page];
+         4 * shaded.size() < page.size();)
+      shaded.emplace_back(std::bit_cast<float>(page[4 * shaded.size()]),
+                          std::bit_cast<float>(page[4 * shaded.size() + 1]),
+                          std::bit_cast<float>(page[4 * shaded.size() + 2]),
+                          std::bit_cast<float>(page[4 * shaded.size() + 3]));
+    const transfer::ref::Memory memory{.lights = {},
+                                       .transfer = {},
+                                       .samples = shaded,
+                                       .rows = rows[resident.texel_rows.page],
+                                       .geometry = {}};
+    const std::vector<glm::vec4> texels = bench.textureOf(d, 0);
+    glm::vec4 mean(0.0f), widest(0.0f);
+    for (uint texel = 0; texel < texels.size(); ++texel) {
+      const glm::vec4 wanted = ref::texelRadiance(memory, draw, texel);
+      EXPECT_EQ(wanted.w, 1.0f);
+      EXPECT_LT(glm::length(texels[texel] - wanted), 1e-3f * glm::length(wanted)) << "half floats";
+      mean += texels[texel] / static_cast<float>(texels.size());
+      widest = glm::max(widest, glm::abs(texels[texel]));
+    }
+    EXPECT_LT(glm::length(bench.textureOf(d, 5).front() - mean), 5e-3f * glm::length(widest));
+  }
+  EXPECT_EQ(textures, 2u);
+  bench.shade(evaluate::TransferMode::Unshadowed);
+  for (const glm::vec4& texel : bench.textureOf(0, 0)) EXPECT_EQ(texel, glm::vec4(0.0f));
 }
 
 TEST_F(DiffuseGpu, MatchesItsTwinWithClustersLampsBothBlocksAndNormalMaps) {

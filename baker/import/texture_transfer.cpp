@@ -1,0 +1,123 @@
+#include "baker/import/texture_transfer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "baker/import/check_fields.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr const char* kKey = "texture_transfer";
+
+// `extras` may be anything; only the object under our own name is ours.
+const nlohmann::json* oursIn(const nlohmann::json& owner) {
+  const auto extras = owner.find("extras");
+  if (extras == owner.end() || !extras->is_object()) return nullptr;
+  const auto ours = extras->find("lambent");
+  return ours == extras->end() || !ours->is_object() ? nullptr : &*ours;
+}
+
+// Coordinates may leave the unit square by as much as coding moves them.
+constexpr float kSlack = 1e-4f;
+// A point lies in a triangle if the shares of all corners are greater; so no point of a common edge lies in
+// two triangles.
+constexpr double kInside = 1e-6;
+
+using Corners = std::array<glm::dvec2, 3>;
+
+double crossOf(const glm::dvec2& a, const glm::dvec2& b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+// A Raster has points spread evenly over the unit square, and remembers which of them triangles cover.
+class Raster {
+ public:
+  explicit Raster(std::uint32_t side) : side_(side), covered_(std::size_t{side} * side, 0) {}
+
+  // Returns whether a point of the triangle was covered before.
+  bool cover(const Corners& corners) {
+    const auto side = static_cast<double>(side_);
+    const glm::dvec2 low = glm::min(corners[0], glm::min(corners[1], corners[2])) * side,
+                     high = glm::max(corners[0], glm::max(corners[1], corners[2])) * side;
+    const auto clamped = [&](double at) { return static_cast<std::size_t>(std::clamp(at, 0.0, side)); };
+    const double area = crossOf(corners[1] - corners[0], corners[2] - corners[0]);
+    bool again = false;
+    for (std::size_t y = clamped(low.y); y < clamped(std::ceil(high.y)); ++y)
+      for (std::size_t x = clamped(low.x); x < clamped(std::ceil(high.x)); ++x) {
+        const glm::dvec2 at = (glm::dvec2(static_cast<double>(x), static_cast<double>(y)) + 0.5) / side;
+        const double b = crossOf(at - corners[0], corners[2] - corners[0]) / area,
+                     c = crossOf(corners[1] - corners[0], at - corners[0]) / area;
+        if (!(b > kInside && c > kInside && 1.0 - b - c > kInside)) continue;
+        std::uint8_t& covered = covered_[y * side_ + x];
+        again |= covered != 0;
+        covered = 1;
+      }
+    return again;
+  }
+
+ private:
+  std::size_t side_;
+  std::vector<std::uint8_t> covered_;
+};
+
+}  // namespace
+
+void checkTextureTransfer(const Object& owner) {
+  const nlohmann::json* ours = oursIn(owner.json);
+  if (ours == nullptr || !ours->contains(kKey)) return;
+  const nlohmann::json& value = (*ours)[kKey];
+  const std::uint64_t texels = value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
+  if (texels < kLeastTexels || texels > kMostTexels || !std::has_single_bit(texels))
+    throw BrokenField{fmt::format("{}: extras: lambent: {} is {}, not a power of two from {} to {}",
+                                  owner.name, kKey, value.dump(), kLeastTexels, kMostTexels),
+                      "correct it, or leave it out for transfer at vertices"};
+}
+
+std::uint32_t textureTransferOf(const nlohmann::json& mesh, const nlohmann::json& primitive) {
+  for (const nlohmann::json* owner : {&primitive, &mesh})
+    if (const nlohmann::json* ours = oursIn(*owner); ours != nullptr && ours->contains(kKey))
+      return (*ours)[kKey].get<std::uint32_t>();
+  return 0;
+}
+
+std::string faultOfCharts(const bundle::MeshData& mesh, std::uint32_t set, std::uint32_t texels) {
+  const std::vector<glm::vec2>& coordinates = set == 1 ? mesh.texcoords1 : mesh.texcoords0;
+  for (const glm::vec2& at : coordinates)
+    if (!(at.x >= -kSlack && at.y >= -kSlack && at.x <= 1.0f + kSlack && at.y <= 1.0f + kSlack))
+      return fmt::format("leaves the texture at ({}, {})", at.x, at.y);
+  Raster raster(2 * texels);
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    Corners corners;
+    for (std::size_t c = 0; c < 3; ++c) corners[c] = glm::dvec2(coordinates[mesh.indices[i + c]]);
+    if (crossOf(corners[1] - corners[0], corners[2] - corners[0]) == 0.0)
+      return fmt::format("has no area in triangle {}", i / 3);
+    if (raster.cover(corners))
+      return fmt::format("overlaps: triangle {} lies on others in the texture", i / 3);
+  }
+  return {};
+}
+
+void giveTexels(std::uint32_t texels, const std::string& name, ScenePrimitive& primitive,
+                std::vector<std::string>& warnings) {
+  const auto keepVertices = [&](const std::string& why) {
+    warnings.push_back(
+        fmt::format("{}: {}, so {} is left out and it keeps transfer at vertices; unwrap it "
+                    "without overlaps into TEXCOORD_1",
+                    name, why, kKey));
+  };
+  const std::uint32_t set = primitive.mesh.texcoords1.empty() ? 0 : 1;
+  if (set == 0 && primitive.mesh.texcoords0.empty()) return keepVertices("has no texture coordinates");
+  if (const std::string fault = faultOfCharts(primitive.mesh, set, texels); !fault.empty())
+    return keepVertices(fmt::format("TEXCOORD_{} {}", set, fault));
+  primitive.texels = texels;
+  primitive.texel_set = set;
+}
+
+}  // namespace lambent::baker
