@@ -42,7 +42,7 @@ class Sums {
     sums.light += square(shown.exact, {});
     sums.all += square(shown.codes, shown.exact) - noise_of_exact_ * noise;
     sums.codes += square(shown.codes, shown.fields);
-    sums.samples += double{squared_shares} * (1.0 - noise_of_exact_) * noise;
+    sums.samples += squared_shares * (1.0 - noise_of_exact_) * noise;
     ++sums.points;
   }
 
