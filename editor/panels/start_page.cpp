@@ -42,14 +42,21 @@ void drawFiles(Session& session, Marks& marks, const char* title, std::vector<st
 
 void drawStartPage(Session& session, Marks& marks) {
   const float width = std::min(em(kWidthEms), 0.9f * ImGui::GetWindowWidth());
-  ImGui::SetCursorPos(
-      ImVec2(0.5f * (ImGui::GetWindowWidth() - width), std::max(em(1.0f), 0.12f * ImGui::GetWindowHeight())));
-  ImGui::BeginChild("start", ImVec2(width, 0.0f));
-  ImGui::TextWrapped(
-      "Lambent bakes how a scene carries light, once; then any light can move in it at once.\n"
-      "Drop a glTF scene (.gltf, .glb) here: it shows at once, and gets shadows and bounces while it bakes.\n"
-      "Then turn the sky, add lamps, edit materials, and save it all as a world.");
-  ImGui::Spacing();
+  const float above = std::max(em(1.0f), 0.12f * ImGui::GetWindowHeight());
+  ImGui::SetCursorPos(ImVec2(0.5f * (ImGui::GetWindowWidth() - width), above));
+  // The view may be of any brightness, so the page has a ground of its own.
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, ImGui::GetStyleColorVec4(ImGuiCol_WindowBg));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(em(1.0f), em(0.75f)));
+  ImGui::BeginChild("start", ImVec2(width, ImGui::GetWindowHeight() - 2.0f * above), false,
+                    ImGuiWindowFlags_AlwaysUseWindowPadding);
+  for (const char* line :
+       {"Lambent bakes how a scene carries light, once; then any light can move in it at once.",
+        "Drop a glTF scene (.gltf, .glb) here: it shows at once, and gets shadows and bounces while it "
+        "bakes.",
+        "Then turn the sky, add lamps, edit materials, and save it all as a world."}) {
+    ImGui::TextWrapped("%s", line);
+    ImGui::Spacing();
+  }
   if (ImGui::Button("Open...")) open(session, {});
   marks.put("start.open");
   drawFiles(session, marks, "Recent", session.preferences.recent);
@@ -57,6 +64,8 @@ void drawStartPage(Session& session, Marks& marks) {
   for (const std::filesystem::path& scene : sampleScenes()) samples.push_back(scene.string());
   drawFiles(session, marks, "Samples", samples);
   ImGui::EndChild();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
 }
 
 }  // namespace lambent::editor

@@ -298,7 +298,8 @@ TEST_F(Bake, NamesTheOptionThatIsWrong) {
   };
   refused([](BakeOptions& o) { o.order = 0; }, "--order");
   refused([](BakeOptions& o) { o.rays = 3; }, "--rays");
-  refused([](BakeOptions& o) { o.error_bound = 2.0f; }, "--error");
+  refused([](BakeOptions& o) { o.error_bound = 2.0f; }, "--codes");
+  refused([](BakeOptions& o) { o.picture_bound = 2.0f; }, "--error");
   refused([](BakeOptions& o) { o.max_edge_m = -1.0f; }, "--max-edge");
   refused([](BakeOptions& o) { o.light_probes = 33; }, "--light-probes");
   refused([](BakeOptions& o) { o.effects = "diffuse,smell"; }, "--effects");

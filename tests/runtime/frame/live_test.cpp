@@ -227,7 +227,7 @@ TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
   EXPECT_EQ(stage.reason("transforms"), "a group moved");
   stage.set("window", "hann");
   stage.render();
-  EXPECT_EQ(stage.reason("shade"), "window: hann");
+  EXPECT_EQ(stage.reason("shade"), "ringing suppression: hann");
   stage.set("exposure", "1");
   stage.render();
   EXPECT_EQ(stage.reason("shade"), "");
