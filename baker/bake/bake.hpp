@@ -71,7 +71,7 @@ struct BakeReport {
   };
   std::vector<Neighborhood> neighborhoods;
   RefineReport refinement;
-  // What was chosen to keep BakeOptions::picture_bound, and at which try; 0 tries: nothing was to be chosen.
+  // These keep BakeOptions::picture_bound, and were found after so many tries; 0: nothing was to be chosen.
   PictureSettings chosen;
   int tries = 0;
   struct Volume {

@@ -22,7 +22,8 @@ using namespace typed_options;
 
 using B = BakeOptions;
 
-// What a bound on pictures chooses is recorded as "auto": the bundle says of each group what was chosen.
+// Settings that a bound on pictures chooses are recorded as "auto"; the bundle says of each group which they
+// are.
 std::string recordRays(const BakeOptions& o) {
   return o.picture_bound > 0.0f && o.rays == 0 ? "auto" : fmt::format("{}", o.effectiveRays());
 }

@@ -26,8 +26,9 @@ struct BakeOptions {
   // Bounces between surfaces. -1: as many as the error bound asks for. 0: direct light with shadows, and only
   // single scattering in volumes; any other value computes all scattering there.
   int bounces = -1;
-  // Of pictures of diffuse surfaces, relative RMS: by rays, interpolation and codes together. The bake
-  // chooses those of the three that are not given (picture_budget.hpp). 0: they are as the quality says.
+  // Bounds the error of pictures of diffuse surfaces, relative RMS, by rays, interpolation and codes
+  // together. The bake chooses those of the three that are not given (picture_budget.hpp). 0: they are as the
+  // quality says.
   float picture_bound = 0.0f;
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: as picture_bound or the quality says
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: no limit
@@ -48,7 +49,7 @@ struct BakeOptions {
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // limit on what passes keep in memory; 0: half of the machine's
 
-  // Where picture_bound chooses, these are what the first try begins with.
+  // The first try begins with these if picture_bound chooses.
   std::size_t effectiveRays() const;
   float effectiveErrorBound() const;
   // Returns the bound for glossy transfer, which takes more bytes: error_bound if it is set, else a share of
@@ -67,7 +68,7 @@ struct BakeOptions {
   bool fitsDiffuse() const;
   bool fitsGlossy() const;
   // Limits on refinement: the factor on the number of vertices, and the number of vertices added beyond that.
-  // With picture_bound they are those of high quality.
+  // They are those of high quality if picture_bound is set.
   double refineGrowth() const;
   std::size_t refineAdded() const;
   double refineWedges() const;  // fans at glossy vertices, relative to the number of vertices

@@ -57,7 +57,7 @@ std::optional<PictureSettings> nextTry(const PictureTry& tried, float picture_bo
     interpolation *= shrink;
   }
   if (!keeps_rays) {
-    // Where vertices alone miss the bound, more rays take little of the error away.
+    // More rays take little of the error away if vertices alone miss the bound.
     const double noise =
         std::sqrt(std::max(light * light - interpolation * interpolation,
                            0.25 * std::max(light, interpolation) * std::max(light, interpolation)));

@@ -22,7 +22,7 @@ constexpr double kLeastLight = 1.0 / 400.0;
 // Collects what of the light at points is wrong. A vector holds the coefficients of red, green and blue.
 class Sums {
  public:
-  // Of the squared difference between few and many rays, `noise_of_exact` is noise of the many.
+  // `noise_of_exact` is the share of the squared difference between few and many rays that the many make.
   Sums(int order, std::size_t eyes, double noise_of_exact)
       : coefficients_(static_cast<std::size_t>(sh::coefficientCount(order))),
         noise_of_exact_(noise_of_exact),

@@ -44,7 +44,7 @@ struct BakedVertices {
   const TransferField& direct;
   const TransferField* bounced;
   std::span<const TransferField> bounced_at_points;
-  // As in SurfaceCells. Null: codes do not count, as if they were exact.
+  // These are SurfaceCells::cells. If null, codes do not count, as if they were exact.
   const std::vector<std::vector<CodedTransfer>>* cells;
 };
 

@@ -60,17 +60,11 @@ std::vector<InnerPoint> innerPoints(int n) {
   return points;
 }
 
-struct Facing {
-  glm::vec3 normal;  // unit, or 0 for a triangle without area
-  float area;
-};
-
-Facing facingOf(const GroupGeometry& geometry, std::uint32_t triangle) {
-  const glm::uvec3 t = geometry.triangles[triangle];
-  const glm::vec3 p = geometry.positions[t.x];
-  const glm::vec3 cross = glm::cross(geometry.positions[t.y] - p, geometry.positions[t.z] - p);
-  const float length = glm::length(cross);
-  return {length > 0.0f ? cross / length : glm::vec3(0.0f), 0.5f * length};
+// Returns a unit normal, or 0 for a triangle without area.
+glm::vec3 unitNormal(const GroupGeometry& geometry, std::uint32_t triangle) {
+  const glm::vec3 normal = areaNormal(geometry, geometry.triangles[triangle]);
+  const float length = glm::length(normal);
+  return length > 0.0f ? normal / length : glm::vec3(0.0f);
 }
 
 // Returns all numbers below `count`.
@@ -108,7 +102,7 @@ void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene, co
   diagonal_ = glm::distance(geometry.bounds_min, geometry.bounds_max);
   scene_normals_.clear();
   for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t)
-    scene_normals_.push_back(facingOf(geometry, t).normal);
+    scene_normals_.push_back(unitNormal(geometry, t));
   KeyMaker key = KeyMaker::ofStage("refinement probes");
   addShape(geometry, key);
   addOpacity(scene, geometry, key);
@@ -317,8 +311,9 @@ Result<std::vector<float>> GroupRefiner::cutsOf(const GroupGeometry& geometry, s
   std::vector<RaySegment> ways;
   for (const Edge& edge : list) {
     const glm::vec3 a = geometry.positions[edge.a], b = geometry.positions[edge.b];
-    const Facing face = facingOf(geometry, edge.triangle);
-    const glm::vec3 off = standOff(a, std::sqrt(face.area)) * face.normal, along = glm::normalize(b - a);
+    const auto area = static_cast<float>(triangleArea(geometry, geometry.triangles[edge.triangle]));
+    const glm::vec3 off = standOff(a, std::sqrt(area)) * unitNormal(geometry, edge.triangle),
+                    along = glm::normalize(b - a);
     ways.push_back({a + off, along, glm::distance(a, b)});
     ways.push_back({b + off, -along, glm::distance(a, b)});
   }

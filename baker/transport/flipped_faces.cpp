@@ -4,6 +4,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "baker/transport/sample_areas.hpp"
+
 namespace lambent::baker {
 
 namespace {
@@ -21,9 +23,7 @@ std::vector<std::uint8_t> findFlippedFaces(const GroupGeometry& geometry) {
     double area = 0.0, folded = 0.0;
     for (std::uint32_t t = draw.first_triangle; t < draw.first_triangle + draw.triangle_count; ++t) {
       const glm::uvec3& corners = geometry.triangles[t];
-      const glm::vec3 a = geometry.positions[corners.x];
-      const glm::vec3 normal =
-          glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a);
+      const glm::vec3 normal = areaNormal(geometry, corners);
       int against = 0;
       for (int c = 0; c < 3; ++c) against += glm::dot(normal, geometry.normals[corners[c]]) < 0.0f;
       flipped_faces[t] = against >= 2;

@@ -6,10 +6,13 @@
 
 namespace lambent::baker {
 
-double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners) {
+glm::vec3 areaNormal(const GroupGeometry& geometry, const glm::uvec3& corners) {
   const glm::vec3 a = geometry.positions[corners.x];
-  return 0.5 * double{glm::length(
-                   glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a))};
+  return glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a);
+}
+
+double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners) {
+  return 0.5 * double{glm::length(areaNormal(geometry, corners))};
 }
 
 float longestEdge(const GroupGeometry& geometry, const glm::uvec3& corners) {

@@ -8,6 +8,8 @@
 
 namespace lambent::baker {
 
+// Returns a normal that is twice the triangle's area long, in square metres.
+glm::vec3 areaNormal(const GroupGeometry& geometry, const glm::uvec3& corners);
 // Returns square metres.
 double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners);
 // Returns metres.

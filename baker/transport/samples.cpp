@@ -199,10 +199,7 @@ void findOrigins(const GroupGeometry& geometry, std::span<const TexelPoint> texe
 
   std::vector<std::uint8_t> faces_up(samples.size(), 0);  // 1 if any face agrees with the sample's normal
   for (const Corner& corner : corners) {
-    const glm::uvec3 triangle = geometry.triangles[corner.triangle];
-    const glm::vec3 p = geometry.positions[triangle.x];
-    const glm::vec3 area_normal =
-        glm::cross(geometry.positions[triangle.y] - p, geometry.positions[triangle.z] - p);
+    const glm::vec3 area_normal = areaNormal(geometry, geometry.triangles[corner.triangle]);
     if (glm::dot(area_normal, samples.normals[corner.sample]) > 0.0f) faces_up[corner.sample] = 1;
   }
   for (const Corner& corner : corners) {

@@ -68,6 +68,7 @@ Answer forget(Session& session, Words words) {
 bool anyUnfinished(const Session& session) {
   return !session.scenes.unfinished().empty();
 }
+
 bool baking(const Session& session) {
   return session.scenes.busy();
 }

@@ -41,6 +41,8 @@ const Command* findCommand(std::string_view id);
 // Runs the command. Errors: it does not exist, is not enabled, takes another number of words, or failed.
 // Nothing is thrown.
 Result<nlohmann::json> runCommand(Session& session, std::string_view id, Words words);
+// Runs the command for a widget: errors go to the log, and the answer is dropped.
+void runOrLog(Session& session, std::string_view id, Words words);
 
 // Holds a shortcut such as "Ctrl+Shift+S".
 struct Shortcut {

@@ -40,4 +40,8 @@ Result<nlohmann::json> runCommand(Session& session, std::string_view id, Words w
   }
 }
 
+void runOrLog(Session& session, std::string_view id, Words words) {
+  if (const auto done = runCommand(session, id, words); !done) session.log.error(done.error());
+}
+
 }  // namespace lambent::editor

@@ -12,7 +12,6 @@
 #include "runtime/scene/reflection.hpp"
 
 namespace lambent::editor {
-namespace {
 
 std::string lower(std::string_view text) {
   std::string low(text);
@@ -20,6 +19,8 @@ std::string lower(std::string_view text) {
   for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return low;
 }
+
+namespace {
 
 // Returns the bundle that an entity belongs to, by its number in the running program.
 std::optional<std::uint32_t> bundleOf(const ecs::Registry& registry, ecs::Entity entity) {

@@ -61,7 +61,7 @@ void drawSetting(Session& session, Marks& marks, const frame::SettingRow& row) {
   if (changed && to != value) {
     row.put(settings, to);
     const std::array words = {std::string(row.name), frame::settingWord(row, settings)};
-    if (auto done = runCommand(session, "setting", words); !done) session.log.error(done.error());
+    runOrLog(session, "setting", words);
   }
   if (ImGui::IsItemDeactivated()) session.history.endDrag();
 }

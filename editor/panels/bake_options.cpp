@@ -60,7 +60,7 @@ void drawBakeOptions(Session& session, Marks& marks, std::size_t scene) {
     ImGui::TableNextColumn();
     if (editWord(marks, row, "bake-option." + name, word)) {
       const std::array words = {name, word, std::to_string(scene)};
-      if (auto done = runCommand(session, "bake-option", words); !done) session.log.error(done.error());
+      runOrLog(session, "bake-option", words);
     }
     ImGui::PopID();
   }

@@ -16,10 +16,6 @@ namespace lambent::editor {
 
 namespace {
 
-void report(Session& session, const Result<nlohmann::json>& done) {
-  if (!done) session.log.error(done.error());
-}
-
 std::string stageText(const baker::JobState& job) {
   if (job.stage.name.empty()) return {};
   std::string text = fmt::format(
@@ -79,11 +75,11 @@ bool drawButtons(Session& session, Marks& marks, std::size_t i, bool working) {
   const SceneEntry& entry = session.scenes.entries()[i];
   const std::string number = std::to_string(i), mark = fmt::format("bakes.{}.", entry.id);
   if (working) {
-    if (ImGui::SmallButton("Cancel")) report(session, runCommand(session, "cancel", std::array{number}));
+    if (ImGui::SmallButton("Cancel")) runOrLog(session, "cancel", std::array{number});
     marks.put(mark + "cancel");
     ImGui::SameLine();
   } else if (!entry.source.empty()) {
-    if (ImGui::SmallButton("Bake")) report(session, runCommand(session, "bake", std::array{number}));
+    if (ImGui::SmallButton("Bake")) runOrLog(session, "bake", std::array{number});
     marks.put(mark + "bake");
     ImGui::SameLine();
   }
@@ -98,7 +94,7 @@ bool drawButtons(Session& session, Marks& marks, std::size_t i, bool working) {
   }
   const bool close = ImGui::SmallButton("Close");
   marks.put(mark + "close");
-  if (close) report(session, runCommand(session, "close", std::array{number}));
+  if (close) runOrLog(session, "close", std::array{number});
   return !close;
 }
 
@@ -142,8 +138,7 @@ void drawUnseen(Session& session, Marks& marks, const baker::JobState& job) {
     marks.put(mark + "cancel");
     ImGui::SameLine();
   }
-  if (ImGui::SmallButton("Open"))
-    report(session, runCommand(session, "open", std::array{job.request.scene.string()}));
+  if (ImGui::SmallButton("Open")) runOrLog(session, "open", std::array{job.request.scene.string()});
   marks.put(mark + "open");
 }
 
@@ -171,9 +166,9 @@ bool drawUnfinished(Session& session, Marks& marks, std::size_t i) {
   tooltip("Offer it no more; what it kept stays in the cache");
   marks.put(mark + "forget");
   const std::string number = std::to_string(i);
-  if (go_on) report(session, runCommand(session, "go-on", std::array{number}));
-  if (open) report(session, runCommand(session, "open", std::array{scene.string()}));
-  if (forget) report(session, runCommand(session, "forget", std::array{number}));
+  if (go_on) runOrLog(session, "go-on", std::array{number});
+  if (open) runOrLog(session, "open", std::array{scene.string()});
+  if (forget) runOrLog(session, "forget", std::array{number});
   return !go_on && !open && !forget;
 }
 

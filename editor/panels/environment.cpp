@@ -20,7 +20,7 @@ constexpr float kLabelEms = 5.0f;  // room for the labels behind widgets
 
 void run(Session& session, const char* command, std::initializer_list<std::string> words) {
   const std::vector<std::string> list(words);
-  if (auto done = runCommand(session, command, list); !done) session.log.error(done.error());
+  runOrLog(session, command, list);
 }
 
 void setWord(Session& session, std::size_t index, std::string word) {

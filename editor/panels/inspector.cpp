@@ -81,8 +81,7 @@ void drawRebake(Session& session, Marks& marks, std::size_t entry, const std::ve
   ImGui::TextUnformatted("Needs a rebake");
   ImGui::PopStyleColor();
   if (ImGui::Button("Bake with these edits", ImVec2(-1.0f, 0.0f)))
-    if (auto done = runCommand(session, "bake", std::array{std::to_string(entry)}); !done)
-      session.log.error(done.error());
+    runOrLog(session, "bake", std::array{std::to_string(entry)});
   marks.put("inspector.rebake");
   ImGui::BeginChild("reasons");
   for (const std::string& reason : reasons) {

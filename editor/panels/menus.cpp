@@ -18,10 +18,6 @@ namespace lambent::editor {
 
 namespace {
 
-void report(Session& session, const Result<nlohmann::json>& done) {
-  if (!done) session.log.error(done.error());
-}
-
 // Returns the command's title; of undo and redo, what they would change.
 std::string titleOf(const Session& session, const Command& command) {
   if (std::strcmp(command.id, "undo") == 0) return session.history.undoName();
@@ -65,14 +61,14 @@ void runShortcuts(Session& session) {
       continue;
     }
     if (command.enabled && !command.enabled(session)) continue;
-    report(session, runCommand(session, command.id, {}));
+    runOrLog(session, command.id, {});
   }
 }
 
 void drawRecent(Session& session, Marks& marks) {
   if (!ImGui::BeginMenu("Recent", !session.preferences.recent.empty())) return;
   for (const std::string& file : std::vector(session.preferences.recent))
-    if (ImGui::MenuItem(file.c_str())) report(session, runCommand(session, "open", std::array{file}));
+    if (ImGui::MenuItem(file.c_str())) runOrLog(session, "open", std::array{file});
   ImGui::EndMenu();
   marks.put("menu.recent");
 }
@@ -108,8 +104,7 @@ void drawStatus(Session& session, Marks& marks) {
 }  // namespace
 
 void drawMenus(Session& session, Marks& marks) {
-  for (const std::string& id : std::exchange(session.window.wanted_commands, {}))
-    report(session, runCommand(session, id, {}));
+  for (const std::string& id : std::exchange(session.window.wanted_commands, {})) runOrLog(session, id, {});
   runShortcuts(session);
   if (!ImGui::BeginMainMenuBar()) return;
   constexpr std::array kMenus = {"File", "Edit", "Create", "View", "Bake", "Help"};

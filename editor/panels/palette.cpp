@@ -1,6 +1,5 @@
 // Draws the command palette: a line of words, and the commands that have all of them in their names or help.
 #include <algorithm>
-#include <cctype>
 #include <sstream>
 
 #include <imgui.h>
@@ -8,18 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
+#include "editor/document/tree.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
 namespace {
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 bool matches(const Command& command, const std::string& words) {
   const std::string text =
@@ -33,7 +27,7 @@ bool matches(const Command& command, const std::string& words) {
 void run(Session& session, const Command& command) {
   session.window.palette = false;
   ImGui::CloseCurrentPopup();
-  if (auto done = runCommand(session, command.id, {}); !done) session.log.error(done.error());
+  runOrLog(session, command.id, {});
 }
 
 }  // namespace

@@ -20,8 +20,7 @@ constexpr std::array kItems = {"frame", "rename", "duplicate", "delete",    "",
 void drawItem(Session& session, Marks& marks, const Command& command) {
   const bool enabled = !command.enabled || command.enabled(session);
   const bool checked = command.checked && command.checked(session);
-  if (ImGui::MenuItem(command.title, command.shortcut, checked, enabled))
-    if (auto done = runCommand(session, command.id, {}); !done) session.log.error(done.error());
+  if (ImGui::MenuItem(command.title, command.shortcut, checked, enabled)) runOrLog(session, command.id, {});
   marks.put(std::string("context.") + command.id);
   tooltip(command.help);
 }

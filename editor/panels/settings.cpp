@@ -18,7 +18,7 @@ namespace {
 
 void put(Session& session, const frame::SettingRow& row, const frame::FrameSettings& settings) {
   const std::array words = {std::string(row.name), frame::settingWord(row, settings)};
-  if (auto done = runCommand(session, "setting", words); !done) session.log.error(done.error());
+  runOrLog(session, "setting", words);
 }
 
 std::string capitalized(std::string_view label) {
@@ -86,9 +86,7 @@ void drawQuality(Session& session, Marks& marks) {
   if (open) {
     for (const std::string_view name : frame::qualityNames()) {
       const std::string word(name);
-      if (ImGui::Selectable(word.c_str(), word == now))
-        if (auto done = runCommand(session, "quality", std::array{word}); !done)
-          session.log.error(done.error());
+      if (ImGui::Selectable(word.c_str(), word == now)) runOrLog(session, "quality", std::array{word});
       marks.put("quality." + word);
     }
     ImGui::EndCombo();

@@ -18,10 +18,6 @@ namespace {
 constexpr float kWidthEms = 30.0f;
 constexpr std::size_t kMostShown = 6;
 
-void open(Session& session, Words words) {
-  if (auto done = runCommand(session, "open", words); !done) session.log.error(done.error());
-}
-
 // Draws a list of files; a click opens one.
 void drawFiles(Session& session, Marks& marks, const char* title, std::vector<std::string> files) {
   if (files.empty()) return;
@@ -34,7 +30,7 @@ void drawFiles(Session& session, Marks& marks, const char* title, std::vector<st
     ImGui::PopID();
     marks.put(fmt::format("start.{}", name));
     tooltip(files[i]);
-    if (clicked) open(session, std::array{files[i]});
+    if (clicked) runOrLog(session, "open", std::array{files[i]});
   }
 }
 
@@ -57,7 +53,7 @@ void drawStartPage(Session& session, Marks& marks) {
     ImGui::TextWrapped("%s", line);
     ImGui::Spacing();
   }
-  if (ImGui::Button("Open...")) open(session, {});
+  if (ImGui::Button("Open...")) runOrLog(session, "open", {});
   marks.put("start.open");
   drawFiles(session, marks, "Recent", session.preferences.recent);
   std::vector<std::string> samples;

@@ -111,7 +111,7 @@ Result<transfer::VertexWeights> Reader::readRows(std::uint32_t index) const {
   if (!bytes) return failAgain(bytes.error());
   auto rows = transfer::decodeRows(*bytes, rowCount(description(), draw), group.sample_count, subject);
   if (!rows) return rows;
-  const std::size_t vertices = rowCount(description(), draw) - draw.texels * draw.texels;
+  const std::size_t vertices = description().meshes[draw.mesh].primitives[draw.primitive].vertex_count;
   for (std::size_t row = vertices; row + 1 < rows->offsets.size(); ++row)
     if (rows->offsets[row + 1] != rows->offsets[row] + 1)
       return fail(subject, "has texels of none or several samples", "bake it again");
