@@ -206,29 +206,18 @@ class ExitToSample {
   std::uint32_t seed_ = 0;
 };
 
-// If a sample has more hits than this, thinning keeps those of every kThinned-th ray.
-inline constexpr std::size_t kHitsToThin = 64;
+// Late passes gather over every kThinned-th hit, others in each bounce.
 inline constexpr std::uint32_t kThinned = 4;
 
-// Keeps the hits of every kThinned-th ray, others in each bounce. Rays lie along a Hilbert curve, so the kept
-// ones are spread as evenly. Makes `hits` refer to the kept ones, which are stored in `out`. Returns the
-// factor on their weights that makes them stand for all, so that no light is lost or gained: a white furnace
-// stays white.
+// Makes `hits` refer to the kept ones, which are stored in `out`. Returns the factor on their weights.
 template <typename Rays>
 float thinHits(int bounce, const Rays& rays, std::span<const GatherHit>& hits, std::vector<GatherHit>& out) {
-  if (hits.size() <= kHitsToThin) return 1.0f;
   out.clear();
-  double all = 0.0, kept = 0.0;
-  for (const GatherHit& hit : hits) {
-    const double weight = rays.weight(hit.ray);
-    all += weight;
-    if (hit.ray % kThinned != static_cast<std::uint32_t>(bounce) % kThinned) continue;
-    kept += weight;
-    out.push_back(hit);
-  }
-  if (out.empty()) return 1.0f;
+  const auto weight_of = [&](std::uint32_t ray) { return rays.weight(ray); };
+  const float scale =
+      keepEvery(kThinned, static_cast<std::uint32_t>(bounce) % kThinned, hits, weight_of, out);
   hits = out;
-  return static_cast<float>(all / kept);
+  return scale;
 }
 
 }  // namespace lambent::baker

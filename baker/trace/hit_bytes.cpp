@@ -44,6 +44,7 @@ void writeHits(const RangeHits& hits, ByteWriter& out) {
     last = hit;
   }
   out.addList(hits.offsets);
+  out.addList(hits.scales);
   out.addList(numbers);
   out.addList(places);
 }
@@ -55,6 +56,7 @@ bool readHits(ByteReader& in, std::size_t samples, std::size_t triangle_count, R
   if (!in.readList(hits.offsets) || hits.offsets.size() != samples + 1 || hits.offsets.front() != 0 ||
       !std::is_sorted(hits.offsets.begin(), hits.offsets.end()))
     return false;
+  if (!in.readList(hits.scales) || (!hits.scales.empty() && hits.scales.size() != samples)) return false;
   if (!in.readList(numbers) || !in.readList(places) || places.size() != 2 * std::size_t{hits.offsets.back()})
     return false;
   hits.hits.reserve(hits.offsets.back());

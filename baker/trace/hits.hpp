@@ -49,10 +49,38 @@ struct MirroredLight {
   }
 };
 
+// A sample that has at most this many hits keeps all of them.
+inline constexpr std::size_t kHitsToThin = 64;
+
+// Appends every n-th hit to `out`, the first of them being hits[first]. Rays lie along a Hilbert curve, so
+// the kept ones are spread as evenly. Returns the factor on their weights that makes them stand for all, so
+// that no light is lost or gained: a white furnace stays white.
+template <typename WeightOfRay>
+float keepEvery(std::uint32_t n, std::uint32_t first, std::span<const GatherHit> hits,
+                const WeightOfRay& weight_of, std::vector<GatherHit>& out) {
+  const bool all_kept = n <= 1 || hits.size() <= kHitsToThin;
+  if (all_kept) {
+    out.insert(out.end(), hits.begin(), hits.end());
+    return 1.0f;
+  }
+  double all = 0.0, kept = 0.0;
+  for (std::size_t h = 0; h < hits.size(); ++h) {
+    const double weight = weight_of(hits[h].ray);
+    all += weight;
+    if (h % n != first) continue;
+    kept += weight;
+    out.push_back(hits[h]);
+  }
+  return kept > 0.0 ? static_cast<float>(all / kept) : 1.0f;
+}
+
 // RangeHits are the hits of one range of samples.
 struct RangeHits {
   std::vector<std::uint32_t> offsets;  // index of each sample's first hit, then the number of hits
   std::vector<GatherHit> hits;
+  // Factor on the weights of each sample's hits, and of what they found by way of mirrors (keepEvery). It is
+  // empty if all hits were kept.
+  std::vector<float> scales;
   // The same for light that came by way of mirrors; both are empty if there is none.
   std::vector<std::uint32_t> mirrored_offsets;
   std::vector<MirroredLight> mirrored;
@@ -67,6 +95,7 @@ struct RangeHits {
     std::vector<std::uint8_t> double_rays;
     offsets.clear();
     hits.clear();
+    scales.clear();
     for (std::size_t s = begin; s < end; ++s) {
       next();
       walk.look(s);
@@ -84,6 +113,7 @@ struct RangeHits {
   std::span<const GatherHit> of(std::size_t sample) const {
     return std::span(hits).subspan(offsets[sample], offsets[sample + 1] - offsets[sample]);
   }
+  float scaleOf(std::size_t sample) const { return scales.empty() ? 1.0f : scales[sample]; }
   std::span<const MirroredLight> mirroredOf(std::size_t sample) const {
     if (mirrored.empty()) return {};
     return std::span(mirrored).subspan(mirrored_offsets[sample],
@@ -144,6 +174,7 @@ class StoredHits {
   StoredHits& operator=(const StoredHits&) = delete;
 
   std::span<const GatherHit> of(std::size_t sample) const { return hits_->of(sample - first_); }
+  float scaleOf(std::size_t sample) const { return hits_->scaleOf(sample - first_); }
   std::span<const MirroredLight> mirroredOf(std::size_t sample) const {
     return hits_->mirroredOf(sample - first_);
   }

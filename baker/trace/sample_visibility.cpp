@@ -32,12 +32,12 @@ std::uint32_t SampleVisibility::look(const DirectionTable& table, bool wants_hit
   return rays_.traceHits(rays, seen_.blocked > kAskWhatAtOnce, blocked_, hits_);
 }
 
-void SampleVisibility::keepHits(RangeHits& out) const {
+void SampleVisibility::keepHits(std::vector<GatherHit>& out) const {
   for (const RayHit& hit : hits_)
-    out.hits.push_back({.triangle = hit.triangle,
-                        .ray = hit.ray,
-                        .u = GatherHit::unorm(hit.u),
-                        .v = GatherHit::unorm(hit.v)});
+    out.push_back({.triangle = hit.triangle,
+                   .ray = hit.ray,
+                   .u = GatherHit::unorm(hit.u),
+                   .v = GatherHit::unorm(hit.v)});
 }
 
 void paintHits(const TracedScene& scene, std::size_t first, const RayDirection& direction, RangeHits& hits) {

@@ -47,7 +47,7 @@ class SampleVisibility {
   std::span<const RayHit> hits() const { return hits_; }
 
   // Appends the hits to `out`, without colours (paintHits).
-  void keepHits(RangeHits& out) const;
+  void keepHits(std::vector<GatherHit>& out) const;
 
  private:
   const SampleSet& samples_;

@@ -45,7 +45,8 @@ struct Transport {
   Baked bake(int order, std::size_t ray_count, int bounces, double tail_error = 1e-3,
              std::size_t hit_memory = std::size_t{1} << 30) const {
     const baker::TracedScene view = diffuse();
-    const baker::DirectPass pass(view, {order, ray_count, bounces != 0, hit_memory});
+    const baker::DirectPass pass(
+        view, {.order = order, .rays = ray_count, .keep_hits = bounces != 0, .hit_memory = hit_memory});
     baker::Progress progress;
     auto first = baker::bakeDirect(pass, view, {progress});
     EXPECT_TRUE(first.has_value());

@@ -11,11 +11,12 @@
 
 namespace lambent::baker {
 
-// Received are the hits of a sample's rays and the exit radiance towards it; hits are weighted by `scale`.
+// Received are the hits of a sample's rays and the exit radiance towards it. Hits are weighted by `scale`,
+// light by way of mirrors by `scale_mirrored`.
 struct BounceGather::Received {
   std::span<const GatherHit> hits;
   std::span<const MirroredLight> mirrored;
-  float scale;
+  float scale, scale_mirrored;
   const Hemisphere& hemisphere;
   const ExitToSample& exit;
 };
@@ -24,12 +25,13 @@ void BounceGather::visitHits(std::size_t sample, const TakeHit& take) const {
   const Hemisphere& hemisphere = pass_.hemisphereOf(sample, direct_.looks.double_rays[sample] != 0);
   const StoredHits hits(direct_.hits, pass_, sample, sample + 1);
   const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[sample]))));
+  const float scale = hits.scaleOf(sample);
+  const auto weight_of = [&](std::uint32_t ray) {
+    return scale * static_cast<float>(hemisphere.weight(ray));
+  };
   for (const GatherHit& hit : hits.of(sample))
-    take(hit, static_cast<float>(hemisphere.weight(hit.ray)),
-         exit_.albedo(hit, -(frame * hemisphere.direction(hit.ray))));
-  exit_.visitMirrored(
-      hits.mirroredOf(sample), [&](std::uint32_t ray) { return static_cast<float>(hemisphere.weight(ray)); },
-      take);
+    take(hit, weight_of(hit.ray), exit_.albedo(hit, -(frame * hemisphere.direction(hit.ray))));
+  exit_.visitMirrored(hits.mirroredOf(sample), weight_of, take);
 }
 
 void BounceGather::range(const Bounce& bounce, std::size_t begin, std::size_t end, TransferField& now,
@@ -41,8 +43,9 @@ void BounceGather::range(const Bounce& bounce, std::size_t begin, std::size_t en
   for (std::size_t s = begin; s < end; ++s) {
     const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.double_rays[s] != 0);
     const ExitToSample exit(bounce, hemisphere.table(), scene_.samples.normals[s], s);
-    Received received{hits.of(s), hits.mirroredOf(s), 1.0f, hemisphere, exit};
-    if (bounce.thinly) received.scale = thinHits(bounce.number, hemisphere, received.hits, thinned);
+    const float kept = hits.scaleOf(s);
+    Received received{hits.of(s), hits.mirroredOf(s), kept, kept, hemisphere, exit};
+    if (bounce.thinly) received.scale *= thinHits(bounce.number, hemisphere, received.hits, thinned);
     if (s < first_mapped) {
       exit.addAll(
           received.hits,
@@ -50,7 +53,8 @@ void BounceGather::range(const Bounce& bounce, std::size_t begin, std::size_t en
           now.at(s));
       scratch.resize(now.vectorSize());
       for (const MirroredLight& light : received.mirrored)
-        exit.addMirrored(light, static_cast<float>(hemisphere.weight(light.hit.ray)), scratch, now.at(s));
+        exit.addMirrored(light, kept * static_cast<float>(hemisphere.weight(light.hit.ray)), scratch,
+                         now.at(s));
     } else {
       gatherMapped(s, received, now.at(s), mapped.at(s - first_mapped));
     }
@@ -76,7 +80,7 @@ void BounceGather::gatherMapped(std::size_t sample, const Received& received, st
   }
   for (const MirroredLight& light : received.mirrored) {
     if (!received.exit.brings(light)) continue;
-    received.exit.addMirrored(light, 1.0f, scratch, exit);
+    received.exit.addMirrored(light, received.scale_mirrored, scratch, exit);
     addExit(light.hit.ray);
   }
   if (received.hits.empty() && received.mirrored.empty()) return;

@@ -232,9 +232,6 @@ class Passes {
     const SampleSet& points = inside_->faces->points().scene().samples;
     context_.progress.begin(fmt::format("bounce {} inside faces", bounce.number), points.size(), "samples");
     TransferField there = now.zeros(points.size());
-    // Neighbours even out the noise of fewer rays.
-    Bounce thinned = bounce;
-    thinned.thinly = true;
     const auto first_mapped = static_cast<std::ptrdiff_t>(points.normal_mapped.begin);
     return runStage({.count = points.size(),
                      .grain = kSamplesGathered,
@@ -242,7 +239,7 @@ class Passes {
                                 rowsOf(inside_->mapped.vectors, inside_->mapped.vectorSize(), -first_mapped)},
                      .compute =
                          [&](std::size_t begin, std::size_t end) {
-                           inside_->gather.range(thinned, begin, end, there, inside_->mapped);
+                           inside_->gather.range(bounce, begin, end, there, inside_->mapped);
                          }},
                     context)
                .has_value() &&

@@ -71,7 +71,13 @@ class DirectPass::Walk {
     if (!incident.empty()) turnIncident(incident);
   }
 
-  void keepHits(RangeHits& out) const { look_.keepHits(out); }
+  void keepHits(RangeHits& out) {
+    hits_.clear();
+    look_.keepHits(hits_);
+    const std::uint32_t every = pass_.settings_.hits_of_every * (look_.double_rays() ? 2 : 1);
+    const auto weight_of = [this](std::uint32_t ray) { return hemisphere_->weight(ray); };
+    out.scales.push_back(keepEvery(every, 0, hits_, weight_of, out.hits));
+  }
 
  private:
   // Computes the environment's columns of the nine values; their outputs are still in the sample's frame.
@@ -111,6 +117,7 @@ class DirectPass::Walk {
   sh::Rotation group_from_local_, incident_from_local_;
   const Hemisphere* hemisphere_ = nullptr;
   std::vector<float> local_, incident_local_;
+  std::vector<GatherHit> hits_;
 };
 
 DirectPass::DirectPass(const TracedScene& scene, const DirectSettings& settings)

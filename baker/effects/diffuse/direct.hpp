@@ -29,6 +29,9 @@ struct DirectSettings {
   int order = 5;           // 1..8
   std::size_t rays = 512;  // per sample over its hemisphere, at least 128; some samples take twice as many
   bool keep_hits = false;  // keep hits for the bounces
+  // Hits of every n-th ray are kept. Samples that take twice the rays keep them of every 2n-th: they do so
+  // for the edges of what is near, and light that bounces is smooth.
+  std::uint32_t hits_of_every = 1;
   std::size_t hit_memory = 0;    // bytes; hits that do not fit are traced again when they are needed
   bool colored_kernels = false;  // exit kernels of glossy surfaces are coloured: three channels
 };

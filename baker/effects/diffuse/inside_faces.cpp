@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "baker/trace/exit_radiance.hpp"
 #include "baker/transport/sample_areas.hpp"
 
 namespace lambent::baker {
@@ -45,9 +46,11 @@ float shareWithin(std::span<const float> from, std::span<const float> to, std::s
   return share;
 }
 
-// The same rays are traced as at the vertices.
+// The same rays are traced as at the vertices. Bounces gather over a part of them, since neighbours even out
+// the noise of fewer hits.
 DirectSettings settingsInside(DirectSettings settings, std::size_t hit_memory) {
   settings.hit_memory = hit_memory;
+  settings.hits_of_every = kThinned;
   return settings;
 }
 

@@ -121,7 +121,7 @@ class GlossyPass::Walk {
                   {values.subspan(c * outputs * lights), lights});
   }
 
-  void keepHits(RangeHits& out) const { look_.keepHits(out); }
+  void keepHits(RangeHits& out) const { look_.keepHits(out.hits); }
 
  private:
   const GlossyPass& pass_;

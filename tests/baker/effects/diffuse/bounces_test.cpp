@@ -1,6 +1,8 @@
 // Interreflection against closed forms (literature: a sphere's form factors are uniform; furnaces).
 #include "baker/effects/diffuse/bounces.hpp"
 
+#include <glm/ext/matrix_transform.hpp>
+
 #include "baker/jobs/parallel.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
@@ -195,6 +197,33 @@ TEST(Bounces, AreTheSameForAnyMemoryAndNumberOfThreads) {
   EXPECT_EQ(again.direct.hits.bytes(), 0u);
   EXPECT_EQ(kept.bounced.field.vectors, again.bounced.field.vectors);
   withThreads(1, [&] { EXPECT_EQ(t.bake(4, 256, 2).bounced.field.vectors, kept.bounced.field.vectors); });
+}
+
+TEST(Bounces, LoseNoLightByHitsThatAreNotKept) {
+  Scene lit = sceneOf({flipped(icosphere({0, 0, 0}, 1.0f, 3))});  // a white room of radius 1
+  lit.lights.emplace_back();  // a point light
+  gltf::Node lamp;
+  lamp.parent_from_node = glm::translate(glm::mat4(1.0f), glm::vec3(0.4f, 0.1f, 0.0f));
+  lamp.light = 0;
+  lit.roots.push_back(static_cast<std::int32_t>(lit.nodes.size()));
+  lit.nodes.push_back(lamp);
+  const auto bouncesWith = [&](std::uint32_t hits_of_every) {
+    const Transport room(lit);
+    const DirectPass pass(room.diffuse(), {.order = 3,
+                                           .rays = 512,
+                                           .keep_hits = true,
+                                           .hits_of_every = hits_of_every,
+                                           .hit_memory = std::size_t{1} << 30});
+    Progress progress;
+    const auto direct = bakeDirect(pass, room.diffuse(), {progress});
+    const auto bounced = bakeBounces(pass, *direct, room.diffuse(), {3, 1e-3}, {progress});
+    return std::pair(direct->hits.bytes(), surfaceMean(room, bounced->field).back());
+  };
+  const auto [all_bytes, all] = bouncesWith(1);
+  const auto [some_bytes, some] = bouncesWith(4);
+  EXPECT_GT(all, 0.0);
+  EXPECT_NEAR(some, all, 5e-3 * all);
+  EXPECT_LT(some_bytes, 0.26 * static_cast<double>(all_bytes));
 }
 
 TEST(Bounces, EndWhenWhatIsLeftOutIsUnderTheBound) {

@@ -1,0 +1,66 @@
+// Hits that are left out must not take light along, and cached hits must come back whole.
+#include "baker/trace/hits.hpp"
+
+#include <gtest/gtest.h>
+
+#include "baker/trace/hit_bytes.hpp"
+
+namespace lambent::baker {
+namespace {
+
+std::vector<GatherHit> hitsOf(std::size_t count) {
+  std::vector<GatherHit> hits;
+  for (std::uint32_t h = 0; h < count; ++h)
+    hits.push_back({.triangle = h % 7, .ray = 3 * h, .u = static_cast<std::uint16_t>(h), .v = 9});
+  return hits;
+}
+
+double weightOf(std::uint32_t ray) {
+  return 1.0 + 0.01 * ray;
+}
+
+TEST(KeepEvery, KeepsTheWeightOfAllHits) {
+  const std::vector<GatherHit> hits = hitsOf(101);
+  double all = 0.0;
+  for (const GatherHit& hit : hits) all += weightOf(hit.ray);
+  for (const std::uint32_t first : {0u, 1u, 3u}) {
+    std::vector<GatherHit> kept;
+    const float scale = keepEvery(4, first, hits, weightOf, kept);
+    EXPECT_EQ(kept.size(), first == 0 ? 26u : 25u);
+    EXPECT_EQ(kept.front().ray, 3 * first);
+    double sum = 0.0;
+    for (const GatherHit& hit : kept) sum += double{scale} * weightOf(hit.ray);
+    EXPECT_NEAR(sum, all, 1e-5 * all);
+  }
+}
+
+TEST(KeepEvery, KeepsAllHitsOfASampleThatHasFew) {
+  std::vector<GatherHit> kept;
+  EXPECT_EQ(keepEvery(4, 0, hitsOf(kHitsToThin), weightOf, kept), 1.0f);
+  EXPECT_EQ(kept.size(), kHitsToThin);
+}
+
+TEST(HitBytes, BringBackHitsAndTheirScales) {
+  RangeHits hits;
+  hits.next();
+  hits.hits = hitsOf(5);
+  hits.scales = {1.5f, 1.0f};
+  hits.next();
+  hits.next();
+  ByteWriter out;
+  writeHits(hits, out);
+  const std::vector<std::byte> bytes = out.take();
+  RangeHits found;
+  ByteReader in(bytes);
+  ASSERT_TRUE(readHits(in, 2, 7, found));
+  EXPECT_EQ(found.offsets, hits.offsets);
+  EXPECT_EQ(found.scales, hits.scales);
+  ASSERT_EQ(found.hits.size(), 5u);
+  EXPECT_EQ(found.hits[4].ray, 12u);
+  EXPECT_EQ(found.scaleOf(0), 1.5f);
+  ByteReader again(bytes);
+  EXPECT_FALSE(readHits(again, 3, 7, found)) << "a range of other samples";
+}
+
+}  // namespace
+}  // namespace lambent::baker
