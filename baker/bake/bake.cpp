@@ -34,7 +34,7 @@ static_assert(BakeOptions::kMostBounces == kMostBounces);
 constexpr int kMostGlossyOrder = 6;
 constexpr int kMostNeighborhoodOrder = 6;
 // The second look of refinement has so many times the rays of the first.
-constexpr std::size_t kTimesTheRays = 8;
+constexpr std::size_t kTimesTheRays = 4;
 
 Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, const BakeContext& context) {
   context.progress.begin("BRDF tables");

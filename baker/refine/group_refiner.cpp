@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -19,7 +21,8 @@ namespace {
 // A triangle is probed at n² points if its longest edge is n times this share of the group's diagonal.
 constexpr float kProbeSpacing = 1.0f / 32.0f;
 constexpr int kMostProbesAlong = 8;
-constexpr std::size_t kPointsPerRange = 64;  // probed points in one range of work
+constexpr std::size_t kPointsPerRange = 64;     // probed points in one range of work
+constexpr std::uint32_t kUnused = 0xffffffffu;  // a sample of no triangle that is looked at
 // No edge is split if its triangle's longest edge is below this share of the diagonal.
 constexpr float kShortestEdge = 1.0f / 1024.0f;
 // Light is never taken to be less than this share of that of an open point: what bounces brightens the dark.
@@ -30,8 +33,11 @@ constexpr float kSplitShare = 0.6f;
 // the lattice of positions. An edge that begins nearer than this many times as far before it is not cut
 // again.
 constexpr float kBeforeCut = 1.0f / 32768.0f, kLeastCut = 2.0f;
-// Edges longer than this share of the diagonal are halved: light changes on both sides of a cut, too.
+// Edges of bad triangles are cut up to this share of the diagonal.
 constexpr float kLongestCut = 1.0f / 16.0f;
+// Light leaks to a corner that has less than this share of the light of another, if that has at least this
+// share of the light of an open point.
+constexpr float kDarkShare = 0.05f, kLightShare = 0.05f;
 // A round splits triangles until the remaining square error is this share of what is allowed, or this share
 // of all of it if that is more, because what the first splits show decides where the next ones go.
 constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.35;
@@ -72,6 +78,33 @@ std::vector<std::uint32_t> allOf(std::size_t count) {
   std::vector<std::uint32_t> all(count);
   std::iota(all.begin(), all.end(), 0u);
   return all;
+}
+
+// Returns the triangles whose vertices pictures show, which they do not where there are texels.
+std::vector<std::uint32_t> shownTriangles(const GroupGeometry& geometry) {
+  std::vector<std::uint32_t> shown = allOf(geometry.triangles.size());
+  for (const DrawGeometry& draw : geometry.draws)
+    if (draw.texels > 0)
+      std::erase_if(shown, [&](std::uint32_t t) {
+        return t >= draw.first_triangle && t < draw.first_triangle + draw.triangle_count;
+      });
+  return shown;
+}
+
+// Gives samples that cannot be seen the most light of their neighbours, as fill.hpp may, and of theirs.
+void lightUnseen(const GroupGeometry& geometry, const SampleSet& samples,
+                 std::span<const std::uint32_t> triangles, std::span<const std::uint8_t> seen,
+                 std::vector<float>& light) {
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::vector<float> before = light;
+    for (const std::uint32_t t : triangles) {
+      const glm::uvec3 corners = geometry.triangles[t];
+      for (int c = 0; c < 3; ++c)
+        if (const std::uint32_t s = samples.vertex_sample[corners[c]]; seen[s] == 0)
+          for (int k = 1; k < 3; ++k)
+            light[s] = std::max(light[s], before[samples.vertex_sample[corners[(c + k) % 3]]]);
+    }
+  }
 }
 
 std::vector<SampleKind> kindsOf(const SampleSet& samples) {
@@ -135,14 +168,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, double bound, 
     triangle_area_.assign(count, 0.0);
     triangle_lack_.assign(count * 2 * kLackValues, 0.0f);
   }
-  // Pictures do not show vertices where there are texels.
-  std::vector<std::uint32_t> shown = allOf(count);
-  for (const DrawGeometry& draw : geometry.draws)
-    if (draw.texels > 0)
-      std::erase_if(shown, [&](std::uint32_t t) {
-        return t >= draw.first_triangle && t < draw.first_triangle + draw.triangle_count;
-      });
-  const auto by_few = measureBy(few_, geometry, samples, shown, context);
+  const auto by_few = measureBy(few_, geometry, samples, shownTriangles(geometry), context);
   if (!by_few || !*by_few) return by_few;
   const double allowed = bound * bound * seenArea();
   if (!chosen_ && squareError() <= allowed) return true;
@@ -172,7 +198,6 @@ Result<bool> GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& 
                                      const SampleSet& samples, std::span<const std::uint32_t> triangles,
                                      const BakeContext& context) {
   const std::vector<SampleKind> kinds = kindsOf(samples);
-  constexpr std::uint32_t kUnused = 0xffffffffu;
   std::vector<std::uint32_t> of_sample(samples.size(), kUnused);
   std::vector<Inner> inner;
   for (const std::uint32_t t : triangles) {
@@ -296,16 +321,68 @@ Result<std::size_t> GroupRefiner::markWorst(std::size_t group, const GroupGeomet
       --room;
     }
   }
-  const auto cuts = cutsOf(geometry, marked);
+  // Longer edges are halved: light changes on both sides of a cut, too.
+  const auto cuts = cutsOf(geometry, marked, kLongestCut * diagonal_);
   if (!cuts) return failAgain(cuts.error());
   for (std::size_t i = 0; i < marked.size(); ++i)
     if ((*cuts)[i] > 0.0f) edges.splitAt(group, marked[i].a, marked[i].b, (*cuts)[i]);
   return marked.size();
 }
 
+Result<std::optional<std::size_t>> GroupRefiner::markLeaks(std::size_t group, const GroupGeometry& geometry,
+                                                           std::size_t& room, MarkedEdges& edges,
+                                                           const BakeContext& context) {
+  const SampleSet samples = buildSamples(geometry, /*with_texels=*/false);
+  const std::vector<SampleKind> kinds = kindsOf(samples);
+  const std::vector<std::uint32_t> triangles = shownTriangles(geometry);
+  std::vector<std::uint32_t> number(samples.size(), kUnused);
+  for (const std::uint32_t t : triangles)
+    for (int c = 0; c < 3; ++c)
+      if (const std::uint32_t s = samples.vertex_sample[geometry.triangles[t][c]]; number[s] == kUnused)
+        number[s] = few_.numberOf(samples.positions[s], samples.normals[s], kinds[s], samples.originsOf(s));
+  if (const auto probed = few_.probe(*scene_, context); !probed)
+    return failAgain(probed.error());
+  else if (!*probed)
+    return std::nullopt;
+  std::vector<float> light(samples.size(), 0.0f);
+  std::vector<std::uint8_t> seen(samples.size(), 0);
+  const auto lookAt = [&](std::size_t s) {
+    if (number[s] == kUnused || !few_.seen(number[s])) return;
+    seen[s] = 1;
+    light[s] = few_.shadowProbe().openShare({few_.masksAt(number[s]), samples.normals[s]});
+  };
+  const bool done =
+      parallelRanges(samples.size(), kPointsPerRange, context.stop, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) lookAt(s);
+      });
+  if (!done) return std::nullopt;
+  lightUnseen(geometry, samples, triangles, seen, light);
+  std::vector<Edge> between;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> met;
+  for (const std::uint32_t t : triangles)
+    for (int c = 0; c < 3; ++c) {
+      std::uint32_t dark = geometry.triangles[t][c], lit = geometry.triangles[t][(c + 1) % 3];
+      if (light[samples.vertex_sample[dark]] > light[samples.vertex_sample[lit]]) std::swap(dark, lit);
+      const std::uint32_t in_dark = samples.vertex_sample[dark], in_light = samples.vertex_sample[lit];
+      if (seen[in_dark] != 0 && light[in_light] > kLightShare &&
+          light[in_dark] < kDarkShare * light[in_light] && met.emplace(std::minmax(dark, lit)).second)
+        between.push_back({dark, lit, t});
+    }
+  const auto cuts = cutsOf(geometry, between, diagonal_);
+  if (!cuts) return failAgain(cuts.error());
+  std::size_t marked = 0;
+  for (std::size_t i = 0; i < between.size() && room > 0; ++i) {
+    if ((*cuts)[i] == 0.0f || !edges.mark(group, between[i].a, between[i].b)) continue;
+    edges.splitAt(group, between[i].a, between[i].b, (*cuts)[i]);
+    ++marked, --room;
+  }
+  return marked;
+}
+
 // A face that another surface cuts is lit on one side of it and dark on the other. No vertex may mix both,
 // and none should stand in the cut: each side gets a vertex of its own, a little before it.
-Result<std::vector<float>> GroupRefiner::cutsOf(const GroupGeometry& geometry, std::span<const Edge> list) {
+Result<std::vector<float>> GroupRefiner::cutsOf(const GroupGeometry& geometry, std::span<const Edge> list,
+                                                float longest) {
   const auto rays = scene_->rays();
   if (!rays) return failAgain(rays.error());
   std::vector<RaySegment> ways;
@@ -324,7 +401,7 @@ Result<std::vector<float>> GroupRefiner::cutsOf(const GroupGeometry& geometry, s
   // 0 if none does: surfaces that touch an end, as walls do the rim of a floor, cut nothing.
   const auto shareBefore = [&](std::size_t way) {
     const auto& [triangle, u, v, distance, back] = hits[way];
-    if (!hits[way].any() || ways[way].length > kLongestCut * diagonal_) return 0.0f;
+    if (!hits[way].any() || ways[way].length > longest) return 0.0f;
     const float steep = std::abs(glm::dot(scene_normals_[triangle], ways[way].direction));
     const bool cuts =
         distance * steep > kLeastCut * before && (ways[way].length - distance) * steep > 0.5f * before;

@@ -53,6 +53,13 @@ class GroupRefiner {
   Result<std::size_t> markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
                                 std::size_t& room, MarkedEdges& edges);
 
+  // Marks edges that another surface cuts between an end in the dark and one in the light, as far as `room`
+  // goes, whatever errors were measured: the inner points of such faces may all lie inside that surface.
+  // Returns how many edges were marked, or nothing when stopped. Errors: no memory for the hierarchy.
+  Result<std::optional<std::size_t>> markLeaks(std::size_t group, const GroupGeometry& geometry,
+                                               std::size_t& room, MarkedEdges& edges,
+                                               const BakeContext& context);
+
   // Appends what interpolation lacked inside the triangles of `draw` when last measured: values of some low
   // bands, and areas, per triangle.
   void addLacks(const DrawGeometry& draw, FaceLacks& lacks) const;
@@ -81,8 +88,8 @@ class GroupRefiner {
     std::uint32_t a, b, triangle;
   };
   // Returns for each edge the share of the way from a to b at which it is split because another surface cuts
-  // it, or 0. Errors: no memory for the hierarchy.
-  Result<std::vector<float>> cutsOf(const GroupGeometry& geometry, std::span<const Edge> list);
+  // it, or 0, also if the way is longer than `longest`. Errors: no memory for the hierarchy.
+  Result<std::vector<float>> cutsOf(const GroupGeometry& geometry, std::span<const Edge> list, float longest);
   void keepLacks(const GroupGeometry& geometry, std::span<const Inner> inner,
                  std::span<const std::uint8_t> seen, std::span<const float> lacks);
 

@@ -1,6 +1,7 @@
 #include "baker/refine/refine.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "baker/jobs/kept_value.hpp"
 #include "baker/refine/add_wedges.hpp"
@@ -17,11 +18,26 @@ namespace {
 // most of what remains after splitting edges can only be reduced by fans, and they cost no triangles.
 constexpr double kFanShare = 0.24;
 
+// Each round of cuts shows where the rest of an edge is cut, seen from its other end.
+constexpr int kMostLeakRounds = 8;
+
 std::size_t countVertices(const std::vector<std::vector<bundle::MeshData>>& meshes) {
   std::size_t count = 0;
   for (const auto& primitives : meshes)
     for (const bundle::MeshData& mesh : primitives) count += mesh.positions.size();
   return count;
+}
+
+std::vector<GroupGeometry> geometriesOf(const RefineScene& from,
+                                        const std::vector<std::vector<bundle::MeshData>>& meshes) {
+  std::vector<GroupGeometry> geometries;
+  for (const RigidGroup& group : from.groups)
+    geometries.push_back(buildGroupGeometry(group, from.scene, meshes, from.with_glossy));
+  return geometries;
+}
+
+tl::unexpected<Error> stopped(const RefineScene& from) {
+  return fail(from.scene.source.string(), "stopped; nothing was written");
 }
 
 // Returns the key of the outcome: of all of the meshes, since splits carry all that they have along.
@@ -81,20 +97,114 @@ bool read(ByteReader& in, Outcome& outcome) {
   return true;
 }
 
+// Splits edges round after round: first those of the worst triangles, until the error is within the bound,
+// then those over which light leaks.
+class Rounds {
+ public:
+  // Everything must outlive it.
+  Rounds(const RefineScene& from, const RefineOptions& options, std::size_t most,
+         std::vector<std::vector<bundle::MeshData>>& meshes, const BakeContext& context, RefineReport& report)
+      : from_(from),
+        options_(options),
+        most_(most),
+        meshes_(meshes),
+        context_(context),
+        report_(report),
+        few_(options.rays),
+        many_(options.many_rays) {
+    for (std::size_t g = 0; g < from.groups.size(); ++g)
+      refiners_.emplace_back(RefineProbes{few_, many_}, options.most_wedges > 0.0);
+  }
+
+  // `geometries` are those of the groups before any split. Errors: stopped; no memory for the hierarchy.
+  Result<void> run(std::vector<GroupGeometry> geometries) {
+    geometries_ = std::move(geometries);
+    for (std::size_t g = 0; g < from_.groups.size(); ++g)
+      if (any(g)) refiners_[g].prepare(geometries_[g], from_.scene, from_.alpha_maps);
+    if (auto measured = measure(); !measured) return measured;
+    report_.error_before = report_.error_after;
+    for (int round = 0; round < options_.rounds && room() > 0; ++round) {
+      const auto marked = split([&](std::size_t g, std::size_t& left, MarkedEdges& edges) {
+        return refiners_[g].markWorst(g, geometries_[g], double{options_.bound}, left, edges);
+      });
+      if (!marked) return failAgain(marked.error());
+      if (*marked == 0) return cutLeaks();
+      if (auto measured = measure(); !measured) return measured;
+    }
+    report_.at_limit = report_.error_after > double{options_.bound};
+    return {};
+  }
+
+  MeasuredGroups groups() const { return {from_.groups, geometries_, refiners_}; }
+
+ private:
+  bool any(std::size_t group) const { return !from_.groups[group].draws.empty(); }
+  std::size_t room() const { return most_ - std::min(most_, countVertices(meshes_)); }
+
+  Result<void> measure() {
+    report_.error_after = 0.0;
+    for (std::size_t g = 0; g < refiners_.size(); ++g) {
+      if (!any(g)) continue;
+      const auto measured = refiners_[g].measure(geometries_[g], double{options_.bound}, context_);
+      if (!measured) return failAgain(measured.error());
+      if (!*measured) return stopped(from_);
+      report_.error_after = std::max(report_.error_after, refiners_[g].relativeError());
+    }
+    return {};
+  }
+
+  // Splits the edges that mark(group, room, edges) marks in each group. Returns how many these were.
+  template <typename Mark>
+  Result<std::size_t> split(const Mark& mark) {
+    MarkedEdges edges(from_.groups, geometries_, meshes_);
+    std::size_t left = room(), marked = 0;
+    for (std::size_t g = 0; g < refiners_.size(); ++g) {
+      if (!any(g)) continue;
+      const Result<std::size_t> more = mark(g, left, edges);
+      if (!more) return failAgain(more.error());
+      marked += *more;
+    }
+    if (marked == 0) return marked;
+    edges.split(meshes_);
+    geometries_ = geometriesOf(from_, meshes_);
+    return marked;
+  }
+
+  Result<void> cutLeaks() {
+    bool cut = false;
+    for (int round = 0; round < kMostLeakRounds; ++round) {
+      const auto marked =
+          split([&](std::size_t g, std::size_t& left, MarkedEdges& edges) -> Result<std::size_t> {
+            const auto more = refiners_[g].markLeaks(g, geometries_[g], left, edges, context_);
+            if (!more) return failAgain(more.error());
+            if (!*more) return stopped(from_);
+            return **more;
+          });
+      if (!marked) return failAgain(marked.error());
+      if (*marked == 0) break;
+      cut = true;
+    }
+    return cut ? measure() : Result<void>();
+  }
+
+  const RefineScene& from_;
+  const RefineOptions& options_;
+  std::size_t most_;
+  std::vector<std::vector<bundle::MeshData>>& meshes_;
+  const BakeContext& context_;
+  RefineReport& report_;
+  ShadowProbe few_, many_;
+  std::vector<GroupRefiner> refiners_;
+  std::vector<GroupGeometry> geometries_;
+};
+
 }  // namespace
 
 Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& options,
                                   std::vector<std::vector<bundle::MeshData>>& meshes,
                                   const BakeContext& context) {
   context.progress.begin("refinement", 0, "probes");
-  const auto& [scene, groups, alpha_maps, with_glossy] = from;
-  std::vector<GroupGeometry> geometries;
-  const auto build = [&] {
-    geometries.clear();
-    for (const RigidGroup& group : from.groups)
-      geometries.push_back(buildGroupGeometry(group, from.scene, meshes, from.with_glossy));
-  };
-  build();
+  std::vector<GroupGeometry> geometries = geometriesOf(from, meshes);
   const BakeContext outcome_context =
       context.keyed(context.cache ? outcomeKey(from, geometries, options, meshes) : Key{});
   RefineReport report;
@@ -110,49 +220,20 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
     report.at_limit = true;
     return report;
   }
-  const ShadowProbe few(options.rays), many(options.many_rays);
-  std::vector<GroupRefiner> refiners;
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    refiners.emplace_back(RefineProbes{few, many}, options.most_wedges > 0.0);
-
-  for (int round = 0;; ++round) {
-    if (round > 0) build();
-    report.error_after = 0.0;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      if (groups[g].draws.empty()) continue;
-      if (round == 0) refiners[g].prepare(geometries[g], scene, alpha_maps);
-      const auto measured = refiners[g].measure(geometries[g], double{options.bound}, context);
-      if (!measured) return failAgain(measured.error());
-      if (!*measured) return fail(scene.source.string(), "stopped; nothing was written");
-      report.error_after = std::max(report.error_after, refiners[g].relativeError());
-    }
-    if (round == 0) report.error_before = report.error_after;
-    report.vertices_after = countVertices(meshes);
-    report.at_limit = report.error_after > double{options.bound} &&
-                      (round == options.rounds || report.vertices_after >= most);
-    if (round == options.rounds || report.vertices_after >= most) break;
-    MarkedEdges edges(groups, geometries, meshes);
-    std::size_t room = most - report.vertices_after, marked = 0;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      if (groups[g].draws.empty()) continue;
-      const auto more = refiners[g].markWorst(g, geometries[g], double{options.bound}, room, edges);
-      if (!more) return failAgain(more.error());
-      marked += *more;
-    }
-    if (marked == 0) break;
-    edges.split(meshes);
-  }
+  Rounds rounds(from, options, most, meshes, context, report);
+  if (auto refined = rounds.run(std::move(geometries)); !refined) return failAgain(refined.error());
+  report.vertices_after = countVertices(meshes);
   const std::size_t most_wedges =
       std::min(static_cast<std::size_t>(options.most_wedges * static_cast<double>(report.vertices_after)),
                options.most_vertices - std::min(options.most_vertices, report.vertices_after));
   if (most_wedges > 0) {
-    const auto fans = addWedges({groups, geometries, refiners},
-                                {kFanShare * double{options.bound}, most_wedges}, meshes, context.stop);
-    if (!fans) return fail(scene.source.string(), "stopped; nothing was written");
+    const auto fans =
+        addWedges(rounds.groups(), {kFanShare * double{options.bound}, most_wedges}, meshes, context.stop);
+    if (!fans) return stopped(from);
     report.fans = *fans;
   }
   report.vertices_after = countVertices(meshes);
-  for (const GroupRefiner& refiner : refiners)
+  for (const GroupRefiner& refiner : rounds.groups().refiners)
     report.rays += refiner.raysTraced(), report.rays_kept += refiner.raysKept();
   keepValue(outcome_context, outcome);
   return report;

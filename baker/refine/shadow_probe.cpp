@@ -173,4 +173,14 @@ double ShadowProbe::squareError(const Difference& difference) {
   return error;
 }
 
+float ShadowProbe::openShare(const HiddenFrom& point) const {
+  float sum = 0.0f;
+  for (std::size_t r = 0; r < directions_.size(); ++r)
+    if ((point.masks[r / kPacketWidth] >> r % kPacketWidth & 1) == 0)
+      sum += std::max(
+          0.0f, glm::dot(point.normal, glm::vec3(directions_.x[r], directions_.y[r], directions_.z[r])));
+  return 4.0f * sum /
+         static_cast<float>(directions_.size());  // the mean over a sphere of an open point is 1/4
+}
+
 }  // namespace lambent::baker

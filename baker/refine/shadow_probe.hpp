@@ -48,6 +48,8 @@ class ShadowProbe {
   // Returns what arrives at a point in the same way: its square is the mean square of the light there.
   Difference arriving(const HiddenFrom& point, SampleKind kind) const;
   static double squareError(const Difference& difference);
+  // Returns the irradiance by uniform light, relative to that of an open point, 0..1.
+  float openShare(const HiddenFrom& point) const;
 
  private:
   // Returns harmonics of a direction, scaled so that the square of their sum over what is wrongly hidden is

@@ -165,6 +165,30 @@ TEST(Refinement, CutsFacesWhereWallsStandOnThem) {
   EXPECT_EQ(on_seam[0], on_seam[1]);
 }
 
+// Walls of 2 cm hide the inner points of the faces that cross them, so no error shows that these bring light
+// in.
+TEST(Refinement, LeavesNoFaceFromTheLightIntoADarkBox) {
+  const glm::vec3 centre(0.07f, 0.25f, -0.31f);
+  const Scene scene =
+      sceneOf({grid({-1, 0, 0}, 2.0f, 1), grid({1, 0, 0}, 2.0f, 1), box(centre, {1.0f, 0.6f, 1.0f}, 1),
+               flipped(box(centre, {0.96f, 0.56f, 0.96f}, 1))});
+  const Refined result = refined(scene, {.bound = 0.02f});
+  double crossing = 0.0;  // length inside of edges that lead outside, m
+  for (std::size_t half = 0; half < 2; ++half) {
+    const bundle::MeshData& floor = result.meshes[half][0];
+    const auto fromCentre = [&](std::size_t corner) {
+      const glm::vec3 p = glm::abs(floor.positions[floor.indices[corner]] - centre);
+      return std::max(p.x, p.z);
+    };
+    for (std::size_t i = 0; i < floor.indices.size(); ++i) {
+      const float from = fromCentre(i), to = fromCentre(i % 3 == 2 ? i - 2 : i + 1);
+      if (std::min(from, to) < 0.48f && std::max(from, to) > 0.5f)
+        crossing += double{0.48f - std::min(from, to)};
+    }
+  }
+  EXPECT_LT(crossing, 0.1);
+}
+
 TEST(Refinement, EndsWithTheVerticesThatItMayAdd) {
   const Refined result = refined(floorUnderSlab(), {.bound = 1e-4f, .most_growth = 1.0, .most_added = 500});
   EXPECT_GT(result.report.vertices_after, result.report.vertices_before + 250);
