@@ -38,7 +38,7 @@ Key outcomeKey(const RefineScene& from, const std::vector<GroupGeometry>& geomet
     for (const bundle::MeshData& mesh : primitives) addMesh(mesh, key);
   }
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    key.add(std::uint64_t{groups[g].draws.size()});
+    key.add(std::uint64_t{groups[g].draws.size()}).add(from.transport[g].shadows);
     for (const PlannedDraw& draw : groups[g].draws)
       key.add(draw.mesh).add(draw.primitive).add(draw.back).add(draw.group_from_mesh);
     addShape(geometries[g], key);
@@ -87,7 +87,8 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
                                   std::vector<std::vector<bundle::MeshData>>& meshes,
                                   const BakeContext& context) {
   context.progress.begin("refinement", 0, "probes");
-  const auto& [scene, groups, alpha_maps, with_glossy] = from;
+  const auto& [scene, groups, transport, alpha_maps, with_glossy] = from;
+  const auto stays = [&](std::size_t g) { return groups[g].draws.empty() || !transport[g].shadows; };
   std::vector<GroupGeometry> geometries;
   const auto build = [&] {
     geometries.clear();
@@ -119,7 +120,7 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
     if (round > 0) build();
     report.error_after = 0.0;
     for (std::size_t g = 0; g < groups.size(); ++g) {
-      if (groups[g].draws.empty()) continue;
+      if (stays(g)) continue;
       if (round == 0) refiners[g].prepare(geometries[g], scene, alpha_maps);
       const auto measured = refiners[g].measure(geometries[g], double{options.bound}, context);
       if (!measured) return failAgain(measured.error());
@@ -134,7 +135,7 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
     MarkedEdges edges(groups, geometries, meshes);
     std::size_t room = most - report.vertices_after, marked = 0;
     for (std::size_t g = 0; g < groups.size(); ++g) {
-      if (groups[g].draws.empty()) continue;
+      if (stays(g)) continue;
       const auto more = refiners[g].markWorst(g, geometries[g], double{options.bound}, room, edges);
       if (!more) return failAgain(more.error());
       marked += *more;
