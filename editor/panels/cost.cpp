@@ -85,6 +85,8 @@ void drawCost(Session& session, Marks& marks) {
   number("captured", counts["light_probes_captured"]), number("cells shaded", counts["cells_shaded"]);
   number("draws shaded", counts["draws_shaded"]), number("shadow cubes", counts["shadow_cubes_drawn"]);
   number("volumes shaded", counts["volumes_shaded"]), number("grids", counts["neighborhood_grids"]);
+  number("draws out of view", counts["draws_out_of_view"]);
+  number("volumes out of view", counts["volumes_out_of_view"]);
   ImGui::BeginChild("table");
   drawPasses(session.picture.passes);
   ImGui::EndChild();
