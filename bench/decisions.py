@@ -3,10 +3,11 @@
 
     bench/decisions.py [-b BUILD] [-o DIR] [-q QUALITY] [-l LIGHT]... SCENE[@CAMERA]...
 
-The picture may change by less than the error that the bake states, and the planned bake must save at least what `lambent plan`
-said. A row per scene says: what is left out in how many groups, the change of the picture in the light where it is largest,
-the stated error, and seconds of processor time and bytes that were saved, each as said / as it came to. Times are the least of
-three bakes where these are short, and tell nothing below 0.1 s. Codes are kept to 0.1 %, so that they do not hide the rest. Exits with 1 if a picture changes by more.
+The picture may change by less than the error that the bake states, and the planned bake should save what `lambent plan` said.
+A row per scene says: what is left out in how many groups, the change of the picture in the light where it is largest, the
+stated error, and seconds of processor time and bytes that were saved, each as said / as it came to. Times are the least of three
+bakes where these are short, and tell nothing below 0.1 s. Codes are kept to 0.1 %, so that they do not hide the rest. Exits with
+1 if a picture changes by more.
 """
 import argparse
 import json

@@ -48,7 +48,9 @@ class Savings {
     if (baked)
       return planned_ ? Saved{.seconds = secondsOf(*planned_, isShadows), .memory_bytes = {}, .bytes = {}}
                       : Saved{};
-    return between(isShadows);
+    Saved saved = between(isShadows);
+    if (saved.bytes) saved.bytes = 0.0;  // light that bounces would take them
+    return saved;
   }
 
   // Hits are kept for bounces alone, and closest hits take longer than any hits.
