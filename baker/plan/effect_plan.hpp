@@ -33,7 +33,7 @@ struct EffectEntry {
 struct EffectPlan {
   std::vector<RigidGroup> groups;
   std::vector<EffectChoice> effects;
-  std::vector<PlannedTransport> transport;  // one per group
+  std::vector<PlannedTransport> transport;         // one per group
   std::vector<PlannedNeighborhood> neighborhoods;  // one per group; none is baked without that effect
   std::vector<PlannedLightProbes> light_probes;    // one per group
   std::vector<std::string> shadowed_lights;        // one sentence for each lamp that comes within a group
