@@ -64,7 +64,8 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
                          .most_added = options.refineAdded(),
                          .most_wedges = options.refineWedges()};
     if (with_glossy) refine.most_vertices = mostGlossySamples(options.glossy_order);
-    auto refined = refineMeshes({scene, plan.groups, alpha_maps, with_glossy}, refine, *split, context);
+    auto refined =
+        refineMeshes({scene, plan.groups, plan.transport, alpha_maps, with_glossy}, refine, *split, context);
     if (!refined) return failAgain(refined.error());
     report.refinement = *refined;
   }
@@ -216,7 +217,10 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
   // Groups of volumes come last; without the volume effect they are removed.
   if (!plan.bakes("volume"))
     while (!plan.groups.empty() && plan.groups.back().volume >= 0)
-      plan.groups.pop_back(), plan.light_probes.pop_back(), plan.neighborhoods.pop_back();
+      plan.groups.pop_back(), plan.light_probes.pop_back(), plan.neighborhoods.pop_back(),
+          plan.transport.pop_back();
+  if (options.leavesNothingOut())
+    for (PlannedTransport& planned : plan.transport) planned.shadows = planned.bounces = true;
   for (const RigidGroup& group : plan.groups)
     if (group.volume >= 0)
       if (auto checked = checkVolume(scene, scene.volumes[static_cast<std::size_t>(group.volume)], options);

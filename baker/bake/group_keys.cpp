@@ -88,12 +88,12 @@ void addReflection(const Scene& scene, const GroupGeometry& geometry, int order,
 }  // namespace
 
 GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
-                    LightProbeCount light_probes, const BakeOptions& options) {
+                    const PlannedGroup& planned, const BakeOptions& options) {
   GroupKeys keys;
   {
     KeyMaker key = KeyMaker::ofStage("light samples");
     addShape(geometry, key);
-    keys.light_probes = key.add(light_probes.count).add(light_probes.of_group).key();
+    keys.light_probes = key.add(planned.light_probes.count).add(planned.light_probes.of_group).key();
   }
   KeyMaker surfaces = KeyMaker::ofStage("surfaces");
   addShape(geometry, surfaces);
@@ -110,7 +110,8 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
                   .add(seen)
                   .add(options.order)
                   .add(std::uint64_t{options.effectiveRays()})
-                  .add(options.bounces != 0)
+                  .add(planned.shadows)
+                  .add(planned.bounces)
                   .key();
   keys.glossy_rays = KeyMaker::ofStage("glossy rays").add(keys.rays).add(options.exitOrder()).key();
   keys.bounces = KeyMaker::ofStage("bounces")
@@ -124,6 +125,7 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
   keys.cells = KeyMaker::ofStage("cells")
                    .add(keys.bounces)
                    .add(options.bounces)
+                   .add(options.leavesNothingOut())
                    .add(options.effectiveErrorBound())
                    .add(options.picture_bound)
                    .add(options.error_bound > 0.0f)

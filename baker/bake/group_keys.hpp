@@ -23,8 +23,14 @@ struct GroupKeys {
   Key cells;    // covers also how transfer is coded; the result is all that a group hands to the bundle
 };
 
+// What the plan says of a group.
+struct PlannedGroup {
+  LightProbeCount light_probes{};
+  bool shadows = true, bounces = true;
+};
+
 GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
-                    LightProbeCount light_probes, const BakeOptions& options);
+                    const PlannedGroup& planned, const BakeOptions& options);
 
 // Returns the key of the tables of b(v) of a scene's glossy materials.
 Key brdfTablesKey(const Scene& scene, int order, int shipped);

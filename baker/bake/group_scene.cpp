@@ -51,7 +51,8 @@ GroupScene::GroupScene(const SceneBake& of, const SurfaceInputs& inputs, std::si
   }
   lights = findGroupLights(bake.scene, group);
   if (context.cache)
-    keys = groupKeys(bake.scene, geometry, lights, bake.plan.light_probes[index].count, bake.options);
+    keys = groupKeys(bake.scene, geometry, lights,
+                     {bake.plan.light_probes[index].count, transport().shadows, bounces()}, bake.options);
 }
 
 Result<void> GroupScene::loadColors() {

@@ -30,6 +30,9 @@ class GroupScene {
   std::vector<PlannedLight> lights;
   GroupKeys keys;  // not set without a cache
 
+  const PlannedTransport& transport() const { return bake.plan.transport[index]; }
+  // Returns whether light that bounces between surfaces is baked.
+  bool bounces() const { return bake.options.bounces != 0 && transport().bounces; }
   bool anyDiffuse() const { return samples.glossy.begin > 0; }
   bool anyGlossy() const { return !samples.glossy.empty(); }
 
@@ -43,7 +46,8 @@ class GroupScene {
   const SurfaceColors& colors() const { return *colors_; }
   // May be called after prepareRays(). brdfs() returns null if the group has no glossy surfaces.
   TracedScene view() const {
-    return {bake.scene, geometry, samples, *rays_, *colors_, lights, mirrors_ ? &*mirrors_ : nullptr};
+    return {bake.scene,         geometry, samples, *rays_, *colors_, lights, mirrors_ ? &*mirrors_ : nullptr,
+            transport().shadows};
   }
   const SurfaceBrdfs* brdfs() const { return brdfs_ ? &*brdfs_ : nullptr; }
 

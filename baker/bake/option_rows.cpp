@@ -112,7 +112,12 @@ constexpr std::tuple kRows{
                 "interpolation and codes together. The bake chooses --rays, --refine and --codes, as far as "
                 "they are not given, and says what it reached",
         .words = {{{"none", 0.0f}}},
-        .limits = Limits<float>{.least = 0.0f, .greatest = 1.0f, .open = true, .hint = "0.01 means 1 %"}},
+        .limits = Limits<float>{.least = 0.0f,
+                                .greatest = 1.0f,
+                                .open = true,
+                                .kind = "a share between 0 and 1",
+                                .hint = "write 2 % as 0.02 or 2%"},
+        .share = true},
     TypedRow<float>{
         .name = "codes",
         .setting = "errorBound",
@@ -121,9 +126,14 @@ constexpr std::tuple kRows{
         .help = "Bound on the error of codes alone, relative RMS of shaded radiance; default {} by quality, "
                 "of glossy surfaces {}",
         .words = {{{"auto", 0.0f}}},
-        .limits = Limits<float>{.least = 0.0f, .greatest = 1.0f, .open = true, .hint = "0.003 means 0.3 %"},
+        .limits = Limits<float>{.least = 0.0f,
+                                .greatest = 1.0f,
+                                .open = true,
+                                .kind = "a share between 0 and 1",
+                                .hint = "write 0.3 % as 0.003 or 0.3%"},
         .record = &recordCodes,
-        .help_values = {&recordCodes, &recordGlossyError}},
+        .help_values = {&recordCodes, &recordGlossyError},
+        .share = true},
     TypedRow<float>{
         .name = "max-edge",
         .setting = "maxEdge",
@@ -146,9 +156,11 @@ constexpr std::tuple kRows{
         .limits = Limits<float>{.least = 0.0f,
                                 .greatest = 1.0f,
                                 .open = true,
-                                .hint = "auto takes what --quality stands for"},
+                                .kind = "a share between 0 and 1",
+                                .hint = "write 2 % as 0.02 or 2%; auto takes what --quality stands for"},
         .record = &recordRefine,
-        .help_values = {&recordRefine}},
+        .help_values = {&recordRefine},
+        .share = true},
     TypedRow<std::optional<bool>>{
         .name = "fit",
         .setting = "fit",
@@ -194,7 +206,9 @@ constexpr std::tuple kRows{
                           .setting = "effects",
                           .kind = "LIST",
                           .member = &B::effects,
-                          .help = "auto: what the scene calls for; or a list of effects",
+                          .help =
+                              "auto: what the scene calls for; all: also what the plan leaves out, so that "
+                              "its decisions can be checked; or a list of effects",
                           .check = &checkEffects},
     TypedRow<unsigned>{.name = "threads",
                        .setting = "",

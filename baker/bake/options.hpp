@@ -45,6 +45,7 @@ struct BakeOptions {
   std::optional<bool> fit = {};
   int light_probes = 0;        // per cell, 1..32; 0: chosen by how near light comes (local_light.hpp)
   glm::uvec3 volume_grid{32};  // voxels of a volume's transfer, 1..256 along each axis
+  // auto: what the scene calls for; all: also what the plan leaves out (planned_transport.hpp); or a list.
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // limit on what passes keep in memory; 0: half of the machine's
@@ -64,6 +65,7 @@ struct BakeOptions {
   // or glossy_order without bounces. Except in drafts it is more than glossy_order, because exit kernels meet
   // shadow edges there that few bands cannot represent.
   int exitOrder() const;
+  bool leavesNothingOut() const { return effects == "all"; }
   int zstdLevel() const;  // with which payloads are compressed
   bool fitsDiffuse() const;
   bool fitsGlossy() const;

@@ -77,7 +77,7 @@ bool bounce(const DirectPass& pass, const GlossyPass* glossy_pass, const GroupSc
                                       std::span<float> out) { brdfs->exitKernel(triangle, u, v, to, out); }};
     partner.emplace(*glossy_pass, kernels, light.direct, *light.glossy, options.glossy_order);
   }
-  const double tail = kTailShare * double{options.effectiveErrorBound()};
+  const double tail = options.leavesNothingOut() ? 0.0 : kTailShare * double{options.effectiveErrorBound()};
   light.bounced = bakeBounces(pass, light.direct, group.view(), {options.bounces, tail},
                               context.keyed(group.keys.bounces), partner ? &*partner : nullptr);
   if (!light.bounced) return false;
@@ -100,7 +100,7 @@ bool bounce(const DirectPass& pass, const GlossyPass* glossy_pass, const GroupSc
 std::optional<SurfaceTransport> transportLight(const GroupScene& group, const BakeContext& context) {
   const BakeOptions& options = group.bake.options;
   const SurfaceBrdfs* const brdfs = group.brdfs();
-  const bool bounces = options.bounces != 0;
+  const bool bounces = group.bounces();
   const DirectPass pass(group.view(), {.order = options.order,
                                        .rays = options.effectiveRays(),
                                        .keep_hits = bounces,
@@ -115,7 +115,8 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
   }
   std::optional<GlossyPass> glossy_pass;
   if (brdfs) {
-    glossy_pass.emplace(pass, group.view(), options.exitOrder());
+    // Bands beyond those that ship serve exit kernels alone.
+    glossy_pass.emplace(pass, group.view(), bounces ? options.exitOrder() : options.glossy_order);
     if (!traceGlossy(*glossy_pass, group, context, *light)) return std::nullopt;
   }
   if (bounces && !bounce(pass, glossy_pass ? &*glossy_pass : nullptr, group, context, *light))

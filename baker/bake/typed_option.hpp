@@ -52,6 +52,7 @@ struct TypedRow {
   std::array<std::string (*)(const BakeOptions&), 2> help_values{};
   Result<void> (*check)(const BakeOptions&) = nullptr;  // what limits cannot say; null: nothing
   std::string_view former{};                            // see OptionRow
+  bool share = false;                                   // a number that may be given in per cent too, as "2%"
 };
 
 template <class T>
@@ -105,6 +106,11 @@ bool readValue(const TypedRow<T>& row, std::string_view text, T& value) {
     return grid.has_value();
   } else if constexpr (std::is_same_v<T, std::uint64_t>) {
     return readBytes(text, value);
+  } else if (row.share && text.ends_with('%')) {
+    double per_cent = 0.0;
+    if (!readNumber(text.substr(0, text.size() - 1), per_cent)) return false;
+    value = static_cast<T>(per_cent / 100.0);
+    return true;
   } else {
     return readNumber(text, value);
   }

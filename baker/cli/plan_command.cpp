@@ -1,4 +1,5 @@
 // Implements lambent plan SCENE.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "baker/bake/option_rows.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
+#include "baker/decisions/decisions.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/bake_estimate.hpp"
 #include "baker/plan/counted.hpp"
@@ -51,6 +53,7 @@ nlohmann::json estimateJson(const BakeEstimate& estimate) {
                           {"bytes", std::llround(of.bytes)}};
   };
   nlohmann::json json = figures(estimate);
+  json["processorSeconds"] = estimate.processor_seconds;
   json["stages"] = estimate.stages;
   json["groups"] = nlohmann::json::array();
   for (const BakeEstimate::Group& group : estimate.groups) {
@@ -60,7 +63,60 @@ nlohmann::json estimateJson(const BakeEstimate& estimate) {
   return json;
 }
 
-void printJson(const Scene& scene, const EffectPlan& plan, const std::optional<BakeEstimate>& estimate) {
+nlohmann::json savedJson(const Saved& saved) {
+  const auto known = [](const std::optional<double>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
+  };
+  return {{"seconds", known(saved.seconds)},
+          {"memoryBytes", known(saved.memory_bytes)},
+          {"bytes", known(saved.bytes)}};
+}
+
+nlohmann::json decisionsJson(const std::vector<Decision>& decisions) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const Decision& d : decisions) {
+    nlohmann::json figures = nlohmann::json::object();
+    for (const Figure& figure : d.figures)
+      figures[figure.name] = {{"value", figure.value}, {"unit", figure.unit}};
+    json.push_back({{"effect", d.effect},
+                    {"decision", choiceName(d.choice)},
+                    {"reason", d.reason},
+                    {"figures", figures},
+                    {"saves", savedJson(d.saves)}});
+  }
+  return json;
+}
+
+std::string materialName(const Scene& scene, std::int32_t material) {
+  return material < 0 ? "" : scene.materials[static_cast<std::size_t>(material)].name;
+}
+
+nlohmann::json primitivesJson(const Scene& scene, const RigidGroup& group, const GroupDecisions& of) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const PrimitiveDecisions& primitive : of.primitives) {
+    const PlannedDraw& draw = group.draws[primitive.draw];
+    json.push_back(
+        {{"node", scene.nodes[draw.node].name},
+         {"mesh", scene.meshes[draw.mesh].name},
+         {"primitive", draw.primitive},
+         {"side", draw.back ? "back" : "front"},
+         {"material", materialName(scene, scene.meshes[draw.mesh].primitives[draw.primitive].material)},
+         {"decisions", decisionsJson(primitive.decisions)}});
+  }
+  return json;
+}
+
+// What the plan is, and what is said about it.
+struct Told {
+  const Scene& scene;
+  const EffectPlan& plan;
+  const std::vector<GroupDecisions>& decisions;  // one per group
+  const std::optional<BakeEstimate>& estimate;
+  std::optional<Saved> saved;  // by all that is left out
+};
+
+void printJson(const Told& told) {
+  const auto& [scene, plan, decisions, estimate, saved] = told;
   nlohmann::json groups = nlohmann::json::array(), effects = nlohmann::json::array();
   for (std::size_t g = 0; g < plan.groups.size(); ++g) {
     const RigidGroup& group = plan.groups[g];
@@ -78,7 +134,9 @@ void printJson(const Scene& scene, const EffectPlan& plan, const std::optional<B
          {"neighborhoodMatrices", plan.neighborhoods[g].matrices},
          {"draws", group.draws.size()},
          {"vertices", size.vertices},
-         {"triangles", size.triangles}});
+         {"triangles", size.triangles},
+         {"decisions", decisionsJson(decisions[g].decisions)},
+         {"primitives", primitivesJson(scene, group, decisions[g])}});
   }
   for (const EffectChoice& choice : plan.effects)
     effects.push_back({{"effect", choice.effect}, {"baked", choice.baked}, {"reason", choice.reason}});
@@ -87,7 +145,8 @@ void printJson(const Scene& scene, const EffectPlan& plan, const std::optional<B
                                {"effects", effects},
                                {"nearLights", plan.shadowed_lights},
                                {"leftOut", plan.left_out},
-                               {"estimate", estimate ? estimateJson(*estimate) : nlohmann::json()}};
+                               {"estimate", estimate ? estimateJson(*estimate) : nlohmann::json()},
+                               {"saves", saved ? savedJson(*saved) : nlohmann::json()}};
   fmt::print("{}\n", json.dump(2));
 }
 
@@ -114,7 +173,34 @@ void printEstimate(const BakeEstimate& estimate) {
   line("all, with refinement and meshes", estimate, "of bundle");
 }
 
-void printText(const Scene& scene, const EffectPlan& plan, const std::optional<BakeEstimate>& estimate) {
+// Decisions about what a scene does not have are left to --json.
+void printDecisions(const std::vector<Decision>& decisions, const char* indent) {
+  for (const Decision& d : decisions) {
+    if (d.choice == Choice::Absent || d.choice == Choice::AtRunTime) continue;
+    fmt::print("{}{:<15} {}: {}", indent, d.effect, d.choice == Choice::Baked ? "baked" : "left out",
+               d.reason);
+    if (d.choice == Choice::LeftOut && d.saves.seconds)
+      fmt::print("; saves {:.2f} s of processor time, {} of memory, {}", *d.saves.seconds,
+                 bytesText(d.saves.memory_bytes.value_or(0.0)), bytesText(d.saves.bytes.value_or(0.0)));
+    fmt::print("\n");
+  }
+}
+
+void printPrimitives(const Scene& scene, const RigidGroup& group, const GroupDecisions& of) {
+  for (const PrimitiveDecisions& primitive : of.primitives) {
+    const PlannedDraw& draw = group.draws[primitive.draw];
+    const std::string material =
+        materialName(scene, scene.meshes[draw.mesh].primitives[draw.primitive].material);
+    fmt::print("      {}, primitive {}{}{}\n",
+               scene.meshes[draw.mesh].name.empty() ? fmt::format("mesh {}", draw.mesh)
+                                                    : scene.meshes[draw.mesh].name,
+               draw.primitive, material.empty() ? "" : " of " + material, draw.back ? ", back" : "");
+    printDecisions(primitive.decisions, "        ");
+  }
+}
+
+void printText(const Told& told) {
+  const auto& [scene, plan, decisions, estimate, saved] = told;
   fmt::print("{}\n", scene.source.string());
   for (const EffectChoice& choice : plan.effects)
     fmt::print("  {:<10} {}: {}\n", choice.effect, choice.baked ? "baked" : "not baked", choice.reason);
@@ -130,12 +216,10 @@ void printText(const Scene& scene, const EffectPlan& plan, const std::optional<B
       printNeighborhood(plan, g);
       continue;
     }
-    const auto& [count, reason] = plan.light_probes[g];
     fmt::print("    {}: {}, {} vertices, {} triangles\n", group.name, counted(group.draws.size(), "draw"),
                size.vertices, size.triangles);
-    fmt::print("      {}{}: {}\n", counted(count.count, "light probe"), count.of_group ? "" : " in each cell",
-               reason);
-    printNeighborhood(plan, g);
+    printDecisions(decisions[g].decisions, "      ");
+    printPrimitives(scene, group, decisions[g]);
   }
   if (!plan.shadowed_lights.empty()) fmt::print("  local lights\n");
   for (const std::string& sentence : plan.shadowed_lights) fmt::print("    {}\n", sentence);
@@ -144,12 +228,32 @@ void printText(const Scene& scene, const EffectPlan& plan, const std::optional<B
   if (estimate) printEstimate(*estimate);
 }
 
+// Returns whether a bake that leaves nothing out would do more.
+bool leavesOut(const EffectPlan& plan) {
+  return std::ranges::any_of(plan.transport,
+                             [](const PlannedTransport& of) { return !of.shadows || !of.bounces; });
+}
+
+Result<void> lookAtAll(const Scene& scene, const EffectPlan& plan, std::vector<GroupLook>& looks) {
+  DecodedImages images(scene);
+  const auto alpha_maps = loadAlphaMaps(scene, images);
+  if (!alpha_maps) return failAgain(alpha_maps.error());
+  for (const RigidGroup& group : plan.groups) {
+    auto look = lookAt(scene, group, *alpha_maps, images);
+    if (!look) return failAgain(look.error());
+    looks.push_back(std::move(*look));
+  }
+  return {};
+}
+
 int runPlan(const PlanArguments& a) {
   const auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
   if (!scene) return reportError(scene.error());
   const auto plan = planFor(*scene, a.options);
   if (!plan) return reportError(plan.error());
-  std::optional<BakeEstimate> estimate;
+  std::vector<GroupLook> looks;
+  if (const auto looked = lookAtAll(*scene, *plan, looks); !looked) return reportError(looked.error());
+  std::optional<BakeEstimate> estimate, all;
   if (a.estimate) {
     if (const auto checked = checkOptions(a.options); !checked) return reportError(checked.error());
     const std::stop_source stop;
@@ -157,10 +261,19 @@ int runPlan(const PlanArguments& a) {
     Progress unused;
     auto made = estimateBake(*scene, a.options, {unused, stop.get_token()});
     if (!made) return reportError(made.error());
+    BakeOptions forced = a.options;
+    forced.effects = "all";
+    auto made_all = leavesOut(*plan) && a.options.effects == "auto"
+                        ? estimateBake(*scene, forced, {unused, stop.get_token()})
+                        : made;
+    if (!made_all) return reportError(made_all.error());
+    all = std::move(*made_all);
     if (auto cache = openCache(a.cache)) keepEstimate(*scene, a.options, *made, *cache);
     estimate = std::move(*made);
   }
-  (a.json ? printJson : printText)(*scene, *plan, estimate);
+  const Estimates estimates{estimate ? &*estimate : nullptr, all ? &*all : nullptr};
+  const auto decisions = decisionsOf({*scene, a.options, *plan, looks, estimates});
+  (a.json ? printJson : printText)({*scene, *plan, decisions, estimate, savedByAll(estimates)});
   return 0;
 }
 

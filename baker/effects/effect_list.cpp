@@ -24,7 +24,7 @@ std::span<const EffectEntry> effectList() {
 
 Result<std::vector<EffectEntry>> effectsNamed(std::string_view words) {
   const auto all = effectList();
-  if (words == "auto") return std::vector<EffectEntry>(all.begin(), all.end());
+  if (words == "auto" || words == "all") return std::vector<EffectEntry>(all.begin(), all.end());
   std::vector<EffectEntry> chosen;
   for (std::size_t begin = 0; begin <= words.size();) {
     const std::size_t end = std::min(words.find(',', begin), words.size());
@@ -35,7 +35,7 @@ Result<std::vector<EffectEntry>> effectsNamed(std::string_view words) {
       for (const EffectEntry& entry : all)
         known += fmt::format("{}{}", known.empty() ? "" : ", ", entry.name);
       return fail("--effects", fmt::format("\"{}\" is not an effect", name),
-                  "use auto or a list of: " + known);
+                  "use auto, all or a list of: " + known);
     }
     chosen.push_back(*found);
     begin = end + 1;

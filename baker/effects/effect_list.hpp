@@ -13,8 +13,8 @@ namespace lambent::baker {
 
 std::span<const EffectEntry> effectList();
 
-// Returns all effects for "auto", else those of a list such as "diffuse,glossy". The error names the effect
-// that is not known.
+// Returns all effects for "auto" and "all", else those of a list such as "diffuse,glossy". The error names
+// the effect that is not known.
 Result<std::vector<EffectEntry>> effectsNamed(std::string_view words);
 
 }  // namespace lambent::baker

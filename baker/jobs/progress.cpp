@@ -1,22 +1,35 @@
 #include "baker/jobs/progress.hpp"
 
+#include <ctime>
 #include <utility>
 
 namespace lambent::baker {
+
+namespace {
+
+double processorSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
 
 Progress::Stage Progress::current() const {
   Stage stage = running_;
   stage.done = done_.load(std::memory_order_relaxed);
   stage.seconds = std::chrono::duration<double>(Clock::now() - began_).count();
+  stage.processor_seconds = processorSeconds() - processor_began_;
   return stage;
 }
 
 void Progress::begin(std::string name, std::uint64_t total, std::string unit) {
   end();
   const std::lock_guard hold(lock_);
-  running_ = {std::move(name), std::move(unit), total, 0, 0.0};
+  running_ = {std::move(name), std::move(unit), total, 0, 0.0, 0.0};
   done_ = 0;
   began_ = Clock::now();
+  processor_began_ = processorSeconds();
 }
 
 void Progress::end() {

@@ -20,6 +20,7 @@ class Progress {
     std::uint64_t total = 0;  // in units; 0 if unknown
     std::uint64_t done = 0;
     double seconds = 0.0;
+    double processor_seconds = 0.0;  // of all threads of the program
   };
 
   // Ends the running stage, if any, and starts this one.
@@ -39,6 +40,7 @@ class Progress {
   mutable std::mutex lock_;
   Stage running_;
   Clock::time_point began_;
+  double processor_began_ = 0.0;
   std::vector<Stage> finished_;
   std::atomic<std::uint64_t> done_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <sys/resource.h>
 
@@ -68,12 +69,21 @@ std::optional<PictureSettings> nextTryAfter(const BakeReport& report, const Bake
   return std::nullopt;
 }
 
+// Returns stages whose seconds are those of processors.
+std::vector<Progress::Stage> ofProcessors(std::span<const Progress::Stage> stages) {
+  std::vector<Progress::Stage> out(stages.begin(), stages.end());
+  for (Progress::Stage& stage : out) stage.seconds = stage.processor_seconds;
+  return out;
+}
+
 // Adds to an estimate what a try takes, all of its groups included.
 void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions& options,
             BakeEstimate& estimate) {
   const double times = static_cast<double>(options.effectiveRays()) / static_cast<double>(few.rays);
   for (const auto& [stage, seconds] : scaleSeconds(report.stages, few, options))
     estimate.stages[stage] += seconds, estimate.seconds += seconds;
+  for (const auto& [stage, seconds] : scaleSeconds(ofProcessors(report.stages), few, options))
+    estimate.processor_stages[stage] += seconds, estimate.processor_seconds += seconds;
   const double of_codes = std::pow(times, few.error_bound > 0.0f ? kBytesPower : 0.0);
   estimate.samples = static_cast<double>(report.samples);
   estimate.rays += static_cast<double>(report.rays) * times;
@@ -90,6 +100,7 @@ void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions&
     of.rays = rays * times;
     const auto stages = std::span(report.stages).subspan(group.first_stage, group.stage_count);
     for (const auto& [stage, seconds] : scaleSeconds(stages, few, options)) of.seconds += seconds;
+    of.processor_stages = scaleSeconds(ofProcessors(stages), few, options);
     const double hits = std::min(static_cast<double>(group.hit_bytes) * times,
                                  0.5 * static_cast<double>(options.effectiveMemory()));
     const double of_view = group.picture_error && rays > 0.0
@@ -98,6 +109,7 @@ void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions&
                                      (raysOfView(options) - raysOfView(few))
                                : 0.0;
     more_hits = std::max(more_hits, hits - static_cast<double>(group.hit_bytes) + of_view);
+    of.hit_bytes = hits;
     of.memory_bytes =
         hits + of.samples * kCopiesOfLight * double(options.order * options.order) * double{sizeof(float)};
     of.bytes = static_cast<double>(group.transfer_bytes) * of_codes;

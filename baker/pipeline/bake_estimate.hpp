@@ -19,11 +19,15 @@ struct BakeEstimate {
     double samples = 0.0, rays = 0.0, seconds = 0.0;
     double memory_bytes = 0.0;  // of hits and light that its passes keep
     double bytes = 0.0;         // of its transfer in the bundle
+    double hit_bytes = 0.0;     // memory of hits, which bounces are gathered from
+    StageSeconds processor_stages;
   };
   std::vector<Group> groups;
   // Of the whole: with refinement, meshes and images, and of the whole program.
   double samples = 0.0, rays = 0.0, seconds = 0.0, memory_bytes = 0.0, bytes = 0.0;
   StageSeconds stages;
+  double processor_seconds = 0.0;  // of all threads
+  StageSeconds processor_stages;
 };
 
 Result<BakeEstimate> estimateBake(const Scene& scene, const BakeOptions& options, const BakeContext& context);

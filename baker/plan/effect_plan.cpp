@@ -61,6 +61,7 @@ EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects) {
   EffectPlan plan;
   plan.groups = findRigidGroups(scene);
   for (const EffectEntry& entry : effects) plan.effects.push_back(entry.choose(scene, plan.groups));
+  plan.transport = planTransport(scene, plan.groups);
   if (plan.bakes("neighborhood"))
     plan.neighborhoods = planNeighborhoods(scene, plan.groups);
   else

@@ -13,6 +13,7 @@
 #include "baker/import/scene.hpp"
 #include "baker/plan/local_light.hpp"
 #include "baker/plan/neighborhoods.hpp"
+#include "baker/plan/planned_transport.hpp"
 #include "baker/plan/rigid_groups.hpp"
 
 namespace lambent::baker {
@@ -32,6 +33,7 @@ struct EffectEntry {
 struct EffectPlan {
   std::vector<RigidGroup> groups;
   std::vector<EffectChoice> effects;
+  std::vector<PlannedTransport> transport;         // one per group
   std::vector<PlannedNeighborhood> neighborhoods;  // one per group; none is baked without that effect
   std::vector<PlannedLightProbes> light_probes;    // one per group
   std::vector<std::string> shadowed_lights;        // one sentence for each lamp that comes within a group

@@ -18,9 +18,10 @@ struct FanSource {
   std::span<const std::uint32_t> faces;  // index in the mesh of each triangle of the draw
 };
 
-// Lists primitives that are drawn only once (front and back), since fans would cost transfer at every place.
-std::vector<FanSource> fanSources(const std::vector<RigidGroup>& groups,
-                                  const std::vector<GroupGeometry>& geometries) {
+// Lists primitives that are drawn only once (front and back), since fans would cost transfer at every place,
+// in groups that were measured.
+std::vector<FanSource> fanSources(const MeasuredGroups& measured) {
+  const auto& [groups, geometries, refiners] = measured;
   std::map<std::pair<std::size_t, std::size_t>, int> fronts;
   for (const RigidGroup& group : groups)
     for (const PlannedDraw& draw : group.draws)
@@ -28,6 +29,7 @@ std::vector<FanSource> fanSources(const std::vector<RigidGroup>& groups,
   std::vector<FanSource> sources;
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t d = 0; d < groups[g].draws.size(); ++d) {
+      if (!refiners[g].measured()) continue;
       const PlannedDraw& draw = groups[g].draws[d];
       const DrawGeometry& drawn = geometries[g].draws[d];
       if (draw.back || fronts[{draw.mesh, draw.primitive}] != 1) continue;
@@ -45,7 +47,7 @@ std::optional<std::size_t> addWedges(const MeasuredGroups& measured, const Wedge
                                      std::vector<std::vector<bundle::MeshData>>& meshes,
                                      const std::stop_token& stop) {
   const auto& geometries = measured.geometries;
-  const std::vector<FanSource> sources = fanSources(measured.groups, geometries);
+  const std::vector<FanSource> sources = fanSources(measured);
   FaceLacks lacks{.width = GroupRefiner::kLackValues};
   std::size_t stars = 0;
   for (const FanSource& source : sources) {

@@ -14,7 +14,8 @@
 
 namespace lambent::baker {
 
-// Groups and geometries as they are now, and what the refiners measured last; one entry per group.
+// Groups and geometries as they are now, and what the refiners measured last; one entry per group. Groups
+// that were not measured are left as they are.
 struct MeasuredGroups {
   const std::vector<RigidGroup>& groups;
   const std::vector<GroupGeometry>& geometries;

@@ -42,6 +42,7 @@ class GroupRefiner {
   // matter for `bound`. Errors: no memory for the hierarchy. False when stopped.
   Result<bool> measure(const GroupGeometry& geometry, double bound, const BakeContext& context);
 
+  bool measured() const { return !measured_.empty(); }
   // Returns the RMS over all that can be seen of what interpolation gets wrong at a point, relative to the
   // direct light that arrives there: an eye in a dark room sees errors that are small beside open light.
   double relativeError() const;

@@ -54,7 +54,7 @@ Key outcomeKey(const RefineScene& from, const std::vector<GroupGeometry>& geomet
     for (const bundle::MeshData& mesh : primitives) addMesh(mesh, key);
   }
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    key.add(std::uint64_t{groups[g].draws.size()});
+    key.add(std::uint64_t{groups[g].draws.size()}).add(from.transport[g].shadows);
     for (const PlannedDraw& draw : groups[g].draws)
       key.add(draw.mesh).add(draw.primitive).add(draw.back).add(draw.group_from_mesh);
     addShape(geometries[g], key);
@@ -138,7 +138,9 @@ class Rounds {
   MeasuredGroups groups() const { return {from_.groups, geometries_, refiners_}; }
 
  private:
-  bool any(std::size_t group) const { return !from_.groups[group].draws.empty(); }
+  bool any(std::size_t group) const {
+    return !from_.groups[group].draws.empty() && from_.transport[group].shadows;
+  }
   std::size_t room() const { return most_ - std::min(most_, countVertices(meshes_)); }
 
   Result<void> measure() {

@@ -12,6 +12,7 @@
 
 #include "baker/import/scene.hpp"
 #include "baker/jobs/bake_context.hpp"
+#include "baker/plan/planned_transport.hpp"
 #include "baker/plan/rigid_groups.hpp"
 #include "baker/transport/alpha_map.hpp"
 #include "runtime/bundle/mesh.hpp"
@@ -47,6 +48,7 @@ struct RefineReport {
 struct RefineScene {
   const Scene& scene;
   const std::vector<RigidGroup>& groups;
+  const std::vector<PlannedTransport>& transport;  // groups without shadows are left as they are
   const AlphaMaps& alpha_maps;
   bool with_glossy;  // materials that are not diffuse have glossy samples
 };

@@ -20,6 +20,12 @@ constexpr float kAskWhatAtOnce = 1.0f / 6.0f;
 
 void SampleVisibility::stand(std::size_t s) {
   frame_ = localFrame(glm::normalize(glm::dvec3(samples_.normals[s])));
+  if (!shadows_) {
+    const auto origins = samples_.originsOf(s);
+    seen_.origins.assign(origins.begin(), origins.end());
+    seen_.valid = !origins.empty();
+    return;
+  }
   findSeenOrigins(samples_.originsOf(s), glm::mat3(frame_), rays_, inside_test_, seen_);
 }
 
@@ -28,6 +34,10 @@ std::uint32_t SampleVisibility::look(const DirectionTable& table, bool wants_hit
   blocked_.assign(table.packets(), 0);
   if (seen_.origins.empty()) return 0;
   const SampleRays rays{seen_.origins, glm::mat3(frame_), table, below};
+  if (!shadows_) {
+    blockBelowHorizons(rays, blocked_);
+    return 0;
+  }
   if (!wants_hits) return rays_.trace(rays, blocked_);
   return rays_.traceHits(rays, seen_.blocked > kAskWhatAtOnce, blocked_, hits_);
 }

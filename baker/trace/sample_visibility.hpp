@@ -26,8 +26,9 @@ struct SampleVisibilities {
 
 class SampleVisibility {
  public:
-  SampleVisibility(const SampleSet& samples, const RayScene& rays, const InsideTestTables& glances)
-      : samples_(samples), rays_(rays), inside_test_(glances) {}
+  // Everything must outlive it. No rays are traced where the scene has no shadows.
+  SampleVisibility(const TracedScene& scene, const InsideTestTables& glances)
+      : samples_(scene.samples), rays_(scene.rays), inside_test_(glances), shadows_(scene.shadows) {}
 
   // Moves to sample `s`: finds its frame, the origins that lie outside, and whether to trace twice the rays.
   void stand(std::size_t s);
@@ -53,6 +54,7 @@ class SampleVisibility {
   const SampleSet& samples_;
   const RayScene& rays_;
   const InsideTestTables& inside_test_;
+  bool shadows_;
   glm::dmat3 frame_{1.0};
   SeenOrigins seen_;
   std::vector<std::uint16_t> blocked_;

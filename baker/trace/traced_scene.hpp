@@ -21,9 +21,12 @@ struct TracedScene {
   const SurfaceColors& colors;
   std::span<const PlannedLight> lights;
   const MirrorPaths* mirrors = nullptr;  // null if no surface is glossy
+  // False if no part of the group hides light from another (planned_transport.hpp): samples see all that is
+  // above the horizons of their faces.
+  bool shadows = true;
 
   TracedScene withSamples(const SampleSet& others) const {
-    return {scene, geometry, others, rays, colors, lights, mirrors};
+    return {scene, geometry, others, rays, colors, lights, mirrors, shadows};
   }
 };
 

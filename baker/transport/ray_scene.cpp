@@ -186,6 +186,15 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
   return RayScene(std::move(state));
 }
 
+void blockBelowHorizons(const SampleRays& rays, std::span<std::uint16_t> masks) {
+  const OriginDealer dealer(rays.origins);
+  Packet packet;
+  for (std::size_t p = 0; p < masks.size(); ++p) {
+    fillPacket(p, rays, dealer, packet.rays.ray, packet.lanes);
+    masks[p] = static_cast<std::uint16_t>(~validMask(packet.lanes));
+  }
+}
+
 std::uint32_t RayScene::trace(const SampleRays& rays, std::span<std::uint16_t> masks) const {
   assert(!rays.origins.empty() && masks.size() == rays.table.packets());
   const FlushDenormals flush;

@@ -53,6 +53,10 @@ struct MetShares {
   float back = 0.0f, near = 0.0f;
 };
 
+// Sets bit k of masks[p] where ray 16 p + k lies below the horizons of all origins, as RayScene::trace() does
+// where nothing is in the way.
+void blockBelowHorizons(const SampleRays& rays, std::span<std::uint16_t> masks);
+
 class RayScene {
  public:
   // `alpha_maps` as loadAlphaMaps gives them. Errors: Embree cannot be set up or runs out of memory.

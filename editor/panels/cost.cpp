@@ -72,6 +72,8 @@ void drawCost(Session& session, Marks& marks) {
   const frame::StepCounts& counts = session.picture.counts;
   const auto number = [](const char* label, std::uint64_t value) {
     ImGui::SameLine(0.0f, em(1.2f));
+    // What does not fit goes on in the next line.
+    if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(label).x + em(4.0f)) ImGui::NewLine();
     ImGui::TextDisabled("%s", label);
     ImGui::SameLine();
     ImGui::Text("%llu", static_cast<unsigned long long>(value));
@@ -85,6 +87,8 @@ void drawCost(Session& session, Marks& marks) {
   number("captured", counts["light_probes_captured"]), number("cells shaded", counts["cells_shaded"]);
   number("draws shaded", counts["draws_shaded"]), number("shadow cubes", counts["shadow_cubes_drawn"]);
   number("volumes shaded", counts["volumes_shaded"]), number("grids", counts["neighborhood_grids"]);
+  number("draws out of view", counts["draws_out_of_view"]);
+  number("volumes out of view", counts["volumes_out_of_view"]);
   ImGui::BeginChild("table");
   drawPasses(session.picture.passes);
   ImGui::EndChild();

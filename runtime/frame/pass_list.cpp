@@ -19,7 +19,6 @@ constexpr MakePass kStepPasses[] = {
     &makeDiffusePass,       // E/pi at every vertex whose light or transfer changed
     &makeSeenSkyPass,       // what vertices of smooth dielectrics see of the sky, once transfer has arrived
     &makeGlossyPass,        // transferred light at samples of glossy surfaces, likewise
-    &makeVolumePass,        // light in volumes, as rays look it up
     &makeNeighborhoodPass,  // changes of light around bodies with grids
     &makeCapturePass,       // light between bodies, which arrives with the next step
 };
@@ -31,6 +30,7 @@ constexpr MakePass kPicturePasses[] = {
     &makePrefilteredEnvironmentPass,  // the sky as rough mirrors show it
     &makeReflectionProbesPass,        // rooms as mirrors in them show them
     &makeRasterPass,                  // surfaces, sky, blended surfaces: linear radiance
+    &makeVolumePass,                  // light in volumes that are in view, as rays look it up
     &makeMarchPass,                   // what volumes scatter and absorb
     &makeToneMapPass,                 // exposure, tone curve, sRGB
     &makeOverlayPass,                 // overlays and wires, not tone-mapped

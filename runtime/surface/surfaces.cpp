@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "runtime/draws/in_view.hpp"
+
 namespace lambent::frame {
 
 namespace {
@@ -86,9 +88,37 @@ SurfaceKind Surfaces::kindOf(const World& world, std::size_t draw) const {
   return kind;
 }
 
-void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
-                       std::vector<Item>& opaque, std::vector<Item>& blended) {
+bool Surfaces::lookAt(const World& world, const spec::View& view) {
+  const auto& draws = world.residency().draws();
+  if (bounds_from_.renew(world.residency().version(), world.transformsVersion())) {
+    bounds_ws_.clear();
+    for (const streaming::ResidentDraw& draw : draws)
+      bounds_ws_.push_back(
+          scene::drawBounds(world.registry(), world.instance(draw.bundle).draws[draw.index]));
+  }
+  const glm::mat4 clip_from_world = view.clip_from_view * view.view_from_world;
+  std::vector<std::uint8_t> in_view(draws.size(), 1);
+  out_of_view_ = 0;
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    if (bounds_ws_[i].empty() || !outOfView(clip_from_world, bounds_ws_[i])) continue;
+    in_view[i] = 0;
+    out_of_view_ += shown_[i];
+  }
+  return std::exchange(in_view_, in_view) != in_view;
+}
+
+Result<void> Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
+                               gpu::Counters& counters) {
   const streaming::Residency& residency = world.residency();
+  records_.clear();
+  for (std::size_t i = 0; i < residency.draws().size(); ++i) {
+    records_.push_back(describe(world, i));
+    for (const SurfaceModule* module : modules_) module->describe(i, records_.back());
+  }
+  glossy_records_.clear();
+  glossy_index_.assign(records_.size(), 0);
+  opaque_items_.clear();
+  blended_items_.clear();
   shown_.assign(residency.draws().size(), 0);
   for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
@@ -116,13 +146,22 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
       glossy_index_[i] = static_cast<std::uint32_t>(glossy_records_.size());
       glossy_records_.push_back({.surface = records_[i], .glossy = describeGlossy(world, i)});
     }
-    (records_[i].alpha_mode == kAlphaBlend ? blended : opaque).push_back(item);
+    // What comes into view later must not wait for a compiler.
+    if (Result<void> done = compile(item.state.kind); !done) return done;
+    (records_[i].alpha_mode == kAlphaBlend ? blended_items_ : opaque_items_).push_back(item);
   }
+  std::ranges::stable_sort(opaque_items_, std::ranges::less(), &Item::state);
+  std::ranges::stable_sort(blended_items_, std::ranges::greater(), &Item::distance);
+  upload(draws_, records_, records_uploaded_, counters);
+  upload(glossy_draws_, glossy_records_, glossy_uploaded_, counters);
+  indices_.reserve(records_.size());
+  return {};
 }
 
-void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
+void Surfaces::appendRuns(const World& world, const Items& items, std::vector<Run>& runs,
                           std::vector<DrawCommand>& commands) const {
   for (const Item& item : items) {
+    if (in_view_[item.draw] == 0) continue;
     const streaming::ResidentMesh& mesh =
         world.residency().meshes()[world.residency().draws()[item.draw].mesh];
     if (runs.empty() || runs.back().state != item.state)
@@ -152,35 +191,19 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
                                     seen_sky_ != nullptr ? seen_sky_->version() : 0};
   for (const SurfaceModule* module : modules_) now.push_back(module->version());
   const bool scene_same = options_same && now == seen_;
-  if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return {};
-  seen_ = std::move(now);
-  eye_seen_ws_ = view.eye_ws;
-
-  records_.clear();
-  for (std::size_t i = 0; i < residency.draws().size(); ++i) {
-    records_.push_back(describe(world, i));
-    for (const SurfaceModule* module : modules_) module->describe(i, records_.back());
+  const bool same = scene_same && (blended_items_.empty() || view.eye_ws == eye_seen_ws_);
+  if (!same) {
+    seen_ = std::move(now);
+    eye_seen_ws_ = view.eye_ws;
+    if (Result<void> done = collect(world, diffuse, view.eye_ws, counters); !done) return done;
   }
-  glossy_records_.clear();
-  glossy_index_.assign(records_.size(), 0);
-  std::vector<Item> opaque, blended;
-  collect(world, diffuse, view.eye_ws, opaque, blended);
-  std::stable_sort(opaque.begin(), opaque.end(),
-                   [](const Item& a, const Item& b) { return a.state < b.state; });
-  std::stable_sort(blended.begin(), blended.end(),
-                   [](const Item& a, const Item& b) { return a.distance > b.distance; });
+  if (!lookAt(world, view) && same) return {};
   std::vector<DrawCommand> commands;
   opaque_.clear();
   blended_.clear();
-  appendRuns(world, opaque, opaque_, commands);
-  appendRuns(world, blended, blended_, commands);
-  for (const std::vector<Run>* runs : {&opaque_, &blended_})
-    for (const Run& run : *runs)
-      if (Result<void> done = compile(run.state.kind); !done) return done;
-  upload(draws_, records_, records_uploaded_, counters);
-  upload(glossy_draws_, glossy_records_, glossy_uploaded_, counters);
+  appendRuns(world, opaque_items_, opaque_, commands);
+  appendRuns(world, blended_items_, blended_, commands);
   upload(commands_, commands, commands_uploaded_, counters);
-  indices_.reserve(records_.size());
   return {};
 }
 

@@ -1,5 +1,6 @@
 // Draws every primitive that is resident and shaded: opaque and masked ones in as few multi-draws as
-// textures, pages and culling allow, then blended ones from back to front. It reads the arenas and writes the
+// textures, pages and culling allow, then blended ones from back to front. Draws that the view does not reach
+// are left out. It reads the arenas and writes the
 // bound framebuffer. Back faces of single-sided materials are culled, as glTF asks; mirrored nodes reverse
 // their winding. Each kind of surface (glossy ones, and those that modules reach) has a program of its own,
 // compiled when the first such draw arrives. Glossy surfaces are shaded here entirely, per pixel. Only the
@@ -14,6 +15,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/draws/draw_indices.hpp"
 #include "runtime/draws/glossy_record.hpp"
@@ -24,6 +26,7 @@
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/gpu/program.hpp"
+#include "runtime/scene/bounds.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/surface/surface_program.hpp"
 #include "runtime/surface/views.hpp"
@@ -52,7 +55,9 @@ class Surfaces {
   // in the same order in each frame.
   Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
                        const SurfaceInputs& inputs, gpu::Counters& counters);
-  // Returns whether the last prepare() took the draw into the picture.
+  // Returns how many draws the last prepare() left out because the view does not reach them.
+  std::uint32_t countOutOfView() const { return out_of_view_; }
+  // Returns whether the last prepare() has the draw in the picture, if the view reaches it.
   bool shows(std::size_t draw) const { return draw < shown_.size() && shown_[draw] != 0; }
   // Sets what surfaces show from the next prepare() on. Irradiance and Normals have programs of their own,
   // compiled when they are first asked for; all other views are drawn as Final.
@@ -82,15 +87,19 @@ class Surfaces {
     std::uint32_t draw = 0;
     float distance = 0.0f;
   };
+  using Items = std::vector<Item>;
 
   Surfaces();
   bool dark(const World& world, std::size_t draw) const;
   bool ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const;
   bool layered(const World& world, std::size_t draw) const;
   SurfaceKind kindOf(const World& world, std::size_t draw) const;
-  void collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
-               std::vector<Item>& opaque, std::vector<Item>& blended);
-  void appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
+  // Describes all draws that are ready, and puts them in order.
+  Result<void> collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
+                       gpu::Counters& counters);
+  // Finds which draws the view may reach. Returns whether these are others than before.
+  bool lookAt(const World& world, const spec::View& view);
+  void appendRuns(const World& world, const Items& items, std::vector<Run>& runs,
                   std::vector<DrawCommand>& commands) const;
   // Uploads the part of a table that changed, or all of it if its size did.
   template <typename Record>
@@ -107,7 +116,11 @@ class Surfaces {
   std::vector<SurfaceDraw> records_, records_uploaded_;
   std::vector<GlossyDraw> glossy_records_, glossy_uploaded_;
   std::vector<DrawCommand> commands_uploaded_;
-  std::vector<std::uint8_t> shown_;  // indexed by draw
+  std::vector<std::uint8_t> shown_, in_view_;  // indexed by draw
+  std::uint32_t out_of_view_ = 0;
+  Items opaque_items_, blended_items_;
+  std::vector<scene::Box> bounds_ws_;  // indexed by draw; empty: not known, so it is in view
+  ChangeGate<std::uint64_t, std::uint64_t> bounds_from_;  // residency and transforms
   SurfaceOptions options_;
   const evaluate::SeenSky* seen_sky_ = nullptr;
   std::vector<std::uint32_t> glossy_index_;  // index of each draw in glossy_records_

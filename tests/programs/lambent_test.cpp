@@ -274,6 +274,19 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   EXPECT_EQ(plan["effects"][3]["effect"], "neighborhood");
   EXPECT_EQ(plan["effects"][3]["baked"], false);
   EXPECT_FALSE(plan["effects"][0]["reason"].get<std::string>().empty());
+  ASSERT_EQ(plan["groups"][0]["primitives"].size(), 3u) << "floor, box and sphere";
+  const auto expectDecided = [](const json& decisions) {
+    ASSERT_FALSE(decisions.empty());
+    for (const json& decision : decisions) {
+      const auto word = decision["decision"].get<std::string>();
+      EXPECT_TRUE(word == "baked" || word == "leftOut" || word == "absent" || word == "atRunTime") << word;
+      EXPECT_FALSE(decision["reason"].get<std::string>().empty()) << decision;
+      EXPECT_EQ(decision["saves"]["seconds"].is_null(), word != "absent")
+          << "without --quality nobody has rehearsed: " << decision;
+    }
+  };
+  expectDecided(plan["groups"][0]["decisions"]);
+  for (const json& primitive : plan["groups"][0]["primitives"]) expectDecided(primitive["decisions"]);
 
   const Outcome told = lambent({"info", path("hello.lmb.glb"), "--json"});
   ASSERT_EQ(told.exit_code, 0) << told.err;

@@ -21,8 +21,8 @@ EffectChoice chooseDiffuse(const Scene& scene, const std::vector<RigidGroup>& gr
     }
   }
   if (draws == 0) return {"diffuse", false, "there are no surfaces"};
-  std::string reason = fmt::format("{} of surfaces in {}: direct light with shadows, and interreflection",
-                                   counted(draws, "draw"), counted(groups.size(), "rigid group"));
+  std::string reason =
+      fmt::format("{} of surfaces in {}", counted(draws, "draw"), counted(groups.size(), "rigid group"));
   if (lights > 0) reason += fmt::format("; {} of their own", counted(lights, "light"));
   if (mapped > 0) reason += fmt::format("; {} with a normal map", counted(mapped, "draw"));
   return {"diffuse", true, reason};

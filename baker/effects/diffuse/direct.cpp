@@ -33,7 +33,7 @@ class DirectPass::Walk {
  public:
   explicit Walk(const DirectPass& pass)
       : pass_(pass),
-        look_(pass.scene_.samples, pass.scene_.rays, pass.inside_test_),
+        look_(pass.scene_, pass.inside_test_),
         group_from_local_(glm::dmat3(1.0), pass.settings_.order),
         incident_from_local_(glm::dmat3(1.0), kIncidentOrder) {}
 

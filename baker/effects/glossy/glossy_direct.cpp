@@ -82,7 +82,7 @@ class GlossyPass::Walk {
  public:
   explicit Walk(const GlossyPass& pass)
       : pass_(pass),
-        look_(pass.scene_.samples, pass.scene_.rays, pass.diffuse_.glances()),
+        look_(pass.scene_, pass.diffuse_.glances()),
         visibility_from_local_(glm::dmat3(1.0), pass.gaunt_.visibilityBands()),
         outputs_from_local_(glm::dmat3(1.0), pass.order_out_),
         local_(squared(pass.gaunt_.visibilityBands())) {}

@@ -49,15 +49,16 @@ gpu::Texture Volume::makeTexture(const streaming::ResidentVolume& volume) const 
   return texture;
 }
 
-void Volume::collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
-                     const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy,
-                     evaluate::TransferMode mode) {
+void Volume::collect(const streaming::Residency& residency, const ShadedLight& light,
+                     evaluate::TransferMode mode, std::span<const std::uint8_t> in_view) {
+  const auto& [lights, diffuse, glossy] = light;
   work_.clear();
   records_.clear();
   for (std::uint32_t v = 0; v < held_.size(); ++v) {
     const streaming::ResidentVolume& volume = residency.volumes()[v];
     const streaming::ResidentGroup& group = residency.groups()[volume.group];
     if (!volume.ready() || volume.sample_count == 0) continue;
+    if (!in_view.empty() && in_view[v] == 0) continue;
     const auto first = static_cast<std::uint32_t>(records_.size());
     const std::uint64_t shaded = diffuse.versionOf(volume.group) + glossy.versionOf(volume.group);
     std::uint32_t open_cells = 0;
@@ -79,8 +80,8 @@ void Volume::collect(const streaming::Residency& residency, const lighting::Grou
                           .pad = 0});
     }
     Held& held = held_[v];
-    const std::uint64_t light = open_cells > 0 ? lights.versionOf(volume.group) : 0;
-    if (!held.changed.renew(shaded, light, volume.version, open_cells, mode)) continue;
+    const std::uint64_t own_light = open_cells > 0 ? lights.versionOf(volume.group) : 0;
+    if (!held.changed.renew(shaded, own_light, volume.version, open_cells, mode)) continue;
     if (!held.light) held.light = makeTexture(volume);
     ++shaded_.volumes;
     shaded_.slabs += volume.outputs;
@@ -89,13 +90,13 @@ void Volume::collect(const streaming::Residency& residency, const lighting::Grou
   }
 }
 
-Result<void> Volume::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                           const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy,
-                           evaluate::TransferMode mode, gpu::Counters& counters) {
+Result<void> Volume::shade(streaming::Residency& residency, const ShadedLight& light,
+                           evaluate::TransferMode mode, std::span<const std::uint8_t> in_view,
+                           gpu::Counters& counters) {
   shaded_ = {};
   held_.follow(residency.volumes(), &streaming::ResidentVolume::id);
   if (residency.volumes().empty()) return {};
-  collect(residency, lights, diffuse, glossy, mode);
+  collect(residency, light, mode, in_view);
   if (work_.empty()) return {};
   if (!program_) {
     std::vector<gpu::Define> defines;
@@ -109,7 +110,7 @@ Result<void> Volume::shade(streaming::Residency& residency, const lighting::Grou
   work_.upload(counters);
   records_table_.assign(std::span<const ScatterRecord>(records_));
   counters.uploaded_bytes += records_.size() * sizeof(ScatterRecord);
-  lights.bindStorage(kBindLights);
+  light.lights.bindStorage(kBindLights);
   records_table_.bindStorage(kBindScatter);
   std::size_t index = 0;
   for (const auto& [key, items] : work_.batches()) {

@@ -33,16 +33,23 @@ struct SlabLayout {
 };
 SlabLayout slabLayoutOf(const glm::uvec3& transfer_size, std::uint32_t outputs);
 
+// What the effects before this one shaded.
+struct ShadedLight {
+  const lighting::GroupLights& lights;
+  const diffuse::Diffuse& diffuse;
+  const glossy::Glossy& glossy;
+};
+
 class Volume {
  public:
   // If `precise` is set, light is stored in floats, for pictures that are compared; otherwise in half floats.
   explicit Volume(bool precise = false);
 
-  // Updates the textures to what the other effects last shaded; call it after them. Fails if a kernel does
-  // not compile on this device.
-  Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                     const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy,
-                     evaluate::TransferMode mode, gpu::Counters& counters);
+  // Updates the textures to what the other effects last shaded; call it after them. Those of volumes for
+  // which `in_view` has 0 stay as they are until they come into view; an empty list means that all are. Fails
+  // if a kernel does not compile on this device.
+  Result<void> shade(streaming::Residency& residency, const ShadedLight& light, evaluate::TransferMode mode,
+                     std::span<const std::uint8_t> in_view, gpu::Counters& counters);
 
   // Returns the texture of residency().volumes()[volume], or a null handle if there is nothing to show yet.
   const gpu::Texture& lightOf(std::size_t volume) const { return held_[volume].light; }
@@ -62,8 +69,8 @@ class Volume {
     ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t, std::uint32_t, TransferMode> changed;
   };
 
-  void collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
-               const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy, evaluate::TransferMode mode);
+  void collect(const streaming::Residency& residency, const ShadedLight& light, evaluate::TransferMode mode,
+               std::span<const std::uint8_t> in_view);
   gpu::Texture makeTexture(const streaming::ResidentVolume& volume) const;
 
   bool precise_;

@@ -37,7 +37,8 @@ class RasterPass final : public FramePass {
                                 evaluate::SeenSky, Prefiltered, LocalShadows, KeyShadows, ReflectionProbes>(),
              .writes = resources<PictureTargets, Surfaces, std::optional<DataView>, Prefiltered, LocalShadows,
                                  KeyShadows>(),
-             .causes = kPictureCauses}),
+             .causes = kPictureCauses,
+             .counts = {"draws_out_of_view"}}),
         surfaces_(std::move(surfaces)),
         modules_(board.get<SurfaceModules>()) {
     board.offer(surfaces_);
@@ -51,6 +52,7 @@ class RasterPass final : public FramePass {
         !done)
       return done;
     if (showsTransfer(frame.options.view.view)) return drawNumbers(frame);
+    frame.count("draws_out_of_view", surfaces_.countOutOfView());
     data_view_.reset();
     return drawLight(frame);
   }

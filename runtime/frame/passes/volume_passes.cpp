@@ -1,7 +1,9 @@
 // Brings the light in volumes into textures, and marches rays through the picture that look it up.
+#include <algorithm>
 #include <optional>
 #include <vector>
 
+#include "runtime/draws/in_view.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/volume/march.hpp"
@@ -16,8 +18,24 @@ using effects::diffuse::Diffuse;
 using effects::glossy::Glossy;
 using effects::volume::Volume;
 
+// Returns whether volumes are in the picture: other views show surfaces alone.
 bool anyShown(const FrameContext& frame) {
-  return frame.settings().volumes && !frame.world.residency().volumes().empty();
+  const SurfaceView shown = frame.options.view.view;
+  return frame.settings().volumes && !frame.world.residency().volumes().empty() &&
+         (shown == SurfaceView::Final || shown == SurfaceView::Wireframe);
+}
+
+// Returns 1 for each volume that the view may reach.
+std::vector<std::uint8_t> volumesInView(const FrameContext& frame) {
+  const glm::mat4 clip_from_world = frame.view->clip_from_view * frame.view->view_from_world;
+  std::vector<std::uint8_t> in_view;
+  for (const streaming::ResidentVolume& volume : frame.world.residency().volumes()) {
+    const glm::mat4 clip_from_grid =
+        clip_from_world * frame.world.worldFromGroup(volume.group) * volume.grid.group_from_grid;
+    const scene::Box box{glm::vec3(0.0f), glm::vec3(volume.grid.size)};
+    in_view.push_back(outOfView(clip_from_grid, box) ? 0 : 1);
+  }
+  return in_view;
 }
 
 class VolumePass final : public FramePass {
@@ -26,20 +44,25 @@ class VolumePass final : public FramePass {
       : FramePass({.name = "volume",
                    .reads = resources<World, lighting::GroupLights, Diffuse, Glossy>(),
                    .writes = resources<Volume>(),
-                   .causes = kLightCauses,
-                   .counts = {"volumes_shaded", "volume_slabs_written"}}),
+                   .causes = kLightCauses | Cause::View,
+                   .counts = {"volumes_shaded", "volume_slabs_written", "volumes_out_of_view"}}),
         volume_(precise) {
     board.offer(volume_);
   }
 
   bool due(const FrameContext& frame) override { return anyShown(frame); }
   Result<void> update(FrameContext& frame) override {
+    // Nothing but the march reads the light of volumes.
+    const std::vector<std::uint8_t> in_view = volumesInView(frame);
     Result<void> done =
-        volume_.shade(frame.world.residency(), frame.read<lighting::GroupLights>(), frame.read<Diffuse>(),
-                      frame.read<Glossy>(), frame.settings().transfer, frame.counters());
+        volume_.shade(frame.world.residency(),
+                      {frame.read<lighting::GroupLights>(), frame.read<Diffuse>(), frame.read<Glossy>()},
+                      frame.settings().transfer, in_view, frame.counters());
     if (frame.counters().dispatches > 0) frame.because("light");
     frame.count("volumes_shaded", volume_.shadedLast().volumes);
     frame.count("volume_slabs_written", volume_.shadedLast().slabs);
+    frame.count("volumes_out_of_view",
+                static_cast<std::uint64_t>(std::ranges::count(in_view, std::uint8_t{0})));
     return done;
   }
 
@@ -56,10 +79,7 @@ class MarchPass final : public FramePass {
                    .causes = kPictureCauses,
                    .counts = {"volumes_drawn"}}) {}
 
-  bool due(const FrameContext& frame) override {
-    const SurfaceView shown = frame.options.view.view;
-    return anyShown(frame) && (shown == SurfaceView::Final || shown == SurfaceView::Wireframe);
-  }
+  bool due(const FrameContext& frame) override { return anyShown(frame); }
   Result<void> update(FrameContext& frame) override {
     frame.because();
     // Linear pictures, which are compared, take steps of half the length, without jitter.

@@ -140,6 +140,24 @@ TEST(OptionRows, SayInTheHelpWhatEachQualityComesTo) {
   for (const OptionRow& row : optionRows()) EXPECT_EQ(row.help.find("{}"), std::string::npos) << row.name;
 }
 
+TEST(OptionRows, TakeSharesInPerCentToo) {
+  for (const auto& [name, word, share] :
+       {std::tuple{"error", "2%", 0.02f}, {"codes", "0.3%", 0.003f}, {"refine", "4%", 0.04f}}) {
+    BakeOptions options, same;
+    ASSERT_TRUE(putOption(options, name, word)) << name;
+    ASSERT_TRUE(putOption(same, name, std::to_string(share))) << name;
+    EXPECT_EQ(options.settings(), same.settings()) << "the same bytes";
+  }
+  BakeOptions options;
+  const auto put = putOption(options, "error", "2");
+  ASSERT_FALSE(put);
+  EXPECT_EQ(put.error().problem, "2 is neither none nor a share between 0 and 1");
+  EXPECT_EQ(put.error().hint, "write 2 % as 0.02 or 2%");
+  EXPECT_FALSE(putOption(options, "error", "100%"));
+  EXPECT_FALSE(putOption(options, "error", "%"));
+  EXPECT_FALSE(putOption(options, "rays", "200%"));
+}
+
 TEST(OptionRows, CountMemoryInUnitsOf1024) {
   for (const auto& [word, bytes] : std::map<std::string_view, std::uint64_t>{
            {"4GB", 4ull << 30}, {"512 mib", 512ull << 20}, {"300k", 300 << 10}, {"70000", 70000}}) {

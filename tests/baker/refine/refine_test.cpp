@@ -39,7 +39,9 @@ Refined refined(const Scene& scene, const RefineOptions& options, bool with_glos
   Progress progress;
   const auto groups = findRigidGroups(scene);
   const AlphaMaps none;
-  const auto report = refineMeshes({scene, groups, none, with_glossy}, options, result.meshes, {progress});
+  const std::vector<PlannedTransport> all_shadows(groups.size());
+  const auto report =
+      refineMeshes({scene, groups, all_shadows, none, with_glossy}, options, result.meshes, {progress});
   EXPECT_TRUE(report) << report.error().line();
   if (report) result.report = *report;
   return result;

@@ -201,6 +201,29 @@ TEST_F(FrameVolume, AStillFrameOnlyMarches) {
   EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
 }
 
+TEST_F(FrameVolume, IsNotShadedWhileTheViewPassesBy) {
+  Stage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}).volume(mist(1.0f)));
+  const glm::mat4 at_it = stage.view.view_from_world;
+  stage.view.view_from_world = glm::lookAt(stage.view.eye_ws, {20, 0, 10}, glm::vec3(0, 1, 0));
+  const spec::RgbaImage beside = stage.picture();
+  EXPECT_EQ(stage.pass("volume")->counters.dispatches, 0u);
+  EXPECT_EQ(stage.pass("march")->counters.draws, 0u);
+  EXPECT_EQ(stage.pass("raster")->counters.draws, 1u) << "the sky alone";
+  EXPECT_EQ(stage.frame->counts()["volumes_out_of_view"], 1u);
+  EXPECT_EQ(stage.frame->counts()["draws_out_of_view"], 1u);
+  for (const glm::vec4& texel : beside.texels) EXPECT_EQ(texel.a, 0.0f);
+  // Light that changes meanwhile is in the picture as soon as the volume is.
+  stage.environment.setTurn(5.0f);
+  stage.render();
+  stage.view.view_from_world = at_it;
+  const spec::RgbaImage came_into_view = stage.picture();
+  EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
+  EXPECT_EQ(stage.frame->counts()["volumes_out_of_view"], 0u);
+  EXPECT_EQ(stage.frame->counts()["draws_out_of_view"], 0u);
+  stage.frame->forget();
+  EXPECT_EQ(stage.picture().texels, came_into_view.texels) << "as if it had been in view all the time";
+}
+
 TEST_F(FrameVolume, ASceneWithoutOneHasNoPassForIt) {
   Stage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}));
   stage.render();

@@ -66,7 +66,7 @@ struct Bench {
     EXPECT_TRUE(diffuse_done) << diffuse_done.error().line();
     const Result<void> glossy_done = glossy.shade(residency, lights, mode, others);
     EXPECT_TRUE(glossy_done) << glossy_done.error().line();
-    const Result<void> done = volume.shade(residency, lights, diffuse, glossy, mode, counters);
+    const Result<void> done = volume.shade(residency, {lights, diffuse, glossy}, mode, {}, counters);
     EXPECT_TRUE(done) << done.error().line();
     return counters.dispatches;
   }

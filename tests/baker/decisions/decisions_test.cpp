@@ -1,0 +1,106 @@
+// Tests that each scene is told the decision which is right for it, and why.
+#include "baker/decisions/decisions.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "baker/bake/bake.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::box;
+using testing::grid;
+using testing::icosphere;
+using testing::sceneOf;
+
+// Returns the decisions about the only group of a scene.
+GroupDecisions decided(const Scene& scene, const BakeOptions& options = {}, const Estimates& estimates = {}) {
+  const auto plan = planFor(scene, options);
+  EXPECT_TRUE(plan);
+  DecodedImages images(scene);
+  std::vector<GroupLook> looks;
+  for (const RigidGroup& group : plan->groups) looks.push_back(*lookAt(scene, group, {}, images));
+  return decisionsOf({scene, options, *plan, looks, estimates}).at(0);
+}
+
+const Decision& about(const std::vector<Decision>& decisions, const std::string& effect) {
+  return *std::ranges::find(decisions, effect, &Decision::effect);
+}
+
+Scene ballOnFloor() {
+  return sceneOf({grid({0, 0, 0}, 3.0f, 2), icosphere({0, 0.6f, 0}, 0.5f, 2)});
+}
+
+TEST(Decisions, LeaveShadowsAndBouncesOutOnAConvexBody) {
+  const auto [group, primitives] = decided(sceneOf({icosphere({0, 0, 0}, 1.0f, 2)}));
+  for (const char* effect : {"shadows", "interreflection", "refinement"})
+    EXPECT_EQ(about(group, effect).choice, Choice::LeftOut) << effect;
+  EXPECT_NE(about(group, "shadows").reason.find("hide 0 %"), std::string::npos);
+  EXPECT_NE(about(group, "order").reason.find("order 3"), std::string::npos);
+  ASSERT_EQ(primitives.size(), 1u);
+  EXPECT_EQ(about(primitives[0].decisions, "shadows").choice, Choice::LeftOut);
+}
+
+TEST(Decisions, BakeWhatABallOnAFloorCallsFor) {
+  const auto [group, primitives] = decided(ballOnFloor());
+  for (const char* effect : {"shadows", "interreflection", "order", "refinement"})
+    EXPECT_EQ(about(group, effect).choice, Choice::Baked) << effect;
+  for (const char* effect : {"lamps", "volume", "neighborhood"})
+    EXPECT_EQ(about(group, effect).choice, Choice::Absent) << effect;
+  const auto& figures = about(group, "interreflection").figures;
+  const auto bounces = std::ranges::find(figures, "bounces", &Figure::name);
+  ASSERT_NE(bounces, figures.end());
+  EXPECT_GE(bounces->value, 1.0);
+  EXPECT_EQ(primitives.size(), 2u);
+}
+
+TEST(Decisions, CountNoMoreBouncesThanAreAskedFor) {
+  const auto none = decided(ballOnFloor(), {.bounces = 0});
+  EXPECT_EQ(about(none.decisions, "interreflection").choice, Choice::LeftOut);
+  const auto one = decided(ballOnFloor(), {.bounces = 1});
+  EXPECT_NE(about(one.decisions, "interreflection").reason.find("1 of 1 bounce "), std::string::npos);
+}
+
+TEST(Decisions, SayWhichCarrierAHighlightHas) {
+  Scene scene = ballOnFloor();
+  scene.materials.resize(2, scene.materials[0]);
+  scene.materials[0].specular = 0.0f;
+  scene.meshes[1].primitives[0].material = 1;
+  const auto of_ball = [&] { return decided(scene).primitives.at(1).decisions; };
+  scene.materials[1].metallic = 1.0f, scene.materials[1].roughness = 0.05f;
+  auto mirror = of_ball();
+  EXPECT_EQ(about(mirror, "matrices").choice, Choice::Baked);
+  EXPECT_EQ(about(mirror, "mirrorPaths").choice, Choice::Baked);
+  EXPECT_EQ(about(mirror, "specularLayer").choice, Choice::Absent);
+  scene.materials[1].metallic = 0.0f, scene.materials[1].specular = 1.0f;
+  auto lacquer = of_ball();
+  EXPECT_EQ(about(lacquer, "matrices").choice, Choice::LeftOut);
+  EXPECT_EQ(about(lacquer, "specularLayer").choice, Choice::Baked);
+  EXPECT_EQ(about(lacquer, "mirrorPaths").choice, Choice::Absent);
+  scene.materials[1].specular = 0.0f;
+  EXPECT_EQ(about(of_ball(), "matrices").choice, Choice::Absent);
+}
+
+TEST(Decisions, SayWhatTheySaveOnceTheBakeIsEstimated) {
+  const Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 3)});
+  EXPECT_FALSE(about(decided(scene).decisions, "shadows").saves.seconds) << "nobody has estimated";
+  Progress progress;
+  BakeOptions options{.quality = Quality::Draft};
+  const auto planned = estimateBake(scene, options, {progress});
+  options.effects = "all";
+  const auto all = estimateBake(scene, options, {progress});
+  ASSERT_TRUE(planned && all);
+  options.effects = "auto";
+  const Estimates estimates{&*planned, &*all};
+  const auto group = decided(scene, options, estimates).decisions;
+  EXPECT_GT(about(group, "shadows").saves.seconds.value_or(0.0), 0.0);
+  EXPECT_GT(savedByAll(estimates)->seconds.value_or(0.0), 0.0);
+  EXPECT_EQ(planned->rays, 0.0);
+  EXPECT_GT(all->rays, 0.0);
+}
+
+}  // namespace
+}  // namespace lambent::baker
