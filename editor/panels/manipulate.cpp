@@ -125,6 +125,7 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
     if (light_handles) light_gizmo.hover(pixel);
   }
   if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !eye_moves) {
+    handles.pointer.press(pixel);
     if (sun_gizmo.press(pixel)) {
       handles.sun_taken = suns[*sun_gizmo.active()];
       if (handles.sun_taken->key) session.viewing.key_at_hand = handles.sun_taken->key;
@@ -140,17 +141,18 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
     }
   }
   if (dragging()) {
+    const glm::vec2 at = handles.pointer.moved(pixel, /*fine=*/io.KeyShift);
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
       release();
       session.history.cancel();
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
       if (sun_gizmo.dragging()) {
         // A click without a drag does not move a sun that is at the border.
-        if (io.MouseDragMaxDistanceSqr[0] > 0.0f) moveSun(session, *handles.sun_taken, sun_gizmo.drag(pixel));
+        if (io.MouseDragMaxDistanceSqr[0] > 0.0f) moveSun(session, *handles.sun_taken, sun_gizmo.drag(at));
       } else if (light_gizmo.dragging()) {
-        setLight(session, primary, light_gizmo.drag(pixel));
+        setLight(session, primary, light_gizmo.drag(at));
       } else {
-        setTransforms(session, entities, gizmo.drag(pixel, io.KeyCtrl));
+        setTransforms(session, entities, gizmo.drag(at, /*other_snap=*/io.KeyCtrl));
       }
     } else {
       release();

@@ -141,6 +141,10 @@ Result<Script::Progress> Script::run(const ScriptLine& line, Session& session, U
   if (pointing || word == "key" || word == "type" || word == "wheel") {
     if (started_) return queue_.empty() ? Progress::Done : Progress::Waits;
     ScriptedInput input;
+    const auto has = [&](std::string_view name) {
+      return std::find(line.words.begin() + 1, line.words.end(), name) != line.words.end();
+    };
+    if (pointing) input.ctrl = has("Ctrl"), input.shift = has("Shift"), input.alt = has("Alt");
     if (pointing || word == "wheel") {
       if (count < 2) return fail(word, "at what?", "name a mark; \"marks\" lists them");
       const auto place = placeOf(line.words[1], ui);
@@ -165,8 +169,7 @@ Result<Script::Progress> Script::run(const ScriptLine& line, Session& session, U
         if (!down) return failAgain(down.error());
         to = *input.pointer + glm::vec2(*right, *down);
       }
-      const std::string button = count > 4 ? line.words[4] : "left";
-      input.left = button == "left", input.right = button == "right", input.middle = button == "middle";
+      input.right = has("right"), input.middle = has("middle"), input.left = !input.right && !input.middle;
       queue_.insert(queue_.end(), 2, input);
       glide(to, input);
       ScriptedInput released;
@@ -174,9 +177,6 @@ Result<Script::Progress> Script::run(const ScriptLine& line, Session& session, U
       queue_.insert(queue_.end(), 2, released);
     } else if (word == "click" || word == "double-click" || word == "right-click") {
       input.left = word != "right-click", input.right = !input.left;
-      for (std::size_t i = 2; i < count; ++i)
-        input.ctrl |= line.words[i] == "Ctrl", input.shift |= line.words[i] == "Shift",
-            input.alt |= line.words[i] == "Alt";
       tap(input);
       if (word == "double-click") tap(input);
     } else if (word == "key") {

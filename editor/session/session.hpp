@@ -15,9 +15,9 @@
 #include "editor/document/tree.hpp"
 #include "editor/session/clipboard.hpp"
 #include "editor/session/environment_map_shelf.hpp"
+#include "editor/session/field_edit_state.hpp"
 #include "editor/session/files.hpp"
 #include "editor/session/handles.hpp"
-#include "editor/session/held_angles.hpp"
 #include "editor/session/log.hpp"
 #include "editor/session/object_materials.hpp"
 #include "editor/session/picture_facts.hpp"
@@ -89,7 +89,7 @@ class Session {
   EnvironmentMapShelf environment_maps;
   MaterialPictures material_pictures;
   Clipboard clipboard;
-  HeldAngles angles;  // of the inspector
+  FieldEditState field_edit;
   WindowRequests window;
 
  private:
