@@ -17,6 +17,8 @@ std::span<const Command> editCommands();
 std::span<const Command> createCommands();
 std::span<const Command> viewCommands();
 std::span<const Command> handleCommands();
+std::span<const Command> cameraCommands();
+std::span<const Command> layoutCommands();
 std::span<const Command> lightCommands();
 std::span<const Command> keyCommands();
 std::span<const Command> bakeCommands();

@@ -127,21 +127,6 @@ Answer time(Session& session, Words words) {
   return nullptr;
 }
 
-template <bool Preferences::*Switch>
-Answer dock(Session& session, Words) {
-  session.preferences.*Switch = !(session.preferences.*Switch);
-  return nullptr;
-}
-template <bool Preferences::*Switch>
-bool docked(const Session& session) {
-  return session.preferences.*Switch;
-}
-
-Answer panel(Session& session, Words words) {
-  session.window.wanted_panels.push_back(words[0]);
-  return nullptr;
-}
-
 using Run = Result<nlohmann::json> (*)(Session&, Words);
 using Is = bool (*)(const Session&);
 
@@ -225,14 +210,6 @@ constexpr std::array kRows = {
              &camera),
     toggle("play", "Play animations", "Space", "Animations run", &play, &plays),
     scripted("time", "Where animations stand", "SECONDS", 1, 1, &time),
-    separator("View"),
-    toggle("left-panels", "Left panels", "", "The scene tree", &dock<&Preferences::show_left>,
-           &docked<&Preferences::show_left>),
-    toggle("right-panels", "Right panels", "", "Inspector, light, settings", &dock<&Preferences::show_right>,
-           &docked<&Preferences::show_right>),
-    toggle("bottom-panels", "Bottom panels", "", "Bakes, cost, streaming, log",
-           &dock<&Preferences::show_bottom>, &docked<&Preferences::show_bottom>),
-    scripted("panel", "Bring a panel up", "NAME", 1, 1, &panel),
 };
 
 }  // namespace

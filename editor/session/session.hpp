@@ -66,6 +66,9 @@ class Session {
   bool measured() const { return !settings.busy() && !qualities.busy(); }
   // Returns whether frames must be drawn even without input.
   bool moving() const;
+  // Returns whether something comes from elsewhere that the window will show: bakes, files that are read,
+  // notices that vanish. It need not be looked at in every frame.
+  bool awaits() const;
 
   Log log;
   Preferences preferences;
