@@ -115,6 +115,7 @@ get Transform.translation
 }
 
 TEST_F(EditorProgram, DragsLightsAndSunsInSteps) {
+  size = "900x600";
   const Played played = play(fmt::format(R"(
 open {0}
 wait loaded 60
@@ -125,7 +126,7 @@ drag light.radius 50 0 Ctrl
 get Light.radius
 select environment
 camera orbit:20,-10,3,60
-wait frames 30
+wait frames 20
 drag sun.handle 40 15 Ctrl
 state
 )",
@@ -235,6 +236,7 @@ where tab.Environment
 
 // Counts frames instead of time: a machine under load draws no more of them.
 TEST_F(EditorProgram, DrawsNoFrameWhileNothingChanges) {
+  size = "900x600";
   const Played played = play(fmt::format(R"(
 open {0}
 wait loaded 60
@@ -242,12 +244,12 @@ create-camera 0 1 3
 wait rest 60
 wait seconds 1
 state
-wait seconds 2
+wait seconds 1.5
 state
 set Transform.translation 0 1.2 3
 wait seconds 1
 state
-wait seconds 2
+wait seconds 1.5
 state
 )",
                                          path("hello.glb")),
@@ -268,6 +270,7 @@ state
 }
 
 TEST_F(EditorProgram, ShowsWhatASelectedCameraSees) {
+  size = "900x600";
   const Played played = play(fmt::format(R"(
 open {0}
 wait loaded 60
@@ -276,10 +279,9 @@ wait rest 60
 wait frames 5
 where camera-preview
 click camera-preview
-wait frames 60
+wait frames 3
 state
 camera orbit:120,30,2,40
-wait frames 60
 key Shift+C
 get Transform.translation
 undo
