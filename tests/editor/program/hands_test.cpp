@@ -174,7 +174,6 @@ where viewport
 drag edge.right -2000 0
 drag edge.below 0 -2000
 where viewport
-double-click edge.right
 click menu.Window
 click menu.layout-default
 wait frames 3
