@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -73,29 +74,36 @@ Result<void> run(const Options& options) {
   };
 
   Clock::time_point last = Clock::now();
-  bool moving = true;
+  bool moving = true, awaited = true;
   std::string title;
   while (!s.window.quit) {
     const ScriptedInput* scripted = *script ? (*script)->step(s, ui) : nullptr;
     if (*script && (*script)->done() && scripted == nullptr) break;
-    const bool wait = !moving && !*script && ui.sinceInput() > kActiveSeconds;
-    ui.begin(wait ? kRestWaitSeconds : 0.0, scripted);
+    const bool rests = !moving && (!*script || (*script)->rests()) && ui.sinceInput() > kActiveSeconds;
+    const bool woken = !rests || ui.wait(kRestWaitSeconds);
+    const auto now = Clock::now();
+    s.update(std::chrono::duration<double>(now - last).count());
+    last = now;
+    // The last frame shows what was awaited, so there is one more when it has come.
+    const bool awaits = s.awaits();
+    if (!woken && !awaits && !std::exchange(awaited, false) && !s.moving() && !ui.typing()) continue;
+    awaited = awaits;
+    ui.begin(scripted);
     if (ui.closeRequested()) {
       ui.refuseClose();
       s.files.askToQuit();
     }
     for (const std::filesystem::path& file : ui.takeDropped()) s.files.openLogged(file);
-    const auto now = Clock::now();
-    s.update(std::chrono::duration<double>(now - last).count());
-    last = now;
     drawLayout(s, *renderer, ui.marks());
     moving = s.moving();
     ui.end();
+    ++s.window.frames;
     if (titleOf(s) != title) window->setTitle(title = titleOf(s));
   }
   std::uint32_t width = 0, height = 0;
   window->framebufferSize(width, height);
   s.preferences.width = static_cast<int>(width), s.preferences.height = static_cast<int>(height);
+  s.preferences.handles = s.handles.gizmo.options;
   savePreferences(remembered, s.preferences);
   if (*script && (*script)->failed()) return failAgain((*script)->error());
   return {};

@@ -7,8 +7,9 @@ namespace lambent::editor {
 std::span<const Command> commandList() {
   static const std::vector<Command> list = [] {
     std::vector<Command> all;
-    for (const auto rows : {fileCommands(), editCommands(), createCommands(), viewCommands(), lightCommands(),
-                            keyCommands(), bakeCommands(), helpCommands(), stateCommands()})
+    for (const auto rows : {fileCommands(), editCommands(), createCommands(), viewCommands(),
+                            handleCommands(), cameraCommands(), lightCommands(), keyCommands(),
+                            bakeCommands(), layoutCommands(), helpCommands(), stateCommands()})
       all.insert(all.end(), rows.begin(), rows.end());
     return all;
   }();

@@ -140,6 +140,17 @@ json jobJson(const baker::JobState& job) {
   return to;
 }
 
+json handlesJson(const Session& session) {
+  constexpr std::array kModes = {"move", "turn", "scale"}, kPivots = {"primary", "center", "each"};
+  const GizmoOptions& options = session.handles.gizmo.options;
+  return {{"shown", session.handles.shown},
+          {"mode", kModes[static_cast<std::size_t>(options.mode)]},
+          {"local", options.space == GizmoSpace::Local},
+          {"pivot", kPivots[static_cast<std::size_t>(options.pivot)]},
+          {"snap", options.snap},
+          {"steps", {options.snap_m, options.snap_deg, options.snap_scale}}};
+}
+
 Answer state(Session& session, Words) {
   json scenes = json::array();
   for (std::size_t i = 0; i < session.scenes.entries().size(); ++i) {
@@ -184,6 +195,9 @@ Answer state(Session& session, Words) {
               {"negativePixels", session.picture.negative_pixels},
               {"exposureEv", session.picture.exposure_ev},
               {"atRest", session.atRest()},
+              {"handles", handlesJson(session)},
+              {"frames", session.window.frames},
+              {"pictures", session.picture.drawn},
               {"errors", session.log.errors()}};
 }
 

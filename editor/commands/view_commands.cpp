@@ -50,42 +50,6 @@ bool transfers(const Session& session) {
   return static_cast<std::size_t>(session.stage.settings().transfer) == Mode;
 }
 
-template <GizmoMode Mode>
-Answer mode(Session& session, Words) {
-  session.handles.gizmo.options.mode = Mode;
-  session.handles.shown = true;
-  return nullptr;
-}
-template <GizmoMode Mode>
-bool isMode(const Session& session) {
-  return session.handles.shown && session.handles.gizmo.options.mode == Mode;
-}
-Answer space(Session& session, Words) {
-  GizmoSpace& now = session.handles.gizmo.options.space;
-  now = now == GizmoSpace::World ? GizmoSpace::Local : GizmoSpace::World;
-  return nullptr;
-}
-bool isLocal(const Session& session) {
-  return session.handles.gizmo.options.space == GizmoSpace::Local;
-}
-Answer gizmos(Session& session, Words) {
-  session.handles.shown = !session.handles.shown;
-  return nullptr;
-}
-bool gizmosShown(const Session& session) {
-  return session.handles.shown;
-}
-
-Answer snap(Session& session, Words words) {
-  const auto metres = spec::parseNumber(words[0]);
-  if (!metres || *metres < 0.0f) return fail("snap", words[0] + " is not a step", "give metres, 0 for none");
-  GizmoOptions& options = session.handles.gizmo.options;
-  options.snap_m = *metres;
-  options.snap_deg = *metres > 0.0f ? 15.0f : 0.0f;
-  options.snap_scale = *metres > 0.0f ? 0.1f : 0.0f;
-  return nullptr;
-}
-
 Answer frameSelected(Session& session, Words) {
   session.viewing.frame(session.document, selectionBounds(session.document, session.selection));
   return nullptr;
@@ -163,21 +127,6 @@ Answer time(Session& session, Words words) {
   return nullptr;
 }
 
-template <bool Preferences::*Switch>
-Answer dock(Session& session, Words) {
-  session.preferences.*Switch = !(session.preferences.*Switch);
-  return nullptr;
-}
-template <bool Preferences::*Switch>
-bool docked(const Session& session) {
-  return session.preferences.*Switch;
-}
-
-Answer panel(Session& session, Words words) {
-  session.window.wanted_panels.push_back(words[0]);
-  return nullptr;
-}
-
 using Run = Result<nlohmann::json> (*)(Session&, Words);
 using Is = bool (*)(const Session&);
 
@@ -242,17 +191,6 @@ constexpr std::array kRows = {
            "Where key lights stand on the sky, and what their shadow maps show", &overlay<&O::keys>,
            &hasOverlay<&O::keys>),
     separator("View"),
-    toggle("move", "Move", "W", "Handles that move what is selected", &mode<GizmoMode::Move>,
-           &isMode<GizmoMode::Move>),
-    toggle("turn", "Turn", "E", "Handles that turn what is selected", &mode<GizmoMode::Rotate>,
-           &isMode<GizmoMode::Rotate>),
-    toggle("scale", "Scale", "R", "Handles that scale what is selected", &mode<GizmoMode::Scale>,
-           &isMode<GizmoMode::Scale>),
-    toggle("local-axes", "Local axes", "X", "Handles along the axes of what is selected, not of the world",
-           &space, &isLocal),
-    toggle("gizmos", "Handles", "G", "Show handles at all", &gizmos, &gizmosShown),
-    scripted("snap", "Steps of a drag in metres (and 15 degrees, a tenth); 0: none", "METRES", 1, 1, &snap),
-    separator("View"),
     Command{.id = "frame",
             .title = "Frame selection",
             .menu = "View",
@@ -272,14 +210,6 @@ constexpr std::array kRows = {
              &camera),
     toggle("play", "Play animations", "Space", "Animations run", &play, &plays),
     scripted("time", "Where animations stand", "SECONDS", 1, 1, &time),
-    separator("View"),
-    toggle("left-panels", "Left panels", "", "The scene tree", &dock<&Preferences::show_left>,
-           &docked<&Preferences::show_left>),
-    toggle("right-panels", "Right panels", "", "Inspector, light, settings", &dock<&Preferences::show_right>,
-           &docked<&Preferences::show_right>),
-    toggle("bottom-panels", "Bottom panels", "", "Bakes, cost, streaming, log",
-           &dock<&Preferences::show_bottom>, &docked<&Preferences::show_bottom>),
-    scripted("panel", "Bring a panel up", "NAME", 1, 1, &panel),
 };
 
 }  // namespace

@@ -187,6 +187,8 @@ class History {
   std::map<std::pair<StableId, const scene::FieldInfo*>, std::size_t> joinable_;
 };
 
+// Returns the name of a single entity, or "3 entities".
+std::string entitiesName(const Document& document, std::span<const ecs::Entity> entities);
 // Returns the name of a step: "move of ball", "strength of 3 entities".
 std::string editName(const Document& document, std::span<const FieldEdit> edits);
 

@@ -12,16 +12,16 @@
 namespace lambent::editor {
 namespace {
 
-std::string entitiesName(const Document& document, std::span<const ecs::Entity> entities) {
-  if (entities.size() == 1) return document.nameOf(entities.front());
-  return fmt::format("{} entities", entities.size());
-}
-
 tl::unexpected<Error> gone() {
   return fail("entity", "is no longer there", "choose one that is");
 }
 
 }  // namespace
+
+std::string entitiesName(const Document& document, std::span<const ecs::Entity> entities) {
+  if (entities.size() == 1) return document.nameOf(entities.front());
+  return fmt::format("{} entities", entities.size());
+}
 
 std::string editName(const Document& document, std::span<const FieldEdit> edits) {
   if (edits.empty()) return "nothing";

@@ -258,8 +258,8 @@ bool Gizmo::press(Handle handle, glm::vec2 pixel) {
   return true;
 }
 
-void Gizmo::dragMove(const glm::dvec2& pixel, bool free) {
-  const double step = free ? 0.0 : options.snap_m;
+void Gizmo::dragMove(const glm::dvec2& pixel, bool snap) {
+  const double step = snap ? double{options.snap_m} : 0.0;
   const double limit = kFarthest * start_.size_m * projection_.viewport().height / options.size_px;
   if (isAxis(active_)) {
     const glm::dvec3 axis = start_.axes[axisIndex(active_)];
@@ -301,17 +301,17 @@ std::optional<double> Gizmo::angleAt(const glm::dvec2& pixel) const {
   return std::atan2(glm::dot(offset, e2), glm::dot(offset, e1));
 }
 
-void Gizmo::dragTurn(const glm::dvec2& pixel, bool free) {
+void Gizmo::dragTurn(const glm::dvec2& pixel, bool snap) {
   if (const auto angle = angleAt(pixel)) {
     const double step = *angle - last_angle_;
     // Steps are added up, so that a drag can turn by more than a full circle.
     turn_rad_ += start_.edge_on ? step : std::remainder(step, 2.0 * std::numbers::pi);
     last_angle_ = *angle;
   }
-  turned_rad_ = snapped(turn_rad_, free ? 0.0 : glm::radians(double{options.snap_deg}));
+  turned_rad_ = snapped(turn_rad_, snap ? glm::radians(double{options.snap_deg}) : 0.0);
 }
 
-void Gizmo::dragScale(const glm::dvec2& pixel, bool free) {
+void Gizmo::dragScale(const glm::dvec2& pixel, bool snap) {
   double factor = 1.0;
   if (isAxis(active_)) {
     const glm::dvec3 axis = start_.axes[axisIndex(active_)];
@@ -323,18 +323,19 @@ void Gizmo::dragScale(const glm::dvec2& pixel, bool free) {
     const glm::dvec2 way = pixel - start_.pixel;
     factor = std::exp2((way.x - way.y) / options.size_px);  // to the right and up is larger
   }
-  const double step = free ? 0.0 : options.snap_scale;
+  const double step = snap ? double{options.snap_scale} : 0.0;
   factor = std::clamp(snapped(factor, step), std::max(step, kLeastFactor), 1.0 / kLeastFactor);
   factors_ = glm::dvec3(isAxis(active_) ? 1.0 : factor);
   if (isAxis(active_)) factors_[axisIndex(active_)] = factor;
 }
 
-std::vector<scene::Transform> Gizmo::drag(glm::vec2 pixel, bool free) {
+std::vector<scene::Transform> Gizmo::drag(glm::vec2 pixel, bool other_snap) {
   if (!dragging()) return {};
+  const bool snap = options.snap != other_snap;
   const glm::dvec2 at(pixel);
-  if (options.mode == GizmoMode::Move) dragMove(at, free);
-  if (options.mode == GizmoMode::Rotate) dragTurn(at, free);
-  if (options.mode == GizmoMode::Scale) dragScale(at, free);
+  if (options.mode == GizmoMode::Move) dragMove(at, snap);
+  if (options.mode == GizmoMode::Rotate) dragTurn(at, snap);
+  if (options.mode == GizmoMode::Scale) dragScale(at, snap);
   std::vector<scene::Transform> result;
   for (const GizmoTarget& target : targets_) {
     const bool each = options.pivot == GizmoPivot::Each;

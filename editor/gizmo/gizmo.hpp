@@ -48,7 +48,8 @@ struct GizmoOptions {
   GizmoMode mode = GizmoMode::Move;
   GizmoSpace space = GizmoSpace::World;
   GizmoPivot pivot = GizmoPivot::Primary;
-  float snap_m = 0.0f, snap_deg = 0.0f, snap_scale = 0.0f;  // step sizes; 0: no snapping
+  bool snap = false;                                          // drags go in steps
+  float snap_m = 0.25f, snap_deg = 15.0f, snap_scale = 0.1f;  // their sizes, > 0
   float size_px = 90.0f;  // length of an axis that is perpendicular to the view
   float hit_px = 7.0f;    // largest distance from the pointer to a handle
 };
@@ -77,9 +78,9 @@ class Gizmo {
   bool press(Handle handle, glm::vec2 pixel);  // for shortcuts ("g", "x"); false if the handle is not shown
   bool dragging() const { return active_ != Handle::None; }
   Handle active() const { return active_; }
-  // Returns the new Transforms of the targets, in their order, or an empty list if there is no drag. `free`:
-  // does not snap (a modifier key is held).
-  std::vector<scene::Transform> drag(glm::vec2 pixel, bool free = false);
+  // Returns the new Transforms of the targets, in their order, or an empty list if there is no drag.
+  // other_snap: snaps if options.snap does not, and the other way round (a modifier key is held).
+  std::vector<scene::Transform> drag(glm::vec2 pixel, bool other_snap = false);
   void release();
   // Ends the drag and returns the targets as they were.
   std::vector<scene::Transform> cancel();
@@ -120,9 +121,9 @@ class Gizmo {
   std::optional<glm::dvec2> screenDirection(const glm::dvec3& direction) const;
   double distance(Handle handle, const glm::dvec2& pixel) const;  // in pixels; infinite if hidden
 
-  void dragMove(const glm::dvec2& pixel, bool free);
-  void dragTurn(const glm::dvec2& pixel, bool free);
-  void dragScale(const glm::dvec2& pixel, bool free);
+  void dragMove(const glm::dvec2& pixel, bool snap);
+  void dragTurn(const glm::dvec2& pixel, bool snap);
+  void dragScale(const glm::dvec2& pixel, bool snap);
   std::optional<double> angleAt(const glm::dvec2& pixel) const;
 
   Projection projection_;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
+#include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/session/environment_map_shelf.hpp"
 #include "editor/ui/fitting.hpp"
@@ -49,8 +50,14 @@ bool editRadiance(Session& session, Marks& marks, const std::string& mark, glm::
   bool changed = ImGui::ColorEdit3("color", &color.x, ImGuiColorEditFlags_Float);
   asOneStep(session, "color of light");
   marks.put(mark + ".color");
-  changed |= ImGui::DragFloat("radiance", &strength, 0.01f * std::max(0.1f, strength), 0.0f, 1e7f, "%.4g",
-                              ImGuiSliderFlags_AlwaysClamp);
+  changed |= dragNumber("radiance", strength,
+                        {.speed = 0.01 * std::max(0.1, double{strength}),
+                         .least = 0.0,
+                         .most = 1e7,
+                         .format = "%.4g",
+                         .step = 1.0},
+                        session.field_edit.number);
+  tooltip(kNumberHelp);
   asOneStep(session, "strength of light");
   marks.put(mark + ".radiance");
   if (changed) radiance = strength * color;
@@ -59,15 +66,22 @@ bool editRadiance(Session& session, Marks& marks, const std::string& mark, glm::
 
 void drawSun(Session& session, Marks& marks, std::size_t index, spec::SunLight sun) {
   const std::string mark = fmt::format("environment.{}", index);
-  bool changed = ImGui::DragFloat("azimuth", &sun.azimuth_deg, 0.5f, -360.0f, 360.0f, "%.1f°");
+  HeldNumber& held = session.field_edit.number;
+  const double step = double{session.handles.gizmo.options.snap_deg};
+  bool changed =
+      dragNumber("azimuth", sun.azimuth_deg,
+                 {.speed = 0.5, .least = -360.0, .most = 360.0, .format = "%.1f°", .step = step}, held);
+  tooltip(kNumberHelp);
   asOneStep(session, "turn of sun");
   marks.put(mark + ".azimuth");
-  changed |= ImGui::DragFloat("elevation", &sun.elevation_deg, 0.25f, -90.0f, 90.0f, "%.1f°",
-                              ImGuiSliderFlags_AlwaysClamp);
+  changed |= dragNumber("elevation", sun.elevation_deg,
+                        {.speed = 0.25, .least = -90.0, .most = 90.0, .format = "%.1f°", .step = step}, held);
+  tooltip(kNumberHelp);
   asOneStep(session, "height of sun");
   marks.put(mark + ".elevation");
-  changed |=
-      ImGui::DragFloat("radius", &sun.angle_deg, 0.05f, 0.05f, 180.0f, "%.2f°", ImGuiSliderFlags_AlwaysClamp);
+  changed |= dragNumber("radius", sun.angle_deg,
+                        {.speed = 0.05, .least = 0.05, .most = 180.0, .format = "%.2f°", .step = 0.5}, held);
+  tooltip(kNumberHelp);
   asOneStep(session, "size of sun");
   marks.put(mark + ".radius");
   changed |= editRadiance(session, marks, mark, sun.radiance);

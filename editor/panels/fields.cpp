@@ -1,18 +1,23 @@
 #include "editor/panels/fields.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
+#include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include "editor/document/actions.hpp"
 #include "editor/document/field_use.hpp"
 #include "editor/panels/field_words.hpp"
+#include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/session/field_numbers.hpp"
 #include "editor/session/light_units.hpp"
 #include "editor/ui/fitting.hpp"
 
@@ -24,83 +29,145 @@ using scene::ComponentInfo;
 using scene::FieldInfo;
 using scene::Value;
 
-constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
-
 void checked(Session& session, const Result<void>& done) {
   if (!done) session.log.error(done.error());
 }
 
 // Returns the value without a sign where it is shown as zero.
-float unsignedZero(float value, int digits) {
-  return std::abs(value) < 0.5f * std::pow(10.0f, static_cast<float>(-digits)) ? 0.0f : value;
+double unsignedZero(double value, int digits) {
+  return std::abs(value) < 0.5 * std::pow(10.0, -digits) ? 0.0 : value;
 }
 
-// Edits three numbers beside each other, with as many digits as fit.
-bool dragThree(float* values, float speed, int digits) {
-  const float spacing = ImGui::GetStyle().ItemInnerSpacing.x;
-  const float width = (ImGui::CalcItemWidth() - 2.0f * spacing) / 3.0f;
-  const char* format = "%.4f";
-  int fewest = digits;
-  for (int i = 0; i < 3; ++i) {
-    const char* own = numberFormat(values[i], width, digits);
-    if (own[2] - '0' <= fewest) fewest = own[2] - '0', format = own;
+// Returns how a number of the field is dragged and shown.
+NumberLook lookOf(const Session& session, const FieldInfo& field, double shown) {
+  NumberLook look;
+  look.step = stepOf(session, field, shown);
+  const bool angle = field.unit == "rad" || field.kind == scene::ValueKind::Rotation;
+  if (isStrengthOfLight(field)) {
+    // Lights are compared by ratios.
+    look.scales = true;
+    look.speed = 0.005 * std::max(0.1, shown);
+    look.most = std::numeric_limits<float>::max();
+    look.format = "%.4g";
+    return look;
   }
-  float shown[3];
-  for (int i = 0; i < 3; ++i) shown[i] = unsignedZero(values[i], fewest);
-  if (!ImGui::DragFloat3("##value", shown, speed, 0.0f, 0.0f, format)) return false;
-  for (int i = 0; i < 3; ++i)
-    if (shown[i] != unsignedZero(values[i], fewest)) values[i] = shown[i];
-  return true;
-}
-
-// Edits an angle in degrees, whatever unit the field has.
-bool editNumber(const FieldInfo& field, float& value) {
-  const bool angle = field.unit == "rad";
-  float shown = unsignedZero(angle ? value * kDegrees : value, 6);
-  float low = 0.0f, high = 0.0f, speed = angle ? 0.5f : 0.01f;
+  if (angle) look.speed = 0.5;
+  if (field.kind == scene::ValueKind::Vector || field.kind == scene::ValueKind::Rotation) return look;
+  if (field.kind == scene::ValueKind::Whole) look.speed = 0.1;
+  look.format = field.kind == scene::ValueKind::Whole ? "%.0f"
+                : angle                               ? "%.1f°"
+                : field.unit == "m"                   ? "%.3f m"
+                                                      : "%.4g";
   if (field.range) {
-    low = field.range->least, high = field.range->greatest;
-    if (angle) low *= kDegrees, high *= kDegrees;
-    if (high - low <= 10.0f) speed = 0.002f * (high - low);
+    const double to_shown = angle ? double{glm::degrees(1.0f)} : 1.0;
+    look.least = to_shown * double{field.range->least}, look.most = to_shown * double{field.range->greatest};
+    if (look.most - look.least <= 10.0) look.speed = 0.002 * (look.most - look.least);
   }
-  if (!angle) speed = std::max(speed, 0.005f * std::abs(shown));
-  const char* format = angle ? "%.1f°" : field.unit == "m" ? "%.3f m" : "%.4g";
-  const bool changed = ImGui::DragFloat("##value", &shown, speed, low, high, format,
-                                        field.range ? ImGuiSliderFlags_AlwaysClamp : ImGuiSliderFlags_None);
-  if (changed) value = angle ? shown / kDegrees : shown;
-  if (changed && field.range) value = std::clamp(value, field.range->least, field.range->greatest);
-  return changed;
+  if (!angle) look.speed = std::max(look.speed, 0.005 * std::abs(shown));
+  return look;
 }
 
-// Edits a rotation as Euler angles in degrees: the rotation about x is applied first, then y, then z.
-bool editRotation(glm::quat& rotation, HeldAngles& held) {
-  const bool same = std::abs(glm::dot(held.rotation, rotation)) > 1.0f - 1e-6f;
-  glm::vec3 degrees = same ? held.degrees : glm::degrees(glm::eulerAngles(rotation));
-  const bool changed = dragThree(&degrees.x, 0.5f, 1);
-  if (changed) rotation = glm::normalize(glm::quat(glm::radians(degrees)));
-  held = {rotation, degrees};
-  return changed;
+// Returns a format for three numbers beside each other, with as many digits as fit for each.
+const char* formatOfThree(const std::vector<double>& numbers, float width, int digits) {
+  const char* format = nullptr;
+  for (const double number : numbers) {
+    const char* own = numberFormat(static_cast<float>(number), width, digits);
+    if (!format || own[2] < format[2]) format = own;  // "%.3f"
+  }
+  return format;
 }
 
-bool editWord(const FieldInfo& field, scene::Word& word, Marks& marks, const std::string& mark) {
-  const bool open = ImGui::BeginCombo("##value", word.text.c_str());
-  marks.put(mark);
+// A field of the selected entities, the primary last.
+struct Row {
+  const FieldInfo& field;
+  std::span<const ecs::Entity> entities;
+  std::vector<Value> values;
+  bool mixed = false;
+
+  ecs::Entity primary() const { return entities.back(); }
+  std::string mark() const { return fmt::format("inspector.{}.{}", field.component, field.name); }
+};
+
+// Returns the values after an edit of one of their numbers. It is relative to the values at the beginning of
+// the drag.
+std::vector<Value> valuesAfter(Session& session, const Row& row, std::size_t channel,
+                               const NumberEdit& edit) {
+  FieldEditState& state = session.field_edit;
+  std::vector<Value> values = row.values;
+  if (state.field.values.size() != values.size()) return values;  // others were selected meanwhile
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::vector<double> numbers = state.field.numbers[i];
+    numbers[channel] = edit.appliedTo(numbers[channel]);
+    const bool as_before = numbers[channel] == state.field.numbers[i][channel];
+    values[i] = as_before ? state.field.values[i] : valueOf(session, row.field, row.entities[i], numbers);
+    const auto* rotation = std::get_if<glm::quat>(&values[i]);
+    if (rotation && row.entities[i] == row.primary())
+      state.angles = {*rotation, glm::vec3(numbers[0], numbers[1], numbers[2])};
+  }
+  return values;
+}
+
+// Edits the numbers of a field, which lie beside each other. Returns the values of all entities if they
+// changed.
+std::optional<std::vector<Value>> editNumbers(Session& session, Marks& marks, const Row& row) {
+  constexpr std::array kAxes = {".x", ".y", ".z"};
+  FieldEditState& state = session.field_edit;
+  std::vector<std::vector<double>> numbers;
+  for (std::size_t i = 0; i < row.values.size(); ++i)
+    numbers.push_back(numbersOf(session, row.field, row.entities[i], row.values[i]));
+  const std::vector<double>& shown = numbers.back();
+  if (const auto* rotation = std::get_if<glm::quat>(&row.values.back()))
+    state.angles = {*rotation, glm::vec3(shown[0], shown[1], shown[2])};
+  const float spacing = ImGui::GetStyle().ItemInnerSpacing.x;
+  const auto count = static_cast<float>(shown.size());
+  const float width = (ImGui::CalcItemWidth() - (count - 1.0f) * spacing) / count;
+  const int digits = row.field.kind == scene::ValueKind::Rotation ? 1 : 3;
+  std::optional<std::vector<Value>> after;
+  ImGui::BeginGroup();
+  for (std::size_t channel = 0; channel < shown.size(); ++channel) {
+    NumberLook look = lookOf(session, row.field, shown[channel]);
+    if (shown.size() > 1) look.format = formatOfThree(shown, width, digits);
+    // Rotations of the same angles differ in their last bits.
+    const double same = row.field.kind == scene::ValueKind::Rotation ? 1e-3 : 0.0;
+    look.mixed = row.mixed && std::ranges::any_of(numbers, [&](const std::vector<double>& other) {
+                   return std::abs(other[channel] - shown[channel]) > same;
+                 });
+    ImGui::PushID(static_cast<int>(channel));
+    if (channel > 0) ImGui::SameLine(0.0f, spacing);
+    ImGui::SetNextItemWidth(std::max(1.0f, width));
+    const int zero_digits = shown.size() > 1 ? look.format[2] - '0' : 6;
+    if (const auto edit =
+            dragNumber("##value", unsignedZero(shown[channel], zero_digits), look, state.number))
+      after = valuesAfter(session, row, channel, *edit);
+    if (shown.size() > 1) marks.put(row.mark() + kAxes[channel]);
+    ImGui::PopID();
+  }
+  ImGui::EndGroup();
+  if (ImGui::IsItemActivated()) state.field = {row.values, std::move(numbers)};
+  return after;
+}
+
+bool editWord(const Row& row, scene::Word& word, Marks& marks) {
+  const bool open = ImGui::BeginCombo("##value", row.mixed ? kMixedText : word.text.c_str());
+  marks.put(row.mark());
   if (!open) return false;
   bool changed = false;
-  for (const std::string_view name : field.words) {
-    if (ImGui::Selectable(std::string(name).c_str(), word.text == name)) word.text = name, changed = true;
-    marks.put(mark + "." + std::string(name));
+  for (const std::string_view name : row.field.words) {
+    if (ImGui::Selectable(std::string(name).c_str(), !row.mixed && word.text == name))
+      word.text = name, changed = true;
+    marks.put(row.mark() + "." + std::string(name));
   }
   ImGui::EndCombo();
   return changed;
 }
 
 // Edits which measured BRDF replaces a material's reflection, by its name.
-bool editBrdf(const Session& session, ecs::Entity entity, std::int32_t& value) {
+bool editBrdf(const Session& session, const Row& row, std::int32_t& value) {
   const auto brdfs =
-      measuredBrdfs(session, session.document.registry().get<scene::MaterialComponent>(entity));
+      measuredBrdfs(session, session.document.registry().get<scene::MaterialComponent>(row.primary()));
   const auto found = std::ranges::find(brdfs, value, &std::pair<std::int32_t, std::string>::first);
-  const std::string shown = value < 0              ? "none"
+  const std::string shown = row.mixed              ? kMixedText
+                            : value < 0            ? "none"
                             : found != brdfs.end() ? found->second
                                                    : fmt::format("number {}", value);
   if (!ImGui::BeginCombo("##value", shown.c_str())) return false;
@@ -109,21 +176,6 @@ bool editBrdf(const Session& session, ecs::Entity entity, std::int32_t& value) {
   for (const auto& [index, name] : brdfs)
     if (ImGui::Selectable(name.c_str(), value == index)) value = index, changed = true;
   ImGui::EndCombo();
-  return changed;
-}
-
-// Edits the strength of a light in a unit that the user chooses.
-bool editStrength(const Session& session, ecs::Entity entity, float& value) {
-  const auto& light = session.document.registry().get<scene::LocalLightComponent>(entity);
-  const LightUnit unit = unitOf(light, session.preferences.light_unit);
-  const float unit_width = em(4.6f), spacing = ImGui::GetStyle().ItemInnerSpacing.x;
-  ImGui::SetNextItemWidth(std::max(em(2.0f), ImGui::CalcItemWidth() - unit_width - spacing));
-  double shown = double{value} * unit.factor;
-  const float speed = 0.005f * std::max(0.1f, static_cast<float>(shown));
-  const double least = 0.0, greatest = 1e9 * unit.factor;
-  const bool changed = ImGui::DragScalar("##value", ImGuiDataType_Double, &shown, speed, &least, &greatest,
-                                         "%.4g", ImGuiSliderFlags_AlwaysClamp);
-  if (changed) value = static_cast<float>(shown / unit.factor);
   return changed;
 }
 
@@ -147,38 +199,57 @@ void chooseUnit(Session& session, Marks& marks, ecs::Entity entity) {
   ImGui::EndCombo();
 }
 
-bool isStrengthOfLight(const FieldInfo& field) {
-  return field.component == scene::LocalLightComponent::kComponentName && field.name == "strength";
+// Edits a color of all entities. A dash on the swatch says that they differ.
+bool editColor(const Row& row, glm::vec3& color) {
+  constexpr ImGuiColorEditFlags kColor = ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR;
+  // Three numbers take the room of a color's swatch where there is little, and mean nothing where they
+  // differ.
+  const bool swatch_only = row.mixed || ImGui::CalcItemWidth() < em(13.0f);
+  const bool changed =
+      ImGui::ColorEdit3("##value", &color.x, swatch_only ? kColor | ImGuiColorEditFlags_NoInputs : kColor);
+  if (row.mixed) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const ImVec2 size = ImGui::CalcTextSize(kMixedText);
+    const ImVec2 at(0.5f * (low.x + high.x - size.x), 0.5f * (low.y + high.y - size.y));
+    ImGui::GetWindowDrawList()->AddText(ImVec2(at.x + 1.0f, at.y + 1.0f), IM_COL32_BLACK, kMixedText);
+    ImGui::GetWindowDrawList()->AddText(at, IM_COL32_WHITE, kMixedText);
+  }
+  return changed;
 }
 
-bool editValue(Session& session, Marks& marks, const FieldInfo& field, ecs::Entity entity, Value& value) {
-  const std::string mark = fmt::format("inspector.{}.{}", field.component, field.name);
-  ImGui::SetNextItemWidth(-ImGui::GetFrameHeight() - ImGui::GetStyle().ItemInnerSpacing.x);
-  bool changed = false;
+// Edits a value that is not made of numbers. All entities get the same.
+bool editWhole(Session& session, Marks& marks, const Row& row, Value& value) {
   if (auto* flag = std::get_if<bool>(&value)) {
-    changed = ImGui::Checkbox("##value", flag);
-  } else if (auto* number = std::get_if<float>(&value)) {
-    changed = isStrengthOfLight(field) ? editStrength(session, entity, *number) : editNumber(field, *number);
-  } else if (auto* word = std::get_if<scene::Word>(&value)) {
-    return editWord(field, *word, marks, mark);
-  } else if (auto* rotation = std::get_if<glm::quat>(&value)) {
-    changed = editRotation(*rotation, session.angles);
-  } else if (auto* whole = std::get_if<std::int32_t>(&value)) {
-    changed = field.component == scene::MaterialComponent::kComponentName && field.name == "brdf"
-                  ? editBrdf(session, entity, *whole)
-                  : ImGui::DragInt("##value", whole, 0.1f);
-  } else if (auto* text = std::get_if<std::string>(&value)) {
-    changed = ImGui::InputText("##value", text);
-  } else if (auto* vector = std::get_if<glm::vec3>(&value)) {
-    // Three numbers take the room of a color's swatch where there is little.
-    constexpr ImGuiColorEditFlags kColor = ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR;
-    const bool narrow = ImGui::CalcItemWidth() < em(13.0f);
-    changed = field.color ? ImGui::ColorEdit3("##value", &vector->x,
-                                              narrow ? kColor | ImGuiColorEditFlags_NoInputs : kColor)
-                          : dragThree(&vector->x, 0.01f, 3);
+    ImGui::PushItemFlag(ImGuiItemFlags_MixedValue, row.mixed);
+    const bool changed = ImGui::Checkbox("##value", flag);
+    ImGui::PopItemFlag();
+    if (changed && row.mixed) *flag = true;
+    return changed;
   }
-  marks.put(mark);
-  return changed;
+  if (auto* word = std::get_if<scene::Word>(&value)) return editWord(row, *word, marks);
+  if (auto* whole = std::get_if<std::int32_t>(&value)) return editBrdf(session, row, *whole);
+  if (auto* color = std::get_if<glm::vec3>(&value)) return editColor(row, *color);
+  auto* text = std::get_if<std::string>(&value);
+  if (!text) return false;
+  if (row.mixed) text->clear();
+  return ImGui::InputTextWithHint("##value", kMixedText, text);
+}
+
+// Draws the widget, and returns the values of all entities if it changed them.
+std::optional<std::vector<Value>> editValues(Session& session, Marks& marks, const Row& row) {
+  const float unit = isStrengthOfLight(row.field) ? em(4.6f) + ImGui::GetStyle().ItemInnerSpacing.x : 0.0f;
+  ImGui::SetNextItemWidth(
+      std::min(-ImGui::GetFrameHeight() - ImGui::GetStyle().ItemInnerSpacing.x - unit, -1.0f));
+  if (hasNumbers(row.field)) {
+    auto after = editNumbers(session, marks, row);
+    marks.put(row.mark());
+    return after;
+  }
+  Value value = row.values.back();
+  const bool changed = editWhole(session, marks, row, value);
+  if (row.field.kind != scene::ValueKind::Word) marks.put(row.mark());
+  if (!changed) return std::nullopt;
+  return std::vector(row.values.size(), value);
 }
 
 // Returns the name, unit and meaning of a field.
@@ -188,6 +259,7 @@ std::string helpOf(const FieldInfo& field, bool mixed) {
   if (const std::string_view help = fieldHelp(field.component, field.name); !help.empty())
     text += fmt::format("\n{}", help);
   if (mixed) text += "\nThe selected ones differ.";
+  if (hasNumbers(field)) text += fmt::format("\n{}", kNumberHelp);
   return text;
 }
 
@@ -195,7 +267,9 @@ std::string helpOf(const FieldInfo& field, bool mixed) {
 void drawReset(Session& session, Marks& marks, const FieldInfo& field,
                std::span<const ecs::Entity> entities) {
   const Baseline& baseline = session.changes.baseline();
-  if (isDefault(session.document, baseline, entities.back(), field)) return;
+  if (std::ranges::all_of(
+          entities, [&](ecs::Entity entity) { return isDefault(session.document, baseline, entity, field); }))
+    return;
   ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
   if (ImGui::SmallButton("o"))
     checked(session, resetToDefault(session.document, session.history, baseline, entities, field.component,
@@ -206,25 +280,28 @@ void drawReset(Session& session, Marks& marks, const FieldInfo& field,
 
 void drawField(Session& session, Marks& marks, const FieldInfo& field,
                std::span<const ecs::Entity> entities) {
-  const ecs::Entity primary = entities.back();
-  Value value = field.get(session.document.registry(), primary);
-  const bool mixed = std::any_of(entities.begin(), entities.end(), [&](ecs::Entity entity) {
-    return !scene::sameBits(field.get(session.document.registry(), entity), value);
-  });
+  Row row{field, entities, {}};
+  for (const ecs::Entity entity : entities)
+    row.values.push_back(field.get(session.document.registry(), entity));
+  row.mixed = std::ranges::any_of(
+      row.values, [&](const Value& value) { return !scene::sameBits(value, row.values.back()); });
   const std::string label = fieldLabel(field.component, field.name);
   ImGui::PushID(fmt::format("{}.{}", field.component, field.name).c_str());
-  beginFieldRow(mixed ? label + " *" : label, helpOf(field, mixed));
-  const bool changed = editValue(session, marks, field, primary, value);
+  beginFieldRow(label, helpOf(field, row.mixed));
+  const auto after = editValues(session, marks, row);
   // A drag is one step, from its first pixel to its end; so is the time that a text field is open.
-  if (ImGui::IsItemActivated())
-    session.history.beginDrag(fmt::format("{} of {}", label, session.document.nameOf(primary)));
-  if (changed) {
+  const bool activated = ImGui::IsItemActivated(), deactivated = ImGui::IsItemDeactivated();
+  if (activated)
+    session.history.beginDrag(fmt::format("{} of {}", label, entitiesName(session.document, entities)));
+  if (after) {
     std::vector<FieldEdit> edits;
-    for (const ecs::Entity entity : entities) edits.push_back({entity, field.component, field.name, value});
+    for (std::size_t i = 0; i < entities.size(); ++i)
+      edits.push_back({entities[i], field.component, field.name, (*after)[i]});
     checked(session, session.history.setFields(edits));
   }
-  if (ImGui::IsItemDeactivated()) session.history.endDrag();
-  if (isStrengthOfLight(field)) chooseUnit(session, marks, primary);
+  // Tab goes from one number of the field to the next, which begins a step of its own.
+  if (deactivated && !activated) session.history.endDrag();
+  if (isStrengthOfLight(field)) chooseUnit(session, marks, row.primary());
   drawReset(session, marks, field, entities);
   ImGui::PopID();
 }
@@ -250,7 +327,8 @@ void drawFields(Session& session, Marks& marks, const ComponentInfo& component,
                 std::span<const ecs::Entity> entities) {
   if (!beginFieldTable(std::string(component.name).c_str())) return;
   for (const FieldInfo& field : component.fields)
-    if (isUsed(session.document.registry(), entities.back(), field))
+    if (std::ranges::all_of(
+            entities, [&](ecs::Entity entity) { return isUsed(session.document.registry(), entity, field); }))
       drawField(session, marks, field, entities);
   if (component.name == scene::LocalLightComponent::kComponentName) {
     beginFieldRow("Exposure", "Of the whole picture, against which the light is seen");

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -23,6 +24,10 @@ void checked(Session& session, const Result<void>& done) {
   if (!done) session.log.error(done.error());
 }
 
+bool allCreated(const Session& session, std::span<const ecs::Entity> entities) {
+  return std::ranges::all_of(entities, [&](ecs::Entity entity) { return session.document.created(entity); });
+}
+
 void drawComponentMenu(Session& session, const ComponentInfo& component,
                        std::span<const ecs::Entity> entities) {
   if (!ImGui::BeginPopupContextItem()) return;
@@ -39,19 +44,22 @@ void drawComponentMenu(Session& session, const ComponentInfo& component,
   if (ImGui::MenuItem("Reset"))
     checked(session, resetToDefault(session.document, session.history, session.changes.baseline(), entities,
                                     component.name));
-  if (component.removable && session.document.created(entities.back()) && ImGui::MenuItem("Remove"))
+  if (component.removable && allCreated(session, entities) && ImGui::MenuItem("Remove")) {
+    session.history.begin(
+        fmt::format("removal of {} from {}", component.name, entitiesName(session.document, entities)));
     for (const ecs::Entity entity : entities)
       checked(session, session.history.removeComponent(entity, component.name));
+    session.history.commit();
+  }
   ImGui::EndPopup();
 }
 
+// Draws a component that all selected entities have.
 void drawComponent(Session& session, Marks& marks, const ComponentInfo& component,
-                   std::span<const ecs::Entity> selected) {
-  const ecs::Registry& registry = session.document.registry();
-  std::vector<ecs::Entity> entities;
-  for (const ecs::Entity entity : selected)
-    if (component.has(registry, entity)) entities.push_back(entity);
-  if (entities.empty() || entities.back() != selected.back()) return;
+                   std::span<const ecs::Entity> entities) {
+  if (!std::ranges::all_of(
+          entities, [&](ecs::Entity entity) { return component.has(session.document.registry(), entity); }))
+    return;
   const std::string name(component.name);
   const bool open = ImGui::CollapsingHeader(name.c_str(), ImGuiTreeNodeFlags_DefaultOpen);
   marks.put("inspector." + name);
@@ -61,15 +69,25 @@ void drawComponent(Session& session, Marks& marks, const ComponentInfo& componen
   drawFields(session, marks, component, entities);
 }
 
+// Draws a button that adds a component to all selected entities that lack it.
 void drawAdd(Session& session, Marks& marks, std::span<const ecs::Entity> selected) {
-  if (!session.document.created(selected.back())) return;
+  if (!allCreated(session, selected)) return;
   if (ImGui::Button("Add component")) ImGui::OpenPopup("add");
   marks.put("inspector.add");
   if (!ImGui::BeginPopup("add")) return;
   for (const ComponentInfo& component : scene::components()) {
-    if (!component.addable || component.has(session.document.registry(), selected.back())) continue;
-    if (ImGui::MenuItem(std::string(component.name).c_str()))
-      checked(session, session.history.addComponent(selected.back(), component.name));
+    std::vector<ecs::Entity> lacking;
+    for (const ecs::Entity entity : selected)
+      if (!component.has(session.document.registry(), entity)) lacking.push_back(entity);
+    if (!component.addable || lacking.empty()) continue;
+    const std::string name(component.name);
+    if (ImGui::MenuItem(name.c_str())) {
+      session.history.begin(fmt::format("{} of {}", name, entitiesName(session.document, lacking)));
+      for (const ecs::Entity entity : lacking)
+        checked(session, session.history.addComponent(entity, component.name));
+      session.history.commit();
+    }
+    marks.put("inspector.add." + name);
   }
   ImGui::EndPopup();
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/ui/fitting.hpp"
 #include "runtime/spec/light.hpp"
@@ -71,11 +72,15 @@ void drawTable(Session& session, Marks& marks, const std::vector<KeyLight>& keys
 void drawFields(Session& session, Marks& marks, std::size_t index, const KeyLight& key) {
   const std::string mark = fmt::format("key.{}", index);
   float azimuth = key.azimuth_deg, elevation = key.elevation_deg;
-  bool moved = ImGui::DragFloat("azimuth##key", &azimuth, 0.5f, -360.0f, 360.0f, "%.1f°");
+  HeldNumber& held = session.field_edit.number;
+  const double step = double{session.handles.gizmo.options.snap_deg};
+  bool moved =
+      dragNumber("azimuth##key", azimuth,
+                 {.speed = 0.5, .least = -360.0, .most = 360.0, .format = "%.1f°", .step = step}, held);
   asOneStep(session, "turn of key light");
   marks.put(mark + ".azimuth");
-  moved |= ImGui::DragFloat("elevation##key", &elevation, 0.25f, -89.9f, 89.9f, "%.1f°",
-                            ImGuiSliderFlags_AlwaysClamp);
+  moved |= dragNumber("elevation##key", elevation,
+                      {.speed = 0.25, .least = -89.9, .most = 89.9, .format = "%.1f°", .step = step}, held);
   asOneStep(session, "height of key light");
   marks.put(mark + ".elevation");
   if (moved)
@@ -90,7 +95,7 @@ void drawFields(Session& session, Marks& marks, std::size_t index, const KeyLigh
   float strength = std::max({key.factor.r, key.factor.g, key.factor.b});
   glm::vec3 tint = strength > 0.0f ? key.factor / strength : glm::vec3(1.0f);
   bool changed =
-      ImGui::DragFloat("times##key", &strength, 0.01f, 0.0f, 1000.0f, "%.3f", ImGuiSliderFlags_AlwaysClamp);
+      dragNumber("times##key", strength, {.speed = 0.01, .least = 0.0, .most = 1000.0, .step = 0.1}, held);
   asOneStep(session, "strength of key light");
   marks.put(mark + ".strength");
   changed |= ImGui::ColorEdit3("tint##key", &tint.x, ImGuiColorEditFlags_Float);

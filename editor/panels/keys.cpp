@@ -23,6 +23,9 @@ constexpr std::array kPointer = {
     Row{"Right+WASDQE", "Fly; with Shift faster"},
     Row{"Right click", "Menu of the selection"},
     Row{"Click", "Select; with Ctrl or Shift several"},
+    Row{"Shift+drag", "Finer: numbers, handles"},
+    Row{"Ctrl+drag", "In steps, or freely"},
+    Row{"Alt+drag", "Coarser: numbers"},
     Row{"Double click", "In the tree: frame"},
 };
 

@@ -13,7 +13,6 @@ namespace lambent::editor {
 
 namespace {
 
-constexpr std::chrono::milliseconds kToastAge{6000};
 constexpr std::size_t kMostToasts = 4;
 constexpr float kToastEms = 28.0f;
 

@@ -1,7 +1,12 @@
 #include "editor/panels/manipulate.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <imgui.h>
 
 namespace lambent::editor {
@@ -50,6 +55,32 @@ void setLight(Session& session, ecs::Entity entity, const scene::LocalLightCompo
                              {entity, "Light", "inner_cone", to.inner_cone_rad},
                              {entity, "Light", "outer_cone", to.outer_cone_rad}};
   if (auto done = session.history.setFields(edits); !done) session.log.error(done.error());
+}
+
+float snapped(float value, float step) {
+  return std::round(value / step) * step;
+}
+
+// Returns the light with the value that is dragged in steps; one step is the least.
+scene::LocalLightComponent snapped(scene::LocalLightComponent light, LightHandle handle,
+                                   const GizmoOptions& steps) {
+  const auto snap = [](float& value, float step) { value = std::max(snapped(value, step), step); };
+  if (handle == LightHandle::Radius) snap(light.radius_m, steps.snap_m);
+  if (handle == LightHandle::Range) snap(light.range_m, steps.snap_m);
+  if (handle == LightHandle::OuterCone) {
+    snap(light.outer_cone_rad, glm::radians(steps.snap_deg));
+    light.outer_cone_rad = std::min(light.outer_cone_rad, 0.5f * std::numbers::pi_v<float>);
+    light.inner_cone_rad = std::min(light.inner_cone_rad, light.outer_cone_rad);
+  }
+  return light;
+}
+
+// Returns the direction towards a sun with azimuth and elevation in steps.
+glm::vec3 snappedSun(const glm::vec3& towards, float step_deg) {
+  const SkyDirection at = skyDirection(towards, 0.0f);
+  return towardsSun(
+      {snapped(at.azimuth_deg, step_deg), std::clamp(snapped(at.elevation_deg, step_deg), -90.0f, 90.0f)},
+      0.0f);
 }
 
 std::vector<GizmoTarget> targetsOf(const Session& session, const std::vector<ecs::Entity>& entities) {
@@ -125,6 +156,7 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
     if (light_handles) light_gizmo.hover(pixel);
   }
   if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !eye_moves) {
+    handles.pointer.press(pixel);
     if (sun_gizmo.press(pixel)) {
       handles.sun_taken = suns[*sun_gizmo.active()];
       if (handles.sun_taken->key) session.viewing.key_at_hand = handles.sun_taken->key;
@@ -140,17 +172,22 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
     }
   }
   if (dragging()) {
+    const glm::vec2 at = handles.pointer.moved(pixel, /*fine=*/io.KeyShift);
+    const bool snaps = gizmo.options.snap != io.KeyCtrl;
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
       release();
       session.history.cancel();
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
       if (sun_gizmo.dragging()) {
         // A click without a drag does not move a sun that is at the border.
-        if (io.MouseDragMaxDistanceSqr[0] > 0.0f) moveSun(session, *handles.sun_taken, sun_gizmo.drag(pixel));
+        const glm::vec3 to = sun_gizmo.drag(at);
+        if (io.MouseDragMaxDistanceSqr[0] > 0.0f)
+          moveSun(session, *handles.sun_taken, snaps ? snappedSun(to, gizmo.options.snap_deg) : to);
       } else if (light_gizmo.dragging()) {
-        setLight(session, primary, light_gizmo.drag(pixel));
+        const scene::LocalLightComponent to = light_gizmo.drag(at);
+        setLight(session, primary, snaps ? snapped(to, light_gizmo.active(), gizmo.options) : to);
       } else {
-        setTransforms(session, entities, gizmo.drag(pixel, io.KeyCtrl));
+        setTransforms(session, entities, gizmo.drag(at, /*other_snap=*/io.KeyCtrl));
       }
     } else {
       release();

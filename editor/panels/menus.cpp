@@ -107,7 +107,7 @@ void drawMenus(Session& session, Marks& marks) {
   for (const std::string& id : std::exchange(session.window.wanted_commands, {})) runOrLog(session, id, {});
   runShortcuts(session);
   if (!ImGui::BeginMainMenuBar()) return;
-  constexpr std::array kMenus = {"File", "Edit", "Create", "View", "Bake", "Help"};
+  constexpr std::array kMenus = {"File", "Edit", "Create", "View", "Bake", "Window", "Help"};
   for (const char* menu : kMenus) {
     const bool open = ImGui::BeginMenu(menu);
     marks.put(std::string("menu.") + menu);
@@ -120,7 +120,7 @@ void drawMenus(Session& session, Marks& marks) {
         drawItem(session, marks, command);
       if (std::strcmp(command.id, "open") == 0) drawRecent(session, marks);
     }
-    if (std::strcmp(menu, "View") == 0) drawPanelItems(session);
+    if (std::strcmp(menu, "Window") == 0) drawPanelItems(session);
     ImGui::EndMenu();
   }
   drawStatus(session, marks);

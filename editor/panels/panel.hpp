@@ -13,16 +13,16 @@ namespace lambent::editor {
 
 class Renderer;
 
-enum class Dock : std::uint8_t { Left, Right, Bottom };
-
 struct Panel {
   const char* name;
-  Dock dock;
+  Dock dock;  // at first
   const char* help;
   void (*draw)(Session& session, Marks& marks);
 };
 
 std::span<const Panel> panelList();
+// Returns where the panel is in this layout.
+Dock dockOf(const WindowLayout& layout, const Panel& panel);
 
 // Each is defined in a file of its own.
 void drawSceneTree(Session& session, Marks& marks);
@@ -44,6 +44,7 @@ void drawLog(Session& session, Marks& marks);
 // These are not in a dock: the menu bar, the view in the middle, and what is drawn above everything.
 void drawMenus(Session& session, Marks& marks);
 void drawViewport(Session& session, Renderer& renderer, Marks& marks);
+void drawToolBar(Session& session, Marks& marks);  // above the view
 void drawToasts(Session& session, Marks& marks);
 void drawStartPage(Session& session, Marks& marks);  // in the view while nothing is open
 void drawDialogs(Session& session, Marks& marks);

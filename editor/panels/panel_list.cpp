@@ -29,4 +29,9 @@ std::span<const Panel> panelList() {
   return kPanels;
 }
 
+Dock dockOf(const WindowLayout& layout, const Panel& panel) {
+  const auto moved = layout.moved.find(panel.name);
+  return moved == layout.moved.end() ? panel.dock : moved->second;
+}
+
 }  // namespace lambent::editor

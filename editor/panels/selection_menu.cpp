@@ -17,6 +17,8 @@ constexpr std::array kItems = {"frame", "rename", "duplicate", "delete",    "",
                                "copy",  "paste",  "reset",     "",          "move",
                                "turn",  "scale",  "",          "frame-all", "select-none"};
 
+constexpr std::array kCameraItems = {"look-through", "camera-to-view"};
+
 void drawItem(Session& session, Marks& marks, const Command& command) {
   const bool enabled = !command.enabled || command.enabled(session);
   const bool checked = command.checked && command.checked(session);
@@ -28,6 +30,11 @@ void drawItem(Session& session, Marks& marks, const Command& command) {
 }  // namespace
 
 void drawSelectionMenu(Session& session, Marks& marks) {
+  const Command* first = findCommand(kCameraItems.front());
+  if (first && first->enabled(session)) {
+    for (const char* id : kCameraItems) drawItem(session, marks, *findCommand(id));
+    ImGui::Separator();
+  }
   for (const char* id : kItems) {
     const Command* command = findCommand(id);
     if (command)

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <nlohmann/json.hpp>
 
+#include "editor/commands/command.hpp"
 #include "editor/panels/colors.hpp"
 #include "editor/panels/manipulate.hpp"
 #include "editor/panels/panel.hpp"
@@ -89,6 +91,32 @@ void textOver(const ImVec2& at, const std::string& text, ImU32 color = IM_COL32(
   canvas->AddText(at, color, text.c_str());
 }
 
+// Draws what the selected camera sees into a corner. Returns whether the pointer is over it.
+bool drawPreview(Session& session, const Renderer& renderer, Marks& marks, const ImVec2& low,
+                 const ImVec2& high) {
+  const gpu::Texture& preview = renderer.preview();
+  if (!preview) return false;
+  constexpr float kShare = 0.3f, kGap = 12.0f;
+  const auto texels =
+      ImVec2(static_cast<float>(preview.desc().width), static_cast<float>(preview.desc().height));
+  const float zoom =
+      std::min(kShare * (high.x - low.x) / texels.x, 1.5f * kShare * (high.y - low.y) / texels.y);
+  const ImVec2 size(zoom * texels.x, zoom * texels.y);
+  const ImVec2 at(high.x - kGap - size.x, high.y - kGap - size.y);
+  const ImVec2 end(at.x + size.x, at.y + size.y);
+  ImDrawList* canvas = ImGui::GetWindowDrawList();
+  canvas->AddImage(handleOf(preview), at, end, ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
+  canvas->AddRect(ImVec2(at.x - 1.0f, at.y - 1.0f), ImVec2(end.x + 1.0f, end.y + 1.0f),
+                  IM_COL32(235, 235, 235, 255));
+  const std::string name = session.document.nameOf(session.selection.primaryEntity(session.document));
+  textOver(ImVec2(at.x + 8.0f, at.y + 5.0f), ellipsized(name, size.x - 16.0f));
+  ImGui::SetCursorScreenPos(at);
+  if (ImGui::InvisibleButton("camera preview", size)) runOrLog(session, "look-through", {});
+  marks.put("camera-preview");
+  tooltip("What the selected camera sees\nClick: look through it (C). Shift+C: place it where the view is.");
+  return ImGui::IsItemHovered() || ImGui::IsItemActive();
+}
+
 void drawLegends(Session& session, Marks& marks, const ImVec2& low, const ImVec2& high) {
   const auto& view = session.viewing.surfaces;
   std::string left = std::string(frame::rowOf(view.view).label);
@@ -163,6 +191,7 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
                             static_cast<std::uint32_t>(std::max(16.0f, scale * viewport.height))});
   drawPicture(session, renderer, low, high);
   const bool over_split = dragSplit(session, marks, low, high);
+  const bool over_preview = drawPreview(session, renderer, marks, low, high);
 
   ImGui::SetCursorScreenPos(low);
   ImGui::InvisibleButton("picture", ImVec2(viewport.width, viewport.height),
@@ -171,7 +200,8 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
   marks.put("viewport");
   const bool hovered = session.viewing.hovered = ImGui::IsItemHovered();
   moveEye(session, viewport, hovered);
-  const auto clicked = over_split ? std::nullopt : manipulate(session, marks, viewport, hovered);
+  const auto clicked =
+      over_split || over_preview ? std::nullopt : manipulate(session, marks, viewport, hovered);
   if (clicked) pick(session, renderer, scale * *clicked);
   drawLegends(session, marks, low, high);
   drawViewMenu(session, marks);

@@ -111,22 +111,29 @@ void Picture::update(Session& session, spec::Size size) {
   const bool resized = !(size == drawn_.size);
   // Another size changes the aspect, which does not count as movement: otherwise slow pictures would be drawn
   // coarse, that is at another size, and so on for ever.
-  const bool moved = view->view_from_world != drawn_.view.view_from_world ||
-                     (!resized && view->clip_from_view != drawn_.view.clip_from_view) ||
-                     drawn_.edits != editsVersion(session);
-  const bool needed =
-      moved || resized || viewing.changed || session.playback.playing || !session.picture.settled;
+  const bool view_moved = view->view_from_world != drawn_.view.view_from_world ||
+                          (!resized && view->clip_from_view != drawn_.view.clip_from_view);
+  const bool moved = view_moved || drawn_.edits != editsVersion(session);
+  const bool live = session.playback.playing || !session.picture.settled;
+  // The preview takes the targets of the main picture, which is drawn anew after it. It does not change with
+  // the view.
+  const bool preview =
+      preview_.due(session, editsVersion(session), live || (viewing.changed && !view_moved && !resized));
+  const bool needed = moved || resized || viewing.changed || live || preview;
   const bool moves = moved || session.playback.playing || session.history.open();
   const bool coarse = viewing.scale.coarse();
   if (!moves && viewing.scale.settle()) viewing.changed = true;
   if (!needed) return;
   viewing.changed = false;
   drawn_ = {editsVersion(session), *view, size};
+  if (preview)
+    if (auto drawn = preview_.draw(session, frame_); !drawn) session.log.error(drawn.error());
   clock_.begin();
   if (auto drawn = draw(session, *view, size); !drawn) session.log.error(drawn.error());
   clock_.end(/*whole=*/!coarse);
   viewing.scale.drawn(moves);
   session.picture.in_flight = unread_ = true;
+  ++session.picture.drawn;
 }
 
 }  // namespace lambent::editor

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "editor/render/camera_preview.hpp"
 #include "editor/render/picture_clock.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/frame/frame.hpp"
@@ -23,6 +24,8 @@ class Picture {
   Result<std::optional<frame::Picked>> pick(Session& session, float x, float y);
   // Row 0 of the texture is the bottom.
   const gpu::Texture& texture() const { return frame_.picture(); }
+  // Returns what the selected camera sees, as CameraPreview::texture().
+  const gpu::Texture& preview() const { return preview_.texture(); }
 
  private:
   explicit Picture(frame::Frame frame) : frame_(std::move(frame)) {}
@@ -31,6 +34,7 @@ class Picture {
 
   frame::Frame frame_;
   PictureClock clock_;
+  CameraPreview preview_;
   // Identifies what the last picture showed.
   struct Drawn {
     std::uint64_t edits = 0;  // sum of the versions of history and selection

@@ -22,6 +22,8 @@ class Renderer {
   }
   // Returns the runtime's picture; row 0 is the bottom.
   const gpu::Texture& picture() const { return picture_.texture(); }
+  // Returns what the selected camera sees; row 0 is the bottom. It has no handle if none is selected.
+  const gpu::Texture& preview() const { return picture_.preview(); }
   // Returns the reference or the heat map, as `split` says; row 0 is the top. It has no handle while there is
   // none.
   const gpu::Texture& reference(SplitView split) const { return reference_.texture(split); }

@@ -110,6 +110,8 @@ Result<Script::Progress> Script::wait(const ScriptLine& line, Session& session) 
     if (line.words.size() != 3) return fail("wait " + kind, "how many?", "wait " + kind + " 10");
     const auto count = numberFrom(line, 2);
     if (!count) return failAgain(count.error());
+    // What the lines before did is drawn first.
+    rests_ = kind == "seconds" && frames_ > 3;
     const bool reached =
         kind == "frames" ? double{*count} <= static_cast<double>(frames_) : seconds >= double{*count};
     return reached ? Progress::Done : Progress::Waits;
@@ -141,6 +143,10 @@ Result<Script::Progress> Script::run(const ScriptLine& line, Session& session, U
   if (pointing || word == "key" || word == "type" || word == "wheel") {
     if (started_) return queue_.empty() ? Progress::Done : Progress::Waits;
     ScriptedInput input;
+    const auto has = [&](std::string_view name) {
+      return std::find(line.words.begin() + 1, line.words.end(), name) != line.words.end();
+    };
+    if (pointing) input.ctrl = has("Ctrl"), input.shift = has("Shift"), input.alt = has("Alt");
     if (pointing || word == "wheel") {
       if (count < 2) return fail(word, "at what?", "name a mark; \"marks\" lists them");
       const auto place = placeOf(line.words[1], ui);
@@ -165,8 +171,7 @@ Result<Script::Progress> Script::run(const ScriptLine& line, Session& session, U
         if (!down) return failAgain(down.error());
         to = *input.pointer + glm::vec2(*right, *down);
       }
-      const std::string button = count > 4 ? line.words[4] : "left";
-      input.left = button == "left", input.right = button == "right", input.middle = button == "middle";
+      input.right = has("right"), input.middle = has("middle"), input.left = !input.right && !input.middle;
       queue_.insert(queue_.end(), 2, input);
       glide(to, input);
       ScriptedInput released;
@@ -174,9 +179,6 @@ Result<Script::Progress> Script::run(const ScriptLine& line, Session& session, U
       queue_.insert(queue_.end(), 2, released);
     } else if (word == "click" || word == "double-click" || word == "right-click") {
       input.left = word != "right-click", input.right = !input.left;
-      for (std::size_t i = 2; i < count; ++i)
-        input.ctrl |= line.words[i] == "Ctrl", input.shift |= line.words[i] == "Shift",
-            input.alt |= line.words[i] == "Alt";
       tap(input);
       if (word == "double-click") tap(input);
     } else if (word == "key") {
@@ -215,6 +217,15 @@ Result<Script::Progress> Script::run(const ScriptLine& line, Session& session, U
     answer = ui.marks().names();
     return Progress::Done;
   }
+  if (word == "where") {
+    if (count < 2) return fail(word, "is what?", "name a mark; \"marks\" lists them");
+    const auto mark = ui.marks().find(line.words[1]);
+    if (!mark && frames_ < kPatienceFrames) return Progress::Waits;
+    if (!mark) return fail(line.words[1], "is not on the screen");
+    const glm::vec2 size = mark->max - mark->min;
+    answer = {{"x", mark->min.x}, {"y", mark->min.y}, {"width", size.x}, {"height", size.y}};
+    return Progress::Done;
+  }
   if (word == "expect") {
     if (auto met = expect(line, last_); !met) return failAgain(met.error());
     answer = last_;
@@ -247,6 +258,7 @@ void Script::finish(const ScriptLine& line, const nlohmann::json& answer, const 
 
 const ScriptedInput* Script::step(Session& session, Ui& ui) {
   ++frames_;
+  rests_ = false;
   while (queue_.empty() && at_ < lines_.size()) {
     const ScriptLine& line = lines_[at_];
     nlohmann::json answer;
@@ -259,6 +271,7 @@ const ScriptedInput* Script::step(Session& session, Ui& ui) {
     frames_ = 0;
     since_ = std::chrono::steady_clock::now();
   }
+  if (!queue_.empty()) rests_ = false;
   if (queue_.empty() && done()) return nullptr;
   now_ = {};
   if (!queue_.empty()) {

@@ -39,6 +39,8 @@ class Script {
   // window to the user.
   const ScriptedInput* step(Session& session, Ui& ui);
   bool done() const { return at_ >= lines_.size() && queue_.empty(); }
+  // Returns whether the line waits for a time to pass, which needs no frames.
+  bool rests() const { return rests_; }
   bool failed() const { return error_.has_value(); }
   // Returns the error of the line that failed. Requires failed().
   const Error& error() const { return *error_; }
@@ -58,6 +60,7 @@ class Script {
   std::size_t at_ = 0;
   std::optional<Error> error_;
   bool started_ = false;  // the current line has queued its input or begun to wait
+  bool rests_ = false;
   std::uint32_t frames_ = 0;
   std::chrono::steady_clock::time_point since_;
   std::deque<ScriptedInput> queue_;  // one for each frame

@@ -116,4 +116,8 @@ void EnvironmentMapShelf::update(const std::vector<std::string>& light_words, co
     }
 }
 
+bool EnvironmentMapShelf::busy() const {
+  return coming_.valid() && coming_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
 }  // namespace lambent::editor

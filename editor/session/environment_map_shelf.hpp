@@ -26,6 +26,8 @@ class EnvironmentMapShelf {
   void addFolder(const std::filesystem::path& folder);
   // Lists the files again if the folders may have changed, and loads one thumbnail at a time.
   void update(const std::vector<std::string>& light_words, const Scenes& scenes);
+  // Returns whether a thumbnail is being loaded.
+  bool busy() const;
   const std::vector<EnvironmentMap>& environment_maps() const { return environment_maps_; }
   std::vector<EnvironmentMap>& environment_maps() { return environment_maps_; }
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "editor/gizmo/fine_pointer.hpp"
 #include "editor/gizmo/gizmo.hpp"
 #include "editor/gizmo/light_gizmo.hpp"
 #include "editor/gizmo/sun_gizmo.hpp"
@@ -16,6 +17,7 @@ struct Handles {
   Gizmo gizmo;
   LightGizmo light_gizmo;
   SunGizmo sun_gizmo;
+  FinePointer pointer;
   std::optional<SunOnSky> sun_taken;  // the sun as it was when its drag began
 };
 

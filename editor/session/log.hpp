@@ -22,6 +22,9 @@ struct LogEntry {
   std::uint64_t number = 0;                    // increases from entry to entry
 };
 
+// How long a notice stands above the window.
+inline constexpr std::chrono::milliseconds kToastAge{6000};
+
 class Log {
  public:
   static constexpr std::size_t kMostEntries = 2000;  // beyond this the oldest entries are dropped

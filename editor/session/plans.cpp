@@ -1,5 +1,7 @@
 #include "editor/session/plans.hpp"
 
+#include <algorithm>
+
 #include "baker/bake/bake.hpp"
 #include "baker/import/gltf.hpp"
 
@@ -34,6 +36,13 @@ const Result<ScenePlan>* Plans::find(const std::filesystem::path& scene, const b
     entry.coming = std::async(std::launch::async, make, scene, options);
   }
   return entry.plan ? &*entry.plan : nullptr;
+}
+
+bool Plans::busy() const {
+  return std::ranges::any_of(entries_, [](const auto& entry) {
+    const auto& coming = entry.second.coming;
+    return coming.valid() && coming.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  });
 }
 
 }  // namespace lambent::editor

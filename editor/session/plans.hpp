@@ -23,6 +23,9 @@ class Plans {
   // Returns the plan, or null while it is being computed.
   const Result<ScenePlan>* find(const std::filesystem::path& scene, const baker::BakeOptions& options);
 
+  // Returns whether one is being computed.
+  bool busy() const;
+
  private:
   struct Entry {
     std::filesystem::file_time_type time;

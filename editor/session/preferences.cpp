@@ -19,6 +19,55 @@ void read(const nlohmann::json& json, const char* name, T& value) {
   if (const auto found = json.find(name); found != json.end()) value = found->get<T>();
 }
 
+nlohmann::json layoutJson(const WindowLayout& layout) {
+  nlohmann::json json = {{"viewOnly", layout.view_only}, {"moved", nlohmann::json::object()}};
+  for (const Dock dock : kDocks) {
+    const DockLayout& part = layout.of(dock);
+    json[dockWord(dock)] = {{"share", part.share}, {"tab", part.tab}, {"shown", part.shown}};
+  }
+  for (const auto& [panel, dock] : layout.moved) json["moved"][panel] = dockWord(dock);
+  return json;
+}
+
+void readLayout(const nlohmann::json& json, WindowLayout& layout) {
+  read(json, "viewOnly", layout.view_only);
+  for (const Dock dock : kDocks)
+    if (const auto part = json.find(dockWord(dock)); part != json.end()) {
+      DockLayout& to = layout.of(dock);
+      read(*part, "share", to.share), read(*part, "tab", to.tab), read(*part, "shown", to.shown);
+      to.share = std::clamp(to.share, 0.0f, 1.0f);
+    }
+  if (const auto moved = json.find("moved"); moved != json.end())
+    for (const auto& [panel, word] : moved->items())
+      if (const auto dock = parseDock(word.get<std::string>())) layout.moved[panel] = *dock;
+}
+
+nlohmann::json handlesJson(const GizmoOptions& handles) {
+  return {{"mode", static_cast<int>(handles.mode)},
+          {"local", handles.space == GizmoSpace::Local},
+          {"pivot", static_cast<int>(handles.pivot)},
+          {"snap", handles.snap},
+          {"metres", handles.snap_m},
+          {"degrees", handles.snap_deg},
+          {"factor", handles.snap_scale}};
+}
+
+void readHandles(const nlohmann::json& json, GizmoOptions& handles) {
+  int mode = 0, pivot = 0;
+  bool local = false;
+  read(json, "mode", mode), read(json, "pivot", pivot), read(json, "local", local);
+  handles.mode = static_cast<GizmoMode>(std::clamp(mode, 0, 2));
+  handles.pivot = static_cast<GizmoPivot>(std::clamp(pivot, 0, 2));
+  handles.space = local ? GizmoSpace::Local : GizmoSpace::World;
+  read(json, "snap", handles.snap);
+  const auto step = [&](const char* name, float& value) {
+    float given = value;
+    read(json, name, given);
+    if (given > 0.0f) value = given;
+  };
+  step("metres", handles.snap_m), step("degrees", handles.snap_deg), step("factor", handles.snap_scale);
+}
+
 }  // namespace
 
 void Preferences::addRecent(const std::filesystem::path& file) {
@@ -45,18 +94,14 @@ Preferences loadPreferences(const std::filesystem::path& file) {
   if (!json.is_object()) return p;
   try {
     read(json, "width", p.width), read(json, "height", p.height);
-    read(json, "left", p.left), read(json, "right", p.right), read(json, "bottom", p.bottom);
-    read(json, "leftTab", p.left_tab), read(json, "rightTab", p.right_tab);
-    read(json, "bottomTab", p.bottom_tab);
-    read(json, "showLeft", p.show_left), read(json, "showRight", p.show_right);
-    read(json, "showBottom", p.show_bottom);
+    if (const auto layout = json.find("layout"); layout != json.end()) readLayout(*layout, p.layout);
+    if (const auto handles = json.find("handles"); handles != json.end()) readHandles(*handles, p.handles);
+    read(json, "cameraPreview", p.camera_preview);
     read(json, "scale", p.scale), read(json, "recent", p.recent);
     read(json, "lightUnit", p.light_unit);
   } catch (const nlohmann::json::exception&) {
     return {};
   }
-  const auto share = [](float& value) { value = std::clamp(value, 0.08f, 0.6f); };
-  share(p.left), share(p.right), share(p.bottom);
   p.width = std::clamp(p.width, 640, 16384), p.height = std::clamp(p.height, 400, 16384);
   p.scale = std::clamp(p.scale, 0.5f, 4.0f);
   return p;
@@ -68,13 +113,16 @@ void savePreferences(const std::filesystem::path& file, const Preferences& p) {
   std::filesystem::create_directories(file.parent_path(), ignored);
   auto out = AtomicFile::open(file);
   if (!out) return;
-  const std::string text =
-      nlohmann::json{{"width", p.width},          {"height", p.height},          {"left", p.left},
-                     {"right", p.right},          {"bottom", p.bottom},          {"leftTab", p.left_tab},
-                     {"rightTab", p.right_tab},   {"bottomTab", p.bottom_tab},   {"showLeft", p.show_left},
-                     {"showRight", p.show_right}, {"showBottom", p.show_bottom}, {"scale", p.scale},
-                     {"recent", p.recent},        {"lightUnit", p.light_unit}}
-          .dump(2);
+  const std::string text = nlohmann::json{
+      {"width", p.width},
+      {"height", p.height},
+      {"layout", layoutJson(p.layout)},
+      {"handles", handlesJson(p.handles)},
+      {"cameraPreview", p.camera_preview},
+      {"scale", p.scale},
+      {"recent", p.recent},
+      {"lightUnit",
+       p.light_unit}}.dump(2);
   if (out->write(text)) (void)out->commit();
 }
 

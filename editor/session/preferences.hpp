@@ -1,4 +1,4 @@
-// Loads and saves what the editor remembers between runs: layout, recent files, visible panels. The file is
+// Loads and saves what the editor remembers between runs: layout, recent files, how handles drag. The file is
 // $XDG_CONFIG_HOME/lambent/editor.json. If it is missing or damaged, defaults are used; errors while saving
 // are ignored.
 #pragma once
@@ -7,14 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "editor/gizmo/gizmo.hpp"
+#include "editor/session/window_layout.hpp"
+
 namespace lambent::editor {
 
 struct Preferences {
   int width = 1600, height = 950;  // of the window
-  // Fractions of the window that the side columns and the bottom row take.
-  float left = 0.17f, right = 0.24f, bottom = 0.24f;
-  std::string left_tab = "Scene", right_tab = "Inspector", bottom_tab = "Bakes";
-  bool show_left = true, show_right = true, show_bottom = true;
+  WindowLayout layout;
+  GizmoOptions handles;           // as the view had them at the end of the last run
+  bool camera_preview = true;     // an inset shows what a selected camera sees
   float scale = 1.0f;             // of text and widgets
   std::string light_unit = "cd";  // in which lights are given that can be given in it
   std::vector<std::string> recent;

@@ -44,6 +44,7 @@ Session::Session(const SessionOptions& options, Preferences given, Stage made)
     world.lights.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
   document.setWorld(std::move(world));
   document.adoptAll();
+  handles.gizmo.options = preferences.handles;
 }
 
 Result<std::unique_ptr<Session>> Session::create(const SessionOptions& options, Preferences preferences) {
@@ -93,7 +94,11 @@ void Session::update(double seconds) {
 bool Session::moving() const {
   const bool animated = playback.playing && document.registry().count<scene::AnimationComponent>() > 0;
   return viewing.changed || viewing.flying || animated || !picture.settled || picture.in_flight ||
-         (reference.on() && !reference.done()) || !measured();
+         picture.preview_waits || (reference.on() && !reference.done()) || !measured();
+}
+
+bool Session::awaits() const {
+  return scenes.busy() || plans.busy() || environment_maps.busy() || !log.recent(kToastAge).empty();
 }
 
 }  // namespace lambent::editor

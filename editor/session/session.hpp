@@ -15,9 +15,9 @@
 #include "editor/document/tree.hpp"
 #include "editor/session/clipboard.hpp"
 #include "editor/session/environment_map_shelf.hpp"
+#include "editor/session/field_edit_state.hpp"
 #include "editor/session/files.hpp"
 #include "editor/session/handles.hpp"
-#include "editor/session/held_angles.hpp"
 #include "editor/session/log.hpp"
 #include "editor/session/object_materials.hpp"
 #include "editor/session/picture_facts.hpp"
@@ -66,6 +66,9 @@ class Session {
   bool measured() const { return !settings.busy() && !qualities.busy(); }
   // Returns whether frames must be drawn even without input.
   bool moving() const;
+  // Returns whether something comes from elsewhere that the window will show: bakes, files that are read,
+  // notices that vanish. It need not be looked at in every frame.
+  bool awaits() const;
 
   Log log;
   Preferences preferences;
@@ -89,7 +92,7 @@ class Session {
   EnvironmentMapShelf environment_maps;
   MaterialPictures material_pictures;
   Clipboard clipboard;
-  HeldAngles angles;  // of the inspector
+  FieldEditState field_edit;
   WindowRequests window;
 
  private:

@@ -2,6 +2,7 @@
 // program. The window reads and clears them once a frame.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct WindowRequests {
   bool keys = false;     // the list of keys is open
   std::string palette_words;
   bool quit = false;
+  std::uint64_t frames = 0;  // how many the window has drawn
 };
 
 }  // namespace lambent::editor

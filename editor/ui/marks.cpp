@@ -13,7 +13,8 @@ void Marks::beginFrame() {
 
 void Marks::put(std::string_view name) {
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  put(name, {{low.x, low.y}, {high.x, high.y}});
+  // A tab has no size in its first frame, and cannot be clicked.
+  if (low.x < high.x || low.y < high.y) put(name, {{low.x, low.y}, {high.x, high.y}});
 }
 
 void Marks::put(std::string_view name, const Rectangle& where) {

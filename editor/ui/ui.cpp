@@ -23,6 +23,7 @@ struct Ui::State {
   std::optional<spec::Rgba8Image> picture;
   // Tells whether the last frame had scripted input, which is released when the script is over.
   bool scripted_before = false;
+  bool woken = true;  // events came since the last frame
 };
 
 namespace {
@@ -85,8 +86,20 @@ Ui::~Ui() {
   ImGui::DestroyContext();
 }
 
-void Ui::begin(double wait_s, const ScriptedInput* scripted) {
-  if (wait_s > 0.0) glfwWaitEventsTimeout(wait_s);
+bool Ui::wait(double most_s) {
+  const double begun = glfwGetTime();
+  double x = 0.0, y = 0.0;
+  glfwGetCursorPos(window_.handle(), &x, &y);
+  glfwWaitEventsTimeout(most_s);
+  double x_now = 0.0, y_now = 0.0;
+  glfwGetCursorPos(window_.handle(), &x_now, &y_now);
+  // An event ends the wait early.
+  const bool woken = glfwGetTime() - begun < 0.99 * most_s || x != x_now || y != y_now;
+  state_->woken = state_->woken || woken;
+  return woken;
+}
+
+void Ui::begin(const ScriptedInput* scripted) {
   for (std::filesystem::path& file : window_.poll().dropped) drop(std::move(file));
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
@@ -99,7 +112,7 @@ void Ui::begin(double wait_s, const ScriptedInput* scripted) {
   state_->scripted_before = scripted != nullptr;
   marks_.beginFrame();
   ImGui::NewFrame();
-  if (anyInput(io)) state_->last_input = ImGui::GetTime();
+  if (std::exchange(state_->woken, false) || anyInput(io)) state_->last_input = ImGui::GetTime();
 }
 
 void Ui::end() {
@@ -131,6 +144,10 @@ void Ui::drop(std::filesystem::path file) {
 
 double Ui::sinceInput() const {
   return ImGui::GetTime() - state_->last_input;
+}
+
+bool Ui::typing() const {
+  return ImGui::GetIO().WantTextInput;
 }
 
 void Ui::askForPicture() {

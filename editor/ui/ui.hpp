@@ -35,8 +35,10 @@ class Ui {
   Ui(const Ui&) = delete;
   Ui& operator=(const Ui&) = delete;
 
-  // Waits up to wait_s seconds for input, then begins a frame.
-  void begin(double wait_s, const ScriptedInput* scripted);
+  // Waits up to most_s seconds for input or another event of the window. Returns whether one came.
+  bool wait(double most_s);
+  // Begins a frame.
+  void begin(const ScriptedInput* scripted);
   // Draws the frame into framebuffer 0.
   void end();
 
@@ -51,6 +53,8 @@ class Ui {
 
   // Returns the seconds since the last input of the user or a script.
   double sinceInput() const;
+  // Returns whether a text field is open, whose cursor blinks.
+  bool typing() const;
   // Requests a picture of the window as the next end() draws it. takePicture() then returns it, with row 0 at
   // the top.
   void askForPicture();

@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
+#include "editor/gizmo/fine_pointer.hpp"
 #include "runtime/scene/affine.hpp"
 #include "tests/support/differences.hpp"
 #include "views.hpp"
@@ -223,6 +224,7 @@ TEST(Gizmo, SeveralTargetsMoveTogetherAboutThePivot) {
   Gizmo gizmo;
   gizmo.setView(lookAt({0.0f, 5.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, false), kViewport);
   gizmo.options.mode = GizmoMode::Rotate;
+  gizmo.options.snap = true;
   gizmo.options.snap_deg = 90.0f;
   const auto quarter = [&](GizmoPivot pivot) {
     gizmo.options.pivot = pivot;
@@ -297,8 +299,9 @@ TEST(Gizmo, EveryHandleThatIsSeenCanBeTakenByItsPlaceAndHasTheSameSizeAtAnyDista
   }
 }
 
-TEST(Gizmo, SnappingStepsAndFreeDragsDoNot) {
+TEST(Gizmo, AModifierKeySnapsADragOrFreesOneThatSnaps) {
   Gizmo gizmo;
+  gizmo.options.snap = true;
   gizmo.options.snap_m = 0.25f;
   gizmo.setTargets({GizmoTarget{}});
   gizmo.setView(lookAt({0.0f, 0.0f, 5.0f}, {0.0f, 0.0f, 0.0f}, false), kViewport);
@@ -308,8 +311,20 @@ TEST(Gizmo, SnappingStepsAndFreeDragsDoNot) {
                            .pixelsPerMetre(glm::dvec3(0.0));
   const glm::vec2 pointer = grab + glm::vec2(0.6f * static_cast<float>(scale), 0.0f);
   EXPECT_EQ(gizmo.drag(pointer)[0].translation.x, 0.5f);
-  EXPECT_NEAR(gizmo.drag(pointer, /*free=*/true)[0].translation.x, 0.6f, 1e-4f);
+  EXPECT_NEAR(gizmo.drag(pointer, /*other_snap=*/true)[0].translation.x, 0.6f, 1e-4f);
   EXPECT_EQ(gizmo.readout(), "x +0.600 m");
+  gizmo.options.snap = false;
+  EXPECT_NEAR(gizmo.drag(pointer)[0].translation.x, 0.6f, 1e-4f);
+  EXPECT_EQ(gizmo.drag(pointer, /*other_snap=*/true)[0].translation.x, 0.5f);
+}
+
+TEST(FinePointer, GoesATenthOfTheWayWhileItIsFineAndDoesNotJumpAfterwards) {
+  FinePointer pointer;
+  pointer.press({10.0f, 0.0f});
+  EXPECT_NEAR(pointer.moved({20.0f, 0.0f}, false).x, 20.0f, 1e-4f);
+  EXPECT_NEAR(pointer.moved({70.0f, 0.0f}, true).x, 25.0f, 1e-4f);
+  EXPECT_NEAR(pointer.moved({70.0f, 0.0f}, false).x, 25.0f, 1e-4f);
+  EXPECT_NEAR(pointer.moved({71.0f, 0.0f}, false).x, 26.0f, 1e-4f);
 }
 
 }  // namespace

@@ -146,9 +146,9 @@ TEST_F(WindowlessPanels, ARotationDoesNotJumpBeyondAQuarterTurn) {
   answer("create-empty");
   const Panel& inspector = panel("Inspector");
   // Euler angles that are made of this rotation anew would be 180, 80, 180.
-  session->angles.degrees = {0.0f, 100.0f, 0.0f};
-  session->angles.rotation = glm::quat(glm::radians(session->angles.degrees));
-  const glm::quat& q = session->angles.rotation;
+  session->field_edit.angles.degrees = {0.0f, 100.0f, 0.0f};
+  session->field_edit.angles.rotation = glm::quat(glm::radians(session->field_edit.angles.degrees));
+  const glm::quat& q = session->field_edit.angles.rotation;
   answer("set", {"Transform.rotation", std::to_string(q.x), std::to_string(q.y), std::to_string(q.z),
                  std::to_string(q.w)});
   EXPECT_NE(textOf(inspector).find("100.0"), std::string::npos) << textOf(inspector);

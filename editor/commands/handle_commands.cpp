@@ -1,0 +1,130 @@
+// Implements the commands for the handles in the view: what they do, along which axes, about which point, and
+// in which steps.
+#include <algorithm>
+#include <array>
+
+#include "editor/commands/rows.hpp"
+#include "runtime/spec/numbers.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+GizmoOptions& options(Session& session) {
+  return session.handles.gizmo.options;
+}
+
+template <GizmoMode Mode>
+Answer mode(Session& session, Words) {
+  options(session).mode = Mode;
+  session.handles.shown = true;
+  return nullptr;
+}
+template <GizmoMode Mode>
+bool isMode(const Session& session) {
+  return session.handles.shown && session.handles.gizmo.options.mode == Mode;
+}
+
+Answer space(Session& session, Words) {
+  GizmoSpace& now = options(session).space;
+  now = now == GizmoSpace::World ? GizmoSpace::Local : GizmoSpace::World;
+  return nullptr;
+}
+bool isLocal(const Session& session) {
+  return session.handles.gizmo.options.space == GizmoSpace::Local;
+}
+
+constexpr std::array kPivots = {"primary", "center", "each"};  // in the order of GizmoPivot
+
+// Takes a pivot by its name, or the next one.
+Answer pivot(Session& session, Words words) {
+  const auto now = static_cast<std::size_t>(options(session).pivot);
+  std::size_t to = (now + 1) % kPivots.size();
+  if (!words.empty()) {
+    const auto found = std::find(kPivots.begin(), kPivots.end(), words[0]);
+    if (found == kPivots.end())
+      return fail("pivot", "\"" + words[0] + "\" is not known", "give primary, center or each");
+    to = static_cast<std::size_t>(found - kPivots.begin());
+  }
+  options(session).pivot = static_cast<GizmoPivot>(to);
+  return kPivots[to];
+}
+
+Answer gizmos(Session& session, Words) {
+  session.handles.shown = !session.handles.shown;
+  return nullptr;
+}
+bool gizmosShown(const Session& session) {
+  return session.handles.shown;
+}
+
+// Switches snapping, or switches it on with these steps; 0 metres switch it off.
+Answer snap(Session& session, Words words) {
+  GizmoOptions& now = options(session);
+  if (words.empty()) {
+    now.snap = !now.snap;
+    return now.snap;
+  }
+  const std::array steps = {&now.snap_m, &now.snap_deg, &now.snap_scale};
+  std::vector<float> given;
+  for (const std::string& word : words) {
+    const auto step = spec::parseNumber(word);
+    const bool off = given.empty() && words.size() == 1 && step && *step == 0.0f;
+    if (!step || (!off && !(*step > 0.0f)))
+      return fail("snap", word + " is not a step",
+                  "give metres, degrees and a factor above 0, or 0 for none");
+    given.push_back(*step);
+  }
+  now.snap = given[0] > 0.0f;
+  if (now.snap)
+    for (std::size_t i = 0; i < given.size(); ++i) *steps[i] = given[i];
+  return now.snap;
+}
+bool snaps(const Session& session) {
+  return session.handles.gizmo.options.snap;
+}
+
+constexpr Command row(const char* id, const char* title, const char* shortcut, const char* help,
+                      Answer (*run)(Session&, Words), bool (*is)(const Session&)) {
+  return {.id = id,
+          .title = title,
+          .menu = "View",
+          .shortcut = shortcut,
+          .help = help,
+          .arguments = "",
+          .run = run,
+          .checked = is};
+}
+constexpr Command withWords(const char* arguments, std::size_t most, Command command) {
+  command.arguments = arguments;
+  command.most_words = most;
+  return command;
+}
+
+constexpr std::array kRows = {
+    separator("View"),
+    row("move", "Move", "W", "Handles that move what is selected", &mode<GizmoMode::Move>,
+        &isMode<GizmoMode::Move>),
+    row("turn", "Turn", "E", "Handles that turn what is selected", &mode<GizmoMode::Rotate>,
+        &isMode<GizmoMode::Rotate>),
+    row("scale", "Scale", "R", "Handles that scale what is selected", &mode<GizmoMode::Scale>,
+        &isMode<GizmoMode::Scale>),
+    row("local-axes", "Local axes", "X", "Handles along the axes of what is selected, not of the world",
+        &space, &isLocal),
+    withWords("[primary|center|each]", 1,
+              row("pivot", "Next pivot", "Z",
+                  "Turn and scale about the last selected, the middle of all, or each about itself", &pivot,
+                  nullptr)),
+    withWords(
+        "[METRES [DEGREES [FACTOR]]]", 3,
+        row("snap", "Snap", "Y", "Drags go in steps; Ctrl does so for one drag, or frees it", &snap, &snaps)),
+    row("gizmos", "Handles", "G", "Show handles at all", &gizmos, &gizmosShown),
+};
+
+}  // namespace
+
+std::span<const Command> handleCommands() {
+  return kRows;
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,92 @@
+#include "editor/session/field_numbers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "editor/session/light_units.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+using scene::FieldInfo;
+using scene::ValueKind;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+bool isAngle(const FieldInfo& field) {
+  return field.unit == "rad";
+}
+
+// Returns how many of the shown units one of the field's is.
+double factorOf(const Session& session, const FieldInfo& field, ecs::Entity entity) {
+  if (isAngle(field)) return kDegrees;
+  if (!isStrengthOfLight(field)) return 1.0;
+  const auto& light = session.document.registry().get<scene::LocalLightComponent>(entity);
+  return unitOf(light, session.preferences.light_unit).factor;
+}
+
+}  // namespace
+
+bool isStrengthOfLight(const FieldInfo& field) {
+  return field.component == scene::LocalLightComponent::kComponentName && field.name == "strength";
+}
+
+bool hasNumbers(const FieldInfo& field) {
+  switch (field.kind) {
+    case ValueKind::Number:
+    case ValueKind::Rotation:
+      return true;
+    case ValueKind::Vector:
+      return !field.color;
+    case ValueKind::Whole:  // a number of a measured BRDF is chosen by its name
+      return field.component != scene::MaterialComponent::kComponentName || field.name != "brdf";
+    case ValueKind::Flag:
+    case ValueKind::Text:
+    case ValueKind::Word:
+      break;
+  }
+  return false;
+}
+
+std::vector<double> numbersOf(const Session& session, const FieldInfo& field, ecs::Entity entity,
+                              const scene::Value& value) {
+  if (const auto* number = std::get_if<float>(&value))
+    return {double{*number} * factorOf(session, field, entity)};
+  if (const auto* whole = std::get_if<std::int32_t>(&value)) return {static_cast<double>(*whole)};
+  if (const auto* v = std::get_if<glm::vec3>(&value)) return {double{v->x}, double{v->y}, double{v->z}};
+  const auto* rotation = std::get_if<glm::quat>(&value);
+  if (!rotation) return {};
+  const HeldAngles& held = session.field_edit.angles;
+  const bool same = std::abs(glm::dot(held.rotation, *rotation)) > 1.0f - 1e-6f;
+  const glm::vec3 degrees = same ? held.degrees : glm::degrees(glm::eulerAngles(*rotation));
+  return {double{degrees.x}, double{degrees.y}, double{degrees.z}};
+}
+
+scene::Value valueOf(const Session& session, const FieldInfo& field, ecs::Entity entity,
+                     const std::vector<double>& numbers) {
+  const auto real = [&](std::size_t i) { return static_cast<float>(numbers[i]); };
+  if (field.kind == ValueKind::Vector) return glm::vec3(real(0), real(1), real(2));
+  if (field.kind == ValueKind::Rotation)
+    return glm::normalize(glm::quat(glm::radians(glm::vec3(real(0), real(1), real(2)))));
+  auto number = static_cast<float>(numbers[0] / factorOf(session, field, entity));
+  if (field.range) number = std::clamp(number, field.range->least, field.range->greatest);
+  if (field.kind == ValueKind::Whole) return static_cast<std::int32_t>(std::lround(number));
+  return number;
+}
+
+double stepOf(const Session& session, const FieldInfo& field, double number) {
+  const GizmoOptions& steps = session.handles.gizmo.options;
+  if (field.kind == ValueKind::Rotation || isAngle(field)) return double{steps.snap_deg};
+  if (field.unit == "m") return double{steps.snap_m};
+  if (field.component == scene::Transform::kComponentName && field.name == "scale")
+    return double{steps.snap_scale};
+  if (field.kind == ValueKind::Whole) return 10.0;
+  if (field.range && field.range->greatest - field.range->least <= 10.0f) return 0.1;
+  return 0.1 * std::pow(10.0, std::floor(std::log10(std::max(std::abs(number), 0.1))));
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,305 @@
+// Tests what a user's hands do in the editor's window: numbers that are dragged and typed, handles, layouts.
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/editor/program/editor_program.hpp"
+
+namespace lambent {
+namespace {
+
+using nlohmann::json;
+using testing::EditorProgram;
+using testing::Played;
+using testing::told;
+
+constexpr const char* kTwoLamps = R"(
+create-sphere 0 1 0
+rename a
+set Light.strength 10
+create-sphere 2 3 0
+rename b
+set Light.strength 1
+select a b
+panel Inspector
+wait frames 3
+)";
+
+TEST_F(EditorProgram, EditsWhatSeveralHaveInCommonAsOneStep) {
+  const Played played = play(std::string(kTwoLamps) + R"(
+drag inspector.Transform.translation.y 40 0
+get a:Transform.translation
+get b:Transform.translation
+drag inspector.Light.strength 40 0
+get a:Light.strength
+get b:Light.strength
+click inspector.Transform.translation.x
+type 2*3
+key Enter
+get a:Transform.translation
+get b:Transform.translation
+click inspector.Transform.translation.y
+type "+=1"
+key Enter
+get a:Transform.translation
+get b:Transform.translation
+state
+expect /undo "Undo Position of 2 entities"
+undo
+get a:Transform.translation
+get b:Transform.translation
+create-empty
+select a empty
+wait frames 3
+marks
+)");
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> a = played.all("get a:Transform"), b = played.all("get b:Transform");
+  ASSERT_EQ(a.size(), 4u);
+  EXPECT_NEAR(a[0][1].get<double>(), 1.4, 1e-4);
+  EXPECT_NEAR(b[0][1].get<double>(), 3.4, 1e-4) << "shifted by the same";
+  EXPECT_GT(played.answer("get a:Light").get<double>(), 10.5);
+  EXPECT_NEAR(played.answer("get a:Light").get<double>(), 10.0 * played.answer("get b:Light").get<double>(),
+              1e-3)
+      << "lights keep their ratio";
+  EXPECT_EQ(a[1][0], 6.0);
+  EXPECT_EQ(b[1][0], 6.0) << "what is typed sets all";
+  EXPECT_EQ(b[1][1], b[0][1]) << "and leaves the other numbers as they differ";
+  EXPECT_NEAR(b[2][1].get<double>(), 4.4, 1e-4) << "a sum is added to each";
+  EXPECT_EQ(a[3], a[1]) << "one step";
+  EXPECT_EQ(b[3], b[1]);
+  const std::string marks = played.answer("marks").dump();
+  EXPECT_NE(marks.find("inspector.Transform.translation"), std::string::npos);
+  EXPECT_EQ(marks.find("inspector.Light"), std::string::npos) << "not all have a light";
+}
+
+TEST_F(EditorProgram, DragsNumbersAndHandlesFinerAndInSteps) {
+  const Played played = play(R"(
+create-empty 0.1 0 0
+panel Inspector
+wait frames 3
+drag inspector.Transform.translation.x 100 0
+get Transform.translation
+drag inspector.Transform.translation.x 100 0 Shift
+get Transform.translation
+drag inspector.Transform.translation.x 30 0 Alt
+get Transform.translation
+drag inspector.Transform.translation.x 30 0 Ctrl
+get Transform.translation
+set Transform.translation 0 0 0
+wait frames 3
+drag gizmo.y 0 -60
+get Transform.translation
+undo
+wait frames 3
+drag gizmo.y 0 -60 Shift
+get Transform.translation
+undo
+wait frames 3
+drag gizmo.y 0 -60 Ctrl
+get Transform.translation
+)");
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> places = played.all("get");
+  ASSERT_EQ(places.size(), 7u);
+  const auto x = [&](std::size_t i) { return places[i][0].get<double>(); };
+  const auto y = [&](std::size_t i) { return places[i][1].get<double>(); };
+  EXPECT_NEAR(x(0), 1.1, 1e-4);
+  EXPECT_NEAR(x(1) - x(0), 0.1, 1e-4);
+  EXPECT_NEAR(x(2) - x(1), 3.0, 1e-4);
+  EXPECT_EQ(x(3), 4.5) << "a multiple of the step of 0.25 m";
+  EXPECT_NEAR(y(5), 0.1 * y(4), 0.02 * y(4));
+  EXPECT_NEAR(4.0 * y(6), std::round(4.0 * y(6)), 1e-4);
+  EXPECT_NEAR(y(6), y(4), 0.126);
+}
+
+TEST_F(EditorProgram, DragsLightsAndSunsInSteps) {
+  size = "900x600";
+  const Played played = play(fmt::format(R"(
+open {0}
+wait loaded 60
+create-sphere 0 1 0
+set Light.radius 0.3
+wait frames 3
+drag light.radius 50 0 Ctrl
+get Light.radius
+select environment
+camera orbit:20,-10,3,60
+wait frames 20
+drag sun.handle 40 15 Ctrl
+state
+)",
+                                         path("hello.glb")),
+                             {"--no-bake", "--light", "sun:200,20,1,5"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  EXPECT_EQ(played.answer("get"), 0.5);
+  EXPECT_EQ(played.answer("state")["lights"][0], "sun:-165,15,1,5");
+}
+
+TEST_F(EditorProgram, KeepsTheToolsOfTheViewBetweenStarts) {
+  const Played first = play(R"(
+create-empty
+wait frames 3
+click tool.turn
+click tool.local-axes
+click tool.snap
+click tool.snap.degrees
+type 5
+key Enter
+key Z
+wait frames 3
+state
+)");
+  ASSERT_EQ(first.outcome.exit_code, 0) << told(first.outcome);
+  const json& handles = first.answer("state")["handles"];
+  EXPECT_EQ(handles["mode"], "turn");
+  EXPECT_EQ(handles["local"], true);
+  EXPECT_EQ(handles["pivot"], "center");
+  EXPECT_EQ(handles["snap"], true);
+  EXPECT_EQ(handles["steps"][1], 5.0);
+  const Played second = play("state\n");
+  EXPECT_EQ(second.answer("state")["handles"], handles);
+}
+
+TEST_F(EditorProgram, DividesTheWindowAsItsEdgesAreDragged) {
+  for (const char* scale : {"1", "2"}) {
+    const Played played = play(R"(
+wait frames 3
+where viewport
+drag edge.right 120 0
+drag edge.left -40 0
+drag edge.below 0 60
+where viewport
+drag edge.right -2000 0
+drag edge.below 0 -2000
+where viewport
+click menu.Window
+click menu.layout-default
+wait frames 3
+where viewport
+key F11
+wait frames 3
+where viewport
+key F11
+)",
+                               {"--scale", scale, "--fresh"});
+    ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+    const std::vector<json> views = played.all("where");
+    ASSERT_EQ(views.size(), 5u);
+    const auto extent = [&](std::size_t i, const char* side) { return views[i][side].get<double>(); };
+    EXPECT_NEAR(extent(1, "width"), extent(0, "width") + 160.0, 8.0) << "at scale " << scale;
+    EXPECT_NEAR(extent(1, "height"), extent(0, "height") + 60.0, 4.0) << "at scale " << scale;
+    EXPECT_GT(extent(2, "width"), 100.0) << "the view keeps some room";
+    EXPECT_GT(extent(2, "height"), 60.0);
+    EXPECT_EQ(views[3], views[0]) << "reset";
+    EXPECT_EQ(extent(4, "width"), 1280.0);
+    EXPECT_GT(extent(4, "height"), 740.0);
+  }
+}
+
+TEST_F(EditorProgram, MovesPanelsToOtherSidesWhereTheyStay) {
+  const Played first = play(R"(
+wait frames 3
+right-click tab.Environment
+click tab.Environment.left
+drag tab.Log to dock.right@0.5,0.7
+wait frames 3
+where tab.Environment
+where tab.Log
+where viewport
+)");
+  ASSERT_EQ(first.outcome.exit_code, 0) << told(first.outcome);
+  EXPECT_LT(first.answer("where tab.Environment")["x"], first.answer("where viewport")["x"]);
+  EXPECT_GT(first.answer("where tab.Log")["x"], first.answer("where viewport")["x"]);
+  const Played second = play(R"(
+wait frames 3
+where tab.Environment
+where tab.Log
+layout lighting
+wait frames 3
+marks
+layout default
+wait frames 3
+where tab.Environment
+)");
+  ASSERT_EQ(second.outcome.exit_code, 0) << told(second.outcome);
+  const std::vector<json> places = second.all("where");
+  EXPECT_EQ(places[0], first.answer("where tab.Environment"));
+  EXPECT_EQ(places[1], first.answer("where tab.Log"));
+  EXPECT_GT(places[2]["x"], first.answer("where viewport")["x"]);
+  const std::string lighting = second.answer("marks").dump();
+  EXPECT_NE(lighting.find("environment.intensity"), std::string::npos) << "beside the inspector";
+  EXPECT_EQ(lighting.find("tab.Bakes"), std::string::npos);
+}
+
+// Counts frames instead of time: a machine under load draws no more of them.
+TEST_F(EditorProgram, DrawsNoFrameWhileNothingChanges) {
+  size = "900x600";
+  const Played played = play(fmt::format(R"(
+open {0}
+wait loaded 60
+create-camera 0 1 3
+wait rest 60
+wait seconds 1
+state
+wait seconds 1.5
+state
+set Transform.translation 0 1.2 3
+wait seconds 1
+state
+wait seconds 1.5
+state
+)",
+                                         path("hello.glb")),
+                             {"--no-bake"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  std::vector<int> frames, pictures;
+  for (const json& state : played.all("state")) {
+    frames.push_back(state["frames"].get<int>());
+    pictures.push_back(state["pictures"].get<int>());
+  }
+  ASSERT_EQ(frames.size(), 4u);
+  // Each line of a script is followed by a few frames that show what it did.
+  EXPECT_LE(frames[1] - frames[0], 5);
+  EXPECT_LE(frames[3] - frames[2], 5);
+  EXPECT_EQ(pictures[1], pictures[0]);
+  EXPECT_GT(pictures[2], pictures[1]) << "an edit is shown";
+  EXPECT_EQ(pictures[3], pictures[2]);
+}
+
+TEST_F(EditorProgram, ShowsWhatASelectedCameraSees) {
+  size = "900x600";
+  const Played played = play(fmt::format(R"(
+open {0}
+wait loaded 60
+create-camera 0 1 3
+wait rest 60
+wait frames 5
+where camera-preview
+click camera-preview
+wait frames 3
+state
+camera orbit:120,30,2,40
+key Shift+C
+get Transform.translation
+undo
+get Transform.translation
+select-none
+wait frames 5
+marks
+)",
+                                         path("hello.glb")),
+                             {"--no-bake"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  EXPECT_GT(played.answer("where")["width"], 100.0);
+  EXPECT_TRUE(played.answer("state")["eye"].get<std::string>().starts_with("pose:0,1,"))
+      << "as high as the camera";
+  const std::vector<json> places = played.all("get");
+  EXPECT_NE(places[0], places[1]);
+  EXPECT_EQ(places[1], (json{0.0, 1.0, 3.0}));
+  EXPECT_EQ(played.answer("marks").dump().find("camera-preview"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lambent
