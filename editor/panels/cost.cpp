@@ -71,7 +71,7 @@ void drawPasses(const std::vector<gpu::PassTime>& passes) {
 void drawCost(Session& session, Marks& marks) {
   const frame::StepCounts& counts = session.picture.counts;
   const auto number = [](const char* label, std::uint64_t value) {
-    ImGui::SameLine(0.0f, em(1.2f));
+    sameLineIfFits(fmt::format("{} {}", label, value));
     ImGui::TextDisabled("%s", label);
     ImGui::SameLine();
     ImGui::Text("%llu", static_cast<unsigned long long>(value));

@@ -75,7 +75,7 @@ void drawPlaces(const Session& session, Dialog& dialog, Marks& marks) {
   std::vector<Place> places = placesOf(session);
   places.resize(std::min(places.size(), kMostPlaces));
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (i > 0) sameLineIfFits(places[i].name.c_str());
+    if (i > 0) sameLineIfFits(places[i].name);
     ImGui::PushID(static_cast<int>(i));
     if (ImGui::Button(places[i].name.c_str())) dialog.folder = places[i].folder;
     ImGui::PopID();
