@@ -14,6 +14,7 @@
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/bake_estimate.hpp"
 #include "baker/pipeline/journal.hpp"
+#include "baker/pipeline/progress_record.hpp"
 #include "baker/pipeline/source_watch.hpp"
 #include "baker/pipeline/time_budget.hpp"
 #include "runtime/base/atomic_file.hpp"
@@ -73,10 +74,16 @@ int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::st
   }
   const auto estimate = cache ? findEstimate(*scene, a.options, *cache) : std::nullopt;
   if (cache) cache->setReading(!a.force);
+  const Key progress_key = progressKey(*scene, a.options);
   Result<BakeReport> report = [&] {
-    const ProgressLine line(progress, estimate ? estimate->stages : guessSeconds(*scene, a.options));
+    const StageSeconds expected = estimate ? estimate->stages : guessSeconds(*scene, a.options);
+    const ProgressRecord begun = cache ? findProgress(progress_key, *cache) : ProgressRecord{};
+    std::optional<ProgressKeeper> keeper;
+    if (cache) keeper.emplace(progress, expected, begun, *cache, progress_key);
+    const ProgressLine line(progress, WholeProgress(expected, begun));
     return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
   }();
+  if (report && cache) cache->drop(progress_key);
   if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
   if (!report) {
     if (stop.stop_requested())

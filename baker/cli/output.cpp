@@ -28,9 +28,7 @@ std::string scaled(double value, double base, std::span<const char* const> units
 // Returns a line such as "37 %  direct light, 1.2 M samples/s, about 12.0 s left".
 std::string progressText(const WholeProgress::Seen& seen) {
   std::string text = fmt::format("{:3.0f} %  {}", 100.0 * seen.share, seen.stage.name);
-  if (seen.stage.done > 0 && seen.stage.seconds > 0.0)
-    text += fmt::format(", {} {}/s", countText(static_cast<double>(seen.stage.done) / seen.stage.seconds),
-                        seen.stage.unit);
+  if (seen.units_per_s > 0.0) text += fmt::format(", {} {}/s", countText(seen.units_per_s), seen.stage.unit);
   if (seen.seconds_left > 0.0) text += fmt::format(", about {} left", durationText(seen.seconds_left));
   return text;
 }
@@ -74,22 +72,21 @@ void reportNotice(const std::filesystem::path& subject, const std::string& sente
   fmt::print(stderr, "lambent: {}\n", Error{subject.string(), sentence, {}}.line());
 }
 
-ProgressLine::ProgressLine(const Progress& progress, StageSeconds expected) {
-  thread_ =
-      std::jthread([&progress, whole = WholeProgress(std::move(expected))](std::stop_token stop) mutable {
-        const bool terminal = ::isatty(STDERR_FILENO) != 0;
-        const auto every = terminal ? std::chrono::milliseconds(100) : kLogEvery;
-        std::mutex lock;
-        std::condition_variable_any stopped;  // lets the end of a job come before the next tick
-        std::unique_lock hold(lock);
-        while (!stopped.wait_for(hold, stop, every, [&] { return stop.stop_requested(); })) {
-          if (const auto seen = whole.look(progress); !seen.stage.name.empty())
-            fmt::print(stderr, "{}{}{}", terminal ? "\r\033[K" : "lambent: ", progressText(seen),
-                       terminal ? "" : "\n");
-          std::fflush(stderr);
-        }
-        if (terminal) fmt::print(stderr, "\r\033[K");
-      });
+ProgressLine::ProgressLine(const Progress& progress, WholeProgress seen_as) {
+  thread_ = std::jthread([&progress, whole = std::move(seen_as)](std::stop_token stop) mutable {
+    const bool terminal = ::isatty(STDERR_FILENO) != 0;
+    const auto every = terminal ? std::chrono::milliseconds(100) : kLogEvery;
+    std::mutex lock;
+    std::condition_variable_any stopped;  // lets the end of a job come before the next tick
+    std::unique_lock hold(lock);
+    while (!stopped.wait_for(hold, stop, every, [&] { return stop.stop_requested(); })) {
+      if (const auto seen = whole.look(progress); !seen.stage.name.empty())
+        fmt::print(stderr, "{}{}{}", terminal ? "\r\033[K" : "lambent: ", progressText(seen),
+                   terminal ? "" : "\n");
+      std::fflush(stderr);
+    }
+    if (terminal) fmt::print(stderr, "\r\033[K");
+  });
 }
 
 ProgressLine::~ProgressLine() = default;  // the jthread stops and joins

@@ -32,11 +32,11 @@ int reportError(const Error& error);
 void reportNotice(const std::filesystem::path& subject, const std::string& sentence);
 
 // Follows `progress` on stderr while it lives: the share of the whole, the stage, its rate and the time left.
-// A terminal has one line that changes, and a log file gets a line every ten seconds. `expected` is what
+// A terminal has one line that changes, and a log file gets a line every ten seconds. `seen_as` knows what
 // stages will take.
 class ProgressLine {
  public:
-  ProgressLine(const Progress& progress, StageSeconds expected);
+  ProgressLine(const Progress& progress, WholeProgress seen_as);
   ~ProgressLine();
 
  private:

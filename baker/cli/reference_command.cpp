@@ -136,7 +136,7 @@ int runReference(const ReferenceArguments& a) {
   }
   for (const std::string& warning : scene->warnings) reportNotice(a.scene, warning);
   const auto report = [&] {
-    const ProgressLine line(progress, expectedSeconds(request->options));
+    const ProgressLine line(progress, WholeProgress(expectedSeconds(request->options)));
     return reference::render(*scene, *request, a.output, a.force, progress, stop.get_token());
   }();
   if (!report) return reportError(report.error());

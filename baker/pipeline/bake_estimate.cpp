@@ -132,24 +132,13 @@ Key keyOf(const Scene& scene, const BakeOptions& options) {
 void write(const BakeEstimate& estimate, ByteWriter& out) {
   out.add(estimate.samples), out.add(estimate.rays), out.add(estimate.seconds);
   out.add(estimate.memory_bytes), out.add(estimate.bytes);
-  out.add(std::uint64_t{estimate.stages.size()});
-  for (const auto& [stage, seconds] : estimate.stages) {
-    out.addList(std::vector<char>(stage.begin(), stage.end()));
-    out.add(seconds);
-  }
+  writeSeconds(estimate.stages, out);
 }
 
 // The whole is kept, not its groups.
 bool read(ByteReader& in, BakeEstimate& estimate) {
-  std::uint64_t count = 0;
-  if (!in.read(estimate.samples) || !in.read(estimate.rays) || !in.read(estimate.seconds) ||
-      !in.read(estimate.memory_bytes) || !in.read(estimate.bytes) || !in.read(count))
-    return false;
-  std::vector<char> stage;
-  for (std::uint64_t i = 0; i < count; ++i)
-    if (!in.readList(stage) || !in.read(estimate.stages[std::string(stage.begin(), stage.end())]))
-      return false;
-  return true;
+  return in.read(estimate.samples) && in.read(estimate.rays) && in.read(estimate.seconds) &&
+         in.read(estimate.memory_bytes) && in.read(estimate.bytes) && readSeconds(in, estimate.stages);
 }
 
 Result<BakeEstimate> estimateBake(const Scene& scene, const BakeOptions& options,

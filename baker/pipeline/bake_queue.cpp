@@ -12,6 +12,7 @@
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/job_estimate.hpp"
 #include "baker/pipeline/journal.hpp"
+#include "baker/pipeline/progress_record.hpp"
 
 namespace lambent::baker {
 
@@ -20,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPreviewFolder = "previews";
+constexpr double kMostBeforeTheEnd = 0.99;  // as in whole_progress.cpp
 // Previews that killed programs left behind are removed after this time.
 constexpr std::chrono::hours kPreviewsKept{24 * 7};
 
@@ -40,6 +42,7 @@ struct Job {
   Journal::Entry record;
   std::optional<std::string> unrecorded;     // says that the journal could not be written
   StageSeconds expected;                     // for the final bake
+  StageSeconds before;                       // what earlier runs of the final bake spent on it
   std::shared_ptr<const Progress> progress;  // of the step that runs
 
   // Steps that show something sooner come first.
@@ -80,10 +83,6 @@ void removeOldPreviews(const fs::path& folder) {
     std::error_code gone;
     if (fs::last_write_time(at->path(), gone) < old && !gone) fs::remove(at->path(), gone);
   }
-}
-
-double rateOf(const Progress::Stage& stage) {
-  return stage.seconds > 0.0 ? static_cast<double>(stage.done) / stage.seconds : 0.0;
 }
 
 double total(std::span<const Progress::Stage> stages) {
@@ -167,6 +166,7 @@ struct BakeQueue::Impl {
     job.asked = ++asked;
     job.step = firstStep(job.state.request);
     job.tried = job.begun = false;
+    job.before = {};
     job.state.preview_level = previewLevelOf(job.step);
   }
 
@@ -180,14 +180,15 @@ struct BakeQueue::Impl {
     return best;
   }
 
-  JobState snapshot(const Job& job) const;
+  // Returns the state as of now, and remembers the share, so that it never falls.
+  JobState snapshot(Job& job) const;
   void work(const std::stop_token& stop);
   void turn(const std::shared_ptr<Job>& job, std::unique_lock<std::mutex>& hold,
             const std::stop_token& closing);
   Result<std::shared_ptr<const Scene>> sceneOf(const BakeRequest& request, std::uint64_t asked_then);
 };
 
-JobState BakeQueue::Impl::snapshot(const Job& job) const {
+JobState BakeQueue::Impl::snapshot(Job& job) const {
   JobState state = job.state;
   if (state.phase == JobPhase::Done) {
     state.fraction = 1.0;
@@ -196,7 +197,6 @@ JobState BakeQueue::Impl::snapshot(const Job& job) const {
   std::vector<Progress::Stage> finished;
   if (job.progress) {
     state.stage = job.progress->now();
-    state.units_per_s = rateOf(state.stage);
     finished = job.progress->finished();
     state.seconds += total(finished) + state.stage.seconds;
   }
@@ -205,11 +205,18 @@ JobState BakeQueue::Impl::snapshot(const Job& job) const {
   if (!going || job.expected.empty()) return state;
   // Only the final bake counts; the levels before it are short.
   const bool at_final = job.progress && state.preview_level == PreviewLevel::Final;
+  const StageSeconds before = at_final ? job.before : StageSeconds{};
+  if (const double took = secondsOf(state.stage, before, finished); took > 0.0)
+    state.units_per_s = static_cast<double>(state.stage.done) / took;
+  double spent = sumSeconds(job.before);
+  if (at_final) spent += total(finished) + state.stage.seconds;
   if (!at_final) finished.clear();
-  const double left = secondsLeft(job.expected, finished, at_final ? state.stage : Progress::Stage{});
+  const double left =
+      secondsLeft(job.expected, job.before, finished, at_final ? state.stage : Progress::Stage{});
   state.seconds_left = left;
-  if (left + state.seconds > 0.0)
-    state.fraction = std::max(state.fraction, state.seconds / (state.seconds + left));
+  if (left + spent > 0.0)
+    state.fraction = std::max(state.fraction, std::min(kMostBeforeTheEnd, spent / (spent + left)));
+  job.state.fraction = state.fraction;
   return state;
 }
 
@@ -253,6 +260,8 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       unrecorded = entry.error()->line() + "; if this bake is cut short, no later session goes on with it";
   }
   bool up_to_date = false;
+  StageSeconds expected;
+  Key progress_key = {};
   std::vector<std::string> warnings;
   const Result<BakeReport> result = [&]() -> Result<BakeReport> {
     try {
@@ -262,17 +271,28 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       const auto scene = sceneOf(request, asked_then);
       if (!scene) return failAgain(scene.error());
       warnings = (*scene)->warnings;
+      ProgressRecord begun;
+      if (settings.cache != nullptr) {
+        progress_key = progressKey(**scene, request.options);
+        begun = findProgress(progress_key, *settings.cache);
+      }
       {
         const std::lock_guard again(lock);
         if (job->asked == asked_then) {
           job->state.phase = JobPhase::Baking;
           if (job->expected.empty()) job->expected = guessSeconds(**scene, request.options);
+          expected = job->expected;
+          job->before = begun.spent;
+          job->state.fraction = std::max(job->state.fraction, begun.share);
         }
       }
       if (record && isUpToDate(**scene, request.options, request.output)) {
         up_to_date = true;
         return BakeReport{};
       }
+      std::optional<ProgressKeeper> keeper;
+      if (settings.cache != nullptr && preview_level == PreviewLevel::Final)
+        keeper.emplace(*progress, expected, begun, *settings.cache, progress_key);
       std::optional<Deadline> deadline;
       if (step == Step::Trial) deadline.emplace(stop, settings.trial);
       return bakePreviewLevel(preview_level, **scene, request.options, place,
@@ -282,6 +302,11 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
     }
   }();
   progress->end();
+  StageSeconds before;
+  if (progress_key != Key{} && preview_level == PreviewLevel::Final) {
+    if (result) settings.cache->drop(progress_key);
+    before = findProgress(progress_key, *settings.cache).spent;
+  }
 
   hold.lock();
   running = nullptr;
@@ -292,8 +317,9 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
   if (record) job->record = std::move(entry), job->unrecorded = std::move(unrecorded);
   JobState& state = job->state;
   const std::vector<Progress::Stage> stages = progress->finished();
-  state.fraction = snapshot(*job).fraction;
+  snapshot(*job);  // remembers the share
   state.seconds += total(stages);
+  if (preview_level == PreviewLevel::Final) job->before = std::move(before);
   job->progress = nullptr;
   state.warnings = warnings;
   if (job->unrecorded) state.warnings.push_back(*job->unrecorded);

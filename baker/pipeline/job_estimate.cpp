@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -25,6 +27,11 @@ int gathered(const BakeOptions& options) {
 
 bool isBounce(const std::string& stage) {
   return stage.starts_with("bounce ");
+}
+
+double at(const StageSeconds& stages, const std::string& stage) {
+  const auto found = stages.find(stage);
+  return found == stages.end() ? 0.0 : found->second;
 }
 
 // Returns whether the stage's time is proportional to the rays of a sample.
@@ -84,6 +91,12 @@ StageSeconds sumSeconds(std::span<const Progress::Stage> stages) {
   return seconds;
 }
 
+double sumSeconds(const StageSeconds& stages) {
+  double sum = 0.0;
+  for (const auto& [stage, seconds] : stages) sum += seconds;
+  return sum;
+}
+
 StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOptions& of,
                           const BakeOptions& to) {
   StageSeconds seconds;
@@ -111,13 +124,17 @@ StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOpt
   return seconds;
 }
 
-double secondsLeft(const StageSeconds& expected, std::span<const Progress::Stage> finished,
-                   const Progress::Stage& now) {
+double secondsOf(const Progress::Stage& now, const StageSeconds& before,
+                 std::span<const Progress::Stage> finished) {
+  // Of several groups, what was spent before is taken for that of the first.
+  const bool first = std::ranges::find(finished, now.name, &Progress::Stage::name) == finished.end();
+  return now.seconds + (first ? at(before, now.name) : 0.0);
+}
+
+double secondsLeft(const StageSeconds& expected, const StageSeconds& before,
+                   std::span<const Progress::Stage> finished, const Progress::Stage& now) {
   const StageSeconds spent = sumSeconds(finished);
-  const auto spentOn = [&](const std::string& stage) {
-    const auto found = spent.find(stage);
-    return found == spent.end() ? 0.0 : found->second;
-  };
+  const auto spentOn = [&](const std::string& stage) { return at(spent, stage) + at(before, stage); };
   // Once another stage begins after bounces, no further bounce will come.
   bool past_bounces = !isBounce(now.name);
   if (past_bounces)
@@ -128,16 +145,33 @@ double secondsLeft(const StageSeconds& expected, std::span<const Progress::Stage
     if (stage == now.name || (isBounce(stage) && past_bounces)) continue;
     left += std::max(0.0, seconds - spentOn(stage));
   }
-  const auto found = expected.find(now.name);
-  const double this_one = found == expected.end() ? 0.0 : std::max(0.0, found->second - spentOn(now.name));
+  const double this_one = std::max(0.0, at(expected, now.name) - spentOn(now.name));
   // The stage's own rate is used once it is meaningful, plus what is expected for later groups.
-  if (now.total > 0 && now.done > 0 && now.seconds > 0.2) {
-    const double rate = static_cast<double>(now.done) / now.seconds;
+  const double took = secondsOf(now, before, finished);
+  if (now.total > 0 && now.done > 0 && took > 0.2) {
+    const double rate = static_cast<double>(now.done) / took;
     const double own = static_cast<double>(now.total - std::min(now.done, now.total)) / rate;
     const double of_others = std::max(0.0, this_one - now.seconds - own);
     return left + own + of_others;
   }
   return left + std::max(0.0, this_one - now.seconds);
+}
+
+void writeSeconds(const StageSeconds& stages, ByteWriter& out) {
+  out.add(std::uint64_t{stages.size()});
+  for (const auto& [stage, seconds] : stages) {
+    out.addList(std::vector<char>(stage.begin(), stage.end()));
+    out.add(seconds);
+  }
+}
+
+bool readSeconds(ByteReader& in, StageSeconds& stages) {
+  std::uint64_t count = 0;
+  if (!in.read(count)) return false;
+  std::vector<char> stage;
+  for (std::uint64_t i = 0; i < count; ++i)
+    if (!in.readList(stage) || !in.read(stages[std::string(stage.begin(), stage.end())])) return false;
+  return true;
 }
 
 }  // namespace lambent::baker

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "baker/bake/options.hpp"
+#include "baker/cache/bytes.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/jobs/progress.hpp"
 
@@ -25,9 +26,17 @@ StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOpt
 // Sums up the stages of a bake by name.
 StageSeconds sumSeconds(std::span<const Progress::Stage> stages);
 
+double sumSeconds(const StageSeconds& stages);
+
 // Returns the seconds left of a bake that was expected to take `expected`, has finished these stages and is
-// at `now`.
-double secondsLeft(const StageSeconds& expected, std::span<const Progress::Stage> finished,
-                   const Progress::Stage& now);
+// at `now`. `before` is what earlier runs of the same bake spent on stages whose results were kept.
+double secondsLeft(const StageSeconds& expected, const StageSeconds& before,
+                   std::span<const Progress::Stage> finished, const Progress::Stage& now);
+// Returns how long the stage took to get where it is, earlier runs included.
+double secondsOf(const Progress::Stage& now, const StageSeconds& before,
+                 std::span<const Progress::Stage> finished);
+
+void writeSeconds(const StageSeconds& stages, ByteWriter& out);
+bool readSeconds(ByteReader& in, StageSeconds& stages);
 
 }  // namespace lambent::baker

@@ -9,8 +9,10 @@ WholeProgress::Seen WholeProgress::look(const Progress& progress) {
   Seen seen;
   seen.stage = progress.now();
   const auto finished = progress.finished();
-  seen.seconds_left = secondsLeft(expected_, finished, seen.stage);
-  double spent = seen.stage.seconds;
+  seen.seconds_left = secondsLeft(expected_, before_, finished, seen.stage);
+  if (const double took = secondsOf(seen.stage, before_, finished); took > 0.0)
+    seen.units_per_s = static_cast<double>(seen.stage.done) / took;
+  double spent = seen.stage.seconds + sumSeconds(before_);
   for (const Progress::Stage& stage : finished) spent += stage.seconds;
   // Estimates change while stages run, and a share that falls would say that work was lost.
   if (spent > 0.0)

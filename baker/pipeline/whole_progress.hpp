@@ -7,22 +7,26 @@
 
 #include "baker/jobs/progress.hpp"
 #include "baker/pipeline/job_estimate.hpp"
+#include "baker/pipeline/progress_record.hpp"
 
 namespace lambent::baker {
 
 class WholeProgress {
  public:
-  explicit WholeProgress(StageSeconds expected) : expected_(std::move(expected)) {}
+  // `begun` is what earlier runs of the same job recorded.
+  explicit WholeProgress(StageSeconds expected, ProgressRecord begun = {})
+      : expected_(std::move(expected)), before_(std::move(begun.spent)), share_(begun.share) {}
 
   struct Seen {
     double share = 0.0;  // 0..1
     double seconds_left = 0.0;
-    Progress::Stage stage;  // the running one; without a name if none runs
+    double units_per_s = 0.0;  // of the running stage
+    Progress::Stage stage;     // the running one; without a name if none runs
   };
   Seen look(const Progress& progress);
 
  private:
-  StageSeconds expected_;
+  StageSeconds expected_, before_;
   double share_ = 0.0;
 };
 

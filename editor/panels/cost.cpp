@@ -71,9 +71,7 @@ void drawPasses(const std::vector<gpu::PassTime>& passes) {
 void drawCost(Session& session, Marks& marks) {
   const frame::StepCounts& counts = session.picture.counts;
   const auto number = [](const char* label, std::uint64_t value) {
-    ImGui::SameLine(0.0f, em(1.2f));
-    // What does not fit goes on in the next line.
-    if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(label).x + em(4.0f)) ImGui::NewLine();
+    sameLineIfFits(fmt::format("{} {}", label, value));
     ImGui::TextDisabled("%s", label);
     ImGui::SameLine();
     ImGui::Text("%llu", static_cast<unsigned long long>(value));

@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <cstdlib>
 
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/session/samples.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
@@ -37,9 +39,55 @@ std::vector<std::filesystem::directory_entry> listing(const Dialog& dialog) {
   return entries;
 }
 
-// Returns whether a file was chosen by a double click.
-bool drawFiles(Dialog& dialog, Marks& marks) {
+std::string answerOf(const Dialog& dialog) {
+  if (dialog.kind == Kind::Text) return dialog.name;
+  if (dialog.kind == Kind::Confirm) return {};
+  const std::filesystem::path name(dialog.name);
+  return (name.is_absolute() ? name : dialog.folder / name).string();
+}
+
+struct Place {
+  std::string name;
+  std::filesystem::path folder;
+};
+
+// Returns where files are likely to be: at home, beside what is open and what was opened, among the samples.
+std::vector<Place> placesOf(const Session& session) {
+  std::vector<Place> places;
+  const auto add = [&](std::string name, const std::filesystem::path& folder) {
+    std::error_code ignored;
+    const bool known = std::ranges::find(places, folder, &Place::folder) != places.end();
+    if (!known && !folder.empty() && std::filesystem::is_directory(folder, ignored))
+      places.push_back({std::move(name), folder});
+  };
+  if (const char* home = std::getenv("HOME")) add("Home", home);
+  for (const SceneEntry& entry : session.scenes.entries()) add("Scene", entry.source.parent_path());
+  if (const auto samples = sampleScenes(); !samples.empty()) add("Samples", samples.front().parent_path());
+  for (const std::string& recent : session.preferences.recent) {
+    const std::filesystem::path folder = std::filesystem::path(recent).parent_path();
+    add(folder.filename().string(), folder);
+  }
+  return places;
+}
+
+void drawPlaces(const Session& session, Dialog& dialog, Marks& marks) {
+  constexpr std::size_t kMostPlaces = 8;
+  std::vector<Place> places = placesOf(session);
+  places.resize(std::min(places.size(), kMostPlaces));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (i > 0) sameLineIfFits(places[i].name);
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::Button(places[i].name.c_str())) dialog.folder = places[i].folder;
+    ImGui::PopID();
+    marks.put("dialog.place." + places[i].name);
+    tooltip(places[i].folder.string());
+  }
+}
+
+// Returns whether a file was chosen, by a double click or by the Enter key.
+bool drawFiles(const Session& session, Dialog& dialog, Marks& marks) {
   bool chosen = false;
+  drawPlaces(session, dialog, marks);
   std::string folder = dialog.folder.string();
   ImGui::SetNextItemWidth(-em(4.0f));
   if (ImGui::InputText("##folder", &folder, ImGuiInputTextFlags_EnterReturnsTrue)) dialog.folder = folder;
@@ -66,18 +114,20 @@ bool drawFiles(Dialog& dialog, Marks& marks) {
   ImGui::EndChild();
   if (!enter.empty()) dialog.folder = enter, dialog.name.clear();
   ImGui::SetNextItemWidth(-1.0f);
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();  // so that a name can be typed at once
   if (ImGui::InputTextWithHint("##name", dialog.kind == Kind::Folder ? "this folder" : "file", &dialog.name,
                                ImGuiInputTextFlags_EnterReturnsTrue))
     chosen = true;
   marks.put("dialog.name");
-  return chosen;
-}
-
-std::string answerOf(const Dialog& dialog) {
-  if (dialog.kind == Kind::Text) return dialog.name;
-  if (dialog.kind == Kind::Confirm) return {};
-  const std::filesystem::path name(dialog.name);
-  return (name.is_absolute() ? name : dialog.folder / name).string();
+  // The name of a folder leads into it.
+  std::error_code ignored;
+  const std::filesystem::path named = answerOf(dialog);
+  if (!chosen || dialog.name.empty() || dialog.kind == Kind::Folder ||
+      !std::filesystem::is_directory(named, ignored))
+    return chosen;
+  dialog.folder = named.lexically_normal();
+  dialog.name.clear();
+  return false;
 }
 
 }  // namespace
@@ -105,10 +155,11 @@ void drawDialogs(Session& session, Marks& marks) {
   }
   if (dialog.kind == Kind::Text) {
     ImGui::SetNextItemWidth(-1.0f);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     yes = ImGui::InputText("##text", &dialog.name, ImGuiInputTextFlags_EnterReturnsTrue);
     marks.put("dialog.text");
   } else if (dialog.kind != Kind::Confirm) {
-    yes = drawFiles(dialog, marks);
+    yes = drawFiles(session, dialog, marks);
   }
   yes |= ImGui::Button(dialog.yes.c_str(), ImVec2(em(7.4f), 0.0f));
   marks.put("dialog.yes");

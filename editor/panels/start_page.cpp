@@ -16,14 +16,14 @@ namespace lambent::editor {
 namespace {
 
 constexpr float kWidthEms = 30.0f;
-constexpr std::size_t kMostShown = 6;
+constexpr std::size_t kMostRecent = 6;
 
 // Draws a list of files; a click opens one.
-void drawFiles(Session& session, Marks& marks, const char* title, std::vector<std::string> files) {
+void drawFiles(Session& session, Marks& marks, const char* title, const std::vector<std::string>& files) {
   if (files.empty()) return;
   ImGui::Spacing();
   ImGui::TextDisabled("%s", title);
-  for (std::size_t i = 0; i < std::min(files.size(), kMostShown); ++i) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
     const std::string name = std::filesystem::path(files[i]).filename().string();
     ImGui::PushID(files[i].c_str());
     const bool clicked = ImGui::Selectable(ellipsized(name, ImGui::GetContentRegionAvail().x).c_str());
@@ -55,7 +55,9 @@ void drawStartPage(Session& session, Marks& marks) {
   }
   if (ImGui::Button("Open...")) runOrLog(session, "open", {});
   marks.put("start.open");
-  drawFiles(session, marks, "Recent", session.preferences.recent);
+  std::vector<std::string> recent = session.preferences.recent;
+  recent.resize(std::min(recent.size(), kMostRecent));
+  drawFiles(session, marks, "Recent", recent);
   std::vector<std::string> samples;
   for (const std::filesystem::path& scene : sampleScenes()) samples.push_back(scene.string());
   drawFiles(session, marks, "Samples", samples);

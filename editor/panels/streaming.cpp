@@ -36,8 +36,8 @@ void drawTimes(const frame::FrameTimes& times) {
                        ImVec2(ImGui::GetContentRegionAvail().x, em(4.6f)));
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("Frames by their time, in quarters of the median; the last bar: all beyond");
-  ImGui::Text("median %.1f ms, worst %.1f ms, %zu of %zu over twice the median", times.median(),
-              times.worst(), times.overTwiceMedian(), times.count());
+  fittedText(fmt::format("median {:.1f} ms, worst {:.1f} ms, {} of {} over twice the median", times.median(),
+                         times.worst(), times.overTwiceMedian(), times.count()));
 }
 
 void drawBundles(const frame::StreamingStatus& status, Marks& marks) {
@@ -55,19 +55,21 @@ void drawBundles(const frame::StreamingStatus& status, Marks& marks) {
   for (const frame::BundleStreaming& bundle : status.bundles) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(bundle.name.c_str());
+    fittedText(bundle.name);
     ImGui::TableNextColumn();
     const double whole = static_cast<double>(std::max<std::uint64_t>(bundle.whole_bytes, 1));
-    ImGui::ProgressBar(
-        static_cast<float>(static_cast<double>(bundle.resident_bytes) / whole), ImVec2(-1.0f, 0.0f),
+    const std::string bytes =
         fmt::format("{} of {}, {} wanted", bytesText(static_cast<double>(bundle.resident_bytes)),
                     bytesText(static_cast<double>(bundle.whole_bytes)),
-                    bytesText(static_cast<double>(bundle.wanted_bytes)))
-            .c_str());
+                    bytesText(static_cast<double>(bundle.wanted_bytes)));
+    ImGui::ProgressBar(static_cast<float>(static_cast<double>(bundle.resident_bytes) / whole),
+                       ImVec2(-1.0f, 0.0f),
+                       ellipsized(bytes, ImGui::GetContentRegionAvail().x - em(0.5f)).c_str());
+    tooltip(bytes);
     ImGui::TableNextColumn();
     ImGui::Text("%.2f", static_cast<double>(bundle.size));
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(stateWord(bundle.state));
+    fittedText(stateWord(bundle.state));
   }
   ImGui::EndTable();
   marks.put("streaming.bundles");
@@ -86,14 +88,14 @@ void drawStreaming(Session& session, Marks& marks) {
         fmt::format("{} of {}", bytesText(resident), bytesText(static_cast<double>(status.budget_bytes)))
             .c_str());
   else
-    ImGui::Text("%s on the GPU, without a limit (--max-memory)", bytesText(resident).c_str());
+    fittedText(fmt::format("{} on the GPU, without a limit (--max-memory)", bytesText(resident)));
   marks.put("streaming.budget");
-  ImGui::Text("%u parts wanted, %s on their way, %.1f MB/s", status.queued,
-              bytesText(static_cast<double>(status.in_flight_bytes)).c_str(), status.megabytes_per_s);
+  fittedText(fmt::format("{} parts wanted, {} on their way, {:.1f} MB/s", status.queued,
+                         bytesText(static_cast<double>(status.in_flight_bytes)), status.megabytes_per_s));
   marks.put("streaming.queue");
-  ImGui::Text("%zu shown in full, %zu partly, %zu by proxy levels of detail, %zu not",
-              status.count(frame::Shown::Full), status.count(frame::Shown::Partly),
-              status.count(frame::Shown::ProxyLod), status.count(frame::Shown::Nothing));
+  fittedText(fmt::format("{} shown in full, {} partly, {} by proxy levels of detail, {} not",
+                         status.count(frame::Shown::Full), status.count(frame::Shown::Partly),
+                         status.count(frame::Shown::ProxyLod), status.count(frame::Shown::Nothing)));
   drawTimes(session.picture.times);
   ImGui::EndChild();
   ImGui::SameLine();

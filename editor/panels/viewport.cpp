@@ -130,9 +130,10 @@ void drawLegends(Session& session, Marks& marks, const ImVec2& low, const ImVec2
   const ReferenceView& reference = session.reference;
   std::string right = reference.split == SplitView::Heat ? "Difference" : "Reference";
   right += ": ";
-  if (!reference.shows())
-    right += reference.split == SplitView::Heat ? "it comes with the first full pass; now "
-                                                : "not there yet; now ";
+  if (!reference.shows()) {
+    right += reference.split == SplitView::Heat ? "it comes with the first full pass" : "not there yet";
+    if (!reference.notice().empty()) right += "; now ";
+  }
   right += reference.notice();
   const float begins = low.x + reference.split_at * (high.x - low.x) + 12.0f;
   textOver(ImVec2(begins, low.y + 10.0f), ellipsized(right, std::max(0.0f, high.x - begins - 12.0f)));

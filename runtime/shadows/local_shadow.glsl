@@ -12,9 +12,10 @@ const float kBiasTexels = 1.5;
 // rim.
 const float kSearchWidth = 2.0, kFoundWidth = 3.0;  // in multiples of the disc's radius
 const float kOneLayer = 0.01;  // share of the way: blockers at most this far apart count as one layer
-// The search for what blocks a ray takes this many steps, each shorter than the one before by this factor.
-const int kSteps = 3;
-const float kNearer = 0.8;
+// The search for what blocks a ray takes this many steps. At its end the ray meets a surface if the blocker is
+// as near as the search is fine; where the ray only passes behind an edge, it is farther.
+const int kSteps = 4;
+const float kMet = 2.0;  // in widths of the interval that is left
 const float kLeastSquared = 1e-12;  // square of a micrometre: keeps weights finite
 const float kGoldenAngle = 2.39996323;
 
@@ -177,23 +178,33 @@ float heightOnRay(float up, int index, ShadowReceiver receiver, LightDisc disc, 
   float least = receiver.bias * 0.5 * receiver.distance * up / max(1.0 - up, 1e-3);
   vec2 at = max(disc.radius, least) * unit_place;
   vec3 place = (1.0 - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
-  return blockerHeight(receiver, disc, disc.radius, blockerAt(index, place, size));
+  // The blocker may lie beside the light's cone, because the ray meets it at another height than this.
+  return blockerHeight(receiver, disc, kFoundWidth * disc.radius, blockerAt(index, place, size));
 }
 
-// Returns whether that ray is blocked. The search starts at this height; a blocker found at another height
-// must be found there again.
+// Returns whether that ray is blocked. The search starts at this height and goes on at the height of what it
+// found. The light's end of the ray is before all blockers. Once a point of the ray is behind one, the ray meets
+// that surface in between, or passed its edge: the interval narrows, so that steep surfaces are found, too.
 bool blockedNear(float up, int index, ShadowReceiver receiver, LightDisc disc, vec2 unit_place, int size) {
-  float apart = 1.0;
+  float before = 0.0, behind = 1.0, apart = 1.0;
+  bool enclosed = false;
   for (int i = 0; i < kSteps; ++i) {
     float height = heightOnRay(up, index, receiver, disc, unit_place, size);
-    if (height < 0.0) return false;
-    float step_up = abs(height - up);
-    if (step_up < kOneLayer) return true;
-    if (step_up > kNearer * apart) return false;
-    apart = step_up;
-    up = height;
+    bool found = height >= 0.0;
+    if (!found && !enclosed) return false;
+    if (found) {
+      apart = abs(height - up);
+      if (apart < kOneLayer) return true;
+    }
+    if (found && height < up) {
+      behind = up;
+      enclosed = true;
+    } else {
+      before = up;
+    }
+    up = height > before && height < behind ? height : 0.5 * (before + behind);
   }
-  return true;
+  return enclosed && apart < kMet * (behind - before);
 }
 
 // Returns the visibility of a light with an extent: the mean over points on its disc, each weighted with the

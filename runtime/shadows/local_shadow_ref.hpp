@@ -13,8 +13,8 @@ inline constexpr float kNothing = 1e30f;
 inline constexpr float kBiasTexels = 1.5f;
 inline constexpr float kSearchWidth = 2.0f, kFoundWidth = 3.0f;
 inline constexpr float kOneLayer = 0.01f;
-inline constexpr int kSteps = 3;
-inline constexpr float kNearer = 0.8f;
+inline constexpr int kSteps = 4;
+inline constexpr float kMet = 2.0f;
 inline constexpr float kLeastSquared = 1e-12f;
 inline constexpr float kGoldenAngle = 2.39996323f;
 
@@ -177,23 +177,31 @@ float heightOnRay(float up, const Distance& distance, const ShadowReceiver& rece
   const float least = receiver.bias * 0.5f * receiver.distance * up / std::max(1.0f - up, 1e-3f);
   const glm::vec2 at = std::max(disc.radius, least) * unit_place;
   const glm::vec3 place = (1.0f - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
-  return blockerHeight(receiver, disc, disc.radius, blockerAt(distance, place, size));
+  return blockerHeight(receiver, disc, kFoundWidth * disc.radius, blockerAt(distance, place, size));
 }
 
 template <typename Distance>
 bool blockedNear(float up, const Distance& distance, const ShadowReceiver& receiver, const LightDisc& disc,
                  glm::vec2 unit_place, int size) {
-  float apart = 1.0f;
+  float before = 0.0f, behind = 1.0f, apart = 1.0f;
+  bool enclosed = false;
   for (int i = 0; i < kSteps; ++i) {
     const float height = heightOnRay(up, distance, receiver, disc, unit_place, size);
-    if (height < 0.0f) return false;
-    const float step_up = std::abs(height - up);
-    if (step_up < kOneLayer) return true;
-    if (step_up > kNearer * apart) return false;
-    apart = step_up;
-    up = height;
+    const bool found = height >= 0.0f;
+    if (!found && !enclosed) return false;
+    if (found) {
+      apart = std::abs(height - up);
+      if (apart < kOneLayer) return true;
+    }
+    if (found && height < up) {
+      behind = up;
+      enclosed = true;
+    } else {
+      before = up;
+    }
+    up = height > before && height < behind ? height : 0.5f * (before + behind);
   }
-  return true;
+  return enclosed && apart < kMet * (behind - before);
 }
 
 template <typename Distance>

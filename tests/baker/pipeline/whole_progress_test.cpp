@@ -43,5 +43,21 @@ TEST(WholeProgress, KnowsThatMuchIsLeftWhileAStageOfMoreBegins) {
   EXPECT_NEAR(whole.look(progress).seconds_left, 10.0, 0.5);
 }
 
+TEST(WholeProgress, CountsWhatEarlierRunsKept) {
+  WholeProgress whole({{"direct light", 30.0}, {"bounces", 10.0}},
+                      {.share = 0.6, .spent = {{"direct light", 24.0}}});
+  Progress progress;
+  progress.begin("plan");
+  EXPECT_NEAR(whole.look(progress).share, 0.6, 0.01);
+  EXPECT_NEAR(whole.look(progress).seconds_left, 16.0, 0.5);
+  // The stage finds 80 of its 100 samples at once, and its rate is that at which they were made.
+  progress.begin("direct light", 100, "samples");
+  progress.add(80);
+  const auto seen = whole.look(progress);
+  EXPECT_NEAR(seen.share, 0.6, 0.01);
+  EXPECT_NEAR(seen.units_per_s, 80.0 / 24.0, 0.1);
+  EXPECT_NEAR(seen.seconds_left, 6.0 + 10.0, 0.5);
+}
+
 }  // namespace
 }  // namespace lambent::baker

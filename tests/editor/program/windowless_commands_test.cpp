@@ -1,5 +1,6 @@
 // Tests commands on a session without window and OpenGL.
 #include <fstream>
+#include <utility>
 
 #include "baker/pipeline/journal.hpp"
 #include "editor/session/scene_status.hpp"
@@ -238,6 +239,25 @@ TEST_F(WindowlessCommands, AskInADialogWhatHasNotBeenSaid) {
   const Dialog asked = *session->window.dialog;
   asked.answered(*session, {});
   EXPECT_TRUE(session->window.quit);
+}
+
+TEST_F(WindowlessCommands, SaveProposesTheScenesNameAndReplacesNoOtherFileUnasked) {
+  openHello();
+  answer("save");
+  ASSERT_TRUE(session->window.dialog);
+  const Dialog saving = *std::exchange(session->window.dialog, std::nullopt);
+  EXPECT_EQ(saving.name, "hello.json");
+  EXPECT_EQ(saving.folder, folder.path());
+  const std::filesystem::path file = folder.path() / "hello.json";
+  std::ofstream(file) << "{}";
+  saving.answered(*session, file.string());
+  ASSERT_TRUE(session->window.dialog) << "the file is there already";
+  const Dialog asked = *std::exchange(session->window.dialog, std::nullopt);
+  EXPECT_EQ(std::filesystem::file_size(file), 2u);
+  asked.answered(*session, {});
+  EXPECT_GT(std::filesystem::file_size(file), 2u);
+  saving.answered(*session, file.string());
+  EXPECT_FALSE(session->window.dialog) << "it is the world's own file now";
 }
 
 TEST_F(WindowlessCommands, AreStillKnownByTheirFormerNames) {

@@ -186,6 +186,21 @@ TEST_F(WindowlessPanels, TheStartPageOpensARecentScene) {
   EXPECT_EQ(session->scenes.entries().front().source, file);
 }
 
+TEST_F(WindowlessPanels, AFileDialogLeadsToThePlacesOfFilesByOneClick) {
+  openHello();
+  answer("open");
+  ASSERT_TRUE(session->window.dialog);
+  session->window.dialog->folder = "/";
+  const Panel dialogs{"dialogs", Dock::Left, "", &drawDialogs};
+  settle(dialogs);
+  click(dialogs, "dialog.place.Scene");
+  ASSERT_TRUE(session->window.dialog);
+  EXPECT_EQ(session->window.dialog->folder, folder.path());
+  settle(dialogs);
+  click(dialogs, "dialog.hello.glb");
+  EXPECT_EQ(session->window.dialog->name, "hello.glb");
+}
+
 TEST_F(WindowlessPanels, AClickInTheHistoryGoesToThatStep) {
   answer("create-point");
   answer("create-camera");

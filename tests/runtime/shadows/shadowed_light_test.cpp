@@ -1,6 +1,8 @@
 // Compares unoccluded local lights, and the visibility by their shadow cubes, on the CPU, with closed forms
 // and with quadrature that does not use these formulas.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -227,6 +229,40 @@ TEST(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
     EXPECT_NEAR(ref::discVisible(with_wall, sphere, receiver, up, {512, 16, random.number(0, 1)}),
                 before ? 1.0f : 0.0f, kRounding)
         << place.x << " " << place.z;
+  }
+}
+
+// The walls stand at one distance from the light at their nearest, and at much more at their farthest, as
+// those of a lamp's shade do. Seen from a point outside, they are steep in places.
+TEST(LocalShadow, ALampInAClosedShellLightsNothingOutsideOfIt) {
+  constexpr float kWall = 0.4f;
+  const auto box = [](glm::vec3 d) {
+    return kWall / std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  };
+  const auto flat = [](glm::vec3 d) { return kWall / glm::length(glm::vec3(d.x, d.y / 0.5f, d.z)); };
+  const auto bumpy = [](glm::vec3 d) {
+    return kWall * (1.0f + 0.25f * std::sin(5.0f * d.x) * std::cos(7.0f * d.y + 1.0f));
+  };
+  const std::array<float (*)(glm::vec3), 3> shells = {box, flat, bumpy};
+  constexpr int kSize = 512, kPlaces = 1000;
+  Random random;
+  ShadowedLightRecord sphere = lightOf(kLocalSphere);
+  for (std::size_t shell = 0; shell < shells.size(); ++shell) {
+    const auto walls = [&](int face, glm::ivec2 texel) {
+      return shells[shell](ref::texelDirection(face, glm::vec2(texel) + 0.5f, kSize));
+    };
+    for (const float radius : {0.05f, 0.1f, 0.15f}) {
+      sphere.radius = radius;
+      for (int i = 0; i < kPlaces; ++i) {
+        const glm::vec3 towards = random.direction();
+        const glm::vec3 place = random.number(0.9f, 4.0f) * towards;
+        const glm::vec3 normal = glm::normalize(-towards + 0.8f * random.direction());
+        const ref::ShadowReceiver receiver = ref::shadowReceiver(place, normal, normal, kSize);
+        EXPECT_EQ(ref::discVisible(walls, sphere, receiver, normal, {kSize, 16, random.number(0, 1)}), 0.0f)
+            << "shell " << shell << ", radius " << radius << ", place " << place.x << " " << place.y << " "
+            << place.z;
+      }
+    }
   }
 }
 
