@@ -1,5 +1,6 @@
 #include "editor/app/run.hpp"
 
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -7,8 +8,10 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <nlohmann/json.hpp>
 
 #include "editor/app/layout.hpp"
+#include "editor/commands/command.hpp"
 #include "editor/render/renderer.hpp"
 #include "editor/script/script.hpp"
 #include "editor/session/status.hpp"
@@ -93,7 +96,12 @@ Result<void> run(const Options& options) {
       ui.refuseClose();
       s.files.askToQuit();
     }
-    for (const std::filesystem::path& file : ui.takeDropped()) s.files.openLogged(file);
+    for (const std::filesystem::path& file : ui.takeDropped()) {
+      if (assetAt(file))
+        runOrLog(s, "use-asset", std::array{file.string()});
+      else
+        s.files.openLogged(file);  // a folder, or what cannot be opened
+    }
     drawLayout(s, *renderer, ui.marks());
     moving = s.moving();
     ui.end();

@@ -7,7 +7,7 @@ namespace lambent::editor {
 std::span<const Command> commandList() {
   static const std::vector<Command> list = [] {
     std::vector<Command> all;
-    for (const auto rows : {fileCommands(), editCommands(), createCommands(), viewCommands(),
+    for (const auto rows : {fileCommands(), assetCommands(), editCommands(), createCommands(), viewCommands(),
                             handleCommands(), cameraCommands(), lightCommands(), keyCommands(),
                             bakeCommands(), layoutCommands(), helpCommands(), stateCommands()})
       all.insert(all.end(), rows.begin(), rows.end());

@@ -85,7 +85,7 @@ constexpr std::array kRows = {
     row("left-panels", "Left panels", "", "The scene tree", &dock<Dock::Left>, &docked<Dock::Left>),
     row("right-panels", "Right panels", "", "Inspector, light, settings", &dock<Dock::Right>,
         &docked<Dock::Right>),
-    row("bottom-panels", "Bottom panels", "", "Bakes, cost, streaming, log", &dock<Dock::Bottom>,
+    row("bottom-panels", "Bottom panels", "", "Bakes, assets, cost, streaming, log", &dock<Dock::Bottom>,
         &docked<Dock::Bottom>),
     scripted("panel", "Bring a panel up", "NAME", 1, 1, &panel),
     scripted("move-panel", "A panel stands there from now on", "NAME left|right|below", 2, 2, &movePanel),

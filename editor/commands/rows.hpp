@@ -19,6 +19,7 @@ std::span<const Command> viewCommands();
 std::span<const Command> handleCommands();
 std::span<const Command> cameraCommands();
 std::span<const Command> layoutCommands();
+std::span<const Command> assetCommands();
 std::span<const Command> lightCommands();
 std::span<const Command> keyCommands();
 std::span<const Command> bakeCommands();

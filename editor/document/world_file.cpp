@@ -19,8 +19,6 @@
 namespace lambent::editor {
 namespace {
 
-constexpr const char* kMark = "lambent_world";
-
 const scene::ComponentInfo& environmentInfo() {
   return *scene::findComponent("Environment");
 }
@@ -44,21 +42,21 @@ class WorldReader {
     if (top_.has("view")) world_.state.view = top_.at("view").table();
     if (top_.has("entities")) readEntities(top_.at("entities"));
     UnknownFields unknown = top_.unknown(
-        {kMark, "bundles", "environment", "camera", "settings", "view", "entities"}, world_.notices);
+        {kWorldFileMark, "bundles", "environment", "camera", "settings", "view", "entities"}, world_.notices);
     world_.unknown.merge(unknown);
     return std::move(world_);
   }
 
  private:
   void readVersion() {
-    if (!top_.has(kMark))
-      throw JsonFault{kMark, "is missing", "this is no world file; save one with the editor"};
-    const std::uint64_t version = top_.at(kMark).count(~std::uint32_t{0});
-    if (version == 0) top_.at(kMark).fault("is 0, and there is no such version");
+    if (!top_.has(kWorldFileMark))
+      throw JsonFault{kWorldFileMark, "is missing", "this is no world file; save one with the editor"};
+    const std::uint64_t version = top_.at(kWorldFileMark).count(~std::uint32_t{0});
+    if (version == 0) top_.at(kWorldFileMark).fault("is 0, and there is no such version");
     if (version > kWorldFileVersion)
-      top_.at(kMark).fault(
-          fmt::format("is version {}; this program reads up to {}", version, kWorldFileVersion),
-          "open it with a newer one");
+      top_.at(kWorldFileMark)
+          .fault(fmt::format("is version {}; this program reads up to {}", version, kWorldFileVersion),
+                 "open it with a newer one");
   }
 
   void readBundles(const Place& list) {
@@ -309,7 +307,7 @@ Result<WorldFile> parseWorld(std::string_view text, const std::string& subject) 
 
 Result<std::string> worldText(const WorldFile& world) {
   Json json = Json::object();
-  json[kMark] = kWorldFileVersion;
+  json[kWorldFileMark] = kWorldFileVersion;
   json["bundles"] = Json::array();
   for (const BundleEntry& entry : world.state.bundles) json["bundles"].push_back(bundleJson(entry));
   Result<Json> environment = environmentJson(world);

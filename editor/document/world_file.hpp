@@ -22,6 +22,7 @@
 namespace lambent::editor {
 
 inline constexpr std::uint32_t kWorldFileVersion = 1;
+inline constexpr const char* kWorldFileMark = "lambent_world";  // the key of the version
 
 struct WorldFile {
   WorldState state;

@@ -62,7 +62,7 @@ std::vector<Place> placesOf(const Session& session) {
   };
   if (const char* home = std::getenv("HOME")) add("Home", home);
   for (const SceneEntry& entry : session.scenes.entries()) add("Scene", entry.source.parent_path());
-  if (const auto samples = sampleScenes(); !samples.empty()) add("Samples", samples.front().parent_path());
+  if (const auto samples = sampleFolders(); !samples.empty()) add("Samples", samples.front());
   for (const std::string& recent : session.preferences.recent) {
     const std::filesystem::path folder = std::filesystem::path(recent).parent_path();
     add(folder.filename().string(), folder);

@@ -1,11 +1,13 @@
 #include <array>
 #include <cstdio>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
+#include "editor/panels/asset_tile.hpp"
 #include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/session/environment_map_shelf.hpp"
@@ -16,7 +18,6 @@ namespace lambent::editor {
 
 namespace {
 
-constexpr float kThumbWidthEms = 8.5f, kThumbHeightEms = 4.25f;
 constexpr float kLabelEms = 5.0f;  // room for the labels behind widgets
 
 void run(Session& session, const char* command, std::initializer_list<std::string> words) {
@@ -120,32 +121,15 @@ void drawShelf(Session& session, Marks& marks) {
   session.environment_maps.update(session.document.world().lights, session.scenes);
   if (session.environment_maps.environment_maps().empty())
     ImGui::TextDisabled("None beside the open files; add a folder of .hdr or .exr files.");
-  const float room = ImGui::GetContentRegionAvail().x;
-  const int columns = std::max(1, static_cast<int>(room / em(kThumbWidthEms + 0.7f)));
-  const ImVec2 thumb(em(kThumbWidthEms), em(kThumbHeightEms));
-  int column = 0;
-  for (const EnvironmentMapShelf::EnvironmentMap& environment_map :
-       session.environment_maps.environment_maps()) {
-    ImGui::PushID(environment_map.file.c_str());
-    ImGui::BeginGroup();
-    const auto id = reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(environment_map.texture));
-    const std::string name = environment_map.file.stem().string();
-    if (environment_map.texture != 0
-            ? ImGui::ImageButton(id, thumb, ImVec2(0, 0), ImVec2(1, 1), 1)
-            : ImGui::Button(environment_map.error.empty() ? "..." : "cannot be read", thumb))
+  bool follows = false;
+  for (const Asset& environment_map : session.environment_maps.environment_maps()) {
+    if (std::exchange(follows, true)) sameLineIfTileFits(kTileEms);
+    if (drawAssetTile(session, environment_map, kTileEms, /*selected=*/false))
       run(session, "environment-map", {environment_map.file.string()});
-    marks.put("environment-map." + name);
+    marks.put("environment-map." + environment_map.file.stem().string());
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s\n%s", environment_map.file.string().c_str(),
-                        environment_map.error.empty()
-                            ? "Click: the light from outside is this environment map"
-                            : environment_map.error.c_str());
-    ImGui::TextDisabled("%s", ellipsized(name, thumb.x).c_str());
-    ImGui::EndGroup();
-    if (++column % columns != 0) ImGui::SameLine();
-    ImGui::PopID();
+      tooltip(describe(session, environment_map) + "\nClick: the light from outside is this environment map");
   }
-  ImGui::NewLine();
   if (ImGui::Button("Add folder of environment maps...")) run(session, "environment-map-folder", {});
   marks.put("environment.add-folder");
 }

@@ -35,6 +35,7 @@ void drawSettings(Session& session, Marks& marks);
 void drawPlan(Session& session, Marks& marks);
 void drawBakes(Session& session, Marks& marks);
 void drawBakeOptions(Session& session, Marks& marks, std::size_t scene);  // part of drawBakes
+void drawAssets(Session& session, Marks& marks);
 void drawCost(Session& session, Marks& marks);
 void drawAccuracy(Session& session, Marks& marks);
 void drawStreaming(Session& session, Marks& marks);

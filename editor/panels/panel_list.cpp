@@ -14,6 +14,7 @@ constexpr std::array kPanels = {
     Panel{"Settings", Dock::Right, "How the picture is computed: bands, captures, effects", &drawSettings},
     Panel{"Plan", Dock::Right, "What a scene's bake simulates, what not, and why", &drawPlan},
     Panel{"Bakes", Dock::Bottom, "What is being baked, how far, and what came of it", &drawBakes},
+    Panel{"Assets", Dock::Bottom, "Environment maps, scenes, bundles and worlds to use or open", &drawAssets},
     Panel{"Cost", Dock::Bottom, "What ran in the last frame, how long it took, and why", &drawCost},
     Panel{"Accuracy", Dock::Bottom, "What each knob costs in time and in error, measured in this view",
           &drawAccuracy},

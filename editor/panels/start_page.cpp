@@ -7,38 +7,81 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
+#include "editor/panels/asset_tile.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/session/samples.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
-constexpr float kWidthEms = 30.0f;
+constexpr float kWidthEms = 33.0f;
 constexpr std::size_t kMostRecent = 6;
 
-// Draws a list of files; a click opens one.
-void drawFiles(Session& session, Marks& marks, const char* title, const std::vector<std::string>& files) {
-  if (files.empty()) return;
+void open(Session& session, const std::string& file) {
+  runOrLog(session, "open", std::array{file});
+}
+
+void drawTitle(const char* title) {
   ImGui::Spacing();
   ImGui::TextDisabled("%s", title);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const std::string name = std::filesystem::path(files[i]).filename().string();
-    ImGui::PushID(files[i].c_str());
+}
+
+// Draws a row of pictures; a click opens one.
+void drawAssets(Session& session, Marks& marks, const std::vector<Asset>& assets) {
+  for (std::size_t i = 0; i < assets.size(); ++i) {
+    if (i > 0) sameLineIfTileFits(kTileEms);
+    const bool clicked = drawAssetTile(session, assets[i], kTileEms, /*selected=*/false);
+    marks.put(fmt::format("start.{}", assets[i].file.filename().string()));
+    if (ImGui::IsItemHovered()) tooltip(describe(session, assets[i]));
+    if (clicked) open(session, assets[i].file.string());
+  }
+}
+
+// Draws what was opened last: files as pictures, and below them the names of folders and of files that are
+// not there any more.
+void drawRecent(Session& session, Marks& marks) {
+  std::vector<std::string> recent = session.preferences.recent;
+  recent.resize(std::min(recent.size(), kMostRecent));
+  if (recent.empty()) return;
+  drawTitle("Recent");
+  std::vector<Asset> assets;
+  std::vector<std::string> others;
+  for (const std::string& file : recent)
+    if (auto asset = assetAt(file))
+      assets.push_back(std::move(*asset));
+    else
+      others.push_back(file);
+  ImGui::PushID("recent");
+  drawAssets(session, marks, assets);
+  for (const std::string& file : others) {
+    const std::string name = std::filesystem::path(file).filename().string();
+    ImGui::PushID(file.c_str());
     const bool clicked = ImGui::Selectable(ellipsized(name, ImGui::GetContentRegionAvail().x).c_str());
     ImGui::PopID();
     marks.put(fmt::format("start.{}", name));
-    tooltip(files[i]);
-    if (clicked) runOrLog(session, "open", std::array{files[i]});
+    tooltip(file);
+    if (clicked) open(session, file);
   }
+  ImGui::PopID();
+}
+
+void drawSamples(Session& session, Marks& marks) {
+  session.assets.update(session);
+  std::vector<Asset> scenes;
+  if (const AssetGroup* samples = session.assets.samples())
+    for (const Asset& asset : samples->assets)
+      if (asset.kind != AssetKind::EnvironmentMap) scenes.push_back(asset);
+  if (scenes.empty()) return;
+  drawTitle("Samples");
+  drawAssets(session, marks, scenes);
 }
 
 }  // namespace
 
 void drawStartPage(Session& session, Marks& marks) {
   const float width = std::min(em(kWidthEms), 0.9f * ImGui::GetWindowWidth());
-  const float above = std::max(em(1.0f), 0.12f * ImGui::GetWindowHeight());
+  const float above = std::max(em(1.0f), 0.08f * ImGui::GetWindowHeight());
   ImGui::SetCursorPos(ImVec2(0.5f * (ImGui::GetWindowWidth() - width), above));
   // The view may be of any brightness, so the page has a ground of its own.
   ImGui::PushStyleColor(ImGuiCol_ChildBg, ImGui::GetStyleColorVec4(ImGuiCol_WindowBg));
@@ -55,12 +98,8 @@ void drawStartPage(Session& session, Marks& marks) {
   }
   if (ImGui::Button("Open...")) runOrLog(session, "open", {});
   marks.put("start.open");
-  std::vector<std::string> recent = session.preferences.recent;
-  recent.resize(std::min(recent.size(), kMostRecent));
-  drawFiles(session, marks, "Recent", recent);
-  std::vector<std::string> samples;
-  for (const std::filesystem::path& scene : sampleScenes()) samples.push_back(scene.string());
-  drawFiles(session, marks, "Samples", samples);
+  drawRecent(session, marks);
+  drawSamples(session, marks);
   ImGui::EndChild();
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();

@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
+#include "editor/panels/asset_tile.hpp"
 #include "editor/panels/colors.hpp"
 #include "editor/panels/manipulate.hpp"
 #include "editor/panels/panel.hpp"
@@ -170,6 +172,14 @@ void pick(Session& session, Renderer& renderer, const glm::vec2& pixel) {
     session.selection.set(id);
 }
 
+// Takes an asset that is dropped onto the last widget.
+void takeAsset(Session& session) {
+  if (!ImGui::BeginDragDropTarget()) return;
+  if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload(kDraggedAsset))
+    runOrLog(session, "use-asset", std::array{std::string(static_cast<const char*>(payload->Data))});
+  ImGui::EndDragDropTarget();
+}
+
 // Draws the menu that a right click in the view opens. A drag with that button looks around and opens none.
 void drawViewMenu(Session& session, Marks& marks) {
   const bool clicked = ImGui::IsMouseReleased(ImGuiMouseButton_Right) && session.viewing.hovered &&
@@ -199,6 +209,7 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   marks.put("viewport");
+  takeAsset(session);
   const bool hovered = session.viewing.hovered = ImGui::IsItemHovered();
   moveEye(session, viewport, hovered);
   const auto clicked =

@@ -15,7 +15,7 @@ void Renderer::update(Session& session, spec::Size size) {
   reference_.update(session);
   session.settings.update(session);
   session.qualities.update(session);
-  thumbnails_.update(session.environment_maps);
+  thumbnails_.update(session, picture_.texture());
   materials_.update(session);
 }
 

@@ -1,23 +1,31 @@
-// Owns the textures of the environment maps' thumbnails, which the session reads on the CPU. Main thread,
-// with a current OpenGL context.
+// Owns the textures of the assets' pictures, which the session finds on the CPU, and takes pictures of scenes
+// and worlds from the view. Main thread, with a current OpenGL context.
 #pragma once
 
 #include <filesystem>
 #include <map>
+#include <vector>
 
-#include "editor/session/environment_map_shelf.hpp"
+#include "editor/session/session.hpp"
+#include "runtime/base/change_gate.hpp"
 #include "runtime/gpu/objects.hpp"
 
 namespace lambent::editor {
 
 class Thumbnails {
  public:
-  // Uploads new thumbnails, tells the shelf their textures, and deletes textures of files that are no longer
-  // on the shelf. Call it once a frame.
-  void update(EnvironmentMapShelf& shelf);
+  // Uploads new pictures, and tells the session their textures. When a scene or a world that is shown has
+  // come to rest, a small copy of `view` (row 0 at the bottom) becomes its picture; so again when a better
+  // bake is shown. Call it once a frame.
+  void update(Session& session, const gpu::Texture& view);
 
  private:
+  void takeFromView(Session& session, const gpu::Texture& view);
+
   std::map<std::filesystem::path, gpu::Texture> textures_;
+  // Tells when the view's picture must be taken: it compares the files that it shows and the version of the
+  // scenes.
+  ChangeGate<std::vector<Asset>, std::uint64_t> taken_;
 };
 
 }  // namespace lambent::editor

@@ -1,5 +1,5 @@
-// Finds the sample scenes that came with the program: beside an installed one in share/lambent/scenes, in a
-// build folder in assets.
+// Finds the sample scenes and environment maps that came with the program: beside an installed one in
+// share/lambent, in a build folder in assets.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace lambent::editor {
 
-// Returns the scenes in these places of the folder above that of the program, by name. Without arguments the
+// Returns those of these places that exist in the folder above that of the program. Without arguments the
 // running program is meant.
-std::vector<std::filesystem::path> sampleScenes(const std::filesystem::path& program = "/proc/self/exe");
+std::vector<std::filesystem::path> sampleFolders(const std::filesystem::path& program = "/proc/self/exe");
 
 }  // namespace lambent::editor

@@ -22,6 +22,13 @@ SceneSettings sceneSettings(const SessionOptions& options) {
   return settings;
 }
 
+// Returns the folder of pictures in that of the cache, or an empty path without a cache.
+std::filesystem::path pictureFolder(const SessionOptions& options) {
+  const std::filesystem::path cache =
+      options.cache_folder.empty() ? baker::Cache::defaultFolder() : options.cache_folder;
+  return cache.empty() ? cache : cache / "pictures";
+}
+
 }  // namespace
 
 Session::Session(const SessionOptions& options, Preferences given, Stage made)
@@ -29,7 +36,8 @@ Session::Session(const SessionOptions& options, Preferences given, Stage made)
       stage(std::move(made)),
       scenes(stage.world(), log, sceneSettings(options)),
       document(stage.world().registry()),
-      history(document) {
+      history(document),
+      asset_pictures(pictureFolder(options)) {
   document.adoptAll();
   WorldState world;
   for (const std::string& word : options.light_words) {
@@ -83,6 +91,7 @@ void Session::update(double seconds) {
   }
   logBundleErrors();
   followDocument();
+  asset_pictures.update();
   if (playback.playing) {
     stage.world().playAnimations(static_cast<float>(seconds));
     playback.time_s += static_cast<float>(seconds);
@@ -98,7 +107,8 @@ bool Session::moving() const {
 }
 
 bool Session::awaits() const {
-  return scenes.busy() || plans.busy() || environment_maps.busy() || !log.recent(kToastAge).empty();
+  return scenes.busy() || plans.busy() || assets.busy() || asset_pictures.busy() ||
+         !log.recent(kToastAge).empty();
 }
 
 }  // namespace lambent::editor

@@ -13,6 +13,8 @@
 #include "editor/document/history.hpp"
 #include "editor/document/selection.hpp"
 #include "editor/document/tree.hpp"
+#include "editor/session/asset_browser.hpp"
+#include "editor/session/asset_pictures.hpp"
 #include "editor/session/clipboard.hpp"
 #include "editor/session/environment_map_shelf.hpp"
 #include "editor/session/field_edit_state.hpp"
@@ -90,6 +92,8 @@ class Session {
   QualityStudy qualities;
   Plans plans;
   EnvironmentMapShelf environment_maps;
+  AssetBrowser assets;
+  AssetPictures asset_pictures;
   MaterialPictures material_pictures;
   Clipboard clipboard;
   FieldEditState field_edit;

@@ -161,7 +161,8 @@ TEST_F(WindowlessPanels, KeepTheirWidgetsWithinNarrowRoomAtALargeFont) {
   answer("select", {"type:material box"});
   ImGui::GetIO().FontGlobalScale = 2.0f;
   ImGui::GetStyle().ScaleAllSizes(2.0f);
-  for (const char* name : {"Scene", "Inspector", "Environment", "Settings", "Plan", "History", "Log"}) {
+  for (const char* name :
+       {"Scene", "Inspector", "Environment", "Settings", "Plan", "Assets", "History", "Log"}) {
     const Panel& row = panel(name);
     const float width = (row.dock == Dock::Left ? 13.0f : 22.0f) * 26.0f;
     ImGui::GetIO().DisplaySize = ImVec2(width, 900.0f);

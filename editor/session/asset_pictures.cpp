@@ -1,0 +1,116 @@
+#include "editor/session/asset_pictures.hpp"
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "editor/session/picture_cache.hpp"
+#include "editor/session/small_pictures.hpp"
+
+namespace lambent::editor {
+
+// Finds, makes and keeps pictures on a thread of its own.
+struct AssetPictures::Worker {
+  struct Request {
+    Asset asset;
+    spec::Rgba8Image keep{};  // empty: the picture is wanted
+  };
+  struct Made {
+    Asset asset;
+    spec::Rgba8Image image{};
+    std::string error{};
+  };
+
+  explicit Worker(std::filesystem::path folder)
+      : thread([this, folder = std::move(folder)](std::stop_token stop) { run(stop, folder); }) {}
+
+  void add(Request request) {
+    const std::lock_guard hold(lock);
+    requests.push_back(std::move(request));
+    wake.notify_one();
+  }
+  std::vector<Made> take() {
+    const std::lock_guard hold(lock);
+    return std::exchange(made, {});
+  }
+
+  void run(std::stop_token stop, const std::filesystem::path& folder) {
+    PictureCache cache(folder);
+    while (true) {
+      std::unique_lock hold(lock);
+      if (!wake.wait(hold, stop, [this] { return !requests.empty(); })) return;
+      const Request request = std::move(requests.front());
+      requests.pop_front();
+      hold.unlock();
+      if (!request.keep.texels.empty()) {
+        cache.put(request.asset, request.keep);
+        continue;
+      }
+      if (stop.stop_requested()) continue;  // only what is to be kept still matters
+      Made one = make(request.asset, cache);
+      hold.lock();
+      made.push_back(std::move(one));
+    }
+  }
+  static Made make(const Asset& asset, PictureCache& cache) {
+    try {
+      if (auto found = cache.find(asset)) return {.asset = asset, .image = std::move(*found)};
+      if (asset.kind != AssetKind::EnvironmentMap) return {.asset = asset};
+      const auto map = spec::readLightImage(asset.file);
+      if (!map) return {.asset = asset, .error = map.error().line()};
+      Made one{.asset = asset, .image = smallPictureOf(*map)};
+      cache.put(asset, one.image);
+      return one;
+    } catch (const std::exception& failure) {  // out of memory, mostly
+      return {.asset = asset, .error = failure.what()};
+    }
+  }
+
+  std::mutex lock;  // protects the members below
+  std::condition_variable_any wake;
+  std::deque<Request> requests;
+  std::vector<Made> made;
+  std::jthread thread;  // it is joined before the others go
+};
+
+AssetPictures::AssetPictures(const std::filesystem::path& folder)
+    : worker_(std::make_unique<Worker>(folder)) {}
+AssetPictures::~AssetPictures() = default;
+
+const AssetPictures::Picture& AssetPictures::of(const Asset& asset) {
+  const auto [asked, first] = asked_.try_emplace(asset.file, asset);
+  Picture& picture = pictures_[asset.file];
+  if (!first && asked->second == asset) return picture;
+  asked->second = asset;
+  picture = {.coming = true};
+  ++coming_;
+  worker_->add({.asset = asset});
+  return picture;
+}
+
+void AssetPictures::keep(const Asset& asset, spec::Rgba8Image image) {
+  asked_[asset.file] = asset;
+  worker_->add({.asset = asset, .keep = image});
+  Picture& picture = pictures_[asset.file];
+  picture.image = std::move(image);
+  picture.error.clear();
+  picture.coming = false;
+}
+
+void AssetPictures::update() {
+  for (Worker::Made& made : worker_->take()) {
+    --coming_;
+    Picture& picture = pictures_[made.asset.file];
+    // The file may have changed, or its picture may have come from the view, in the meantime.
+    if (!picture.coming || asked_[made.asset.file] != made.asset) continue;
+    picture.coming = false;
+    picture.image = std::move(made.image);
+    picture.error = std::move(made.error);
+  }
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,158 @@
+// Tests what the Assets panel lists, and the pictures that it shows.
+#include "editor/session/assets.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "editor/session/asset_pictures.hpp"
+#include "editor/session/picture_cache.hpp"
+#include "editor/session/small_pictures.hpp"
+#include "runtime/spec/image.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace lambent::editor {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Assets : public ::testing::Test {
+ protected:
+  fs::path write(const std::string& name, const std::string& text = "x") const {
+    std::ofstream(folder.path() / name) << text;
+    return folder.path() / name;
+  }
+  fs::path writeMap(const std::string& name) const {
+    const fs::path file = folder.path() / name;
+    EXPECT_TRUE(spec::writeHdr(file, {8, 4, std::vector<glm::vec3>(32, glm::vec3(2.0f, 1.0f, 0.5f))}));
+    return file;
+  }
+  static spec::Rgba8Image plain(std::uint8_t value) {
+    return {192, 108, std::vector<std::uint8_t>(std::size_t{4} * 192 * 108, value)};
+  }
+
+  lambent::testing::TemporaryFolder folder;
+};
+
+TEST_F(Assets, OfAFolderAreListedByNameWithTheirKinds) {
+  for (const char* name : {"b.glb", "a.gltf", "b.lmb.glb", "sky.hdr", "lamp.exr", "notes.txt", "photo.png"})
+    write(name);
+  write("hall.json", R"({"lambent_world": 1, "bundles": []})");
+  write("other.json", R"({"name": "no world"})");
+  fs::create_directory(folder.path() / "deeper.glb");
+  std::vector<std::pair<std::string, AssetKind>> found;
+  for (const Asset& asset : listAssets(folder.path())) {
+    found.emplace_back(asset.file.filename().string(), asset.kind);
+    EXPECT_EQ(asset.bytes, fs::file_size(asset.file));
+  }
+  const std::vector<std::pair<std::string, AssetKind>> expected = {{"a.gltf", AssetKind::Scene},
+                                                                   {"b.glb", AssetKind::Scene},
+                                                                   {"b.lmb.glb", AssetKind::Bundle},
+                                                                   {"hall.json", AssetKind::World},
+                                                                   {"lamp.exr", AssetKind::EnvironmentMap},
+                                                                   {"sky.hdr", AssetKind::EnvironmentMap}};
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(listAssets(folder.path(), AssetKind::EnvironmentMap).size(), 2u);
+  EXPECT_TRUE(listAssets(folder.path() / "missing").empty());
+}
+
+TEST_F(Assets, AreFoundByPartsOfTheirNameAndKind) {
+  const Asset sky{.file = "/maps/Evening_Sky.hdr", .kind = AssetKind::EnvironmentMap};
+  for (const char* search : {"", "sky", "evening map", "SKY hdr"})
+    EXPECT_TRUE(matches(sky, search)) << search;
+  for (const char* search : {"morning", "sky scene", "maps/"}) EXPECT_FALSE(matches(sky, search)) << search;
+}
+
+TEST_F(Assets, PicturesOfAFileThatChangedAreForgotten) {
+  PictureCache cache(folder.path() / "pictures");
+  const fs::path file = write("a.glb");
+  const Asset before = *assetAt(file);
+  cache.put(before, plain(7));
+  ASSERT_TRUE(cache.find(before));
+  EXPECT_EQ(cache.find(before)->texels, plain(7).texels);
+  write("a.glb", "longer");
+  EXPECT_FALSE(cache.find(*assetAt(file))) << "another size";
+  Asset later = before;
+  later.written += std::chrono::seconds(1);
+  EXPECT_FALSE(cache.find(later)) << "another time";
+}
+
+TEST_F(Assets, PicturesKeepWithinTheirBytesAndTheLatestStay) {
+  constexpr std::uint64_t kBytes = 1u << 20;  // about 12 of these pictures
+  const fs::path pictures = folder.path() / "pictures";
+  PictureCache cache(pictures, kBytes);
+  const auto asset = [](int i) { return Asset{.file = "/scenes/" + std::to_string(i) + ".glb"}; };
+  std::uint32_t number = 1;
+  const auto unlike = [&] {  // a picture that does not compress
+    spec::Rgba8Image picture = plain(0);
+    for (std::uint8_t& texel : picture.texels)
+      texel = static_cast<std::uint8_t>((number = number * 1664525u + 1013904223u) >> 24);
+    return picture;
+  };
+  for (int i = 0; i < 40; ++i) cache.put(asset(i), unlike());
+  std::uint64_t bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(pictures))
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  EXPECT_LE(bytes, kBytes);
+  EXPECT_GT(bytes, kBytes / 2);
+  EXPECT_FALSE(cache.find(asset(0)));
+  EXPECT_TRUE(cache.find(asset(39)));
+}
+
+// Waits until the pictures that were asked for have come.
+void settle(AssetPictures& pictures) {
+  for (int i = 0; i < 1000 && pictures.busy(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    pictures.update();
+  }
+  ASSERT_FALSE(pictures.busy());
+}
+
+TEST_F(Assets, PicturesOfMapsAreMadeAndThoseOfScenesAreTheViews) {
+  const Asset map = *assetAt(writeMap("sky.hdr")), broken = *assetAt(write("broken.hdr")),
+              scene = *assetAt(write("a.glb"));
+  {
+    AssetPictures pictures(folder.path() / "pictures");
+    for (const Asset& asset : {map, broken, scene}) pictures.of(asset);
+    settle(pictures);
+    EXPECT_FALSE(pictures.of(map).image.texels.empty());
+    EXPECT_NE(pictures.of(broken).error, "");
+    EXPECT_TRUE(pictures.of(scene).image.texels.empty()) << "it was never shown";
+    pictures.keep(scene, plain(9));
+    EXPECT_EQ(pictures.of(scene).image.texels, plain(9).texels);
+  }
+  AssetPictures again(folder.path() / "pictures");
+  again.of(scene);
+  settle(again);
+  EXPECT_EQ(again.of(scene).image.texels, plain(9).texels) << "it is kept between starts";
+  write("a.glb", "another scene");
+  again.of(*assetAt(scene.file));
+  settle(again);
+  EXPECT_TRUE(again.of(*assetAt(scene.file)).image.texels.empty()) << "the file has changed";
+}
+
+TEST_F(Assets, PictureOfAViewIsItsMiddle) {
+  // A view that is twice as wide as high: its left and right ends are cut.
+  spec::Rgba8Image view{400, 200, {}};
+  for (std::uint32_t y = 0; y < 200; ++y)
+    for (std::uint32_t x = 0; x < 400; ++x) {
+      const bool end = x < 20 || x >= 380;
+      for (const int value : {end ? 255 : 40, y < 100 ? 200 : 0, 90, 0})
+        view.texels.push_back(static_cast<std::uint8_t>(value));
+    }
+  const spec::Rgba8Image small = smallPictureOf(view);
+  const auto texel = [&](std::uint32_t x, std::uint32_t y) {
+    const auto at = small.texels.begin() + 4 * (std::ptrdiff_t{y} * small.width + x);
+    return std::vector<int>(at, at + 4);
+  };
+  EXPECT_EQ(texel(0, 0), (std::vector{40, 200, 90, 255}));
+  EXPECT_EQ(texel(small.width - 1, small.height - 1), (std::vector{40, 0, 90, 255}));
+}
+
+}  // namespace
+}  // namespace lambent::editor
