@@ -169,7 +169,7 @@ void cleanMesh(MeshData& mesh, const std::string& name, std::vector<std::string>
   warn(repairTangents(mesh), "tangents without direction made up");
   warn(repairValues(mesh.texcoords0, glm::vec2(0.0f)) + repairValues(mesh.texcoords1, glm::vec2(0.0f)),
        "texture coordinates that are not finite set to 0");
-  warn(repairValues(mesh.colors, glm::vec4(1.0f)), "colours that are not finite set to white");
+  warn(repairValues(mesh.colors, glm::vec4(1.0f)), "colors that are not finite set to white");
 }
 
 }  // namespace lambent::baker

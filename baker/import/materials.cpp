@@ -51,7 +51,7 @@ Result<void> addTextures(const tinygltf::Material& source, std::size_t number, M
   const auto& base = source.pbrMetallicRoughness.baseColorTexture;
   Result<void> done =
       assign(material.base_color_texture,
-             textures.refer(base.index, base.extensions, base.texCoord, number, "base colour texture"));
+             textures.refer(base.index, base.extensions, base.texCoord, number, "base color texture"));
   if (!done) return done;
   const auto& normal = source.normalTexture;
   done = assign(material.normal_texture,

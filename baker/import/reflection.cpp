@@ -69,7 +69,7 @@ Result<void> referSpecular(const tinygltf::Value& extension, std::size_t number,
       !done)
     return done;
   return assign(material.specular_color_texture, reflects && material.specular_color != glm::vec3(0.0f), [&] {
-    return textures.refer(extension, "specularColorTexture", number, "specular colour texture");
+    return textures.refer(extension, "specularColorTexture", number, "specular color texture");
   });
 }
 

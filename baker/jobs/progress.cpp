@@ -1,5 +1,6 @@
 #include "baker/jobs/progress.hpp"
 
+#include <algorithm>
 #include <ctime>
 #include <utility>
 
@@ -30,6 +31,11 @@ void Progress::begin(std::string name, std::uint64_t total, std::string unit) {
   done_ = 0;
   began_ = Clock::now();
   processor_began_ = processorSeconds();
+}
+
+void Progress::expect(std::uint64_t total) {
+  const std::lock_guard hold(lock_);
+  running_.total = std::max(total, done_.load(std::memory_order_relaxed));
 }
 
 void Progress::end() {

@@ -25,6 +25,8 @@ class Progress {
 
   // Ends the running stage, if any, and starts this one.
   void begin(std::string name, std::uint64_t total = 0, std::string unit = {});
+  // Sets the total of the running stage, which learns it as it goes. It is never less than what is done.
+  void expect(std::uint64_t total);
   void add(std::uint64_t units) { done_.fetch_add(units, std::memory_order_relaxed); }
   void end();
 

@@ -20,6 +20,8 @@ constexpr double kPatchShare = 0.3;  // of a pass
 // What is done once for a sample, whatever its rays, takes as long as so many rays.
 constexpr double kRaysOfASample = 200.0;
 constexpr double kMostProbeRays = 512.0;  // of a probe of refinement
+// Refinement splits edges until there are so many times as many vertices, and probes each so many times.
+constexpr double kGuessedGrowth = 2.0, kProbesOfAVertex = 3.5;
 
 int gathered(const BakeOptions& options) {
   return options.bounces < 0 ? kMostGathered : std::min(options.bounces, kMostGathered);
@@ -39,6 +41,22 @@ bool goesWithRays(const std::string& stage) {
   return isBounce(stage) || stage == "direct light" || stage == "glossy shadows" || stage == "inside faces" ||
          stage == "paths" || stage == "light into volumes" || stage == "scattering" ||
          stage == "neighborhood";
+}
+
+// Returns whether the stage's time is proportional to the number of samples.
+bool goesWithSamples(const std::string& stage) {
+  return goesWithRays(stage) || stage.starts_with("coding");
+}
+
+// Returns whether the stage's own rate says how long it will take.
+bool hasRate(const Progress::Stage& now, double took) {
+  return now.total > 0 && now.done > 0 && took > 0.2;
+}
+
+// Returns the seconds that the rest of the stage takes at its rate so far.
+double restAtRate(const Progress::Stage& now, double took) {
+  return took * static_cast<double>(now.total - std::min(now.done, now.total)) /
+         static_cast<double>(now.done);
 }
 
 double cells(const glm::uvec3& grid) {
@@ -77,8 +95,17 @@ StageSeconds guessSeconds(const Scene& scene, const BakeOptions& options) {
   for (const SceneMesh& mesh : scene.meshes)
     for (const ScenePrimitive& primitive : mesh.primitives)
       vertices += static_cast<double>(primitive.mesh.positions.size());
-  const double direct = vertices * static_cast<double>(options.effectiveRays()) / kGuessedRaysPerSecond;
-  StageSeconds seconds = {{"direct light", direct}, {"coding", vertices / kGuessedCodedPerSecond}};
+  const double rays = static_cast<double>(options.effectiveRays()) + kRaysOfASample;
+  StageSeconds seconds;
+  if (options.effectiveRefineBound() > 0.0f) {
+    const double of_probe = std::min(static_cast<double>(options.effectiveRays()), kMostProbeRays);
+    vertices *= kGuessedGrowth;
+    seconds["refinement"] = vertices * kProbesOfAVertex * (of_probe + kRaysOfASample) / kGuessedRaysPerSecond;
+  }
+  const double direct = vertices * rays / kGuessedRaysPerSecond;
+  seconds["direct light"] = direct;
+  if (options.fitsDiffuse()) seconds["inside faces"] = direct;
+  seconds["coding"] = vertices / kGuessedCodedPerSecond;
   for (int bounce = 1; bounce <= gathered(options); ++bounce)
     seconds[fmt::format("bounce {}", bounce)] = 0.3 * direct;
   if (gathered(options) > 1) seconds[kBetweenPatches] = kPatchShare * 0.3 * direct;
@@ -140,20 +167,27 @@ double secondsLeft(const StageSeconds& expected, const StageSeconds& before,
   if (past_bounces)
     past_bounces = std::any_of(finished.begin(), finished.end(),
                                [](const Progress::Stage& stage) { return isBounce(stage.name); });
+  const double took = secondsOf(now, before, finished);
+  const double own = hasRate(now, took) ? restAtRate(now, took) : 0.0;
+  // Stages that take longer than expected have more samples or a slower machine, and so have later ones. That
+  // they take less says nothing, since other groups may follow.
+  double known = 0.0, known_expected = 0.0;
+  for (const auto& [stage, seconds] : expected) {
+    if (!goesWithSamples(stage)) continue;
+    if (stage == now.name && !hasRate(now, took)) continue;
+    const double known_of = spentOn(stage) + (stage == now.name ? now.seconds + own : 0.0);
+    if (known_of > 0.0) known += known_of, known_expected += seconds;
+  }
+  const double slower = known_expected > 0.0 ? std::max(1.0, known / known_expected) : 1.0;
   double left = 0.0;
   for (const auto& [stage, seconds] : expected) {
     if (stage == now.name || (isBounce(stage) && past_bounces)) continue;
-    left += std::max(0.0, seconds - spentOn(stage));
+    const double of_stage = goesWithSamples(stage) && spentOn(stage) == 0.0 ? slower * seconds : seconds;
+    left += std::max(0.0, of_stage - spentOn(stage));
   }
   const double this_one = std::max(0.0, at(expected, now.name) - spentOn(now.name));
   // The stage's own rate is used once it is meaningful, plus what is expected for later groups.
-  const double took = secondsOf(now, before, finished);
-  if (now.total > 0 && now.done > 0 && took > 0.2) {
-    const double rate = static_cast<double>(now.done) / took;
-    const double own = static_cast<double>(now.total - std::min(now.done, now.total)) / rate;
-    const double of_others = std::max(0.0, this_one - now.seconds - own);
-    return left + own + of_others;
-  }
+  if (hasRate(now, took)) return left + own + std::max(0.0, this_one - now.seconds - own);
   return left + std::max(0.0, this_one - now.seconds);
 }
 

@@ -48,7 +48,7 @@ std::vector<std::string> leftOut(const Scene& scene, bool glossy) {
   };
   if (!glossy && any_material([](const gltf::Material& m) { return !m.isDiffuse(); }))
     sentences.emplace_back(
-        "Metallic and glossy reflection are left out: every material is Lambert with albedo = base colour.");
+        "Metallic and glossy reflection are left out: every material is Lambert with albedo = base color.");
   if (any_material([](const gltf::Material& m) { return m.alpha_mode == gltf::AlphaMode::Blend; }))
     sentences.emplace_back("Materials with alphaMode BLEND cast no shadow.");
   addStretchedNodes(scene, sentences);

@@ -1,6 +1,7 @@
 #include "baker/refine/refine.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "baker/jobs/kept_value.hpp"
@@ -17,6 +18,13 @@ namespace {
 // Fans are added until the error, here relative to the light of an open point, is this share of the bound:
 // most of what remains after splitting edges can only be reduced by fans, and they cost no triangles.
 constexpr double kFanShare = 0.24;
+
+// Before anything is measured, this many probes are expected of a vertex, splits included: the gallery, at
+// draft quality, takes 3.6 for each vertex that it has in the end.
+constexpr double kExpectedProbes = 7.0;
+// The share of the square error that a round is expected to leave before any has shown it, and the least and
+// most that it is taken to leave.
+constexpr double kLeftByRound = 0.5, kLeastLeft = 0.1, kMostLeft = 0.9;
 
 // Each round of cuts shows where the rest of an edge is cut, seen from its other end.
 constexpr int kMostLeakRounds = 8;
@@ -123,13 +131,21 @@ class Rounds {
       if (any(g)) refiners_[g].prepare(geometries_[g], from_.scene, from_.alpha_maps);
     if (auto measured = measure(); !measured) return measured;
     report_.error_before = report_.error_after;
+    double left_by_round = kLeftByRound;
+    std::uint64_t done_before = 0;
     for (int round = 0; round < options_.rounds && room() > 0; ++round) {
       const auto marked = split([&](std::size_t g, std::size_t& left, MarkedEdges& edges) {
         return refiners_[g].markWorst(g, geometries_[g], double{options_.bound}, left, edges);
       });
       if (!marked) return failAgain(marked.error());
       if (*marked == 0) return cutLeaks();
+      const std::uint64_t done = context_.progress.now().done;
+      expectRounds(options_.rounds - round, left_by_round, done - done_before);
+      done_before = done;
+      const double error = report_.error_after;
       if (auto measured = measure(); !measured) return measured;
+      const double ratio = error > 0.0 ? report_.error_after / error : 0.0;
+      left_by_round = std::clamp(ratio * ratio, kLeastLeft, kMostLeft);
     }
     report_.at_limit = report_.error_after > double{options_.bound};
     return {};
@@ -142,6 +158,15 @@ class Rounds {
     return !from_.groups[group].draws.empty() && from_.transport[group].shadows;
   }
   std::size_t room() const { return most_ - std::min(most_, countVertices(meshes_)); }
+
+  // Tells the progress what the rounds up to the bound are expected to probe, each as much as the last one.
+  void expectRounds(int most, double left_by_round, std::uint64_t of_a_round) const {
+    const double bound = double{options_.bound}, ratio = bound > 0.0 ? report_.error_after / bound : 1e6;
+    const double needed = std::ceil(std::log(std::max(1.0, ratio * ratio)) / -std::log(left_by_round));
+    const double rounds = std::clamp(needed, 1.0, static_cast<double>(most));
+    context_.progress.expect(context_.progress.now().done +
+                             static_cast<std::uint64_t>(rounds * static_cast<double>(of_a_round)));
+  }
 
   Result<void> measure() {
     report_.error_after = 0.0;
@@ -205,7 +230,9 @@ class Rounds {
 Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& options,
                                   std::vector<std::vector<bundle::MeshData>>& meshes,
                                   const BakeContext& context) {
-  context.progress.begin("refinement", 0, "probes");
+  const auto expected =
+      static_cast<std::uint64_t>(kExpectedProbes * static_cast<double>(countVertices(meshes)));
+  context.progress.begin("refinement", expected, "probes");
   std::vector<GroupGeometry> geometries = geometriesOf(from, meshes);
   const BakeContext outcome_context =
       context.keyed(context.cache ? outcomeKey(from, geometries, options, meshes) : Key{});

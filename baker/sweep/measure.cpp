@@ -11,7 +11,6 @@
 #include "baker/accuracy/compare.hpp"
 #include "baker/accuracy/perceptual.hpp"
 #include "baker/cache/key.hpp"
-#include "baker/sweep/child.hpp"
 #include "baker/sweep/exposure.hpp"
 #include "runtime/base/atomic_file.hpp"
 

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "baker/sweep/child.hpp"
 #include "baker/sweep/knobs.hpp"
 #include "baker/sweep/programs.hpp"
 #include "baker/sweep/rows.hpp"
 #include "baker/sweep/store.hpp"
+#include "runtime/base/run_program.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::baker {

@@ -62,6 +62,8 @@ Result<void> run(const Options& options) {
   Session& s = **session;
   auto renderer = Renderer::create(s);
   if (!renderer) return failAgain(renderer.error());
+  if (!options.script)
+    s.window.desktop_program = desktopDialogProgram();  // no script answers another program
   Ui ui(*window, s.preferences.scale);
   s.clipboard.put_system = [](const std::string& text) { ImGui::SetClipboardText(text.c_str()); };
   s.clipboard.get_system = [] {

@@ -13,12 +13,13 @@ Answer bake(Session& session, Words words) {
 }
 
 Answer bakeAll(Session& session, Words) {
+  Result<void> first_failed;  // which keeps the others from nothing
   for (std::size_t i = 0; i < session.scenes.entries().size(); ++i) {
     if (session.scenes.entries()[i].source.empty()) continue;
-    if (auto asked = session.scenes.bake(i, session.changes.editsOf(i)); !asked)
-      return failAgain(asked.error());
+    if (auto asked = session.scenes.bake(i, session.changes.editsOf(i)); !asked && first_failed)
+      first_failed = std::move(asked);
   }
-  return nullptr;
+  return answerOf(first_failed);
 }
 
 Answer cancel(Session& session, Words words) {

@@ -31,7 +31,7 @@ Answer open(Session& session, Words words) {
   Dialog ask;
   ask.kind = Dialog::Kind::OpenFile;
   ask.title = "Open";
-  ask.endings = {".gltf", ".glb", ".json"};
+  ask.kinds = {{"Scenes", {".gltf", ".glb"}}, {"Bundles", {".lmb.glb"}}, {"Worlds", {".json"}}};
   ask.folder = startFolder(session);
   ask.yes = "Open";
   ask.answered = [](Session& s, const std::string& file) { s.files.openLogged(file); };
@@ -81,7 +81,7 @@ Answer saveAs(Session& session, Words words) {
   Dialog ask;
   ask.kind = Dialog::Kind::SaveFile;
   ask.title = "Save the world";
-  ask.endings = {".json"};
+  ask.kinds = {{"Worlds", {".json"}}};
   ask.folder = startFolder(session);
   ask.name = proposedName(session);
   ask.yes = "Save";

@@ -47,7 +47,7 @@ Answer environmentMap(Session& session, Words words) {
     Dialog ask;
     ask.kind = Dialog::Kind::OpenFile;
     ask.title = "Light from an environment map";
-    ask.endings = {".hdr", ".exr"};
+    ask.kinds = {{"Environment maps", {".hdr", ".exr"}}};
     std::error_code ignored;
     ask.folder = std::filesystem::current_path(ignored);
     ask.answered = [](Session& s, const std::string& file) {

@@ -352,16 +352,7 @@ std::string resolveLight(const std::filesystem::path& world_path, const std::str
 Result<WorldFile> loadWorldFile(const std::filesystem::path& path) {
   const Result<std::string> text = readTextFile(path);
   if (!text) return failAgain(text.error());
-  Result<WorldFile> world = parseWorld(*text, path.string());
-  if (!world) return world;
-  for (std::size_t i = 0; i < world->state.bundles.size(); ++i) {
-    const std::filesystem::path file = resolvePath(path, world->state.bundles[i].path);
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored))
-      return fail(path.string(), fmt::format("bundles[{}].path: there is no file {}", i, file.string()),
-                  "bake it again, or mend the path");
-  }
-  return world;
+  return parseWorld(*text, path.string());
 }
 
 Result<void> saveWorldFile(const std::filesystem::path& path, const WorldFile& world) {
@@ -382,14 +373,18 @@ WorldFile captureWorld(Document& document, const Baseline& baseline, const World
   if (!kept) return world;
   world.unknown = kept->unknown;
   const auto by_id = [](const EntityOverride& a, const EntityOverride& b) { return a.id < b.id; };
+  const auto& bundles = world.state.bundles;
+  const bool all_open = std::ranges::all_of(kept->state.bundles, [&](const BundleEntry& old) {
+    return std::ranges::find(bundles, old.id, &BundleEntry::id) != bundles.end();
+  });
   Overrides more;
   for (const EntityOverride& old : kept->entities) {
     const auto found = std::lower_bound(world.entities.begin(), world.entities.end(), old, by_id);
     if (found != world.entities.end() && found->id == old.id) {
       found->unknown = old.unknown;
     } else if (!old.created && !document.find(old.id)) {
-      // The bundle came without this entity this time. The edit is kept as long as the bundles are the same.
-      if (kept->state.bundles == world.state.bundles) more.push_back(old);
+      // A bundle came without this entity this time, or not at all. The edit is kept while none is closed.
+      if (all_open) more.push_back(old);
     } else if (!old.created && !old.unknown.empty()) {
       EntityOverride& rest = more.emplace_back();
       rest.id = old.id;

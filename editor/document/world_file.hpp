@@ -37,7 +37,7 @@ Result<WorldFile> parseWorld(std::string_view text, const std::string& subject);
 // Returns the text of the file. Errors: a value is not finite.
 Result<std::string> worldText(const WorldFile& world);
 
-// Reads and checks the file. Errors: also a bundle that does not exist.
+// Reads and checks the file, but not whether its bundles exist.
 Result<WorldFile> loadWorldFile(const std::filesystem::path& path);
 Result<void> saveWorldFile(const std::filesystem::path& path, const WorldFile& world);
 

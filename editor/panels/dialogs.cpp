@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -21,9 +23,11 @@ bool shown(const Dialog& dialog, const std::filesystem::directory_entry& entry) 
   std::error_code ignored;
   if (entry.is_directory(ignored)) return true;
   if (dialog.kind == Kind::Folder) return false;
-  return dialog.endings.empty() ||
-         std::any_of(dialog.endings.begin(), dialog.endings.end(),
-                     [&](const std::string& ending) { return name.ends_with(ending); });
+  if (dialog.kinds.empty() || dialog.filter > dialog.kinds.size()) return true;
+  const auto isOf = [&](const FileKind& kind) {
+    return std::ranges::any_of(kind.endings, [&](const std::string& end) { return name.ends_with(end); });
+  };
+  return dialog.filter == 0 ? std::ranges::any_of(dialog.kinds, isOf) : isOf(dialog.kinds[dialog.filter - 1]);
 }
 
 std::vector<std::filesystem::directory_entry> listing(const Dialog& dialog) {
@@ -84,6 +88,28 @@ void drawPlaces(const Session& session, Dialog& dialog, Marks& marks) {
   }
 }
 
+// Returns "Scenes (.gltf .glb)" for a kind, and words for what is before the first and past the last.
+std::string filterText(const Dialog& dialog, std::size_t filter) {
+  if (filter == 0 && dialog.kinds.size() > 1) return "All that can be opened";
+  if (filter > dialog.kinds.size()) return "All files";
+  const FileKind& kind = dialog.kinds[filter == 0 ? 0 : filter - 1];
+  return fmt::format("{} ({})", kind.name, fmt::join(kind.endings, " "));
+}
+
+void drawFilter(Dialog& dialog, Marks& marks) {
+  if (dialog.kinds.empty() || dialog.kind == Kind::Folder) return;
+  ImGui::SetNextItemWidth(-1.0f);
+  const bool open = ImGui::BeginCombo("##filter", filterText(dialog, dialog.filter).c_str());
+  marks.put("dialog.filter");
+  if (!open) return;
+  const std::size_t first = dialog.kinds.size() == 1 ? 1 : 0;  // one kind is all kinds
+  for (std::size_t i = first; i <= dialog.kinds.size() + 1; ++i) {
+    if (ImGui::Selectable(filterText(dialog, i).c_str(), i == dialog.filter)) dialog.filter = i;
+    marks.put(fmt::format("dialog.filter.{}", i));
+  }
+  ImGui::EndCombo();
+}
+
 // Returns whether a file was chosen, by a double click or by the Enter key.
 bool drawFiles(const Session& session, Dialog& dialog, Marks& marks) {
   bool chosen = false;
@@ -119,6 +145,7 @@ bool drawFiles(const Session& session, Dialog& dialog, Marks& marks) {
                                ImGuiInputTextFlags_EnterReturnsTrue))
     chosen = true;
   marks.put("dialog.name");
+  drawFilter(dialog, marks);
   // The name of a folder leads into it.
   std::error_code ignored;
   const std::filesystem::path named = answerOf(dialog);

@@ -47,7 +47,7 @@ void drawMenus(Session& session, Marks& marks);
 void drawViewport(Session& session, Renderer& renderer, Marks& marks);
 void drawToolBar(Session& session, Marks& marks);  // above the view
 void drawToasts(Session& session, Marks& marks);
-void drawStartPage(Session& session, Marks& marks);  // in the view while nothing is open
+void drawStartPage(Session& session, Marks& marks);  // in the view while the world is empty
 void drawDialogs(Session& session, Marks& marks);
 void drawKeys(Session& session, Marks& marks);
 void drawPalette(Session& session, Marks& marks);

@@ -1,7 +1,11 @@
+#include <array>
+
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
+#include <nlohmann/json.hpp>
 
+#include "editor/commands/command.hpp"
 #include "editor/document/tree.hpp"
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
@@ -63,6 +67,35 @@ void drawStatus(Session& session, Marks& marks, const TreeRow& row) {
     ImGui::PopStyleColor();
     marks.put("scene." + row.name + ".state");
   }
+}
+
+// Draws the row of a scene of which nothing is shown yet: its bake runs or failed, or it is not there.
+// Returns false if it was closed.
+bool drawUnshown(Session& session, Marks& marks, std::size_t i) {
+  const SceneEntry& entry = session.scenes.entries()[i];
+  const SceneStatus status = statusOf(session, i);
+  const std::string number = std::to_string(i);
+  ImGui::PushID(entry.id.c_str());
+  ImGui::Dummy(ImVec2(ImGui::GetFrameHeight(), ImGui::GetFrameHeight()));
+  ImGui::SameLine(0.0f, 4.0f);
+  drawSign("bundle");
+  ImGui::SameLine(0.0f, 6.0f);
+  ImGui::TextDisabled("%s", entry.id.c_str());
+  ImGui::SameLine();
+  ImGui::PushStyleColor(ImGuiCol_Text, standingColor(status.standing));
+  fittedText(status.text, status.detail);
+  ImGui::PopStyleColor();
+  marks.put("scene." + entry.id + ".state");
+  const bool close = [&] {
+    if (!ImGui::BeginPopupContextItem("unshown")) return false;
+    if (!entry.source.empty() && ImGui::MenuItem("Bake")) runOrLog(session, "bake", std::array{number});
+    const bool chosen = ImGui::MenuItem("Close");
+    ImGui::EndPopup();
+    return chosen;
+  }();
+  ImGui::PopID();
+  if (close) runOrLog(session, "close", std::array{number});
+  return !close;
 }
 
 // Draws the menu that a right click on a row opens.
@@ -138,6 +171,8 @@ void drawSceneTree(Session& session, Marks& marks) {
   ImGui::PopStyleColor();
   const std::vector<TreeRow>& rows = session.tree.of(session.document);
   ImGui::BeginChild("rows");
+  for (std::size_t i = 0; i < session.scenes.entries().size(); ++i)
+    if (!session.scenes.entries()[i].slot && !drawUnshown(session, marks, i)) break;
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(rows.size()));
   while (clipper.Step())

@@ -162,6 +162,12 @@ void drawSettings(Session& session, Marks& marks) {
     drawRows(session, marks);
     ImGui::EndTable();
   }
+  if (!session.window.desktop_program.empty()) {
+    ImGui::Checkbox("Desktop's file dialogs", &session.preferences.desktop_dialogs);
+    marks.put("setting.desktop-dialogs");
+    tooltip("Choose files in the dialogs of " + session.window.desktop_program.filename().string() +
+            " in place of the editor's own");
+  }
   if (ImGui::Button("All to their defaults"))
     session.history.editWorld("settings to default", [](WorldState& world) { world.settings.clear(); });
   marks.put("setting.defaults");

@@ -1,4 +1,4 @@
-// Draws what is shown while nothing is open: what the program is, recent files, sample scenes.
+// Draws what is shown while the world is empty: what the program is, recent files, sample scenes.
 #include <algorithm>
 #include <array>
 
@@ -80,6 +80,7 @@ void drawSamples(Session& session, Marks& marks) {
 }  // namespace
 
 void drawStartPage(Session& session, Marks& marks) {
+  if (!session.empty()) return;  // it would lie over handles
   const float width = std::min(em(kWidthEms), 0.9f * ImGui::GetWindowWidth());
   const float above = std::max(em(1.0f), 0.08f * ImGui::GetWindowHeight());
   ImGui::SetCursorPos(ImVec2(0.5f * (ImGui::GetWindowWidth() - width), above));

@@ -217,10 +217,8 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
   if (clicked) pick(session, renderer, scale * *clicked);
   drawLegends(session, marks, low, high);
   drawViewMenu(session, marks);
-  if (session.scenes.entries().empty()) {
-    ImGui::SetCursorScreenPos(low);
-    drawStartPage(session, marks);
-  }
+  ImGui::SetCursorScreenPos(low);
+  drawStartPage(session, marks);
 }
 
 }  // namespace lambent::editor

@@ -2,6 +2,8 @@
 // and the rest of the editor keeps running.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -11,11 +13,18 @@ namespace lambent::editor {
 
 class Session;
 
+// Names a kind of file by the endings of its names.
+struct FileKind {
+  std::string name;
+  std::vector<std::string> endings;
+};
+
 struct Dialog {
   enum class Kind : std::uint8_t { OpenFile, SaveFile, Folder, Confirm, Text };
   Kind kind = Kind::Confirm;
   std::string title, question;
-  std::vector<std::string> endings;              // file name endings to list; empty: all files
+  std::vector<FileKind> kinds;                   // of files to list; empty: all files
+  std::size_t filter = 0;                        // 0: all these kinds; n: the nth; past the last: all files
   std::filesystem::path folder;                  // the folder that is shown
   std::string name;                              // the text typed so far
   std::string yes = "OK", no = "Cancel", third;  // button texts; an empty third one has no button

@@ -1,6 +1,9 @@
 #include "editor/session/files.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "editor/session/session.hpp"
 #include "runtime/spec/light.hpp"
@@ -25,11 +28,17 @@ Result<void> Files::openWorld(const std::filesystem::path& path) {
   if (!file) return failAgain(file.error());
   closeAll();
   Log& log = session_.log;
-  for (const BundleEntry& bundle : file->state.bundles)
-    if (auto opened = session_.scenes.open(bundle, path.parent_path()); !opened) log.error(opened.error());
+  for (const BundleEntry& bundle : file->state.bundles) session_.scenes.open(bundle, path.parent_path());
   for (const std::string& notice : file->notices) log.warn(path.string() + ": " + notice);
-  for (const std::string& missing : applyWorld(session_.document, *file).missing)
-    log.warn(path.string() + ": " + missing + " is not there any more; its edits wait");
+  const ApplyReport applied = applyWorld(session_.document, *file);
+  const std::size_t wait = session_.scene_steps.await(file->entities);
+  const auto& scenes = session_.scenes.entries();
+  if (!std::ranges::all_of(scenes, [](const SceneEntry& scene) { return scene.slot.has_value(); })) {
+    if (wait > 0) log.note(fmt::format("{}: edits of {} objects wait for their scene", path.string(), wait));
+  } else {
+    for (const std::string& missing : applied.missing)
+      log.warn(path.string() + ": " + missing + " is not there any more; its edits wait");
+  }
   loaded_ = std::move(*file);
   world_ = path;
   session_.history.clear();

@@ -97,6 +97,7 @@ Preferences loadPreferences(const std::filesystem::path& file) {
     if (const auto layout = json.find("layout"); layout != json.end()) readLayout(*layout, p.layout);
     if (const auto handles = json.find("handles"); handles != json.end()) readHandles(*handles, p.handles);
     read(json, "cameraPreview", p.camera_preview);
+    read(json, "desktopDialogs", p.desktop_dialogs);
     read(json, "scale", p.scale), read(json, "recent", p.recent);
     read(json, "lightUnit", p.light_unit);
   } catch (const nlohmann::json::exception&) {
@@ -119,6 +120,7 @@ void savePreferences(const std::filesystem::path& file, const Preferences& p) {
       {"layout", layoutJson(p.layout)},
       {"handles", handlesJson(p.handles)},
       {"cameraPreview", p.camera_preview},
+      {"desktopDialogs", p.desktop_dialogs},
       {"scale", p.scale},
       {"recent", p.recent},
       {"lightUnit",

@@ -17,6 +17,7 @@ struct Preferences {
   WindowLayout layout;
   GizmoOptions handles;           // as the view had them at the end of the last run
   bool camera_preview = true;     // an inset shows what a selected camera sees
+  bool desktop_dialogs = true;    // files are chosen in the desktop's own dialogs where there are any
   float scale = 1.0f;             // of text and widgets
   std::string light_unit = "cd";  // in which lights are given that can be given in it
   std::vector<std::string> recent;

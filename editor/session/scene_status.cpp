@@ -52,6 +52,7 @@ SceneStatus statusOf(Session& session, std::size_t index) {
     return {Standing::Working, fmt::format("baking {:.0f} %", 100.0 * job->fraction), {}};
   if (job && job->phase == JobPhase::Failed)
     return {Standing::Failed, "bake failed", job->error ? job->error->line() : std::string()};
+  if (entry.missing) return {Standing::Failed, "missing", entry.missing->line()};
   if (!entry.slot) return wanting("not baked");
   if (const auto& reasons = session.changes.needsRebakeNow(index); !reasons.empty())
     return wanting("needs a rebake", fmt::format("{}", fmt::join(reasons, "\n")));

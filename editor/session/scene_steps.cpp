@@ -44,9 +44,9 @@ std::optional<std::size_t> placeOf(const Scenes& scenes, const std::string& id) 
   return static_cast<std::size_t>(found - entries.begin());
 }
 
-// Returns the edits that were lost with the scene: those of its entities, and the parents of others below
-// them.
-Overrides goneWith(const Document& document, Overrides all) {
+// Returns the edits that lack something: those of entities that do not exist, and the parents of others that
+// were below them.
+Overrides lacking(const Document& document, Overrides all) {
   Overrides gone;
   for (EntityOverride& edit : all) {
     if (!document.find(edit.id)) {
@@ -78,8 +78,11 @@ Result<void> SceneSteps::open(const std::filesystem::path& path) {
     if (std::find(before.begin(), before.end(), entries[i].id) == before.end())
       did({.entry = entries[i], .place = i, .kept = {}, .folder = {}});
   for (const std::filesystem::path& folder : session_.scenes.watched())
-    if (std::find(watched.begin(), watched.end(), folder) == watched.end())
-      did({.entry = {}, .place = 0, .kept = {}, .folder = folder});
+    if (std::find(watched.begin(), watched.end(), folder) == watched.end()) {
+      ClosedScene watch;
+      watch.folder = folder;
+      did(std::move(watch));
+    }
   session_.history.commit();
   return {};
 }
@@ -122,11 +125,27 @@ bool SceneSteps::take(ClosedScene& scene) {
   }
   Overrides all = captureOverrides(session_.document, session_.changes.baseline());
   session_.scenes.close(*place);
-  scene.kept = goneWith(session_.document, std::move(all));
+  scene.kept = lacking(session_.document, std::move(all));
   return true;
 }
 
+std::size_t SceneSteps::await(const Overrides& edits) {
+  awaited_ = lacking(session_.document, edits);
+  return awaited_.size();
+}
+
+void SceneSteps::restoreAwaited() {
+  Overrides here;
+  for (const EntityOverride& edit : awaited_)
+    if (session_.document.find(edit.id)) here.push_back(edit);
+  if (here.empty()) return;
+  applyOverrides(session_.document, here);
+  awaited_ = lacking(session_.document, std::move(awaited_));
+  session_.viewing.changed = true;
+}
+
 void SceneSteps::update() {
+  restoreAwaited();
   for (std::size_t i = 0; i < waiting_.size();) {
     const auto place = placeOf(session_.scenes, waiting_[i].id);
     if (place && !session_.scenes.entries()[*place].slot) {

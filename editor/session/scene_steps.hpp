@@ -30,9 +30,12 @@ class SceneSteps {
   // Opens everything that belongs to the path as one step. Errors: there is nothing that can be opened.
   Result<void> open(const std::filesystem::path& path);
   void close(std::size_t entry);
+  // Keeps those of a world file's edits whose entities do not exist, until their scenes are shown. Returns
+  // how many these are.
+  std::size_t await(const Overrides& edits);
   // Restores the edits of scenes whose bundle is now shown. Call it once a frame.
   void update();
-  void clear() { waiting_.clear(); }
+  void clear() { waiting_.clear(), awaited_.clear(); }
 
   // The rest is for the steps themselves. bring() opens the scene again.
   Result<void> bring(const ClosedScene& scene);
@@ -46,7 +49,10 @@ class SceneSteps {
   };
 
   Session& session_;
+  void restoreAwaited();
+
   std::vector<Waiting> waiting_;
+  Overrides awaited_;
 };
 
 }  // namespace lambent::editor

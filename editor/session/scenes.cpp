@@ -110,38 +110,51 @@ Result<void> Scenes::open(const std::filesystem::path& path) {
   if (!std::filesystem::exists(place, ignored))
     return fail(path.string(), "is not there", "check the name, or drop the file onto the window");
   if (find(place)) return fail(path.string(), "is open already", "close it first to open it anew");
-  if (isBundle(place)) return openBundle(place, idFor(place));
-  if (baker::isSceneFile(place)) return openScene(place, idFor(bundleFor(place)), settings_.options, {});
-  return fail(path.string(), "is no scene, bundle or folder",
-              "open .gltf, .glb, .lmb.glb or a folder of them");
+  if (isBundle(place)) return openBundle({.bundle = place, .id = idFor(place), .options = settings_.options});
+  if (!baker::isSceneFile(place))
+    return fail(path.string(), "is no scene, bundle or folder",
+                "open .gltf, .glb, .lmb.glb or a folder of them");
+  const std::filesystem::path bundle = bundleFor(place);
+  openScene({.source = place, .bundle = bundle, .id = idFor(bundle), .options = settings_.options});
+  return {};
 }
 
-Result<void> Scenes::open(const BundleEntry& entry, const std::filesystem::path& folder) {
-  const std::filesystem::path bundle = plain(folder / entry.path);
+void Scenes::open(const BundleEntry& saved, const std::filesystem::path& folder) {
+  SceneEntry entry{.bundle = plain(folder / saved.path), .id = saved.id, .options = optionsOf(saved)};
   std::error_code ignored;
-  if (!entry.source.empty()) {
-    const std::filesystem::path source = plain(folder / entry.source);
-    const auto edits = entry.bake_options.find(kEditsOption);
-    const bool edited = edits != entry.bake_options.end();
-    const auto read = edited ? baker::readEdits(edits->second) : std::nullopt;
-    if (edited && !read)
-      log_.warn(
-          entry.id +
-          ": the world file's edits cannot be read; the scene is baked as its own file says, and the next "
-          "save of the world drops them");
-    if (std::filesystem::exists(source, ignored))
-      return openScene(source, entry.id, optionsOf(entry), read.value_or(baker::SceneEdits{}));
+  if (!saved.source.empty()) {
+    entry.source = plain(folder / saved.source);
+    if (const auto edits = saved.bake_options.find(kEditsOption); edits != saved.bake_options.end()) {
+      if (auto read = baker::readEdits(edits->second))
+        entry.edits = entry.shown_edits = std::move(*read);
+      else
+        log_.warn(entry.id +
+                  ": the world file's edits cannot be read; the scene is baked as its own file says, and the "
+                  "next save of the world drops them");
+    }
+    if (std::filesystem::exists(entry.source, ignored)) {
+      entry.bundle = bundleFor(entry.source);
+      return openScene(std::move(entry));
+    }
   }
-  if (!std::filesystem::exists(bundle, ignored))
-    return fail(bundle.string(), "is not there", "bake it again, or take it out of the world file");
-  return openBundle(bundle, entry.id);
+  if (const auto opened = openBundle(entry); !opened) {
+    entry.missing = opened.error();
+    if (!std::filesystem::exists(entry.bundle, ignored))
+      entry.missing = Error{entry.bundle.string(), "is not there",
+                            entry.source.empty() ? "put it back and open the world again, or close it here"
+                                                 : "put back its scene " + entry.source.string() +
+                                                       ", which is then baked, or close it here"};
+    log_.error(*entry.missing);
+    entries_.push_back(std::move(entry));
+    ++version_;
+  }
+  watch();
 }
 
-Result<void> Scenes::openBundle(const std::filesystem::path& bundle, std::string id) {
-  SceneEntry entry{.bundle = bundle, .id = std::move(id), .shown = bundle, .options = settings_.options};
-  const auto slot = world_.open(bundle, {.bundle_id = entry.id});
+Result<void> Scenes::openBundle(SceneEntry entry) {
+  const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id});
   if (!slot) return failAgain(slot.error());
-  entry.slot = *slot;
+  entry.slot = *slot, entry.shown = entry.bundle;
   entries_.push_back(std::move(entry));
   ++version_;
   return {};
@@ -164,27 +177,19 @@ baker::BakeOptions Scenes::optionsOf(const BundleEntry& entry) {
   return *options;
 }
 
-Result<void> Scenes::openScene(const std::filesystem::path& scene, std::string id,
-                               const baker::BakeOptions& options, baker::SceneEdits edits) {
-  SceneEntry entry{.source = scene,
-                   .bundle = bundleFor(scene),
-                   .id = std::move(id),
-                   .shown = {},
-                   .options = options,
-                   .edits = edits,
-                   .shown_edits = std::move(edits)};
+void Scenes::openScene(SceneEntry entry) {
   std::error_code ignored;
   // A bundle that exists is shown meanwhile, even if it is out of date.
   if (std::filesystem::exists(entry.bundle, ignored)) {
     if (const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id}))
       entry.slot = *slot, entry.shown = entry.bundle;
   }
-  std::erase_if(unfinished_, [&](const baker::BakeRequest& left) { return plain(left.scene) == scene; });
+  std::erase_if(unfinished_,
+                [&](const baker::BakeRequest& left) { return plain(left.scene) == entry.source; });
   entries_.push_back(std::move(entry));
   ++version_;
   request(entries_.back());
   watch();
-  return {};
 }
 
 Result<void> Scenes::openFolder(const std::filesystem::path& folder) {
@@ -214,6 +219,7 @@ void Scenes::unwatchFolder(const std::filesystem::path& folder) {
 }
 
 void Scenes::request(SceneEntry& entry) {
+  entry.missing.reset();
   entry.job =
       queue_->add({.scene = entry.source,
                    .output = entry.bundle,
@@ -285,6 +291,9 @@ void Scenes::take(const baker::WatchEvent& event) {
     log_.warn(scene.string() + ": is gone; its bundle stays");
   } else if (event.kind == Kind::Found && !entry && isWatched(scene)) {
     if (auto opened = open(scene); !opened) log_.error(opened.error());
+  } else if (event.kind == Kind::Found && entry && entry->missing) {
+    log_.note(scene.filename().string() + ": is back");
+    request(*entry);
   } else if (event.kind == Kind::Changed && entry) {
     log_.note(scene.filename().string() + ": has changed");
     request(*entry);
@@ -304,6 +313,10 @@ Result<void> Scenes::bake(std::size_t index, baker::SceneEdits edits) {
   SceneEntry& entry = entries_[index];
   if (entry.source.empty())
     return fail(entry.bundle.string(), "has no scene to be baked from", "open its .gltf or .glb file");
+  std::error_code ignored;
+  if (!std::filesystem::exists(entry.source, ignored))
+    return fail(entry.source.string(), "is not there", "put it back, or close the scene");
+  entry.missing.reset();
   entry.edits = std::move(edits);
   entry.job = queue_->add(
       {.scene = entry.source, .output = entry.bundle, .options = entry.options, .edits = entry.edits});
@@ -333,10 +346,10 @@ Result<void> Scenes::reopen(SceneEntry entry, std::size_t place) {
   if (std::filesystem::exists(entry.bundle, ignored)) {
     const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id});
     if (slot)
-      entry.slot = *slot, entry.shown = entry.bundle;
-    else if (!source)
+      entry.slot = *slot, entry.shown = entry.bundle, entry.missing.reset();
+    else if (!source && !entry.missing)
       return failAgain(slot.error());
-  } else if (!source) {
+  } else if (!source && !entry.missing) {
     return fail(entry.bundle.string(), "is not there", "put it back, then undo or redo again");
   }
   const auto at = entries_.insert(

@@ -30,6 +30,8 @@ struct SceneEntry {
   baker::BakeOptions options{};
   baker::SceneEdits edits{};        // the edits that the last bake was asked for
   baker::SceneEdits shown_edits{};  // the edits that the shown bundle was baked with
+  // Why the bundle cannot be opened and its scene is not there. The scene waits until it is back.
+  std::optional<Error> missing{};
 };
 
 struct SceneSettings {
@@ -48,12 +50,13 @@ class Scenes {
   // Opens a scene, a bundle, or a folder of them, which is then watched. Errors: there is nothing that can be
   // opened.
   Result<void> open(const std::filesystem::path& path);
-  // Opens a bundle of a world file, or its scene, under the id in that file.
-  Result<void> open(const BundleEntry& entry, const std::filesystem::path& folder);
+  // Opens a bundle of a world file, or its scene, under the id in that file. If neither is there, the entry
+  // is kept with its error, so that the rest of the world is shown and saved with it.
+  void open(const BundleEntry& entry, const std::filesystem::path& folder);
   void close(std::size_t entry);
   void closeAll();
   // Opens a closed entry again, at its index `place`. It shows the bundle on disk and bakes with the options
-  // and edits of the entry. Errors: neither the bundle nor the scene exists any more.
+  // and edits of the entry. Errors: neither the bundle nor the scene exists any more, and did before.
   Result<void> reopen(SceneEntry entry, std::size_t place);
   void watchFolder(const std::filesystem::path& folder);
   void unwatchFolder(const std::filesystem::path& folder);
@@ -61,7 +64,7 @@ class Scenes {
   // Applies what bakes and file changes did since the last call. Returns whether anything changed.
   bool update();
 
-  // Bakes the entry with these edits. Error: the entry is a bundle without a source.
+  // Bakes the entry with these edits. Errors: the entry is a bundle without a source, or it is not there.
   Result<void> bake(std::size_t entry, baker::SceneEdits edits);
   Result<void> setOption(std::size_t entry, std::string_view name, std::string_view word);
   void cancel(std::size_t entry);
@@ -90,9 +93,8 @@ class Scenes {
 
  private:
   baker::BakeOptions optionsOf(const BundleEntry& entry);
-  Result<void> openScene(const std::filesystem::path& scene, std::string id,
-                         const baker::BakeOptions& options, baker::SceneEdits edits);
-  Result<void> openBundle(const std::filesystem::path& bundle, std::string id);
+  void openScene(SceneEntry entry);
+  Result<void> openBundle(SceneEntry entry);
   Result<void> openFolder(const std::filesystem::path& folder);
   void show(SceneEntry& entry, const std::filesystem::path& bundle);
   void take(const baker::BakeEvent& event);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "runtime/scene/lights.hpp"
 #include "runtime/spec/light.hpp"
@@ -83,7 +84,28 @@ void Session::logBundleErrors() {
   told_ = std::move(wrong);
 }
 
+// Hands questions for files over to the desktop's dialog, and answers them with what it says. Should it fail,
+// the question is asked in the window.
+void Session::useDesktopDialogs() {
+  using Kind = Dialog::Kind;
+  if (auto closed = window.desktop_dialog.closed()) {
+    if (!closed->answer) {
+      log.warn(closed->answer.error().line() + "; the editor's own file dialogs are used");
+      window.desktop_program.clear();
+      window.dialog = std::move(closed->question);
+    } else if (!closed->answer->empty() && closed->question.answered) {
+      closed->question.answered(*this, *closed->answer);
+    }
+  }
+  if (!window.dialog || window.desktop_program.empty() || !preferences.desktop_dialogs) return;
+  if (window.dialog->kind == Kind::Confirm || window.dialog->kind == Kind::Text) return;
+  // A second question while one is open elsewhere is dropped: the first must be answered or cancelled.
+  Dialog asked = *std::exchange(window.dialog, std::nullopt);
+  if (!window.desktop_dialog.open()) window.desktop_dialog.ask(window.desktop_program, std::move(asked));
+}
+
 void Session::update(double seconds) {
+  useDesktopDialogs();
   if (scenes.update()) {
     document.adoptAll();
     scene_steps.update();
@@ -107,8 +129,8 @@ bool Session::moving() const {
 }
 
 bool Session::awaits() const {
-  return scenes.busy() || plans.busy() || assets.busy() || asset_pictures.busy() ||
-         !log.recent(kToastAge).empty();
+  return scenes.busy() || window.desktop_dialog.open() || plans.busy() || assets.busy() ||
+         asset_pictures.busy() || !log.recent(kToastAge).empty();
 }
 
 }  // namespace lambent::editor

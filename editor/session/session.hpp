@@ -61,6 +61,9 @@ class Session {
   // Applies the document to the stage at once, for commands that query the stage right after an edit.
   void followDocument();
 
+  // Returns whether no scene is open and nothing was made: no lamp, no camera, no empty entity.
+  bool empty() const { return scenes.entries().empty() && document.registry().count<Created>() == 0; }
+
   // Scripts wait for these conditions.
   bool loaded() const { return stage.world().loaded() && !viewing.frame_when_loaded; }
   bool baked() const { return !scenes.busy() && loaded(); }
@@ -102,6 +105,7 @@ class Session {
  private:
   Session(const SessionOptions& options, Preferences preferences, Stage stage);
   void logBundleErrors();
+  void useDesktopDialogs();
 
   std::vector<std::string> told_;  // bundle errors that are already in the log
   std::uint64_t world_followed_ = 0;

@@ -143,7 +143,7 @@ Result<MeshData> extract(const draco::Mesh& mesh, const DracoAttributes& attribu
     done = take(data.texcoords0, attributes.texcoord0, "texture coordinates");
   if (done && attributes.texcoord1 >= 0)
     done = take(data.texcoords1, attributes.texcoord1, "texture coordinates");
-  if (done && attributes.color0 >= 0) done = take(data.colors, attributes.color0, "colours");
+  if (done && attributes.color0 >= 0) done = take(data.colors, attributes.color0, "colors");
   if (done && attributes.tangent >= 0) done = take(data.tangents, attributes.tangent, "tangents");
   if (done && attributes.normal_weight >= 0) {
     std::vector<glm::vec1> weights;

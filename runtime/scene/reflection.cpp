@@ -214,7 +214,7 @@ Result<void> FieldInfo::check(const Value& value) const {
     case ValueKind::Vector:
       if (!finite(std::get<glm::vec3>(value))) return wrong("is not finite", "give three finite numbers");
       if (const glm::vec3 v = std::get<glm::vec3>(value); color && (v.x < 0.0f || v.y < 0.0f || v.z < 0.0f))
-        return wrong(fmt::format("{} is a colour with a negative part", valueText(value)), "");
+        return wrong(fmt::format("{} is a color with a negative part", valueText(value)), "");
       return {};
     case ValueKind::Rotation: {
       const glm::quat q = std::get<glm::quat>(value);

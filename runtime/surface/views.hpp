@@ -48,7 +48,7 @@ struct SurfaceViewRow {
 inline constexpr std::array<SurfaceViewRow, 8> kSurfaceViews = {{
     {SurfaceView::Final, "final", "Final", "the light as it is", ViewColors::Light},
     {SurfaceView::Irradiance, "irradiance", "Irradiance",
-     "E/pi that arrives at surfaces, without their own colour", ViewColors::Light},
+     "E/pi that arrives at surfaces, without their own color", ViewColors::Light},
     {SurfaceView::TransferDc, "transfer-dc", "Average visibility",
      "coefficient 0 of the transfer: what of uniform light arrives", ViewColors::Scale},
     {SurfaceView::TransferBand, "transfer-band", "Transfer, band",

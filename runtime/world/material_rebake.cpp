@@ -74,9 +74,9 @@ std::vector<RebakeReason> needsRebake(const gltf::Material& now, const gltf::Mat
   };
   const bool other_color = glm::vec3(now.base_color) != glm::vec3(baked.base_color);
   if (other_color && use.bounces)
-    add("base_color", true, "Bounced light still carries the colour that was baked.");
+    add("base_color", true, "Bounced light still carries the color that was baked.");
   if (other_color && use.seen)
-    add("base_color", true, "What it throws on other bodies still has the colour that was baked.");
+    add("base_color", true, "What it throws on other bodies still has the color that was baked.");
   if (now.alpha_mode != gltf::AlphaMode::Opaque &&
       (now.base_color.a != baked.base_color.a || now.alpha_cutoff != baked.alpha_cutoff))
     add(now.base_color.a != baked.base_color.a ? "alpha" : "alpha_cutoff", true,

@@ -328,12 +328,12 @@ TEST(SurfaceBrdfs, LookUpEachTextureAsWhatItIs) {
     gltf::TextureRef gltf::Material::*texture;
     std::function<void(gltf::Material&)> same;
   } cases[] = {
-      {"base colour", &gltf::Material::base_color_texture,
+      {"base color", &gltf::Material::base_color_texture,
        [&](gltf::Material& m) { m.base_color *= glm::vec4(color, color, color, kAlpha); }},
       {"metallic roughness", &gltf::Material::metallic_roughness_texture,
        [&](gltf::Material& m) { m.metallic *= kData, m.roughness *= kData; }},
       {"specular", &gltf::Material::specular_texture, [&](gltf::Material& m) { m.specular *= kAlpha; }},
-      {"specular colour", &gltf::Material::specular_color_texture,
+      {"specular color", &gltf::Material::specular_color_texture,
        [&](gltf::Material& m) { m.specular_color *= color; }},
       {"anisotropy", &gltf::Material::anisotropy_texture, [&](gltf::Material& m) {
          // Equal red and green mean the direction half way from the tangent to the bitangent.

@@ -43,6 +43,48 @@ TEST(WholeProgress, KnowsThatMuchIsLeftWhileAStageOfMoreBegins) {
   EXPECT_NEAR(whole.look(progress).seconds_left, 10.0, 0.5);
 }
 
+TEST(TimeLeft, FollowsRefinementFromItsBeginToItsEnd) {
+  const StageSeconds expected = {{"refinement", 10.0}, {"direct light", 20.0}};
+  const auto left = [&](std::uint64_t total, std::uint64_t done, double seconds) {
+    return secondsLeft(expected, {}, {}, {"refinement", "probes", total, done, seconds, seconds});
+  };
+  const double begin = left(1000, 0, 0.0), half = left(1000, 500, 5.0), end = left(1000, 1000, 10.0);
+  EXPECT_GT(begin, half + 1.0);
+  EXPECT_GT(half, end + 1.0);
+  EXPECT_NEAR(end, 20.0, 1e-9);
+  EXPECT_NEAR(left(2000, 1000, 30.0), 30.0 + 20.0, 1e-9) << "what it learns about itself counts";
+  EXPECT_GE(left(1000, 3000, 90.0), 0.0) << "more than was expected";
+}
+
+TEST(TimeLeft, ExpectsOfLaterStagesWhatSamplesTookSoFar) {
+  const StageSeconds expected = {{"direct light", 10.0}, {"bounce 1", 3.0}, {"coding", 2.0}, {"proxy", 1.0}};
+  const auto left = [&](double seconds_of_half) {
+    return secondsLeft(expected, {}, {}, {"direct light", "samples", 100, 50, seconds_of_half, 0.0});
+  };
+  EXPECT_NEAR(left(5.0), 5.0 + 3.0 + 2.0 + 1.0, 1e-9);
+  EXPECT_NEAR(left(20.0), 20.0 + 4.0 * (3.0 + 2.0) + 1.0, 1e-9) << "there are four times as many samples";
+  EXPECT_NEAR(left(1.0), 1.0 + 8.0 + 3.0 + 2.0 + 1.0, 1e-9) << "another group may follow";
+}
+
+TEST(WholeProgress, NeverFallsThoughRefinementTurnsOutLonger) {
+  WholeProgress whole({{"refinement", 0.3}, {"direct light", 0.3}});
+  Progress progress;
+  progress.begin("refinement", 10, "probes");
+  double before = 0.0;
+  for (int unit = 0; unit < 10; ++unit) {
+    work();
+    progress.add(1);
+    if (unit == 7) progress.expect(1000);
+    const auto seen = whole.look(progress);
+    EXPECT_GE(seen.share, before);
+    EXPECT_GE(seen.seconds_left, 0.0);
+    before = seen.share;
+  }
+  EXPECT_EQ(progress.now().total, 1000u);
+  progress.expect(1);
+  EXPECT_EQ(progress.now().total, 10u) << "what is done is no more than the total";
+}
+
 TEST(WholeProgress, CountsWhatEarlierRunsKept) {
   WholeProgress whole({{"direct light", 30.0}, {"bounces", 10.0}},
                       {.share = 0.6, .spent = {{"direct light", 24.0}}});

@@ -148,6 +148,52 @@ TEST_F(WindowlessCommands, SaveAWorldThatComesBack) {
   EXPECT_NEAR(answer("get", {"point:Transform.translation"})[1].get<double>(), 2.0, 1e-6);
 }
 
+TEST_F(WindowlessCommands, OpenAWorldOfWhichOneSceneIsGoneAndAnotherDoesNotBake) {
+  openHello();
+  answer("select", {"has:Transform sphere"});
+  answer("set", {"Transform.translation", "0.1", "0.6", "0.2"});
+  const std::filesystem::path gone = folder.path() / "hello.glb", away = folder.path() / "away",
+                              broken = folder.path() / "broken.glb";
+  std::ofstream(broken) << "no scene";
+  answer("open", {broken.string()});
+  const auto waitFor = [&](auto holds) {
+    for (int i = 0; i < 3000 && !holds(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      session->update(0.0);
+    }
+    EXPECT_TRUE(holds());
+  };
+  waitFor([&] { return statusOf(*session, 1).text == "bake failed"; });
+  const std::string file = (folder.path() / "world.json").string();
+  answer("save", {file});
+  std::filesystem::rename(gone, away);
+
+  session = makeSession();
+  answer("create-point");
+  answer("open", {file});
+  ASSERT_EQ(session->scenes.entries().size(), 2u) << "both are listed";
+  const SceneStatus missing = statusOf(*session, 0);
+  EXPECT_EQ(missing.text, "missing");
+  EXPECT_NE(missing.detail.find(gone.string()), std::string::npos) << missing.detail;
+  EXPECT_FALSE(run("bake", {"hello"}));
+  waitFor([&] { return statusOf(*session, 1).text == "bake failed"; });
+  answer("close", {"broken"});
+  answer("undo");
+  EXPECT_EQ(session->scenes.entries().size(), 2u);
+  answer("save", {file});
+
+  session = makeSession();
+  answer("open", {file});
+  std::filesystem::rename(away, gone);
+  answer("bake", {"hello"});
+  waitForBundle(*session);
+  answer("select", {"has:Transform sphere"});
+  EXPECT_NEAR(answer("get", {"Transform.translation"})[1].get<double>(), 0.6, 1e-6)
+      << "its edits waited in the file";
+  answer("close", {"broken"});
+  EXPECT_EQ(session->scenes.entries().size(), 1u);
+}
+
 TEST_F(WindowlessCommands, SayThatTheEditsOfAWorldFileCannotBeRead) {
   openHello();
   const std::string file = (folder.path() / "world.json").string();

@@ -1,4 +1,6 @@
 // Tests panels in a Dear ImGui context without window and OpenGL, whose only input comes from the test.
+#include <fstream>
+
 #include <imgui.h>
 #include <imgui_internal.h>
 
@@ -185,6 +187,44 @@ TEST_F(WindowlessPanels, TheStartPageOpensARecentScene) {
   click(start, "start.hello.glb");
   ASSERT_EQ(session->scenes.entries().size(), 1u);
   EXPECT_EQ(session->scenes.entries().front().source, file);
+}
+
+TEST_F(WindowlessPanels, TheStartPageGoesOnceALampIsInTheWorld) {
+  const Panel start{"start", Dock::Left, "", &drawStartPage};
+  settle(start);
+  EXPECT_TRUE(marks.find("start.open"));
+  answer("create-point");
+  settle(start);
+  EXPECT_FALSE(marks.find("start.open")) << "it would lie over the lamp's handles";
+  answer("undo");
+  settle(start);
+  EXPECT_TRUE(marks.find("start.open"));
+}
+
+TEST_F(WindowlessPanels, AFileDialogListsTheKindOfFilesThatIsChosen) {
+  for (const char* name : {"a.glb", "b.json", "c.txt"}) std::ofstream(folder.path() / name) << "x";
+  answer("open");
+  ASSERT_TRUE(session->window.dialog);
+  session->window.dialog->folder = folder.path();
+  const Panel dialogs{"dialogs", Dock::Left, "", &drawDialogs};
+  const auto listed = [&] {
+    settle(dialogs);
+    std::string names;
+    for (const char* name : {"a.glb", "b.json", "c.txt"})
+      if (marks.find(std::string("dialog.") + name)) names += std::string(name) + ' ';
+    return names;
+  };
+  EXPECT_EQ(listed(), "a.glb b.json ");
+  const auto choose = [&](const char* filter) {
+    settle(dialogs);
+    click(dialogs, "dialog.filter");
+    settle(dialogs);
+    click(dialogs, filter);
+  };
+  choose("dialog.filter.3");
+  EXPECT_EQ(listed(), "b.json ") << "worlds";
+  choose("dialog.filter.4");
+  EXPECT_EQ(listed(), "a.glb b.json c.txt ") << "all files";
 }
 
 TEST_F(WindowlessPanels, AFileDialogLeadsToThePlacesOfFilesByOneClick) {

@@ -51,7 +51,7 @@ TEST(Reflection, RefusesWhatDoesNotFitAndSaysWhy) {
   EXPECT_EQ(error("Light", "kind", Word{"lantern"}),
             "Light.kind: knows no \"lantern\"; use point, spot, directional, sphere, disc");
   EXPECT_EQ(error("Light", "color", glm::vec3(1.0f, -1.0f, 0.0f)),
-            "Light.color: (1, -1, 0) is a colour with a negative part");
+            "Light.color: (1, -1, 0) is a color with a negative part");
   EXPECT_EQ(error("Transform", "translation", glm::vec3(std::numeric_limits<float>::infinity())),
             "Transform.translation: is not finite; give three finite numbers");
   EXPECT_EQ(error("Transform", "rotation", glm::quat(0.0f, 0.0f, 0.0f, 0.0f)),

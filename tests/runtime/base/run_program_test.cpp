@@ -1,31 +1,38 @@
-#include "baker/sweep/child.hpp"
+#include "runtime/base/run_program.hpp"
 
 #include <chrono>
 
 #include <gtest/gtest.h>
 
-namespace lambent::baker {
+namespace lambent {
 namespace {
 
-TEST(Child, ReturnsWhatAProgramPrintsWithoutAShellBetween) {
+TEST(RunProgram, ReturnsWhatAProgramPrintsWithoutAShellBetween) {
   const auto out = runProgram("/bin/echo", {"a b", "$HOME", "'"}, {});
   ASSERT_TRUE(out) << out.error().line();
   EXPECT_EQ(out->out, "a b $HOME '\n");
 }
 
-TEST(Child, FailsWithTheLastLineOfTheErrors) {
+TEST(RunProgram, FailsWithTheLastLineOfTheErrors) {
   const auto out = runProgram("/bin/sh", {"-c", "echo one >&2; echo two >&2; exit 3"}, {});
   ASSERT_FALSE(out);
   EXPECT_NE(out.error().line().find("two"), std::string::npos) << out.error().line();
   EXPECT_EQ(out.error().line().find("one"), std::string::npos) << out.error().line();
 }
 
-TEST(Child, FailsIfThereIsNoSuchProgram) {
+TEST(RunProgram, LeavesTheExitCodeToTheCallerWhoAsksForIt) {
+  const auto out = runToAnyEnd("/bin/sh", {"-c", "echo said; exit 3"}, {});
+  ASSERT_TRUE(out) << out.error().line();
+  EXPECT_EQ(out->exit_code, 3);
+  EXPECT_EQ(out->out, "said\n");
+}
+
+TEST(RunProgram, FailsIfThereIsNoSuchProgram) {
   EXPECT_FALSE(runProgram("/no/such/program", {}, {}));
 }
 
 // Far more than a pipe holds, on both streams.
-TEST(Child, ReadsBothStreamsToTheirEnds) {
+TEST(RunProgram, ReadsBothStreamsToTheirEnds) {
   const auto out =
       runProgram("/bin/sh",
                  {"-c",
@@ -36,7 +43,7 @@ TEST(Child, ReadsBothStreamsToTheirEnds) {
   EXPECT_EQ(out->out.size(), 3000u * 41u);
 }
 
-TEST(Child, EndsWhenAStopIsRequested) {
+TEST(RunProgram, EndsWhenAStopIsRequested) {
   std::stop_source stop;
   stop.request_stop();
   const auto start = std::chrono::steady_clock::now();
@@ -45,4 +52,4 @@ TEST(Child, EndsWhenAStopIsRequested) {
 }
 
 }  // namespace
-}  // namespace lambent::baker
+}  // namespace lambent

@@ -1,4 +1,4 @@
-#include "baker/sweep/child.hpp"
+#include "runtime/base/run_program.hpp"
 
 #include <array>
 #include <cerrno>
@@ -6,14 +6,13 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace lambent::baker {
+namespace lambent {
 
 namespace {
 
@@ -98,8 +97,8 @@ std::string lastLine(std::string text) {
 
 }  // namespace
 
-Result<Ran> runProgram(const std::filesystem::path& program, const std::vector<std::string>& words,
-                       const std::stop_token& stop) {
+Result<Ran> runToAnyEnd(const std::filesystem::path& program, const std::vector<std::string>& words,
+                        const std::stop_token& stop) {
   const std::string name = program.filename().string();
   Pipe out, err;
   if (!out.open() || !err.open())
@@ -116,12 +115,18 @@ Result<Ran> runProgram(const std::filesystem::path& program, const std::vector<s
   while (::wait4(id, &status, 0, &used) < 0 && errno == EINTR) {
   }
   if (stop.stop_requested()) return fail(name, "stopped", "run it again, and it goes on from where it was");
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
-    return Ran{std::move(out_text), secondsOf(used.ru_utime) + secondsOf(used.ru_stime)};
-  const std::string said = lastLine(err_text);
-  if (!said.empty()) return fail(name + (words.empty() ? "" : " " + words.front()), "failed: " + said);
-  return fail(name, WIFEXITED(status) ? fmt::format("ended with code {}", WEXITSTATUS(status))
-                                      : fmt::format("was ended by signal {}", WTERMSIG(status)));
+  if (!WIFEXITED(status)) return fail(name, "was ended by signal " + std::to_string(WTERMSIG(status)));
+  return Ran{std::move(out_text), std::move(err_text), WEXITSTATUS(status),
+             secondsOf(used.ru_utime) + secondsOf(used.ru_stime)};
 }
 
-}  // namespace lambent::baker
+Result<Ran> runProgram(const std::filesystem::path& program, const std::vector<std::string>& words,
+                       const std::stop_token& stop) {
+  Result<Ran> ran = runToAnyEnd(program, words, stop);
+  if (!ran || ran->exit_code == 0) return ran;
+  const std::string name = program.filename().string(), said = lastLine(ran->err);
+  if (!said.empty()) return fail(name + (words.empty() ? "" : " " + words.front()), "failed: " + said);
+  return fail(name, "ended with code " + std::to_string(ran->exit_code));
+}
+
+}  // namespace lambent

@@ -10,16 +10,19 @@
 
 #include "runtime/base/result.hpp"
 
-namespace lambent::baker {
+namespace lambent {
 
 struct Ran {
-  std::string out;                 // standard output
+  std::string out, err;  // standard output and errors
+  int exit_code = 0;
   double processor_seconds = 0.0;  // of all its threads together
 };
 
-// Fails if it cannot be started, ends with another code than 0,
-// or is stopped.
+// Fails if it cannot be started, is ended by a signal, or is stopped.
+Result<Ran> runToAnyEnd(const std::filesystem::path& program, const std::vector<std::string>& words,
+                        const std::stop_token& stop);
+// Fails also if it ends with another code than 0.
 Result<Ran> runProgram(const std::filesystem::path& program, const std::vector<std::string>& words,
                        const std::stop_token& stop);
 
-}  // namespace lambent::baker
+}  // namespace lambent
