@@ -79,11 +79,8 @@ bool drawAssetTile(Session& session, const Asset& asset, float width_ems, bool s
   if (selected || ImGui::IsItemHovered())
     canvas->AddRect(low, high, ImGui::GetColorU32(selected ? ImGuiCol_NavHighlight : ImGuiCol_SliderGrab),
                     0.0f, 0, em(0.15f));
-  std::string name = asset.file.filename().string();
-  name.resize(name.size() - (asset.kind == AssetKind::Bundle ? std::string_view(".lmb.glb").size()
-                                                             : asset.file.extension().string().size()));
   canvas->AddText(ImVec2(low.x, high.y + em(0.1f)), ImGui::GetColorU32(ImGuiCol_Text),
-                  ellipsized(name, width).c_str());
+                  ellipsized(nameOf(asset), width).c_str());
   return clicked;
 }
 

@@ -54,7 +54,9 @@ void Thumbnails::takeFromView(Session& session, const gpu::Texture& view) {
 
 void Thumbnails::update(Session& session, const gpu::Texture& view) {
   takeFromView(session, view);
-  for (auto& [file, picture] : session.asset_pictures.pictures()) {
+  auto& pictures = session.asset_pictures.pictures();
+  std::erase_if(textures_, [&](const auto& texture) { return !pictures.contains(texture.first); });
+  for (auto& [file, picture] : pictures) {
     if (picture.image.texels.empty()) continue;
     const spec::Rgba8Image image = std::exchange(picture.image, {});
     gpu::Texture texture("thumbnail", {.format = GL_RGBA8, .width = image.width, .height = image.height});

@@ -13,6 +13,13 @@
 
 namespace lambent::editor {
 
+namespace {
+
+// How many pictures are held in memory; a window shows far fewer at a time.
+constexpr std::size_t kMostPictures = 512;
+
+}  // namespace
+
 // Finds, makes and keeps pictures on a thread of its own.
 struct AssetPictures::Worker {
   struct Request {
@@ -104,13 +111,18 @@ void AssetPictures::keep(const Asset& asset, spec::Rgba8Image image) {
 void AssetPictures::update() {
   for (Worker::Made& made : worker_->take()) {
     --coming_;
-    Picture& picture = pictures_[made.asset.file];
     // The file may have changed, or its picture may have come from the view, in the meantime.
-    if (!picture.coming || asked_[made.asset.file] != made.asset) continue;
-    picture.coming = false;
+    const auto asked = asked_.find(made.asset.file);
+    if (asked == asked_.end() || asked->second != made.asset) continue;
+    Picture& picture = pictures_[made.asset.file];
+    if (!std::exchange(picture.coming, false)) continue;
     picture.image = std::move(made.image);
     picture.error = std::move(made.error);
   }
+  // What is still shown is found on disk again.
+  if (pictures_.size() <= kMostPictures || busy()) return;
+  pictures_.clear();
+  asked_.clear();
 }
 
 }  // namespace lambent::editor

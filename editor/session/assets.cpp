@@ -54,6 +54,14 @@ std::string_view kindWord(AssetKind kind) {
   return {};
 }
 
+std::string nameOf(const Asset& asset) {
+  const std::filesystem::path stem = asset.file.stem();
+  const std::string second = stem.extension().string();
+  const bool told = (asset.kind == AssetKind::Bundle && second == ".lmb") ||
+                    (asset.kind == AssetKind::World && second == ".world");
+  return (told ? stem.stem() : stem).string();
+}
+
 std::optional<Asset> assetAt(const std::filesystem::path& file) {
   const auto kind = kindByName(file);
   std::error_code wrong;

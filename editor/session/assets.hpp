@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct Asset {
   bool operator==(const Asset&) const = default;
 };
 
+// Returns the file's name without what only tells its kind: "hall" for hall.world.json.
+std::string nameOf(const Asset& asset);
 // Returns the file as an asset by its name, or nothing if it is no file of these kinds. It is not read, so
 // any .json passes for a world.
 std::optional<Asset> assetAt(const std::filesystem::path& file);

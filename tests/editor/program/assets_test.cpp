@@ -68,6 +68,12 @@ TEST_F(Assets, AreFoundByPartsOfTheirNameAndKind) {
   for (const char* search : {"morning", "sky scene", "maps/"}) EXPECT_FALSE(matches(sky, search)) << search;
 }
 
+TEST_F(Assets, AreNamedWithoutWhatTellsTheirKind) {
+  for (const char* name : {"hall.world.json", "hall.json", "hall.lmb.glb", "hall.glb", "hall.hdr"})
+    EXPECT_EQ(nameOf(*assetAt(write(name))), "hall") << name;
+  EXPECT_EQ(nameOf(*assetAt(write("hall.lmb.hdr"))), "hall.lmb");
+}
+
 TEST_F(Assets, PicturesOfAFileThatChangedAreForgotten) {
   PictureCache cache(folder.path() / "pictures");
   const fs::path file = write("a.glb");
@@ -134,6 +140,20 @@ TEST_F(Assets, PicturesOfMapsAreMadeAndThoseOfScenesAreTheViews) {
   again.of(*assetAt(scene.file));
   settle(again);
   EXPECT_TRUE(again.of(*assetAt(scene.file)).image.texels.empty()) << "the file has changed";
+}
+
+TEST_F(Assets, PicturesInMemoryAreLimitedAndComeAgain) {
+  AssetPictures pictures({});
+  const Asset map = *assetAt(writeMap("sky.hdr"));
+  pictures.of(map);
+  settle(pictures);
+  for (int i = 0; i < 600; ++i)
+    pictures.of({.file = "/scenes/" + std::to_string(i) + ".glb", .kind = AssetKind::Scene});
+  settle(pictures);
+  EXPECT_LE(pictures.pictures().size(), 512u);
+  pictures.of(map);
+  settle(pictures);
+  EXPECT_FALSE(pictures.of(map).image.texels.empty());
 }
 
 TEST_F(Assets, PictureOfAViewIsItsMiddle) {

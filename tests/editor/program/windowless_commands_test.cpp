@@ -287,6 +287,26 @@ TEST_F(WindowlessCommands, AskInADialogWhatHasNotBeenSaid) {
   EXPECT_TRUE(session->window.quit);
 }
 
+TEST_F(WindowlessCommands, UseAnAssetByItsName) {
+  openHello();
+  const json listed = answer("assets", {"hello scene"});
+  ASSERT_FALSE(listed.empty());
+  EXPECT_EQ(listed[0]["file"], (folder.path() / "hello.glb").string())
+      << "the folder of what was opened last";
+  EXPECT_FALSE(run("use-asset", {"nowhere.hdr"}));
+  const std::string world = (folder.path() / "hall.world.json").string();
+  std::filesystem::copy(session->scenes.entries().front().shown, session->scenes.entries().front().bundle);
+  answer("save", {world});
+  answer("create-point");
+  answer("use-asset", {"hall.world.json"});
+  ASSERT_TRUE(session->window.dialog) << "the edit is not saved";
+  EXPECT_TRUE(session->files.modified());
+  const Dialog asked = *std::exchange(session->window.dialog, std::nullopt);
+  asked.answered(*session, {});
+  EXPECT_FALSE(session->files.modified());
+  EXPECT_EQ(session->files.world(), world);
+}
+
 TEST_F(WindowlessCommands, SaveProposesTheScenesNameAndReplacesNoOtherFileUnasked) {
   openHello();
   answer("save");
