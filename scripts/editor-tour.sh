@@ -9,9 +9,10 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$out"
 cp assets/hello.glb "$work/room.glb"
 head -c 2000 assets/hello.glb > "$work/broken.glb"
+cp assets/gallery.glb "$work/gallery.glb"
 
 edit() {  # SCRIPT
-  bin/lambent-editor --fresh --size "$size" --scale "$scale" --cache "$work/cache" --quality draft --json --script "$1" > "$work/answers"
+  exec bin/lambent-editor --fresh --size "$size" --scale "$scale" --cache "$work/cache" --quality draft --json --script "$1" > "$work/answers"
 }
 
 cat > "$work/first" << END
@@ -23,7 +24,7 @@ screenshot $work/02-dropped.png
 wait baked 300
 wait rest 60
 screenshot $work/03-baked.png
-select "box"
+select "has:Transform box type:node"
 wait frames 3
 drag gizmo.x -60 0
 wait rest 60
@@ -63,8 +64,35 @@ panel Log
 wait seconds 1
 screenshot $work/10-error.png
 END
-edit "$work/first"
-edit "$work/second"
+cat > "$work/third" << END
+open $work/gallery.glb
+wait loaded 60
+panel Bakes
+wait seconds 20
+screenshot $work/baking.png
+wait baked 900
+END
+cat > "$work/fourth" << END
+panel Bakes
+wait seconds 1
+screenshot $work/11-cut-short.png
+click bakes.gallery.glb.open
+wait loaded 60
+wait seconds 2
+screenshot $work/12-goes-on.png
+wait baked 900
+END
+(edit "$work/first")
+(edit "$work/second")
+(edit "$work/third") &
+while [ ! -e "$work/baking.png" ]; do
+  kill -0 $!
+  sleep 1
+done
+sleep 1  # the picture may not be whole yet
+kill -9 $!
+wait $! || true
+(edit "$work/fourth")
 for picture in "$work"/[01][0-9]-*.png; do
   convert "$picture" -resize '960x>' -quality 82 "$out/tour-$(basename "$picture" .png).jpg"
 done

@@ -42,6 +42,8 @@ struct Job {
   Journal::Entry record;
   std::optional<std::string> unrecorded;     // says that the journal could not be written
   StageSeconds expected;                     // for the final bake
+  StageSeconds expected_coarse;              // for the coarse preview
+  double coarse_seconds = 0.0;               // what the coarse preview took, once it is done
   StageSeconds before;                       // what earlier runs of the final bake spent on it
   std::shared_ptr<const Progress> progress;  // of the step that runs
 
@@ -167,6 +169,7 @@ struct BakeQueue::Impl {
     job.step = firstStep(job.state.request);
     job.tried = job.begun = false;
     job.before = {};
+    job.coarse_seconds = 0.0;
     job.state.preview_level = previewLevelOf(job.step);
   }
 
@@ -203,16 +206,17 @@ JobState BakeQueue::Impl::snapshot(Job& job) const {
   const bool going = state.phase == JobPhase::Waiting || state.phase == JobPhase::Importing ||
                      state.phase == JobPhase::Baking;
   if (!going || job.expected.empty()) return state;
-  // Only the final bake counts; the levels before it are short.
+  // The coarse preview and the final bake count; the unshadowed preview is short.
   const bool at_final = job.progress && state.preview_level == PreviewLevel::Final;
+  const bool at_coarse = job.progress && state.preview_level == PreviewLevel::Coarse;
   const StageSeconds before = at_final ? job.before : StageSeconds{};
   if (const double took = secondsOf(state.stage, before, finished); took > 0.0)
     state.units_per_s = static_cast<double>(state.stage.done) / took;
-  double spent = sumSeconds(job.before);
-  if (at_final) spent += total(finished) + state.stage.seconds;
+  double spent = sumSeconds(job.before) + job.coarse_seconds, left = 0.0;
+  if (at_final || at_coarse) spent += total(finished) + state.stage.seconds;
+  if (at_coarse) left = secondsLeft(job.expected_coarse, {}, finished, state.stage);
   if (!at_final) finished.clear();
-  const double left =
-      secondsLeft(job.expected, job.before, finished, at_final ? state.stage : Progress::Stage{});
+  left += secondsLeft(job.expected, job.before, finished, at_final ? state.stage : Progress::Stage{});
   state.seconds_left = left;
   if (left + spent > 0.0)
     state.fraction = std::max(state.fraction, std::min(kMostBeforeTheEnd, spent / (spent + left)));
@@ -281,6 +285,9 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
         if (job->asked == asked_then) {
           job->state.phase = JobPhase::Baking;
           if (job->expected.empty()) job->expected = guessSeconds(**scene, request.options);
+          if (step == Step::Coarse)
+            job->expected_coarse =
+                guessSeconds(**scene, previewLevelOptions(PreviewLevel::Coarse, request.options));
           expected = job->expected;
           job->before = begun.spent;
           job->state.fraction = std::max(job->state.fraction, begun.share);
@@ -352,9 +359,11 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
     job->record.done();
     return;
   }
-  if (preview_level == PreviewLevel::Coarse)
+  if (preview_level == PreviewLevel::Coarse) {
+    job->coarse_seconds = total(stages);
     job->expected =
         scaleSeconds(stages, previewLevelOptions(PreviewLevel::Coarse, request.options), request.options);
+  }
   state.phase = JobPhase::Waiting;
   job->step = preview_level == PreviewLevel::Coarse ? Step::Final : job->tried ? Step::Coarse : Step::Trial;
   state.preview_level = previewLevelOf(job->step);
