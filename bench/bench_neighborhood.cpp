@@ -55,8 +55,8 @@ int main(int argc, char** argv) {
   if (!white) scene.materials[0].base_color = {0, 0, 0, 1};
   const lambent::testing::Transport transport(scene);
   const auto baked = transport.bake(5, 512, white ? -1 : 0);
-  const SurfaceBody body(transport.diffuse(),
-                         {baked.direct.field, white ? &baked.bounced.field : nullptr, nullptr, nullptr});
+  const SurfaceBody body(transport.diffuse(), {baked.direct.field, white ? &baked.bounced.field : nullptr,
+                                               white, nullptr, nullptr});
   // The first "change %" is the coding error relative to the change that 99 of 100 points stay under; the
   // last column is the whole error relative to the change.
   std::printf("%-10s %8s %8s %9s %8s %8s %8s %8s %8s\n", "grid", "s", "kB", "coding %", "change %", "RMS %",

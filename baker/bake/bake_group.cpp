@@ -95,6 +95,7 @@ bool bakeAroundSurfaces(const Around& around, const GroupScene& group, const Sur
                         const BakeContext& context, std::optional<BakedNeighborhood>& out) {
   const SurfaceBody body(group.view(), {.direct = light.direct.field,
                                         .bounced = light.bounced ? &light.bounced->field : nullptr,
+                                        .sends = group.bake.options.bounces != 0,
                                         .brdfs = group.brdfs(),
                                         .glossy = light.glossy ? &light.glossy->field : nullptr});
   return bakeAround(around, body, {group.geometry.bounds_min, group.geometry.bounds_max}, context, out);

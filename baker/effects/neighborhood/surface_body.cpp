@@ -44,7 +44,7 @@ SurfaceBody::SurfaceBody(const TracedScene& scene, const BakedSurfaces& baked)
       square = std::max(square, glm::dot(to, to));
     }
   radius_ = std::sqrt(square);
-  if (!baked.bounced) return;
+  if (!baked.sends) return;
 
   channels_ = baked.direct.channels;
   const auto columns = static_cast<std::size_t>(sh::coefficientCount(order_));
@@ -55,7 +55,7 @@ SurfaceBody::SurfaceBody(const TracedScene& scene, const BakedSurfaces& baked)
     for (std::size_t c = 0; c < channels_; ++c)
       for (std::size_t i = 0; i < columns; ++i, ++out)
         *out = baked.direct.at(s)[c * baked.direct.columns + i] +
-               baked.bounced->at(s)[c * baked.bounced->columns + i];
+               (baked.bounced ? baked.bounced->at(s)[c * baked.bounced->columns + i] : 0.0f);
   if (!brdfs_) return;
 
   const GlossyField& field = *baked.glossy;

@@ -20,7 +20,8 @@ namespace lambent::baker {
 // BakedSurfaces are the results of the group's bake.
 struct BakedSurfaces {
   const TransferField& direct;   // of all samples, with 1 output
-  const TransferField* bounced;  // null: without bounces no light is sent
+  const TransferField* bounced;  // null: none of the group's light comes back to it
+  bool sends;                    // false: the body takes light away and sends none, as without bounces
   const SurfaceBrdfs* brdfs;     // null: all surfaces are diffuse
   const GlossyField* glossy;     // null if `brdfs` is
 };

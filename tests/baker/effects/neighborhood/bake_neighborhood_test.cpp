@@ -29,6 +29,7 @@ struct Made {
         baked(transport.bake(5, 256, albedo == glm::vec3(0.0f) ? 0 : -1)),
         body(transport.diffuse(), {.direct = baked.direct.field,
                                    .bounced = albedo == glm::vec3(0.0f) ? nullptr : &baked.bounced.field,
+                                   .sends = albedo != glm::vec3(0.0f),
                                    .brdfs = nullptr,
                                    .glossy = nullptr}) {
     settings.placement.body = {transport.geometry.bounds_min, transport.geometry.bounds_max};

@@ -53,6 +53,7 @@ struct Metal {
             {.rays = 256, .bounces = 1})),
         body(transport.diffuse(), {.direct = baked.direct.field,
                                    .bounced = &baked.bounced.field,
+                                   .sends = true,
                                    .brdfs = &brdfs,
                                    .glossy = &baked.glossy.field}) {}
   Scene scene;

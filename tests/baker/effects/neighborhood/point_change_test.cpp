@@ -28,6 +28,7 @@ struct Ball {
         baked(transport.bake(order, 256, albedo == glm::vec3(0.0f) ? 0 : -1)),
         body(transport.diffuse(), {.direct = baked.direct.field,
                                    .bounced = albedo == glm::vec3(0.0f) ? nullptr : &baked.bounced.field,
+                                   .sends = albedo != glm::vec3(0.0f),
                                    .brdfs = nullptr,
                                    .glossy = nullptr}) {}
   Transport transport;
