@@ -23,7 +23,7 @@ struct GroupKeys {
   Key cells;    // covers also how transfer is coded; the result is all that a group hands to the bundle
 };
 
-// What the plan says of a group.
+// PlannedGroup is the part of the plan, for one group, on which its results depend.
 struct PlannedGroup {
   LightProbeCount light_probes{};
   bool shadows = true, bounces = true;

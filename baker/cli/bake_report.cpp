@@ -19,7 +19,7 @@ std::string stagesText(const std::vector<Progress::Stage>& stages) {
   std::vector<std::pair<std::string, double>> sums;
   for (const Progress::Stage& stage : stages) {
     // Passes of bounces are one stage to whoever waits.
-    const std::string name = stage.name.starts_with("bounce ") ? "bounces" : stage.name;
+    const std::string name = isBounce(stage.name) ? "bounces" : stage.name;
     const auto known = std::ranges::find(sums, name, &std::pair<std::string, double>::first);
     if (known != sums.end())
       known->second += stage.seconds;

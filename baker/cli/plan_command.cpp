@@ -106,7 +106,7 @@ nlohmann::json primitivesJson(const Scene& scene, const RigidGroup& group, const
   return json;
 }
 
-// What the plan is, and what is said about it.
+// Told is a plan with all that is said about it.
 struct Told {
   const Scene& scene;
   const EffectPlan& plan;
@@ -234,16 +234,11 @@ bool leavesOut(const EffectPlan& plan) {
                              [](const PlannedTransport& of) { return !of.shadows || !of.bounces; });
 }
 
-Result<void> lookAtAll(const Scene& scene, const EffectPlan& plan, std::vector<GroupLook>& looks) {
+Result<std::vector<GroupLook>> lookAtAll(const Scene& scene, const EffectPlan& plan) {
   DecodedImages images(scene);
   const auto alpha_maps = loadAlphaMaps(scene, images);
   if (!alpha_maps) return failAgain(alpha_maps.error());
-  for (const RigidGroup& group : plan.groups) {
-    auto look = lookAt(scene, group, *alpha_maps, images);
-    if (!look) return failAgain(look.error());
-    looks.push_back(std::move(*look));
-  }
-  return {};
+  return lookAt(scene, plan.groups, *alpha_maps, images);
 }
 
 int runPlan(const PlanArguments& a) {
@@ -251,8 +246,8 @@ int runPlan(const PlanArguments& a) {
   if (!scene) return reportError(scene.error());
   const auto plan = planFor(*scene, a.options);
   if (!plan) return reportError(plan.error());
-  std::vector<GroupLook> looks;
-  if (const auto looked = lookAtAll(*scene, *plan, looks); !looked) return reportError(looked.error());
+  const auto looks = lookAtAll(*scene, *plan);
+  if (!looks) return reportError(looks.error());
   std::optional<BakeEstimate> estimate, all;
   if (a.estimate) {
     if (const auto checked = checkOptions(a.options); !checked) return reportError(checked.error());
@@ -272,7 +267,7 @@ int runPlan(const PlanArguments& a) {
     estimate = std::move(*made);
   }
   const Estimates estimates{estimate ? &*estimate : nullptr, all ? &*all : nullptr};
-  const auto decisions = decisionsOf({*scene, a.options, *plan, looks, estimates});
+  const auto decisions = decisionsOf({*scene, a.options, *plan, *looks, estimates});
   (a.json ? printJson : printText)({*scene, *plan, decisions, estimate, savedByAll(estimates)});
   return 0;
 }

@@ -30,10 +30,12 @@ struct Figure {
   std::string unit;
 };
 
-// What leaving an effect out saves, or would save if it is baked. What is not known is not set.
+// Saved is the cost that an effect has if it is baked and spares if it is left out. Values that nobody knows
+// are not set.
 struct Saved {
   std::optional<double> seconds, memory_bytes, bytes;  // processor time; at the bake; in the bundle
 };
+inline constexpr Saved kSavesNothing{.seconds = 0.0, .memory_bytes = 0.0, .bytes = 0.0};
 
 struct Decision {
   std::string effect;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "baker/decisions/decisions.hpp"
+#include "baker/pipeline/job_estimate.hpp"
 #include "baker/plan/counted.hpp"
 #include "baker/plan/group_lights.hpp"
 
@@ -18,9 +19,6 @@ bool isShadows(std::string_view stage) {
   return stage == "direct light" || stage == "glossy shadows" || stage == "inside faces" ||
          stage == "hierarchy";
 }
-bool isBounce(std::string_view stage) {
-  return stage.starts_with("bounce ");
-}
 
 double secondsOf(const BakeEstimate::Group& group, bool (*is)(std::string_view)) {
   double seconds = 0.0;
@@ -34,7 +32,7 @@ double refinementOf(const BakeEstimate& estimate) {
   return found == estimate.processor_stages.end() ? 0.0 : found->second;
 }
 
-// What a group's estimates say of each effect.
+// Savings reads from the estimates of a group how much each effect costs.
 class Savings {
  public:
   Savings(const Estimates& estimates, std::size_t group) {
@@ -80,8 +78,6 @@ class Savings {
   const BakeEstimate::Group *planned_ = nullptr, *all_ = nullptr;
   std::optional<double> refinement_;
 };
-
-constexpr Saved kNothing{.seconds = 0.0, .memory_bytes = 0.0, .bytes = 0.0};
 
 Decision shadows(const PlannedTransport& planned, const GroupLook& look, const Savings& savings) {
   Decision d{.effect = "shadows",
@@ -169,7 +165,7 @@ Decision lamps(const Scene& scene, const RigidGroup& group) {
                                  "{} in a column of transfer each: {} of nodes, {} of which shine as spheres",
                                  counted(lights.size(), "light"), punctual, spheres)};
   d.figures = {{"lights", static_cast<double>(lights.size()), "columns"}};
-  if (lights.empty()) d.saves = kNothing;
+  if (lights.empty()) d.saves = kSavesNothing;
   return d;
 }
 
@@ -210,7 +206,7 @@ Decision neighborhood(const PlannedNeighborhood& planned) {
                        : planned.reason.empty() ? "0 larger groups have it within their bounds"
                                                 : planned.reason};
   d.figures = {{"receivers", static_cast<double>(planned.receivers.size()), "groups"}};
-  if (d.choice == Choice::Absent) d.saves = kNothing;
+  if (d.choice == Choice::Absent) d.saves = kSavesNothing;
   return d;
 }
 
@@ -245,7 +241,7 @@ std::vector<Decision> groupDecisions(const Decided& decided, std::size_t g) {
            lamps(decided.scene, group),
            refinement(decided, g, savings),
            proxy(plan, g)};
-    volume.saves = kNothing;
+    volume.saves = kSavesNothing;
   }
   all.push_back(lightProbes(plan.light_probes[g]));
   all.push_back(neighborhood(plan.neighborhoods[g]));

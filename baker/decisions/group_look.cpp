@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/bake/options.hpp"
+#include "baker/bake/ship_meshes.hpp"
 #include "baker/compress/light_weights.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/transport/direction_table.hpp"
@@ -134,7 +135,7 @@ class Looker {
     double below = 0.0;
     for (std::size_t ray = 0; ray < few_.size(); ++ray) {
       const glm::vec3 along = frame * turned(few_, ray, turn);
-      // What the face itself hides from a shading normal is no shadow.
+      // The face itself hides some directions from a shading normal, which is no shadow.
       if (!(glm::dot(along, point.origin.geometric_normal) > 0.0f)) {
         below += each;
         continue;
@@ -209,7 +210,7 @@ class Looker {
   void finish() {
     double seen = 0.0;
     for (const double light : escaped_) seen += light;
-    // Of light that surfaces give off, what meets a surface after so many bounces arrives there.
+    // Light that surfaces give off arrives where it meets a surface, after so many bounces.
     const auto& passes = seen > kTooLittle ? escaped_ : met_;
     double sum = 0.0;
     for (const double pass : passes) sum += pass;
@@ -241,21 +242,23 @@ double GroupLook::after(std::size_t bounces) const {
   return sum;
 }
 
-Result<GroupLook> lookAt(const Scene& scene, const RigidGroup& group, const AlphaMaps& alpha_maps,
-                         DecodedImages& images) {
-  if (group.draws.empty()) return GroupLook{};
-  std::vector<std::vector<bundle::MeshData>> meshes;
-  for (const SceneMesh& mesh : scene.meshes) {
-    meshes.emplace_back();
-    for (const ScenePrimitive& primitive : mesh.primitives) meshes.back().push_back(primitive.mesh);
+Result<std::vector<GroupLook>> lookAt(const Scene& scene, const std::vector<RigidGroup>& groups,
+                                      const AlphaMaps& alpha_maps, DecodedImages& images) {
+  const auto meshes = splitMeshes(scene, groups, /*max_edge_m=*/0.0f);
+  if (!meshes) return failAgain(meshes.error());
+  std::vector<GroupLook> looks;
+  for (const RigidGroup& group : groups) {
+    GroupLook& look = looks.emplace_back();
+    if (group.draws.empty()) continue;
+    const GroupGeometry geometry = buildGroupGeometry(group, scene, *meshes, /*with_glossy=*/true);
+    const auto lights = findGroupLights(scene, group);
+    const auto colors = SurfaceColors::load(scene, geometry, lights, images);
+    if (!colors) return failAgain(colors.error());
+    const auto rays = RayScene::build(geometry, scene, alpha_maps);
+    if (!rays) return failAgain(rays.error());
+    look = Looker(geometry, *rays, *colors).look();
   }
-  const GroupGeometry geometry = buildGroupGeometry(group, scene, meshes, /*with_glossy=*/true);
-  const auto lights = findGroupLights(scene, group);
-  const auto colors = SurfaceColors::load(scene, geometry, lights, images);
-  if (!colors) return failAgain(colors.error());
-  const auto rays = RayScene::build(geometry, scene, alpha_maps);
-  if (!rays) return failAgain(rays.error());
-  return Looker(geometry, *rays, *colors).look();
+  return looks;
 }
 
 }  // namespace lambent::baker

@@ -35,9 +35,9 @@ struct GroupLook {
   double after(std::size_t bounces) const;
 };
 
-// Returns nothing for each draw of a group without surfaces. Errors: no memory for the hierarchy, images that
-// cannot be decoded.
-Result<GroupLook> lookAt(const Scene& scene, const RigidGroup& group, const AlphaMaps& alpha_maps,
-                         DecodedImages& images);
+// Returns one entry per group; that of a group without surfaces has no draws. Errors: no memory for the
+// hierarchy, images that cannot be decoded.
+Result<std::vector<GroupLook>> lookAt(const Scene& scene, const std::vector<RigidGroup>& groups,
+                                      const AlphaMaps& alpha_maps, DecodedImages& images);
 
 }  // namespace lambent::baker

@@ -9,10 +9,8 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr Saved kNothing{.seconds = 0.0, .memory_bytes = 0.0, .bytes = 0.0};
-
 Decision absent(const char* effect, std::string reason) {
-  return {.effect = effect, .choice = Choice::Absent, .reason = std::move(reason), .saves = kNothing};
+  return {.effect = effect, .choice = Choice::Absent, .reason = std::move(reason), .saves = kSavesNothing};
 }
 
 Decision shadows(const PlannedTransport& planned, const SurfaceLook& look) {

@@ -13,6 +13,7 @@
 #include "baker/pipeline/job_estimate.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/progress_record.hpp"
+#include "baker/pipeline/whole_progress.hpp"
 
 namespace lambent::baker {
 
@@ -21,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPreviewFolder = "previews";
-constexpr double kMostBeforeTheEnd = 0.99;  // as in whole_progress.cpp
 // Previews that killed programs left behind are removed after this time.
 constexpr std::chrono::hours kPreviewsKept{24 * 7};
 

@@ -27,10 +27,6 @@ int gathered(const BakeOptions& options) {
   return options.bounces < 0 ? kMostGathered : std::min(options.bounces, kMostGathered);
 }
 
-bool isBounce(const std::string& stage) {
-  return stage.starts_with("bounce ");
-}
-
 double at(const StageSeconds& stages, const std::string& stage) {
   const auto found = stages.find(stage);
   return found == stages.end() ? 0.0 : found->second;
@@ -89,6 +85,10 @@ double growth(const std::string& stage, const BakeOptions& of, const BakeOptions
 }
 
 }  // namespace
+
+bool isBounce(std::string_view stage) {
+  return stage.starts_with("bounce ");
+}
 
 StageSeconds guessSeconds(const Scene& scene, const BakeOptions& options) {
   double vertices = 0.0;
@@ -153,7 +153,8 @@ StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOpt
 
 double secondsOf(const Progress::Stage& now, const StageSeconds& before,
                  std::span<const Progress::Stage> finished) {
-  // Of several groups, what was spent before is taken for that of the first.
+  // A bake of several groups has a stage more than once; what was spent before is taken for that of the
+  // first.
   const bool first = std::ranges::find(finished, now.name, &Progress::Stage::name) == finished.end();
   return now.seconds + (first ? at(before, now.name) : 0.0);
 }

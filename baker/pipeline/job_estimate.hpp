@@ -18,6 +18,9 @@ namespace lambent::baker {
 
 using StageSeconds = std::map<std::string, double>;
 
+// Returns whether the stage is one of the passes in which light bounces.
+bool isBounce(std::string_view stage);
+
 // Estimates a bake from the scene alone.
 StageSeconds guessSeconds(const Scene& scene, const BakeOptions& options);
 // Estimates a bake from the stages of a bake of the same scene with other options.

@@ -5,7 +5,6 @@
 namespace lambent::baker {
 
 WholeProgress::Seen WholeProgress::look(const Progress& progress) {
-  constexpr double kMostBeforeTheEnd = 0.99;  // what was expected may be over before the job is
   Seen seen;
   seen.stage = progress.now();
   const auto finished = progress.finished();

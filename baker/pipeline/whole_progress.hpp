@@ -11,6 +11,9 @@
 
 namespace lambent::baker {
 
+// The share of a job that is not done is at most this: what was expected may be over before the job is.
+inline constexpr double kMostBeforeTheEnd = 0.99;
+
 class WholeProgress {
  public:
   // `begun` is what earlier runs of the same job recorded.

@@ -113,6 +113,19 @@ std::vector<SampleKind> kindsOf(const SampleSet& samples) {
   return kinds;
 }
 
+// Returns the number of each sample at a corner of these triangles as a point that is probed, else kUnused.
+std::vector<std::uint32_t> cornerPoints(ProbedPoints& points, const GroupGeometry& geometry,
+                                        const SampleSet& samples, std::span<const SampleKind> kinds,
+                                        std::span<const std::uint32_t> triangles) {
+  std::vector<std::uint32_t> numbers(samples.size(), kUnused);
+  for (const std::uint32_t t : triangles)
+    for (int c = 0; c < 3; ++c)
+      if (const std::uint32_t s = samples.vertex_sample[geometry.triangles[t][c]]; numbers[s] == kUnused)
+        numbers[s] =
+            points.numberOf(samples.positions[s], samples.normals[s], kinds[s], samples.originsOf(s));
+  return numbers;
+}
+
 // Squares of what is wrong at a point, relative to the light there.
 struct PointError {
   double square = 0.0;      // without bias from noise
@@ -198,15 +211,11 @@ Result<bool> GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& 
                                      const SampleSet& samples, std::span<const std::uint32_t> triangles,
                                      const BakeContext& context) {
   const std::vector<SampleKind> kinds = kindsOf(samples);
-  std::vector<std::uint32_t> of_sample(samples.size(), kUnused);
+  const std::vector<std::uint32_t> of_sample = cornerPoints(points, geometry, samples, kinds, triangles);
   std::vector<Inner> inner;
   for (const std::uint32_t t : triangles) {
     const glm::uvec3 corners = geometry.triangles[t];
     const SampleKind kind = kinds[samples.vertex_sample[corners.x]];
-    for (int c = 0; c < 3; ++c)
-      if (const std::uint32_t s = samples.vertex_sample[corners[c]]; of_sample[s] == kUnused)
-        of_sample[s] =
-            points.numberOf(samples.positions[s], samples.normals[s], kinds[s], samples.originsOf(s));
     const int along =
         std::clamp(static_cast<int>(std::ceil(longestEdge(geometry, corners) / (kProbeSpacing * diagonal_))),
                    1, kMostProbesAlong);
@@ -335,11 +344,7 @@ Result<std::optional<std::size_t>> GroupRefiner::markLeaks(std::size_t group, co
   const SampleSet samples = buildSamples(geometry, /*with_texels=*/false);
   const std::vector<SampleKind> kinds = kindsOf(samples);
   const std::vector<std::uint32_t> triangles = shownTriangles(geometry);
-  std::vector<std::uint32_t> number(samples.size(), kUnused);
-  for (const std::uint32_t t : triangles)
-    for (int c = 0; c < 3; ++c)
-      if (const std::uint32_t s = samples.vertex_sample[geometry.triangles[t][c]]; number[s] == kUnused)
-        number[s] = few_.numberOf(samples.positions[s], samples.normals[s], kinds[s], samples.originsOf(s));
+  const std::vector<std::uint32_t> number = cornerPoints(few_, geometry, samples, kinds, triangles);
   if (const auto probed = few_.probe(*scene_, context); !probed)
     return failAgain(probed.error());
   else if (!*probed)

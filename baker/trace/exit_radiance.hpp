@@ -206,10 +206,8 @@ class ExitToSample {
   std::uint32_t seed_ = 0;
 };
 
-// Late passes gather over every kThinned-th hit, others in each bounce.
-inline constexpr std::uint32_t kThinned = 4;
-
-// Makes `hits` refer to the kept ones, which are stored in `out`. Returns the factor on their weights.
+// Late passes gather over every kThinned-th hit, others in each bounce. Makes `hits` refer to the kept ones,
+// which are stored in `out`. Returns the factor on their weights.
 template <typename Rays>
 float thinHits(int bounce, const Rays& rays, std::span<const GatherHit>& hits, std::vector<GatherHit>& out) {
   out.clear();

@@ -51,6 +51,8 @@ struct MirroredLight {
 
 // A sample that has at most this many hits keeps all of them.
 inline constexpr std::size_t kHitsToThin = 64;
+// Where the noise of fewer hits is not seen, those of every kThinned-th ray stand for all.
+inline constexpr std::uint32_t kThinned = 4;
 
 // Appends every n-th hit to `out`, the first of them being hits[first]. Rays lie along a Hilbert curve, so
 // the kept ones are spread as evenly. Returns the factor on their weights that makes them stand for all, so

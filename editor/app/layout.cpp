@@ -14,10 +14,10 @@ namespace lambent::editor {
 namespace {
 
 constexpr float kEdge = 5.0f;  // width in pixels of the edges between areas
-// Where the view is narrower than this many heights of the font, the dock below it takes the left one's room,
-// too.
+// The dock below the view takes the left one's room, too, if the view is narrower than this many heights of
+// the font.
 constexpr float kWideEms = 36.0f;
-// What the view keeps in any case.
+// The view keeps this room in any case.
 constexpr float kViewWidthEms = 10.0f, kViewHeightEms = 8.0f;
 
 // How much room a dock has: at first a share of the window, but at least what its panels need in heights of

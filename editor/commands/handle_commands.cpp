@@ -34,8 +34,6 @@ bool isLocal(const Session& session) {
   return session.handles.gizmo.options.space == GizmoSpace::Local;
 }
 
-constexpr std::array kPivots = {"primary", "center", "each"};  // in the order of GizmoPivot
-
 // Takes a pivot by its name, or the next one.
 Answer pivot(Session& session, Words words) {
   const auto now = static_cast<std::size_t>(options(session).pivot);
@@ -84,17 +82,6 @@ bool snaps(const Session& session) {
   return session.handles.gizmo.options.snap;
 }
 
-constexpr Command row(const char* id, const char* title, const char* shortcut, const char* help,
-                      Answer (*run)(Session&, Words), bool (*is)(const Session&)) {
-  return {.id = id,
-          .title = title,
-          .menu = "View",
-          .shortcut = shortcut,
-          .help = help,
-          .arguments = "",
-          .run = run,
-          .checked = is};
-}
 constexpr Command withWords(const char* arguments, std::size_t most, Command command) {
   command.arguments = arguments;
   command.most_words = most;
@@ -103,22 +90,22 @@ constexpr Command withWords(const char* arguments, std::size_t most, Command com
 
 constexpr std::array kRows = {
     separator("View"),
-    row("move", "Move", "W", "Handles that move what is selected", &mode<GizmoMode::Move>,
-        &isMode<GizmoMode::Move>),
-    row("turn", "Turn", "E", "Handles that turn what is selected", &mode<GizmoMode::Rotate>,
-        &isMode<GizmoMode::Rotate>),
-    row("scale", "Scale", "R", "Handles that scale what is selected", &mode<GizmoMode::Scale>,
-        &isMode<GizmoMode::Scale>),
-    row("local-axes", "Local axes", "X", "Handles along the axes of what is selected, not of the world",
-        &space, &isLocal),
+    toggle("View", "move", "Move", "W", "Handles that move what is selected", &mode<GizmoMode::Move>,
+           &isMode<GizmoMode::Move>),
+    toggle("View", "turn", "Turn", "E", "Handles that turn what is selected", &mode<GizmoMode::Rotate>,
+           &isMode<GizmoMode::Rotate>),
+    toggle("View", "scale", "Scale", "R", "Handles that scale what is selected", &mode<GizmoMode::Scale>,
+           &isMode<GizmoMode::Scale>),
+    toggle("View", "local-axes", "Local axes", "X",
+           "Handles along the axes of what is selected, not of the world", &space, &isLocal),
     withWords("[primary|center|each]", 1,
-              row("pivot", "Next pivot", "Z",
-                  "Turn and scale about the last selected, the middle of all, or each about itself", &pivot,
-                  nullptr)),
-    withWords(
-        "[METRES [DEGREES [FACTOR]]]", 3,
-        row("snap", "Snap", "Y", "Drags go in steps; Ctrl does so for one drag, or frees it", &snap, &snaps)),
-    row("gizmos", "Handles", "G", "Show handles at all", &gizmos, &gizmosShown),
+              toggle("View", "pivot", "Next pivot", "Z",
+                     "Turn and scale about the last selected, the middle of all, or each about itself",
+                     &pivot, nullptr)),
+    withWords("[METRES [DEGREES [FACTOR]]]", 3,
+              toggle("View", "snap", "Snap", "Y", "Drags go in steps; Ctrl does so for one drag, or frees it",
+                     &snap, &snaps)),
+    toggle("View", "gizmos", "Handles", "G", "Show handles at all", &gizmos, &gizmosShown),
 };
 
 }  // namespace

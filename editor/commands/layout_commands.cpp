@@ -58,35 +58,24 @@ Answer movePanel(Session& session, Words words) {
   return nullptr;
 }
 
-constexpr Command row(const char* id, const char* title, const char* shortcut, const char* help,
-                      Answer (*run)(Session&, Words), bool (*is)(const Session&)) {
-  return {.id = id,
-          .title = title,
-          .menu = "Window",
-          .shortcut = shortcut,
-          .help = help,
-          .arguments = "",
-          .run = run,
-          .checked = is};
-}
-
 constexpr std::array kRows = {
-    row("view-only", "Picture only", "F11", "The view fills the window; again, all panels are back",
-        &viewOnly, &isViewOnly),
+    toggle("Window", "view-only", "Picture only", "F11",
+           "The view fills the window; again, all panels are back", &viewOnly, &isViewOnly),
     separator("Window"),
-    row("layout-lighting", "Layout for lighting", "",
-        "The environment on the left, the inspector on the right", &named<1>, nullptr),
-    row("layout-baking", "Layout for baking", "", "Bakes with more room, and the plan of the bake", &named<2>,
-        nullptr),
-    row("layout-default", "Reset layout", "", "All panels are back where they were at first", &named<0>,
-        nullptr),
+    toggle("Window", "layout-lighting", "Layout for lighting", "",
+           "The environment on the left, the inspector on the right", &named<1>, nullptr),
+    toggle("Window", "layout-baking", "Layout for baking", "",
+           "Bakes with more room, and the plan of the bake", &named<2>, nullptr),
+    toggle("Window", "layout-default", "Reset layout", "", "All panels are back where they were at first",
+           &named<0>, nullptr),
     scripted("layout", "A layout by its name", "default|lighting|baking", 1, 1, &useLayout),
     separator("Window"),
-    row("left-panels", "Left panels", "", "The scene tree", &dock<Dock::Left>, &docked<Dock::Left>),
-    row("right-panels", "Right panels", "", "Inspector, light, settings", &dock<Dock::Right>,
-        &docked<Dock::Right>),
-    row("bottom-panels", "Bottom panels", "", "Bakes, assets, cost, streaming, log", &dock<Dock::Bottom>,
-        &docked<Dock::Bottom>),
+    toggle("Window", "left-panels", "Left panels", "", "The scene tree", &dock<Dock::Left>,
+           &docked<Dock::Left>),
+    toggle("Window", "right-panels", "Right panels", "", "Inspector, light, settings", &dock<Dock::Right>,
+           &docked<Dock::Right>),
+    toggle("Window", "bottom-panels", "Bottom panels", "", "Bakes, assets, cost, streaming, log",
+           &dock<Dock::Bottom>, &docked<Dock::Bottom>),
     scripted("panel", "Bring a panel up", "NAME", 1, 1, &panel),
     scripted("move-panel", "A panel stands there from now on", "NAME left|right|below", 2, 2, &movePanel),
 };

@@ -1,6 +1,7 @@
 // Declares the parts of the command list. Each part has a file of its own; command_list.cpp joins them.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include <fmt/format.h>
@@ -28,9 +29,24 @@ std::span<const Command> stateCommands();  // commands by which scripts ask abou
 
 using Answer = Result<nlohmann::json>;
 
+inline constexpr std::array kPivots = {"primary", "center", "each"};  // in the order of GizmoPivot
+
 // Makes a separator line in a menu.
 constexpr Command separator(const char* menu) {
   return {.id = "", .title = "-", .menu = menu, .shortcut = "", .help = "", .arguments = ""};
+}
+
+// Makes a menu item that is checked while `is` says so, or never if there is none.
+constexpr Command toggle(const char* menu, const char* id, const char* title, const char* shortcut,
+                         const char* help, Answer (*run)(Session&, Words), bool (*is)(const Session&)) {
+  return {.id = id,
+          .title = title,
+          .menu = menu,
+          .shortcut = shortcut,
+          .help = help,
+          .arguments = "",
+          .run = run,
+          .checked = is};
 }
 
 // Makes a command for scripts only, without menu item and shortcut.

@@ -141,7 +141,7 @@ json jobJson(const baker::JobState& job) {
 }
 
 json handlesJson(const Session& session) {
-  constexpr std::array kModes = {"move", "turn", "scale"}, kPivots = {"primary", "center", "each"};
+  constexpr std::array kModes = {"move", "turn", "scale"};
   const GizmoOptions& options = session.handles.gizmo.options;
   return {{"shown", session.handles.shown},
           {"mode", kModes[static_cast<std::size_t>(options.mode)]},

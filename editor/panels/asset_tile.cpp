@@ -84,11 +84,6 @@ bool drawAssetTile(Session& session, const Asset& asset, float width_ems, bool s
   return clicked;
 }
 
-void sameLineIfTileFits(float width_ems) {
-  const float end = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + em(width_ems);
-  if (end <= ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
-}
-
 std::string describe(Session& session, const Asset& asset) {
   const std::string& error = session.asset_pictures.of(asset).error;
   return fmt::format("{}\n{}, {}{}{}", asset.file.string(), kindWord(asset.kind),

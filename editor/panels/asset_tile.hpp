@@ -12,8 +12,6 @@ inline constexpr const char* kDraggedAsset = "asset";  // the type of what a dra
 // Draws a tile of this width, in ems, as one widget, which is the last one afterwards. While there is no
 // picture, the tile has the word of the asset's kind. Returns whether it was clicked.
 bool drawAssetTile(Session& session, const Asset& asset, float width_ems, bool selected);
-// Goes on in the same line if another tile of this width fits there.
-void sameLineIfTileFits(float width_ems);
 // Returns path, kind, size and, if the asset cannot be read, why.
 std::string describe(Session& session, const Asset& asset);
 

@@ -71,7 +71,7 @@ void drawAssets(Session& session, Marks& marks) {
     for (const Asset& asset : group.assets) {
       if (!matches(asset, browser.search)) continue;
       if (titled) {
-        sameLineIfTileFits(browser.large ? kLargeTileEms : kTileEms);
+        sameLineIfFits(em(browser.large ? kLargeTileEms : kTileEms));
       } else {
         ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
         fittedText(group.title);

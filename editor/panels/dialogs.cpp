@@ -90,8 +90,8 @@ void drawPlaces(const Session& session, Dialog& dialog, Marks& marks) {
 
 // Returns "Scenes (.gltf .glb)" for a kind, and words for what is before the first and past the last.
 std::string filterText(const Dialog& dialog, std::size_t filter) {
-  if (filter == 0 && dialog.kinds.size() > 1) return "All that can be opened";
-  if (filter > dialog.kinds.size()) return "All files";
+  if (filter == 0 && dialog.kinds.size() > 1) return kAllKinds;
+  if (filter > dialog.kinds.size()) return kAllFiles;
   const FileKind& kind = dialog.kinds[filter == 0 ? 0 : filter - 1];
   return fmt::format("{} ({})", kind.name, fmt::join(kind.endings, " "));
 }

@@ -123,7 +123,7 @@ void drawShelf(Session& session, Marks& marks) {
     ImGui::TextDisabled("None beside the open files; add a folder of .hdr or .exr files.");
   bool follows = false;
   for (const Asset& environment_map : session.environment_maps.environment_maps()) {
-    if (std::exchange(follows, true)) sameLineIfTileFits(kTileEms);
+    if (std::exchange(follows, true)) sameLineIfFits(em(kTileEms));
     if (drawAssetTile(session, environment_map, kTileEms, /*selected=*/false))
       run(session, "environment-map", {environment_map.file.string()});
     marks.put("environment-map." + environment_map.file.stem().string());

@@ -26,7 +26,7 @@ std::optional<NumberEdit> dragNumber(const char* label, double shown, const Numb
 // The same for a single number, to which the edit is applied. Returns whether it changed.
 bool dragNumber(const char* label, float& number, const NumberLook& look, HeldNumber& held);
 
-// What tooltips say of it.
+// Tooltips of numbers end in this.
 inline constexpr const char* kNumberHelp =
     "Drag; Shift: finer, Alt: coarser, Ctrl: in steps. Click to type: 2*3, +=1, *2";
 // Stands for values that differ.

@@ -30,7 +30,7 @@ void drawTitle(const char* title) {
 // Draws a row of pictures; a click opens one.
 void drawAssets(Session& session, Marks& marks, const std::vector<Asset>& assets) {
   for (std::size_t i = 0; i < assets.size(); ++i) {
-    if (i > 0) sameLineIfTileFits(kTileEms);
+    if (i > 0) sameLineIfFits(em(kTileEms));
     const bool clicked = drawAssetTile(session, assets[i], kTileEms, /*selected=*/false);
     marks.put(fmt::format("start.{}", assets[i].file.filename().string()));
     if (ImGui::IsItemHovered()) tooltip(describe(session, assets[i]));

@@ -17,14 +17,6 @@ namespace {
 
 constexpr float kStepEms = 4.0f;
 
-// Goes on in the line if a widget of this width fits there. Returns whether it does.
-bool nextIfFits(float width) {
-  const float end = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
-  if (end > ImGui::GetWindowPos().x + ImGui::GetWindowWidth()) return false;
-  ImGui::SameLine();
-  return true;
-}
-
 float buttonWidth(const char* text) {
   return ImGui::CalcTextSize(text).x + 2.0f * ImGui::GetStyle().FramePadding.x;
 }
@@ -60,23 +52,23 @@ void drawToolBar(Session& session, Marks& marks) {
   ImGui::SetCursorPos(ImVec2(style.ItemSpacing.x, style.ItemSpacing.y));
   ImGui::BeginGroup();
   drawCommand(session, marks, "move", "Move");
-  if (nextIfFits(buttonWidth("Turn"))) drawCommand(session, marks, "turn", "Turn");
-  if (nextIfFits(buttonWidth("Scale"))) drawCommand(session, marks, "scale", "Scale");
+  if (sameLineIfFits("Turn")) drawCommand(session, marks, "turn", "Turn");
+  if (sameLineIfFits("Scale")) drawCommand(session, marks, "scale", "Scale");
   const char* axes = options.space == GizmoSpace::Local ? "Local" : "World";
-  if (nextIfFits(em(1.0f) + buttonWidth(axes))) {
+  if (sameLineIfFits(em(1.0f) + buttonWidth(axes))) {
     ImGui::SameLine(0.0f, em(1.0f));
     drawCommand(session, marks, "local-axes", axes);
   }
   constexpr std::array kPivots = {"About last", "About middle", "About each"};
   const char* pivot = kPivots[static_cast<std::size_t>(options.pivot)];
-  if (nextIfFits(buttonWidth(pivot))) drawCommand(session, marks, "pivot", pivot);
-  if (nextIfFits(em(1.0f) + buttonWidth("Snap"))) {
+  if (sameLineIfFits(pivot)) drawCommand(session, marks, "pivot", pivot);
+  if (sameLineIfFits(em(1.0f) + buttonWidth("Snap"))) {
     ImGui::SameLine(0.0f, em(1.0f));
     drawCommand(session, marks, "snap", "Snap");
   }
-  if (nextIfFits(em(kStepEms))) drawStep(session, marks, "metres", options.snap_m, "%.3g m", 1e3);
-  if (nextIfFits(em(kStepEms))) drawStep(session, marks, "degrees", options.snap_deg, "%.3g°", 180.0);
-  if (nextIfFits(em(kStepEms))) drawStep(session, marks, "factor", options.snap_scale, "× %.3g", 10.0);
+  if (sameLineIfFits(em(kStepEms))) drawStep(session, marks, "metres", options.snap_m, "%.3g m", 1e3);
+  if (sameLineIfFits(em(kStepEms))) drawStep(session, marks, "degrees", options.snap_deg, "%.3g°", 180.0);
+  if (sameLineIfFits(em(kStepEms))) drawStep(session, marks, "factor", options.snap_scale, "× %.3g", 10.0);
   ImGui::EndGroup();
 }
 

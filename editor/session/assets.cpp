@@ -1,12 +1,12 @@
 #include "editor/session/assets.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <sstream>
 #include <string>
 
 #include "baker/pipeline/source_watch.hpp"
+#include "editor/document/tree.hpp"
 #include "editor/document/world_file.hpp"
 
 namespace lambent::editor {
@@ -30,12 +30,6 @@ bool isWorld(const std::filesystem::path& file) {
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(in.gcount()));
   return head.find('"' + std::string(kWorldFileMark) + '"') != std::string::npos;
-}
-
-std::string lower(std::string_view text) {
-  std::string lowered(text);
-  for (char& letter : lowered) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  return lowered;
 }
 
 }  // namespace

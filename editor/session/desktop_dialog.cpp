@@ -46,8 +46,8 @@ std::vector<Filter> filtersOf(const Dialog& question) {
     all += (all.empty() ? "" : " ") + patterns;
     filters.push_back({kind.name, std::move(patterns)});
   }
-  if (filters.size() > 1) filters.insert(filters.begin(), {"All that can be opened", std::move(all)});
-  filters.push_back({"All files", "*"});
+  if (filters.size() > 1) filters.insert(filters.begin(), {kAllKinds, std::move(all)});
+  filters.push_back({kAllFiles, "*"});
   return filters;
 }
 

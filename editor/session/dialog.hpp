@@ -19,6 +19,9 @@ struct FileKind {
   std::vector<std::string> endings;
 };
 
+// The choices beside the kinds of a question, in its filter.
+inline constexpr const char *kAllKinds = "All that can be opened", *kAllFiles = "All files";
+
 struct Dialog {
   enum class Kind : std::uint8_t { OpenFile, SaveFile, Folder, Confirm, Text };
   Kind kind = Kind::Confirm;

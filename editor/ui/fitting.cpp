@@ -58,11 +58,15 @@ void fittedText(std::string_view text, std::string_view more) {
   fittedTextBeside(text, 0.0f, more);
 }
 
-void sameLineIfFits(std::string_view button) {
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const float end =
-      ImGui::GetItemRectMax().x + style.ItemSpacing.x + widthOf(button) + 2.0f * style.FramePadding.x;
-  if (end <= ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+bool sameLineIfFits(std::string_view button) {
+  return sameLineIfFits(widthOf(button) + 2.0f * ImGui::GetStyle().FramePadding.x);
+}
+
+bool sameLineIfFits(float width) {
+  const float end = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
+  if (end > ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) return false;
+  ImGui::SameLine();
+  return true;
 }
 
 const char* numberFormat(float value, float width, int digits) {

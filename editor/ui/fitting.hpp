@@ -22,8 +22,10 @@ void fittedTextBeside(std::string_view text, float width, std::string_view more 
 // Shows a wrapped tooltip for the last widget while the pointer is over it. Without text there is none.
 void tooltip(std::string_view text);
 
-// Goes on in the same line if a button with this text fits there.
-void sameLineIfFits(std::string_view button);
+// Goes on in the same line if a button with this text, or a widget of this width in pixels, fits there.
+// Returns whether it does.
+bool sameLineIfFits(std::string_view button);
+bool sameLineIfFits(float width);
 
 // Returns a printf format with as many digits as fit into the width for this value, at most `digits` behind
 // the point.

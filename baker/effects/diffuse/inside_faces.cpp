@@ -5,7 +5,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/trace/exit_radiance.hpp"
 #include "baker/transport/sample_areas.hpp"
 
 namespace lambent::baker {

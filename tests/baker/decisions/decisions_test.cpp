@@ -21,9 +21,9 @@ GroupDecisions decided(const Scene& scene, const BakeOptions& options = {}, cons
   const auto plan = planFor(scene, options);
   EXPECT_TRUE(plan);
   DecodedImages images(scene);
-  std::vector<GroupLook> looks;
-  for (const RigidGroup& group : plan->groups) looks.push_back(*lookAt(scene, group, {}, images));
-  return decisionsOf({scene, options, *plan, looks, estimates}).at(0);
+  const auto looks = lookAt(scene, plan->groups, {}, images);
+  EXPECT_TRUE(looks);
+  return decisionsOf({scene, options, *plan, *looks, estimates}).at(0);
 }
 
 const Decision& about(const std::vector<Decision>& decisions, const std::string& effect) {

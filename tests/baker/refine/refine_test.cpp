@@ -149,13 +149,15 @@ TEST(Refinement, OpensNoCrackBetweenMeshes) {
   EXPECT_EQ(onSeam(result.meshes[0][0]), onSeam(result.meshes[1][0]));
 }
 
-// A closed box with thin walls stands on a floor of two halves, each of two triangles: it is dark inside.
+// Makes a closed box with thin walls on a floor of two halves, each of two triangles: it is dark inside.
+const glm::vec3 kBoxCentre(0.07f, 0.25f, -0.31f);
+Scene darkBox() {
+  return sceneOf({grid({-1, 0, 0}, 2.0f, 1), grid({1, 0, 0}, 2.0f, 1), box(kBoxCentre, {1.0f, 0.6f, 1.0f}, 1),
+                  flipped(box(kBoxCentre, {0.96f, 0.56f, 0.96f}, 1))});
+}
+
 TEST(Refinement, CutsFacesWhereWallsStandOnThem) {
-  const glm::vec3 centre(0.07f, 0.25f, -0.31f);
-  const Scene scene =
-      sceneOf({grid({-1, 0, 0}, 2.0f, 1), grid({1, 0, 0}, 2.0f, 1), box(centre, {1.0f, 0.6f, 1.0f}, 1),
-               flipped(box(centre, {0.96f, 0.56f, 0.96f}, 1))});
-  const Refined result = refined(scene, {.bound = 0.02f});
+  const Refined result = refined(darkBox(), {.bound = 0.02f});
   EXPECT_LT(result.report.error_after, 0.02);
   // Halves of edges, which miss the walls, spend all 20,000 vertices and leave 3 %.
   EXPECT_LT(result.report.vertices_after, 3000u);
@@ -170,16 +172,12 @@ TEST(Refinement, CutsFacesWhereWallsStandOnThem) {
 // Walls of 2 cm hide the inner points of the faces that cross them, so no error shows that these bring light
 // in.
 TEST(Refinement, LeavesNoFaceFromTheLightIntoADarkBox) {
-  const glm::vec3 centre(0.07f, 0.25f, -0.31f);
-  const Scene scene =
-      sceneOf({grid({-1, 0, 0}, 2.0f, 1), grid({1, 0, 0}, 2.0f, 1), box(centre, {1.0f, 0.6f, 1.0f}, 1),
-               flipped(box(centre, {0.96f, 0.56f, 0.96f}, 1))});
-  const Refined result = refined(scene, {.bound = 0.02f});
+  const Refined result = refined(darkBox(), {.bound = 0.02f});
   double crossing = 0.0;  // length inside of edges that lead outside, m
   for (std::size_t half = 0; half < 2; ++half) {
     const bundle::MeshData& floor = result.meshes[half][0];
     const auto fromCentre = [&](std::size_t corner) {
-      const glm::vec3 p = glm::abs(floor.positions[floor.indices[corner]] - centre);
+      const glm::vec3 p = glm::abs(floor.positions[floor.indices[corner]] - kBoxCentre);
       return std::max(p.x, p.z);
     };
     for (std::size_t i = 0; i < floor.indices.size(); ++i) {
