@@ -70,7 +70,8 @@ function(lambent_embed target)
 endfunction()
 
 # lambent_test(NAME SOURCES file... LINK target... [LABELS label...] [TIMEOUT seconds])
-# Labels: gpu needs OpenGL; fast takes seconds in an optimized build and is what scripts/test-sanitized builds and runs.
+# Labels: gpu needs OpenGL; fast takes seconds in an optimized build and is what scripts/test-sanitized builds and runs;
+# files reads files that may be damaged, and is what CI builds and runs with sanitizers.
 function(lambent_test name)
   cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   if(NOT TEST_TIMEOUT)
@@ -82,9 +83,11 @@ function(lambent_test name)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   # Tests find the shared data beside the checkout, if it is there; LAMBENT_SHARED_DATA overrides.
   target_compile_definitions(${name} PRIVATE "LAMBENT_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" "LAMBENT_BINARY_DIR=\"${CMAKE_BINARY_DIR}\"")
-  if("fast" IN_LIST TEST_LABELS)
-    add_dependencies(fast-tests ${name})
-  endif()
+  foreach(label fast files)
+    if(label IN_LIST TEST_LABELS)
+      add_dependencies(${label}-tests ${name})
+    endif()
+  endforeach()
   # ctest begins with the tests of the highest cost, so that the longest does not run alone at the end.
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
     PROPERTIES TIMEOUT ${TEST_TIMEOUT} COST ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
