@@ -202,6 +202,17 @@ bool possible(const Setting& setting, const SceneFacts& facts) {
 
 }  // namespace
 
+SceneFacts factsOf(const EffectPlan& plan) {
+  SceneFacts facts{.surfaces = plan.bakes("diffuse") || plan.bakes("glossy"),
+                   .glossy = plan.bakes("glossy"),
+                   .volumes = plan.bakes("volume"),
+                   .neighborhoods = plan.bakes("neighborhood"),
+                   .many_bodies = plan.groups.size() > 1};
+  facts.many_probes =
+      std::ranges::any_of(plan.light_probes, [](const PlannedLightProbes& p) { return p.count.count > 1; });
+  return facts;
+}
+
 std::span<const Knob> knobs() {
   return kKnobs;
 }

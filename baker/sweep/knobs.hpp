@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "baker/bake/options.hpp"
+#include "baker/plan/effect_plan.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker {
@@ -24,6 +25,7 @@ struct SceneFacts {
   bool many_bodies = false;  // bodies light and shadow each other through captures
   bool many_probes = false;  // light comes near, so it is sampled at several points
 };
+SceneFacts factsOf(const EffectPlan& plan);
 
 struct Knob {
   enum class Side : std::uint8_t { Bake, Frame };

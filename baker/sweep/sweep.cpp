@@ -32,17 +32,6 @@ Effort effortOf(Quality quality) {
   return {"960x540", 1024, 17};
 }
 
-SceneFacts factsOf(const EffectPlan& plan) {
-  SceneFacts facts{.surfaces = plan.bakes("diffuse") || plan.bakes("glossy"),
-                   .glossy = plan.bakes("glossy"),
-                   .volumes = plan.bakes("volume"),
-                   .neighborhoods = plan.bakes("neighborhood"),
-                   .many_bodies = plan.groups.size() > 1};
-  facts.many_probes =
-      std::ranges::any_of(plan.light_probes, [](const PlannedLightProbes& p) { return p.count.count > 1; });
-  return facts;
-}
-
 Result<void> makeFolder(const std::filesystem::path& folder) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);

@@ -1,11 +1,16 @@
 #include "baker/sweep/knobs.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "assets/scenes.hpp"
+#include "baker/bake/bake.hpp"
 #include "baker/bake/option_rows.hpp"
+#include "baker/import/gltf.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -28,6 +33,34 @@ TEST(Knobs, OnlyThoseAreTurnedThatTheSceneCallsFor) {
   EXPECT_FALSE(knobsOf({.volumes = true}).contains("refine"));
   EXPECT_TRUE(knobsOf({.glossy = true}).contains("glossy-order"));
   EXPECT_TRUE(knobsOf({.many_bodies = true}).contains("capture-size"));
+}
+
+// Returns the knobs that a sweep of the scene turns.
+std::set<std::string> knobsOfScene(const assets::Scene& made) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "scene.glb";
+  if (!assets::writeGlb(file, made)) return {};
+  const auto scene = importScene(file);
+  if (!scene) return {};
+  const auto plan = planFor(*scene, {.quality = Quality::Draft});
+  return plan ? knobsOf(factsOf(*plan)) : std::set<std::string>{};
+}
+
+TEST(Knobs, OfAnEffectAreTurnedForScenesThatHaveIt) {
+  const std::set<std::string> of_effects = {"glossy-order", "volume-grid",  "neighborhood-grid",
+                                            "light-probes", "capture-size", "capture-subsamples"};
+  const auto ofEffects = [&](const assets::Scene& scene) {
+    std::set<std::string> turned;
+    std::ranges::set_intersection(knobsOfScene(scene), of_effects, std::inserter(turned, turned.begin()));
+    return turned;
+  };
+  EXPECT_TRUE(knobsOfScene(assets::hello()).contains("rays"));
+  EXPECT_EQ(ofEffects(assets::hello()), std::set<std::string>{});
+  const std::set<std::string> things_that_move = {"neighborhood-grid", "light-probes", "capture-size",
+                                                  "capture-subsamples"};
+  EXPECT_EQ(ofEffects(assets::playroom()), things_that_move);
+  EXPECT_TRUE(ofEffects(assets::metals()).contains("glossy-order"));
+  EXPECT_TRUE(ofEffects(assets::flight()).contains("volume-grid"));
 }
 
 TEST(Knobs, AllValuesOfAllKnobsAreUnderstoodByTheBake) {
