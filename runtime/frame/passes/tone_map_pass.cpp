@@ -1,4 +1,4 @@
-// Turns linear radiance into the picture, and counts and clamps negative pixels.
+// Turns linear radiance into the picture; counts negative pixels, and clamps them for the eye.
 #include <utility>
 
 #include "runtime/frame/passes/passes.hpp"
