@@ -71,7 +71,7 @@ endfunction()
 
 # lambent_test(NAME SOURCES file... LINK target... [LABELS label...] [TIMEOUT seconds])
 # Labels: gpu needs OpenGL; fast takes seconds in an optimized build and is what scripts/test-sanitized builds and runs;
-# files reads files that may be damaged, and is what CI builds and runs with sanitizers.
+# files reads files that may be damaged, and is what scripts/test --sanitized builds and runs with sanitizers too.
 function(lambent_test name)
   cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   if(NOT TEST_TIMEOUT)
