@@ -208,7 +208,7 @@ Result<void> checkRequest(const BakeOptions& options, const std::filesystem::pat
 Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
   const auto effects = effectsNamed(options.effects);
   if (!effects) return failAgain(effects.error());
-  EffectPlan plan = makePlan(scene, *effects);
+  EffectPlan plan = makePlan(scene, *effects, options.leavesNothingOut());
   if (plan.bakes("glossy") && options.order > kMostGlossyOrder)
     return fail("--order", fmt::format("{} is more than glossy surfaces take", options.order),
                 fmt::format("use at most {}, or --effects diffuse", kMostGlossyOrder));

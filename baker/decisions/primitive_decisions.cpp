@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "baker/decisions/decisions.hpp"
@@ -108,6 +112,24 @@ Decision texels(const ScenePrimitive& primitive) {
           .figures = {{"side", static_cast<double>(primitive.texels), "texels"}}};
 }
 
+// Returns nothing for the back itself.
+std::optional<Decision> backs(const RigidGroup& group, const PlannedDraw& draw,
+                              const gltf::Material& material) {
+  if (draw.back) return std::nullopt;
+  if (!material.double_sided) return absent("backs", "0 double-sided materials: it is seen from its front");
+  const bool baked = std::ranges::any_of(group.draws, [&](const PlannedDraw& other) {
+    return other.back && other.node == draw.node && other.mesh == draw.mesh &&
+           other.primitive == draw.primitive;
+  });
+  if (baked)
+    return Decision{.effect = "backs",
+                    .choice = Choice::Baked,
+                    .reason = "both sides of its faces may be seen, or are not known to be hidden"};
+  return Decision{.effect = "backs",
+                  .choice = Choice::LeftOut,
+                  .reason = "each of its parts is closed and has nothing within: 0 % of its backs is seen"};
+}
+
 }  // namespace
 
 std::vector<Decision> primitiveDecisions(const Decided& decided, std::size_t group, std::size_t draw) {
@@ -120,6 +142,7 @@ std::vector<Decision> primitiveDecisions(const Decided& decided, std::size_t gro
   const SurfaceLook& look = decided.looks[group].draws[draw];
   const bool glossy = decided.plan.bakes("glossy") && primitive.material >= 0;
   std::vector<Decision> all = {shadows(transport, look), interreflection(transport, decided.options, look)};
+  if (auto back = backs(decided.plan.groups[group], planned, material)) all.push_back(std::move(*back));
   if (primitive.material < 0) {
     all.push_back(absent("matrices", "0 materials: it is white and diffuse"));
   } else {

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "baker/plan/closed_bodies.hpp"
+
 namespace lambent::baker {
 
 namespace {
@@ -57,9 +59,10 @@ std::vector<std::string> leftOut(const Scene& scene, bool glossy) {
 
 }  // namespace
 
-EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects) {
+EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects, bool with_insides) {
   EffectPlan plan;
   plan.groups = findRigidGroups(scene);
+  if (!with_insides) leaveOutInsides(scene, plan.groups);
   for (const EffectEntry& entry : effects) plan.effects.push_back(entry.choose(scene, plan.groups));
   plan.transport = planTransport(scene, plan.groups);
   if (plan.bakes("neighborhood"))

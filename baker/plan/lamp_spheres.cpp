@@ -4,13 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+
+#include "baker/plan/corner_numbers.hpp"
 
 namespace lambent::baker {
 
@@ -21,37 +22,6 @@ namespace {
 constexpr float kLeastRoundness = 0.7f;
 // More triangles than a lamp has would take long for nothing.
 constexpr std::size_t kMostTriangles = 200'000;
-
-// Corners nearer to each other than this share of the emitter's size are one corner: those at the seam of a
-// sphere often differ by rounding.
-constexpr double kSameCorner = 1e-5;
-
-// Numbers places, and gives the number of an earlier place to one that is as near to it as `tolerance`.
-class Corners {
- public:
-  explicit Corners(double tolerance) : tolerance_(tolerance) {}
-
-  std::uint32_t numberOf(const glm::vec3& place) {
-    const auto cell = [&](int axis) {
-      return static_cast<std::int64_t>(std::floor(double{place[axis]} / tolerance_));
-    };
-    for (std::int64_t x = cell(0) - 1; x <= cell(0) + 1; ++x)
-      for (std::int64_t y = cell(1) - 1; y <= cell(1) + 1; ++y)
-        for (std::int64_t z = cell(2) - 1; z <= cell(2) + 1; ++z)
-          if (const auto found = cells_.find({x, y, z});
-              found != cells_.end() &&
-              glm::distance(glm::dvec3(places[found->second]), glm::dvec3(place)) <= tolerance_)
-            return found->second;
-    places.push_back(place);
-    return cells_[{cell(0), cell(1), cell(2)}] = static_cast<std::uint32_t>(places.size() - 1);
-  }
-
-  std::vector<glm::vec3> places;
-
- private:
-  double tolerance_;
-  std::map<std::array<std::int64_t, 3>, std::uint32_t> cells_;
-};
 
 // Holds the emitting triangles of a material in a group.
 struct Emitter {
@@ -88,7 +58,7 @@ Emitter emitterOf(const Scene& scene, const RigidGroup& group, std::uint32_t mat
   emitter.both_sides = scene.materials[material].double_sided;
   const double tolerance = kSameCorner * double{glm::distance(low, high)};
   if (!(tolerance > 0.0) || !std::isfinite(tolerance)) return {};
-  Corners numbers(tolerance);
+  CornerNumbers numbers(tolerance);
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
     const std::array<std::uint32_t, 3> triangle = {
         numbers.numberOf(corners[i]), numbers.numberOf(corners[i + 1]), numbers.numberOf(corners[i + 2])};
@@ -96,7 +66,7 @@ Emitter emitterOf(const Scene& scene, const RigidGroup& group, std::uint32_t mat
     if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
       emitter.triangles.push_back(triangle);
   }
-  emitter.corners = std::move(numbers.places);
+  emitter.corners = numbers.places();
   return emitter;
 }
 

@@ -13,6 +13,10 @@ const float kSharpTexels = 0.8;    // texels; a narrower penumbra is unresolved,
 const float kOneHeight = 0.1;      // heights count as one if they differ by less than this share
 const int kLeastSearch = 20;       // points in the search for blockers; fewer would miss small ones
 const int kKeySteps = 3;           // steps of the search along a ray
+// A ray that found nothing is looked at again at so many points, from this to this share of the height.
+const int kKeyBetween = 4;
+const float kLowestBetween = 0.15, kHighestBetween = 0.6;
+const float kKeySolid = 1.5;  // height of a body's top over that of a point within it
 const int kKeyNarrowing = 3;
 
 float keyDepth(ivec2 texel);                // 0..1
@@ -122,13 +126,26 @@ KeyLayers keyLayers(KeyRecord key, KeyReceiver receiver, float reach, int count)
   return KeyLayers(reach * low, reach * high);
 }
 
+// Returns whether the ray, whose point at this height is free, passes through a body below it. The map knows tops alone.
+// A body is taken to reach down from its top by three eighths of the top's height above the receiver, so that parapets
+// and walls which light grazes block rays that leave through their sides. Points of a ray from under a plate's edge that
+// are looked at are farther below the plate.
+bool passesThrough(KeyRecord key, KeyReceiver receiver, float height, vec2 per_metre) {
+  for (int i = 0; i < kKeyBetween; ++i) {
+    float below = height * (kLowestBetween + (kHighestBetween - kLowestBetween) * float(i) / float(kKeyBetween - 1));
+    float found = blockerHeight(key, receiver, ivec2(floor(receiver.place + below * per_metre)));
+    if (found > below && found < kKeySolid * below) return true;
+  }
+  return false;
+}
+
 // Returns whether something blocks the ray to a point of the disc. It looks where the ray passes this height, then
 // where it passes the height of what it found there.
 bool rayBlocked(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
   vec2 per_metre = key.scale.w * key.scale.xy * at;
   for (int i = 0; i < kKeySteps; ++i) {
     float found = blockerHeight(key, receiver, ivec2(floor(receiver.place + height * per_metre)));
-    if (found == 0.0) return false;
+    if (found == 0.0) return passesThrough(key, receiver, height, per_metre);
     if (abs(found - height) < kOneHeight * height) return true;
     height = found;
   }

@@ -22,6 +22,9 @@ inline constexpr float kSharpTexels = 0.8f;
 inline constexpr float kOneHeight = 0.1f;
 inline constexpr int kLeastSearch = 20;
 inline constexpr int kKeySteps = 3;
+inline constexpr int kKeyBetween = 4;
+inline constexpr float kLowestBetween = 0.15f, kHighestBetween = 0.6f;
+inline constexpr float kKeySolid = 1.5f;
 inline constexpr int kKeyNarrowing = 3;
 
 struct KeyReceiver {
@@ -131,13 +134,27 @@ KeyLayers keyLayers(const Map& map, const KeyRecord& key, const KeyReceiver& rec
 }
 
 template <typename Map>
+bool passesThrough(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, float height,
+                   glm::vec2 per_metre) {
+  for (int i = 0; i < kKeyBetween; ++i) {
+    const float below =
+        height * (kLowestBetween + (kHighestBetween - kLowestBetween) * static_cast<float>(i) /
+                                       static_cast<float>(kKeyBetween - 1));
+    const float found =
+        blockerHeight(map, key, receiver, glm::ivec2(glm::floor(receiver.place + below * per_metre)));
+    if (found > below && found < kKeySolid * below) return true;
+  }
+  return false;
+}
+
+template <typename Map>
 bool rayBlocked(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, float height,
                 glm::vec2 at) {
   const glm::vec2 per_metre = key.scale.w * glm::vec2(key.scale) * at;
   for (int i = 0; i < kKeySteps; ++i) {
     const float found =
         blockerHeight(map, key, receiver, glm::ivec2(glm::floor(receiver.place + height * per_metre)));
-    if (found == 0.0f) return false;
+    if (found == 0.0f) return passesThrough(map, key, receiver, height, per_metre);
     if (std::abs(found - height) < kOneHeight * height) return true;
     height = found;
   }

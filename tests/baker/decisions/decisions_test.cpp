@@ -44,6 +44,21 @@ TEST(Decisions, LeaveShadowsAndBouncesOutOnAConvexBody) {
   EXPECT_EQ(about(primitives[0].decisions, "shadows").choice, Choice::LeftOut);
 }
 
+TEST(Decisions, LeaveOutTheBacksOfClosedBodies) {
+  Scene scene = ballOnFloor();
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].double_sided = true;
+  const auto backOf = [&](std::size_t draw, const BakeOptions& options = {}) {
+    return about(decided(scene, options).primitives[draw].decisions, "backs").choice;
+  };
+  scene.meshes[1].primitives[0].material = 1;
+  EXPECT_EQ(backOf(0), Choice::Absent) << "the floor is single-sided";
+  EXPECT_EQ(backOf(1), Choice::LeftOut);
+  EXPECT_EQ(backOf(1, {.effects = "all"}), Choice::Baked);
+  scene.meshes[0].primitives[0].material = 1;
+  EXPECT_EQ(backOf(0), Choice::Baked) << "a floor is open";
+}
+
 TEST(Decisions, BakeWhatABallOnAFloorCallsFor) {
   const auto [group, primitives] = decided(ballOnFloor());
   for (const char* effect : {"shadows", "interreflection", "order", "refinement"})

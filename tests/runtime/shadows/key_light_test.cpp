@@ -233,6 +233,30 @@ TEST(KeyLight, SeveralBlockersAtSeveralHeightsShadowAsTheyDoTogether) {
     }
 }
 
+TEST(KeyLight, AParapetAlongWhichLightComesBlocksTheRaysThatCrossIt) {
+  constexpr int kSize = 1024;
+  const Slab parapet{{-3, -0.03, -0.1}, {3, 0.03, 1.0}};
+  const glm::vec3 towards = glm::normalize(glm::vec3(0.82f, 0.03f, 0.57f));
+  for (const float degrees : {3.0f, 9.0f}) {
+    const KeyRecord key = madeKey(towards, degrees * kDegree, 3.0f, kSize);
+    const MadeMap map = madeMap(key, kSize, [&](const KeyRay& ray) {
+      return nearer(toPlane(ray, glm::dvec3(kUp), 0.0), toBox(ray, parapet));
+    });
+    Errors errors;
+    double lit = 0.0;
+    for (int i = 0; i < 40; ++i)
+      for (const float x : {-0.4f, -0.1f, 0.2f}) {
+        const glm::vec3 place(x, -0.04f - 0.015f * static_cast<float>(i), 0.0f);
+        const double expected =
+            visibleByRays(key, place, kUp, [&](const KeyRay& ray) { return toBox(ray, parapet) >= 0.0; });
+        lit += expected;
+        errors.add(double{ref::keyVisible(map, key, place, kUp, kUp)} - expected);
+      }
+    EXPECT_LT(std::abs(errors.bias()), 0.065 * lit / errors.count) << degrees << " degrees";
+    EXPECT_LT(errors.rms(), 0.095) << degrees << " degrees";
+  }
+}
+
 TEST(KeyLight, NothingInTheWayIsAllOfTheLightAtAnyTilt) {
   Random random;
   for (const int size : {64, 256, 512})
