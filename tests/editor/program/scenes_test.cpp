@@ -100,7 +100,7 @@ where dialog.third
 click dialog.no
 wait frames 3
 click menu.File
-click menu.open
+click menu.open@0.05,0.5
 wait frames 3
 click dialog.name
 type {0}
@@ -110,8 +110,8 @@ where dialog.third
 click dialog.no
 wait frames 3
 click menu.File
-click menu.recent
-click menu.recent.world.json
+click menu.recent@0.05,0.5
+click menu.recent.world.json@0.05,0.5
 wait frames 3
 where dialog.third
 click dialog.no
