@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <limits>
@@ -18,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "baker/bake/options.hpp"
+#include "runtime/base/lower_case.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker::typed_options {
@@ -74,9 +74,8 @@ bool readNumber(std::string_view text, T& value) {
 // Reads a size such as "4GB" or "512 mib", in units of 1024.
 inline bool readBytes(std::string_view text, std::uint64_t& value) {
   const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
-  std::string unit;
-  for (const char c : text.substr(digits))
-    if (c != ' ') unit += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string unit = lowerCase(text.substr(digits));
+  std::erase(unit, ' ');
   if (unit.ends_with('b')) unit.pop_back();
   if (unit.ends_with('i')) unit.pop_back();
   const std::size_t power = std::string_view(" kmgtp").find(unit.empty() ? " " : unit);

@@ -179,7 +179,8 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
           around->bounds_min.z, around->bounds_max.x, around->bounds_max.y, around->bounds_max.z);
     if (group.volume)
       fmt::print(
-          "  volume of {} x {} x {} voxels in {} bits, at most {:.4g} per metre; transfer on {} x {} x {}\n",
+          "  volume of {} x {} x {} voxels in {} bits, extinction of at most {:.4g} 1/m; transfer on {} x {} "
+          "x {}\n",
           group.volume->size.x, group.volume->size.y, group.volume->size.z, group.volume->bits,
           double{group.volume->density_max}, group.volume->transfer_size.x, group.volume->transfer_size.y,
           group.volume->transfer_size.z);

@@ -51,8 +51,8 @@ bundle::PictureError withRays(bundle::PictureError shown, double times) {
 }
 
 // Returns what the bake's next try begins with, if it has a bound on pictures and this one does not meet it.
-std::optional<PictureSettings> nextTryAfter(const BakeReport& report, const BakeOptions& asked,
-                                            const BakeOptions& options, const BakeOptions& few) {
+std::optional<PictureSettings> nextTryOfReport(const BakeReport& report, const BakeOptions& asked,
+                                               const BakeOptions& options, const BakeOptions& few) {
   if (asked.picture_bound == 0.0f) return std::nullopt;
   const double times = static_cast<double>(options.effectiveRays()) / static_cast<double>(few.rays);
   for (const BakeReport::Group& group : report.groups) {
@@ -152,7 +152,7 @@ Result<BakeEstimate> estimateBake(const Scene& scene, const BakeOptions& options
     Progress progress;
     const auto report = rehearse(scene, few, {progress, context.stop});
     if (!report) return failAgain(report.error());
-    const auto next = tries < kMostTries ? nextTryAfter(*report, options, chosen, few) : std::nullopt;
+    const auto next = tries < kMostTries ? nextTryOfReport(*report, options, chosen, few) : std::nullopt;
     addTry(*report, few, chosen, estimate);
     if (!next) return estimate;
     chosen.rays = next->rays, chosen.refine_bound = next->refine_bound;

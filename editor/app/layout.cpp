@@ -98,7 +98,7 @@ void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
   drawDialogs(session, marks);
   drawKeys(session, marks);
   drawPalette(session, marks);
-  drawToasts(session, marks);
+  drawToasts(session, marks, {{left, top}, {left + middle, top + height - bottom}});
 }
 
 }  // namespace lambent::editor

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -98,12 +99,13 @@ Result<void> run(const Options& options) {
       ui.refuseClose();
       s.files.askToQuit();
     }
-    for (const std::filesystem::path& file : ui.takeDropped()) {
-      if (assetAt(file))
+    std::vector<std::filesystem::path> dropped;
+    for (const std::filesystem::path& file : ui.takeDropped())
+      if (const auto asset = assetAt(file); asset && asset->kind == AssetKind::EnvironmentMap)
         runOrLog(s, "use-asset", std::array{file.string()});
       else
-        s.files.openLogged(file);  // a folder, or what cannot be opened
-    }
+        dropped.push_back(file);  // also a folder, or what cannot be opened
+    if (!dropped.empty()) s.files.openLogged(dropped);
     drawLayout(s, *renderer, ui.marks());
     moving = s.moving();
     ui.end();

@@ -22,13 +22,6 @@ Answer assets(Session& session, Words words) {
   return answer;
 }
 
-Answer openWorld(Session& session, const std::filesystem::path& file) {
-  if (!session.files.modified()) return answerOf(session.files.open(file));
-  session.files.unlessUnsaved("The world has edits that are not saved. Open another one without them?",
-                              [file](Session& s) { s.files.openLogged(file); });
-  return nullptr;
-}
-
 Answer useAsset(Session& session, Words words) {
   std::optional<Asset> asset = assetAt(words[0]);
   if (!asset) {
@@ -36,16 +29,9 @@ Answer useAsset(Session& session, Words words) {
     if (const Asset* listed = session.assets.find(words[0])) asset = *listed;
   }
   if (!asset) return fail(words[0], "is no asset", "\"assets\" lists them");
-  switch (asset->kind) {
-    case AssetKind::EnvironmentMap:
-      return runCommand(session, "environment-map", std::array{asset->file.string()});
-    case AssetKind::World:
-      return openWorld(session, asset->file);
-    case AssetKind::Scene:
-    case AssetKind::Bundle:
-      break;
-  }
-  return answerOf(session.files.open(asset->file));
+  if (asset->kind == AssetKind::EnvironmentMap)
+    return runCommand(session, "environment-map", std::array{asset->file.string()});
+  return answerOf(session.files.open({asset->file}));
 }
 
 constexpr std::array kRows = {

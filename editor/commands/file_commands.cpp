@@ -1,92 +1,40 @@
 #include <array>
 
 #include "editor/commands/rows.hpp"
+#include "editor/session/file_questions.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
-// Returns the file of the first scene that is open, or an empty path.
-std::filesystem::path openScene(const Session& session) {
-  if (session.scenes.entries().empty()) return {};
-  const SceneEntry& entry = session.scenes.entries().front();
-  return entry.source.empty() ? entry.bundle : entry.source;
-}
-
-std::filesystem::path startFolder(const Session& session) {
-  std::error_code ignored;
-  if (!session.files.world().empty()) return session.files.world().parent_path();
-  if (const std::filesystem::path scene = openScene(session); !scene.empty()) return scene.parent_path();
-  if (!session.preferences.recent.empty())
-    return std::filesystem::path(session.preferences.recent.front()).parent_path();
-  return std::filesystem::current_path(ignored);
-}
-
 Answer open(Session& session, Words words) {
-  if (!words.empty()) {
-    for (const std::string& file : words)
-      if (auto opened = session.files.open(file); !opened) return failAgain(opened.error());
-    return nullptr;
-  }
+  if (!words.empty()) return answerOf(session.files.open({words.begin(), words.end()}));
   Dialog ask;
   ask.kind = Dialog::Kind::OpenFile;
   ask.title = "Open";
   ask.kinds = {{"Scenes", {".gltf", ".glb"}}, {"Bundles", {".lmb.glb"}}, {"Worlds", {".json"}}};
   ask.folder = startFolder(session);
   ask.yes = "Open";
-  ask.answered = [](Session& s, const std::string& file) { s.files.openLogged(file); };
+  ask.answered = [](Session& s, const std::string& file) { s.files.openLogged({file}); };
   session.window.dialog = std::move(ask);
   return nullptr;
 }
 
 Answer watch(Session& session, Words words) {
-  if (!words.empty()) return answerOf(session.files.open(words[0]));
+  if (!words.empty()) return answerOf(session.files.open({words[0]}));
   Dialog ask;
   ask.kind = Dialog::Kind::Folder;
   ask.title = "Open and watch a folder";
   ask.folder = startFolder(session);
   ask.yes = "Watch";
-  ask.answered = [](Session& s, const std::string& folder) { s.files.openLogged(folder); };
+  ask.answered = [](Session& s, const std::string& folder) { s.files.openLogged({folder}); };
   session.window.dialog = std::move(ask);
   return nullptr;
 }
 
-// Returns the name of the world's file, or one after the scene that is open.
-std::string proposedName(const Session& session) {
-  if (!session.files.world().empty()) return session.files.world().filename().string();
-  std::string name = openScene(session).filename().string();
-  return name.substr(0, name.find('.')).append(name.empty() ? "world.json" : ".json");
-}
-
-void saveLogged(Session& session, const std::filesystem::path& file) {
-  if (auto saved = session.files.save(file); !saved) session.log.error(saved.error());
-}
-
-// Saves to a file that was chosen in a dialog. Another file of that name is not replaced unasked.
-void saveChosen(Session& session, std::filesystem::path file) {
-  if (file.extension() != ".json") file += ".json";
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored) || file == session.files.world())
-    return saveLogged(session, file);
-  Dialog ask;
-  ask.title = "Replace the file?";
-  ask.question = file.string() + " is there already. What it holds would be lost.";
-  ask.yes = "Replace";
-  ask.answered = [file](Session& s, const std::string&) { saveLogged(s, file); };
-  session.window.dialog = std::move(ask);
-}
-
 Answer saveAs(Session& session, Words words) {
   if (!words.empty()) return answerOf(session.files.save(words[0]), {{"file", words[0]}});
-  Dialog ask;
-  ask.kind = Dialog::Kind::SaveFile;
-  ask.title = "Save the world";
-  ask.kinds = {{"Worlds", {".json"}}};
-  ask.folder = startFolder(session);
-  ask.name = proposedName(session);
-  ask.yes = "Save";
-  ask.answered = [](Session& s, const std::string& file) { saveChosen(s, file); };
-  session.window.dialog = std::move(ask);
+  askWhereToSave(session);
   return nullptr;
 }
 

@@ -7,11 +7,45 @@ namespace lambent::editor {
 
 namespace {
 
+// Returns the names of all layouts, for hints.
+std::string layoutNames(const Session& session) {
+  std::string names = "default, lighting, baking";
+  for (const auto& [name, layout] : session.preferences.layouts) names += ", " + name;
+  return names;
+}
+
 Answer useLayout(Session& session, Words words) {
-  const auto layout = layoutNamed(words[0]);
-  if (!layout) return fail("layout", "\"" + words[0] + "\" is not known", "give default, lighting or baking");
+  const auto saved = session.preferences.layouts.find(words[0]);
+  const auto layout =
+      saved == session.preferences.layouts.end() ? layoutNamed(words[0]) : std::optional(saved->second);
+  if (!layout)
+    return fail("layout", "\"" + words[0] + "\" is not known", "there are " + layoutNames(session));
   session.preferences.layout = *layout;
   session.window.raise_tabs = true;
+  return nullptr;
+}
+
+Answer saveLayout(Session& session, Words words) {
+  if (!words.empty()) {
+    if (words[0].empty()) return fail("save-layout", "the name is empty", "give the layout a name");
+    if (layoutNamed(words[0]))
+      return fail("save-layout", "\"" + words[0] + "\" comes with the program", "give another name");
+    session.preferences.layouts[words[0]] = session.preferences.layout;
+    return nullptr;
+  }
+  Dialog ask;
+  ask.kind = Dialog::Kind::Text;
+  ask.title = "Save the layout";
+  ask.question = "Its name. A layout that has it already is replaced.";
+  ask.yes = "Save";
+  ask.answered = [](Session& s, const std::string& name) { runOrLog(s, "save-layout", std::array{name}); };
+  session.window.dialog = std::move(ask);
+  return nullptr;
+}
+
+Answer deleteLayout(Session& session, Words words) {
+  if (session.preferences.layouts.erase(words[0]) == 0)
+    return fail("delete-layout", "\"" + words[0] + "\" was not saved", "there are " + layoutNames(session));
   return nullptr;
 }
 
@@ -68,7 +102,17 @@ constexpr std::array kRows = {
            "Bakes with more room, and the plan of the bake", &named<2>, nullptr),
     toggle("Window", "layout-default", "Reset layout", "", "All panels are back where they were at first",
            &named<0>, nullptr),
-    scripted("layout", "A layout by its name", "default|lighting|baking", 1, 1, &useLayout),
+    Command{.id = "save-layout",
+            .title = "Save layout as...",
+            .menu = "Window",
+            .shortcut = "",
+            .help = "Keep the present layout under a name, which this menu then lists",
+            .arguments = "NAME",
+            .least_words = 1,
+            .most_words = 1,
+            .run = &saveLayout},
+    scripted("delete-layout", "Forget a layout that was saved", "NAME", 1, 1, &deleteLayout),
+    scripted("layout", "A layout by its name", "default|lighting|baking|NAME", 1, 1, &useLayout),
     separator("Window"),
     toggle("Window", "left-panels", "Left panels", "", "The scene tree", &dock<Dock::Left>,
            &docked<Dock::Left>),

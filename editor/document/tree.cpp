@@ -1,24 +1,17 @@
 #include "editor/document/tree.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "runtime/base/lower_case.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/reflection.hpp"
 
 namespace lambent::editor {
-
-std::string lower(std::string_view text) {
-  std::string low(text);
-  // Only ASCII letters are converted.
-  for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return low;
-}
 
 namespace {
 
@@ -228,7 +221,7 @@ TreeFilter::TreeFilter(std::string_view text) {
       term.negative = true;
       word.erase(0, 1);
     }
-    word = lower(word);
+    word = lowerCase(word);
     constexpr std::pair<std::string_view, Term::Of> kPrefixes[] = {
         {"type:", Term::Of::Kind}, {"has:", Term::Of::Component}, {"id:", Term::Of::Id}};
     for (const auto& [prefix, of] : kPrefixes) {
@@ -248,7 +241,7 @@ bool TreeFilter::matches(const Document& document, ecs::Entity entity, std::stri
     const bool holds = [&] {
       switch (term.of) {
         case Term::Of::Name:
-          return lower(name).find(term.text) != std::string::npos;
+          return lowerCase(name).find(term.text) != std::string::npos;
         case Term::Of::Kind:
           return kind == term.text;
         case Term::Of::Id:
@@ -256,7 +249,7 @@ bool TreeFilter::matches(const Document& document, ecs::Entity entity, std::stri
         case Term::Of::Component: {
           const auto all = scene::components();
           return std::any_of(all.begin(), all.end(), [&](const scene::ComponentInfo& row) {
-            return lower(row.name) == term.text && row.has(document.registry(), entity);
+            return lowerCase(row.name) == term.text && row.has(document.registry(), entity);
           });
         }
       }

@@ -28,9 +28,6 @@ struct TreeRow {
   bool matches = true;  // false: shown only because a descendant matches
 };
 
-// Returns the text with small ASCII letters, as filters compare it.
-std::string lower(std::string_view text);
-
 struct TreeQuery {
   // A row has to match all words: "ball" (part of the name, in any case), "type:light" (its kind), "has:Lamp"
   // (a component), "id:0123" (a prefix of its id), "-type:draw" (not this kind). "two words" in quotes count

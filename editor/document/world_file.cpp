@@ -375,7 +375,9 @@ WorldFile captureWorld(Document& document, const Baseline& baseline, const World
   const auto by_id = [](const EntityOverride& a, const EntityOverride& b) { return a.id < b.id; };
   const auto& bundles = world.state.bundles;
   const bool all_open = std::ranges::all_of(kept->state.bundles, [&](const BundleEntry& old) {
-    return std::ranges::find(bundles, old.id, &BundleEntry::id) != bundles.end();
+    return std::ranges::any_of(bundles, [&](const BundleEntry& bundle) {
+      return bundle.id == old.id && bundle.instance == old.instance;
+    });
   });
   Overrides more;
   for (const EntityOverride& old : kept->entities) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdlib>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,7 +7,6 @@
 
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/session/samples.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
@@ -17,32 +15,6 @@ namespace {
 
 using Kind = Dialog::Kind;
 
-bool shown(const Dialog& dialog, const std::filesystem::directory_entry& entry) {
-  const std::string name = entry.path().filename().string();
-  if (name.starts_with('.')) return false;
-  std::error_code ignored;
-  if (entry.is_directory(ignored)) return true;
-  if (dialog.kind == Kind::Folder) return false;
-  if (dialog.kinds.empty() || dialog.filter > dialog.kinds.size()) return true;
-  const auto isOf = [&](const FileKind& kind) {
-    return std::ranges::any_of(kind.endings, [&](const std::string& end) { return name.ends_with(end); });
-  };
-  return dialog.filter == 0 ? std::ranges::any_of(dialog.kinds, isOf) : isOf(dialog.kinds[dialog.filter - 1]);
-}
-
-std::vector<std::filesystem::directory_entry> listing(const Dialog& dialog) {
-  std::vector<std::filesystem::directory_entry> entries;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(dialog.folder, ignored))
-    if (shown(dialog, entry)) entries.push_back(entry);
-  std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
-    std::error_code none;
-    const bool folder_a = a.is_directory(none), folder_b = b.is_directory(none);
-    return folder_a != folder_b ? folder_a : a.path().filename() < b.path().filename();
-  });
-  return entries;
-}
-
 std::string answerOf(const Dialog& dialog) {
   if (dialog.kind == Kind::Text) return dialog.name;
   if (dialog.kind == Kind::Confirm) return {};
@@ -50,34 +22,8 @@ std::string answerOf(const Dialog& dialog) {
   return (name.is_absolute() ? name : dialog.folder / name).string();
 }
 
-struct Place {
-  std::string name;
-  std::filesystem::path folder;
-};
-
-// Returns where files are likely to be: at home, beside what is open and what was opened, among the samples.
-std::vector<Place> placesOf(const Session& session) {
-  std::vector<Place> places;
-  const auto add = [&](std::string name, const std::filesystem::path& folder) {
-    std::error_code ignored;
-    const bool known = std::ranges::find(places, folder, &Place::folder) != places.end();
-    if (!known && !folder.empty() && std::filesystem::is_directory(folder, ignored))
-      places.push_back({std::move(name), folder});
-  };
-  if (const char* home = std::getenv("HOME")) add("Home", home);
-  for (const SceneEntry& entry : session.scenes.entries()) add("Scene", entry.source.parent_path());
-  if (const auto samples = sampleFolders(); !samples.empty()) add("Samples", samples.front());
-  for (const std::string& recent : session.preferences.recent) {
-    const std::filesystem::path folder = std::filesystem::path(recent).parent_path();
-    add(folder.filename().string(), folder);
-  }
-  return places;
-}
-
-void drawPlaces(const Session& session, Dialog& dialog, Marks& marks) {
-  constexpr std::size_t kMostPlaces = 8;
-  std::vector<Place> places = placesOf(session);
-  places.resize(std::min(places.size(), kMostPlaces));
+void drawPlaces(Dialog& dialog, Marks& marks) {
+  const std::vector<DialogPlace>& places = dialog.found.places();
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (i > 0) sameLineIfFits(places[i].name);
     ImGui::PushID(static_cast<int>(i));
@@ -113,7 +59,8 @@ void drawFilter(Dialog& dialog, Marks& marks) {
 // Returns whether a file was chosen, by a double click or by the Enter key.
 bool drawFiles(const Session& session, Dialog& dialog, Marks& marks) {
   bool chosen = false;
-  drawPlaces(session, dialog, marks);
+  dialog.found.update(session, dialog);
+  drawPlaces(dialog, marks);
   std::string folder = dialog.folder.string();
   ImGui::SetNextItemWidth(-em(4.0f));
   if (ImGui::InputText("##folder", &folder, ImGuiInputTextFlags_EnterReturnsTrue)) dialog.folder = folder;
@@ -123,15 +70,12 @@ bool drawFiles(const Session& session, Dialog& dialog, Marks& marks) {
   marks.put("dialog.up");
   ImGui::BeginChild("files", ImVec2(0.0f, std::min(em(17.3f), 0.5f * ImGui::GetIO().DisplaySize.y)), true);
   std::filesystem::path enter;
-  for (const auto& entry : listing(dialog)) {
-    std::error_code ignored;
-    const bool is_folder = entry.is_directory(ignored);
-    const std::string name = entry.path().filename().string();
+  for (const auto& [name, is_folder] : dialog.found.files()) {
     if (ImGui::Selectable((is_folder ? name + "/" : name).c_str(), dialog.name == name,
                           ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_DontClosePopups)) {
       const bool twice = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
       if (is_folder && twice)
-        enter = entry.path();
+        enter = dialog.folder / name;
       else if (!is_folder || dialog.kind == Kind::Folder)
         dialog.name = name, chosen = twice && !is_folder;
     }

@@ -14,7 +14,8 @@ namespace lambent::editor {
 namespace {
 
 constexpr std::size_t kMostToasts = 4;
-constexpr float kToastEms = 28.0f;
+// Toasts are no wider than the view, but at least so wide that a few words stand on a line.
+constexpr float kToastEms = 28.0f, kLeastToastEms = 14.0f, kToastGap = 12.0f;
 
 }  // namespace
 
@@ -43,16 +44,16 @@ void drawLog(Session& session, Marks& marks) {
   ImGui::EndChild();
 }
 
-void drawToasts(Session& session, Marks& marks) {
+void drawToasts(Session& session, Marks& marks, const Rectangle& view) {
   auto recent = session.log.recent(kToastAge);
   if (recent.size() > kMostToasts)
     recent.erase(recent.begin(), recent.end() - static_cast<std::ptrdiff_t>(kMostToasts));
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  const float width = std::min(em(kToastEms), 0.9f * screen.x);
-  float bottom = screen.y - 12.0f;
+  const float room = view.max.x - view.min.x - 2.0f * kToastGap, right = view.max.x - kToastGap;
+  const float width = std::max(std::min(em(kToastEms), room), em(kLeastToastEms));
+  float bottom = view.max.y - kToastGap;
   for (std::size_t i = recent.size(); i-- > 0;) {
     const LogEntry& entry = recent[i];
-    ImGui::SetNextWindowPos(ImVec2(screen.x - 12.0f, bottom), ImGuiCond_Always, ImVec2(1.0f, 1.0f));
+    ImGui::SetNextWindowPos(ImVec2(right, bottom), ImGuiCond_Always, ImVec2(1.0f, 1.0f));
     ImGui::SetNextWindowSize(ImVec2(width, 0.0f));
     ImGui::SetNextWindowBgAlpha(0.94f);
     ImGui::PushStyleColor(ImGuiCol_Border, severityColor(entry.severity));
@@ -66,7 +67,7 @@ void drawToasts(Session& session, Marks& marks) {
     ImGui::End();
     ImGui::PopStyleColor();
   }
-  if (!recent.empty()) marks.put("toasts", {{screen.x - width, bottom}, {screen.x, screen.y}});
+  if (!recent.empty()) marks.put("toasts", {{right - width, bottom}, {right, view.max.y}});
 }
 
 }  // namespace lambent::editor

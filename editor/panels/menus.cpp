@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 #include <utility>
 
 #include <imgui.h>
@@ -66,11 +67,31 @@ void runShortcuts(Session& session) {
 }
 
 void drawRecent(Session& session, Marks& marks) {
-  if (!ImGui::BeginMenu("Recent", !session.preferences.recent.empty())) return;
-  for (const std::string& file : std::vector(session.preferences.recent))
-    if (ImGui::MenuItem(file.c_str())) runOrLog(session, "open", std::array{file});
-  ImGui::EndMenu();
+  const bool open = ImGui::BeginMenu("Recent", !session.preferences.recent.empty());
   marks.put("menu.recent");
+  if (!open) return;
+  for (const std::string& file : std::vector(session.preferences.recent)) {
+    if (ImGui::MenuItem(file.c_str())) runOrLog(session, "open", std::array{file});
+    marks.put("menu.recent." + std::filesystem::path(file).filename().string());
+  }
+  ImGui::EndMenu();
+}
+
+// Lists the layouts that the user saved, and a menu to delete them.
+void drawSavedLayouts(Session& session, Marks& marks) {
+  const std::map<std::string, WindowLayout> saved = session.preferences.layouts;
+  const auto draw = [&](const char* command, const char* mark) {
+    for (const auto& [name, layout] : saved) {
+      if (ImGui::MenuItem(name.c_str())) runOrLog(session, command, std::array{name});
+      marks.put(mark + name);
+    }
+  };
+  draw("layout", "menu.layout.");
+  const bool open = ImGui::BeginMenu("Delete layout", !saved.empty());
+  marks.put("menu.delete-layout");
+  if (!open) return;
+  draw("delete-layout", "menu.delete-layout.");
+  ImGui::EndMenu();
 }
 
 void drawPanelItems(Session& session) {
@@ -119,6 +140,7 @@ void drawMenus(Session& session, Marks& marks) {
       else if (*command.title != '\0')
         drawItem(session, marks, command);
       if (std::strcmp(command.id, "open") == 0) drawRecent(session, marks);
+      if (std::strcmp(command.id, "save-layout") == 0) drawSavedLayouts(session, marks);
     }
     if (std::strcmp(menu, "Window") == 0) drawPanelItems(session);
     ImGui::EndMenu();

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/document/tree.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/ui/fitting.hpp"
+#include "runtime/base/lower_case.hpp"
 
 namespace lambent::editor {
 
@@ -17,8 +17,8 @@ namespace {
 
 bool matches(const Command& command, const std::string& words) {
   const std::string text =
-      lower(std::string(command.title) + ' ' + command.menu + ' ' + command.help + ' ' + command.id);
-  std::istringstream all(lower(words));
+      lowerCase(std::string(command.title) + ' ' + command.menu + ' ' + command.help + ' ' + command.id);
+  std::istringstream all(lowerCase(words));
   for (std::string word; all >> word;)
     if (text.find(word) == std::string::npos) return false;
   return true;

@@ -75,7 +75,7 @@ bool drawUnshown(Session& session, Marks& marks, std::size_t i) {
   const SceneEntry& entry = session.scenes.entries()[i];
   const SceneStatus status = statusOf(session, i);
   const std::string number = std::to_string(i);
-  ImGui::PushID(entry.id.c_str());
+  ImGui::PushID(static_cast<int>(i));
   ImGui::Dummy(ImVec2(ImGui::GetFrameHeight(), ImGui::GetFrameHeight()));
   ImGui::SameLine(0.0f, 4.0f);
   drawSign("bundle");

@@ -4,30 +4,33 @@
 #include <utility>
 
 #include "editor/session/small_pictures.hpp"
+#include "runtime/scene/bounds.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
-// Returns the files whose contents the view shows and nothing else: the world, or the only scene with its
-// bundle. There are none while something is drawn over them.
-std::vector<Asset> shownAlone(const Session& session) {
+// Returns whether the view shows the world as it is, and nothing is drawn over it.
+bool isPlain(const Session& session) {
   const Viewing& viewing = session.viewing;
-  const bool plain = viewing.surfaces.view == frame::SurfaceView::Final && !viewing.overlays.any() &&
-                     session.selection.ids().empty();
-  if (!plain || !session.atRest() || viewing.scale.coarse()) return {};
-  std::vector<Asset> shown;
-  const auto add = [&](const std::filesystem::path& file) {
-    if (auto asset = assetAt(file)) shown.push_back(std::move(*asset));
-  };
-  if (!session.files.world().empty()) {
-    if (!session.files.modified()) add(session.files.world());
-  } else if (session.scenes.entries().size() == 1) {
-    const SceneEntry& entry = session.scenes.entries().front();
-    add(entry.source);
-    if (entry.shown == entry.bundle) add(entry.bundle);
-  }
-  return shown;
+  return viewing.surfaces.view == frame::SurfaceView::Final && !viewing.overlays.any() &&
+         session.selection.ids().empty() && session.atRest() && !viewing.scale.coarse();
+}
+
+// Returns the files of a scene whose contents are shown.
+std::vector<Asset> filesOf(const SceneEntry& entry) {
+  std::vector<Asset> files;
+  if (auto source = assetAt(entry.source)) files.push_back(std::move(*source));
+  if (entry.shown == entry.bundle)
+    if (auto bundle = assetAt(entry.bundle)) files.push_back(std::move(*bundle));
+  return files;
+}
+
+scene::Box boundsOf(const Session& session, std::uint32_t slot) {
+  scene::Box box;
+  for (const ecs::Entity draw : session.stage.world().instance(slot).draws)
+    box.add(scene::drawBounds(session.document.registry(), draw));
+  return box;
 }
 
 spec::Rgba8Image readBack(const gpu::Texture& view) {
@@ -43,13 +46,45 @@ spec::Rgba8Image readBack(const gpu::Texture& view) {
   return image;
 }
 
+spec::Rgba8Image cut(const spec::Rgba8Image& image, const PicturePart& part) {
+  spec::Rgba8Image made{part.width, part.height, {}};
+  for (std::size_t y = 0; y < part.height; ++y) {
+    const std::size_t first = 4 * ((part.top + y) * image.width + part.left);
+    const auto row = image.texels.begin() + static_cast<std::ptrdiff_t>(first);
+    made.texels.insert(made.texels.end(), row,
+                       row + static_cast<std::ptrdiff_t>(4 * std::size_t{part.width}));
+  }
+  return made;
+}
+
 }  // namespace
 
+// The world and a scene that is open alone have all of the view. Of scenes beside others, those without a
+// picture have the part around them.
+std::vector<Thumbnails::Shown> Thumbnails::shownIn(Session& session, const spec::Size& size) {
+  if (!isPlain(session)) return {};
+  std::vector<Shown> shown;
+  const PicturePart all{0, 0, size.width, size.height};
+  if (!session.files.world().empty() && !session.files.modified())
+    if (auto world = assetAt(session.files.world())) shown.push_back({std::move(*world), all});
+  const auto& entries = session.scenes.entries();
+  const bool alone = entries.size() == 1 && session.files.world().empty();
+  for (const SceneEntry& entry : entries)
+    for (Asset& file : filesOf(entry)) {
+      if (alone)
+        shown.push_back({std::move(file), all});
+      else if (entry.slot && session.asset_pictures.lacks(file))
+        if (const auto part = partWithBox(session.viewing.shown_view, size, boundsOf(session, *entry.slot)))
+          shown.push_back({std::move(file), *part});
+    }
+  return shown;
+}
+
 void Thumbnails::takeFromView(Session& session, const gpu::Texture& view) {
-  const std::vector<Asset> shown = shownAlone(session);
+  const std::vector<Shown> shown = shownIn(session, {view.desc().width, view.desc().height});
   if (shown.empty() || !taken_.renew(shown, session.scenes.version())) return;
-  const spec::Rgba8Image small = smallPictureOf(readBack(view));
-  for (const Asset& asset : shown) session.asset_pictures.keep(asset, small);
+  const spec::Rgba8Image image = readBack(view);
+  for (const Shown& one : shown) session.asset_pictures.keep(one.asset, smallPictureOf(cut(image, one.part)));
 }
 
 void Thumbnails::update(Session& session, const gpu::Texture& view) {

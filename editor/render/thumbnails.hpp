@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "editor/session/scene_part.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/base/change_gate.hpp"
 #include "runtime/gpu/objects.hpp"
@@ -16,16 +17,25 @@ class Thumbnails {
  public:
   // Uploads new pictures, and tells the session their textures. When a scene or a world that is shown has
   // come to rest, a small copy of `view` (row 0 at the bottom) becomes its picture; so again when a better
-  // bake is shown. Call it once a frame.
+  // bake is shown. A scene beside others that has no picture gets the part of the view around it. Call it
+  // once a frame.
   void update(Session& session, const gpu::Texture& view);
 
  private:
+  // Holds a file, and the part of the view that shows its contents.
+  struct Shown {
+    Asset asset;
+    PicturePart part;
+    bool operator==(const Shown&) const = default;
+  };
+  // size: of the view in pixels.
+  static std::vector<Shown> shownIn(Session& session, const spec::Size& size);
   void takeFromView(Session& session, const gpu::Texture& view);
 
   std::map<std::filesystem::path, gpu::Texture> textures_;
   // Tells when the view's picture must be taken: it compares the files that it shows and the version of the
   // scenes.
-  ChangeGate<std::vector<Asset>, std::uint64_t> taken_;
+  ChangeGate<std::vector<Shown>, std::uint64_t> taken_;
 };
 
 }  // namespace lambent::editor

@@ -99,6 +99,11 @@ const AssetPictures::Picture& AssetPictures::of(const Asset& asset) {
   return picture;
 }
 
+bool AssetPictures::lacks(const Asset& asset) {
+  const Picture& picture = of(asset);
+  return !picture.coming && picture.texture == 0 && picture.image.texels.empty();
+}
+
 void AssetPictures::keep(const Asset& asset, spec::Rgba8Image image) {
   asked_[asset.file] = asset;
   worker_->add({.asset = asset, .keep = image});

@@ -32,6 +32,9 @@ class AssetPictures {
   // Returns the picture as far as it is there. The first call for a file, or for a file that changed, asks
   // for it.
   const Picture& of(const Asset& asset);
+  // Returns whether it is known that there is no picture of the asset. The first call asks for it, as of()
+  // does.
+  bool lacks(const Asset& asset);
   // Gives the asset another picture, and keeps it on disk.
   void keep(const Asset& asset, spec::Rgba8Image image);
   // Takes what has come. Call it once a frame.

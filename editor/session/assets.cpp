@@ -6,15 +6,15 @@
 #include <string>
 
 #include "baker/pipeline/source_watch.hpp"
-#include "editor/document/tree.hpp"
 #include "editor/document/world_file.hpp"
+#include "runtime/base/lower_case.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
 std::optional<AssetKind> kindByName(const std::filesystem::path& file) {
-  const std::string ending = file.extension().string();
+  const std::string ending = lowerCase(file.extension().string());
   if (ending == ".hdr" || ending == ".exr") return AssetKind::EnvironmentMap;
   if (file.filename().string().ends_with(".lmb.glb")) return AssetKind::Bundle;
   if (baker::isSceneFile(file)) return AssetKind::Scene;
@@ -79,8 +79,9 @@ std::vector<Asset> listAssets(const std::filesystem::path& folder, std::optional
 }
 
 bool matches(const Asset& asset, std::string_view search) {
-  const std::string text = lower(asset.file.filename().string() + ' ' + std::string(kindWord(asset.kind)));
-  std::istringstream words(lower(search));
+  const std::string text =
+      lowerCase(asset.file.filename().string() + ' ' + std::string(kindWord(asset.kind)));
+  std::istringstream words(lowerCase(search));
   for (std::string word; words >> word;)
     if (text.find(word) == std::string::npos) return false;
   return true;

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "editor/session/dialog_files.hpp"
+
 namespace lambent::editor {
 
 class Session;
@@ -33,6 +35,7 @@ struct Dialog {
   std::string yes = "OK", no = "Cancel", third;  // button texts; an empty third one has no button
   std::function<void(Session&, const std::string& answer)> answered;
   std::function<void(Session&)> third_chosen;
+  DialogFiles found;  // what the window lists for it
 };
 
 }  // namespace lambent::editor

@@ -5,17 +5,54 @@
 
 #include <fmt/format.h>
 
+#include "editor/session/file_questions.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
 
-void Files::openLogged(const std::filesystem::path& path) {
-  if (auto opened = open(path); !opened) session_.log.error(opened.error());
+namespace {
+
+bool isWorld(const std::filesystem::path& path) {
+  return path.extension() == ".json";
 }
 
-Result<void> Files::open(const std::filesystem::path& path) {
-  if (path.extension() == ".json") return openWorld(path);
+}  // namespace
+
+bool Files::asksToOpen(const std::vector<std::filesystem::path>& paths) {
+  // A file that cannot be read takes no place, so nothing needs to be asked for it.
+  const auto world = std::ranges::find_if(
+      paths, [](const std::filesystem::path& path) { return isWorld(path) && loadWorldFile(path); });
+  if (world == paths.end() || !modified()) return false;
+  unlessUnsaved(fmt::format("The world has edits that are not saved. Open {} without them?",
+                            world->filename().string()),
+                [paths](Session& session) { session.files.openAll(paths); });
+  return true;
+}
+
+Result<void> Files::open(const std::vector<std::filesystem::path>& paths) {
+  if (asksToOpen(paths)) return {};
+  for (const std::filesystem::path& path : paths)
+    if (auto opened = openNow(path); !opened) return opened;
+  return {};
+}
+
+void Files::openLogged(const std::vector<std::filesystem::path>& paths) {
+  if (!asksToOpen(paths)) openAll(paths);
+}
+
+void Files::openAll(const std::vector<std::filesystem::path>& paths) {
+  for (const std::filesystem::path& path : paths)
+    if (auto opened = openNow(path); !opened) session_.log.error(opened.error());
+}
+
+Result<void> Files::openNow(const std::filesystem::path& path) {
+  if (isWorld(path)) {
+    auto file = loadWorldFile(path);
+    if (!file) return failAgain(file.error());
+    openWorld(path, std::move(*file));
+    return {};
+  }
   const bool first = session_.scenes.entries().empty();
   if (auto opened = session_.scene_steps.open(path); !opened) return opened;
   session_.preferences.addRecent(path);
@@ -23,15 +60,13 @@ Result<void> Files::open(const std::filesystem::path& path) {
   return {};
 }
 
-Result<void> Files::openWorld(const std::filesystem::path& path) {
-  auto file = loadWorldFile(path);
-  if (!file) return failAgain(file.error());
+void Files::openWorld(const std::filesystem::path& path, WorldFile file) {
   closeAll();
   Log& log = session_.log;
-  for (const BundleEntry& bundle : file->state.bundles) session_.scenes.open(bundle, path.parent_path());
-  for (const std::string& notice : file->notices) log.warn(path.string() + ": " + notice);
-  const ApplyReport applied = applyWorld(session_.document, *file);
-  const std::size_t wait = session_.scene_steps.await(file->entities);
+  for (const BundleEntry& bundle : file.state.bundles) session_.scenes.open(bundle, path.parent_path());
+  for (const std::string& notice : file.notices) log.warn(path.string() + ": " + notice);
+  const ApplyReport applied = applyWorld(session_.document, file);
+  const std::size_t wait = session_.scene_steps.await(file.entities);
   const auto& scenes = session_.scenes.entries();
   if (!std::ranges::all_of(scenes, [](const SceneEntry& scene) { return scene.slot.has_value(); })) {
     if (wait > 0) log.note(fmt::format("{}: edits of {} objects wait for their scene", path.string(), wait));
@@ -39,12 +74,11 @@ Result<void> Files::openWorld(const std::filesystem::path& path) {
     for (const std::string& missing : applied.missing)
       log.warn(path.string() + ": " + missing + " is not there any more; its edits wait");
   }
-  loaded_ = std::move(*file);
+  loaded_ = std::move(file);
   world_ = path;
   session_.history.clear();
   session_.preferences.addRecent(path);
   session_.followDocument();
-  return {};
 }
 
 // Stores the state of the scenes and the camera in the document before it is saved.
@@ -104,10 +138,7 @@ void Files::unlessUnsaved(std::string question, std::function<void(Session&)> th
   ask.answered = [then](Session& session, const std::string&) { then(session); };
   ask.third_chosen = [then](Session& session) {
     Files& files = session.files;
-    if (files.world().empty()) {
-      session.log.warn("the world has no file yet: save it with File > Save as");
-      return;
-    }
+    if (files.world().empty()) return askWhereToSave(session, then);
     if (auto saved = files.save(files.world()); !saved) return session.log.error(saved.error());
     then(session);
   };

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "editor/document/world_file.hpp"
 #include "runtime/base/result.hpp"
@@ -20,9 +21,12 @@ class Files {
   // The session must outlive it.
   explicit Files(Session& session) : session_(session) {}
 
-  // Opens a scene, a bundle, a folder of them, or a world.
-  Result<void> open(const std::filesystem::path& path);
-  void openLogged(const std::filesystem::path& path);
+  // Opens scenes, bundles, folders of them, or a world, which takes the place of everything. If that would
+  // lose edits, a dialog asks first, and all is opened after its answer. Errors: those of the first that
+  // cannot be opened; the rest is not opened then.
+  Result<void> open(const std::vector<std::filesystem::path>& paths);
+  // The same, but each error is logged, and the rest is opened.
+  void openLogged(const std::vector<std::filesystem::path>& paths);
   // Saves the world to this file, which becomes the world's file.
   Result<void> save(const std::filesystem::path& path);
   // Closes everything and begins an empty world, without asking.
@@ -33,13 +37,18 @@ class Files {
   // Returns whether closing would lose edits. Scenes that are merely open do not count while the world has no
   // file.
   bool modified() const;
-  // Calls `then`. If there are unsaved edits, a dialog asks first.
+  // Calls `then`. If there are unsaved edits, a dialog asks first, and offers to save them.
   void unlessUnsaved(std::string question, std::function<void(Session&)> then);
   // Quits the editor, after the same question.
   void askToQuit();
 
  private:
-  Result<void> openWorld(const std::filesystem::path& path);
+  // Asks before a world takes the place of unsaved edits, and opens the paths after the answer. Returns
+  // whether it asks.
+  bool asksToOpen(const std::vector<std::filesystem::path>& paths);
+  void openAll(const std::vector<std::filesystem::path>& paths);
+  Result<void> openNow(const std::filesystem::path& path);
+  void openWorld(const std::filesystem::path& path, WorldFile file);
   void keepWorldState();
 
   Session& session_;

@@ -95,6 +95,8 @@ Preferences loadPreferences(const std::filesystem::path& file) {
   try {
     read(json, "width", p.width), read(json, "height", p.height);
     if (const auto layout = json.find("layout"); layout != json.end()) readLayout(*layout, p.layout);
+    if (const auto layouts = json.find("layouts"); layouts != json.end())
+      for (const auto& [name, layout] : layouts->items()) readLayout(layout, p.layouts[name]);
     if (const auto handles = json.find("handles"); handles != json.end()) readHandles(*handles, p.handles);
     read(json, "cameraPreview", p.camera_preview);
     read(json, "desktopDialogs", p.desktop_dialogs);
@@ -114,10 +116,13 @@ void savePreferences(const std::filesystem::path& file, const Preferences& p) {
   std::filesystem::create_directories(file.parent_path(), ignored);
   auto out = AtomicFile::open(file);
   if (!out) return;
+  nlohmann::json layouts = nlohmann::json::object();
+  for (const auto& [name, layout] : p.layouts) layouts[name] = layoutJson(layout);
   const std::string text = nlohmann::json{
       {"width", p.width},
       {"height", p.height},
       {"layout", layoutJson(p.layout)},
+      {"layouts", layouts},
       {"handles", handlesJson(p.handles)},
       {"cameraPreview", p.camera_preview},
       {"desktopDialogs", p.desktop_dialogs},

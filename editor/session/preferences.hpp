@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,9 @@ namespace lambent::editor {
 struct Preferences {
   int width = 1600, height = 950;  // of the window
   WindowLayout layout;
-  GizmoOptions handles;           // as the view had them at the end of the last run
-  bool camera_preview = true;     // an inset shows what a selected camera sees
+  std::map<std::string, WindowLayout> layouts;  // those that the user saved, by name
+  GizmoOptions handles;                         // as the view had them at the end of the last run
+  bool camera_preview = true;                   // an inset shows what a selected camera sees
   bool desktop_dialogs = true;    // files are chosen in the desktop's own dialogs where there are any
   float scale = 1.0f;             // of text and widgets
   std::string light_unit = "cd";  // in which lights are given that can be given in it

@@ -68,7 +68,7 @@ const Baseline& SceneChanges::baseline() {
   std::pair<std::uint64_t, std::vector<const void*>> of{scenes_.version(), {}};
   for (const SceneEntry& entry : scenes_.entries())
     if (entry.slot) {
-      bundles.push_back({&world_.description(*entry.slot), entry.id, 0});
+      bundles.push_back({&world_.description(*entry.slot), entry.id, entry.instance});
       of.second.push_back(bundles.back().description);
     }
   if (of == baseline_of_) return baseline_;

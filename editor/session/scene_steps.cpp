@@ -37,9 +37,9 @@ class SceneChange : public OutsideChange {
   bool opened_;
 };
 
-std::optional<std::size_t> placeOf(const Scenes& scenes, const std::string& id) {
+std::optional<std::size_t> placeOf(const Scenes& scenes, const SceneEntry& entry) {
   const auto& entries = scenes.entries();
-  const auto found = std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.id == id; });
+  const auto found = std::ranges::find_if(entries, [&](const auto& other) { return other.isSame(entry); });
   if (found == entries.end()) return std::nullopt;
   return static_cast<std::size_t>(found - entries.begin());
 }
@@ -63,8 +63,7 @@ Overrides lacking(const Document& document, Overrides all) {
 }  // namespace
 
 Result<void> SceneSteps::open(const std::filesystem::path& path) {
-  std::vector<std::string> before;
-  for (const SceneEntry& entry : session_.scenes.entries()) before.push_back(entry.id);
+  const std::vector<SceneEntry> before = session_.scenes.entries();
   const std::vector<std::filesystem::path> watched = session_.scenes.watched();
   if (auto opened = session_.scenes.open(path); !opened) return opened;
   session_.document.adoptAll();
@@ -75,7 +74,7 @@ Result<void> SceneSteps::open(const std::filesystem::path& path) {
   };
   const auto& entries = session_.scenes.entries();
   for (std::size_t i = 0; i < entries.size(); ++i)
-    if (std::find(before.begin(), before.end(), entries[i].id) == before.end())
+    if (std::ranges::none_of(before, [&](const auto& other) { return other.isSame(entries[i]); }))
       did({.entry = entries[i], .place = i, .kept = {}, .folder = {}});
   for (const std::filesystem::path& folder : session_.scenes.watched())
     if (std::find(watched.begin(), watched.end(), folder) == watched.end()) {
@@ -100,7 +99,7 @@ Result<void> SceneSteps::bring(const ClosedScene& scene) {
     return {};
   }
   if (auto done = session_.scenes.reopen(scene.entry, scene.place); !done) return done;
-  waiting_.push_back({scene.entry.id, scene.kept});
+  waiting_.push_back({scene.entry, scene.kept});
   update();
   return {};
 }
@@ -110,12 +109,12 @@ bool SceneSteps::take(ClosedScene& scene) {
     session_.scenes.unwatchFolder(scene.folder);
     return true;
   }
-  const auto place = placeOf(session_.scenes, scene.entry.id);
+  const auto place = placeOf(session_.scenes, scene.entry);
   if (!place) return false;
   scene.entry = session_.scenes.entries()[*place];
   scene.place = *place;
-  const auto waits = std::find_if(waiting_.begin(), waiting_.end(),
-                                  [&](const Waiting& waiting) { return waiting.id == scene.entry.id; });
+  const auto waits = std::ranges::find_if(
+      waiting_, [&](const Waiting& waiting) { return waiting.entry.isSame(scene.entry); });
   if (waits != waiting_.end()) {
     // Its edits were never restored, so they are what is kept.
     scene.kept = std::move(waits->kept);
@@ -147,7 +146,7 @@ void SceneSteps::restoreAwaited() {
 void SceneSteps::update() {
   restoreAwaited();
   for (std::size_t i = 0; i < waiting_.size();) {
-    const auto place = placeOf(session_.scenes, waiting_[i].id);
+    const auto place = placeOf(session_.scenes, waiting_[i].entry);
     if (place && !session_.scenes.entries()[*place].slot) {
       ++i;
       continue;

@@ -44,7 +44,7 @@ class SceneSteps {
 
  private:
   struct Waiting {
-    std::string id;
+    SceneEntry entry;
     Overrides kept;
   };
 

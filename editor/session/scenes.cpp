@@ -120,7 +120,11 @@ Result<void> Scenes::open(const std::filesystem::path& path) {
 }
 
 void Scenes::open(const BundleEntry& saved, const std::filesystem::path& folder) {
-  SceneEntry entry{.bundle = plain(folder / saved.path), .id = saved.id, .options = optionsOf(saved)};
+  SceneEntry entry{.bundle = plain(folder / saved.path),
+                   .id = saved.id,
+                   .instance = saved.instance,
+                   .options = optionsOf(saved),
+                   .unknown = saved.unknown};
   std::error_code ignored;
   if (!saved.source.empty()) {
     entry.source = plain(folder / saved.source);
@@ -152,7 +156,7 @@ void Scenes::open(const BundleEntry& saved, const std::filesystem::path& folder)
 }
 
 Result<void> Scenes::openBundle(SceneEntry entry) {
-  const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id});
+  const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id, .instance = entry.instance});
   if (!slot) return failAgain(slot.error());
   entry.slot = *slot, entry.shown = entry.bundle;
   entries_.push_back(std::move(entry));
@@ -181,7 +185,7 @@ void Scenes::openScene(SceneEntry entry) {
   std::error_code ignored;
   // A bundle that exists is shown meanwhile, even if it is out of date.
   if (std::filesystem::exists(entry.bundle, ignored)) {
-    if (const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id}))
+    if (const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id, .instance = entry.instance}))
       entry.slot = *slot, entry.shown = entry.bundle;
   }
   std::erase_if(unfinished_,
@@ -245,7 +249,7 @@ void Scenes::show(SceneEntry& entry, const std::filesystem::path& bundle) {
     if (auto replaced = world_.replace(*entry.slot, bundle); !replaced) log_.error(replaced.error());
     return;
   }
-  const auto slot = world_.open(bundle, {.bundle_id = entry.id});
+  const auto slot = world_.open(bundle, {.bundle_id = entry.id, .instance = entry.instance});
   if (slot)
     entry.slot = *slot;
   else
@@ -344,7 +348,7 @@ Result<void> Scenes::reopen(SceneEntry entry, std::size_t place) {
   std::error_code ignored;
   const bool source = !entry.source.empty() && std::filesystem::exists(entry.source, ignored);
   if (std::filesystem::exists(entry.bundle, ignored)) {
-    const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id});
+    const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id, .instance = entry.instance});
     if (slot)
       entry.slot = *slot, entry.shown = entry.bundle, entry.missing.reset();
     else if (!source && !entry.missing)
@@ -375,9 +379,11 @@ std::vector<BundleEntry> Scenes::state(const std::filesystem::path& folder) cons
     BundleEntry& bundle = bundles.emplace_back();
     bundle.path = relative(entry.bundle);
     bundle.id = entry.id;
+    bundle.instance = entry.instance;
     if (!entry.source.empty()) bundle.source = relative(entry.source);
     bundle.bake_options = entry.options.settings();
     if (!entry.edits.empty()) bundle.bake_options[kEditsOption] = baker::editsText(entry.edits);
+    bundle.unknown = entry.unknown;
   }
   return bundles;
 }

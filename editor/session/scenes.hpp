@@ -24,6 +24,7 @@ struct SceneEntry {
   std::filesystem::path source{};       // the glTF file; empty: only a bundle
   std::filesystem::path bundle{};       // path of the final bundle, which may not exist yet
   std::string id{};                     // its part of StableIds and world files
+  std::uint32_t instance = 0;           // tells apart entries of one id
   std::optional<std::uint32_t> slot{};  // its slot in frame::World
   std::filesystem::path shown{};        // the bundle that is in that slot or being loaded into it
   std::optional<baker::JobId> job{};
@@ -32,6 +33,9 @@ struct SceneEntry {
   baker::SceneEdits shown_edits{};  // the edits that the shown bundle was baked with
   // Why the bundle cannot be opened and its scene is not there. The scene waits until it is back.
   std::optional<Error> missing{};
+  UnknownFields unknown{};  // of its entry in the world file
+
+  bool isSame(const SceneEntry& other) const { return id == other.id && instance == other.instance; }
 };
 
 struct SceneSettings {

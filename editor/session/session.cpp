@@ -61,7 +61,7 @@ Result<std::unique_ptr<Session>> Session::create(const SessionOptions& options, 
   if (!stage) return failAgain(stage.error());
   std::unique_ptr<Session> session(new Session(options, std::move(preferences), std::move(*stage)));
   session->followDocument();
-  for (const std::filesystem::path& file : options.files) session->files.openLogged(file);
+  session->files.openLogged(options.files);
   session->scenes.findUnfinished();
   session->history.clear();
   return session;
@@ -120,6 +120,11 @@ void Session::update(double seconds) {
   }
   stage.world().updateTransforms();
   viewing.update(document, seconds);
+}
+
+bool Session::awaitsScene() const {
+  const auto waits = [](const SceneEntry& entry) { return !entry.slot && !entry.missing; };
+  return scenes.busy() && std::ranges::any_of(scenes.entries(), waits);
 }
 
 bool Session::moving() const {

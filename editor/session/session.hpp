@@ -65,7 +65,7 @@ class Session {
   bool empty() const { return scenes.entries().empty() && document.registry().count<Created>() == 0; }
 
   // Scripts wait for these conditions.
-  bool loaded() const { return stage.world().loaded() && !viewing.frame_when_loaded; }
+  bool loaded() const { return stage.world().loaded() && (!viewing.frame_when_loaded || !awaitsScene()); }
   bool baked() const { return !scenes.busy() && loaded(); }
   bool atRest() const { return loaded() && picture.settled && !picture.in_flight; }
   bool measured() const { return !settings.busy() && !qualities.busy(); }
@@ -104,6 +104,8 @@ class Session {
 
  private:
   Session(const SessionOptions& options, Preferences preferences, Stage stage);
+  // Returns whether a scene is open of which nothing is shown yet, and may be.
+  bool awaitsScene() const;
   void logBundleErrors();
   void useDesktopDialogs();
 

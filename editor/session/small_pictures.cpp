@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint32_t kMapWidth = 128, kMapHeight = 64;
 constexpr std::uint32_t kViewWidth = 192, kViewHeight = 108;
+static_assert(kViewWidth == kSmallPictureShape * kViewHeight);
 
 std::uint8_t coded(float value) {
   const float clamped = std::clamp(value, 0.0f, 1.0f);

@@ -35,8 +35,8 @@ struct WindowLayout {
   bool operator==(const WindowLayout&) const = default;
 };
 
-// Returns "default", "lighting" (the environment beside the inspector of lamps) or "baking" (bakes and plan),
-// or nothing if there is no layout of that name.
+// Returns one of the layouts that come with the program: "default", "lighting" (the environment beside the
+// inspector of lamps) or "baking" (bakes and plan). Returns nothing if there is none of that name.
 std::optional<WindowLayout> layoutNamed(std::string_view name);
 
 }  // namespace lambent::editor

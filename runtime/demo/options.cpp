@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "runtime/base/lower_case.hpp"
 #include "runtime/frame/quality.hpp"
 #include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
@@ -195,9 +196,7 @@ Result<void> understandPicture(const Words& words, Options& options) {
   }
   if (!words.headless.empty()) {
     options.headless = words.headless;
-    std::string extension = options.headless->extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowerCase(options.headless->extension().string());
     if (extension != ".png" && extension != ".exr")
       return fail("--headless", fmt::format("\"{}\" is neither .png nor .exr", words.headless),
                   "name a .png (tone-mapped) or an .exr (linear)");

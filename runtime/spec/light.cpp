@@ -1,7 +1,6 @@
 #include "runtime/spec/light.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <span>
 #include <string>
@@ -9,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "runtime/base/lower_case.hpp"
 #include "runtime/spec/numbers.hpp"
 
 namespace lambent::spec {
@@ -31,13 +31,6 @@ constexpr std::string_view kDiscForm =
 
 tl::unexpected<Error> wrong(std::string_view word, std::string problem, std::string_view hint) {
   return fail("light \"" + std::string(word) + "\"", std::move(problem), std::string(hint));
-}
-
-std::string lowerExtension(const std::filesystem::path& path) {
-  std::string text = path.extension().string();
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 // Parses one number for all channels, or three.
@@ -106,7 +99,7 @@ Result<Light> parseLight(std::string_view word) {
   if (word.starts_with(kSphere)) return parseSphere(word, word.substr(kSphere.size()));
   if (word.starts_with(kDisc)) return parseDisc(word, word.substr(kDisc.size()));
   const std::filesystem::path file(word);
-  const std::string extension = lowerExtension(file);
+  const std::string extension = lowerCase(file.extension().string());
   if (extension != ".hdr" && extension != ".exr")
     return wrong(word, "is no kind of light known here", kForms);
   return EnvironmentMapLight{file, std::nullopt};

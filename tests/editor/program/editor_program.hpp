@@ -6,6 +6,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -76,6 +77,12 @@ class EditorProgram : public ProgramTest {
     for (std::string line; std::getline(lines, line);)
       if (line.starts_with('{')) played.answers.push_back(nlohmann::json::parse(line));
     return played;
+  }
+  // Plays the script in a small window, when hello.glb was opened and is shown without a bake.
+  Played playInHello(const std::string& script, std::vector<std::string> arguments = {}) {
+    size = "900x600";
+    arguments.emplace_back("--no-bake");
+    return play(fmt::format("open {}\nwait loaded 60\n", path("hello.glb")) + script, std::move(arguments));
   }
   std::string path(const char* name) const { return (folder / name).string(); }
 

@@ -115,10 +115,7 @@ get Transform.translation
 }
 
 TEST_F(EditorProgram, DragsLightsAndSunsInSteps) {
-  size = "900x600";
-  const Played played = play(fmt::format(R"(
-open {0}
-wait loaded 60
+  const Played played = playInHello(R"(
 create-sphere 0 1 0
 set Light.radius 0.3
 wait frames 3
@@ -130,8 +127,7 @@ wait frames 20
 drag sun.handle 40 15 Ctrl
 state
 )",
-                                         path("hello.glb")),
-                             {"--no-bake", "--light", "sun:200,20,1,5"});
+                                    {"--light", "sun:200,20,1,5"});
   ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   EXPECT_EQ(played.answer("get"), 0.5);
   EXPECT_EQ(played.answer("state")["lights"][0], "sun:-165,15,1,5");
@@ -233,12 +229,54 @@ where tab.Environment
   EXPECT_EQ(lighting.find("tab.Bakes"), std::string::npos);
 }
 
+TEST_F(EditorProgram, KeepsLayoutsUnderNamesInTheMenu) {
+  const Played played = play(R"(
+move-panel Log right
+wait frames 3
+click menu.Window
+click menu.save-layout
+wait frames 3
+type "my own"
+click dialog.yes
+wait frames 3
+layout lighting
+wait frames 3
+click menu.Window
+click "menu.layout.my own"
+wait frames 3
+where tab.Log
+where viewport
+click menu.Window
+click menu.delete-layout
+click "menu.delete-layout.my own"
+wait frames 3
+try layout "my own"
+)");
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  EXPECT_GT(played.answer("where tab.Log")["x"], played.answer("where viewport")["x"]);
+  EXPECT_EQ(played.answers.back()["ok"], false) << "it was deleted";
+}
+
+// Notices must not lie over what panels say.
+TEST_F(EditorProgram, ShowsToastsInTheView) {
+  for (const char* scale : {"1", "2"}) {
+    const Played played =
+        play(fmt::format("drop {}\nwait frames 5\nwhere toasts\nwhere viewport\n", path("lost.glb")),
+             {"--scale", scale, "--fresh"});
+    ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+    const json &toasts = played.answer("where toasts"), &view = played.answer("where viewport");
+    const auto end = [](const json& area, const char* at, const char* extent) {
+      return area[at].get<double>() + area[extent].get<double>();
+    };
+    EXPECT_GE(toasts["x"], view["x"]) << "at scale " << scale;
+    EXPECT_LE(end(toasts, "x", "width"), end(view, "x", "width"));
+    EXPECT_LE(end(toasts, "y", "height"), end(view, "y", "height"));
+  }
+}
+
 // Counts frames instead of time: a machine under load draws no more of them.
 TEST_F(EditorProgram, DrawsNoFrameWhileNothingChanges) {
-  size = "900x600";
-  const Played played = play(fmt::format(R"(
-open {0}
-wait loaded 60
+  const Played played = playInHello(R"(
 create-camera 0 1 3
 wait rest 60
 wait seconds 1
@@ -250,9 +288,7 @@ wait seconds 1
 state
 wait seconds 1.5
 state
-)",
-                                         path("hello.glb")),
-                             {"--no-bake"});
+)");
   ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   std::vector<int> frames, pictures;
   for (const json& state : played.all("state")) {
@@ -269,10 +305,7 @@ state
 }
 
 TEST_F(EditorProgram, ShowsWhatASelectedCameraSees) {
-  size = "900x600";
-  const Played played = play(fmt::format(R"(
-open {0}
-wait loaded 60
+  const Played played = playInHello(R"(
 create-camera 0 1 3
 wait rest 60
 wait frames 5
@@ -288,9 +321,7 @@ get Transform.translation
 select-none
 wait frames 5
 marks
-)",
-                                         path("hello.glb")),
-                             {"--no-bake"});
+)");
   ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   EXPECT_GT(played.answer("where")["width"], 100.0);
   EXPECT_TRUE(played.answer("state")["eye"].get<std::string>().starts_with("pose:0,1,"))

@@ -169,7 +169,6 @@ TEST_F(WindowlessCommands, OpenAWorldOfWhichOneSceneIsGoneAndAnotherDoesNotBake)
   std::filesystem::rename(gone, away);
 
   session = makeSession();
-  answer("create-point");
   answer("open", {file});
   ASSERT_EQ(session->scenes.entries().size(), 2u) << "both are listed";
   const SceneStatus missing = statusOf(*session, 0);
@@ -285,6 +284,102 @@ TEST_F(WindowlessCommands, AskInADialogWhatHasNotBeenSaid) {
   const Dialog asked = *session->window.dialog;
   asked.answered(*session, {});
   EXPECT_TRUE(session->window.quit);
+}
+
+TEST_F(WindowlessCommands, AskBeforeAWorldTakesThePlaceOfUnsavedEdits) {
+  const std::string world = (folder.path() / "hall.json").string(),
+                    broken = (folder.path() / "broken.json").string(),
+                    scene = (folder.path() / "hello.glb").string();
+  ASSERT_TRUE(assets::writeGlb(scene, assets::hello()));
+  answer("create-point");
+  answer("save", {world});
+  answer("open", {world});
+  EXPECT_FALSE(session->window.dialog) << "nothing would be lost";
+  answer("create-sphere");
+  std::ofstream(broken) << "{}";
+  EXPECT_FALSE(run("open", {broken})) << "a file that cannot be read is told at once";
+  EXPECT_FALSE(session->window.dialog);
+  answer("open", {scene, world});
+  ASSERT_TRUE(session->window.dialog);
+  EXPECT_TRUE(session->scenes.entries().empty()) << "nothing is opened before the answer";
+  const Dialog asked = *std::exchange(session->window.dialog, std::nullopt);
+  EXPECT_EQ(answer("tree", {"type:light"}).size(), 2u);
+  asked.third_chosen(*session);
+  EXPECT_EQ(answer("tree", {"type:light"}).size(), 2u) << "it was saved, and is open again";
+  EXPECT_FALSE(session->files.modified());
+}
+
+TEST_F(WindowlessCommands, AskForTheFileOfAWorldThatIsSavedBeforeAnotherOne) {
+  answer("create-point");
+  answer("new");
+  ASSERT_TRUE(session->window.dialog);
+  const Dialog asked = *std::exchange(session->window.dialog, std::nullopt);
+  asked.third_chosen(*session);
+  ASSERT_TRUE(session->window.dialog) << "it has no file yet";
+  const Dialog saving = *std::exchange(session->window.dialog, std::nullopt);
+  EXPECT_EQ(saving.kind, Dialog::Kind::SaveFile);
+  const std::filesystem::path file = folder.path() / "mine.json";
+  saving.answered(*session, file.string());
+  EXPECT_TRUE(std::filesystem::exists(file));
+  EXPECT_TRUE(session->empty()) << "and then a new one has begun";
+}
+
+// What a later version wrote about a bundle must survive this one, and two bundles of one id stay apart.
+TEST_F(WindowlessCommands, KeepWhatAWorldFileSaysOfItsBundles) {
+  openHello();
+  std::filesystem::copy(session->scenes.entries().front().shown, folder.path() / "room.lmb.glb");
+  const std::string file = (folder.path() / "world.json").string();
+  const json bundles = {
+      {{"path", "room.lmb.glb"}, {"id", "room"}, {"instance", 3}, {"note", {{"by", "later"}}}},
+      {{"path", "room.lmb.glb"}, {"id", "room"}, {"instance", 0}}};
+  std::ofstream(file) << json{{"lambent_world", 1}, {"bundles", bundles}}.dump();
+  session = makeSession();
+  answer("open", {file});
+  waitForBundle(*session);
+  session->changes.baseline();
+  answer("save", {file});
+  const json saved = json::parse(std::ifstream(file))["bundles"];
+  ASSERT_EQ(saved.size(), 2u);
+  EXPECT_EQ(saved[0]["instance"], 3);
+  EXPECT_EQ(saved[0]["note"], bundles[0]["note"]);
+  EXPECT_EQ(saved[1]["instance"], 0);
+  EXPECT_EQ(session->log.errors(), 0u) << "they are two";
+  answer("close", {"1"});
+  answer("undo");
+  EXPECT_EQ(session->scenes.entries().size(), 2u);
+  answer("close", {"0"});
+  answer("undo");
+  EXPECT_EQ(session->scenes.entries()[0].instance, 3u);
+}
+
+TEST_F(WindowlessCommands, AreLoadedAtOnceInAnEmptyWorld) {
+  session->update(0.0);
+  EXPECT_TRUE(session->loaded());
+  ASSERT_TRUE(assets::writeGlb(folder.path() / "hello.glb", assets::hello()));
+  answer("open", {(folder.path() / "hello.glb").string()});
+  EXPECT_FALSE(session->loaded()) << "its first bundle is to come";
+  waitForBundle(*session);
+  answer("new");
+  session->window.dialog.reset();
+  session->files.closeAll();
+  session->update(0.0);
+  EXPECT_TRUE(session->loaded());
+}
+
+TEST_F(WindowlessCommands, SaveLayoutsUnderNames) {
+  answer("move-panel", {"Log", "right"});
+  answer("save-layout", {"mine"});
+  answer("layout", {"lighting"});
+  EXPECT_FALSE(run("save-layout", {"lighting"})) << "it comes with the program";
+  EXPECT_FALSE(run("save-layout", {""}));
+  answer("layout", {"mine"});
+  EXPECT_EQ(session->preferences.layout.moved, (std::map<std::string, Dock>{{"Log", Dock::Right}}));
+  const std::filesystem::path file = folder.path() / "editor.json";
+  savePreferences(file, session->preferences);
+  EXPECT_EQ(loadPreferences(file).layouts, session->preferences.layouts);
+  answer("delete-layout", {"mine"});
+  EXPECT_FALSE(run("layout", {"mine"}));
+  EXPECT_FALSE(run("delete-layout", {"mine"}));
 }
 
 TEST_F(WindowlessCommands, UseAnAssetByItsName) {

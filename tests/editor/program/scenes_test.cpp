@@ -1,0 +1,163 @@
+// Tests opening, dropping and closing scenes and worlds in the editor's window.
+#include "baker/pipeline/journal.hpp"
+#include "tests/editor/program/editor_program.hpp"
+
+namespace lambent {
+namespace {
+
+using nlohmann::json;
+using testing::EditorProgram;
+using testing::Played;
+using testing::told;
+
+TEST_F(EditorProgram, TakesADroppedSceneAndShowsItBeforeItIsBaked) {
+  const Played played =
+      play(fmt::format("drop {0}\nwait frames 3\nwait loaded 60\nstate\nwait baked 240\nstate\n"
+                       "tree type:light\nplan\nwait seconds 2\nplan\n",
+                       path("hello.glb")));
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  EXPECT_EQ(played.answer("state")["scenes"][0]["bake"]["reached"], "final");
+  EXPECT_EQ(played.answer("state")["errors"], 0);
+  EXPECT_EQ(played.answer("plan")["ready"], true);
+}
+
+// What another scene's bake left behind must not stand in the scene that is opened.
+TEST_F(EditorProgram, ShowsTheOpenedSceneAloneAndOffersUnfinishedBakes) {
+  std::filesystem::copy(path("hello.glb"), path("other.glb"));
+  baker::Journal(folder / "cache" / baker::kJournalFolder)
+      .begin({.scene = path("other.glb"), .output = path("other.lmb.glb")});
+  const Played played = play(R"(
+wait baked 240
+state
+tree type:bundle
+click bakes.other.glb.go-on
+wait frames 3
+wait baked 240
+state
+tree type:bundle
+)",
+                             {path("hello.glb"), "--fresh"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> states = played.all("state"), trees = played.all("tree");
+  ASSERT_EQ(trees.size(), 2u);
+  for (const json& tree : trees) EXPECT_EQ(tree.size(), 1u) << tree.dump();
+  EXPECT_EQ(states[0]["unfinished"], json::array({path("other.glb")}));
+  EXPECT_EQ(states[1]["unfinished"], json::array());
+  EXPECT_EQ(states[1]["unseen"][0]["phase"], "done") << states[1].dump();
+  EXPECT_TRUE(std::filesystem::exists(path("other.lmb.glb")));
+}
+
+TEST_F(EditorProgram, OpensAndClosesScenesAsStepsThatKeepEdits) {
+  const Played played = play(fmt::format(R"(
+open {0}
+wait loaded 60
+state
+expect /modified false
+select "has:Transform sphere"
+set Transform.translation 0.1 0.6 0.2
+state
+expect /modified true
+close
+wait frames 3
+state
+expect /scenes []
+undo
+wait loaded 60
+get Transform.translation
+expect /1 0.6
+undo
+get Transform.translation
+expect /1 0.3
+undo
+wait frames 3
+state
+expect /scenes []
+redo
+wait loaded 60
+redo
+get Transform.translation
+expect /1 0.6
+state
+expect /redo "Redo closing of hello"
+expect /errors 0
+)",
+                                         path("hello.glb")),
+                             {"--no-bake"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+}
+
+// Each way to another world must ask, and leave everything as it is if the answer is no.
+TEST_F(EditorProgram, AsksBeforeAWorldTakesThePlaceOfUnsavedEdits) {
+  const Played played = play(fmt::format(R"(
+wait rest 20
+create-empty
+save {0}
+create-empty
+wait frames 3
+drop {0}
+wait frames 3
+where dialog.third
+click dialog.no
+wait frames 3
+click menu.File
+click menu.open@0.05,0.5
+wait frames 3
+click dialog.name
+type {0}
+key Enter
+wait frames 3
+where dialog.third
+click dialog.no
+wait frames 3
+click menu.File
+click menu.recent@0.05,0.5
+click menu.recent.world.json@0.05,0.5
+wait frames 3
+where dialog.third
+click dialog.no
+wait frames 3
+key Ctrl+N
+wait frames 3
+where dialog.third
+click dialog.no
+wait frames 3
+key Ctrl+Q
+wait frames 3
+where dialog.third
+click dialog.no
+wait frames 3
+state
+tree empty
+open {0}
+wait frames 3
+click dialog.third
+wait frames 3
+state
+tree empty
+new
+wait rest 20
+lights constant:0.3,0.3,0.3
+wait frames 3
+click start.world.json
+wait frames 3
+where dialog.third
+click dialog.yes
+wait frames 3
+state
+tree empty
+)",
+                                         path("world.json")));
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  EXPECT_EQ(played.all("where").size(), 6u);
+  const std::vector<json> states = played.all("state"), trees = played.all("tree");
+  ASSERT_EQ(states.size(), 3u);
+  EXPECT_EQ(states[0]["modified"], true);
+  EXPECT_EQ(trees[0].size(), 2u) << "five times no";
+  EXPECT_EQ(states[1]["modified"], false) << "it was saved first";
+  EXPECT_EQ(trees[1].size(), 2u);
+  EXPECT_EQ(states[2]["modified"], false);
+  EXPECT_EQ(trees[2].size(), 2u);
+}
+
+}  // namespace
+}  // namespace lambent

@@ -1,0 +1,230 @@
+// Tests `lambent bake` as a user sees it: when it bakes, what it reports, and how it ends and goes on.
+#include <chrono>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/programs/lambent_program.hpp"
+
+namespace lambent {
+namespace {
+
+using nlohmann::json;
+using testing::bytesOf;
+using testing::expectOneLine;
+using testing::kGallery;
+using testing::kHello;
+using testing::LambentProgram;
+using testing::Outcome;
+using testing::writeBytes;
+
+TEST_F(LambentProgram, BakesBesideTheSceneUnlessToldWhere) {
+  std::filesystem::copy(kHello, folder / "hello.glb");
+  ASSERT_EQ(lambent({"bake", path("hello.glb"), "--quality", "draft"}).exit_code, 0);
+  EXPECT_EQ(lambent({"info", path("hello.lmb.glb")}).exit_code, 0);
+  // A bundle is a GLB file too, but not one to bake.
+  const std::ptrdiff_t files = fileCount();
+  for (const std::vector<std::string>& again :
+       {std::vector<std::string>{"bake", path("hello.lmb.glb"), "-o", path("b.lmb.glb")},
+        {"plan", path("hello.lmb.glb")}}) {
+    const Outcome outcome = lambent(again);
+    EXPECT_EQ(outcome.exit_code, 1);
+    expectOneLine(outcome, "lambent", again.front());
+    EXPECT_NE(outcome.err.find("is a bundle, which was baked already; name the scene"), std::string::npos);
+  }
+  EXPECT_EQ(fileCount(), files);
+}
+
+TEST_F(LambentProgram, BakesTheSameBytesWithAnyNumberOfThreads) {
+  ASSERT_EQ(bakeHello("one.lmb.glb", {"--threads", "1"}).exit_code, 0);
+  ASSERT_EQ(bakeHello("two.lmb.glb", {"--threads", "4000000000"}).exit_code, 0);
+  ASSERT_GT(bytesOf(folder / "one.lmb.glb").size(), 1000u);
+  EXPECT_TRUE(bytesOf(folder / "one.lmb.glb") == bytesOf(folder / "two.lmb.glb"));
+  EXPECT_EQ(fileCount(), 2);
+}
+
+TEST_F(LambentProgram, BakesAgainOnlyWhenSomethingChangedOrForced) {
+  const auto bundle = folder / "hello.lmb.glb";
+  ASSERT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);
+  const auto long_ago = std::filesystem::last_write_time(bundle) - std::chrono::hours(1);
+  std::filesystem::last_write_time(bundle, long_ago);
+  const std::string before = bytesOf(bundle);
+
+  const Outcome again = bakeHello("hello.lmb.glb");
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_NE(again.out.find("up to date"), std::string::npos) << again.out;
+  EXPECT_EQ(json::parse(bakeHello("hello.lmb.glb", {"--json"}).out)["upToDate"], true);
+  EXPECT_EQ(std::filesystem::last_write_time(bundle), long_ago);
+
+  EXPECT_EQ(bakeHello("hello.lmb.glb", {"--force"}).exit_code, 0);
+  EXPECT_GT(std::filesystem::last_write_time(bundle), long_ago);
+  EXPECT_TRUE(bytesOf(bundle) == before);
+
+  EXPECT_EQ(bakeHello("hello.lmb.glb", {"--order", "3"}).exit_code, 0);
+  EXPECT_FALSE(bytesOf(bundle) == before);
+  // A damaged bundle is not up to date.
+  std::string damaged = before;
+  damaged[before.size() / 2] ^= 1;
+  writeBytes(bundle, damaged);
+  EXPECT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);
+  EXPECT_TRUE(bytesOf(bundle) == before);
+}
+
+TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
+  const Outcome baked = bakeHello("hello.lmb.glb", {"--refine", "off", "--json"});
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  const json report = json::parse(baked.out);
+  EXPECT_EQ(report["output"], path("hello.lmb.glb"));
+  EXPECT_EQ(report["settings"]["rays"], "256");
+  EXPECT_GT(report["raysPerSecond"], 0.0);
+  EXPECT_EQ(report["fileBytes"], std::filesystem::file_size(folder / "hello.lmb.glb"));
+  EXPECT_LE(report["codingError"], 0.01);
+  EXPECT_LE(report["samples"], report["vertices"]);
+  EXPECT_FALSE(report["stages"].empty());
+  for (const json& stage : report["stages"]) EXPECT_GE(stage["seconds"], 0.0) << stage;
+
+  const Outcome planned = lambent({"plan", kHello, "--json"});
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  const json plan = json::parse(planned.out);
+  std::uint64_t vertices = 0, triangles = 0;
+  for (const json& group : plan["groups"]) {
+    vertices += group["vertices"].get<std::uint64_t>();
+    triangles += group["triangles"].get<std::uint64_t>();
+  }
+  ASSERT_EQ(plan["effects"].size(), 4u);
+  EXPECT_EQ(plan["effects"][0]["effect"], "diffuse");
+  EXPECT_EQ(plan["effects"][0]["baked"], true);
+  EXPECT_EQ(plan["effects"][1]["effect"], "glossy");
+  EXPECT_EQ(plan["effects"][1]["baked"], false);
+  EXPECT_EQ(plan["effects"][2]["effect"], "volume");
+  EXPECT_EQ(plan["effects"][2]["baked"], false);
+  EXPECT_EQ(plan["effects"][3]["effect"], "neighborhood");
+  EXPECT_EQ(plan["effects"][3]["baked"], false);
+  EXPECT_FALSE(plan["effects"][0]["reason"].get<std::string>().empty());
+  ASSERT_EQ(plan["groups"][0]["primitives"].size(), 3u) << "floor, box and sphere";
+  const auto expectDecided = [](const json& decisions) {
+    ASSERT_FALSE(decisions.empty());
+    for (const json& decision : decisions) {
+      const auto word = decision["decision"].get<std::string>();
+      EXPECT_TRUE(word == "baked" || word == "leftOut" || word == "absent" || word == "atRunTime") << word;
+      EXPECT_FALSE(decision["reason"].get<std::string>().empty()) << decision;
+      EXPECT_EQ(decision["saves"]["seconds"].is_null(), word != "absent")
+          << "without --quality nobody has rehearsed: " << decision;
+    }
+  };
+  expectDecided(plan["groups"][0]["decisions"]);
+  for (const json& primitive : plan["groups"][0]["primitives"]) expectDecided(primitive["decisions"]);
+
+  const Outcome told = lambent({"info", path("hello.lmb.glb"), "--json"});
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  const json info = json::parse(told.out);
+  EXPECT_EQ(info["triangles"], triangles);
+  EXPECT_EQ(info["triangles"], report["triangles"]);
+  EXPECT_EQ(info["vertices"], report["vertices"]);
+  EXPECT_LE(info["vertices"], vertices) << "coding joins equal vertices and adds none";
+  EXPECT_EQ(info["fileBytes"], report["fileBytes"]);
+  EXPECT_EQ(info["meshBytes"], report["meshBytes"]);
+  EXPECT_EQ(info["imageBytes"], report["imageBytes"]);
+  EXPECT_EQ(info["rowBytes"].get<int>() + info["codebookBytes"].get<int>() +
+                info["clusterIdBytes"].get<int>() + info["planeBytes"].get<int>() +
+                info["lightWeightBytes"].get<int>(),
+            report["transferBytes"].get<int>());
+  EXPECT_EQ(info["proxyBytes"], report["proxyBytes"]);
+  EXPECT_EQ(info["settings"]["order"], "5");
+  EXPECT_EQ(info["groups"].size(), plan["groups"].size());
+  EXPECT_EQ(info["groups"][0]["samples"], report["samples"]);
+  EXPECT_EQ(info["groups"][0]["lightSamples"], 1);
+  EXPECT_EQ(report["groups"][0]["lightSamples"], 1);
+  EXPECT_EQ(plan["groups"][0]["lightSamples"], 1);
+  EXPECT_FALSE(plan["groups"][0]["lightSamplesReason"].get<std::string>().empty());
+  EXPECT_GT(info["groups"][0]["proxyTriangles"][0], 0);
+  EXPECT_EQ(info["groups"][0]["proxyTriangles"], report["groups"][0]["proxyTriangles"]);
+  // The text output has the same figures.
+  for (const auto& arguments : {std::vector<std::string>{"plan", kHello}, {"info", path("hello.lmb.glb")}}) {
+    const Outcome words = lambent(arguments);
+    EXPECT_EQ(words.exit_code, 0);
+    EXPECT_EQ(words.err, "");
+    EXPECT_NE(words.out.find(std::to_string(triangles) + " triangles"), std::string::npos) << words.out;
+  }
+}
+
+TEST_F(LambentProgram, AnInterruptEndsALongBakeAndKeepsTheOldBundle) {
+  const auto bundle = folder / "gallery.lmb.glb";
+  writeBytes(bundle, "the old one");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const ::pid_t id = start(
+        LAMBENT_PROGRAM, {"bake", kGallery, "-o", bundle.string(), "--quality", "high", "--rays", "1048576"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    ::kill(id, signal);
+    const auto begin = std::chrono::steady_clock::now();
+    const Outcome outcome = finish(id);
+    // The bake itself would take hours; a slow, sanitized build has half a minute to notice.
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+    EXPECT_EQ(outcome.exit_code, 1);
+    expectOneLine(outcome, "lambent", "interrupted");
+    EXPECT_NE(outcome.err.find("stopped; nothing was written; with a cache, the next bake would go on"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(bytesOf(bundle), "the old one");
+    EXPECT_EQ(fileCount(), 1);
+  }
+}
+
+TEST_F(LambentProgram, TellsALogFileEveryTenSecondsHowFarItIs) {
+  const ::pid_t id = start(LAMBENT_PROGRAM, {"bake", kGallery, "-o", path("gallery.lmb.glb"), "--quality",
+                                             "high", "--rays", "1048576"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(11500));
+  ::kill(id, SIGINT);
+  const Outcome outcome = finish(id);
+  EXPECT_NE(outcome.err.find(" %  "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("/s, about "), std::string::npos) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\r'), 0)
+      << "a log file has no line to go back in";
+}
+
+TEST_F(LambentProgram, SaysThatABakeCannotBeResumedAndBakesOn) {
+  std::filesystem::create_directories(folder / "cache");
+  writeBytes(folder / "cache/journal", "a file where the journal's folder has to be");
+  const Outcome baked = bakeHello("hello.lmb.glb", {"--cache", path("cache")});
+  EXPECT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_NE(baked.err.find("journal"), std::string::npos) << baked.err;
+  EXPECT_NE(baked.err.find("--resume will not know of this bake"), std::string::npos) << baked.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "hello.lmb.glb"));
+}
+
+// Kills the bake as soon as this many results are in the cache, whatever it does at that moment.
+TEST_F(LambentProgram, GoesOnWhereItWasKilled) {
+  const std::string cache = path("cache");
+  const std::vector<std::string> options = {"--rays", "4096", "--cache", cache};
+  ASSERT_EQ(bakeHello("whole.lmb.glb", {"--rays", "4096"}).exit_code, 0);
+  const auto entries = [&] {
+    std::ptrdiff_t count = 0;
+    std::error_code ignored;
+    for (std::filesystem::recursive_directory_iterator at(cache, ignored), end; !ignored && at != end;
+         at.increment(ignored))
+      count += at->path().extension() == ".entry";
+    return count;
+  };
+  for (const std::ptrdiff_t enough : {1, 6}) {
+    std::vector<std::string> arguments = {"bake",      kHello,  "-o",        path("killed.lmb.glb"),
+                                          "--quality", "draft", "--threads", "1"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ::pid_t id = start(LAMBENT_PROGRAM, arguments);
+    int status = 0;
+    while (entries() < enough && ::waitpid(id, &status, WNOHANG) == 0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ::kill(id, SIGKILL);
+    ::waitpid(id, &status, 0);
+    EXPECT_FALSE(std::filesystem::exists(path("killed.lmb.glb")));
+  }
+  std::vector<std::string> rest = options;
+  rest.push_back("--json");
+  const Outcome resumed = bakeHello("resumed.lmb.glb", rest);
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  const json report = json::parse(resumed.out);
+  EXPECT_GT(report["refinement"]["raysKept"].get<double>(), 0.0);
+  EXPECT_TRUE(bytesOf(path("resumed.lmb.glb")) == bytesOf(path("whole.lmb.glb")));
+}
+
+}  // namespace
+}  // namespace lambent
