@@ -352,20 +352,6 @@ TEST_F(WindowlessCommands, KeepWhatAWorldFileSaysOfItsBundles) {
   EXPECT_EQ(session->scenes.entries()[0].instance, 3u);
 }
 
-TEST_F(WindowlessCommands, AreLoadedAtOnceInAnEmptyWorld) {
-  session->update(0.0);
-  EXPECT_TRUE(session->loaded());
-  ASSERT_TRUE(assets::writeGlb(folder.path() / "hello.glb", assets::hello()));
-  answer("open", {(folder.path() / "hello.glb").string()});
-  EXPECT_FALSE(session->loaded()) << "its first bundle is to come";
-  waitForBundle(*session);
-  answer("new");
-  session->window.dialog.reset();
-  session->files.closeAll();
-  session->update(0.0);
-  EXPECT_TRUE(session->loaded());
-}
-
 TEST_F(WindowlessCommands, SaveLayoutsUnderNames) {
   answer("move-panel", {"Log", "right"});
   answer("save-layout", {"mine"});

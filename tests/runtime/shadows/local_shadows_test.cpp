@@ -234,14 +234,15 @@ TEST_F(LocalShadowsTest, TheShadowOfARoundBodyIsDarkInsideAndRightAtItsRim) {
   EXPECT_LT(std::sqrt(squares), 0.04);
 }
 
-// With several samples a pixel, a contour covers pixels whose centre is beside it. A wall of 1 m height that is seen
-// almost edge-on has its plane there metres below its foot, where the lamp is.
+// With several samples a pixel, a contour covers pixels whose centre is beside it. A wall of 1 m height that
+// is seen almost edge-on has its plane there metres below its foot, where the lamp is.
 TEST_F(LocalShadowsTest, AContourIsLitWhereThePixelIsCovered) {
   constexpr float kHalf = 0.5f, kPixel = 2.0f * kHalf / kSize, kLean = 0.3f * kPixel;
   // The wall crosses the columns of pixels at ever other places of their width.
   const glm::vec3 along(-2.0f * kPixel, 0.0f, -0.4f), up(-0.5f * kLean, 0.5f, 0.0f);
   const glm::mat4 place(glm::vec4(along, 0.0f), glm::vec4(up, 0.0f),
-                        glm::vec4(glm::normalize(glm::cross(along, up)), 0.0f), glm::vec4(0.0f, 0.5f, 0.0f, 1.0f));
+                        glm::vec4(glm::normalize(glm::cross(along, up)), 0.0f),
+                        glm::vec4(0.0f, 0.5f, 0.0f, 1.0f));
   Stage stage(BundleBuilder().add({quadMesh(), grey(1.0f), place}));
   stage.samples = 4;
   ShadowedLight lamp;
