@@ -14,8 +14,8 @@ namespace lambent::editor {
 namespace {
 
 constexpr std::size_t kMostToasts = 4;
-// Toasts are no wider than the view, but at least so wide that a few words stand on a line.
-constexpr float kToastEms = 28.0f, kLeastToastEms = 14.0f, kToastGap = 12.0f;
+// Toasts are no wider than the view.
+constexpr float kToastEms = 28.0f, kToastGap = 12.0f;
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void drawToasts(Session& session, Marks& marks, const Rectangle& view) {
   if (recent.size() > kMostToasts)
     recent.erase(recent.begin(), recent.end() - static_cast<std::ptrdiff_t>(kMostToasts));
   const float room = view.max.x - view.min.x - 2.0f * kToastGap, right = view.max.x - kToastGap;
-  const float width = std::max(std::min(em(kToastEms), room), em(kLeastToastEms));
+  const float width = std::max(std::min(em(kToastEms), room), 1.0f);
   float bottom = view.max.y - kToastGap;
   for (std::size_t i = recent.size(); i-- > 0;) {
     const LogEntry& entry = recent[i];
