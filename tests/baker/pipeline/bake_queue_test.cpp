@@ -192,7 +192,7 @@ TEST_F(BakeQueueTest, AfterAKillTheShareGoesOnFromWhatWasKeptAndNeverFalls) {
   constexpr double kCheckpoint_s = 0.05, kBound = 0.15;
   write(folder / "a.glb", assets::knot());
   BakeOptions options = quick();
-  options.rays = 512;
+  options.rays = 1024;
   const BakeRequest asked = request("a", options);
   const auto cacheAt = [&](const std::string& name) {
     auto cache = Cache::open(folder / name);
