@@ -9,10 +9,16 @@ layout(binding = kUnitKeyShadows) uniform sampler2D key_depths;
 layout(binding = kUnitKeyBlockers) uniform sampler2D key_blockers;
 
 #include "key_light.glsl"
-#include "pixel_position.glsl"
 
 float keyDepth(ivec2 texel) { return texelFetch(key_depths, texel, 0).r; }
 vec2 keyBlockers(ivec2 texel, int level) { return texelFetch(key_blockers, texel, level).rg; }
+
+// Returns the position in view space. It is computed in homogeneous coordinates whose w is not needed:
+// gl_FragCoord.w has the depth at full precision, even where the depth buffer has little.
+vec3 keyPixelPosition() {
+  vec3 ndc = vec3(2.0 * gl_FragCoord.xy / key_view.picture.xy, 2.0 * gl_FragCoord.z) - 1.0;
+  return (key_view.view_from_clip * (vec4(ndc, 1.0) / gl_FragCoord.w)).xyz;
+}
 
 vec3 viewFromGroup(uint draw, vec3 v) {
   vec4 turn = draws[draw].world_from_group;
@@ -31,8 +37,9 @@ vec3 groupFromView(uint draw, vec3 v) {
 // radians.
 void addKeyLights(SurfacePoint at, inout SurfaceLight light) {
   light.keys_apart = true;
-  vec3 position = coveredPosition(key_view.view_from_clip);
-  vec3 normal = triangleNormal(key_view.view_from_clip, key_view.picture.xy);
+  vec3 position = keyPixelPosition();
+  // The cross product points to the eye, because the picture's axes and the direction to it are right-handed.
+  vec3 normal = localUnit(cross(dFdx(position), dFdy(position)));
   vec3 shaded = viewFromGroup(draw_of, at.normal);
   for (uint k = 0u; k < key_view.count; ++k) {
     float share = keyShare(key_lights[k], shaded);

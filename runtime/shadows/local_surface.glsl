@@ -1,7 +1,6 @@
 // Handles local lights in the surface pass: computes E/pi of all lights of the draw, with their shadows.
 #include "local_shared.h"
 #include "local_shadow.glsl"
-#include "pixel_position.glsl"
 
 layout(std140, binding = kBindShadowedLights) uniform LocalBlock {
   ShadowView local_view;
@@ -19,14 +18,22 @@ float localDistance(int light, int face, ivec2 texel) {
   return depth < 1.0 ? depth * shadowed_lights[light].reach : kNothing;
 }
 
+// Returns the position in view space. It is computed in homogeneous coordinates whose w is not needed:
+// gl_FragCoord.w has the depth at full precision, even where the depth buffer has little.
+vec3 pixelPosition() {
+  vec3 ndc = vec3(2.0 * gl_FragCoord.xy / vec2(local_view.width, local_view.height), 2.0 * gl_FragCoord.z) - 1.0;
+  return (local_view.view_from_clip * (vec4(ndc, 1.0) / gl_FragCoord.w)).xyz;
+}
+
 vec3 turned(vec4 turn, vec3 v) { return localUnit(v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v)); }
 
 // Adds the local lights at a point: E/pi and, on glossy surfaces, highlights. lightReflectance is pi times the
 // specular f towards the eye, for light that comes from a direction (group frame) and spreads over so many radians.
 void addLocalLights(SurfacePoint at, inout SurfaceLight light) {
-  vec3 position = (local_view.world_from_view * vec4(coveredPosition(local_view.view_from_clip), 1.0)).xyz;
-  vec3 normal = mat3(local_view.world_from_view) *
-                triangleNormal(local_view.view_from_clip, vec2(local_view.width, local_view.height));
+  vec3 position_vs = pixelPosition();
+  vec3 position = (local_view.world_from_view * vec4(position_vs, 1.0)).xyz;
+  // The cross product points to the eye, because the picture's axes and the direction to it are right-handed.
+  vec3 normal = localUnit(mat3(local_view.world_from_view) * cross(dFdx(position_vs), dFdy(position_vs)));
   vec4 turn = local_draws[at.draw].world_from_group;
   vec3 horizon = turned(turn, at.smooth_normal);
   vec3 shading_normal = turned(turn, at.normal);

@@ -17,7 +17,6 @@ layout(location = 0) in uint draw_index;  // one per instance: the draw's base i
 layout(location = 0) flat out uint draw_of;
 layout(location = 1) out vec4 looks_at;
 layout(location = 2) out vec4 vertex_color;
-layout(location = 15) centroid out vec4 covered_clip;  // see pixel_position.glsl
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
 vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
@@ -54,5 +53,4 @@ void main() {
   writeReceiver(vertex, position);
   draw_of = draw_index;
   gl_Position = clip_from_view * (view_from_world * (draws[draw_index].world_from_mesh * vec4(position, 1.0)));
-  covered_clip = gl_Position;
 }

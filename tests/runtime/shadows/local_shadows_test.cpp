@@ -234,31 +234,6 @@ TEST_F(LocalShadowsTest, TheShadowOfARoundBodyIsDarkInsideAndRightAtItsRim) {
   EXPECT_LT(std::sqrt(squares), 0.04);
 }
 
-// With several samples a pixel, a contour covers pixels whose centre is beside it. A wall of 1 m height that
-// is seen almost edge-on has its plane there metres below its foot, where the lamp is.
-TEST_F(LocalShadowsTest, AContourIsLitWhereThePixelIsCovered) {
-  constexpr float kHalf = 0.5f, kPixel = 2.0f * kHalf / kSize, kLean = 0.3f * kPixel;
-  // The wall crosses the columns of pixels at ever other places of their width.
-  const glm::vec3 along(-2.0f * kPixel, 0.0f, -0.4f), up(-0.5f * kLean, 0.5f, 0.0f);
-  const glm::mat4 place(glm::vec4(along, 0.0f), glm::vec4(up, 0.0f),
-                        glm::vec4(glm::normalize(glm::cross(along, up)), 0.0f),
-                        glm::vec4(0.0f, 0.5f, 0.0f, 1.0f));
-  Stage stage(BundleBuilder().add({quadMesh(), grey(1.0f), place}));
-  stage.samples = 4;
-  ShadowedLight lamp;
-  lamp.position_ws = {0.2f, -1.5f, 0.0f};
-  lamp.power = glm::vec3(1.0f);
-  const auto picture = stage.picture(above(kHalf, 3.0f), lamp);
-  // Nothing of the wall is nearer to the lamp than its foot, at 1.5 m.
-  constexpr float kMost = 1.0f / (1.5f * 1.5f * kPi);
-  std::size_t lit = 0;
-  for (const glm::vec4& pixel : picture) {
-    EXPECT_LE(pixel.r, kMost);
-    lit += pixel.r > 0.0f ? 1 : 0;
-  }
-  EXPECT_GT(lit, kSize / 2) << "the wall is in the picture";
-}
-
 TEST_F(LocalShadowsTest, ALightWithoutExtentCastsEdgesAsSharpAsItsTexels) {
   Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(level(1.0f, 2.0f, {-2.0f, 0})));
   constexpr float kHalf = 0.5f;

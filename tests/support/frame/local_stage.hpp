@@ -76,7 +76,6 @@ struct Stage {
   std::optional<Surfaces> surfaces;
   gpu::Counters raster, shadows;
   std::vector<std::uint32_t> masks = {0xfu};
-  std::uint32_t samples = 0;  // of a pixel, as gpu::TextureDesc::samples
 
   explicit Stage(const BundleBuilder& builder, const LocalOptions& options = {}, float sky = 0.0f)
       : path(std::filesystem::path(::testing::TempDir()) /
@@ -122,12 +121,9 @@ struct Stage {
         world, diffuse, view,
         {.options = {}, .modules = plain ? std::span<const SurfaceModule* const>() : modules}, raster);
     EXPECT_TRUE(done) << done.error().line();
-    const gpu::Texture drawn("drawn",
-                             {.format = GL_RGBA32F, .width = kSize, .height = kSize, .samples = samples});
-    const gpu::Texture depth(
-        "depth", {.format = GL_DEPTH_COMPONENT32F, .width = kSize, .height = kSize, .samples = samples});
     const gpu::Texture color("picture", {.format = GL_RGBA32F, .width = kSize, .height = kSize});
-    const gpu::Framebuffer target("drawn", drawn, &depth), resolved("picture", color, nullptr);
+    const gpu::Texture depth("depth", {.format = GL_DEPTH_COMPONENT32F, .width = kSize, .height = kSize});
+    const gpu::Framebuffer target("picture", color, &depth);
     glBindFramebuffer(GL_FRAMEBUFFER, target.id());
     glViewport(0, 0, kSize, kSize);
     glEnable(GL_DEPTH_TEST);
@@ -139,8 +135,6 @@ struct Stage {
     if (!plain) shadowed_lights.bind(view, {kSize, kSize});
     surfaces->drawOpaque(world, raster);
     surfaces->drawBlended(world, raster);
-    glBlitNamedFramebuffer(target.id(), resolved.id(), 0, 0, kSize, kSize, 0, 0, kSize, kSize,
-                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
     std::vector<glm::vec4> texels(kSize * kSize), result;
     glGetTextureImage(color.id(), 0, GL_RGBA, GL_FLOAT,
                       static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)), texels.data());
