@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -112,16 +111,11 @@ Decision texels(const ScenePrimitive& primitive) {
           .figures = {{"side", static_cast<double>(primitive.texels), "texels"}}};
 }
 
-// Returns nothing for the back itself.
-std::optional<Decision> backs(const RigidGroup& group, const PlannedDraw& draw,
-                              const gltf::Material& material) {
-  if (draw.back) return std::nullopt;
+// Returns nothing for the back itself. A back that is baked follows its front.
+std::optional<Decision> backs(const RigidGroup& group, std::size_t draw, const gltf::Material& material) {
+  if (group.draws[draw].back) return std::nullopt;
   if (!material.double_sided) return absent("backs", "0 double-sided materials: it is seen from its front");
-  const bool baked = std::ranges::any_of(group.draws, [&](const PlannedDraw& other) {
-    return other.back && other.node == draw.node && other.mesh == draw.mesh &&
-           other.primitive == draw.primitive;
-  });
-  if (baked)
+  if (draw + 1 < group.draws.size() && group.draws[draw + 1].back)
     return Decision{.effect = "backs",
                     .choice = Choice::Baked,
                     .reason = "both sides of its faces may be seen, or are not known to be hidden"};
@@ -142,7 +136,7 @@ std::vector<Decision> primitiveDecisions(const Decided& decided, std::size_t gro
   const SurfaceLook& look = decided.looks[group].draws[draw];
   const bool glossy = decided.plan.bakes("glossy") && primitive.material >= 0;
   std::vector<Decision> all = {shadows(transport, look), interreflection(transport, decided.options, look)};
-  if (auto back = backs(decided.plan.groups[group], planned, material)) all.push_back(std::move(*back));
+  if (auto back = backs(decided.plan.groups[group], draw, material)) all.push_back(std::move(*back));
   if (primitive.material < 0) {
     all.push_back(absent("matrices", "0 materials: it is white and diffuse"));
   } else {

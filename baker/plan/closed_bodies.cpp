@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -16,6 +15,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "baker/plan/connected_parts.hpp"
 #include "baker/plan/corner_numbers.hpp"
 
 namespace lambent::baker {
@@ -46,26 +46,6 @@ struct Part {
   bool closed = true;  // each edge is shared by faces that wind alike, and the body lies behind the faces
 };
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-// Returns whether each edge is passed as often in one direction as in the other.
-bool hasNoBorder(const Part& part, const std::vector<std::uint32_t>& corner_of) {
-  std::vector<std::pair<Edge, int>> edges;  // the lower corner first, and which way it is passed
-  for (const auto& triangle : part.triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = corner_of[triangle[k]], b = corner_of[triangle[(k + 1) % 3]];
-      if (a != b) edges.push_back({std::minmax(a, b), a < b ? 1 : -1});
-    }
-  std::ranges::sort(edges);
-  for (std::size_t i = 0; i < edges.size();) {
-    int balance = 0;
-    const Edge edge = edges[i].first;
-    for (; i < edges.size() && edges[i].first == edge; ++i) balance += edges[i].second;
-    if (balance != 0) return false;
-  }
-  return true;
-}
-
 // Returns six times the volume (Gauss's theorem), which is below 0 where faces wind the other way.
 double signedVolume(const Part& part, const std::vector<glm::vec3>& positions) {
   const glm::dvec3 origin(positions[part.triangles[0][0]]);
@@ -76,7 +56,7 @@ double signedVolume(const Part& part, const std::vector<glm::vec3>& positions) {
   return volume;
 }
 
-std::vector<Part> connectedParts(const bundle::MeshData& mesh) {
+std::vector<Part> partsOfMesh(const bundle::MeshData& mesh) {
   Box box;
   for (const glm::vec3& p : mesh.positions) box.add(glm::dvec3(p));
   const double tolerance = kSameCorner * glm::distance(box.low, box.high);
@@ -84,29 +64,21 @@ std::vector<Part> connectedParts(const bundle::MeshData& mesh) {
   CornerNumbers numbers(tolerance);
   std::vector<std::uint32_t> corner_of;
   for (const glm::vec3& p : mesh.positions) corner_of.push_back(numbers.numberOf(p));
-
-  std::vector<std::uint32_t> parent(numbers.places().size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto rootOf = [&](std::uint32_t corner) {
-    while (parent[corner] != corner) corner = parent[corner] = parent[parent[corner]];
-    return corner;
-  };
+  std::vector<CornerTriangle> triangles;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-    for (std::size_t k = 1; k < 3; ++k)
-      parent[rootOf(corner_of[mesh.indices[i + k]])] = rootOf(corner_of[mesh.indices[i]]);
+    triangles.push_back(
+        {corner_of[mesh.indices[i]], corner_of[mesh.indices[i + 1]], corner_of[mesh.indices[i + 2]]});
 
-  std::map<std::uint32_t, Part> parts;  // by root
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-    parts[rootOf(corner_of[mesh.indices[i]])].triangles.push_back(
-        {mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]});
   std::vector<Part> all;
-  for (auto& [root, part] : parts) {
-    part.closed = hasNoBorder(part, corner_of) && signedVolume(part, mesh.positions) > 0.0;
+  for (const std::vector<std::size_t>& indices : connectedParts(triangles, numbers.places().size())) {
+    Part& part = all.emplace_back();
+    for (const std::size_t t : indices)
+      part.triangles.push_back({mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]});
+    part.closed = isClosed(triangles, indices) && signedVolume(part, mesh.positions) > 0.0;
     for (const auto& triangle : part.triangles)
       part.vertices.insert(part.vertices.end(), triangle.begin(), triangle.end());
     std::ranges::sort(part.vertices);
     part.vertices.erase(std::unique(part.vertices.begin(), part.vertices.end()), part.vertices.end());
-    all.push_back(std::move(part));
   }
   return all;
 }
@@ -178,7 +150,7 @@ class Insides {
     const ScenePrimitive& primitive = scene_.meshes[draw.mesh].primitives[draw.primitive];
     surface.double_sided = mayLoseItsBack(scene_, primitive.material);
     auto& parts = parts_[{draw.mesh, draw.primitive}];
-    if (!parts) parts = connectedParts(primitive.mesh);
+    if (!parts) parts = partsOfMesh(primitive.mesh);
     if (parts->empty()) surface.double_sided = false;
     surface.first_part = things_.size();
     const glm::dmat4 world_from_mesh(world_[draw.node]);
@@ -214,7 +186,7 @@ class Insides {
     });
   }
 
-  // What only reaches into a body is hidden where it does.
+  // A thing that only reaches into a body is hidden where it does.
   bool standsWithin(const Thing& thing, const Thing& body) {
     return std::ranges::all_of(thing.points, [&](const glm::dvec3& point) {
       angles_ += static_cast<double>(body.triangles.size());
@@ -233,6 +205,12 @@ class Insides {
 }  // namespace
 
 void leaveOutInsides(const Scene& scene, std::vector<RigidGroup>& groups) {
+  const auto may = [&](const PlannedDraw& draw) {
+    return draw.back && mayLoseItsBack(scene, scene.meshes[draw.mesh].primitives[draw.primitive].material);
+  };
+  if (std::ranges::none_of(groups,
+                           [&](const RigidGroup& group) { return std::ranges::any_of(group.draws, may); }))
+    return;
   std::set<std::pair<std::size_t, std::size_t>> gone;  // group and draw, whose next draw is the back
   for (const Surface& surface : Insides(scene, groups).unseen()) gone.insert({surface.group, surface.draw});
   for (std::size_t g = 0; g < groups.size(); ++g) {

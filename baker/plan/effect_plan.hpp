@@ -43,7 +43,7 @@ struct EffectPlan {
   bool bakes(std::string_view effect) const;
 };
 
-// With insides, closed bodies of double-sided materials keep the backs that nobody sees (closed_bodies.hpp).
+// `with_insides` keeps the backs of closed double-sided bodies, which nobody sees (closed_bodies.hpp).
 EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects, bool with_insides = false);
 
 }  // namespace lambent::baker

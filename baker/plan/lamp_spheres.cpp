@@ -1,16 +1,15 @@
 #include "baker/plan/lamp_spheres.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "baker/plan/connected_parts.hpp"
 #include "baker/plan/corner_numbers.hpp"
 
 namespace lambent::baker {
@@ -26,7 +25,7 @@ constexpr std::size_t kMostTriangles = 200'000;
 // Holds the emitting triangles of a material in a group.
 struct Emitter {
   std::vector<glm::vec3> corners;
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // wound so that they emit towards the right hand
+  std::vector<CornerTriangle> triangles;  // wound so that they emit towards the right hand
   bool both_sides = false;
 };
 
@@ -60,8 +59,8 @@ Emitter emitterOf(const Scene& scene, const RigidGroup& group, std::uint32_t mat
   if (!(tolerance > 0.0) || !std::isfinite(tolerance)) return {};
   CornerNumbers numbers(tolerance);
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-    const std::array<std::uint32_t, 3> triangle = {
-        numbers.numberOf(corners[i]), numbers.numberOf(corners[i + 1]), numbers.numberOf(corners[i + 2])};
+    const CornerTriangle triangle = {numbers.numberOf(corners[i]), numbers.numberOf(corners[i + 1]),
+                                     numbers.numberOf(corners[i + 2])};
     // Triangles without area, as at the poles of spheres, neither emit nor connect anything.
     if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
       emitter.triangles.push_back(triangle);
@@ -70,38 +69,9 @@ Emitter emitterOf(const Scene& scene, const RigidGroup& group, std::uint32_t mat
   return emitter;
 }
 
-// Returns the triangles of each connected part.
-std::vector<std::vector<std::size_t>> partsOf(const Emitter& emitter) {
-  std::vector<std::uint32_t> parent(emitter.corners.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto rootOf = [&](std::uint32_t corner) {
-    while (parent[corner] != corner) corner = parent[corner] = parent[parent[corner]];
-    return corner;
-  };
-  for (const auto& triangle : emitter.triangles)
-    for (const std::uint32_t corner : triangle) parent[rootOf(corner)] = rootOf(triangle[0]);
-  std::map<std::uint32_t, std::vector<std::size_t>> parts;
-  for (std::size_t t = 0; t < emitter.triangles.size(); ++t)
-    parts[rootOf(emitter.triangles[t][0])].push_back(t);
-  std::vector<std::vector<std::size_t>> list;
-  for (auto& [root, part] : parts) list.push_back(std::move(part));
-  return list;
-}
-
-// In a closed surface, each edge that one triangle has is had by another in the other direction.
-bool closed(const Emitter& emitter, const std::vector<std::size_t>& part) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-  for (const std::size_t t : part)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t a = emitter.triangles[t][c], b = emitter.triangles[t][(c + 1) % 3];
-      edges[std::minmax(a, b)] += a < b ? 1 : -1;
-    }
-  return std::ranges::all_of(edges, [](const auto& edge) { return edge.second == 0; });
-}
-
 // Returns the sphere of one part; its radius is 0 if the part is no sphere.
 bundle::LampSphere sphereOf(const Emitter& emitter, const std::vector<std::size_t>& part) {
-  if (part.size() < 8 || !closed(emitter, part)) return {};
+  if (part.size() < 8 || !isClosed(emitter.triangles, part)) return {};
   const auto corner = [&](std::size_t t, std::size_t c) {
     return glm::dvec3(emitter.corners[emitter.triangles[t][c]]);
   };
@@ -140,7 +110,8 @@ std::vector<bundle::LampSphere> findLampSpheres(const Scene& scene, const RigidG
                                                 std::uint32_t material) {
   if (scene.materials[material].emissive_texture.texture >= 0) return {};
   const Emitter emitter = emitterOf(scene, group, material);
-  const std::vector<std::vector<std::size_t>> parts = partsOf(emitter);
+  const std::vector<std::vector<std::size_t>> parts =
+      connectedParts(emitter.triangles, emitter.corners.size());
   if (parts.size() > bundle::kMaxLampSpheres) return {};
   std::vector<bundle::LampSphere> spheres;
   for (const std::vector<std::size_t>& part : parts) {

@@ -51,7 +51,7 @@ struct MirroredLight {
 
 // A sample that has at most this many hits keeps all of them.
 inline constexpr std::size_t kHitsToThin = 64;
-// Where the noise of fewer hits is not seen, those of every kThinned-th ray stand for all.
+// The hits of every kThinned-th ray stand for all where the noise of fewer hits is not seen.
 inline constexpr std::uint32_t kThinned = 4;
 
 // Appends every n-th hit to `out`, the first of them being hits[first]. Rays lie along a Hilbert curve, so

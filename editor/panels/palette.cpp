@@ -1,6 +1,5 @@
 // Draws the command palette: a line of words, and the commands that have all of them in their names or help.
 #include <algorithm>
-#include <sstream>
 
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -8,20 +7,16 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/session/word_search.hpp"
 #include "editor/ui/fitting.hpp"
-#include "runtime/base/lower_case.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
 bool matches(const Command& command, const std::string& words) {
-  const std::string text =
-      lowerCase(std::string(command.title) + ' ' + command.menu + ' ' + command.help + ' ' + command.id);
-  std::istringstream all(lowerCase(words));
-  for (std::string word; all >> word;)
-    if (text.find(word) == std::string::npos) return false;
-  return true;
+  return holdsWords(std::string(command.title) + ' ' + command.menu + ' ' + command.help + ' ' + command.id,
+                    words);
 }
 
 void run(Session& session, const Command& command) {

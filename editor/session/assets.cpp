@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include "baker/pipeline/source_watch.hpp"
 #include "editor/document/world_file.hpp"
+#include "editor/session/word_search.hpp"
 #include "runtime/base/lower_case.hpp"
 
 namespace lambent::editor {
@@ -79,12 +79,7 @@ std::vector<Asset> listAssets(const std::filesystem::path& folder, std::optional
 }
 
 bool matches(const Asset& asset, std::string_view search) {
-  const std::string text =
-      lowerCase(asset.file.filename().string() + ' ' + std::string(kindWord(asset.kind)));
-  std::istringstream words(lowerCase(search));
-  for (std::string word; words >> word;)
-    if (text.find(word) == std::string::npos) return false;
-  return true;
+  return holdsWords(asset.file.filename().string() + ' ' + std::string(kindWord(asset.kind)), search);
 }
 
 }  // namespace lambent::editor

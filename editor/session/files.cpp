@@ -20,10 +20,11 @@ bool isWorld(const std::filesystem::path& path) {
 }  // namespace
 
 bool Files::asksToOpen(const std::vector<std::filesystem::path>& paths) {
+  if (!modified()) return false;
   // A file that cannot be read takes no place, so nothing needs to be asked for it.
   const auto world = std::ranges::find_if(
       paths, [](const std::filesystem::path& path) { return isWorld(path) && loadWorldFile(path); });
-  if (world == paths.end() || !modified()) return false;
+  if (world == paths.end()) return false;
   unlessUnsaved(fmt::format("The world has edits that are not saved. Open {} without them?",
                             world->filename().string()),
                 [paths](Session& session) { session.files.openAll(paths); });

@@ -127,8 +127,8 @@ KeyLayers keyLayers(KeyRecord key, KeyReceiver receiver, float reach, int count)
 }
 
 // Returns whether the ray, whose point at this height is free, passes through a body below it. The map knows tops alone.
-// A body is taken to reach down from its top by three eighths of the top's height above the receiver, so that parapets
-// and walls which light grazes block rays that leave through their sides. Points of a ray from under a plate's edge that
+// A body is taken to reach down from its top by a third of the top's height above the receiver, so that parapets and
+// walls which light grazes block rays that leave through their sides. Points of a ray from under a plate's edge that
 // are looked at are farther below the plate.
 bool passesThrough(KeyRecord key, KeyReceiver receiver, float height, vec2 per_metre) {
   for (int i = 0; i < kKeyBetween; ++i) {

@@ -21,7 +21,7 @@ TEST_F(EditorProgram, TakesADroppedSceneAndShowsItBeforeItIsBaked) {
   EXPECT_EQ(played.answer("plan")["ready"], true);
 }
 
-// What another scene's bake left behind must not stand in the scene that is opened.
+// The remains of another scene's bake must not stand in the scene that is opened.
 TEST_F(EditorProgram, ShowsTheOpenedSceneAloneAndOffersUnfinishedBakes) {
   std::filesystem::copy(path("hello.glb"), path("other.glb"));
   baker::Journal(folder / "cache" / baker::kJournalFolder)

@@ -324,7 +324,8 @@ TEST_F(WindowlessCommands, AskForTheFileOfAWorldThatIsSavedBeforeAnotherOne) {
   EXPECT_TRUE(session->empty()) << "and then a new one has begun";
 }
 
-// What a later version wrote about a bundle must survive this one, and two bundles of one id stay apart.
+// Fields that a later version wrote about a bundle must survive this one, and two bundles of one id stay
+// apart.
 TEST_F(WindowlessCommands, KeepWhatAWorldFileSaysOfItsBundles) {
   openHello();
   std::filesystem::copy(session->scenes.entries().front().shown, folder.path() / "room.lmb.glb");
