@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -19,7 +20,7 @@ namespace {
 
 constexpr std::array<std::size_t, 3> kLevels = {bundle::kMaxProxyTriangles, 64, 16};
 constexpr std::size_t kLeastTriangles = 4;  // per side of a part
-constexpr std::size_t kPointsPerTriangle = 128;
+constexpr std::size_t kPointsPerTriangle = 128, kPointsPerPatch = 32;
 // Larger surfaces are simplified to this many triangles before their silhouette is taken.
 constexpr std::size_t kSilhouetteTriangles = 32768;
 // A level is worth having if it has at most this share of the triangles of the one before.
@@ -87,10 +88,11 @@ class ProxyMaker {
       if (!proxy_.levels.empty() &&
           static_cast<double>(triangles) > kFewer * static_cast<double>(proxy_.levels.back().triangle_count))
         continue;
-      if (points_.empty()) spreadPoints(simple);
+      if (points_.empty()) points_ = pointsOn(simple, kPointsPerTriangle);
       growToSilhouette(simple);
       addLevel(simple);
     }
+    addPatches();
     for (glm::vec3& position : proxy_.positions) position += geometry_.origin;
     return std::move(proxy_);
   }
@@ -102,14 +104,18 @@ class ProxyMaker {
     return sum;
   }
 
-  // There are as many points as the finest level can use; the coarser ones use the same.
-  void spreadPoints(const std::vector<SimpleMesh>& finest) {
+  using PartPoints = std::vector<std::array<std::vector<ShiningPoint>, 2>>;  // by part and side
+
+  // Returns as many points as these triangles can use; coarser levels use those of the finest.
+  PartPoints pointsOn(const std::vector<SimpleMesh>& simple, std::size_t per_triangle) const {
+    PartPoints points;
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-      const std::size_t count = kPointsPerTriangle * std::max<std::size_t>(finest[p].triangles.size(), 4);
+      const std::size_t count = per_triangle * std::max<std::size_t>(simple[p].triangles.size(), 4);
       const bool gives_light = parts_[p].light != kNoLight;
-      points_.push_back({shiningPoints(geometry_, colors_, parts_[p].front, gives_light, count),
-                         shiningPoints(geometry_, colors_, parts_[p].back, gives_light, count)});
+      points.push_back({shiningPoints(geometry_, colors_, parts_[p].front, gives_light, count),
+                        shiningPoints(geometry_, colors_, parts_[p].back, gives_light, count)});
     }
+    return points;
   }
 
   // A few triangles between points of a round surface lie inside of it and look smaller, so they grow until
@@ -164,13 +170,48 @@ class ProxyMaker {
     proxy_.levels.push_back(level);
   }
 
+  // The group's own parts need a finer surface than others do, but no entries: patches have light of their own.
+  void addPatches() {
+    if (proxy_.levels.empty()) return;
+    const auto counts = shares(parts_, meshes_, bundle::kMaxPatchTriangles);
+    if (!counts) return;
+    std::vector<SimpleMesh> simple;
+    for (std::size_t p = 0; p < parts_.size(); ++p) simple.push_back(simplified(meshes_[p], (*counts)[p]));
+    if (kFewer * static_cast<double>(trianglesOf(simple)) <=
+        static_cast<double>(proxy_.levels.front().triangle_count))
+      return;
+    std::vector<ProxyFace> faces;
+    bundle::PatchSurface& patches = proxy_.patches;
+    for (std::uint32_t p = 0; p < simple.size(); ++p) {
+      patches.error_m = std::max(patches.error_m, simple[p].error_m);
+      const auto first = static_cast<std::uint32_t>(patches.positions.size());
+      patches.positions.insert(patches.positions.end(), simple[p].positions.begin(),
+                               simple[p].positions.end());
+      for (std::size_t side = 0; side < parts_[p].sides(); ++side)
+        for (glm::uvec3 t : simple[p].triangles) {
+          if (side == 1) std::swap(t.y, t.z);
+          faces.push_back(
+              {{simple[p].positions[t.x], simple[p].positions[t.y], simple[p].positions[t.z]}, p, side == 1});
+          patches.triangles.push_back({.vertices = {first + t.x, first + t.y, first + t.z},
+                                       .front_only = parts_[p].two_sided,
+                                       .albedo = glm::vec3(0.0f)});
+        }
+    }
+    const std::vector<FaceShine> shine =
+        shineOf(faces, pointsOn(simple, kPointsPerPatch), geometry_, samples_);
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      for (const bundle::ProxyEntry& entry : shine[f].entries)
+        patches.triangles[f].albedo += entry.reflectance;
+    for (glm::vec3& position : patches.positions) position += geometry_.origin;
+  }
+
   const GroupGeometry& geometry_;
   const SampleSet& samples_;
   const SurfaceColors& colors_;
   std::vector<ProxyPart> parts_;
   std::vector<SimpleMesh> meshes_;  // one per part
   std::optional<Silhouette> outline_;
-  std::vector<std::array<std::vector<ShiningPoint>, 2>> points_;  // by part and side
+  PartPoints points_;
   bundle::CaptureProxy proxy_;
 };
 

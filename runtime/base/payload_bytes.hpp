@@ -52,6 +52,7 @@ class Front {
   explicit Front(std::span<const std::byte> bytes) : rest_(bytes) {}
 
   bool whole() const { return whole_ && rest_.empty(); }
+  std::size_t left() const { return rest_.size(); }
 
   template <typename T>
   std::vector<T> values(std::uint64_t count) {

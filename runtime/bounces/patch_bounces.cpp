@@ -259,7 +259,7 @@ Result<void> PatchBounces::update(World& world, const LitScene& scene, const Pat
     if (!room.room.transport()) continue;
     const RoomLights found = lightsIn(world, scene, lights, g);
     room.room.light(found, world.worldFromGroup(g), othersAround(world, scene, g, found));
-    counts_.lights_bounced += room.room.bouncedLast();
+    counts_.lights_bounced += room.room.tracedLast();
     if (!room.room.givenOff().empty()) {
       ++counts_.rooms;
       counts_.patches += static_cast<std::uint32_t>(room.room.givenOff().size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -22,6 +23,7 @@ using lighting::ShadowedLight;
 constexpr std::size_t kLampPoints = 16;  // points on a lamp with an extent
 constexpr float kLightSurface = 1.01f;   // as in local_shadows.cpp
 constexpr float kAlmost = 1.0f - 1e-4f;  // share of the distance to a patch, so that it does not block itself
+constexpr float kOnPlane = 1e-5f;        // in extents of the patches; nearer triangles are ignored
 constexpr std::size_t kPoints = lighting::kPatchPoints;
 // Discs at infinity are widened to this radius, so that bounced light does not flicker while they turn. It is
 // less than the angle under which patches see their neighbours.
@@ -78,7 +80,7 @@ std::vector<glm::vec3> raysTo(const spec::Disc& key) {
 
 // Returns what may block the lamp's light. Triangles within a spherical lamp that are no larger than it
 // belong to the lamp itself.
-lighting::TriangleSet blockersOf(const ShadowedLight& light, const lighting::Patches& patches,
+lighting::TriangleTree blockersOf(const ShadowedLight& light, const lighting::Patches& patches,
                                  std::span<const lighting::RayTriangle> others,
                                  const glm::mat4& world_from_group) {
   const auto isLamp = [&](const lighting::RayTriangle& triangle) {
@@ -88,12 +90,12 @@ lighting::TriangleSet blockersOf(const ShadowedLight& light, const lighting::Pat
              return glm::distance(corner_ws, light.position_ws) <= kLightSurface * light.radius_m;
            });
   };
-  lighting::TriangleSet blockers;
-  for (std::size_t t = 0; t < patches.triangles().size(); ++t)
-    if (const lighting::RayTriangle own = patches.triangles()[t]; !isLamp(own)) blockers.add(own);
+  std::vector<lighting::RayTriangle> blockers;
+  for (std::size_t t = 0; t < patches.tree().size(); ++t)
+    if (const lighting::RayTriangle own = patches.tree()[t]; !isLamp(own)) blockers.push_back(own);
   for (const lighting::RayTriangle& other : others)
-    if (!isLamp(other)) blockers.add(other);
-  return blockers;
+    if (!isLamp(other)) blockers.push_back(other);
+  return {std::move(blockers), kOnPlane * patches.extent()};
 }
 
 }  // namespace
@@ -120,17 +122,15 @@ std::vector<float> lampOnPatches(const ShadowedLight& lamp, const lighting::Patc
 
   // Each point of the lamp is connected with all points of patches that it shines on.
   const std::vector<glm::vec3> lamp_points = lampPoints(light);
-  const lighting::TriangleSet blockers = blockersOf(light, patches, others, world_from_group);
+  const lighting::TriangleTree blockers = blockersOf(light, patches, others, world_from_group);
   std::vector<std::vector<std::uint8_t>> seen(lamp_points.size());
   inParallel(lamp_points.size(), 1, [&](std::size_t l) {
     const glm::vec3 from(group_from_world * glm::vec4(lamp_points[l], 1.0f));
-    lighting::RaysFrom rays(blockers, 1e-5f * patches.extent());
-    rays.moveTo(from);
     seen[l].assign(shares.size(), 0);
     for (std::size_t i = 0; i < shares.size(); ++i) {
       if (shares[i] <= 0.0f) continue;
       const glm::vec3 way = all[i / kPoints].points[i % kPoints] - from;
-      seen[l][i] = rays.blocked(way, kAlmost) ? 0 : 1;
+      seen[l][i] = blockers.blocked(from, way, kAlmost) ? 0 : 1;
     }
   });
 
@@ -147,31 +147,29 @@ std::vector<float> lampOnPatches(const ShadowedLight& lamp, const lighting::Patc
 std::vector<std::vector<float>> keysOnPatches(std::span<const spec::Disc> keys,
                                               const lighting::Patches& patches,
                                               std::span<const lighting::RayTriangle> others) {
-  lighting::TriangleSet blockers;
-  for (std::size_t t = 0; t < patches.triangles().size(); ++t) blockers.add(patches.triangles()[t]);
-  for (const lighting::RayTriangle& other : others) blockers.add(other);
+  std::vector<lighting::RayTriangle> triangles(others.begin(), others.end());
+  for (std::size_t t = 0; t < patches.tree().size(); ++t) triangles.push_back(patches.tree()[t]);
+  const lighting::TriangleTree blockers(std::move(triangles), kOnPlane * patches.extent());
   std::vector<std::vector<glm::vec3>> rays_to;
   for (const spec::Disc& key : keys) rays_to.push_back(raysTo(key));
 
   std::vector<std::vector<float>> direct(keys.size(), std::vector<float>(patches.size(), 0.0f));
   constexpr std::size_t kBlock = 32;  // patches per unit of work
   inParallel((patches.size() + kBlock - 1) / kBlock, 1, [&](std::size_t block) {
-    lighting::RaysFrom rays(blockers, 1e-5f * patches.extent());
     for (std::size_t i = block * kBlock; i < std::min(patches.size(), (block + 1) * kBlock); ++i) {
       const Patch& patch = patches.all()[i];
-      for (const glm::vec3& origin : patch.origins) {
-        bool moved = false;
+      for (std::size_t p = 0; p < kPoints; ++p) {
         for (std::size_t k = 0; k < keys.size(); ++k) {
           const float share = ref::sphereShare(glm::dot(patch.normal, keys[k].direction),
                                                1.0f / std::sin(keys[k].radius_rad));
           if (share <= 0.0f) continue;
-          if (!moved) rays.moveTo(origin, patch.normal);
-          moved = true;
           float seen = 0.0f, all = 0.0f;
-          for (const glm::vec3& ray : rays_to[k]) {
+          // The points of a patch share the rays.
+          for (std::size_t r = p; r < rays_to[k].size(); r += kPoints) {
+            const glm::vec3& ray = rays_to[k][r];
             const float cosine = std::max(glm::dot(ray, patch.normal), 0.0f);
             all += cosine;
-            if (cosine > 0.0f && !rays.blocked(ray, kAtInfinity * patches.extent())) seen += cosine;
+            if (cosine > 0.0f && !blockers.blocked(patch.origins[p], ray, kAtInfinity * patches.extent())) seen += cosine;
           }
           if (all > 0.0f) direct[k][i] += share * seen / (all * static_cast<float>(kPoints));
         }

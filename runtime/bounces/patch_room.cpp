@@ -50,33 +50,33 @@ bool sameSource(const Light& a, const Light& b) {
 
 }  // namespace
 
-std::vector<PatchRoom::Source> PatchRoom::bounceAll(const RoomLights& lights,
-                                                    const std::vector<Source>& kept) {
+std::vector<PatchRoom::Source> PatchRoom::shineAll(const RoomLights& lights,
+                                                   const std::vector<Source>& kept) {
   std::vector<Source> sources;
   for (const lighting::ShadowedLight& lamp : lights.lamps) sources.push_back({ofUnitPower(lamp), {}});
   for (const spec::Disc& key : lights.keys) sources.push_back({ofUnitPower(key), {}});
 
   std::vector<spec::Disc> new_keys;
-  std::vector<Source*> to_bounce;
+  std::vector<Source*> to_trace;
   for (Source& source : sources) {
     const auto found = std::ranges::find_if(
         kept, [&](const Source& other) { return sameSource(source.light, other.light); });
     if (found != kept.end()) {
-      source.given_off = found->given_off;
+      source.direct = found->direct;
       continue;
     }
-    to_bounce.push_back(&source);
+    to_trace.push_back(&source);
     if (const auto* key = std::get_if<spec::Disc>(&source.light)) new_keys.push_back(*key);
   }
-  bounced_ = static_cast<std::uint32_t>(to_bounce.size());
+  traced_ = static_cast<std::uint32_t>(to_trace.size());
 
   const std::vector<std::vector<float>> by_key = keysOnPatches(new_keys, transport_->patches(), others_);
   auto next_key = by_key.begin();
-  for (Source* source : to_bounce) {
+  for (Source* source : to_trace) {
     const auto* lamp = std::get_if<lighting::ShadowedLight>(&source->light);
-    source->given_off = transport_->bounce(
-        lamp != nullptr ? lampOnPatches(*lamp, transport_->patches(), others_, world_from_group_)
-                        : *next_key++);
+    source->direct = lamp != nullptr
+                         ? lampOnPatches(*lamp, transport_->patches(), others_, world_from_group_)
+                         : *next_key++;
   }
   return sources;
 }
@@ -102,7 +102,7 @@ std::vector<glm::vec3> PatchRoom::bandsOnPatches(const std::vector<KeyBands>& ba
 
 void PatchRoom::light(const RoomLights& lights, const glm::mat4& world_from_group,
                       std::span<const lighting::RayTriangle> others) {
-  bounced_ = 0;
+  traced_ = 0;
   if (!transport_) return;
   std::vector<Source> kept;
   if (world_from_group == world_from_group_ && std::ranges::equal(others, others_))
@@ -113,7 +113,7 @@ void PatchRoom::light(const RoomLights& lights, const glm::mat4& world_from_grou
   std::vector<glm::vec3> powers;
   for (const lighting::ShadowedLight& lamp : lights.lamps) powers.push_back(lamp.power);
   for (const spec::Disc& key : lights.keys) powers.push_back(key.radiance);
-  sources_ = bounceAll(lights, kept);
+  sources_ = shineAll(lights, kept);
   const bool same_sources = std::ranges::equal(
       sources_, kept, [](const Source& a, const Source& b) { return sameSource(a.light, b.light); });
   const bool same_bands = lights.bands == bands_;
@@ -123,17 +123,20 @@ void PatchRoom::light(const RoomLights& lights, const glm::mat4& world_from_grou
   if (!same_bands) {
     bands_ = lights.bands;
     by_bands_.clear();
-    if (!bands_.empty()) by_bands_ = transport_->bounce(bandsOnPatches(bands_));
+    if (!bands_.empty()) by_bands_ = bandsOnPatches(bands_);
   }
 
-  std::vector<glm::vec3> sum;
-  if (!lights.none()) sum.assign(transport_->patches().size(), glm::vec3(0.0f));
-  for (std::size_t k = 0; k < sources_.size(); ++k)
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += powers_[k] * sources_[k].given_off[i];
-  if (!by_bands_.empty())
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] -= by_bands_[i];
-  drift_ += changeBetween(given_off_, sum);
-  given_off_ = std::move(sum);
+  std::vector<glm::vec3> given_off;
+  if (!lights.none()) {
+    std::vector<glm::vec3> direct(transport_->patches().size(), glm::vec3(0.0f));
+    for (std::size_t k = 0; k < sources_.size(); ++k)
+      for (std::size_t i = 0; i < direct.size(); ++i) direct[i] += powers_[k] * sources_[k].direct[i];
+    if (!by_bands_.empty())
+      for (std::size_t i = 0; i < direct.size(); ++i) direct[i] -= by_bands_[i];
+    given_off = transport_->bounce(direct);
+  }
+  drift_ += changeBetween(given_off_, given_off);
+  given_off_ = std::move(given_off);
   ++version_;
 }
 

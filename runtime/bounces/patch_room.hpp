@@ -1,6 +1,6 @@
 // Owns the light that the surfaces of one rigid group reflect of lamps among them and of key lights, by
-// patches. Each light is bounced once at unit power and kept until it, the group or a blocker moves. So
-// dimming or colouring a light costs one sum, and the light of several lamps is the sum of theirs. For key
+// patches. What each light brings to the patches is kept at unit power until it, the group or a blocker moves.
+// All of it is bounced together, so dimming or colouring lights traces no ray. For key
 // lights the group's transfer already carries bounced light, as far as a few bands know where they fall. What
 // the bands say is therefore subtracted here: patches carry the difference between a key light with its
 // shadows and its bands, and the detail of transfer is kept. No GL.
@@ -57,29 +57,29 @@ class PatchRoom {
   std::uint64_t version() const { return version_; }
   // Returns the sum of all relative changes of givenOff() so far.
   double drift() const { return drift_; }
-  // Returns how many lights the last light() bounced.
-  std::uint32_t bouncedLast() const { return bounced_; }
+  // Returns for how many lights the last light() traced rays.
+  std::uint32_t tracedLast() const { return traced_; }
 
  private:
   struct Source {
     std::variant<lighting::ShadowedLight, spec::Disc> light;  // at unit power
-    std::vector<glm::vec3> given_off;
+    std::vector<float> direct;                                // E/pi of each patch
   };
-  // Bounces the lights that are not in `kept`.
-  std::vector<Source> bounceAll(const RoomLights& lights, const std::vector<Source>& kept);
+  // Traces rays for the lights that are not in `kept`.
+  std::vector<Source> shineAll(const RoomLights& lights, const std::vector<Source>& kept);
   std::vector<glm::vec3> bandsOnPatches(const std::vector<KeyBands>& bands) const;
 
   std::shared_ptr<const lighting::PatchTransport> transport_;
   std::vector<Source> sources_;
   std::vector<glm::vec3> powers_;
   std::vector<KeyBands> bands_;
-  std::vector<glm::vec3> by_bands_;  // exit radiance of the patches due to these
+  std::vector<glm::vec3> by_bands_;  // E/pi of the patches due to these
   glm::mat4 world_from_group_{1.0f};
   std::vector<lighting::RayTriangle> others_;
   std::vector<glm::vec3> given_off_;
   std::uint64_t version_ = 0;
   double drift_ = 0.0;
-  std::uint32_t bounced_ = 0;
+  std::uint32_t traced_ = 0;
 };
 
 }  // namespace lambent::frame

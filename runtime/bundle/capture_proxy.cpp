@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
 #include "runtime/base/payload_bytes.hpp"
@@ -15,7 +16,7 @@ namespace {
 // Levels have at most three positions per triangle, so 16 bits hold every index.
 constexpr std::uint32_t kMaxTriangles = kMaxProxyLevels * kMaxProxyTriangles;
 constexpr std::uint32_t kMaxPositions = 3 * kMaxTriangles;
-constexpr float kOne = 65535.0f;
+constexpr float kOne = 65535.0f, kByteOne = 255.0f;
 constexpr std::uint32_t kFrontOnly = 0x80;
 
 bool usable(float value) {
@@ -26,7 +27,78 @@ std::uint16_t unorm16(float value) {
   return static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * kOne));
 }
 
+// The patches' surface follows everything else, and is absent if it has no triangles.
+void appendPatches(std::vector<std::byte>& out, const PatchSurface& patches) {
+  if (patches.triangles.empty()) return;
+  assert(patches.triangles.size() <= kMaxPatchTriangles);
+  appendValues<std::uint32_t>(out, std::vector{static_cast<std::uint32_t>(patches.positions.size()),
+                                               static_cast<std::uint32_t>(patches.triangles.size())});
+  std::vector<float> numbers = {patches.error_m};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const glm::vec3& position : patches.positions) numbers.push_back(position[axis]);
+  appendValues<float>(out, numbers);
+  std::vector<std::uint16_t> corners;
+  for (std::size_t corner = 0; corner < 3; ++corner)
+    for (const PatchTriangle& triangle : patches.triangles)
+      corners.push_back(static_cast<std::uint16_t>(triangle.vertices[corner]));
+  appendSplit(out, corners);
+  for (int channel = 0; channel < 3; ++channel)
+    for (const PatchTriangle& triangle : patches.triangles)
+      out.push_back(static_cast<std::byte>(
+          std::lround(std::clamp(triangle.albedo[channel], 0.0f, 1.0f) * kByteOne)));
+  for (const PatchTriangle& triangle : patches.triangles)
+    out.push_back(static_cast<std::byte>(triangle.front_only ? kFrontOnly : 0));
+}
+
+// Returns why the rest is no such surface; null if it is one.
+const char* takePatches(Front& front, PatchSurface& patches) {
+  const auto counts = front.values<std::uint32_t>(2);
+  if (counts.size() != 2) return "its patches are too short";
+  const std::uint32_t positions = counts[0], triangles = counts[1];
+  if (triangles == 0 || triangles > kMaxPatchTriangles || positions > 3 * triangles)
+    return "more or fewer patches than one may have";
+  const auto error = front.values<float>(1);
+  const auto places = front.values<float>(3 * std::uint64_t{positions});
+  const auto corners = front.split(3 * std::uint64_t{triangles});
+  const auto albedos = front.values<std::uint8_t>(3 * std::uint64_t{triangles});
+  const auto flags = front.values<std::uint8_t>(triangles);
+  if (!front.whole()) return "the sizes of its patches do not add up";
+  if (!(error[0] >= 0.0f) || !usable(error[0]) || !std::ranges::all_of(places, usable))
+    return "patches with values that are not finite";
+  patches.error_m = error[0];
+  for (std::size_t i = 0; i < positions; ++i)
+    patches.positions.emplace_back(places[i], places[positions + i], places[2 * positions + i]);
+  for (std::size_t i = 0; i < triangles; ++i) {
+    PatchTriangle& triangle = patches.triangles.emplace_back();
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      triangle.vertices[corner] = corners[corner * triangles + i];
+      if (triangle.vertices[corner] >= positions) return "a patch with a corner that it does not have";
+    }
+    triangle.front_only = (flags[i] & kFrontOnly) != 0;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      triangle.albedo[static_cast<int>(channel)] =
+          static_cast<float>(albedos[channel * triangles + i]) / kByteOne;
+  }
+  return nullptr;
+}
+
 }  // namespace
+
+PatchSurface patchSurfaceOf(const CaptureProxy& proxy) {
+  if (!proxy.patches.triangles.empty() || proxy.levels.empty()) return proxy.patches;
+  const ProxyLevel& level = proxy.levels.front();
+  PatchSurface surface{.positions = proxy.positions, .triangles = {}, .error_m = level.error_m};
+  for (std::uint32_t t = 0; t < level.triangle_count; ++t) {
+    const ProxyTriangle& from = proxy.triangles[level.first_triangle + t];
+    glm::vec3 albedo(0.0f);
+    for (std::uint32_t e = 0; e < from.entry_count; ++e)
+      albedo += proxy.entries[from.first_entry + e].reflectance;
+    surface.triangles.push_back({.vertices = from.vertices,
+                                 .front_only = from.front_only,
+                                 .albedo = glm::min(albedo, glm::vec3(1.0f))});
+  }
+  return surface;
+}
 
 std::vector<std::byte> encodeCaptureProxy(const CaptureProxy& proxy) {
   assert(proxy.triangles.size() <= kMaxTriangles && proxy.positions.size() <= kMaxPositions);
@@ -64,6 +136,7 @@ std::vector<std::byte> encodeCaptureProxy(const CaptureProxy& proxy) {
   for (const ProxyTriangle& triangle : proxy.triangles)
     out.push_back(static_cast<std::byte>(triangle.entry_count | (triangle.front_only ? kFrontOnly : 0)));
   appendIntegers(out, steps);
+  appendPatches(out, proxy.patches);
   return out;
 }
 
@@ -89,11 +162,14 @@ Result<CaptureProxy> decodeCaptureProxy(std::span<const std::byte> bytes, std::u
   const auto reflectances = front.split(3 * std::uint64_t{entries});
   const auto flags = front.values<std::uint8_t>(triangles);
   const auto steps = front.integers(entries);
+  CaptureProxy proxy;
+  if (front.left() > 0) {
+    if (const char* why = takePatches(front, proxy.patches)) return damaged(why);
+  }
   if (!front.whole()) return damaged("sizes do not add up");
   for (const auto* numbers : {&errors, &places, &emissions})
     if (!std::all_of(numbers->begin(), numbers->end(), usable)) return damaged("values that are not finite");
 
-  CaptureProxy proxy;
   std::uint32_t next_triangle = 0;
   for (std::size_t i = 0; i < levels; ++i) {
     if (counts[i] == 0 || counts[i] > kMaxProxyTriangles || errors[i] < 0.0f)

@@ -20,6 +20,7 @@ namespace lambent::bundle {
 inline constexpr std::uint32_t kMaxProxyTriangles = 256;  // per level
 inline constexpr std::uint32_t kMaxProxyLevels = 4;
 inline constexpr std::uint32_t kMaxProxyEntries = 8;  // per triangle
+inline constexpr std::uint32_t kMaxPatchTriangles = 2048;
 
 struct ProxyTriangle {
   std::array<std::uint32_t, 3> vertices{};  // counter-clockwise seen from the side that sends out light
@@ -46,12 +47,30 @@ struct ProxyLevel {
   float error_m = 0.0f;                                  // largest distance from the group's own surface
 };
 
+struct PatchTriangle {
+  std::array<std::uint32_t, 3> vertices{};  // as of a ProxyTriangle, and so is the next
+  bool front_only = false;
+  glm::vec3 albedo{0.0f};  // 0..1, stored in steps of 1/255
+};
+
+// Shows the group to its own parts, which are nearer to each other than other groups are: light that goes to and
+// fro between them needs their floor, their columns and their arches. Without triangles, the finest level serves.
+struct PatchSurface {
+  std::vector<glm::vec3> positions;
+  std::vector<PatchTriangle> triangles;  // at most kMaxPatchTriangles
+  float error_m = 0.0f;                  // as of a ProxyLevel
+};
+
 struct CaptureProxy {
   std::vector<glm::vec3> positions;
   std::vector<ProxyTriangle> triangles;
   std::vector<ProxyEntry> entries;
   std::vector<ProxyLevel> levels;
+  PatchSurface patches;
 };
+
+// Returns the group as its own parts see it: `patches`, or the finest level with the reflectance of its entries.
+PatchSurface patchSurfaceOf(const CaptureProxy& proxy);
 
 std::vector<std::byte> encodeCaptureProxy(const CaptureProxy& proxy);
 // `sample_count` and `light_count` are those of the group. Fails, naming `subject`, if sizes do not add up,

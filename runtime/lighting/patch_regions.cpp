@@ -9,9 +9,9 @@
 namespace lambent::lighting {
 
 PatchRegions::PatchRegions(const Patches& patches) : patch_count_(patches.size()) {
-  for (std::size_t t = 0; t < patches.triangles().size(); ++t) {
+  for (std::size_t t = 0; t < patches.tree().size(); ++t) {
     const std::uint32_t parts = patches.partsOf(t);
-    corners_.push_back(patches.triangles()[t].corners);
+    corners_.push_back(patches.tree()[t].corners);
     std::vector<Level>& levels = levels_.emplace_back();
     levels.push_back({.parts = parts, .first = patches.firstOf(t)});
     for (std::uint32_t coarse = parts; coarse > 1;) {

@@ -78,7 +78,7 @@ LinkFrame linkFrame(const glm::vec3& n) {
 }
 
 PatchTransport::PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most, int order)
-    : patches_(proxy, most), regions_(patches_), order_(order) {
+    : patches_(bundle::patchSurfaceOf(proxy), most), regions_(patches_), order_(order) {
   findShares();
   findNearest(proxy);
   bounced_ = meanBounced();
@@ -90,7 +90,6 @@ void PatchTransport::findShares() {
   std::vector<std::vector<Share>> rows(count);
   transfer_.resize(terms * count);
   inParallel(blocksOf(count), 1, [&](std::size_t block) {
-    RaysFrom rays(patches_.triangles(), 1e-5f * patches_.extent());
     std::vector<std::uint32_t> met;
     std::vector<float> basis(terms);
     for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
@@ -101,7 +100,6 @@ void PatchTransport::findShares() {
       const std::span<float> transfer = std::span(transfer_).subspan(terms * i, terms);
       sh::unoccludedTransfer(order_, patch.normal, transfer);
       for (std::size_t p = 0; p < kPatchPoints; ++p) {
-        rays.moveTo(patch.origins[p], patch.normal);
         for (std::size_t k = 0; k < kRaysPerPoint; ++k) {
           // The points of a patch share one even set of directions, and neighbours share it in part.
           const std::size_t place = p * kRaysPerPoint + k;
@@ -109,7 +107,7 @@ void PatchTransport::findShares() {
           const float u =
               (static_cast<float>(place) + even) / static_cast<float>(kPatchPoints * kRaysPerPoint);
           const glm::vec3 direction = frame.turned(cosineDirection(u, turn));
-          const auto hit = rays.first(direction);
+          const auto hit = patches_.tree().first(patch.origins[p], direction);
           if (!hit) continue;
           if (!hit->back) met.push_back(static_cast<std::uint32_t>(patches_.patchAt(*hit)));
           sh::evaluate(order_, direction, basis);
@@ -132,10 +130,13 @@ void PatchTransport::findShares() {
 }
 
 void PatchTransport::findNearest(const bundle::CaptureProxy& proxy) {
-  for (std::size_t level = 1; level < proxy.levels.size(); ++level) {
+  const bool own = proxy.patches.triangles.empty();
+  own_triangles_ = own ? patches_.tree().size() : 0;
+  for (std::size_t level = own ? 1 : 0; level < proxy.levels.size(); ++level) {
     bundle::CaptureProxy coarse = proxy;
     coarse.levels = {proxy.levels[level]};
-    const Patches whole(coarse, 1);  // one patch per triangle
+    coarse.patches = {};
+    const Patches whole(bundle::patchSurfaceOf(coarse), 1);  // one patch per triangle
     for (const Patch& triangle : whole.all()) {
       auto& nearest = nearest_.emplace_back();
       for (std::size_t p = 0; p < kPatchPoints; ++p) {
@@ -217,11 +218,10 @@ glm::vec3 PatchTransport::startNear(const SurfacePoint& point) const {
   return nearest != nullptr ? patches_.inFront(nearest->points[0], nearest->normal) : point.position;
 }
 
-std::size_t PatchTransport::regionFrom(const glm::vec3& origin, const RayHit& hit, float solid_angle_sr,
-                                       const RaysFrom& rays) const {
+std::size_t PatchTransport::regionFrom(const glm::vec3& origin, const RayHit& hit, float solid_angle_sr) const {
   constexpr float kLeastCosine = 0.1f;
   constexpr float kAlmost = 0.999f;  // share of the distance to the region
-  const std::array<glm::vec3, 3> corners = patches_.triangles()[hit.triangle].corners;
+  const std::array<glm::vec3, 3> corners = patches_.tree()[hit.triangle].corners;
   const glm::vec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
   const glm::vec3 way =
       corners[0] + hit.b * (corners[1] - corners[0]) + hit.c * (corners[2] - corners[0]) - origin;
@@ -234,7 +234,7 @@ std::size_t PatchTransport::regionFrom(const glm::vec3& origin, const RayHit& hi
   // If something stands in front of a part of the region, light would leak.
   const auto inSight = [&] {
     return std::ranges::none_of(regions_.cornersAt(hit, level), [&](const glm::vec3& corner) {
-      return rays.blocked(corner - origin, kAlmost);
+      return patches_.tree().blocked(origin, corner - origin, kAlmost);
     });
   };
   while (level > 0 && !inSight()) --level;
@@ -246,20 +246,18 @@ std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> po
   const auto& directions = linkDirections(spread);
   std::vector<std::uint16_t> links(kLinks * points.size());
   inParallel(blocksOf(points.size()), 2, [&](std::size_t block) {
-    RaysFrom rays(patches_.triangles(), 1e-5f * patches_.extent());
     // Returns how many of the rays hit the back of a surface.
     const auto linkFrom = [&](const glm::vec3& origin, std::size_t i) {
       const LinkFrame frame = linkFrame(points[i].normal);
-      rays.moveTo(origin, points[i].normal);
       std::size_t backs = 0;
       for (std::size_t k = 0; k < kLinks; ++k) {
-        const std::optional<RayHit> hit = rays.first(frame.turned(directions[k]));
+        const std::optional<RayHit> hit = patches_.tree().first(origin, frame.turned(directions[k]));
         backs += hit && hit->back ? 1 : 0;
         std::size_t region = regions_.size();
         if (hit && !hit->back) {
           const float solid_angle = spread == LinkSpread::Cosine ? std::numbers::pi_v<float> / directions[k].z
                                                                  : 2.0f * std::numbers::pi_v<float>;
-          region = regionFrom(origin, *hit, solid_angle / static_cast<float>(kLinks), rays);
+          region = regionFrom(origin, *hit, solid_angle / static_cast<float>(kLinks));
         }
         links[kLinks * i + k] = static_cast<std::uint16_t>(region);
       }
@@ -274,7 +272,7 @@ std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> po
 
 std::vector<glm::vec3> PatchTransport::byTriangle(std::span<const glm::vec3> given_off) const {
   std::vector<glm::vec3> triangles;
-  for (std::size_t t = 0; t < patches_.triangles().size(); ++t) {
+  for (std::size_t t = 0; t < own_triangles_; ++t) {
     glm::vec3 sum(0.0f);
     for (std::size_t i = 0; i < patches_.countOf(t); ++i) sum += given_off[patches_.firstOf(t) + i];
     triangles.push_back(sum / static_cast<float>(patches_.countOf(t)));

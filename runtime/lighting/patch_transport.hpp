@@ -76,7 +76,7 @@ class PatchTransport {
   std::vector<std::uint16_t> link(std::span<const SurfacePoint> points, LinkSpread spread) const;
 
   // Returns the mean exit radiance of each triangle of all levels of the proxy, given that of the patches.
-  // Triangles of coarser levels take that of the patches near them.
+  // Triangles that are not the patches' own take that of the patches near them.
   std::vector<glm::vec3> byTriangle(std::span<const glm::vec3> given_off) const;
 
   std::uint64_t bytes() const;
@@ -89,8 +89,7 @@ class PatchTransport {
   void findShares();
   float meanBounced() const;
   // Returns the region of a link whose ray stands for this solid angle and starts where `rays` does.
-  std::size_t regionFrom(const glm::vec3& origin, const RayHit& hit, float solid_angle_sr,
-                         const RaysFrom& rays) const;
+  std::size_t regionFrom(const glm::vec3& origin, const RayHit& hit, float solid_angle_sr) const;
   // Returns a place from which the rays of a point behind the proxy may start.
   glm::vec3 startNear(const SurfacePoint& point) const;
   void findNearest(const bundle::CaptureProxy& proxy);
@@ -102,7 +101,8 @@ class PatchTransport {
   std::vector<float> transfer_;             // order² per patch
   std::vector<Share> shares_;               // all shares, ordered by patch
   std::vector<std::uint32_t> first_share_;  // for each patch, with the end as last entry
-  // Holds, for each triangle of the coarser levels, four nearby patches.
+  std::size_t own_triangles_ = 0;  // of the finest level, if that is the surface of the patches
+  // Holds, for each further triangle of all levels, four nearby patches.
   std::vector<std::array<std::uint32_t, kPatchPoints>> nearest_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -14,6 +15,7 @@ namespace {
 // These lengths are relative to the diagonal of the bounds.
 constexpr float kLift = 2e-4f;
 constexpr float kLeastThickness = 2e-3f;
+constexpr float kOnPlane = 1e-5f;
 
 // These are the barycentric coordinates of the centres of the four parts of a triangle whose edges are
 // halved.
@@ -23,13 +25,6 @@ constexpr std::array<glm::vec3, kPatchPoints> kPointWeights = {
 
 std::uint32_t partsFor(float area, float wanted) {
   return wanted > 0.0f ? std::max(1u, static_cast<std::uint32_t>(std::lround(std::sqrt(area / wanted)))) : 1u;
-}
-
-glm::vec3 albedoOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangle& triangle) {
-  glm::vec3 albedo(0.0f);
-  for (std::uint32_t e = 0; e < triangle.entry_count; ++e)
-    albedo += proxy.entries[triangle.first_entry + e].reflectance;
-  return glm::min(albedo, glm::vec3(1.0f));
 }
 
 }  // namespace
@@ -44,30 +39,29 @@ TrianglePart TrianglePart::at(std::uint32_t parts, float b, float c) {
   return {.column = column, .row = row, .upper = upper};
 }
 
-Patches::Patches(const bundle::CaptureProxy& proxy, std::size_t most) {
-  if (proxy.levels.empty()) return;
-  const bundle::ProxyLevel& level = proxy.levels.front();
+Patches::Patches(const bundle::PatchSurface& surface, std::size_t most) {
+  if (surface.triangles.empty()) return;
+  std::vector<RayTriangle> triangles;
   std::vector<float> areas;
   float whole = 0.0f;
   glm::vec3 low(INFINITY), high(-INFINITY);
-  for (std::uint32_t t = 0; t < level.triangle_count; ++t) {
-    const bundle::ProxyTriangle& triangle = proxy.triangles[level.first_triangle + t];
+  for (const bundle::PatchTriangle& triangle : surface.triangles) {
     std::array<glm::vec3, 3> corners{};
     for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = proxy.positions[triangle.vertices[k]];
+      corners[k] = surface.positions[triangle.vertices[k]];
       low = glm::min(low, corners[k]);
       high = glm::max(high, corners[k]);
     }
     const glm::vec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     const float length = glm::length(across);
-    corners_.push_back(corners);
     normals_.push_back(length > 0.0f ? across / length : glm::vec3(0.0f, 1.0f, 0.0f));
     areas.push_back(0.5f * length);
     whole += areas.back();
-    triangles_.add({.corners = corners, .front_only = triangle.front_only});
+    triangles.push_back({.corners = corners, .front_only = triangle.front_only});
   }
   extent_ = glm::distance(low, high);
-  error_ = std::max(level.error_m, kLeastThickness * extent_);
+  error_ = std::max(surface.error_m, kLeastThickness * extent_);
+  tree_ = TriangleTree(std::move(triangles), kOnPlane * extent_);
   // Rounding gives some triangles more parts than their share; then all get a little fewer.
   float wanted = whole / static_cast<float>(std::max<std::size_t>(most, 1));
   for (int tries = 0; tries < 32; ++tries) {
@@ -76,15 +70,14 @@ Patches::Patches(const bundle::CaptureProxy& proxy, std::size_t most) {
     if (count <= most) break;
     wanted *= 1.1f;
   }
-  for (std::size_t t = 0; t < corners_.size(); ++t) {
+  for (std::size_t t = 0; t < tree_.size(); ++t) {
     const std::uint32_t parts = partsFor(areas[t], wanted);
     split_.push_back({.first = patches_.size(), .parts = parts});
-    const auto& [a, b, c] = corners_[t];
+    const auto& [a, b, c] = tree_[t].corners;
     const auto cornerAt = [&](std::uint32_t column, std::uint32_t row) {
       const glm::vec2 at = glm::vec2(column, row) / static_cast<float>(parts);
       return a + at.x * (b - a) + at.y * (c - a);
     };
-    const glm::vec3 albedo = albedoOf(proxy, proxy.triangles[level.first_triangle + t]);
     for (std::uint32_t row = 0; row < parts; ++row)
       for (std::uint32_t place = 0; place < 2 * (parts - row) - 1; ++place) {
         const std::uint32_t i = place / 2;
@@ -96,7 +89,7 @@ Patches::Patches(const bundle::CaptureProxy& proxy, std::size_t most) {
           patch.points[k] = kPointWeights[k].x * p + kPointWeights[k].y * q + kPointWeights[k].z * r;
         patch.normal = normals_[t];
         patch.area = areas[t] / static_cast<float>(parts * parts);
-        patch.albedo = albedo;
+        patch.albedo = surface.triangles[t].albedo;
       }
   }
   for (Patch& patch : patches_)
@@ -110,8 +103,8 @@ std::size_t Patches::patchAt(const RayHit& hit) const {
 
 bool Patches::over(std::size_t triangle, const glm::vec3& point) const {
   for (std::size_t k = 0; k < 3; ++k) {
-    const glm::vec3& corner = corners_[triangle][k];
-    const glm::vec3 inwards = glm::cross(normals_[triangle], corners_[triangle][(k + 1) % 3] - corner);
+    const glm::vec3& corner = tree_[triangle].corners[k];
+    const glm::vec3 inwards = glm::cross(normals_[triangle], tree_[triangle].corners[(k + 1) % 3] - corner);
     if (glm::dot(inwards, point - corner) < -error_ * glm::length(inwards)) return false;
   }
   return true;
@@ -120,19 +113,19 @@ bool Patches::over(std::size_t triangle, const glm::vec3& point) const {
 glm::vec3 Patches::inFront(glm::vec3 point, const glm::vec3& normal) const {
   const float lift = kLift * extent_;
   point += lift * normal;
-  for (std::size_t t = 0; t < corners_.size(); ++t) {
-    const float height = glm::dot(normals_[t], point - corners_[t][0]);
+  std::vector<std::uint32_t> around;
+  tree_.findNear(point, 2.0f * (error_ + lift), around);
+  for (const std::uint32_t t : around) {
+    const float height = glm::dot(normals_[t], point - tree_[t].corners[0]);
     if (height > 0.5f * lift || height < -error_ || glm::dot(normals_[t], normal) < -0.5f || !over(t, point))
       continue;
     // The point must not move through to the other side of something thin that it is in front of.
-    const auto inTheWay = [&](std::size_t other) {
+    const auto inTheWay = [&](std::uint32_t other) {
       if (glm::dot(normals_[other], normals_[t]) > -0.9f) return false;
-      const float above = glm::dot(normals_[other], point - corners_[other][0]);
+      const float above = glm::dot(normals_[other], point - tree_[other].corners[0]);
       return above >= 0.0f && above <= lift - height && over(other, point);
     };
-    bool thin = false;
-    for (std::size_t other = 0; other < corners_.size() && !thin; ++other) thin = inTheWay(other);
-    if (!thin) point += (lift - height) * normals_[t];
+    if (std::ranges::none_of(around, inTheWay)) point += (lift - height) * normals_[t];
   }
   return point;
 }

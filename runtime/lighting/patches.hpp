@@ -1,5 +1,5 @@
-// Owns the surfaces of a rigid group as patches that exchange light: the triangles of its capture proxy's
-// finest level, split into smaller ones of about the same area. A patch sends one radiance in all directions.
+// Owns the surfaces of a rigid group as patches that exchange light: the triangles of its patch surface
+// (runtime/bundle/capture_proxy.hpp), split into smaller ones of about the same area. A patch sends one radiance in all directions.
 // All positions are in the group's frame. No GL.
 #pragma once
 
@@ -11,11 +11,11 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/bundle/capture_proxy.hpp"
-#include "runtime/lighting/triangle_rays.hpp"
+#include "runtime/lighting/triangle_tree.hpp"
 
 namespace lambent::lighting {
 
-inline constexpr std::size_t kMaxPatches = 1024;
+inline constexpr std::size_t kMaxPatches = 4096;
 inline constexpr std::size_t kPatchPoints = 4;
 
 // Names a part of a triangle whose edges are cut into `parts`. The triangle then has parts² parts, in rows of
@@ -41,13 +41,13 @@ struct Patch {
 class Patches {
  public:
   Patches() = default;
-  // Makes at least one patch per triangle of the level, about `most` in total.
-  explicit Patches(const bundle::CaptureProxy& proxy, std::size_t most = kMaxPatches);
+  // Makes at least one patch per triangle, about `most` in total.
+  explicit Patches(const bundle::PatchSurface& surface, std::size_t most = kMaxPatches);
 
   const std::vector<Patch>& all() const { return patches_; }
   std::size_t size() const { return patches_.size(); }
-  // Returns the triangles that were split, in the order of the proxy.
-  const TriangleSet& triangles() const { return triangles_; }
+  // Returns the triangles that were split, in their order.
+  const TriangleTree& tree() const { return tree_; }
   std::size_t patchAt(const RayHit& hit) const;
   // Return the range of a triangle's patches, which are contiguous.
   std::size_t firstOf(std::size_t triangle) const { return split_[triangle].first; }
@@ -58,10 +58,10 @@ class Patches {
   std::uint32_t partsOf(std::size_t triangle) const { return split_[triangle].parts; }
   // Returns the diagonal of the bounds.
   float extent() const { return extent_; }
-  // Returns how far the proxy may be from the surface that it represents.
+  // Returns how far the patches may be from the surface that they represent.
   float error() const { return error_; }
   // Returns a point slightly above the surface from which rays may start. A point of the true surface may lie
-  // a little behind the proxy, or behind a wall beside it; it is then moved in front. `normal` is that of the
+  // a little behind the patches, or behind a wall beside them; it is then moved in front. `normal` is that of the
   // surface.
   glm::vec3 inFront(glm::vec3 point, const glm::vec3& normal) const;
 
@@ -77,9 +77,8 @@ class Patches {
 
   std::vector<Patch> patches_;
   std::vector<Split> split_;  // one per triangle
-  std::vector<std::array<glm::vec3, 3>> corners_;
-  std::vector<glm::vec3> normals_;
-  TriangleSet triangles_;
+  std::vector<glm::vec3> normals_;  // of the triangles
+  TriangleTree tree_;
   float extent_ = 0.0f, error_ = 0.0f;
 };
 

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "runtime/lighting/capture_queries.hpp"
-#include "runtime/lighting/triangle_rays.hpp"
+#include "runtime/lighting/triangle_tree.hpp"
 
 namespace lambent::frame {
 
@@ -22,27 +23,28 @@ class Blockers {
  public:
   explicit Blockers(std::span<const bundle::CaptureProxy* const> proxies) : proxies_(proxies) {}
 
-  const lighting::TriangleSet& of(const lighting::IncidentBody& body) {
-    const auto [place, made] = sets_.try_emplace(body.key);
+  const lighting::TriangleTree& of(const lighting::IncidentBody& body) {
+    const auto [place, made] = trees_.try_emplace(body.key);
     if (!made || body.body.proxy >= proxies_.size()) return place->second;
     const bundle::CaptureProxy& proxy = *proxies_[body.body.proxy];
     if (proxy.levels.empty()) return place->second;
     const bundle::ProxyLevel& level = proxy.levels[std::min(kLevel, proxy.levels.size() - 1)];
+    std::vector<lighting::RayTriangle> triangles;
     for (std::uint32_t t = 0; t < level.triangle_count; ++t) {
       const bundle::ProxyTriangle& from = proxy.triangles[level.first_triangle + t];
-      lighting::RayTriangle triangle;
+      lighting::RayTriangle& triangle = triangles.emplace_back();
       triangle.front_only = from.front_only;
       for (std::size_t k = 0; k < 3; ++k)
         triangle.corners[k] =
             glm::vec3(body.body.world_from_proxy * glm::vec4(proxy.positions[from.vertices[k]], 1.0f));
-      place->second.add(triangle);
     }
+    place->second = lighting::TriangleTree(std::move(triangles), kLeastShare * body.radius_m);
     return place->second;
   }
 
  private:
   std::span<const bundle::CaptureProxy* const> proxies_;
-  std::map<std::uint64_t, lighting::TriangleSet> sets_;  // indexed by the body's key
+  std::map<std::uint64_t, lighting::TriangleTree> trees_;  // indexed by the body's key
 };
 
 // Returns whether a sphere around the body comes between the point and the light.
@@ -62,10 +64,9 @@ float shareThrough(std::span<const lighting::IncidentBody* const> bodies, Blocke
   if (directions.empty()) return 1.0f;
   std::vector<bool> hidden(directions.size(), false);
   for (const lighting::IncidentBody* body : bodies) {
-    lighting::RaysFrom rays(blockers.of(*body), kLeastShare * body->radius_m);
-    rays.moveTo(point);
+    const lighting::TriangleTree& tree = blockers.of(*body);
     for (std::size_t i = 0; i < directions.size(); ++i)
-      hidden[i] = hidden[i] || rays.blocked(query->distance_m * directions[i], 1.0f);
+      hidden[i] = hidden[i] || tree.blocked(point, query->distance_m * directions[i], 1.0f);
   }
   const auto count = std::ranges::count(hidden, false);
   return static_cast<float>(count) / static_cast<float>(directions.size());

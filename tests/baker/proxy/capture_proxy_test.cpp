@@ -129,6 +129,27 @@ TEST(CaptureProxyShape, HasLevelsWithinTheirLimits) {
   EXPECT_TRUE(read) << read.error().line();
 }
 
+TEST(CaptureProxyPatches, ShowAHouseToItselfMoreFinelyThanToOthers) {
+  Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 4)});
+  scene.materials[0].base_color = {0.8f, 0.4f, 0.2f, 1.0f};
+  const bundle::CaptureProxy proxy = proxyOf(Transport(scene));
+  const bundle::PatchSurface& patches = proxy.patches;
+  EXPECT_LE(patches.triangles.size(), bundle::kMaxPatchTriangles);
+  EXPECT_GT(patches.triangles.size(), 1500u);
+  EXPECT_LT(patches.error_m, 0.5f * proxy.levels[0].error_m);
+  float area = 0.0f;
+  for (const bundle::PatchTriangle& triangle : patches.triangles) {
+    const auto& v = triangle.vertices;
+    area += areaOf({patches.positions[v[0]], patches.positions[v[1]], patches.positions[v[2]]});
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(triangle.albedo[c], scene.materials[0].base_color[c], 1e-5f);
+  }
+  EXPECT_NEAR(area / (4.0f * std::numbers::pi_v<float>), 1.0f, 0.01f);
+}
+
+TEST(CaptureProxyPatches, AreNotStoredWhereTheFinestLevelHasAllTriangles) {
+  EXPECT_TRUE(proxyOf(Transport(sceneOf({box({0, 0, 0}, {1, 1, 1}, 2)}))).patches.triangles.empty());
+}
+
 glm::vec3 reflectanceOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangle& triangle) {
   glm::vec3 sum(0.0f);
   for (std::uint32_t e = 0; e < triangle.entry_count; ++e)

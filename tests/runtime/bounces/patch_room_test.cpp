@@ -54,7 +54,7 @@ double received(const lighting::Patches& patches, const std::vector<float>& dire
 }  // namespace
 
 TEST(LampLight, AllLightOfALampArrivesInAClosedRoom) {
-  const lighting::Patches patches(RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(0.5f)).proxy());
+  const lighting::Patches patches(RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(0.5f)).surface());
   ShadowedLight point = pointLamp({0.8f, 1.3f, 1.1f});
   EXPECT_NEAR(received(patches, lampOnPatches(point, patches, {}, glm::mat4(1.0f)), 4.0 * kPi), 1.0, 0.01);
   ShadowedLight sphere = point;
@@ -81,7 +81,7 @@ TEST(LampLight, ALampInABoxLightsNothingOfTheBoxBeside) {
   const lighting::Patches patches(RoomBuilder()
                                       .box({0, 0, 0}, {1, 1, 1}, glm::vec3(0.7f))
                                       .box({1.1f, 0, 0}, {2, 1, 1}, glm::vec3(0.7f))
-                                      .proxy());
+                                      .surface());
   ShadowedLight lamp = pointLamp({0.5f, 0.5f, 0.5f});
   lamp.kind = ShadowedLight::Kind::Sphere;
   lamp.radius_m = 0.2f;
@@ -95,7 +95,7 @@ TEST(LampLight, ALampInABoxLightsNothingOfTheBoxBeside) {
 TEST(LampLight, WhatIsNoLargerThanTheLampAndWithinItCastsNoShadow) {
   RoomBuilder builder;
   builder.wall({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, glm::vec3(0.5f));  // a floor
-  const lighting::Patches patches(builder.proxy());
+  const lighting::Patches patches(builder.surface());
   ShadowedLight bulb = pointLamp({0, 1, 0});
   bulb.kind = ShadowedLight::Kind::Sphere;
   bulb.radius_m = 0.1f;
@@ -121,14 +121,14 @@ TEST(PatchRoom, WhatARoomSendsOnIsAlbedoOverOneMinusAlbedoOfTheLamp) {
   }
 }
 
-TEST(PatchRoom, DimmingIsLinearToTheBitAndBouncesNothingAnew) {
+TEST(PatchRoom, DimmingIsLinearToTheBitAndTracesNothingAnew) {
   PatchRoom room = boxRoom();
   shine(room, {pointLamp({1, 2, 1}, {4, 2, 1})});
-  EXPECT_EQ(room.bouncedLast(), 1u);
+  EXPECT_EQ(room.tracedLast(), 1u);
   const std::vector<glm::vec3> full = room.givenOff();
   const std::uint64_t version = room.version();
   shine(room, {pointLamp({1, 2, 1}, {1, 0.5f, 0.25f})});
-  EXPECT_EQ(room.bouncedLast(), 0u);
+  EXPECT_EQ(room.tracedLast(), 0u);
   EXPECT_GT(room.version(), version);
   for (std::size_t i = 0; i < full.size(); ++i) ASSERT_EQ(room.givenOff()[i], 0.25f * full[i]);
 }
@@ -140,8 +140,11 @@ TEST(PatchRoom, TwoLampsGiveTheSumOfBoth) {
   shine(first, {a});
   shine(second, {b});
   for (std::size_t i = 0; i < room.givenOff().size(); ++i)
-    for (int k = 0; k < 3; ++k)
-      ASSERT_FLOAT_EQ(room.givenOff()[i][k], first.givenOff()[i][k] + second.givenOff()[i][k]);
+    for (int k = 0; k < 3; ++k) {
+      const float sum = first.givenOff()[i][k] + second.givenOff()[i][k];
+      // Bounces end where they add less than 1 / 10 000.
+      ASSERT_NEAR(room.givenOff()[i][k], sum, 1e-3f * sum);
+    }
 }
 
 TEST(PatchRoom, WhatStandsStillIsNewOnlyOnce) {
@@ -151,10 +154,10 @@ TEST(PatchRoom, WhatStandsStillIsNewOnlyOnce) {
   const std::uint64_t version = room.version();
   shine(room, lamps);
   EXPECT_EQ(room.version(), version);
-  EXPECT_EQ(room.bouncedLast(), 0u);
+  EXPECT_EQ(room.tracedLast(), 0u);
   // When the other lamp is switched off, the remaining one is not computed again.
   shine(room, {lamps[1]});
-  EXPECT_EQ(room.bouncedLast(), 0u);
+  EXPECT_EQ(room.tracedLast(), 0u);
   EXPECT_GT(room.version(), version);
 }
 
@@ -171,7 +174,7 @@ TEST(PatchRoom, ALampThatComesBackGivesTheSameBytes) {
   shine(room, {pointLamp({1, 2, 1})});
   const std::vector<glm::vec3> before = room.givenOff();
   shine(room, {pointLamp({1, 2, 1.1f})});
-  EXPECT_EQ(room.bouncedLast(), 1u);
+  EXPECT_EQ(room.tracedLast(), 1u);
   EXPECT_FALSE(sameBytes(before, room.givenOff()));
   shine(room, {pointLamp({1, 2, 1})});
   EXPECT_TRUE(sameBytes(before, room.givenOff()));
@@ -185,7 +188,7 @@ TEST(PatchRoom, WhatElseStandsInTheLightTakesItAway) {
   const std::vector<lighting::RayTriangle> lid = {
       {.corners = {glm::vec3(-3, 2.2f, -3), glm::vec3(-3, 2.2f, 9), glm::vec3(9, 2.2f, -3)}}};
   shine(room, {pointLamp({1, 2.3f, 1.5f})}, lid);
-  EXPECT_EQ(room.bouncedLast(), 1u);
+  EXPECT_EQ(room.tracedLast(), 1u);
   double before = 0.0, after = 0.0;
   const auto& patches = room.transport()->patches().all();
   for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -195,7 +198,7 @@ TEST(PatchRoom, WhatElseStandsInTheLightTakesItAway) {
   }
   EXPECT_LT(after, 0.6 * before) << "what the ceiling sends on passes the lid, which is no part of the room";
   shine(room, {pointLamp({1, 2.3f, 1.5f})}, lid);
-  EXPECT_EQ(room.bouncedLast(), 0u);
+  EXPECT_EQ(room.tracedLast(), 0u);
 }
 
 TEST(PatchRoom, ATurnedAndScaledRoomTakesTheSameShareOfLight) {
@@ -267,9 +270,10 @@ TEST(PatchRoom, WithTheirBandsKeyLightsFallWhereTheirRaysDo) {
     else
       EXPECT_LT(by_rays[0][i], 1e-4f) << "a wall that the sun does not reach";
   }
-  // The light comes through an opening of 4 m² at a cosine of 0.8; E/pi = sin² cos.
+  // The light comes through an opening of 4 m² at a cosine of 0.8; E/pi = sin² cos. The four points of a patch
+  // share 16 rays.
   const double sine = std::sin(0.05);
-  EXPECT_NEAR(straight / (4.0 * 0.8 * sine * sine), 1.0, 0.01);
+  EXPECT_NEAR(straight / (4.0 * 0.8 * sine * sine), 1.0, 0.015);
 }
 
 TEST(PatchRoom, InAClosedRoomKeyLightsAndTheirBandsLeaveNothing) {
@@ -292,17 +296,17 @@ TEST(PatchRoom, KeyLightsThatAreBlockedByOtherBodiesAreTakenOff) {
     ASSERT_NEAR(room.givenOff()[i].g + by_bands[i].g, 0.0f, 1e-4f) << i;
 }
 
-TEST(PatchRoom, AKeyLightThatIsDimmedIsNotBouncedAnew) {
+TEST(PatchRoom, AKeyLightThatIsDimmedIsNotTracedAnew) {
   PatchRoom room = openRoom();
   std::vector<spec::Disc> keys = {sunAt({0, 0.8f, 0.6f}), sunAt({0.3f, 0.2f, 0.9f})};
   room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
-  EXPECT_EQ(room.bouncedLast(), 2u);
+  EXPECT_EQ(room.tracedLast(), 2u);
   keys[0].radiance *= 0.5f;
   room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
-  EXPECT_EQ(room.bouncedLast(), 0u);
+  EXPECT_EQ(room.tracedLast(), 0u);
   keys[1].direction = glm::normalize(glm::vec3(0.31f, 0.2f, 0.9f));
   room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
-  EXPECT_EQ(room.bouncedLast(), 1u);
+  EXPECT_EQ(room.tracedLast(), 1u);
   const std::uint64_t version = room.version();
   room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
   EXPECT_EQ(room.version(), version);

@@ -19,6 +19,15 @@ CaptureProxy smallProxy() {
   return proxy;
 }
 
+// Makes the same with a surface for its own parts.
+CaptureProxy withPatches() {
+  CaptureProxy proxy = smallProxy();
+  proxy.patches.positions = {{0.5f, 0.0f, 0.0f}, {1.0f, -2e7f, 0.0f}, {0.0f, 1.0f, 0.125f}, {2.0f, 1.0f, 1.0f}};
+  proxy.patches.triangles = {{{0, 1, 2}, true, {0.2f, 0.4f, 1.0f}}, {{1, 3, 2}, false, {0.0f, 0.6f, 0.8f}}};
+  proxy.patches.error_m = 0.25f;
+  return proxy;
+}
+
 auto decode(const std::vector<std::byte>& bytes, std::uint32_t samples = 10, std::uint32_t lights = 2) {
   return decodeCaptureProxy(bytes, samples, lights, "group 0");
 }
@@ -50,16 +59,46 @@ TEST(CaptureProxy, ComesBackExactlyButForStepsOfReflectance) {
   EXPECT_EQ(back->levels[1].error_m, 0.5f);
 }
 
+TEST(CaptureProxy, BringsTheSurfaceForItsOwnPartsInStepsOfAByteOfAlbedo) {
+  const CaptureProxy proxy = withPatches();
+  const auto back = decode(encodeCaptureProxy(proxy));
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_EQ(back->patches.positions, proxy.patches.positions);
+  EXPECT_EQ(back->patches.error_m, 0.25f);
+  ASSERT_EQ(back->patches.triangles.size(), 2u);
+  for (std::size_t t = 0; t < 2; ++t) {
+    const PatchTriangle &found = back->patches.triangles[t], &wanted = proxy.patches.triangles[t];
+    EXPECT_EQ(found.vertices, wanted.vertices);
+    EXPECT_EQ(found.front_only, wanted.front_only);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.albedo[c], wanted.albedo[c], 0.6f / 255.0f);
+  }
+}
+
+TEST(CaptureProxy, ShowsItsOwnPartsTheFinestLevelWhereThereIsNoOtherSurface) {
+  const PatchSurface surface = patchSurfaceOf(smallProxy());
+  ASSERT_EQ(surface.triangles.size(), 2u);
+  EXPECT_EQ(surface.error_m, 0.001f);
+  EXPECT_TRUE(surface.triangles[0].front_only);
+  EXPECT_EQ(surface.triangles[0].albedo, glm::vec3(0.0f));
+  EXPECT_EQ(surface.triangles[1].albedo, glm::vec3(1.0f, 1.0f, 0.0f));
+  EXPECT_EQ(patchSurfaceOf(withPatches()).error_m, 0.25f);
+}
+
 TEST(CaptureProxy, OfAnotherLengthIsRefused) {
-  auto bytes = encodeCaptureProxy(smallProxy());
-  for (std::size_t length = 0; length < bytes.size(); ++length)
-    EXPECT_FALSE(decode({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)})) << length;
-  bytes.push_back(std::byte{0});
-  EXPECT_FALSE(decode(bytes));
+  const std::size_t without_patches = encodeCaptureProxy(smallProxy()).size();
+  for (const CaptureProxy& proxy : {smallProxy(), withPatches()}) {
+    auto bytes = encodeCaptureProxy(proxy);
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+      if (length == without_patches) continue;
+      EXPECT_FALSE(decode({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)})) << length;
+    }
+    bytes.push_back(std::byte{0});
+    EXPECT_FALSE(decode(bytes));
+  }
 }
 
 TEST(CaptureProxy, FlippedBytesNeverGiveIndicesOutOfRange) {
-  const auto bytes = encodeCaptureProxy(smallProxy());
+  const auto bytes = encodeCaptureProxy(withPatches());
   for (std::size_t at = 0; at < bytes.size(); ++at)
     for (unsigned bit = 0; bit < 8; ++bit) {
       auto damaged = bytes;
@@ -72,6 +111,9 @@ TEST(CaptureProxy, FlippedBytesNeverGiveIndicesOutOfRange) {
         EXPECT_LE(triangle.first_entry + triangle.entry_count, proxy->entries.size());
       }
       for (const ProxyEntry& entry : proxy->entries) EXPECT_LT(entry.sample, 10u);
+      for (const PatchTriangle& triangle : proxy->patches.triangles)
+        for (const std::uint32_t vertex : triangle.vertices)
+          EXPECT_LT(vertex, proxy->patches.positions.size());
       for (const ProxyLevel& level : proxy->levels)
         EXPECT_LE(level.first_triangle + level.triangle_count, proxy->triangles.size());
     }
@@ -79,7 +121,7 @@ TEST(CaptureProxy, FlippedBytesNeverGiveIndicesOutOfRange) {
 
 TEST(CaptureProxy, NonsenseUnderRightLengthsIsRefusedByName) {
   const auto refused = [](auto spoil, const char* why) {
-    CaptureProxy proxy = smallProxy();
+    CaptureProxy proxy = withPatches();
     spoil(proxy);
     const auto read = decode(encodeCaptureProxy(proxy));
     ASSERT_FALSE(read) << why;
@@ -92,6 +134,8 @@ TEST(CaptureProxy, NonsenseUnderRightLengthsIsRefusedByName) {
   refused([](CaptureProxy& p) { p.triangles[0].light = 2; }, "a light that");
   refused([](CaptureProxy& p) { p.triangles[0].emission.y = -1.0f; }, "negative light");
   refused([](CaptureProxy& p) { p.entries[1].sample = 10; }, "a sample that");
+  refused([](CaptureProxy& p) { p.patches.triangles[1].vertices[0] = 4; }, "a patch with a corner");
+  refused([](CaptureProxy& p) { p.patches.positions.resize(7); }, "more or fewer patches");
   refused([](CaptureProxy& p) { p.triangles[2].entry_count = 0; }, "do not hold all entries");
   refused([](CaptureProxy& p) { p.triangles[2].entry_count = 2; }, "too many entries");
   refused([](CaptureProxy& p) { p.entries[0].reflectance.y = 0.6f; }, "reflects more than it gets");
@@ -99,6 +143,8 @@ TEST(CaptureProxy, NonsenseUnderRightLengthsIsRefusedByName) {
     refused([&](CaptureProxy& p) { p.positions[0].x = bad; }, "not finite");
     refused([&](CaptureProxy& p) { p.triangles[0].emission.x = bad; }, "not finite");
     refused([&](CaptureProxy& p) { p.levels[0].error_m = bad; }, "not finite");
+    refused([&](CaptureProxy& p) { p.patches.positions[2].z = bad; }, "not finite");
+    refused([&](CaptureProxy& p) { p.patches.error_m = bad; }, "not finite");
   }
 }
 

@@ -165,14 +165,13 @@ TEST(PatchTransport, TheSameRoomGivesTheSameBytes) {
 }
 
 TEST(PatchTransport, PatchesOfATriangleAreFoundByWhereARayMeetsIt) {
-  const Patches patches(RoomBuilder().box({0, 0, 0}, {3, 2, 1}, glm::vec3(0.5f)).proxy(), 500);
+  const Patches patches(RoomBuilder().box({0, 0, 0}, {3, 2, 1}, glm::vec3(0.5f)).surface(), 500);
   EXPECT_LE(patches.size(), 500u);
   EXPECT_GE(patches.size(), 400u);
-  RaysFrom rays(patches.triangles(), 1e-5f);
-  rays.moveTo({1.3f, 0.9f, 0.45f});
+  const glm::vec3 origin(1.3f, 0.9f, 0.45f);
   for (std::size_t i = 0; i < patches.size(); ++i)
     for (const glm::vec3& point : patches.all()[i].points) {
-      const auto hit = rays.first(point - glm::vec3(1.3f, 0.9f, 0.45f));
+      const auto hit = patches.tree().first(origin, point - origin);
       ASSERT_TRUE(hit);
       ASSERT_EQ(patches.patchAt(*hit), i);
     }
@@ -265,7 +264,7 @@ TEST(PatchTransport, ADarkBoxOnALitFloorStaysDark) {
 }
 
 TEST(PatchRegions, HoldTheMeansOfTheirPatchesAndAllOfThemAtEachLevel) {
-  const Patches patches(RoomBuilder().wall({0, 0, 0}, {3, 0, 0}, {0, 1, 0}, glm::vec3(0.5f)).proxy(), 200);
+  const Patches patches(RoomBuilder().wall({0, 0, 0}, {3, 0, 0}, {0, 1, 0}, glm::vec3(0.5f)).surface(), 200);
   const PatchRegions regions(patches);
   std::vector<glm::vec3> values;
   for (const Patch& patch : patches.all()) values.push_back(patch.points[0]);

@@ -64,6 +64,7 @@ class RoomBuilder {
     return *this;
   }
   bundle::CaptureProxy proxy() const { return proxy_; }
+  bundle::PatchSurface surface() const { return bundle::patchSurfaceOf(proxy_); }
 
  private:
   void inwards(std::array<glm::vec3, 3> corners, const glm::vec3& albedo) {
