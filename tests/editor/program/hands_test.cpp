@@ -320,6 +320,7 @@ state
 wait seconds 1.5
 state
 set Transform.translation 0 1.2 3
+wait rest 60
 wait seconds 1
 state
 wait seconds 1.5
