@@ -11,8 +11,8 @@ cp assets/hello.glb "$work/room.glb"
 head -c 2000 assets/hello.glb > "$work/broken.glb"
 cp assets/gallery.glb "$work/gallery.glb"
 
-edit() {  # SCRIPT
-  exec bin/lambent-editor --fresh --size "$size" --scale "$scale" --cache "$work/cache" --quality draft --json --script "$1" > "$work/answers"
+edit() {  # SCRIPT QUALITY
+  exec bin/lambent-editor --fresh --size "$size" --scale "$scale" --cache "$work/cache" --quality "$2" --json --script "$1" > "$work/answers"
 }
 
 cat > "$work/first" << END
@@ -79,12 +79,13 @@ screenshot $work/11-cut-short.png
 click bakes.gallery.glb.open
 wait loaded 60
 wait seconds 2
+where bakes.gallery.cancel
 screenshot $work/12-goes-on.png
-wait baked 900
 END
-(edit "$work/first")
-(edit "$work/second")
-(edit "$work/third") &
+# At standard quality the bake still goes on when its first picture is there.
+(edit "$work/first" standard)
+(edit "$work/second" standard)
+(edit "$work/third" draft) &
 while [ ! -e "$work/baking.png" ]; do
   kill -0 $!
   sleep 1
@@ -92,7 +93,7 @@ done
 sleep 1  # the picture may not be whole yet
 kill -9 $!
 wait $! || true
-(edit "$work/fourth")
+(edit "$work/fourth" draft)
 for picture in "$work"/[01][0-9]-*.png; do
   convert "$picture" -resize '960x>' -quality 82 "$out/tour-$(basename "$picture" .png).jpg"
 done

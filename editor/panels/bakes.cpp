@@ -77,11 +77,11 @@ bool drawButtons(Session& session, Marks& marks, std::size_t i, bool working) {
   if (working) {
     if (ImGui::SmallButton("Cancel")) runOrLog(session, "cancel", std::array{number});
     marks.put(mark + "cancel");
-    ImGui::SameLine();
+    sameLineIfFits("Options");
   } else if (!entry.source.empty()) {
     if (ImGui::SmallButton("Bake")) runOrLog(session, "bake", std::array{number});
     marks.put(mark + "bake");
-    ImGui::SameLine();
+    sameLineIfFits("Options");
   }
   if (!entry.source.empty()) {
     if (ImGui::SmallButton("Options")) ImGui::OpenPopup("options");
@@ -90,7 +90,7 @@ bool drawButtons(Session& session, Marks& marks, std::size_t i, bool working) {
       drawBakeOptions(session, marks, i);
       ImGui::EndPopup();
     }
-    ImGui::SameLine();
+    sameLineIfFits("Close");
   }
   const bool close = ImGui::SmallButton("Close");
   marks.put(mark + "close");
@@ -136,7 +136,7 @@ void drawUnseen(Session& session, Marks& marks, const baker::JobState& job) {
   if (works(job)) {
     if (ImGui::SmallButton("Cancel")) session.scenes.cancelUnseen(job.id);
     marks.put(mark + "cancel");
-    ImGui::SameLine();
+    sameLineIfFits("Open");
   }
   if (ImGui::SmallButton("Open")) runOrLog(session, "open", std::array{job.request.scene.string()});
   marks.put(mark + "open");
@@ -157,11 +157,11 @@ bool drawUnfinished(Session& session, Marks& marks, std::size_t i) {
   const bool go_on = ImGui::SmallButton("Go on");
   tooltip("Bake it without opening it");
   marks.put(mark + "go-on");
-  ImGui::SameLine();
+  sameLineIfFits("Open");
   const bool open = ImGui::SmallButton("Open");
   tooltip("Show it, and bake it with the options of this session");
   marks.put(mark + "open");
-  ImGui::SameLine();
+  sameLineIfFits("Forget");
   const bool forget = ImGui::SmallButton("Forget");
   tooltip("Offer it no more; what it kept stays in the cache");
   marks.put(mark + "forget");
@@ -172,13 +172,17 @@ bool drawUnfinished(Session& session, Marks& marks, std::size_t i) {
   return !go_on && !open && !forget;
 }
 
-// Returns the width of the widest row of buttons.
-float buttonsWidth() {
+// Returns the width of the column of buttons: of the widest row, or in a narrow table of the widest button,
+// because buttons beyond the border would have to be looked for.
+float buttonsWidth(bool narrow) {
   const ImGuiStyle& style = ImGui::GetStyle();
-  float width = 2.0f * style.ItemSpacing.x + style.CellPadding.x;
-  for (const char* text : {"Cancel", "Options", "Forget"})
-    width += ImGui::CalcTextSize(text).x + 2.0f * style.FramePadding.x;
-  return width;
+  float row = 2.0f * style.ItemSpacing.x, widest = 0.0f;
+  for (const char* text : {"Cancel", "Options", "Forget"}) {
+    const float width = ImGui::CalcTextSize(text).x + 2.0f * style.FramePadding.x;
+    row += width;
+    widest = std::max(widest, width);
+  }
+  return (narrow ? widest : row) + style.CellPadding.x;
 }
 
 }  // namespace
@@ -195,13 +199,16 @@ void drawBakes(Session& session, Marks& marks) {
   constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
                                      ImGuiTableFlags_Resizable | ImGuiTableFlags_ScrollY |
                                      ImGuiTableFlags_ScrollX;
-  if (!ImGui::BeginTable("bakes", 4, kTable, ImVec2(0.0f, 0.0f),
-                         std::max(ImGui::GetContentRegionAvail().x, em(34.0f))))
+  const float room = ImGui::GetContentRegionAvail().x;
+  const bool narrow = room < em(34.0f);
+  // Dear ImGui keeps the widths of columns by the table's name.
+  if (!ImGui::BeginTable(narrow ? "narrow bakes" : "bakes", 4, kTable, ImVec2(0.0f, 0.0f),
+                         std::max(room, em(20.0f))))
     return;
   ImGui::TableSetupColumn("Scene", ImGuiTableColumnFlags_WidthStretch, 0.2f);
   ImGui::TableSetupColumn("State", ImGuiTableColumnFlags_WidthStretch, 0.25f);
   ImGui::TableSetupColumn("Bake", ImGuiTableColumnFlags_WidthStretch, 0.55f);
-  ImGui::TableSetupColumn("##buttons", ImGuiTableColumnFlags_WidthFixed, buttonsWidth());
+  ImGui::TableSetupColumn("##buttons", ImGuiTableColumnFlags_WidthFixed, buttonsWidth(narrow));
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableHeadersRow();
   int id = 0;

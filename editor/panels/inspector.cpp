@@ -92,6 +92,17 @@ void drawAdd(Session& session, Marks& marks, std::span<const ecs::Entity> select
   ImGui::EndPopup();
 }
 
+// Returns the height of drawRebake: a line, a button and the reasons, each as a wrapped text behind a bullet.
+float rebakeHeight(const std::vector<std::string>& reasons) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float wrap = ImGui::GetContentRegionAvail().x - ImGui::GetFontSize() - 2.0f * style.FramePadding.x;
+  float height =
+      ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing() + 4.0f * style.ItemSpacing.y;
+  for (const std::string& reason : reasons)
+    height += ImGui::CalcTextSize(reason.c_str(), nullptr, false, wrap).y + style.ItemSpacing.y;
+  return height;
+}
+
 // Lists what the picture only approximates since the bundle was baked, with a button to bake it again.
 void drawRebake(Session& session, Marks& marks, std::size_t entry, const std::vector<std::string>& reasons) {
   ImGui::Separator();
@@ -134,8 +145,7 @@ void drawInspector(Session& session, Marks& marks) {
       entry ? session.changes.needsRebakeNow(*entry) : std::vector<std::string>();
   // The reasons stand below the fields, which must not move under the pointer while an edit gives a reason.
   const float room = ImGui::GetContentRegionAvail().y;
-  const float lines = std::min(2.0f + 2.5f * static_cast<float>(reasons.size()), 9.0f);
-  const float below = reasons.empty() ? 0.0f : std::min(lines * ImGui::GetFrameHeight(), 0.4f * room);
+  const float below = reasons.empty() ? 0.0f : std::min(rebakeHeight(reasons), 0.4f * room);
   ImGui::BeginChild("fields", ImVec2(0.0f, std::max(1.0f, room - below)));
   if (selected.empty()) {
     ImGui::PushTextWrapPos(0.0f);

@@ -13,7 +13,6 @@ namespace lambent::editor {
 
 namespace {
 
-constexpr std::size_t kMostToasts = 4;
 // Toasts are no wider than the view.
 constexpr float kToastEms = 28.0f, kToastGap = 12.0f;
 
@@ -45,9 +44,7 @@ void drawLog(Session& session, Marks& marks) {
 }
 
 void drawToasts(Session& session, Marks& marks, const Rectangle& view) {
-  auto recent = session.log.recent(kToastAge);
-  if (recent.size() > kMostToasts)
-    recent.erase(recent.begin(), recent.end() - static_cast<std::ptrdiff_t>(kMostToasts));
+  const std::vector<LogEntry> recent = session.log.toasts(std::chrono::steady_clock::now());
   const float room = view.max.x - view.min.x - 2.0f * kToastGap, right = view.max.x - kToastGap;
   const float width = std::max(std::min(em(kToastEms), room), 1.0f);
   float bottom = view.max.y - kToastGap;

@@ -94,10 +94,18 @@ void drawSavedLayouts(Session& session, Marks& marks) {
   ImGui::EndMenu();
 }
 
-void drawPanelItems(Session& session) {
+// Lists the panels in a menu of their own, because with them the Window menu would be longer than a small
+// window.
+void drawPanelItems(Session& session, Marks& marks) {
   ImGui::Separator();
-  for (const Panel& panel : panelList())
+  const bool open = ImGui::BeginMenu("Panels");
+  marks.put("menu.panels");
+  if (!open) return;
+  for (const Panel& panel : panelList()) {
     if (ImGui::MenuItem(panel.name)) session.window.wanted_panels.emplace_back(panel.name);
+    marks.put(std::string("menu.panel.") + panel.name);
+  }
+  ImGui::EndMenu();
 }
 
 // Draws at the right end what scenes lack, which a click explains in the Bakes panel, and the picture's time.
@@ -142,7 +150,7 @@ void drawMenus(Session& session, Marks& marks) {
       if (std::strcmp(command.id, "open") == 0) drawRecent(session, marks);
       if (std::strcmp(command.id, "save-layout") == 0) drawSavedLayouts(session, marks);
     }
-    if (std::strcmp(menu, "Window") == 0) drawPanelItems(session);
+    if (std::strcmp(menu, "Window") == 0) drawPanelItems(session, marks);
     ImGui::EndMenu();
   }
   drawStatus(session, marks);

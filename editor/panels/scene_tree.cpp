@@ -29,6 +29,12 @@ constexpr KindLook kLooks[] = {
     {"animation", "A", IM_COL32(230, 140, 180, 255)},  {"material", "M", IM_COL32(120, 200, 200, 255)},
     {"environment", "E", IM_COL32(120, 170, 250, 255)}};
 
+// Leaves the room of an arrow button. Text behind it stands as high as text behind a button.
+void drawLeafSpace() {
+  ImGui::AlignTextToFramePadding();
+  ImGui::Dummy(ImVec2(ImGui::GetFrameHeight(), ImGui::GetFrameHeight()));
+}
+
 void drawSign(std::string_view kind) {
   for (const KindLook& look : kLooks)
     if (look.kind == kind) {
@@ -76,7 +82,7 @@ bool drawUnshown(Session& session, Marks& marks, std::size_t i) {
   const SceneStatus status = statusOf(session, i);
   const std::string number = std::to_string(i);
   ImGui::PushID(static_cast<int>(i));
-  ImGui::Dummy(ImVec2(ImGui::GetFrameHeight(), ImGui::GetFrameHeight()));
+  drawLeafSpace();
   ImGui::SameLine(0.0f, 4.0f);
   drawSign("bundle");
   ImGui::SameLine(0.0f, 6.0f);
@@ -119,7 +125,7 @@ void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector
         query.closed.erase(row.id);
     }
   } else {
-    ImGui::Dummy(ImVec2(ImGui::GetFrameHeight(), ImGui::GetFrameHeight()));
+    drawLeafSpace();
   }
   ImGui::SameLine(0.0f, 4.0f);
   drawSign(row.kind);

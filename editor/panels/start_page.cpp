@@ -1,6 +1,7 @@
 // Draws what is shown while the world is empty: what the program is, recent files, sample scenes.
 #include <algorithm>
 #include <array>
+#include <cfloat>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -82,13 +83,16 @@ void drawSamples(Session& session, Marks& marks) {
 void drawStartPage(Session& session, Marks& marks) {
   if (!session.empty()) return;  // it would lie over handles
   const float width = std::min(em(kWidthEms), 0.9f * ImGui::GetWindowWidth());
-  const float above = std::max(em(1.0f), 0.08f * ImGui::GetWindowHeight());
-  ImGui::SetCursorPos(ImVec2(0.5f * (ImGui::GetWindowWidth() - width), above));
+  const float top = ImGui::GetCursorPosY(), room = ImGui::GetWindowHeight() - top;  // below the tool bar
+  const float above = std::max(em(0.5f), 0.05f * room);
+  ImGui::SetCursorPos(ImVec2(0.5f * (ImGui::GetWindowWidth() - width), top + above));
   // The view may be of any brightness, so the page has a ground of its own.
   ImGui::PushStyleColor(ImGuiCol_ChildBg, ImGui::GetStyleColorVec4(ImGuiCol_WindowBg));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(em(1.0f), em(0.75f)));
-  ImGui::BeginChild("start", ImVec2(width, ImGui::GetWindowHeight() - 2.0f * above), false,
-                    ImGuiWindowFlags_AlwaysUseWindowPadding);
+  // The page is as high as what it showed in the frame before, or scrolls.
+  float& content = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("start height"), FLT_MAX);
+  const float height = std::min(content, room - 2.0f * above);
+  ImGui::BeginChild("start", ImVec2(width, height), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
   for (const char* line :
        {"Lambent bakes how a scene carries light, once; then any light can move in it at once.",
         "Drop a glTF scene (.gltf, .glb) here: it shows at once, and gets shadows and bounces while it "
@@ -101,7 +105,9 @@ void drawStartPage(Session& session, Marks& marks) {
   marks.put("start.open");
   drawRecent(session, marks);
   drawSamples(session, marks);
+  content = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y;
   ImGui::EndChild();
+  marks.put("start");
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
 }

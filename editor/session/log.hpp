@@ -5,6 +5,7 @@
 #include <chrono>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,6 @@ struct LogEntry {
   std::uint64_t number = 0;                    // increases from entry to entry
 };
 
-// How long a notice stands above the window.
-inline constexpr std::chrono::milliseconds kToastAge{6000};
-
 class Log {
  public:
   static constexpr std::size_t kMostEntries = 2000;  // beyond this the oldest entries are dropped
@@ -36,14 +34,24 @@ class Log {
   void clear();
 
   std::vector<LogEntry> entries() const;
-  // Returns the entries newer than `age`, the latest last.
-  std::vector<LogEntry> recent(std::chrono::milliseconds age) const;
+  // Returns what stands over the view as toasts at this time, the latest last. Call it once for each frame: a
+  // toast stays for some seconds, and for some frames where these take seconds.
+  std::vector<LogEntry> toasts(std::chrono::steady_clock::time_point now);
+  // Returns whether the last frame had toasts, or the next one will.
+  bool hasToasts() const;
   // Returns the number of errors since the start, which clear() does not reset.
   std::uint64_t errors() const;
 
  private:
+  struct Toast {
+    std::uint64_t number = 0;                                      // of its entry
+    std::optional<std::chrono::steady_clock::time_point> shown{};  // first; nothing: not yet
+    std::uint32_t frames = 0;
+  };
+
   mutable std::mutex lock_;
   std::deque<LogEntry> entries_;
+  std::deque<Toast> toasts_;  // the latest last
   std::uint64_t next_ = 0, errors_ = 0;
 };
 

@@ -77,8 +77,8 @@ std::optional<std::size_t> Scenes::entryOf(std::uint32_t slot) const {
 
 std::optional<baker::JobState> Scenes::jobOf(std::size_t entry) const {
   if (!entries_[entry].job) return std::nullopt;
-  for (baker::JobState& state : queue_->states())
-    if (state.id == *entries_[entry].job) return std::move(state);
+  for (const baker::JobState& state : jobs_)
+    if (state.id == *entries_[entry].job) return state;
   return std::nullopt;
 }
 
@@ -230,6 +230,7 @@ void Scenes::request(SceneEntry& entry) {
                    .options = entry.options,
                    .edits = entry.edits,
                    .last = settings_.bake ? baker::PreviewLevel::Final : baker::PreviewLevel::Unshadowed});
+  jobs_ = queue_->states();
 }
 
 void Scenes::watch() {
@@ -274,7 +275,8 @@ void Scenes::take(const baker::BakeEvent& event) {
   if (job) found->shown_edits = job->request.edits;
   show(*found, event.bundle);
   if (event.preview_level == baker::PreviewLevel::Final && job && !job->up_to_date)
-    log_.note(fmt::format("{}: baked in {:.0f} s", found->bundle.filename().string(), job->seconds));
+    log_.note(fmt::format("{}: baked in {:.{}f} s", found->bundle.filename().string(), job->seconds,
+                          job->seconds < 9.95 ? 1 : 0));
 }
 
 // Returns whether a watched folder contains the scene.
@@ -290,7 +292,9 @@ void Scenes::take(const baker::WatchEvent& event) {
   const std::filesystem::path scene = plain(event.scene);
   SceneEntry* entry = find(scene);
   if (event.kind == Kind::Broken && event.error) {
-    log_.error(*event.error);
+    // A scene that was broken when it was opened has been reported by its bake.
+    const auto job = entry ? jobOf(static_cast<std::size_t>(entry - entries_.data())) : std::nullopt;
+    if (!job || !job->error || job->error->line() != event.error->line()) log_.error(*event.error);
   } else if (event.kind == Kind::Removed && entry) {
     log_.warn(scene.string() + ": is gone; its bundle stays");
   } else if (event.kind == Kind::Found && !entry && isWatched(scene)) {
@@ -307,7 +311,10 @@ void Scenes::take(const baker::WatchEvent& event) {
 bool Scenes::update() {
   const std::uint64_t before = version_;
   idle_updates_ = queue_->busy() ? 0 : idle_updates_ + 1;
-  for (const baker::BakeEvent& event : queue_->takeEvents()) take(event);
+  // The states are asked for after the events, so that they are no older than what the events tell.
+  const std::vector<baker::BakeEvent> events = queue_->takeEvents();
+  jobs_ = queue_->states();
+  for (const baker::BakeEvent& event : events) take(event);
   if (watch_)
     for (const baker::WatchEvent& event : watch_->takeEvents()) take(event);
   return version_ != before;
@@ -324,11 +331,14 @@ Result<void> Scenes::bake(std::size_t index, baker::SceneEdits edits) {
   entry.edits = std::move(edits);
   entry.job = queue_->add(
       {.scene = entry.source, .output = entry.bundle, .options = entry.options, .edits = entry.edits});
+  jobs_ = queue_->states();
   return {};
 }
 
 void Scenes::cancel(std::size_t entry) {
-  if (entries_[entry].job) queue_->cancel(*entries_[entry].job);
+  if (!entries_[entry].job) return;
+  queue_->cancel(*entries_[entry].job);
+  jobs_ = queue_->states();
 }
 
 bool Scenes::busy() const {

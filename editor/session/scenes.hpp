@@ -86,7 +86,7 @@ class Scenes {
   void cancelUnseen(baker::JobId job) { queue_->cancel(job); }
 
   const std::vector<SceneEntry>& entries() const { return entries_; }
-  std::vector<baker::JobState> jobs() const { return queue_->states(); }
+  // Returns the state at the last update() or request, so that all parts of a frame say the same.
   std::optional<baker::JobState> jobOf(std::size_t entry) const;
   std::optional<std::size_t> entryOf(std::uint32_t slot) const;
   const std::vector<std::filesystem::path>& watched() const { return watched_; }
@@ -121,6 +121,7 @@ class Scenes {
   std::vector<SceneEntry> entries_;
   std::vector<baker::BakeRequest> unfinished_;
   std::vector<baker::JobId> unseen_;
+  std::vector<baker::JobState> jobs_;  // as update() or a request found them
   std::uint64_t version_ = 1;
   std::uint64_t idle_updates_ = 0;  // consecutive calls of update() with nothing to bake
 };

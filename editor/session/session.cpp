@@ -135,7 +135,7 @@ bool Session::moving() const {
 
 bool Session::awaits() const {
   return scenes.busy() || window.desktop_dialog.open() || plans.busy() || assets.busy() ||
-         asset_pictures.busy() || !log.recent(kToastAge).empty();
+         asset_pictures.busy() || log.hasToasts();
 }
 
 }  // namespace lambent::editor

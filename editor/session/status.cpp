@@ -14,7 +14,8 @@ std::string titleOf(const Session& session) {
 }
 
 std::string pictureStatus(const Session& session) {
-  const std::string time = fmt::format("{:.1f} ms", session.picture.times.median());
+  const double ms = session.picture.times.median();
+  const std::string time = ms < 1000.0 ? fmt::format("{:.1f} ms", ms) : fmt::format("{:.1f} s", 1e-3 * ms);
   return session.picture.settled ? time : "light settles   " + time;
 }
 

@@ -34,6 +34,7 @@ void Scenes::findUnfinished() {
 
 void Scenes::goOn(std::size_t unfinished) {
   unseen_.push_back(queue_->add(unfinished_[unfinished]));
+  jobs_ = queue_->states();
   unfinished_.erase(unfinished_.begin() + static_cast<std::ptrdiff_t>(unfinished));
 }
 
@@ -43,7 +44,7 @@ void Scenes::forget(std::size_t unfinished) {
 }
 
 std::vector<baker::JobState> Scenes::unseen() const {
-  std::vector<baker::JobState> states = queue_->states();
+  std::vector<baker::JobState> states = jobs_;
   std::erase_if(states, [&](const baker::JobState& state) {
     return std::ranges::find(unseen_, state.id) == unseen_.end() ||
            std::ranges::any_of(entries_, [&](const SceneEntry& entry) { return entry.job == state.id; });

@@ -48,7 +48,8 @@ void setColors(ImGuiStyle& style) {
   colors[ImGuiCol_TabActive] = grey(0.23f);
   colors[ImGuiCol_CheckMark] = colors[ImGuiCol_SliderGrabActive] = accent;
   colors[ImGuiCol_SliderGrab] = accent_dim;
-  colors[ImGuiCol_PlotHistogram] = colors[ImGuiCol_PlotLines] = accent;
+  colors[ImGuiCol_PlotLines] = accent;
+  colors[ImGuiCol_PlotHistogram] = accent_dim;  // of progress bars, too: white text stands on it
   colors[ImGuiCol_NavHighlight] = accent;
   colors[ImGuiCol_TextSelectedBg] = ImVec4(accent.x, accent.y, accent.z, 0.35f);
   colors[ImGuiCol_Separator] = grey(0.2f);

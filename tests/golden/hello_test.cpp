@@ -3,8 +3,10 @@
 //
 // hello_sky.exr is what the programs drew when the stored picture was last checked. To update it after an
 // intended change: cmake --build --preset release --target golden-pictures
+#include <algorithm>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "runtime/spec/image.hpp"
@@ -34,6 +36,12 @@ double relativeRms(const spec::RgbaImage& x, const spec::RgbaImage& a) {
   return std::sqrt(error / energy);
 }
 
+// Returns the largest channel of the difference.
+float largest(const glm::vec3& difference) {
+  const glm::vec3 size = glm::abs(difference);
+  return std::max({size.r, size.g, size.b});
+}
+
 class HelloPicture : public testing::ProgramTest {
  protected:
   void SetUp() override {
@@ -42,16 +50,24 @@ class HelloPicture : public testing::ProgramTest {
                                              (folder / "hello.lmb.glb").string(), "--quality", "draft"});
     ASSERT_EQ(baked.exit_code, 0) << baked.err;
   }
-  // Skips the test if no picture can be drawn.
-  void show(const std::vector<std::string>& options, spec::RgbaImage& picture) const {
-    const std::string path = (folder / "picture.exr").string();
-    std::vector<std::string> words = {
-        (folder / "hello.lmb.glb").string(), "--size", "128x96", "--window", "off", "--headless", path};
+  // Draws a picture into a file of the test's folder. Skips the test if no picture can be drawn.
+  void draw(const std::vector<std::string>& options, const std::string& file) const {
+    std::vector<std::string> words = {(folder / "hello.lmb.glb").string(),
+                                      "--size",
+                                      "128x96",
+                                      "--window",
+                                      "off",
+                                      "--headless",
+                                      (folder / file).string()};
     words.insert(words.end(), options.begin(), options.end());
     const auto outcome = run(LAMBENT_DEMO, words);
     if (testing::lacksDevice(outcome)) LAMBENT_LACKS("gl", outcome.err);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    auto read = spec::readExr(path);
+  }
+  void show(const std::vector<std::string>& options, spec::RgbaImage& picture) const {
+    draw(options, "picture.exr");
+    if (IsSkipped() || HasFatalFailure()) return;
+    auto read = spec::readExr(folder / "picture.exr");
     ASSERT_TRUE(read) << read.error().line();
     picture = std::move(*read);
     ASSERT_EQ(picture.texels.size(), 128u * 96u);
@@ -60,6 +76,25 @@ class HelloPicture : public testing::ProgramTest {
     return static_cast<std::size_t>(std::count_if(image.texels.begin(), image.texels.end(), isCovered));
   }
 };
+
+// Calls `use` with every pixel whose surroundings of 5 x 5 pixels are smooth: covered, with values within
+// this share of the middle one's. A contour may cross pixels beside those whose centre it passes.
+void forSmoothPixels(const spec::RgbaImage& picture, float share, const auto& use) {
+  constexpr std::uint32_t kAround = 2;
+  const std::uint32_t width = picture.width;
+  const auto isSmooth = [&](std::size_t middle) {
+    const glm::vec3 value(picture.texels[middle]);
+    for (std::size_t row = middle - kAround * width; row <= middle + kAround * width; row += width)
+      for (std::size_t i = row - kAround; i <= row + kAround; ++i)
+        if (!isCovered(picture.texels[i]) ||
+            !(largest((glm::vec3(picture.texels[i]) - value) / value) < share))
+          return false;
+    return true;
+  };
+  for (std::uint32_t y = kAround; y + kAround < picture.height; ++y)
+    for (std::uint32_t x = kAround; x + kAround < width; ++x)
+      if (const std::size_t i = std::size_t{y} * width + x; isSmooth(i)) use(i);
+}
 
 }  // namespace
 
@@ -112,6 +147,38 @@ TEST_F(HelloPicture, UnderUniformLightIsNeverBrighterThanItsAlbedo) {
     in_shadow += shadowed.texels[i].r < 0.9f * open.texels[i].r;
   }
   EXPECT_GT(in_shadow, covered(open) / 50) << "where box and ball stand";
+}
+
+// PNG pictures are drawn with several samples a pixel. The edges of triangles cross smooth surfaces, and a
+// pixel on one is made of several triangles there. Its colour must still be that of its surroundings:
+// positions at the centroid of what each triangle covers, for example, drew dark lines.
+TEST_F(HelloPicture, WithSeveralSamplesAPixelHasNoLinesWhereTheOneWithOneIsSmooth) {
+  const std::vector<std::string> options = {"--keys",  "auto",
+                                            "--light", "constant:0.3,0.3,0.3",
+                                            "--light", "sun:40,50,3,200,150,100",
+                                            "--light", "sphere:0,2.5,1,0.2,40,40,40"};
+  spec::RgbaImage one;
+  show(options, one);
+  if (one.texels.empty()) return;
+  draw(options, "picture.png");
+  const auto several = spec::readPng(folder / "picture.png");
+  ASSERT_TRUE(several) << several.error().line();
+  const auto at = [&](std::size_t i) {
+    const std::uint8_t* texel = several->texels.data() + 4 * i;
+    return glm::vec3(texel[0], texel[1], texel[2]);
+  };
+  std::size_t smooth = 0, lines = 0;
+  float farthest = 0.0f;
+  forSmoothPixels(one, 0.1f, [&](std::size_t i) {
+    const glm::vec3 across = 0.5f * (at(i - 1) + at(i + 1)),
+                    along = 0.5f * (at(i - one.width) + at(i + one.width));
+    const float off = largest(at(i) - 0.5f * (across + along));
+    farthest = std::max(farthest, off);
+    ++smooth;
+    lines += off > 6.0f;  // of 255
+  });
+  EXPECT_GT(smooth, covered(one) / 3);
+  EXPECT_EQ(lines, 0u) << "of " << smooth << "; the farthest differs by " << farthest;
 }
 
 }  // namespace lambent

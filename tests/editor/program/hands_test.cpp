@@ -273,6 +273,43 @@ TEST_F(EditorProgram, ShowsToastsInTheView) {
   }
 }
 
+// At twice the size in a small window, nothing that is clicked may be covered or out of reach.
+TEST_F(EditorProgram, KeepsWhatIsClickedInReachAtTwiceTheSize) {
+  const Played played = play(fmt::format(R"(
+wait frames 3
+where start
+where viewport
+click menu.Window
+wait frames 3
+where menu.panels
+key Escape
+click menu.Window
+click menu.panels
+click menu.panel.Cost
+wait frames 3
+panel Bakes
+drop {}
+wait loaded 60
+wait frames 3
+where bakes.hello.options
+where bakes.hello.close
+)",
+                                         path("hello.glb")),
+                             {"--scale", "2", "--fresh"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const auto end = [&](const char* mark, const char* at, const char* extent) {
+    const json& area = played.answer(std::string("where ") + mark);
+    return area[at].get<double>() + area[extent].get<double>();
+  };
+  EXPECT_GE(played.answer("where start")["y"], played.answer("where viewport")["y"]) << "below the tool bar";
+  EXPECT_LE(end("start", "y", "height"), end("viewport", "y", "height"));
+  EXPECT_LE(end("menu.panels", "y", "height"), 800.0) << "the Window menu need not scroll";
+  for (const char* button : {"bakes.hello.options", "bakes.hello.close"}) {
+    EXPECT_LE(end(button, "x", "width"), end("viewport", "x", "width")) << button;
+    EXPECT_LE(end(button, "y", "height"), 800.0) << button;
+  }
+}
+
 // Counts frames instead of time: a machine under load draws no more of them.
 TEST_F(EditorProgram, DrawsNoFrameWhileNothingChanges) {
   const Played played = playInHello(R"(
@@ -283,6 +320,7 @@ state
 wait seconds 1.5
 state
 set Transform.translation 0 1.2 3
+wait rest 60
 wait seconds 1
 state
 wait seconds 1.5

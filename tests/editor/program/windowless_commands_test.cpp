@@ -416,5 +416,19 @@ TEST_F(WindowlessCommands, AreStillKnownByTheirFormerNames) {
   for (const json& row : answer("commands")) EXPECT_NE(row["id"], "probe");
 }
 
+// The menu bar, the tree and the Bakes panel are drawn one after another, while a bake goes on.
+TEST_F(WindowlessCommands, TellOneShareOfABakeFromUpdateToUpdate) {
+  const std::filesystem::path file = folder.path() / "hello.glb";
+  ASSERT_TRUE(assets::writeGlb(file, assets::hello()));
+  answer("open", {file.string()});
+  for (int i = 0; i < 3000 && !session->scenes.entries().front().slot; ++i) {
+    session->update(0.0);
+    const std::string told = statusOf(*session, 0).text;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_EQ(statusOf(*session, 0).text, told);
+  }
+  EXPECT_TRUE(session->scenes.entries().front().slot);
+}
+
 }  // namespace
 }  // namespace lambent::editor
