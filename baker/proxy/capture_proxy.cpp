@@ -170,7 +170,8 @@ class ProxyMaker {
     proxy_.levels.push_back(level);
   }
 
-  // The group's own parts need a finer surface than others do, but no entries: patches have light of their own.
+  // The group's own parts need a finer surface than others do, but no entries: patches have light of their
+  // own.
   void addPatches() {
     if (proxy_.levels.empty()) return;
     const auto counts = shares(parts_, meshes_, bundle::kMaxPatchTriangles);

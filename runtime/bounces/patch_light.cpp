@@ -81,8 +81,8 @@ std::vector<glm::vec3> raysTo(const spec::Disc& key) {
 // Returns what may block the lamp's light. Triangles within a spherical lamp that are no larger than it
 // belong to the lamp itself.
 lighting::TriangleTree blockersOf(const ShadowedLight& light, const lighting::Patches& patches,
-                                 std::span<const lighting::RayTriangle> others,
-                                 const glm::mat4& world_from_group) {
+                                  std::span<const lighting::RayTriangle> others,
+                                  const glm::mat4& world_from_group) {
   const auto isLamp = [&](const lighting::RayTriangle& triangle) {
     return light.kind == ShadowedLight::Kind::Sphere &&
            std::ranges::all_of(triangle.corners, [&](const glm::vec3& corner) {
@@ -169,7 +169,8 @@ std::vector<std::vector<float>> keysOnPatches(std::span<const spec::Disc> keys,
             const glm::vec3& ray = rays_to[k][r];
             const float cosine = std::max(glm::dot(ray, patch.normal), 0.0f);
             all += cosine;
-            if (cosine > 0.0f && !blockers.blocked(patch.origins[p], ray, kAtInfinity * patches.extent())) seen += cosine;
+            if (cosine > 0.0f && !blockers.blocked(patch.origins[p], ray, kAtInfinity * patches.extent()))
+              seen += cosine;
           }
           if (all > 0.0f) direct[k][i] += share * seen / (all * static_cast<float>(kPoints));
         }

@@ -74,9 +74,8 @@ std::vector<PatchRoom::Source> PatchRoom::shineAll(const RoomLights& lights,
   auto next_key = by_key.begin();
   for (Source* source : to_trace) {
     const auto* lamp = std::get_if<lighting::ShadowedLight>(&source->light);
-    source->direct = lamp != nullptr
-                         ? lampOnPatches(*lamp, transport_->patches(), others_, world_from_group_)
-                         : *next_key++;
+    source->direct = lamp != nullptr ? lampOnPatches(*lamp, transport_->patches(), others_, world_from_group_)
+                                     : *next_key++;
   }
   return sources;
 }

@@ -1,9 +1,9 @@
 // Owns the light that the surfaces of one rigid group reflect of lamps among them and of key lights, by
-// patches. What each light brings to the patches is kept at unit power until it, the group or a blocker moves.
-// All of it is bounced together, so dimming or colouring lights traces no ray. For key
-// lights the group's transfer already carries bounced light, as far as a few bands know where they fall. What
-// the bands say is therefore subtracted here: patches carry the difference between a key light with its
-// shadows and its bands, and the detail of transfer is kept. No GL.
+// patches. What each light brings to the patches is kept at unit power until it, the group or a blocker
+// moves. All of it is bounced together, so dimming or colouring lights traces no ray. For key lights the
+// group's transfer already carries bounced light, as far as a few bands know where they fall. What the bands
+// say is therefore subtracted here: patches carry the difference between a key light with its shadows and its
+// bands, and the detail of transfer is kept. No GL.
 #pragma once
 
 #include <cstdint>

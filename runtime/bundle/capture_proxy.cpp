@@ -44,8 +44,8 @@ void appendPatches(std::vector<std::byte>& out, const PatchSurface& patches) {
   appendSplit(out, corners);
   for (int channel = 0; channel < 3; ++channel)
     for (const PatchTriangle& triangle : patches.triangles)
-      out.push_back(static_cast<std::byte>(
-          std::lround(std::clamp(triangle.albedo[channel], 0.0f, 1.0f) * kByteOne)));
+      out.push_back(
+          static_cast<std::byte>(std::lround(std::clamp(triangle.albedo[channel], 0.0f, 1.0f) * kByteOne)));
   for (const PatchTriangle& triangle : patches.triangles)
     out.push_back(static_cast<std::byte>(triangle.front_only ? kFrontOnly : 0));
 }

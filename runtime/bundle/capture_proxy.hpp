@@ -53,8 +53,9 @@ struct PatchTriangle {
   glm::vec3 albedo{0.0f};  // 0..1, stored in steps of 1/255
 };
 
-// Shows the group to its own parts, which are nearer to each other than other groups are: light that goes to and
-// fro between them needs their floor, their columns and their arches. Without triangles, the finest level serves.
+// Shows the group to its own parts, which are nearer to each other than other groups are: light that goes to
+// and fro between them needs their floor, their columns and their arches. Without triangles, the finest level
+// serves.
 struct PatchSurface {
   std::vector<glm::vec3> positions;
   std::vector<PatchTriangle> triangles;  // at most kMaxPatchTriangles
@@ -69,7 +70,8 @@ struct CaptureProxy {
   PatchSurface patches;
 };
 
-// Returns the group as its own parts see it: `patches`, or the finest level with the reflectance of its entries.
+// Returns the group as its own parts see it: `patches`, or the finest level with the reflectance of its
+// entries.
 PatchSurface patchSurfaceOf(const CaptureProxy& proxy);
 
 std::vector<std::byte> encodeCaptureProxy(const CaptureProxy& proxy);

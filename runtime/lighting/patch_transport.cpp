@@ -218,7 +218,8 @@ glm::vec3 PatchTransport::startNear(const SurfacePoint& point) const {
   return nearest != nullptr ? patches_.inFront(nearest->points[0], nearest->normal) : point.position;
 }
 
-std::size_t PatchTransport::regionFrom(const glm::vec3& origin, const RayHit& hit, float solid_angle_sr) const {
+std::size_t PatchTransport::regionFrom(const glm::vec3& origin, const RayHit& hit,
+                                       float solid_angle_sr) const {
   constexpr float kLeastCosine = 0.1f;
   constexpr float kAlmost = 0.999f;  // share of the distance to the region
   const std::array<glm::vec3, 3> corners = patches_.tree()[hit.triangle].corners;

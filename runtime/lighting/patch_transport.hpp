@@ -101,7 +101,7 @@ class PatchTransport {
   std::vector<float> transfer_;             // order² per patch
   std::vector<Share> shares_;               // all shares, ordered by patch
   std::vector<std::uint32_t> first_share_;  // for each patch, with the end as last entry
-  std::size_t own_triangles_ = 0;  // of the finest level, if that is the surface of the patches
+  std::size_t own_triangles_ = 0;           // of the finest level, if that is the surface of the patches
   // Holds, for each further triangle of all levels, four nearby patches.
   std::vector<std::array<std::uint32_t, kPatchPoints>> nearest_;
 };

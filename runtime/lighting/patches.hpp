@@ -1,6 +1,6 @@
 // Owns the surfaces of a rigid group as patches that exchange light: the triangles of its patch surface
-// (runtime/bundle/capture_proxy.hpp), split into smaller ones of about the same area. A patch sends one radiance in all directions.
-// All positions are in the group's frame. No GL.
+// (runtime/bundle/capture_proxy.hpp), split into smaller ones of about the same area. A patch sends one
+// radiance in all directions. All positions are in the group's frame. No GL.
 #pragma once
 
 #include <array>
@@ -61,8 +61,8 @@ class Patches {
   // Returns how far the patches may be from the surface that they represent.
   float error() const { return error_; }
   // Returns a point slightly above the surface from which rays may start. A point of the true surface may lie
-  // a little behind the patches, or behind a wall beside them; it is then moved in front. `normal` is that of the
-  // surface.
+  // a little behind the patches, or behind a wall beside them; it is then moved in front. `normal` is that of
+  // the surface.
   glm::vec3 inFront(glm::vec3 point, const glm::vec3& normal) const;
 
  private:
@@ -76,7 +76,7 @@ class Patches {
   bool over(std::size_t triangle, const glm::vec3& point) const;
 
   std::vector<Patch> patches_;
-  std::vector<Split> split_;  // one per triangle
+  std::vector<Split> split_;        // one per triangle
   std::vector<glm::vec3> normals_;  // of the triangles
   TriangleTree tree_;
   float extent_ = 0.0f, error_ = 0.0f;

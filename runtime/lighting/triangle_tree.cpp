@@ -14,7 +14,8 @@ namespace lambent::lighting {
 namespace {
 
 constexpr std::uint32_t kMissed = 0xffffffffu;
-constexpr std::size_t kDeepest = 128;  // of the stack: each part has at most 7/8 of the triangles of the whole
+constexpr std::size_t kDeepest =
+    128;  // of the stack: each part has at most 7/8 of the triangles of the whole
 
 struct Bounds {
   glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
@@ -45,7 +46,8 @@ TriangleTree::TriangleTree(std::vector<RayTriangle> triangles, float least_dista
   divide(0, order, 0, order.size());
 }
 
-// Divides where the sum of areas times counts is least (the surface area heuristic; MacDonald and Booth 1990).
+// Divides where the sum of areas times counts is least (the surface area heuristic; MacDonald and Booth
+// 1990).
 void TriangleTree::divide(std::size_t node, std::vector<std::uint32_t>& order, std::size_t begin,
                           std::size_t end) {
   const std::size_t count = end - begin;
@@ -133,8 +135,8 @@ TriangleTree::Met TriangleTree::meet(const Leaf& leaf, const glm::vec3& origin,
     const float sum = a + (b + c);  // the same if b and c are swapped, as in the other side of a sheet
     const bool back = volume > 0.0f;
     const bool apart = std::abs(volume) > least_distance_ * leaf.double_area[i];
-    const bool inside = (a >= 0.0f) & (b >= 0.0f) & (c >= 0.0f) & (sum > 0.0f) & apart &
-                        !(back & (leaf.front_only[i] != 0));
+    const bool inside =
+        (a >= 0.0f) & (b >= 0.0f) & (c >= 0.0f) & (sum > 0.0f) & apart & !(back & (leaf.front_only[i] != 0));
     // The bits of positive floats order like the floats.
     const std::uint32_t missed = static_cast<std::uint32_t>(inside) - 1u;  // all bits set if missed
     met.distance[i] = std::bit_cast<std::uint32_t>(sign * volume / sum) | missed;

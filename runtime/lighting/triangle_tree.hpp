@@ -1,7 +1,7 @@
 // Intersects rays with the triangles of capture proxies and patches, up to a few thousand. It is a bounding
 // volume hierarchy whose leaves hold eight triangles, which a loop tests together. Each ray meets the planes
-// through its origin and a triangle's edges, so rays do not slip between triangles that share an edge. Nothing
-// changes after construction, so any number of threads may ask at once. No GL.
+// through its origin and a triangle's edges, so rays do not slip between triangles that share an edge.
+// Nothing changes after construction, so any number of threads may ask at once. No GL.
 #pragma once
 
 #include <array>
@@ -36,8 +36,8 @@ class TriangleTree {
   std::size_t size() const { return triangles_.size(); }
   const RayTriangle& operator[](std::size_t index) const { return triangles_[index]; }
 
-  // Returns the nearest triangle along a direction of any length. If both sides of something without thickness
-  // are hit, the one that faces the ray counts.
+  // Returns the nearest triangle along a direction of any length. If both sides of something without
+  // thickness are hit, the one that faces the ray counts.
   std::optional<RayHit> first(const glm::vec3& origin, const glm::vec3& direction) const;
   // Returns whether anything is hit within this many lengths of the direction.
   bool blocked(const glm::vec3& origin, const glm::vec3& direction, float lengths) const;
@@ -59,7 +59,7 @@ class TriangleTree {
     std::uint32_t place = 0;  // of the leaf, or of the first of two children
     bool leaf = false;
   };
-  struct Met {  // per triangle of a leaf
+  struct Met {                                     // per triangle of a leaf
     std::array<std::uint32_t, kWidth> distance{};  // bits of a float in lengths of the ray; all set: missed
     std::array<std::uint32_t, kWidth> back{};
   };

@@ -270,8 +270,8 @@ TEST(PatchRoom, WithTheirBandsKeyLightsFallWhereTheirRaysDo) {
     else
       EXPECT_LT(by_rays[0][i], 1e-4f) << "a wall that the sun does not reach";
   }
-  // The light comes through an opening of 4 m² at a cosine of 0.8; E/pi = sin² cos. The four points of a patch
-  // share 16 rays.
+  // The light comes through an opening of 4 m² at a cosine of 0.8; E/pi = sin² cos. The four points of a
+  // patch share 16 rays.
   const double sine = std::sin(0.05);
   EXPECT_NEAR(straight / (4.0 * 0.8 * sine * sine), 1.0, 0.015);
 }

@@ -22,7 +22,8 @@ CaptureProxy smallProxy() {
 // Makes the same with a surface for its own parts.
 CaptureProxy withPatches() {
   CaptureProxy proxy = smallProxy();
-  proxy.patches.positions = {{0.5f, 0.0f, 0.0f}, {1.0f, -2e7f, 0.0f}, {0.0f, 1.0f, 0.125f}, {2.0f, 1.0f, 1.0f}};
+  proxy.patches.positions = {
+      {0.5f, 0.0f, 0.0f}, {1.0f, -2e7f, 0.0f}, {0.0f, 1.0f, 0.125f}, {2.0f, 1.0f, 1.0f}};
   proxy.patches.triangles = {{{0, 1, 2}, true, {0.2f, 0.4f, 1.0f}}, {{1, 3, 2}, false, {0.0f, 0.6f, 0.8f}}};
   proxy.patches.error_m = 0.25f;
   return proxy;
