@@ -21,6 +21,8 @@ namespace {
 constexpr std::array<std::size_t, 3> kLevels = {bundle::kMaxProxyTriangles, 64, 16};
 constexpr std::size_t kLeastTriangles = 4;  // per side of a part
 constexpr std::size_t kPointsPerTriangle = 128, kPointsPerPatch = 32;
+constexpr float kPatchError =
+    2e-3f;  // in diagonals of the bounds; patches do not tell less (runtime/lighting/patches.cpp)
 // Larger surfaces are simplified to this many triangles before their silhouette is taken.
 constexpr std::size_t kSilhouetteTriangles = 32768;
 // A level is worth having if it has at most this share of the triangles of the one before.
@@ -177,7 +179,9 @@ class ProxyMaker {
     const auto counts = shares(parts_, meshes_, bundle::kMaxPatchTriangles);
     if (!counts) return;
     std::vector<SimpleMesh> simple;
-    for (std::size_t p = 0; p < parts_.size(); ++p) simple.push_back(simplified(meshes_[p], (*counts)[p]));
+    const float allowed = kPatchError * glm::distance(geometry_.bounds_min, geometry_.bounds_max);
+    for (std::size_t p = 0; p < parts_.size(); ++p)
+      simple.push_back(simplified(meshes_[p], (*counts)[p], allowed));
     if (kFewer * static_cast<double>(trianglesOf(simple)) <=
         static_cast<double>(proxy_.levels.front().triangle_count))
       return;

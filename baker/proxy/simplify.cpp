@@ -63,20 +63,21 @@ Indices indicesOf(const SimpleMesh& mesh) {
   return indices;
 }
 
+constexpr float kAnyError = 1e6f;  // relative to the surface's size, as the next are
+
 enum class Method : std::uint8_t { Collapses, Clusters };
 
-SimpleMesh reduced(const SimpleMesh& mesh, std::size_t most, Method method) {
+SimpleMesh reduced(const SimpleMesh& mesh, std::size_t most, Method method, float allowed = kAnyError) {
   const Indices indices = indicesOf(mesh);
   Indices out(indices.size());
   float error = 0.0f;
   const float* first = &mesh.positions.front().x;
-  constexpr float kAnyError = 1e6f;
   const std::size_t count =
       method == Method::Collapses
           ? meshopt_simplify(out.data(), indices.data(), indices.size(), first, mesh.positions.size(),
-                             sizeof(glm::vec3), 3 * most, kAnyError, 0, &error)
+                             sizeof(glm::vec3), 3 * most, allowed, 0, &error)
           : meshopt_simplifySloppy(out.data(), indices.data(), indices.size(), first, mesh.positions.size(),
-                                   sizeof(glm::vec3), 3 * most, kAnyError, &error);
+                                   sizeof(glm::vec3), 3 * most, allowed, &error);
   out.resize(count);
   const float scale = meshopt_simplifyScale(first, mesh.positions.size(), sizeof(glm::vec3));
   return compacted(mesh.positions, out, mesh.error_m + error * scale);
@@ -126,12 +127,19 @@ SimpleMesh welded(const GroupGeometry& geometry, std::span<const std::uint32_t> 
   return compacted(positions, indices, 0.0f);
 }
 
-SimpleMesh simplified(const SimpleMesh& mesh, std::size_t most) {
-  if (mesh.triangles.size() <= most) return mesh;
+SimpleMesh simplified(const SimpleMesh& mesh, std::size_t most, float allowed_m) {
+  if (mesh.triangles.size() <= most && allowed_m == 0.0f) return mesh;
   SimpleMesh start = mesh;
   if (start.triangles.size() > kDetailed) {
     SimpleMesh clusters = reduced(mesh, kDetailed, Method::Clusters);
     if (clusters.triangles.size() > most) start = std::move(clusters);
+  }
+  if (allowed_m > 0.0f) {
+    const float size =
+        meshopt_simplifyScale(&mesh.positions.front().x, mesh.positions.size(), sizeof(glm::vec3));
+    SimpleMesh within = reduced(start, 1, Method::Collapses, allowed_m / size);
+    if (!within.triangles.empty() && within.triangles.size() <= most) return within;
+    if (mesh.triangles.size() <= most) return mesh;
   }
   SimpleMesh best = reduced(start, most, Method::Collapses);
   if (best.triangles.size() > most) best = reduced(best, most, Method::Clusters);

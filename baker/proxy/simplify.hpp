@@ -23,7 +23,8 @@ SimpleMesh welded(const GroupGeometry& geometry, std::span<const std::uint32_t> 
 
 // Returns at most `most` triangles (4 or more), and at least one if any has an area. It collapses edges
 // (Garland and Heckbert 1997); if the topology does not allow that, it clusters vertices; and if that loses
-// the surface, it returns its bounding box or a tetrahedron.
-SimpleMesh simplified(const SimpleMesh& mesh, std::size_t most);
+// the surface, it returns its bounding box or a tetrahedron. Where fewer triangles stay within allowed_m of
+// the mesh, it returns these.
+SimpleMesh simplified(const SimpleMesh& mesh, std::size_t most, float allowed_m = 0.0f);
 
 }  // namespace lambent::baker

@@ -14,10 +14,11 @@ const float kOneHeight = 0.1;      // heights count as one if they differ by les
 const int kLeastSearch = 20;       // points in the search for blockers; fewer would miss small ones
 const int kKeySteps = 3;           // steps of the search along a ray
 // A ray that found nothing is looked at again at so many points, from this to this share of the height.
-const int kKeyBetween = 4;
-const float kLowestBetween = 0.15, kHighestBetween = 0.6;
+const int kKeyBetween = 5;
+const float kLowestBetween = 0.03, kHighestBetween = 0.6;
 const float kKeySolid = 1.5;  // height of a body's top over that of a point within it
 const int kKeyNarrowing = 3;
+const int kRayBlocked = 0, kRayUnsure = 1, kRayFree = 2;
 
 float keyDepth(ivec2 texel);                // 0..1
 vec2 keyBlockers(ivec2 texel, int level);   // least and greatest depth, 0..1
@@ -126,35 +127,39 @@ KeyLayers keyLayers(KeyRecord key, KeyReceiver receiver, float reach, int count)
   return KeyLayers(reach * low, reach * high);
 }
 
-// Returns whether the ray, whose point at this height is free, passes through a body below it. The map knows tops alone.
-// A body is taken to reach down from its top by a third of the top's height above the receiver, so that parapets and
-// walls which light grazes block rays that leave through their sides. Points of a ray from under a plate's edge that
-// are looked at are farther below the plate.
-bool passesThrough(KeyRecord key, KeyReceiver receiver, float height, vec2 per_metre) {
+// Returns what becomes of a ray whose point at this height is free. The map knows tops alone. A body is taken to reach
+// down from its top by a third of the top's height above the receiver, so that parapets and walls which light grazes
+// block rays that leave through their sides. A ray that comes from under a higher top leaves through an opening or
+// through a wall that the light's middle sees edge-on; a map looks the same in both cases.
+int rayFromBelow(KeyRecord key, KeyReceiver receiver, float height, vec2 per_metre) {
+  int fate = kRayFree;
   for (int i = 0; i < kKeyBetween; ++i) {
     float below = height * (kLowestBetween + (kHighestBetween - kLowestBetween) * float(i) / float(kKeyBetween - 1));
     float found = blockerHeight(key, receiver, ivec2(floor(receiver.place + below * per_metre)));
-    if (found > below && found < kKeySolid * below) return true;
+    if (found <= below) continue;
+    if (found < kKeySolid * below) return kRayBlocked;
+    fate = kRayUnsure;
   }
-  return false;
+  return fate;
 }
 
-// Returns whether something blocks the ray to a point of the disc. It looks where the ray passes this height, then
-// where it passes the height of what it found there.
-bool rayBlocked(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
+// Returns what becomes of the ray to a point of the disc. It looks where the ray passes this height, then where it
+// passes the height of what it found there.
+int rayFate(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
   vec2 per_metre = key.scale.w * key.scale.xy * at;
   for (int i = 0; i < kKeySteps; ++i) {
     float found = blockerHeight(key, receiver, ivec2(floor(receiver.place + height * per_metre)));
-    if (found == 0.0) return passesThrough(key, receiver, height, per_metre);
-    if (abs(found - height) < kOneHeight * height) return true;
+    if (found == 0.0) return rayFromBelow(key, receiver, height, per_metre);
+    if (abs(found - height) < kOneHeight * height) return kRayBlocked;
     height = found;
   }
-  return true;
+  return kRayBlocked;
 }
 
-// Returns the visible share of the disc's light at a point with this triangle normal and this shading normal.
-float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal) {
-  if (dot(normal, key.towards.xyz) <= -key.radiance.w) return 0.0;
+// Returns the share of the disc's light that is visible at a point with this triangle normal and this shading normal,
+// and the share of which the map cannot tell.
+vec2 keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal) {
+  if (dot(normal, key.towards.xyz) <= -key.radiance.w) return vec2(0.0);
   KeyReceiver receiver = keyReceiver(key, position, normal);
   float reach = receiver.depth;
   int rays = int(key.rays);
@@ -168,33 +173,35 @@ float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal)
       open = true;
       break;
     }
-    if (bounds.y < receiver.depth - lean - receiver.bias) return 0.0;
+    if (bounds.y < receiver.depth - lean - receiver.bias) return vec2(0.0);
     float lower = receiver.depth - bounds.x;
     if (lower > 0.9 * reach) break;
     reach = lower;
   }
-  if (open && receiver.above) return 1.0;
+  if (open && receiver.above) return vec2(1.0, 0.0);
   vec3 right = normalize(key.right.xyz), up = normalize(key.up.xyz);
   if (!open) {
     float widest = reach * key.scale.w * max(key.scale.x, key.scale.y);
-    if (widest < kSharpTexels && receiver.above) return texelVisible(key, receiver);
+    if (widest < kSharpTexels && receiver.above) return vec2(texelVisible(key, receiver), 0.0);
     layers = keyLayers(key, receiver, reach, max(rays, kLeastSearch));
-    if (layers.low == 0.0 && receiver.above) return 1.0;
+    if (layers.low == 0.0 && receiver.above) return vec2(1.0, 0.0);
     if (layers.high * key.scale.w * max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
-      return texelVisible(key, receiver);
+      return vec2(texelVisible(key, receiver), 0.0);
   }
-  float visible = 0.0, all = 0.0;
+  float visible = 0.0, unsure = 0.0, all = 0.0;
   for (int i = 0; i < rays; ++i) {
     vec2 at = keyPoint(i, rays);
     vec3 ray = key.towards.xyz + key.scale.w * (at.x * right + at.y * up);
     float weight = max(dot(shading_normal, ray), 0.0);
     all += weight;
     if (weight <= 0.0 || dot(normal, ray) <= 0.0) continue;
-    if (layers.low > 0.0 && rayBlocked(key, receiver, layers.low, at)) continue;
-    if (layers.high > layers.low && rayBlocked(key, receiver, layers.high, at)) continue;
-    visible += weight;
+    int fate = kRayFree;
+    if (layers.low > 0.0) fate = rayFate(key, receiver, layers.low, at);
+    if (fate != kRayBlocked && layers.high > layers.low) fate = min(fate, rayFate(key, receiver, layers.high, at));
+    visible += fate == kRayFree ? weight : 0.0;
+    unsure += fate == kRayUnsure ? weight : 0.0;
   }
-  return all > 0.0 ? visible / all : 0.0;
+  return all > 0.0 ? vec2(visible, unsure) / all : vec2(0.0);
 }
 
 // Returns E/pi of the whole disc for radiance 1.

@@ -22,10 +22,11 @@ inline constexpr float kSharpTexels = 0.8f;
 inline constexpr float kOneHeight = 0.1f;
 inline constexpr int kLeastSearch = 20;
 inline constexpr int kKeySteps = 3;
-inline constexpr int kKeyBetween = 4;
-inline constexpr float kLowestBetween = 0.15f, kHighestBetween = 0.6f;
+inline constexpr int kKeyBetween = 5;
+inline constexpr float kLowestBetween = 0.03f, kHighestBetween = 0.6f;
 inline constexpr float kKeySolid = 1.5f;
 inline constexpr int kKeyNarrowing = 3;
+inline constexpr int kRayBlocked = 0, kRayUnsure = 1, kRayFree = 2;
 
 struct KeyReceiver {
   glm::vec2 place;
@@ -134,39 +135,41 @@ KeyLayers keyLayers(const Map& map, const KeyRecord& key, const KeyReceiver& rec
 }
 
 template <typename Map>
-bool passesThrough(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, float height,
-                   glm::vec2 per_metre) {
+int rayFromBelow(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, float height,
+                 glm::vec2 per_metre) {
+  int fate = kRayFree;
   for (int i = 0; i < kKeyBetween; ++i) {
     const float below =
         height * (kLowestBetween + (kHighestBetween - kLowestBetween) * static_cast<float>(i) /
                                        static_cast<float>(kKeyBetween - 1));
     const float found =
         blockerHeight(map, key, receiver, glm::ivec2(glm::floor(receiver.place + below * per_metre)));
-    if (found > below && found < kKeySolid * below) return true;
+    if (found <= below) continue;
+    if (found < kKeySolid * below) return kRayBlocked;
+    fate = kRayUnsure;
   }
-  return false;
+  return fate;
 }
 
 template <typename Map>
-bool rayBlocked(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, float height,
-                glm::vec2 at) {
+int rayFate(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, float height, glm::vec2 at) {
   const glm::vec2 per_metre = key.scale.w * glm::vec2(key.scale) * at;
   for (int i = 0; i < kKeySteps; ++i) {
     const float found =
         blockerHeight(map, key, receiver, glm::ivec2(glm::floor(receiver.place + height * per_metre)));
-    if (found == 0.0f) return passesThrough(map, key, receiver, height, per_metre);
-    if (std::abs(found - height) < kOneHeight * height) return true;
+    if (found == 0.0f) return rayFromBelow(map, key, receiver, height, per_metre);
+    if (std::abs(found - height) < kOneHeight * height) return kRayBlocked;
     height = found;
   }
-  return true;
+  return kRayBlocked;
 }
 
 template <typename Map>
-float keyVisible(const Map& map, const KeyRecord& key, glm::vec3 position, glm::vec3 normal,
-                 glm::vec3 shading_normal) {
+glm::vec2 keyVisible(const Map& map, const KeyRecord& key, glm::vec3 position, glm::vec3 normal,
+                     glm::vec3 shading_normal) {
   const glm::vec3 towards(key.towards);
   const glm::vec2 scale(key.scale);
-  if (glm::dot(normal, towards) <= -key.radiance.w) return 0.0f;
+  if (glm::dot(normal, towards) <= -key.radiance.w) return glm::vec2(0.0f);
   const KeyReceiver receiver = keyReceiver(key, position, normal);
   float reach = receiver.depth;
   const int rays = static_cast<int>(key.rays);
@@ -179,33 +182,36 @@ float keyVisible(const Map& map, const KeyRecord& key, glm::vec3 position, glm::
       open = true;
       break;
     }
-    if (bounds.y < receiver.depth - lean - receiver.bias) return 0.0f;
+    if (bounds.y < receiver.depth - lean - receiver.bias) return glm::vec2(0.0f);
     const float lower = receiver.depth - bounds.x;
     if (lower > 0.9f * reach) break;
     reach = lower;
   }
-  if (open && receiver.above) return 1.0f;
+  if (open && receiver.above) return {1.0f, 0.0f};
   const glm::vec3 right = glm::normalize(glm::vec3(key.right)), up = glm::normalize(glm::vec3(key.up));
   if (!open) {
     const float widest = reach * key.scale.w * std::max(key.scale.x, key.scale.y);
-    if (widest < kSharpTexels && receiver.above) return texelVisible(map, key, receiver);
+    if (widest < kSharpTexels && receiver.above) return {texelVisible(map, key, receiver), 0.0f};
     layers = keyLayers(map, key, receiver, reach, std::max(rays, kLeastSearch));
-    if (layers.low == 0.0f && receiver.above) return 1.0f;
+    if (layers.low == 0.0f && receiver.above) return {1.0f, 0.0f};
     if (layers.high * key.scale.w * std::max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
-      return texelVisible(map, key, receiver);
+      return {texelVisible(map, key, receiver), 0.0f};
   }
-  float visible = 0.0f, all = 0.0f;
+  float visible = 0.0f, unsure = 0.0f, all = 0.0f;
   for (int i = 0; i < rays; ++i) {
     const glm::vec2 at = keyPoint(i, rays);
     const glm::vec3 ray = towards + key.scale.w * (at.x * right + at.y * up);
     const float weight = std::max(glm::dot(shading_normal, ray), 0.0f);
     all += weight;
     if (weight <= 0.0f || glm::dot(normal, ray) <= 0.0f) continue;
-    if (layers.low > 0.0f && rayBlocked(map, key, receiver, layers.low, at)) continue;
-    if (layers.high > layers.low && rayBlocked(map, key, receiver, layers.high, at)) continue;
-    visible += weight;
+    int fate = kRayFree;
+    if (layers.low > 0.0f) fate = rayFate(map, key, receiver, layers.low, at);
+    if (fate != kRayBlocked && layers.high > layers.low)
+      fate = std::min(fate, rayFate(map, key, receiver, layers.high, at));
+    visible += fate == kRayFree ? weight : 0.0f;
+    unsure += fate == kRayUnsure ? weight : 0.0f;
   }
-  return all > 0.0f ? visible / all : 0.0f;
+  return all > 0.0f ? glm::vec2(visible, unsure) / all : glm::vec2(0.0f);
 }
 
 inline float keyShare(const KeyRecord& key, glm::vec3 shading_normal) {

@@ -26,7 +26,7 @@ vec3 reflectedLight(vec3 base_color) {
   vec3 diffuse = diffuseAlbedo(base_color, pixel_lobes.metallic, fresnel, reflected.albedo);
 
   SurfaceLight light = kNoLight;
-  receiveLight(SurfacePoint(draws[draw_of].glossy.draw, position_mesh, draws[draw_of].facing * frame.normal, pixel_normal), light);
+  receiveLight(SurfacePoint(draws[draw_of].glossy.draw, position_mesh, draws[draw_of].facing * frame.normal, pixel_normal, kStraightUnknown), light);
   vec3 received = withChange(reflected.diffuse.rgb, pixel_change.diffuse.rgb) + light.key + light.local;
   vec3 mirrored = withChange(fresnel.f0 * reflected.f0_light.rgb + fresnel.f90 * reflected.f90_light.rgb,
                              fresnel.f0 * pixel_change.f0_light.rgb + fresnel.f90 * pixel_change.f90_light.rgb);

@@ -15,6 +15,6 @@ vec3 reflectedLight(vec3 base_color) {
   vec3 normal = pixelNormal(frame), smooth_normal = draws[draw_of].facing * frame.normal;
   lookAtLayer(base_color, frame, normal, position_mesh);
   SurfaceLight light = kNoLight;
-  receiveLight(SurfacePoint(draws[draw_of].glossy.draw, position_group.xyz, smooth_normal, normal), light);
+  receiveLight(SurfacePoint(draws[draw_of].glossy.draw, position_group.xyz, smooth_normal, normal, kStraightUnknown), light);
   return throughLayer(base_color, Mirror(smooth_normal, position_mesh, vec3(0.0)), diffuseLight(lightOfBands(), normal), light);
 }

@@ -4,6 +4,7 @@
 #include "surface_light.glsl"
 
 layout(location = 3) in vec3 radiance;
+layout(location = 3, component = 3) in float straight;  // as of a SurfacePoint
 layout(location = 4) in vec3 normal_group;  // on the visible side
 layout(location = 5) in vec3 position_mesh;
 layout(location = 6) in vec4 looks_at_reflection;
@@ -17,6 +18,6 @@ vec3 reflectedLight(vec3 base_color) {
   vec3 normal = shadingNormal();
   lookAtLayer(base_color, TangentFrame(normal, vec3(0.0), 1.0), normal, position_mesh);
   SurfaceLight light = kNoLight;
-  receiveLight(SurfacePoint(draws[draw_of].glossy.draw, position_mesh, normal_group, normal), light);
+  receiveLight(SurfacePoint(draws[draw_of].glossy.draw, position_mesh, normal_group, normal, straight), light);
   return throughLayer(base_color, Mirror(normal, position_mesh, vec3(0.0)), transferredLight(radiance), light);
 }

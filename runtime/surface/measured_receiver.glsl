@@ -60,7 +60,7 @@ vec3 reflectedLight(vec3 base_color) {
   Reflected reflected = reflectLight(pixel_view, pixel_weights, light_of_bands);
 
   SurfaceLight light = kNoLight;
-  receiveLight(SurfacePoint(draws[draw_of].glossy.draw, position_mesh, draws[draw_of].facing * frame.normal, normal), light);
+  receiveLight(SurfacePoint(draws[draw_of].glossy.draw, position_mesh, draws[draw_of].facing * frame.normal, normal, kStraightUnknown), light);
   // Lights among the surfaces shine as on a diffuse surface that reflects as much of uniform light towards the eye.
   if (kShown == kShownIrradiance)
     return withChange(reflected.diffuse.rgb, pixel_change.diffuse.rgb) + light.key_highlights + light.local;

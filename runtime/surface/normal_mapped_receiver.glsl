@@ -14,7 +14,7 @@ vec3 lightReflectance(vec3 to_light, float spread) { return vec3(0.0); }
 vec3 reflectedLight(vec3 base_color) {
   vec3 normal = shadingNormal();
   SurfaceLight light = kNoLight;
-  receiveLight(SurfacePoint(draw_of, position_group.xyz, draws[draw_of].facing * normal_group.xyz, normal), light);
+  receiveLight(SurfacePoint(draw_of, position_group.xyz, draws[draw_of].facing * normal_group.xyz, normal, kStraightUnknown), light);
   vec3 received = withLight(diffuseLight(lightOfBands(), normal), light);
   return kShown == kShownIrradiance ? received : received * base_color;
 }

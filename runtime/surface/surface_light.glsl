@@ -8,7 +8,11 @@ struct SurfacePoint {
   vec3 position;       // for neighborhoods: mesh space, or the group's frame if normal-mapped
   vec3 smooth_normal;  // interpolated from the vertices, group frame, visible side
   vec3 normal;         // unit vector by which the surface is shaded
+  // Luminance of E/pi that transfer brings straight from lights that are shaded per pixel; kStraightUnknown if it is
+  // not at hand.
+  float straight;
 };
+const float kStraightUnknown = -1.0;
 
 struct SurfaceLight {
   vec3 change;         // change by bodies nearby of the light that transfer brings, E/pi

@@ -67,9 +67,12 @@ vec4 texelRadiance(DrawRecord draw, uint texel) {
 #ifdef LAMBENT_STAGE_VERTICES
 #include "vertex_rows.glsl"
 
-// Returns a vertex's radiance from its row of samples. Samples that are not resident count as unshadowed.
-vec3 vertexRadiance(DrawRecord draw, uint vertex, vec3 normal, int order) {
-  vec3 sum = vec3(0.0);
+const float kAllStraight = 1e4;  // more than any light, where nothing is known of shadows
+
+// Returns a vertex's radiance from its row of samples, and the luminance of what comes straight from lights that are
+// shaded per pixel. Samples that are not resident count as unshadowed.
+vec4 vertexRadiance(DrawRecord draw, uint vertex, vec3 normal, int order) {
+  vec4 sum = vec4(0.0);
   float resident = 0.0, total = 0.0;
   if (draw.rows_word != kNoRows) {
     VertexRows rows = VertexRows(draw.rows_word, draw.vertex_count, draw.row_entries);
@@ -77,13 +80,14 @@ vec3 vertexRadiance(DrawRecord draw, uint vertex, vec3 normal, int order) {
     for (uint i = row.x; i < row.y; ++i) {
       RowEntry entry = rowEntryAt(rows, i);
       vec4 shaded = sampleAt(draw.first_output + entry.sample_index - draw.first_sample);
-      sum += entry.weight * shadedShare(shaded) * shaded.rgb;
+      sum += entry.weight * shadedShare(shaded) * vec4(shaded.rgb, shaded.w - 1.0);
       resident += entry.weight * shadedShare(shaded);
       total += entry.weight;
     }
   }
-  if (total == 0.0) return unshadowedRadiance(normal, draw.light, order);
-  if (resident < total) sum += (total - resident) * unshadowedRadiance(normal, draw.light, order);
+  if (total == 0.0) return vec4(unshadowedRadiance(normal, draw.light, order), kAllStraight);
+  if (resident < total)
+    sum += (total - resident) * vec4(unshadowedRadiance(normal, draw.light, order), kAllStraight);
   return sum / total;
 }
 

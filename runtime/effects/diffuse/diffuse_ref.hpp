@@ -72,22 +72,27 @@ inline float shadedShare(const glm::vec4& shaded) {
   return shaded.w > 0.0f ? 1.0f : 0.0f;
 }
 
-inline glm::vec3 vertexRadiance(const Memory& memory, const DrawRecord& draw, uint vertex, glm::vec3 normal,
+inline constexpr float kAllStraight = 1e4f;
+
+inline glm::vec4 vertexRadiance(const Memory& memory, const DrawRecord& draw, uint vertex, glm::vec3 normal,
                                 int order) {
-  glm::vec3 sum(0.0f);
+  glm::vec4 sum(0.0f);
   float resident = 0.0f, total = 0.0f;
   if (draw.rows_word != kNoRows) {
     const uint end = memory.rowWordAt(draw.rows_word + vertex + 1);
     for (uint i = memory.rowWordAt(draw.rows_word + vertex); i < end; ++i) {
       const transfer::ref::RowEntry entry = rowEntryAt(memory, rowsOf(draw), i);
       const glm::vec4 shaded = memory.sampleAt(draw.first_output + entry.sample_index - draw.first_sample);
-      sum += entry.weight * shadedShare(shaded) * glm::vec3(shaded);
+      sum += entry.weight * shadedShare(shaded) * glm::vec4(glm::vec3(shaded), shaded.w - 1.0f);
       resident += entry.weight * shadedShare(shaded);
       total += entry.weight;
     }
   }
-  if (total == 0.0f) return unshadowedRadiance(memory, normal, draw.light, order);
-  if (resident < total) sum += (total - resident) * unshadowedRadiance(memory, normal, draw.light, order);
+  const auto unshadowed = [&] {
+    return glm::vec4(unshadowedRadiance(memory, normal, draw.light, order), kAllStraight);
+  };
+  if (total == 0.0f) return unshadowed();
+  if (resident < total) sum += (total - resident) * unshadowed();
   return sum / total;
 }
 
@@ -123,7 +128,7 @@ inline MappedLight vertexLight(const Memory& memory, const DrawRecord& draw, uin
 }
 
 // Stage c shades a vertex of draws without normal maps; vertexLight() serves draws with normal maps.
-inline glm::vec3 shadeVertex(const Memory& memory, const DrawRecord& draw, uint vertex) {
+inline glm::vec4 shadeVertex(const Memory& memory, const DrawRecord& draw, uint vertex) {
   const uint at = draw.normals_word + 3 * vertex;
   const auto component = [&](uint i) { return std::bit_cast<float>(memory.geometry[at + i]); };
   const float* m = draw.group_from_mesh_normal;

@@ -20,7 +20,8 @@ using uint = std::uint32_t;
 LAMBENT_CONSTANT kBindDraws = 2u;      // DrawRecord
 LAMBENT_CONSTANT kBindRows = 3u;       // arena page: rows of vertices
 LAMBENT_CONSTANT kBindGeometry = 4u;   // arena page, holds the normals
-LAMBENT_CONSTANT kBindRadiance = 5u;   // arena page: per vertex 3 floats, E/pi, or for normal maps 27, [output][rgb]
+LAMBENT_CONSTANT kBindRadiance = 5u;   // arena page: per vertex 4 floats, E/pi and the luminance of lights
+                                       // per pixel in it, or for normal maps 27, [output][rgb]
 LAMBENT_CONSTANT kBindProxyGroups = 2u;     // ProxyGroupRecord
 LAMBENT_CONSTANT kBindProxyTriangles = 3u;  // ProxyTriangleRecord
 LAMBENT_CONSTANT kBindProxyEntries = 4u;    // ProxyEntryRecord

@@ -1,5 +1,6 @@
 // Stage c gathers a vertex's row of samples, with one invocation per vertex of the dirty draws. It writes linear
-// E/pi, not clamped, or with LAMBENT_OUTPUTS 9 the transferred light from which a normal map is shaded.
+// E/pi, not clamped, and the luminance of what comes straight from lights that are shaded per pixel; or with
+// LAMBENT_OUTPUTS 9 the transferred light from which a normal map is shaded.
 #include "diffuse_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
@@ -31,18 +32,20 @@ void main() {
   mat3 group_from_mesh = mat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]);
   vec3 normal = normalize(group_from_mesh * normal_mesh);
 #ifdef LAMBENT_ORDER
-  vec3 light[1] = vec3[1](vertexRadiance(draw, vertex, normal, LAMBENT_ORDER));
+  vec4 light = vertexRadiance(draw, vertex, normal, LAMBENT_ORDER);
 #else
-  vec3 light[1] = vec3[1](vertexRadiance(draw, vertex, normal, int(draw.order)));
+  vec4 light = vertexRadiance(draw, vertex, normal, int(draw.order));
 #endif
+  uint out_word = draw.radiance_word + 4u * vertex;
+  for (uint k = 0u; k < 4u; ++k) radiance_out[out_word + k] = light[k];
 #else
   vec3 light[kMappedOutputs];
   vertexLight(draw, vertex, light);
-#endif
   uint out_word = draw.radiance_word + 3u * LAMBENT_OUTPUTS * vertex;
   for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) {
     radiance_out[out_word + 3u * j] = light[j].r;
     radiance_out[out_word + 3u * j + 1u] = light[j].g;
     radiance_out[out_word + 3u * j + 2u] = light[j].b;
   }
+#endif
 }

@@ -135,8 +135,8 @@ TEST(CaptureProxyPatches, ShowAHouseToItselfMoreFinelyThanToOthers) {
   const bundle::CaptureProxy proxy = proxyOf(Transport(scene));
   const bundle::PatchSurface& patches = proxy.patches;
   EXPECT_LE(patches.triangles.size(), bundle::kMaxPatchTriangles);
-  EXPECT_GT(patches.triangles.size(), 1500u);
-  EXPECT_LT(patches.error_m, 0.5f * proxy.levels[0].error_m);
+  EXPECT_GT(patches.triangles.size(), 500u);
+  EXPECT_LT(patches.error_m, 0.6f * proxy.levels[0].error_m);
   float area = 0.0f;
   for (const bundle::PatchTriangle& triangle : patches.triangles) {
     const auto& v = triangle.vertices;
@@ -146,8 +146,10 @@ TEST(CaptureProxyPatches, ShowAHouseToItselfMoreFinelyThanToOthers) {
   EXPECT_NEAR(area / (4.0f * std::numbers::pi_v<float>), 1.0f, 0.01f);
 }
 
-TEST(CaptureProxyPatches, AreNotStoredWhereTheFinestLevelHasAllTriangles) {
+TEST(CaptureProxyPatches, AreNotStoredWhereTheFinestLevelDoes) {
   EXPECT_TRUE(proxyOf(Transport(sceneOf({box({0, 0, 0}, {1, 1, 1}, 2)}))).patches.triangles.empty());
+  // A fine mesh of large faces needs few triangles.
+  EXPECT_TRUE(proxyOf(Transport(sceneOf({box({0, 0, 0}, {1, 1, 1}, 24)}))).patches.triangles.empty());
 }
 
 glm::vec3 reflectanceOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangle& triangle) {

@@ -25,7 +25,7 @@ void main() {
   if (i >= count) return;
   Case c = cases[i];
   KeyReceiver receiver = keyReceiver(c.key, c.position.xyz, c.normal.xyz);
-  results[i] = vec4(keyVisible(c.key, c.position.xyz, c.normal.xyz, c.shading_normal.xyz),
-                    keyShare(c.key, c.shading_normal.xyz),
-                    blockerBounds(c.key, receiver.place, vec2(c.position.w)));
+  results[2u * i] = vec4(keyVisible(c.key, c.position.xyz, c.normal.xyz, c.shading_normal.xyz),
+                         keyShare(c.key, c.shading_normal.xyz), 0.0);
+  results[2u * i + 1u] = vec4(blockerBounds(c.key, receiver.place, vec2(c.position.w)), 0.0, 0.0);
 }
