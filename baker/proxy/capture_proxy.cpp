@@ -21,6 +21,7 @@ namespace {
 constexpr std::array<std::size_t, 3> kLevels = {bundle::kMaxProxyTriangles, 64, 16};
 constexpr std::size_t kLeastTriangles = 4;  // per side of a part
 constexpr std::size_t kPointsPerTriangle = 128, kPointsPerPatch = 32;
+constexpr std::size_t kTrianglesPerPatch = 8;  // of the group
 constexpr float kPatchError =
     2e-3f;  // in diagonals of the bounds; patches do not tell less (runtime/lighting/patches.cpp)
 // Larger surfaces are simplified to this many triangles before their silhouette is taken.
@@ -176,7 +177,10 @@ class ProxyMaker {
   // own.
   void addPatches() {
     if (proxy_.levels.empty()) return;
-    const auto counts = shares(parts_, meshes_, bundle::kMaxPatchTriangles);
+    // Small bundles are not to grow by a fifth for patches that their few triangles do not need.
+    const auto counts =
+        shares(parts_, meshes_,
+               std::min<std::size_t>(bundle::kMaxPatchTriangles, trianglesOf(meshes_) / kTrianglesPerPatch));
     if (!counts) return;
     std::vector<SimpleMesh> simple;
     const float allowed = kPatchError * glm::distance(geometry_.bounds_min, geometry_.bounds_max);
