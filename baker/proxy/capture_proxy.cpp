@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array<std::size_t, 3> kLevels = {bundle::kMaxProxyTriangles, 64, 16};
 constexpr std::size_t kLeastTriangles = 4;  // per side of a part
-constexpr std::size_t kPointsPerTriangle = 128, kPointsPerPatch = 32;
+constexpr std::size_t kPointsPerTriangle = 128, kPointsPerPatch = 16;
 constexpr std::size_t kTrianglesPerPatch = 8;  // of the group
 constexpr float kPatchError =
     2e-3f;  // in diagonals of the bounds; patches do not tell less (runtime/lighting/patches.cpp)

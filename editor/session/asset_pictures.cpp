@@ -63,10 +63,20 @@ struct AssetPictures::Worker {
       made.push_back(std::move(one));
     }
   }
+  // Returns the picture that came with the file: one of its name beside it, in the shape of a view, since
+  // textures are named like their scenes, too. The samples have such pictures.
+  static spec::Rgba8Image besides(const Asset& asset) {
+    const std::filesystem::path file = asset.file.parent_path() / (nameOf(asset) + ".png");
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return {};
+    const auto picture = spec::readPng(file);
+    if (!picture || std::uint64_t{9} * picture->width != std::uint64_t{16} * picture->height) return {};
+    return smallPictureOf(*picture);
+  }
   static Made make(const Asset& asset, PictureCache& cache) {
     try {
       if (auto found = cache.find(asset)) return {.asset = asset, .image = std::move(*found)};
-      if (asset.kind != AssetKind::EnvironmentMap) return {.asset = asset};
+      if (asset.kind != AssetKind::EnvironmentMap) return {.asset = asset, .image = besides(asset)};
       const auto map = spec::readLightImage(asset.file);
       if (!map) return {.asset = asset, .error = map.error().line()};
       Made one{.asset = asset, .image = smallPictureOf(*map)};

@@ -142,6 +142,25 @@ TEST_F(Assets, PicturesOfMapsAreMadeAndThoseOfScenesAreTheViews) {
   EXPECT_TRUE(again.of(*assetAt(scene.file)).image.texels.empty()) << "the file has changed";
 }
 
+TEST_F(Assets, SceneThatWasNeverShownHasThePictureOfItsNameBesideIt) {
+  const auto blue = [](std::uint32_t width, std::uint32_t height) {
+    spec::Rgba8Image image{width, height, {}};
+    for (std::uint32_t i = 0; i < width * height; ++i)
+      image.texels.insert(image.texels.end(), {10, 20, 200, 255});
+    return image;
+  };
+  const Asset shown = *assetAt(write("shown.glb")), textured = *assetAt(write("textured.glb"));
+  ASSERT_TRUE(spec::writePng(folder.path() / "shown.png", blue(32, 18)));
+  ASSERT_TRUE(spec::writePng(folder.path() / "textured.png", blue(32, 32)));
+  AssetPictures pictures({});
+  for (const Asset& asset : {shown, textured}) pictures.of(asset);
+  settle(pictures);
+  const std::vector<std::uint8_t>& texels = pictures.of(shown).image.texels;
+  ASSERT_FALSE(texels.empty());
+  EXPECT_EQ(std::vector(texels.begin(), texels.begin() + 4), (std::vector<std::uint8_t>{10, 20, 200, 255}));
+  EXPECT_TRUE(pictures.of(textured).image.texels.empty()) << "a texture of that name";
+}
+
 TEST_F(Assets, PicturesInMemoryAreLimitedAndComeAgain) {
   AssetPictures pictures({});
   const Asset map = *assetAt(writeMap("sky.hdr"));
