@@ -12,9 +12,25 @@ bool cameraSelected(const Session& session) {
   return session.document.registry().alive(selectedCamera(session));
 }
 
+bool anyCamera(const Session& session) {
+  return cameraSelected(session) || session.document.registry().alive(shownCamera(session));
+}
+
 Answer look(Session& session, Words) {
-  lookThrough(session, selectedCamera(session));
+  lookThrough(session, cameraSelected(session) ? selectedCamera(session) : shownCamera(session));
   return nullptr;
+}
+Answer keep(Session& session, Words) {
+  ecs::Entity& kept = session.viewing.kept_camera;
+  const ecs::Entity selected = selectedCamera(session);
+  kept = session.document.registry().alive(selected) && !(kept == selected) ? selected : ecs::Entity{};
+  return nullptr;
+}
+bool keeps(const Session& session) {
+  return session.document.registry().alive(session.viewing.kept_camera);
+}
+bool mayKeep(const Session& session) {
+  return cameraSelected(session) || keeps(session);
 }
 Answer place(Session& session, Words) {
   return answerOf(placeAtView(session, selectedCamera(session)));
@@ -33,10 +49,10 @@ constexpr std::array kRows = {
             .title = "Look through this camera",
             .menu = "View",
             .shortcut = "C",
-            .help = "The view goes where the selected camera stands",
+            .help = "The view goes where the selected camera stands, or the one whose picture is kept",
             .arguments = "",
             .run = &look,
-            .enabled = &cameraSelected},
+            .enabled = &anyCamera},
     Command{.id = "camera-to-view",
             .title = "Camera to view",
             .menu = "View",
@@ -53,6 +69,15 @@ constexpr std::array kRows = {
             .arguments = "",
             .run = &preview,
             .checked = &previews},
+    Command{.id = "keep-camera",
+            .title = "Keep this camera's picture",
+            .menu = "View",
+            .shortcut = "",
+            .help = "The inset stays while other things are selected and edited: a second view",
+            .arguments = "",
+            .run = &keep,
+            .enabled = &mayKeep,
+            .checked = &keeps},
 };
 
 }  // namespace

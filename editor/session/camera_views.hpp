@@ -8,6 +8,9 @@ namespace lambent::editor {
 
 // Returns the primary selected entity if it is a camera, or none.
 ecs::Entity selectedCamera(const Session& session);
+// Returns the camera whose picture the view shows as an inset: the selected one, as far as the preferences
+// want that, or else the one that is kept, or none.
+ecs::Entity shownCamera(const Session& session);
 // Returns width over height of the camera's picture: its own, or that of the view.
 float aspectOf(const Session& session, ecs::Entity camera);
 // Returns what the camera sees. Errors: its matrix is singular.

@@ -30,6 +30,8 @@ class Viewing {
   frame::OverlayOptions overlays;
   // The index into Environment::keys() of the key light whose fields are shown.
   std::optional<std::size_t> key_at_hand;
+  // The camera whose picture stays in the view while other things are selected.
+  ecs::Entity kept_camera;
   PictureScale scale;
   // Returns the surface point in the middle of the picture, or none where the sky is. It is empty without a
   // window.

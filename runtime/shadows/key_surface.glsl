@@ -33,7 +33,7 @@ vec3 groupFromView(uint draw, vec3 v) {
 }
 
 // Shares of the light by maps that must arrive by transfer for none and for all of what maps cannot tell.
-const float kLeastTold = 0.3, kMostTold = 0.7;
+const float kLeastTold = 0.1, kMostTold = 0.5;
 
 float luminance(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }  // Rec. 709
 

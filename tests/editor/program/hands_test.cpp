@@ -369,5 +369,33 @@ marks
   EXPECT_EQ(played.answer("marks").dump().find("camera-preview"), std::string::npos);
 }
 
+TEST_F(EditorProgram, KeepsTheSecondViewOfACameraWhileOtherThingsAreSelected) {
+  const Played played = playInHello(R"(
+create-camera 0 1 3
+keep-camera
+select-none
+wait rest 60
+wait frames 5
+where camera-preview
+camera orbit:120,30,2,40
+wait rest 60
+click camera-preview
+wait frames 3
+state
+create-camera 2 2 2
+keep-camera
+keep-camera
+select-none
+wait rest 60
+wait frames 5
+marks
+)");
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  EXPECT_GT(played.answer("where")["width"], 100.0);
+  EXPECT_TRUE(played.answer("state")["eye"].get<std::string>().starts_with("pose:0,1,"))
+      << "a click looks through it, though it is not selected";
+  EXPECT_EQ(played.answer("marks").dump().find("camera-preview"), std::string::npos) << "given up again";
+}
+
 }  // namespace
 }  // namespace lambent

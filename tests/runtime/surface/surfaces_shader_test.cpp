@@ -85,7 +85,7 @@ class SurfaceShader : public testing::GpuTest {
  protected:
   using Picture = std::vector<glm::vec4>;
 
-  // words_per_vertex: 3 is radiance, 27 light for normal maps.
+  // words_per_vertex: 4 is radiance, 27 light for normal maps.
   Picture draw(const SurfaceDraw& record, const Vertices& vertices, const std::vector<float>& light,
                std::size_t words_per_vertex) {
     const Result<gpu::Program> program = makeSurfaceProgram(
@@ -140,8 +140,8 @@ class SurfaceShader : public testing::GpuTest {
 
   Picture drawRadiance(const SurfaceDraw& record, const glm::vec3& radiance) {
     std::vector<float> words;
-    for (int i = 0; i < 4; ++i) words.insert(words.end(), {radiance.r, radiance.g, radiance.b});
-    return draw(record, {}, words, 3);
+    for (int i = 0; i < 4; ++i) words.insert(words.end(), {radiance.r, radiance.g, radiance.b, 0.0f});
+    return draw(record, {}, words, 4);
   }
   // Sets the same light at every vertex.
   Picture drawLight(const SurfaceDraw& record, const Vertices& vertices, const Light& light) {
