@@ -143,7 +143,7 @@ TEST(CaptureProxyPatches, ShowAHouseToItselfMoreFinelyThanToOthers) {
     area += areaOf({patches.positions[v[0]], patches.positions[v[1]], patches.positions[v[2]]});
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(triangle.albedo[c], scene.materials[0].base_color[c], 1e-5f);
   }
-  EXPECT_NEAR(area / (4.0f * std::numbers::pi_v<float>), 1.0f, 0.01f);
+  EXPECT_NEAR(area / (4.0f * std::numbers::pi_v<float>), 1.0f, 0.02f);  // its corners lie on the sphere
 }
 
 TEST(CaptureProxyPatches, AreNotStoredWhereTheFinestLevelDoes) {
