@@ -170,9 +170,10 @@ TEST_F(KilledBake, TwentyTimesAtRandomMomentsItComesToTheSameBytesAndLosesLittle
   ASSERT_NO_FATAL_FAILURE(run(1e9));
 
   // Each kill costs the start-up, and on average half of the work between two checkpoints; the bound allows
-  // as much again for longer pieces. A bake without checkpoints would lose half of `whole` per kill.
+  // twice as much again for longer pieces, such as proxies, and for a machine that does other work. A bake
+  // without checkpoints would lose half of `whole` per kill.
   const double lost_s = cpu_s - finished * whole.cpu_s;
-  const double allowed_s = kills * (found.cpu_s + kThreads * kCheckpoint_s);
+  const double allowed_s = kills * (found.cpu_s + 1.5 * kThreads * kCheckpoint_s);
   EXPECT_LT(lost_s, allowed_s) << "in " << kills << " kills and " << finished << " finished bakes of "
                                << whole.cpu_s << " s each";
   RecordProperty("lost_s_per_kill", fmt::format("{:.3f}", lost_s / kills));
