@@ -1,7 +1,7 @@
-// Draws what the selected camera, or one that is kept, sees into a small picture of its own, by the frame of the main picture: a
-// second frame would keep light probes, captures and shading of its own. The main picture must be drawn anew
-// afterwards. It draws only when something in it changed: while the world comes to rest, and while main
-// pictures are slow and move, it waits. Main thread, with a current OpenGL context.
+// Draws what the selected camera, or one that is kept, sees into a small picture of its own, by the frame of
+// the main picture: a second frame would keep light probes, captures and shading of its own. The main picture
+// must be drawn anew afterwards. It draws only when something in it changed: while the world comes to rest,
+// and while main pictures are slow and move, it waits. Main thread, with a current OpenGL context.
 #pragma once
 
 #include "editor/session/session.hpp"

@@ -1,7 +1,7 @@
 // Brings the pictures of assets: those of environment maps are made of their files, those of scenes, bundles
-// and worlds are what the view showed of them last, or else a PNG of their name that lies beside them. Panels ask for them; a thread finds them on disk or makes
-// them, in the order in which they were asked for. The renderer turns them into textures
-// (editor/render/thumbnails). Main thread.
+// and worlds are what the view showed of them last, or else a PNG of their name that lies beside them. Panels
+// ask for them; a thread finds them on disk or makes them, in the order in which they were asked for. The
+// renderer turns them into textures (editor/render/thumbnails). Main thread.
 #pragma once
 
 #include <cstdint>

@@ -11,7 +11,8 @@
 namespace lambent::streaming {
 
 // Returns the number of floats that are written per vertex of a draw: E/pi as RGB and the luminance of what
-// comes straight from lights that are shaded per pixel, or light in bands 0..2 for normal maps as RGB. Glossy draws need none, since they use samples at each pixel.
+// comes straight from lights that are shaded per pixel, or light in bands 0..2 for normal maps as RGB. Glossy
+// draws need none, since they use samples at each pixel.
 constexpr std::uint32_t radianceWords(transfer::Form form) {
   if (form == transfer::Form::Vector) return 4;
   return form == transfer::Form::NormalMapped ? 3 * transfer::kMappedOutputs : 0;

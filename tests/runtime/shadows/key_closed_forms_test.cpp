@@ -52,8 +52,8 @@ spec::View down(float half, float from) {
       .eye_ws = {0, from, 0}};
 }
 
-// Makes a room of 2 m, closed but for a window in the wall towards +X. All light is a key light, so none comes by
-// harmonics; they know every place for open, so that maps alone tell what arrives.
+// Makes a room of 2 m, closed but for a window in the wall towards +X. All light is a key light, so none
+// comes by harmonics; they know every place for open, so that maps alone tell what arrives.
 constexpr float kLow = 0.2f, kHigh = 0.8f, kHalfWidth = 0.4f;
 BundleBuilder roomWithWindow() {
   BundleBuilder builder(kOrder);
