@@ -22,8 +22,8 @@ constexpr std::array<std::size_t, 3> kLevels = {bundle::kMaxProxyTriangles, 64, 
 constexpr std::size_t kLeastTriangles = 4;  // per side of a part
 constexpr std::size_t kPointsPerTriangle = 128, kPointsPerPatch = 16;
 constexpr std::size_t kTrianglesPerPatch = 8;  // of the group
-constexpr float kPatchError =
-    2e-3f;  // in diagonals of the bounds; patches do not tell less (runtime/lighting/patches.cpp)
+// Patches tell no less than this share of the diagonal of the bounds (runtime/lighting/patches.cpp).
+constexpr float kPatchError = 2e-3f;
 // Larger surfaces are simplified to this many triangles before their silhouette is taken.
 constexpr std::size_t kSilhouetteTriangles = 32768;
 // A level is worth having if it has at most this share of the triangles of the one before.
@@ -141,23 +141,32 @@ class ProxyMaker {
       }
   }
 
-  void addLevel(const std::vector<SimpleMesh>& simple) {
+  // Appends the sides of all parts to positions and triangles, and returns them as faces.
+  template <typename Triangle>
+  std::vector<ProxyFace> appendFaces(const std::vector<SimpleMesh>& simple, std::vector<glm::vec3>& positions,
+                                     std::vector<Triangle>& triangles, float& error_m) const {
     std::vector<ProxyFace> faces;
-    bundle::ProxyLevel level{static_cast<std::uint32_t>(proxy_.triangles.size()), 0, 0.0f};
     for (std::uint32_t p = 0; p < simple.size(); ++p) {
-      level.error_m = std::max(level.error_m, simple[p].error_m);
-      const auto first = static_cast<std::uint32_t>(proxy_.positions.size());
-      proxy_.positions.insert(proxy_.positions.end(), simple[p].positions.begin(), simple[p].positions.end());
+      error_m = std::max(error_m, simple[p].error_m);
+      const auto first = static_cast<std::uint32_t>(positions.size());
+      positions.insert(positions.end(), simple[p].positions.begin(), simple[p].positions.end());
       for (std::size_t side = 0; side < parts_[p].sides(); ++side)
         for (glm::uvec3 t : simple[p].triangles) {
           if (side == 1) std::swap(t.y, t.z);
           faces.push_back(
               {{simple[p].positions[t.x], simple[p].positions[t.y], simple[p].positions[t.z]}, p, side == 1});
-          bundle::ProxyTriangle& triangle = proxy_.triangles.emplace_back();
+          Triangle& triangle = triangles.emplace_back();
           triangle.vertices = {first + t.x, first + t.y, first + t.z};
           triangle.front_only = parts_[p].two_sided;
         }
     }
+    return faces;
+  }
+
+  void addLevel(const std::vector<SimpleMesh>& simple) {
+    bundle::ProxyLevel level{static_cast<std::uint32_t>(proxy_.triangles.size()), 0, 0.0f};
+    const std::vector<ProxyFace> faces =
+        appendFaces(simple, proxy_.positions, proxy_.triangles, level.error_m);
     const std::vector<FaceShine> shine = shineOf(faces, points_, geometry_, samples_);
     for (std::size_t f = 0; f < faces.size(); ++f) {
       bundle::ProxyTriangle& triangle = proxy_.triangles[level.first_triangle + f];
@@ -189,23 +198,9 @@ class ProxyMaker {
     if (kFewer * static_cast<double>(trianglesOf(simple)) <=
         static_cast<double>(proxy_.levels.front().triangle_count))
       return;
-    std::vector<ProxyFace> faces;
     bundle::PatchSurface& patches = proxy_.patches;
-    for (std::uint32_t p = 0; p < simple.size(); ++p) {
-      patches.error_m = std::max(patches.error_m, simple[p].error_m);
-      const auto first = static_cast<std::uint32_t>(patches.positions.size());
-      patches.positions.insert(patches.positions.end(), simple[p].positions.begin(),
-                               simple[p].positions.end());
-      for (std::size_t side = 0; side < parts_[p].sides(); ++side)
-        for (glm::uvec3 t : simple[p].triangles) {
-          if (side == 1) std::swap(t.y, t.z);
-          faces.push_back(
-              {{simple[p].positions[t.x], simple[p].positions[t.y], simple[p].positions[t.z]}, p, side == 1});
-          patches.triangles.push_back({.vertices = {first + t.x, first + t.y, first + t.z},
-                                       .front_only = parts_[p].two_sided,
-                                       .albedo = glm::vec3(0.0f)});
-        }
-    }
+    const std::vector<ProxyFace> faces =
+        appendFaces(simple, patches.positions, patches.triangles, patches.error_m);
     const std::vector<FaceShine> shine =
         shineOf(faces, pointsOn(simple, kPointsPerPatch), geometry_, samples_);
     for (std::size_t f = 0; f < faces.size(); ++f)

@@ -63,7 +63,7 @@ Indices indicesOf(const SimpleMesh& mesh) {
   return indices;
 }
 
-constexpr float kAnyError = 1e6f;  // relative to the surface's size, as the next are
+constexpr float kAnyError = 1e6f;  // in sizes of the surface
 
 enum class Method : std::uint8_t { Collapses, Clusters };
 

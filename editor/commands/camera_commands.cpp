@@ -12,18 +12,22 @@ bool cameraSelected(const Session& session) {
   return session.document.registry().alive(selectedCamera(session));
 }
 
+// Returns the selected camera, or else the one whose picture is kept.
+ecs::Entity cameraAtHand(const Session& session) {
+  return cameraSelected(session) ? selectedCamera(session) : shownCamera(session);
+}
 bool anyCamera(const Session& session) {
-  return cameraSelected(session) || session.document.registry().alive(shownCamera(session));
+  return session.document.registry().alive(cameraAtHand(session));
 }
 
 Answer look(Session& session, Words) {
-  lookThrough(session, cameraSelected(session) ? selectedCamera(session) : shownCamera(session));
+  lookThrough(session, cameraAtHand(session));
   return nullptr;
 }
 Answer keep(Session& session, Words) {
   ecs::Entity& kept = session.viewing.kept_camera;
-  const ecs::Entity selected = selectedCamera(session);
-  kept = session.document.registry().alive(selected) && !(kept == selected) ? selected : ecs::Entity{};
+  const ecs::Entity selected = selectedCamera(session);  // none gives up the kept one
+  kept = kept == selected ? ecs::Entity{} : selected;
   return nullptr;
 }
 bool keeps(const Session& session) {

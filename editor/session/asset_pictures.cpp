@@ -65,7 +65,7 @@ struct AssetPictures::Worker {
   }
   // Returns the picture that came with the file: one of its name beside it, in the shape of a view, since
   // textures are named like their scenes, too. The samples have such pictures.
-  static spec::Rgba8Image besides(const Asset& asset) {
+  static spec::Rgba8Image pictureBeside(const Asset& asset) {
     const std::filesystem::path file = asset.file.parent_path() / (nameOf(asset) + ".png");
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) return {};
@@ -76,7 +76,7 @@ struct AssetPictures::Worker {
   static Made make(const Asset& asset, PictureCache& cache) {
     try {
       if (auto found = cache.find(asset)) return {.asset = asset, .image = std::move(*found)};
-      if (asset.kind != AssetKind::EnvironmentMap) return {.asset = asset, .image = besides(asset)};
+      if (asset.kind != AssetKind::EnvironmentMap) return {.asset = asset, .image = pictureBeside(asset)};
       const auto map = spec::readLightImage(asset.file);
       if (!map) return {.asset = asset, .error = map.error().line()};
       Made one{.asset = asset, .image = smallPictureOf(*map)};

@@ -23,7 +23,6 @@ using lighting::ShadowedLight;
 constexpr std::size_t kLampPoints = 16;  // points on a lamp with an extent
 constexpr float kLightSurface = 1.01f;   // as in local_shadows.cpp
 constexpr float kAlmost = 1.0f - 1e-4f;  // share of the distance to a patch, so that it does not block itself
-constexpr float kOnPlane = 1e-5f;        // in extents of the patches; nearer triangles are ignored
 constexpr std::size_t kPoints = lighting::kPatchPoints;
 // Discs at infinity are widened to this radius, so that bounced light does not flicker while they turn. It is
 // less than the angle under which patches see their neighbours.
@@ -91,11 +90,11 @@ lighting::TriangleTree blockersOf(const ShadowedLight& light, const lighting::Pa
            });
   };
   std::vector<lighting::RayTriangle> blockers;
-  for (std::size_t t = 0; t < patches.tree().size(); ++t)
-    if (const lighting::RayTriangle own = patches.tree()[t]; !isLamp(own)) blockers.push_back(own);
+  for (const lighting::RayTriangle& own : patches.tree().triangles())
+    if (!isLamp(own)) blockers.push_back(own);
   for (const lighting::RayTriangle& other : others)
     if (!isLamp(other)) blockers.push_back(other);
-  return {std::move(blockers), kOnPlane * patches.extent()};
+  return {std::move(blockers), patches.tree().leastDistance()};
 }
 
 }  // namespace
@@ -147,9 +146,10 @@ std::vector<float> lampOnPatches(const ShadowedLight& lamp, const lighting::Patc
 std::vector<std::vector<float>> keysOnPatches(std::span<const spec::Disc> keys,
                                               const lighting::Patches& patches,
                                               std::span<const lighting::RayTriangle> others) {
-  std::vector<lighting::RayTriangle> triangles(others.begin(), others.end());
-  for (std::size_t t = 0; t < patches.tree().size(); ++t) triangles.push_back(patches.tree()[t]);
-  const lighting::TriangleTree blockers(std::move(triangles), kOnPlane * patches.extent());
+  if (keys.empty()) return {};  // as in every frame in which no light moved
+  std::vector<lighting::RayTriangle> triangles = patches.tree().triangles();
+  triangles.insert(triangles.end(), others.begin(), others.end());
+  const lighting::TriangleTree blockers(std::move(triangles), patches.tree().leastDistance());
   std::vector<std::vector<glm::vec3>> rays_to;
   for (const spec::Disc& key : keys) rays_to.push_back(raysTo(key));
 

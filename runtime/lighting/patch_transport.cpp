@@ -175,12 +175,6 @@ float PatchTransport::meanBounced() const {
   return area > 0.0 ? static_cast<float>(bounced / area) : 0.0f;
 }
 
-std::vector<glm::vec3> PatchTransport::bounce(std::span<const float> direct) const {
-  std::vector<glm::vec3> grey;
-  for (const float value : direct) grey.emplace_back(value);
-  return bounce(grey);
-}
-
 std::vector<glm::vec3> PatchTransport::bounce(std::span<const glm::vec3> direct) const {
   std::vector<glm::vec3> given_off(patches_.size());
   float brightest = 0.0f;

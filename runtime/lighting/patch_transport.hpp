@@ -59,7 +59,6 @@ class PatchTransport {
   // and what arrives from the other patches, times albedo. Stops when the next bounce would add less than 1 /
   // 10 000.
   std::vector<glm::vec3> bounce(std::span<const glm::vec3> direct) const;
-  std::vector<glm::vec3> bounce(std::span<const float> direct) const;
 
   // Returns E/pi at a patch directly from distant light, given by order² coefficients: the transfer vector
   // without bounces, made with the same rays as the form factors (Sloan 2002, eq. 4).

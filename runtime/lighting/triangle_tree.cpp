@@ -186,7 +186,7 @@ std::optional<RayHit> TriangleTree::first(const glm::vec3& origin, const glm::ve
     for (std::size_t i = 0; i < leaf.count; ++i) {
       const bool back = met.back[i] != 0;
       if (met.distance[i] == kMissed || met.distance[i] > nearest) continue;
-      // Of equals, the front counts, and then the first, in whatever order the tree comes to them.
+      // If two are equally far, the front counts, then the first in order, however the tree comes to them.
       if (met.distance[i] == nearest && (back != hit.back ? back : leaf.index[i] > hit.triangle)) continue;
       nearest = met.distance[i];
       hit.triangle = leaf.index[i];

@@ -35,6 +35,8 @@ class TriangleTree {
 
   std::size_t size() const { return triangles_.size(); }
   const RayTriangle& operator[](std::size_t index) const { return triangles_[index]; }
+  const std::vector<RayTriangle>& triangles() const { return triangles_; }
+  float leastDistance() const { return least_distance_; }
 
   // Returns the nearest triangle along a direction of any length. If both sides of something without
   // thickness are hit, the one that faces the ray counts.

@@ -24,7 +24,7 @@ TEST(LogToasts, StandFromTheirFirstFrameOnForSeconds) {
   EXPECT_EQ(log.entries().size(), 1u) << "it stays in the log";
 }
 
-// Where a frame takes longer than a toast stands, nobody would see it otherwise.
+// Nobody would see a toast that stands for less time than a frame takes.
 TEST(LogToasts, StandForSomeFramesHoweverSlowTheseAre) {
   Log log;
   log.warn("truncated");

@@ -259,7 +259,7 @@ TEST(PatchRoom, WithTheirBandsKeyLightsFallWhereTheirRaysDo) {
   const PatchTransport& transport = *room.transport();
   const std::vector<glm::vec3> by_bands = givenOffByBands(transport, bands);
   const std::vector<std::vector<float>> by_rays = keysOnPatches(keys, transport.patches(), {});
-  const std::vector<glm::vec3> all = transport.bounce(by_rays[0]);
+  const std::vector<glm::vec3> all = transport.bounce(testing::grey(by_rays[0]));
   double straight = 0.0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const lighting::Patch& patch = transport.patches().all()[i];

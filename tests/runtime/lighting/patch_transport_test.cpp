@@ -12,6 +12,7 @@
 
 namespace lambent::lighting {
 
+using testing::grey;
 using testing::RoomBuilder;
 
 namespace {
@@ -64,7 +65,7 @@ TEST(PatchTransport, InAClosedSphereBouncesAddAlbedoOverOneMinusAlbedo) {
     const PatchTransport transport(RoomBuilder().sphere(10, 14, glm::vec3(albedo)).proxy());
     const Patches& patches = transport.patches();
     const std::vector<float> direct = litFrom(patches, {0, 0, 0});
-    const std::vector<float> all = receivedAll(patches, transport.bounce(direct));
+    const std::vector<float> all = receivedAll(patches, transport.bounce(grey(direct)));
     const double ratio = wholeOf(patches, all) / wholeOf(patches, direct) - 1.0;
     EXPECT_NEAR(ratio / (albedo / (1.0 - albedo)), 1.0, 0.01) << albedo;
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -79,7 +80,7 @@ TEST(PatchTransport, InAClosedBoxTheSameHoldsOfTheWholeWhereverTheLampStands) {
     const PatchTransport transport(RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(0.6f)).proxy());
     const Patches& patches = transport.patches();
     const std::vector<float> direct = litFrom(patches, lamp);
-    const std::vector<float> all = receivedAll(patches, transport.bounce(direct));
+    const std::vector<float> all = receivedAll(patches, transport.bounce(grey(direct)));
     EXPECT_NEAR((wholeOf(patches, all) / wholeOf(patches, direct) - 1.0) / 1.5, 1.0, 0.03);
   }
 }
@@ -89,12 +90,12 @@ TEST(PatchTransport, AFurnaceStaysUniform) {
   // room.
   const PatchTransport transport(RoomBuilder().box({0, 0, 0}, {1, 5, 2}, glm::vec3(0.5f)).proxy());
   const std::vector<float> direct(transport.patches().size(), 2.0f);
-  for (const glm::vec3& radiance : transport.bounce(direct)) ASSERT_NEAR(radiance.g, 2.0f, 0.002f);
+  for (const glm::vec3& radiance : transport.bounce(grey(direct))) ASSERT_NEAR(radiance.g, 2.0f, 0.002f);
   const std::vector<SurfacePoint> points = {
       {{0.5f, 0, 1}, {0, 1, 0}}, {{0, 0, 0}, {0, 1, 0}}, {{1, 5, 2}, {-1, 0, 0}}};
   const auto links = transport.link(points, LinkSpread::Cosine);
   for (std::size_t p = 0; p < points.size(); ++p)
-    EXPECT_NEAR(gathered(transport, links, p, transport.bounce(direct)).g, 2.0f, 0.002f) << p;
+    EXPECT_NEAR(gathered(transport, links, p, transport.bounce(grey(direct))).g, 2.0f, 0.002f) << p;
 }
 
 TEST(PatchTransport, BouncesKeepTheColoursOfTheWalls) {
@@ -105,7 +106,7 @@ TEST(PatchTransport, BouncesKeepTheColoursOfTheWalls) {
   const Patches& patches = transport.patches();
   std::vector<float> direct(patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) direct[i] = patches.all()[i].normal.x > 0.5f ? 1.0f : 0.0f;
-  const auto given_off = transport.bounce(direct);
+  const auto given_off = transport.bounce(grey(direct));
   const std::vector<SurfacePoint> points = {{{0.05f, 0, 0.5f}, {0, 1, 0}}, {{0.9f, 0, 0.5f}, {0, 1, 0}}};
   const auto links = transport.link(points, LinkSpread::Cosine);
   const glm::vec3 near = gathered(transport, links, 0, given_off),
@@ -143,7 +144,7 @@ TEST(PatchTransport, NothingGoesThroughAWallToTheBoxBeside) {
     const bool beside = patch.points[0].x > 1.0001f || (patch.points[0].x > 0.9999f && patch.normal.x > 0.5f);
     if (beside) direct[i] = 0.0f;
   }
-  const auto given_off = transport.bounce(direct);
+  const auto given_off = transport.bounce(grey(direct));
   for (std::size_t i = 0; i < patches.size(); ++i) {
     if (direct[i] != 0.0f) continue;
     ASSERT_EQ(given_off[i], glm::vec3(0.0f)) << i;
@@ -154,13 +155,13 @@ TEST(PatchTransport, TheSameRoomGivesTheSameBytes) {
   const bundle::CaptureProxy proxy = RoomBuilder().sphere(9, 12, glm::vec3(0.4f, 0.5f, 0.6f)).proxy();
   const PatchTransport one(proxy), other(proxy);
   const auto direct = litFrom(one.patches(), {0.2f, 0.1f, -0.3f});
-  const auto a = one.bounce(direct), b = other.bounce(direct);
+  const auto a = one.bounce(grey(direct)), b = other.bounce(grey(direct));
   ASSERT_EQ(a.size(), b.size());
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(glm::vec3)), 0);
   // Twice the light gives exactly twice the result.
   std::vector<float> twice = direct;
   for (float& value : twice) value *= 2.0f;
-  const auto doubled = one.bounce(twice);
+  const auto doubled = one.bounce(grey(twice));
   for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(doubled[i], 2.0f * a[i]);
 }
 

@@ -13,6 +13,13 @@
 
 namespace lambent::testing {
 
+// Returns light without colour.
+inline std::vector<glm::vec3> grey(const std::vector<float>& light) {
+  std::vector<glm::vec3> all;
+  for (const float value : light) all.emplace_back(value);
+  return all;
+}
+
 // The proxy has one level, and every triangle reflects `albedo`.
 class RoomBuilder {
  public:

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "runtime/frame/frame.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -19,6 +17,7 @@
 #include "runtime/sh/zonal.hpp"
 #include "runtime/shadows/key_shadows.hpp"
 #include "runtime/shadows/shadowed_light_ref.hpp"
+#include "tests/runtime/shadows/key_stage.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
@@ -91,44 +90,6 @@ spec::View from(glm::vec3 eye, glm::vec3 target, float fov_deg = 50.0f, float as
           .clip_from_view = glm::perspective(glm::radians(fov_deg), aspect, 0.05f, 50.0f),
           .eye_ws = eye};
 }
-
-struct KeyStage {
-  std::filesystem::path path;
-  World world;
-  lighting::Environment environment;
-  std::optional<Frame> frame;
-
-  KeyStage(const BundleBuilder& builder, const std::vector<spec::Light>& lights,
-           std::uint32_t most_keys = kMost, const FrameSettings& settings = {}, spec::Size size = {64, 64})
-      : path(std::filesystem::path(::testing::TempDir()) /
-             fmt::format("{}-{}.lmb.glb", getpid(),
-                         ::testing::UnitTest::GetInstance()->current_test_info()->name())),
-        environment(*lighting::Environment::create(lights)) {
-    environment.setMostKeys(most_keys);
-    builder.write(path);
-    const Result<std::uint32_t> opened = world.open(path);
-    EXPECT_TRUE(opened) << opened.error().line();
-    gpu::Counters counters;
-    const Result<void> loaded = world.uploadAll(counters);
-    EXPECT_TRUE(loaded) << loaded.error().line();
-    FrameOptions options{.size = size, .output = Output::Linear, .settings = settings};
-    options.settings.key_size = 1024;
-    Result<Frame> made = Frame::create(options, environment);
-    EXPECT_TRUE(made) << made.error().line();
-    if (made) frame.emplace(std::move(*made));
-  }
-  ~KeyStage() { std::filesystem::remove(path); }
-
-  spec::RgbaImage picture(const spec::View& view) {
-    render(view);
-    return frame->readLinear();
-  }
-  void render(const spec::View& view) {
-    const Result<void> done = frame->render(world, environment, view);
-    ASSERT_TRUE(done) << done.error().line();
-  }
-  std::uint64_t mapsDrawn() const { return frame->counts()["key_maps_drawn"]; }
-};
 
 glm::vec4 at(const spec::RgbaImage& image, std::uint32_t x, std::uint32_t y) {
   return image.texels[y * image.width + x];

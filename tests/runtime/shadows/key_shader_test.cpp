@@ -144,8 +144,8 @@ TEST_F(KeyShader, DoesWhatItsTwinDoes) {
     const Case& c = cases[i];
     const glm::vec3 position(c.position), normal(c.normal), shading_normal(c.shading_normal);
     const float share = ref::keyShare(c.key, shading_normal), whole = c.key.radiance.w * c.key.radiance.w;
-    // Arc functions of GPUs are good to 1e-4.
     const glm::vec2 seen(results[2 * i]), found_bounds(results[2 * i + 1]);
+    // Arc functions of GPUs are good to 1e-4.
     EXPECT_NEAR(results[2 * i].z, share, 2e-4f * whole + 1e-3f * share) << "case " << i;
     const glm::vec2 bounds = ref::blockerBounds(map, c.key, ref::keyReceiver(c.key, position, normal).place,
                                                 glm::vec2(c.position.w));
