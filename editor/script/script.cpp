@@ -77,6 +77,9 @@ Result<glm::vec2> Script::placeOf(const std::string& mark, const Ui& ui) const {
   if (!where)
     return fail(mark, "is not on the screen",
                 fmt::format("open its panel; on the screen are {}", fmt::join(ui.marks().names(), ", ")));
+  if (!where->shown)
+    return fail(mark, "lies outside what its panel shows",
+                "make the panel larger, or scroll there with wheel");
   if (at == std::string::npos) return where->center();
   glm::vec2 share(0.5f);
   if (std::sscanf(mark.c_str() + at + 1, "%f,%f", &share.x, &share.y) != 2)

@@ -14,7 +14,14 @@ void Marks::beginFrame() {
 void Marks::put(std::string_view name) {
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   // A tab has no size in its first frame, and cannot be clicked.
-  if (low.x < high.x || low.y < high.y) put(name, {{low.x, low.y}, {high.x, high.y}});
+  if (low.x >= high.x && low.y >= high.y) return;
+  const ImVec2 middle(0.5f * (low.x + high.x), 0.5f * (low.y + high.y));
+  // Rows that span all columns of a table are drawn while only their first column is within the clip
+  // rectangle.
+  const float left = ImGui::GetWindowPos().x, right = left + ImGui::GetWindowWidth();
+  const bool shown = left <= middle.x && middle.x < right &&
+                     ImGui::IsRectVisible({low.x, middle.y - 0.5f}, {high.x, middle.y + 0.5f});
+  put(name, {{low.x, low.y}, {high.x, high.y}, shown});
 }
 
 void Marks::put(std::string_view name, const Rectangle& where) {

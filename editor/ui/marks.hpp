@@ -16,6 +16,7 @@ namespace lambent::editor {
 
 struct Rectangle {
   glm::vec2 min{0.0f}, max{0.0f};  // in window pixels
+  bool shown = true;  // false where the middle of a widget lies outside what its panel shows of its content
   glm::vec2 center() const { return 0.5f * (min + max); }
 };
 

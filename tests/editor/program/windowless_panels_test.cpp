@@ -94,6 +94,16 @@ TEST_F(WindowlessPanels, AClickInTheTreeSelects) {
   EXPECT_EQ(answer("state")["selected"], nlohmann::json::array({"point"}));
 }
 
+// A script that clicks at such a mark would click at something else, or at nothing.
+TEST_F(WindowlessPanels, MarksOfWhatIsScrolledOutOfViewSaySo) {
+  ImGui::GetIO().DisplaySize.y = 160.0f;
+  answer("create-point");
+  settle(panel("Inspector"));
+  ASSERT_TRUE(marks.find("inspector.Transform.translation") && marks.find("inspector.Light.range"));
+  EXPECT_TRUE(marks.find("inspector.Transform.translation")->shown);
+  EXPECT_FALSE(marks.find("inspector.Light.range")->shown);
+}
+
 TEST_F(WindowlessPanels, AnObjectLeadsToItsMaterial) {
   openHello();
   answer("select", {"has:Transform box"});
