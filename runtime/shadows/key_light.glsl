@@ -8,6 +8,9 @@
 // A surface casts no shadow if it is nearer to the light than the receiver's plane by less than the width of
 // this many texels. This tolerates rounding, and faces that meet within a texel.
 const float kKeyBiasTexels = 1.0;
+// A surface that only the bias takes for none leaves a doubt if it is above this share of the bias. It is looked for so
+// many texels to the side that a steep receiver faces.
+const float kDoubtfulBias = 0.25, kTexelsAside = 1.5;
 const float kLeastFacing = 0.02;   // least cosine at which the receiver's plane leans
 const float kSharpTexels = 0.8;    // texels; a narrower penumbra is unresolved, and the texels' edge is used
 const float kOneHeight = 0.1;      // heights count as one if they differ by less than this share
@@ -75,9 +78,9 @@ float blockerHeight(KeyRecord key, KeyReceiver receiver, ivec2 texel) {
   return depth < limit ? receiver.depth - depth : 0.0;
 }
 
-// Returns the visibility of a light without width, interpolated between the four texels around the place.
-float texelVisible(KeyRecord key, KeyReceiver receiver) {
-  vec2 corner = floor(receiver.place - 0.5), part = receiver.place - 0.5 - corner;
+// Returns the visibility of a light without width, interpolated between the four texels around a place.
+float texelVisible(KeyRecord key, KeyReceiver receiver, vec2 place) {
+  vec2 corner = floor(place - 0.5), part = place - 0.5 - corner;
   float visible = 0.0;
   for (int i = 0; i < 4; ++i) {
     vec2 side = vec2(float(i & 1), float(i >> 1));
@@ -156,11 +159,19 @@ int rayFate(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
   return kRayBlocked;
 }
 
-// Returns the share of the disc's light that is visible at a point with this triangle normal and this shading normal,
-// and the share of which the map cannot tell.
-vec2 keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal) {
-  if (dot(normal, key.towards.xyz) <= -key.radiance.w) return vec2(0.0);
-  KeyReceiver receiver = keyReceiver(key, position, normal);
+// Returns the share of visible light that the bias alone may have let through. A ceiling that a cornice touches is as
+// near to it as faces of one lit surface are to each other. It is looked for on the side that the receiver faces, where
+// the receiver's own surface is lower.
+float doubtOfBias(KeyRecord key, KeyReceiver receiver, vec3 normal) {
+  vec2 faced = vec2(dot(normal, normalize(key.right.xyz)), dot(normal, normalize(key.up.xyz)));
+  float visible = texelVisible(key, receiver, receiver.place);
+  receiver.bias *= kDoubtfulBias;
+  float sure = texelVisible(key, receiver, receiver.place + kTexelsAside * faced);
+  return visible > sure ? 1.0 - sure / visible : 0.0;
+}
+
+// Returns keyVisible() without what the bias leaves doubtful.
+vec2 visibleBeyondBias(KeyRecord key, KeyReceiver receiver, vec3 normal, vec3 shading_normal) {
   float reach = receiver.depth;
   int rays = int(key.rays);
   KeyLayers layers = KeyLayers(0.0, 0.0);
@@ -182,11 +193,11 @@ vec2 keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal) 
   vec3 right = normalize(key.right.xyz), up = normalize(key.up.xyz);
   if (!open) {
     float widest = reach * key.scale.w * max(key.scale.x, key.scale.y);
-    if (widest < kSharpTexels && receiver.above) return vec2(texelVisible(key, receiver), 0.0);
+    if (widest < kSharpTexels && receiver.above) return vec2(texelVisible(key, receiver, receiver.place), 0.0);
     layers = keyLayers(key, receiver, reach, max(rays, kLeastSearch));
     if (layers.low == 0.0 && receiver.above) return vec2(1.0, 0.0);
     if (layers.high * key.scale.w * max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
-      return vec2(texelVisible(key, receiver), 0.0);
+      return vec2(texelVisible(key, receiver, receiver.place), 0.0);
   }
   float visible = 0.0, unsure = 0.0, all = 0.0;
   for (int i = 0; i < rays; ++i) {
@@ -202,6 +213,16 @@ vec2 keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal) 
     unsure += fate == kRayUnsure ? weight : 0.0;
   }
   return all > 0.0 ? vec2(visible, unsure) / all : vec2(0.0);
+}
+
+// Returns the share of the disc's light that is visible at a point with this triangle normal and this shading normal,
+// and the share of which the map cannot tell.
+vec2 keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal) {
+  if (dot(normal, key.towards.xyz) <= -key.radiance.w) return vec2(0.0);
+  KeyReceiver receiver = keyReceiver(key, position, normal);
+  vec2 visible = visibleBeyondBias(key, receiver, normal, shading_normal);
+  float doubtful = visible.x > 0.0 ? visible.x * doubtOfBias(key, receiver, normal) : 0.0;
+  return vec2(visible.x - doubtful, visible.y + doubtful);
 }
 
 // Returns E/pi of the whole disc for radiance 1.

@@ -17,6 +17,7 @@
 namespace lambent::frame::ref {
 
 inline constexpr float kKeyBiasTexels = 1.0f;
+inline constexpr float kDoubtfulBias = 0.25f, kTexelsAside = 1.5f;
 inline constexpr float kLeastFacing = 0.02f;
 inline constexpr float kSharpTexels = 0.8f;
 inline constexpr float kOneHeight = 0.1f;
@@ -82,8 +83,8 @@ float blockerHeight(const Map& map, const KeyRecord& key, const KeyReceiver& rec
 }
 
 template <typename Map>
-float texelVisible(const Map& map, const KeyRecord& key, const KeyReceiver& receiver) {
-  const glm::vec2 corner = glm::floor(receiver.place - 0.5f), part = receiver.place - 0.5f - corner;
+float texelVisible(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, glm::vec2 place) {
+  const glm::vec2 corner = glm::floor(place - 0.5f), part = place - 0.5f - corner;
   float visible = 0.0f;
   for (int i = 0; i < 4; ++i) {
     const glm::vec2 side(static_cast<float>(i & 1), static_cast<float>(i >> 1));
@@ -165,12 +166,20 @@ int rayFate(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, f
 }
 
 template <typename Map>
-glm::vec2 keyVisible(const Map& map, const KeyRecord& key, glm::vec3 position, glm::vec3 normal,
-                     glm::vec3 shading_normal) {
+float doubtOfBias(const Map& map, const KeyRecord& key, KeyReceiver receiver, glm::vec3 normal) {
+  const glm::vec2 faced(glm::dot(normal, glm::normalize(glm::vec3(key.right))),
+                        glm::dot(normal, glm::normalize(glm::vec3(key.up))));
+  const float visible = texelVisible(map, key, receiver, receiver.place);
+  receiver.bias *= kDoubtfulBias;
+  const float sure = texelVisible(map, key, receiver, receiver.place + kTexelsAside * faced);
+  return visible > sure ? 1.0f - sure / visible : 0.0f;
+}
+
+template <typename Map>
+glm::vec2 visibleBeyondBias(const Map& map, const KeyRecord& key, const KeyReceiver& receiver,
+                            glm::vec3 normal, glm::vec3 shading_normal) {
   const glm::vec3 towards(key.towards);
   const glm::vec2 scale(key.scale);
-  if (glm::dot(normal, towards) <= -key.radiance.w) return glm::vec2(0.0f);
-  const KeyReceiver receiver = keyReceiver(key, position, normal);
   float reach = receiver.depth;
   const int rays = static_cast<int>(key.rays);
   KeyLayers layers{0.0f, 0.0f};
@@ -191,11 +200,12 @@ glm::vec2 keyVisible(const Map& map, const KeyRecord& key, glm::vec3 position, g
   const glm::vec3 right = glm::normalize(glm::vec3(key.right)), up = glm::normalize(glm::vec3(key.up));
   if (!open) {
     const float widest = reach * key.scale.w * std::max(key.scale.x, key.scale.y);
-    if (widest < kSharpTexels && receiver.above) return {texelVisible(map, key, receiver), 0.0f};
+    if (widest < kSharpTexels && receiver.above)
+      return {texelVisible(map, key, receiver, receiver.place), 0.0f};
     layers = keyLayers(map, key, receiver, reach, std::max(rays, kLeastSearch));
     if (layers.low == 0.0f && receiver.above) return {1.0f, 0.0f};
     if (layers.high * key.scale.w * std::max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
-      return {texelVisible(map, key, receiver), 0.0f};
+      return {texelVisible(map, key, receiver, receiver.place), 0.0f};
   }
   float visible = 0.0f, unsure = 0.0f, all = 0.0f;
   for (int i = 0; i < rays; ++i) {
@@ -212,6 +222,16 @@ glm::vec2 keyVisible(const Map& map, const KeyRecord& key, glm::vec3 position, g
     unsure += fate == kRayUnsure ? weight : 0.0f;
   }
   return all > 0.0f ? glm::vec2(visible, unsure) / all : glm::vec2(0.0f);
+}
+
+template <typename Map>
+glm::vec2 keyVisible(const Map& map, const KeyRecord& key, glm::vec3 position, glm::vec3 normal,
+                     glm::vec3 shading_normal) {
+  if (glm::dot(normal, glm::vec3(key.towards)) <= -key.radiance.w) return glm::vec2(0.0f);
+  const KeyReceiver receiver = keyReceiver(key, position, normal);
+  const glm::vec2 visible = visibleBeyondBias(map, key, receiver, normal, shading_normal);
+  const float doubtful = visible.x > 0.0f ? visible.x * doubtOfBias(map, key, receiver, normal) : 0.0f;
+  return {visible.x - doubtful, visible.y + doubtful};
 }
 
 inline float keyShare(const KeyRecord& key, glm::vec3 shading_normal) {

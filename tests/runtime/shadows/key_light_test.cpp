@@ -285,8 +285,34 @@ TEST(KeyLight, NothingInTheWayIsAllOfTheLightAtAnyTilt) {
               offset * normal + random.number(-0.6f, 0.6f) * along + random.number(-0.6f, 0.6f) * steep;
           ASSERT_NEAR(visibleOf(map, key, place, normal, normal), 1.0f, kRounding)
               << degrees << " degrees, " << size << " texels, cosine " << facing;
+          // Much of the disc may be behind the plane, and the map is sure of the rest.
+          ASSERT_NEAR(ref::keyVisible(map, key, place, normal, normal).y, 0.0f, kRounding)
+              << degrees << " degrees, " << size << " texels, cosine " << facing;
         }
       }
+}
+
+// The upper edge of a cornice is nearer to the ceiling than faces of one lit surface are to each other.
+TEST(KeyLight, WhatComesThroughACeilingThatAWallTouchesIsInDoubt) {
+  constexpr int kSize = 512;
+  for (const float degrees : {0.27f, 2.0f, 9.0f})
+    for (const float facing : {0.5f, 0.2f, 0.1f}) {
+      const glm::vec3 towards(facing, 0.0f, std::sqrt(1.0f - facing * facing));
+      const KeyRecord key = madeKey(towards, degrees * kDegree, 2.0f, kSize, 0.3f);
+      const MadeMap map = madeMap(key, kSize, [&](const KeyRay& ray) {
+        return nearer(toPlane(ray, glm::dvec3(kUp), 0.0), toPlane(ray, glm::dvec3(kUp), -3.0));
+      });
+      Random random;
+      double sure = 0.0, all = 0.0;
+      for (int i = 0; i < 500; ++i) {
+        const glm::vec3 place(0.0f, random.number(-0.3f, 0.3f), -random.number(0.6f, 1.0f) / key.scale.x);
+        const glm::vec2 visible = ref::keyVisible(map, key, place, {1, 0, 0}, {1, 0, 0});
+        sure += visible.x, all += visible.x + visible.y;
+      }
+      EXPECT_GT(all, 50.0) << "of 500, or the ceiling is no case; " << degrees << " degrees, cosine "
+                           << facing;
+      EXPECT_LT(sure, 0.05 * all) << degrees << " degrees, cosine " << facing;
+    }
 }
 
 TEST(KeyLight, AWallThatLightGrazesIsLitDownToTheFloor) {
