@@ -14,22 +14,20 @@ namespace lambent::assets {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
-enum MaterialIndex { kLand, kHull, kPolished };
+enum FlightMaterial { kLand, kHull, kPolished };
 
 // Moves once around in ten seconds, leaning into the turn; the nose is +Z.
-Motion circling(float radius, float height) {
+Motion leaningCircle(float radius, float height) {
   Motion motion;
   constexpr int kKeys = 40;
   constexpr float kLean = 0.16f, kSeconds = 10.0f;
   for (int i = 0; i <= kKeys; ++i) {
     const float phase = static_cast<float>(i) / kKeys;
-    const float angle = 2.0f * kPi * phase;
+    const float angle = 2.0f * std::numbers::pi_v<float> * phase;
     motion.times_s.push_back(kSeconds * phase);
     motion.translations.emplace_back(radius * std::cos(angle), height + 0.25f * std::sin(2.0f * angle),
                                      -radius * std::sin(angle));
-    motion.rotations.push_back(glm::angleAxis(angle + kPi, glm::vec3(0, 1, 0)) *
+    motion.rotations.push_back(glm::angleAxis(angle + std::numbers::pi_v<float>, glm::vec3(0, 1, 0)) *
                                glm::angleAxis(-kLean, glm::vec3(0, 0, 1)));
   }
   return motion;
@@ -46,7 +44,7 @@ Motion drifting(glm::vec3 from, glm::vec3 to) {
 // Makes a body of revolution along +Z, pointed at both ends.
 Mesh fuselage(float length, float radius) {
   return surface(28, 24, [&](double u, double v) {
-    const double along = kPi * v, around = 2.0 * kPi * u;
+    const double along = std::numbers::pi_v<float> * v, around = 2.0 * std::numbers::pi_v<float> * u;
     const glm::vec3 unit(static_cast<float>(std::sin(along) * std::cos(around)),
                          static_cast<float>(std::sin(along) * std::sin(around)),
                          static_cast<float>(-std::cos(along)));
@@ -102,7 +100,7 @@ Scene flight() {
   scene.meshes.push_back({"hull", std::move(hull), kHull});
   scene.meshes.push_back({"ring wing", ringWing(0.95f, 0.42f, 0.03f), kPolished});
   Node flyer{.name = "flyer", .mesh = 1};
-  flyer.motion = circling(kCircle, kHeight);
+  flyer.motion = leaningCircle(kCircle, kHeight);
   flyer.translation = flyer.motion.translations.front();
   flyer.rotation = flyer.motion.rotations.front();
   flyer.scale = kScale;

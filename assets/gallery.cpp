@@ -12,13 +12,15 @@ namespace lambent::assets {
 
 namespace {
 
-// The room has inner faces at x = +-kHalfWidth and z = kBack, and is open at z = kFront and above kHeight.
-constexpr float kHalfWidth = 2.5f, kBack = -2.2f, kFront = 2.4f, kHeight = 2.6f, kThick = 0.14f;
+// The room has inner faces at x = +-kGalleryHalfWidth and z = kGalleryBack, and is open at z = kGalleryFront
+// and above kGalleryHeight.
+constexpr float kGalleryHalfWidth = 2.5f, kGalleryBack = -2.2f, kGalleryFront = 2.4f, kGalleryHeight = 2.6f,
+                kThick = 0.14f;
 constexpr float kFine = 0.045f, kCoarse = 0.4f;  // cell sizes in metres: where light falls, and out of sight
 
-enum MaterialIndex { kStone, kRed, kTeal, kPlaster, kLimestone, kPorcelain, kBronze, kCobalt, kOchre };
+enum GalleryMaterial { kStone, kRedWall, kTeal, kPlaster, kLimestone, kPorcelain, kBronze, kCobalt, kOchre };
 
-std::vector<Material> materials() {
+std::vector<Material> galleryMaterials() {
   return {{.name = "stone floor", .base_color = glm::vec3(1.0f), .image = 0},
           {.name = "red wall", .base_color = {0.56f, 0.10f, 0.07f}},
           {.name = "teal wall", .base_color = {0.07f, 0.33f, 0.36f}},
@@ -50,8 +52,9 @@ Mesh withoutTexcoords(Mesh mesh) {
 // Texture coordinates count metres; one repeat of the texture is two tiles wide.
 Mesh tiledFloor() {
   constexpr float kTile = 0.5f;
-  const float width = 2 * (kHalfWidth + kThick), length = kFront - kBack + kThick;
-  Mesh mesh = slab({-kHalfWidth - kThick, 0, kFront}, {width, 0, 0}, {0, 0, -length}, {0, -kThick, 0}, kFine);
+  const float width = 2 * (kGalleryHalfWidth + kThick), length = kGalleryFront - kGalleryBack + kThick;
+  Mesh mesh = slab({-kGalleryHalfWidth - kThick, 0, kGalleryFront}, {width, 0, 0}, {0, 0, -length},
+                   {0, -kThick, 0}, kFine);
   for (glm::vec2& texcoord : mesh.texcoords) texcoord /= 2 * kTile;
   return mesh;
 }
@@ -79,10 +82,10 @@ Mesh column() {
 Scene gallery() {
   Scene scene;
   scene.name = "gallery";
-  scene.materials = materials();
+  scene.materials = galleryMaterials();
   scene.images = {{"stone", stonePng(/*tiles=*/2, /*texels_per_tile=*/128)}};
 
-  const auto add = [&](const std::string& name, Mesh mesh, MaterialIndex material) {
+  const auto add = [&](const std::string& name, Mesh mesh, GalleryMaterial material) {
     scene.meshes.push_back({name, std::move(mesh), material});
     return static_cast<int>(scene.meshes.size()) - 1;
   };
@@ -92,19 +95,20 @@ Scene gallery() {
     scene.nodes.push_back({name, mesh, at, glm::quat(std::cos(half), 0.0f, std::sin(half), 0.0f), scale});
   };
 
-  const float depth = kFront - kBack;
+  const float depth = kGalleryFront - kGalleryBack;
   place("floor", add("floor", tiledFloor(), kStone));
-  place("back wall", add("back wall",
-                         withoutTexcoords(slab({-kHalfWidth, 0, kBack}, {2 * kHalfWidth, 0, 0},
-                                               {0, kHeight, 0}, {0, 0, -kThick}, kFine)),
-                         kPlaster));
+  place("back wall",
+        add("back wall",
+            withoutTexcoords(slab({-kGalleryHalfWidth, 0, kGalleryBack}, {2 * kGalleryHalfWidth, 0, 0},
+                                  {0, kGalleryHeight, 0}, {0, 0, -kThick}, kFine)),
+            kPlaster));
   place("left wall", add("left wall",
-                         withoutTexcoords(slab({-kHalfWidth, 0, kFront}, {0, 0, -depth}, {0, kHeight, 0},
-                                               {-kThick, 0, 0}, kFine)),
-                         kRed));
+                         withoutTexcoords(slab({-kGalleryHalfWidth, 0, kGalleryFront}, {0, 0, -depth},
+                                               {0, kGalleryHeight, 0}, {-kThick, 0, 0}, kFine)),
+                         kRedWall));
   place("right wall", add("right wall",
-                          withoutTexcoords(slab({kHalfWidth, 0, kBack}, {0, 0, depth}, {0, kHeight, 0},
-                                                {kThick, 0, 0}, kFine)),
+                          withoutTexcoords(slab({kGalleryHalfWidth, 0, kGalleryBack}, {0, 0, depth},
+                                                {0, kGalleryHeight, 0}, {kThick, 0, 0}, kFine)),
                           kTeal));
 
   place("column", add("column", column(), kLimestone));

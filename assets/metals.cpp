@@ -12,10 +12,10 @@ namespace lambent::assets {
 
 namespace {
 
-enum MaterialIndex { kTable, kWall, kGold, kSteel, kGlaze, kRubber, kFirstCopper };
+enum MetalsMaterial { kTable, kBackWall, kGold, kSteel, kGlaze, kRubber, kFirstCopper };
 constexpr float kRoughnesses[] = {0.15f, 0.3f, 0.5f, 0.8f};
 
-std::vector<Material> materials() {
+std::vector<Material> metalsMaterials() {
   std::vector<Material> all = {
       {.name = "table", .base_color = glm::vec3(0.55f), .image = 0, .roughness = 0.45f, .specular = 1.0f},
       {.name = "white wall", .base_color = {0.82f, 0.81f, 0.79f}},
@@ -50,7 +50,7 @@ Mesh turnedBowl() {
 Scene metals() {
   Scene scene;
   scene.name = "metals";
-  scene.materials = materials();
+  scene.materials = metalsMaterials();
   scene.images = {{"stone", stonePng(/*tiles=*/2, /*texels_per_tile=*/128)}};
   const auto add = [&](const std::string& name, Mesh mesh, int material) {
     scene.meshes.push_back({name, std::move(mesh), material});
@@ -67,7 +67,8 @@ Scene metals() {
   };
 
   place("table", add("table", plane({-2.2f, 0, 1.4f}, {4.4f, 0, 0}, {0, 0, -2.8f}, 0.05f), kTable), {});
-  place("wall", add("wall", without(plane({-2.2f, 0, -1.4f}, {4.4f, 0, 0}, {0, 1.8f, 0}, 0.05f)), kWall), {});
+  place("wall", add("wall", without(plane({-2.2f, 0, -1.4f}, {4.4f, 0, 0}, {0, 1.8f, 0}, 0.05f)), kBackWall),
+        {});
   place("teapot", add("teapot", without(teapot(/*cells=*/18, /*height_m=*/0.8f)), kGold), {0.05f, 0, -0.45f},
         20.0f);
   place("bowl", add("bowl", turnedBowl(), kSteel), {1.22f, 0, -0.25f});

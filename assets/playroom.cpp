@@ -11,11 +11,10 @@ namespace lambent::assets {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kHalfWidth = 2.4f, kBack = -1.2f, kFront = 1.8f, kHeight = 2.2f;
+constexpr float kRoomHalfWidth = 2.4f, kRoomBack = -1.2f, kRoomFront = 1.8f, kRoomHeight = 2.2f;
 constexpr float kCell = 0.06f;
 
-enum MaterialIndex { kFloor, kWall, kRed, kPorcelain, kWood, kBrass };
+enum PlayroomMaterial { kFloor, kWhiteWall, kRedBall, kTeapotPorcelain, kWood, kBrass };
 
 // Rolls there and back along the wall in ten seconds, without slipping.
 Motion rolling(float radius) {
@@ -24,9 +23,9 @@ Motion rolling(float radius) {
   constexpr float kReach = 1.7f;
   for (int i = 0; i <= kKeys; ++i) {
     const float phase = static_cast<float>(i) / kKeys;
-    const float x = -kReach * std::cos(2.0f * kPi * phase);
+    const float x = -kReach * std::cos(2.0f * std::numbers::pi_v<float> * phase);
     motion.times_s.push_back(10.0f * phase);
-    motion.translations.emplace_back(x, radius, kBack + radius + 0.12f);
+    motion.translations.emplace_back(x, radius, kRoomBack + radius + 0.12f);
     motion.rotations.push_back(glm::angleAxis(-x / radius, glm::vec3(0, 0, 1)));
   }
   return motion;
@@ -40,7 +39,8 @@ Motion swinging(glm::vec3 hook) {
     const float phase = static_cast<float>(i) / kKeys;
     motion.times_s.push_back(5.0f * phase);
     motion.translations.push_back(hook);
-    motion.rotations.push_back(glm::angleAxis(0.42f * std::sin(2.0f * kPi * phase), glm::vec3(0, 0, 1)));
+    motion.rotations.push_back(
+        glm::angleAxis(0.42f * std::sin(2.0f * std::numbers::pi_v<float> * phase), glm::vec3(0, 0, 1)));
   }
   return motion;
 }
@@ -76,7 +76,7 @@ Scene playroom() {
                      {.name = "porcelain", .base_color = {0.82f, 0.81f, 0.78f}, .double_sided = true},
                      {.name = "wood", .base_color = {0.34f, 0.20f, 0.10f}},
                      {.name = "brass", .base_color = {0.55f, 0.40f, 0.16f}}};
-  const auto add = [&](const std::string& name, Mesh mesh, MaterialIndex material) {
+  const auto add = [&](const std::string& name, Mesh mesh, PlayroomMaterial material) {
     scene.meshes.push_back({name, std::move(mesh), material});
     return static_cast<int>(scene.meshes.size()) - 1;
   };
@@ -85,16 +85,19 @@ Scene playroom() {
     return static_cast<int>(scene.nodes.size()) - 1;
   };
 
-  const float width = 2 * kHalfWidth;
+  const float width = 2 * kRoomHalfWidth;
   place({.name = "floor",
-         .mesh = add("floor", plane({-kHalfWidth, 0, kFront}, {width, 0, 0}, {0, 0, kBack - kFront}, kCell),
-                     kFloor)});
+         .mesh = add(
+             "floor",
+             plane({-kRoomHalfWidth, 0, kRoomFront}, {width, 0, 0}, {0, 0, kRoomBack - kRoomFront}, kCell),
+             kFloor)});
   place({.name = "white wall",
-         .mesh = add("white wall", plane({-kHalfWidth, 0, kBack}, {width, 0, 0}, {0, kHeight, 0}, kCell),
-                     kWall)});
+         .mesh = add("white wall",
+                     plane({-kRoomHalfWidth, 0, kRoomBack}, {width, 0, 0}, {0, kRoomHeight, 0}, kCell),
+                     kWhiteWall)});
 
   constexpr float kBallRadius = 0.32f;
-  Node ball{.name = "red ball", .mesh = add("red ball", sphere(kBallRadius, 14), kRed)};
+  Node ball{.name = "red ball", .mesh = add("red ball", sphere(kBallRadius, 14), kRedBall)};
   ball.motion = rolling(kBallRadius);
   ball.translation = ball.motion.translations.front();
   ball.rotation = ball.motion.rotations.front();
@@ -106,7 +109,7 @@ Scene playroom() {
   stand.movable = true;
   const int stand_node = place(std::move(stand));
   place({.name = "teapot",
-         .mesh = add("teapot", teapot(/*cells=*/8, /*height_m=*/0.52f), kPorcelain),
+         .mesh = add("teapot", teapot(/*cells=*/8, /*height_m=*/0.52f), kTeapotPorcelain),
          .translation = {0, 0.5f, 0},
          .rotation = glm::angleAxis(0.5f, glm::vec3(0, 1, 0)),
          .parent = stand_node});

@@ -21,6 +21,11 @@ target_compile_options(lambent_flags INTERFACE -Wall -Wextra -Wpedantic -Wconver
 if(LAMBENT_WERROR)
   target_compile_options(lambent_flags INTERFACE -Werror)
 endif()
+# GCC warns of a class with members of types in an unnamed namespace unless it is defined in the main file, which it is not
+# in a unity build.
+if(CMAKE_UNITY_BUILD)
+  target_compile_options(lambent_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 # Vector math comes from -march and plain loops. No -ffast-math: a bake is reproducible to the byte.
 if(LAMBENT_ISA AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_options(lambent_flags INTERFACE "-march=${LAMBENT_ISA}")

@@ -14,7 +14,7 @@ namespace lambent::baker::reference {
 
 namespace {
 
-constexpr std::uint32_t kPoints = 512, kAnisotropicPoints = 256;
+constexpr std::uint32_t kIsotropicPoints = 512, kAnisotropicPoints = 256;
 
 glm::vec2 albedo(const glm::vec2& alpha, const glm::vec3& view, std::uint32_t points) {
   // All entries use the same points, so that the remaining error is smooth.
@@ -28,11 +28,11 @@ glm::vec2 albedo(const glm::vec2& alpha, const glm::vec3& view, std::uint32_t po
   return glm::vec2(sum / static_cast<double>(points));
 }
 
-struct Place {
+struct NodePlace {
   std::size_t below = 0;
   float share = 0.0f;
 };
-Place between(float at, std::size_t nodes) {
+NodePlace between(float at, std::size_t nodes) {
   if (nodes < 2) return {};
   const float scaled = std::clamp(at, 0.0f, 1.0f) * static_cast<float>(nodes - 1);
   const auto below = std::min(static_cast<std::size_t>(scaled), nodes - 2);
@@ -63,7 +63,7 @@ AlbedoTable AlbedoTable::build(bool anisotropic) {
         const float side = std::sqrt(std::max(1.0f - cosine * cosine, 0.0f));
         out.values_[row * out.angles_ + a] =
             albedo(alpha, {side * std::cos(phi), side * std::sin(phi), cosine},
-                   anisotropic ? kAnisotropicPoints : kPoints);
+                   anisotropic ? kAnisotropicPoints : kIsotropicPoints);
       }
     }
   });
@@ -71,9 +71,9 @@ AlbedoTable AlbedoTable::build(bool anisotropic) {
 }
 
 glm::vec2 AlbedoTable::at(const glm::vec3& view, float roughness, float strength) const {
-  const Place places[4] = {between(std::sqrt(std::max(view.z, 0.0f)), angles_),
-                           between(std::atan2(std::abs(view.y), std::abs(view.x)) / (kPi / 2), azimuths_),
-                           between(roughness, roughnesses_), between(strength, strengths_)};
+  const NodePlace places[4] = {between(std::sqrt(std::max(view.z, 0.0f)), angles_),
+                               between(std::atan2(std::abs(view.y), std::abs(view.x)) / (kPi / 2), azimuths_),
+                               between(roughness, roughnesses_), between(strength, strengths_)};
   const std::size_t strides[4] = {1, angles_, angles_ * azimuths_, angles_ * azimuths_ * roughnesses_};
   glm::vec2 sum(0.0f);
   for (unsigned corner = 0; corner < 16; ++corner) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kHalves = 257, kDifferences = 129;  // nodes of the table
 constexpr std::size_t kAngles = 65;                       // nodes of the scale
-constexpr std::uint32_t kPoints = 2048;                   // sample points of each integral
+constexpr std::uint32_t kIntegralPoints = 2048;           // sample points of each integral
 constexpr double kSharpness = 400.0;                      // of the interpolation weights: 1/(2 sigma²)
 
 // Returns half-vector and difference angles as coordinates 0..1 (Rusinkiewicz 1998).
@@ -62,13 +62,13 @@ glm::vec3 meanAt(const std::vector<Weighed>& all, const glm::dvec2& place) {
 }
 
 // Returns the node below a coordinate 0..1 among `nodes`, and the fraction of the way to the next.
-std::pair<std::size_t, float> between(double at, std::size_t nodes) {
+std::pair<std::size_t, float> nodeBelow(double at, std::size_t nodes) {
   const double scaled = std::clamp(at, 0.0, 1.0) * static_cast<double>(nodes - 1);
   const auto below = std::min(static_cast<std::size_t>(scaled), nodes - 2);
   return {below, static_cast<float>(scaled - static_cast<double>(below))};
 }
 
-float largest(const glm::vec3& v) {
+float largestChannel(const glm::vec3& v) {
   return std::max({v.r, v.g, v.b});
 }
 
@@ -88,9 +88,9 @@ MeasuredReflection::MeasuredReflection(const MeasuredBrdf& measured) {
   });
   // The width of the highlight at theta_d = 30°: GGX falls to half where tan theta_h = 0.644 alpha.
   const glm::vec3* row = &values_[kDifferences / 3 * kHalves];
-  const float base = largest(row[kHalves * 4 / 5]), half = 0.5f * (largest(row[0]) + base);
+  const float base = largestChannel(row[kHalves * 4 / 5]), half = 0.5f * (largestChannel(row[0]) + base);
   std::size_t h = 1;
-  while (h + 1 < kHalves && largest(row[h]) > half) ++h;
+  while (h + 1 < kHalves && largestChannel(row[h]) > half) ++h;
   const float root = static_cast<float>(h) / (kHalves - 1);
   alpha_ = std::clamp(std::tan(std::min(kPi / 2 * root * root, 1.2f)) / 0.644f, 0.02f, 1.0f);
   // Computes the reflection of uniform light.
@@ -104,25 +104,25 @@ MeasuredReflection::MeasuredReflection(const MeasuredBrdf& measured) {
                           .specular_share = 0.5f};
       const Sampler sampler(/*seed=*/1, static_cast<std::uint32_t>(a), 0);
       glm::dvec3 sum(0.0);
-      for (std::uint32_t i = 0; i < kPoints; ++i) {
+      for (std::uint32_t i = 0; i < kIntegralPoints; ++i) {
         const glm::vec3 s = reflector.sample(i % 2 == 0 ? 0.0f : 1.0f, sampler.pair(i % 2, i / 2));
         if (s.z > 0.0f) sum += glm::dvec3(unscaled(reflector.view, s) * (s.z / reflector.pdf(s)));
       }
-      scales_[a] = std::min(1.0f, static_cast<float>(kPoints) / largest(glm::vec3(sum)));
+      scales_[a] = std::min(1.0f, static_cast<float>(kIntegralPoints) / largestChannel(glm::vec3(sum)));
     }
   });
 }
 
 glm::vec3 MeasuredReflection::unscaled(const glm::vec3& v, const glm::vec3& s) const {
   const glm::dvec2 place = placeOf(glm::dvec3(v), glm::dvec3(s));
-  const auto [h, right] = between(place.x, kHalves);
-  const auto [d, down] = between(place.y, kDifferences);
+  const auto [h, right] = nodeBelow(place.x, kHalves);
+  const auto [d, down] = nodeBelow(place.y, kDifferences);
   const glm::vec3* at = &values_[d * kHalves + h];
   return glm::mix(glm::mix(at[0], at[1], right), glm::mix(at[kHalves], at[kHalves + 1], right), down);
 }
 
 float MeasuredReflection::scale(float cosine) const {
-  const auto [a, share] = between(std::sqrt(std::max(cosine, 0.0f)), kAngles);
+  const auto [a, share] = nodeBelow(std::sqrt(std::max(cosine, 0.0f)), kAngles);
   return glm::mix(scales_[a], scales_[a + 1], share);
 }
 

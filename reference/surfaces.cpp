@@ -18,10 +18,6 @@ namespace {
 // float roundings, which is still invisible.
 constexpr float kOffset = 0x1p-19f;
 
-float largest(const glm::vec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
 glm::vec3 unitOr(const glm::dvec3& v, const glm::dvec3& fallback) {
   const double length = glm::length(v);
   return glm::vec3(length > 0.0 && std::isfinite(length) ? v / length : fallback);

@@ -4,6 +4,8 @@
 // mirrored nodes are flipped, so that counter-clockwise is the front everywhere.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -20,6 +22,10 @@
 #include "reference/whole_brdf.hpp"
 
 namespace lambent::baker::reference {
+
+inline float largest(const glm::vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 struct Surface {
   gltf::Material material;

@@ -42,10 +42,6 @@ inline constexpr std::uint32_t kLobe = 1u << 31, kPlaceInVolume = 1u << 30;
 // of light.
 enum Way : std::uint32_t { kOnward, kToSky, kToEmissive, kToPunctual, kToShapes };
 
-inline float largest(const glm::vec3& v) {
-  return std::max({std::abs(v.r), std::abs(v.g), std::abs(v.b)});
-}
-
 struct Path {
   SurfacePoint at;  // in a medium: without normals, and with the medium's albedo
   glm::vec3 throughput{1.0f}, sum{0.0f};

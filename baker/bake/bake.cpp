@@ -34,7 +34,7 @@ static_assert(BakeOptions::kMostBounces == kMostBounces);
 constexpr int kMostGlossyOrder = 6;
 constexpr int kMostNeighborhoodOrder = 6;
 // The second look of refinement has so many times the rays of the first.
-constexpr std::size_t kTimesTheRays = 4;
+constexpr std::size_t kTimesFirstRays = 4;
 
 Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, const BakeContext& context) {
   context.progress.begin("BRDF tables");
@@ -59,7 +59,7 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
     const std::size_t rays = std::min(RefineOptions{}.rays, options.effectiveRays());
     RefineOptions refine{.bound = bound,
                          .rays = rays,
-                         .many_rays = kTimesTheRays * rays,
+                         .many_rays = kTimesFirstRays * rays,
                          .most_growth = options.refineGrowth(),
                          .most_added = options.refineAdded(),
                          .most_wedges = options.refineWedges()};

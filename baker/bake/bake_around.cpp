@@ -17,7 +17,7 @@ constexpr double kShareOfBound = 1.0 / 3.0;
 // more points than others, and lie close around the body, where its contact with what it stands on shows.
 constexpr double kBoundByHand = 0.03;
 
-void tell(const Around& around, BakedAround baked, std::optional<BakedNeighborhood>& out) {
+void tellAround(const Around& around, BakedAround baked, std::optional<BakedNeighborhood>& out) {
   BakeReport& report = around.bake.report;
   const std::string& name = around.bake.plan.groups[around.group].name;
   if (!baked.grid) {
@@ -65,7 +65,7 @@ BakeContext contextOf(const Around& around, const BakeContext& body) {
 bool findAround(const Around& around, const BakeContext& context, std::optional<BakedNeighborhood>& out) {
   BakedAround found;
   if (!findKept(context, found)) return false;
-  tell(around, std::move(found), out);
+  tellAround(around, std::move(found), out);
   return true;
 }
 
@@ -89,7 +89,7 @@ bool bakeAround(const Around& around, const Body& body, const Box3& bounds, cons
   settings.coding.bound = kShareOfBound * double{options.effectiveErrorBound()};
   auto baked = bakeNeighborhood(body, settings, context);
   if (!baked) return false;
-  tell(around, std::move(*baked), out);
+  tellAround(around, std::move(*baked), out);
   return true;
 }
 

@@ -85,8 +85,9 @@ BakedGroup openVolume(const Scene& scene, const RigidGroup& group, const BakeOpt
   return baked;
 }
 
-Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
-                                      const std::filesystem::path& output, const BakeContext& context) {
+Result<BakeReport> bakeUnshadowedOnTheseThreads(const Scene& scene, const BakeOptions& options,
+                                                const std::filesystem::path& output,
+                                                const BakeContext& context) {
   BakeReport report;
   context.progress.begin("plan");
   const auto plan = planFor(scene, options);
@@ -126,7 +127,8 @@ Result<BakeReport> bakeUnshadowed(const Scene& scene, const BakeOptions& options
                                   const std::filesystem::path& output, const BakeContext& context) {
   if (auto checked = checkRequest(options, output); !checked) return failAgain(checked.error());
   std::optional<Result<BakeReport>> result;
-  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, context); });
+  withThreads(options.threads,
+              [&] { result = bakeUnshadowedOnTheseThreads(scene, options, output, context); });
   return std::move(*result);
 }
 

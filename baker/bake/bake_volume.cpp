@@ -263,8 +263,8 @@ Result<VolumeTransfer> transferOf(const PlacedVolume& placed, const BakeContext&
   return std::move(*transfer);
 }
 
-void tell(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDensity& density,
-          const std::string& name, BakeReport& report) {
+void tellVolume(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDensity& density,
+                const std::string& name, BakeReport& report) {
   report.worst_error = std::max(report.worst_error, coded.worst_error);
   report.worst_glossy_error = std::max(report.worst_glossy_error, coded.worst_glossy_error);
   report.samples += coded.voxels.size();
@@ -382,7 +382,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   });
   if (!found) return failAgain(made.error());
   coding.drop();
-  tell(coded, volume, density, group.name, report);
+  tellVolume(coded, volume, density, group.name, report);
   out.voxels = std::move(coded.voxels);
   out.cells = std::move(coded.cells);
 

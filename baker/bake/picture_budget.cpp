@@ -16,14 +16,15 @@ constexpr double kEnough = 0.93;
 constexpr double kInterpolation = 0.6, kMostInterpolation = 0.72;  // of the bound
 // A quiet scene has this error with so many rays; refinement's own figure is to pictures' as 1 to this.
 constexpr double kQuietNoise = 0.008, kQuietRays = 256.0, kNoise = 0.65, kRefinement = 1.2;
-constexpr std::uint32_t kLeastRays = 128, kMostRays = 16'384, kRaysStep = 16;
+constexpr std::uint32_t kLeastChosenRays = 128, kMostChosenRays = 16'384, kRaysStep = 16;
 constexpr double kLeastShrink = 0.2;  // of refinement's bound in one step
 constexpr double kLeastCodes = 0.25;  // of the bound, even if nothing is left for codes
 constexpr float kMostCodes = 0.25f;   // beyond, codes would show bands of colour whatever the mean error is
 
 std::uint32_t wholePackets(double rays) {
-  const auto packets = static_cast<std::uint32_t>(std::ceil(std::min(rays, double{kMostRays}) / kRaysStep));
-  return std::clamp(packets * kRaysStep, kLeastRays, kMostRays);
+  const auto packets =
+      static_cast<std::uint32_t>(std::ceil(std::min(rays, double{kMostChosenRays}) / kRaysStep));
+  return std::clamp(packets * kRaysStep, kLeastChosenRays, kMostChosenRays);
 }
 
 double between(const bundle::PictureError& shown) {

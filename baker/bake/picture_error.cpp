@@ -13,7 +13,7 @@ namespace lambent::baker {
 namespace {
 
 // Points are looked at by so many times the rays of vertices, within these limits, but always by more.
-constexpr std::size_t kTimesTheRays = 8, kLeastRays = 1024, kMostRays = 4096, kLeastTimes = 2;
+constexpr std::size_t kTimesFewRays = 8, kLeastManyRays = 1024, kMostManyRays = 4096, kLeastTimes = 2;
 constexpr std::size_t kLeastPoints = 64;  // that a figure can be told from
 // Eyes that get less than this share of the light of the mean eye, in squares, stand in the dark between
 // walls.
@@ -91,7 +91,7 @@ class Sums {
 };
 
 // Adds `weight` times the environment's part of a sample's vector to all channels of `out`.
-void addField(const TransferField& field, std::size_t sample, float weight, std::span<float> out) {
+void addWeighted(const TransferField& field, std::size_t sample, float weight, std::span<float> out) {
   const auto from = field.at(sample);
   const std::size_t size = out.size() / 3;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -137,7 +137,8 @@ std::optional<TracedView> traceView(const DirectPass& vertices, const TracedScen
   };
   const std::size_t few = vertices.settings().rays;
   traced.noisy = trace(few);
-  traced.exact = trace(std::max(kLeastTimes * few, std::clamp(kTimesTheRays * few, kLeastRays, kMostRays)));
+  traced.exact =
+      trace(std::max(kLeastTimes * few, std::clamp(kTimesFewRays * few, kLeastManyRays, kMostManyRays)));
   if (!traced.noisy || !traced.exact) return std::nullopt;
   return traced;
 }
@@ -166,17 +167,17 @@ std::optional<bundle::PictureError> measurePictureError(const TracedView& traced
   for (std::size_t p = 0; p < view.eyes.size(); ++p) {
     if (!seen(p)) continue;
     for (auto* vector : {&many, &few, &fields, &codes}) std::fill(vector->begin(), vector->end(), 0.0f);
-    addField(noisy.field, p, 1.0f, few);
-    addField(exact.field, p, 1.0f, many);
+    addWeighted(noisy.field, p, 1.0f, few);
+    addWeighted(exact.field, p, 1.0f, many);
     if (!baked.bounced_at_points.empty()) {
-      addField(baked.bounced_at_points[0], p, 1.0f, few);
-      addField(baked.bounced_at_points[1], p, 1.0f, many);
+      addWeighted(baked.bounced_at_points[0], p, 1.0f, few);
+      addWeighted(baked.bounced_at_points[1], p, 1.0f, many);
     }
     float squared_shares = 0.0f;
     for (const auto& [sample, weight] : shownAt(p)) {
       squared_shares += weight * weight;
-      addField(baked.direct, sample, weight, fields);
-      if (baked.bounced) addField(*baked.bounced, sample, weight, fields);
+      addWeighted(baked.direct, sample, weight, fields);
+      if (baked.bounced) addWeighted(*baked.bounced, sample, weight, fields);
       if (!baked.cells) continue;
       const std::vector<float>& of_codes = decoded.at(sample);
       for (std::size_t i = 0; i < size; ++i) codes[i] += weight * of_codes[i];

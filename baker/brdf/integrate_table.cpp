@@ -22,7 +22,7 @@ using bundle::BrdfTable;
 using bundle::kLeastViewCosine;
 using bundle::kMaxBrdfLobes;
 
-constexpr int kMaxBands = sh::kMaxFactoredOrder;
+constexpr int kMaxTableBands = sh::kMaxFactoredOrder;
 // Directions per view. They leave a mean error over views and roughness of 0.03 % (isotropic) or 0.08 %
 // (anisotropic).
 constexpr std::size_t kDirections = 4096, kAnisotropicDirections = 2048;
@@ -164,15 +164,15 @@ class Sums {
   std::size_t lobes_, filled_ = 0;
   Batch x_, y_, z_;
   std::array<Batch, kMaxBrdfLobes> f_;
-  std::array<double, kBatch * kMaxBands * kMaxBands> basis_;
-  std::array<std::array<std::array<double, kLanes>, kMaxBands * kMaxBands>, kMaxBrdfLobes> lanes_{};
+  std::array<double, kBatch * kMaxTableBands * kMaxTableBands> basis_;
+  std::array<std::array<std::array<double, kLanes>, kMaxTableBands * kMaxTableBands>, kMaxBrdfLobes> lanes_{};
 };
 
 void integrate(const Brdf& brdf, const BrdfParameters& at, const View& view, int order, const Points& points,
                std::span<double> out) {
   const glm::dvec3 v = view.local();
   const std::size_t lobes = brdf.lobes(), total = points.half.size() + points.cosine.size();
-  assert(order <= kMaxBands && lobes <= kMaxBrdfLobes && v.z > 0);
+  assert(order <= kMaxTableBands && lobes <= kMaxBrdfLobes && v.z > 0);
   assert(out.size() >= lobes * static_cast<std::size_t>(sh::coefficientCount(order)));
   BrdfFocus focus = brdf.focus(at);
   focus.cosine_share = static_cast<double>(points.cosine.size()) / static_cast<double>(total);
@@ -241,7 +241,7 @@ BrdfTable integrateTable(const Brdf& brdf, int order, const BrdfGrid& grid) {
     const BrdfParameters at{
         .roughness = static_cast<float>(unitNode(parameters % grid.roughnesses, grid.roughnesses)),
         .strength = static_cast<float>(unitNode(parameters / grid.roughnesses, grid.strengths))};
-    std::array<double, kMaxBrdfLobes * kMaxBands * kMaxBands> b;
+    std::array<double, kMaxBrdfLobes * kMaxTableBands * kMaxTableBands> b;
     integrate(brdf, at, nodeView(grid, view % grid.angles, view / grid.angles), order, points, b);
     float* out = table.values.data() + index * table.nodeValues();
     for (std::size_t lobe = 0; lobe < table.lobes; ++lobe)

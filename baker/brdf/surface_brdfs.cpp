@@ -25,8 +25,9 @@ using bundle::BrdfView;
 using bundle::kLeastViewCosine;
 using bundle::kMaxBrdfLobes;
 
-constexpr std::size_t kMaxBands = sh::kMaxFactoredOrder, kMaxCoefficients = kMaxBands * kMaxBands;
-using Kernel = std::array<float, kMaxCoefficients>;
+constexpr std::size_t kMaxBrdfBands = sh::kMaxFactoredOrder,
+                      kMaxBrdfCoefficients = kMaxBrdfBands * kMaxBrdfBands;
+using Kernel = std::array<float, kMaxBrdfCoefficients>;
 
 struct Texture {
   std::shared_ptr<const DecodedImage> image;  // null: the texture is 1 everywhere
@@ -173,9 +174,9 @@ struct SurfaceBrdfs::State {
   bool grey = true;
   std::unique_ptr<Brdf> ggx = makeGgx(/*anisotropic=*/true);
   std::vector<Factored> tables;
-  std::vector<Surface> surfaces;                 // one per draw
-  std::vector<std::uint32_t> surface_of;         // triangle -> draw
-  std::array<float, kMaxCoefficients> cosine{};  // A_l/pi of coefficient i
+  std::vector<Surface> surfaces;                     // one per draw
+  std::vector<std::uint32_t> surface_of;             // triangle -> draw
+  std::array<float, kMaxBrdfCoefficients> cosine{};  // A_l/pi of coefficient i
 
   template <typename T>
   T interpolated(const std::vector<T>& values, std::uint32_t triangle, float u, float v) const {
@@ -250,7 +251,7 @@ PointReflection SurfaceBrdfs::State::reflectionAt(const Surface& surface, std::u
   const glm::vec3 normal = normalAt(triangle, u, v);
   const Parameters p = parametersAt(surface, triangle, u, v);
   const auto [tangent, strength] = leanOf(surface, triangle, u, v, normal);
-  std::array<float, kMaxBrdfLobes * kMaxCoefficients> weights;
+  std::array<float, kMaxBrdfLobes * kMaxBrdfCoefficients> weights;
   lookUpStored(from.table, frameOf(normal, tangent, to).view, p.roughness, strength, weights);
   const BrdfFocus focus = ggx->focus({p.roughness, strength});
   return {.normal = normal,
@@ -315,7 +316,7 @@ void SurfaceBrdfs::State::expand(const Factored& from, int order, std::span<cons
   const std::size_t count = from.table.coefficients();
   const auto axes = from.factors.axes();
   alignas(32) std::array<float, kAxisLanes> x{}, y{}, z{};
-  alignas(32) std::array<float, kAxisLanes * kMaxCoefficients> harmonics;
+  alignas(32) std::array<float, kAxisLanes * kMaxBrdfCoefficients> harmonics;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const glm::vec3 axis = axes[i].x * frame.x + axes[i].y * frame.y + axes[i].z * frame.z;
     x[i] = axis.x, y[i] = axis.y, z[i] = axis.z;
@@ -350,7 +351,7 @@ void SurfaceBrdfs::State::glossyKernel(const Surface& surface, int order, const 
   const Factored& from = tables[surface.table];
   const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
   const std::size_t stored = from.table.coefficients();
-  std::array<float, kMaxBrdfLobes * kMaxCoefficients> weights;
+  std::array<float, kMaxBrdfLobes * kMaxBrdfCoefficients> weights;
   std::array<Kernel, kMaxBrdfLobes> lobes;
 
   if (from.family == BrdfFamily::Measured) {

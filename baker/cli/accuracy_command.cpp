@@ -95,7 +95,7 @@ class Lines {
   Clock::time_point start_ = Clock::now();
 };
 
-void printJson(const SweepResults& results, const std::vector<std::filesystem::path>& files) {
+void printSweepJson(const SweepResults& results, const std::vector<std::filesystem::path>& files) {
   using nlohmann::json;
   json settings = json::array(), names = json::array(), advice = json::array();
   for (const Measured& m : results.settings)
@@ -129,7 +129,7 @@ void printJson(const SweepResults& results, const std::vector<std::filesystem::p
   fmt::print("{}\n", all.dump(2, ' ', false, json::error_handler_t::replace));
 }
 
-void print(const SweepResults& results, const std::vector<std::filesystem::path>& files) {
+void printSweep(const SweepResults& results, const std::vector<std::filesystem::path>& files) {
   for (const Cost& cost : costs().first(2)) {
     const Advice advice = adviceOn(cost, results.settings);
     if (advice.chosen)
@@ -165,9 +165,9 @@ int runAccuracy(AccuracyArguments a) {
   if (!files) return reportError(files.error());
   for (const std::string& failure : results->failures) reportNotice(a.request.scene, failure);
   if (a.json)
-    printJson(*results, *files);
+    printSweepJson(*results, *files);
   else
-    print(*results, *files);
+    printSweep(*results, *files);
   if (results->stopped)
     return reportError(
         {a.request.output.string(),

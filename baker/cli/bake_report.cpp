@@ -52,7 +52,7 @@ std::vector<Held> heldAgainst(const BakeEstimate& estimate, const BakeReport& re
           {"bytes", estimate.bytes, static_cast<double>(report.file_bytes)}};
 }
 
-nlohmann::json estimateJson(const FinishedBake& bake) {
+nlohmann::json estimatedAndMeasured(const FinishedBake& bake) {
   if (!bake.estimate || bake.report.rays_kept > 0) return nullptr;
   nlohmann::json json;
   for (const Held& held : heldAgainst(*bake.estimate, bake.report))
@@ -166,7 +166,7 @@ void printReportJson(const FinishedBake& bake) {
                                                {"refine", r.chosen.refine_bound},
                                                {"codes", codesBoundOf(bake)},
                                                {"tries", r.tries}}},
-      {"estimate", estimateJson(bake)},
+      {"estimate", estimatedAndMeasured(bake)},
       {"vertices", r.vertices},
       {"triangles", r.triangles},
       {"samples", r.samples},

@@ -31,7 +31,7 @@ std::string heatLine(const CompareArguments& a, HeatMap map, double range) {
              : fmt::format("{}: off by 0 (black) to {:g} % (light yellow)", a.heat.string(), 100.0 * range);
 }
 
-void print(const CompareArguments& a, HeatMap map, const Difference& difference) {
+void printDifference(const CompareArguments& a, HeatMap map, const Difference& difference) {
   const PictureError& e = difference.figures;
   if (a.json) {
     nlohmann::json json = {{"picture", a.picture.string()},
@@ -103,7 +103,7 @@ int runCompare(const CompareArguments& a) {
   if (!a.heat.empty())
     if (auto written = spec::writePng(a.heat, difference->heat); !written)
       return reportError(written.error());
-  print(a, *map, *difference);
+  printDifference(a, *map, *difference);
   return 0;
 }
 

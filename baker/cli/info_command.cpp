@@ -83,7 +83,7 @@ const char* partName(const transfer::TransferShape& shape) {
   return shape.full_channels > 0 ? "shadowed and full" : "shadowed";
 }
 
-void printJson(const bundle::Reader& reader, const Sizes& sizes) {
+void printBundleJson(const bundle::Reader& reader, const Sizes& sizes) {
   const bundle::Description& d = reader.description();
   nlohmann::json groups = nlohmann::json::array();
   for (const bundle::Group& group : d.groups) {
@@ -137,7 +137,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
   fmt::print("{}\n", json.dump(2));
 }
 
-void printText(const bundle::Reader& reader, const Sizes& sizes) {
+void printBundle(const bundle::Reader& reader, const Sizes& sizes) {
   const bundle::Description& d = reader.description();
   fmt::print("{}: format {}, {} {} ({})\n", reader.path().string(), d.version, d.generator.program,
              d.generator.version, d.generator.isa);
@@ -205,7 +205,7 @@ int runInfo(const InfoArguments& a) {
   const auto reader = bundle::Reader::open(a.bundle);
   if (!reader) return reportError(reader.error());
   if (const auto checked = reader->checkAll(); !checked) return reportError(checked.error());
-  (a.json ? printJson : printText)(*reader, sizesOf(reader->description()));
+  (a.json ? printBundleJson : printBundle)(*reader, sizesOf(reader->description()));
   return 0;
 }
 

@@ -115,7 +115,7 @@ struct Told {
   std::optional<Saved> saved;  // by all that is left out
 };
 
-void printJson(const Told& told) {
+void printPlanJson(const Told& told) {
   const auto& [scene, plan, decisions, estimate, saved] = told;
   nlohmann::json groups = nlohmann::json::array(), effects = nlohmann::json::array();
   for (std::size_t g = 0; g < plan.groups.size(); ++g) {
@@ -199,7 +199,7 @@ void printPrimitives(const Scene& scene, const RigidGroup& group, const GroupDec
   }
 }
 
-void printText(const Told& told) {
+void printPlan(const Told& told) {
   const auto& [scene, plan, decisions, estimate, saved] = told;
   fmt::print("{}\n", scene.source.string());
   for (const EffectChoice& choice : plan.effects)
@@ -268,7 +268,7 @@ int runPlan(const PlanArguments& a) {
   }
   const Estimates estimates{estimate ? &*estimate : nullptr, all ? &*all : nullptr};
   const auto decisions = decisionsOf({*scene, a.options, *plan, *looks, estimates});
-  (a.json ? printJson : printText)({*scene, *plan, decisions, estimate, savedByAll(estimates)});
+  (a.json ? printPlanJson : printPlan)({*scene, *plan, decisions, estimate, savedByAll(estimates)});
   return 0;
 }
 

@@ -86,7 +86,8 @@ StageSeconds expectedSeconds(const reference::Options& options) {
   return {{"paths", paths / kGuessedPathsPerSecond}};
 }
 
-void print(const ReferenceArguments& a, const reference::Request& request, const reference::Report& r) {
+void printReference(const ReferenceArguments& a, const reference::Request& request,
+                    const reference::Report& r) {
   const double rate = r.seconds > 0.0 ? static_cast<double>(r.rays) / r.seconds : 0.0;
   if (a.json) {
     nlohmann::json json = {{"output", a.output.string()},
@@ -144,7 +145,7 @@ int runReference(const ReferenceArguments& a) {
   if (!a.png.empty())
     if (const auto written = spec::writePng(a.png, spec::displayed(report->image)); !written)
       return reportError(written.error());
-  print(a, *request, *report);
+  printReference(a, *request, *report);
   return 0;
 }
 

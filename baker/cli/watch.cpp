@@ -19,7 +19,6 @@ namespace lambent::baker {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr std::chrono::milliseconds kTurn{100};
 
@@ -29,11 +28,11 @@ class FolderBakes {
 
   // Prints one line for each event.
   void say(const char* event, const fs::path& scene, const std::string& text,
-           json more = json::object()) const {
+           nlohmann::json more = nlohmann::json::object()) const {
     if (arguments_.json) {
       more["event"] = event;
       if (!scene.empty()) more["scene"] = scene.string();
-      fmt::print("{}\n", more.dump(-1, ' ', false, json::error_handler_t::replace));
+      fmt::print("{}\n", more.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     } else {
       fmt::print("{}\n", scene.empty() ? text : scene.string() + ": " + text);
     }

@@ -19,7 +19,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kGrain = 512;
+constexpr std::size_t kVectorsPerRange = 512;
 constexpr std::size_t kBasisSamples = 8192;  // samples that the covariance uses at least
 // Multiply-adds that the covariance may take. With few values per sample this covers all samples, which
 // matters because some are rare: those of a grid beside the body are unlike all others, few samples next to a
@@ -80,7 +80,7 @@ Points coordinates(std::span<const float> vectors, const std::vector<double>& ro
   const Eigen::MatrixXf project = solve.cast<float>();
   const std::size_t count = vectors.size() / roots.size();
   Points points(rank, static_cast<Eigen::Index>(count));
-  parallelRanges(count, kGrain, {}, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(count, kVectorsPerRange, {}, [&](std::size_t begin, std::size_t end) {
     const Eigen::Map<const Eigen::MatrixXf> block(vectors.data() + begin * roots.size(), size,
                                                   static_cast<Eigen::Index>(end - begin));
     points.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)).noalias() =
@@ -175,7 +175,8 @@ class Coder {
     return expandedBytes(one.clusters, shape_) <= settings_.most_expanded_bytes;
   }
   double errorOf(const CodedTransfer& coded) const {
-    return radianceError(vectors_, decodeTransfer(coded), shape_, settings_.shown_energy, settings_.kernel_power);
+    return radianceError(vectors_, decodeTransfer(coded), shape_, settings_.shown_energy,
+                         settings_.kernel_power);
   }
 
   void findBasis();

@@ -12,10 +12,10 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
-constexpr std::size_t kBlock = 256;     // samples gathered for one matrix product
-constexpr double kFewestMembers = 8.0;  // below this a cluster is not worth its mean and id
-constexpr double kNamingPrice = 2.0;    // a change of cluster also breaks the prediction of weights
+constexpr std::size_t kPointsPerRange = 1024;
+constexpr std::size_t kClusterBlock = 256;  // samples gathered for one matrix product
+constexpr double kFewestMembers = 8.0;      // below this a cluster is not worth its mean and id
+constexpr double kNamingPrice = 2.0;        // a change of cluster also breaks the prediction of weights
 constexpr double kLeastAxisShare = 0.2, kMostAxisShare = 1.5;
 constexpr std::size_t kNearest = 8;  // clusters tried per sample, by distance to their means
 
@@ -103,7 +103,7 @@ ClusterIds seedClusters(const Points& points, std::uint32_t clusters) {
   std::vector<double> distance(count, std::numeric_limits<double>::infinity());
   Eigen::Index seed = 0;
   for (std::uint32_t c = 0; c < clusters; ++c) {
-    parallelRanges(count, kGrain, {}, [&](std::size_t begin, std::size_t end) {
+    parallelRanges(count, kPointsPerRange, {}, [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
         const double d = double{(points.col(static_cast<Eigen::Index>(s)) - points.col(seed)).squaredNorm()};
         if (d >= distance[s]) continue;
@@ -153,9 +153,9 @@ std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool hel
     cluster.variances = spectrum.variances;
     // Sums squared differences between neighbours of the cluster along the axes.
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(cluster.axes.cols());
-    Points block(points.rows(), static_cast<Eigen::Index>(kBlock));
-    for (std::size_t first = 1; first < own.size(); first += kBlock) {
-      const std::size_t last = std::min(own.size(), first + kBlock);
+    Points block(points.rows(), static_cast<Eigen::Index>(kClusterBlock));
+    for (std::size_t first = 1; first < own.size(); first += kClusterBlock) {
+      const std::size_t last = std::min(own.size(), first + kClusterBlock);
       for (std::size_t m = first; m < last; ++m)
         block.col(static_cast<Eigen::Index>(m - first)) = points.col(own[m]) - points.col(own[m - 1]);
       const Points along = cluster.axes.transpose() * block.leftCols(static_cast<Eigen::Index>(last - first));
@@ -238,7 +238,7 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
 
   const Eigen::VectorXf norms = means.colwise().squaredNorm();
   ClusterIds ids(static_cast<std::size_t>(points.cols()));
-  parallelRanges(ids.size(), kGrain, {}, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(ids.size(), kPointsPerRange, {}, [&](std::size_t begin, std::size_t end) {
     const auto block =
         points.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
     const auto tried = candidates((-2.0f * means.transpose() * block).colwise() + norms, before, begin);

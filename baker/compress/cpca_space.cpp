@@ -16,7 +16,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;  // samples in one range of a sum
+constexpr std::size_t kSamplesPerSum = 1024;  // samples in one range of a sum
 
 std::size_t shadowedSize(const transfer::TransferShape& shape) {
   if (shape.isVisibility()) return shape.size();
@@ -26,9 +26,9 @@ std::size_t shadowedSize(const transfer::TransferShape& shape) {
 // Returns, for each value, the sum over samples of value(sample, i)², added in a fixed order.
 template <typename Value>
 std::vector<double> energies(std::size_t size, std::size_t count, const Value& value) {
-  std::vector<std::vector<double>> partial((count + kGrain - 1) / kGrain);
-  parallelRanges(count, kGrain, {}, [&](std::size_t begin, std::size_t end) {
-    std::vector<double>& sums = partial[begin / kGrain];
+  std::vector<std::vector<double>> partial((count + kSamplesPerSum - 1) / kSamplesPerSum);
+  parallelRanges(count, kSamplesPerSum, {}, [&](std::size_t begin, std::size_t end) {
+    std::vector<double>& sums = partial[begin / kSamplesPerSum];
     sums.assign(size, 0.0);
     for (std::size_t s = begin; s < end; ++s)
       for (std::size_t i = 0; i < size; ++i) {

@@ -14,8 +14,8 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr Eigen::Index kBlock = 256;        // samples gathered for one matrix product
-constexpr Eigen::Index kShortPoints = 320;  // up to this length all components cost little
+constexpr Eigen::Index kSpectrumBlock = 256;  // samples gathered for one matrix product
+constexpr Eigen::Index kShortPoints = 320;    // up to this length all components cost little
 // Components looked for at first, then doubled until they are enough.
 constexpr Eigen::Index kFirstSketch = 64;
 constexpr double kOnlyRounding = 1e-12;  // relative to the largest variance; points are floats
@@ -120,26 +120,28 @@ Eigen::MatrixXd secondMoment(const Points& points, std::span<const std::uint32_t
   const Eigen::Index size = points.rows();
   const auto count = members.empty() ? points.cols() : static_cast<Eigen::Index>(members.size());
   // Products of a few hundred samples are in float, their sum in double.
-  std::vector<Eigen::MatrixXd> partial(static_cast<std::size_t>((count + 8 * kBlock - 1) / (8 * kBlock)));
-  parallelRanges(static_cast<std::size_t>(count), 8 * kBlock, {}, [&](std::size_t begin, std::size_t end) {
-    Eigen::MatrixXd& sum = partial[begin / (8 * kBlock)];
-    sum = Eigen::MatrixXd::Zero(size, size);
-    Points block(size, kBlock);
-    Eigen::MatrixXf product(size, size);
-    for (auto first = static_cast<Eigen::Index>(begin); first < static_cast<Eigen::Index>(end);
-         first += kBlock) {
-      const Eigen::Index columns = std::min(kBlock, static_cast<Eigen::Index>(end) - first);
-      for (Eigen::Index c = 0; c < columns; ++c) {
-        const Eigen::Index sample =
-            members.empty() ? first + c : Eigen::Index{members[static_cast<std::size_t>(first + c)]};
-        block.col(c) = points.col(sample);
-        if (centre.size() > 0) block.col(c) -= centre;
-      }
-      product.setZero();
-      product.selfadjointView<Eigen::Lower>().rankUpdate(block.leftCols(columns));
-      sum.triangularView<Eigen::Lower>() += product.cast<double>();
-    }
-  });
+  std::vector<Eigen::MatrixXd> partial(
+      static_cast<std::size_t>((count + 8 * kSpectrumBlock - 1) / (8 * kSpectrumBlock)));
+  parallelRanges(
+      static_cast<std::size_t>(count), 8 * kSpectrumBlock, {}, [&](std::size_t begin, std::size_t end) {
+        Eigen::MatrixXd& sum = partial[begin / (8 * kSpectrumBlock)];
+        sum = Eigen::MatrixXd::Zero(size, size);
+        Points block(size, kSpectrumBlock);
+        Eigen::MatrixXf product(size, size);
+        for (auto first = static_cast<Eigen::Index>(begin); first < static_cast<Eigen::Index>(end);
+             first += kSpectrumBlock) {
+          const Eigen::Index columns = std::min(kSpectrumBlock, static_cast<Eigen::Index>(end) - first);
+          for (Eigen::Index c = 0; c < columns; ++c) {
+            const Eigen::Index sample =
+                members.empty() ? first + c : Eigen::Index{members[static_cast<std::size_t>(first + c)]};
+            block.col(c) = points.col(sample);
+            if (centre.size() > 0) block.col(c) -= centre;
+          }
+          product.setZero();
+          product.selfadjointView<Eigen::Lower>().rankUpdate(block.leftCols(columns));
+          sum.triangularView<Eigen::Lower>() += product.cast<double>();
+        }
+      });
   Eigen::MatrixXd total = Eigen::MatrixXd::Zero(size, size);
   for (const Eigen::MatrixXd& sum : partial) total += sum;
   total /= static_cast<double>(count);

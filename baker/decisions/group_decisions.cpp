@@ -79,7 +79,7 @@ class Savings {
   std::optional<double> refinement_;
 };
 
-Decision shadows(const PlannedTransport& planned, const GroupLook& look, const Savings& savings) {
+Decision groupShadows(const PlannedTransport& planned, const GroupLook& look, const Savings& savings) {
   Decision d{.effect = "shadows",
              .choice = planned.shadows ? Choice::Baked : Choice::LeftOut,
              .reason = fmt::format("surfaces hide {:.2g} % of the sky's light from each other: {}",
@@ -98,7 +98,7 @@ std::size_t bouncesFor(const GroupLook& look, double rest) {
   return bounces;
 }
 
-Decision interreflection(const Decided& decided, std::size_t group, const Savings& savings) {
+Decision groupInterreflection(const Decided& decided, std::size_t group, const Savings& savings) {
   const BakeOptions& options = decided.options;
   const GroupLook& look = decided.looks[group];
   const PlannedTransport& planned = decided.plan.transport[group];
@@ -235,8 +235,8 @@ std::vector<Decision> groupDecisions(const Decided& decided, std::size_t g) {
                   .reason = group.volume < 0 ? "0 media: it is a group of surfaces" : "1 medium"};
   if (group.volume < 0) {
     const Savings savings(decided.estimates, g);
-    all = {shadows(plan.transport[g], decided.looks[g], savings),
-           interreflection(decided, g, savings),
+    all = {groupShadows(plan.transport[g], decided.looks[g], savings),
+           groupInterreflection(decided, g, savings),
            order(decided.options, decided.looks[g]),
            lamps(decided.scene, group),
            refinement(decided, g, savings),

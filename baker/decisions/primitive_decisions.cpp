@@ -16,7 +16,7 @@ Decision absent(const char* effect, std::string reason) {
   return {.effect = effect, .choice = Choice::Absent, .reason = std::move(reason), .saves = kSavesNothing};
 }
 
-Decision shadows(const PlannedTransport& planned, const SurfaceLook& look) {
+Decision surfaceShadows(const PlannedTransport& planned, const SurfaceLook& look) {
   Decision d{
       .effect = "shadows",
       .choice = planned.shadows ? Choice::Baked : Choice::LeftOut,
@@ -25,8 +25,8 @@ Decision shadows(const PlannedTransport& planned, const SurfaceLook& look) {
   return d;
 }
 
-Decision interreflection(const PlannedTransport& planned, const BakeOptions& options,
-                         const SurfaceLook& look) {
+Decision surfaceInterreflection(const PlannedTransport& planned, const BakeOptions& options,
+                                const SurfaceLook& look) {
   Decision d{
       .effect = "interreflection",
       .choice = planned.bounces && options.bounces != 0 ? Choice::Baked : Choice::LeftOut,
@@ -135,7 +135,8 @@ std::vector<Decision> primitiveDecisions(const Decided& decided, std::size_t gro
   const PlannedTransport& transport = decided.plan.transport[group];
   const SurfaceLook& look = decided.looks[group].draws[draw];
   const bool glossy = decided.plan.bakes("glossy") && primitive.material >= 0;
-  std::vector<Decision> all = {shadows(transport, look), interreflection(transport, decided.options, look)};
+  std::vector<Decision> all = {surfaceShadows(transport, look),
+                               surfaceInterreflection(transport, decided.options, look)};
   if (auto back = backs(decided.plan.groups[group], draw, material)) all.push_back(std::move(*back));
   if (primitive.material < 0) {
     all.push_back(absent("matrices", "0 materials: it is white and diffuse"));

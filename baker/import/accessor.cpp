@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "baker/import/hints.hpp"
 #include "baker/import/tinygltf.hpp"
 
 namespace lambent::baker {
@@ -107,7 +108,7 @@ Result<Floats> readFloats(const Document& document, int index, const std::string
   if (!known || std::find(allowed_components.begin(), allowed_components.end(), stored_components) ==
                     allowed_components.end())
     return fail(document.file(), fmt::format("accessor {} ({}) has the wrong type", index, use),
-                "export the scene again");
+                kExportAgain);
 
   const auto stored = static_cast<std::size_t>(stored_components);
   const std::size_t component_bytes = static_cast<std::size_t>(
@@ -141,7 +142,7 @@ Result<std::vector<std::uint32_t>> readIndices(const Document& document, int ind
                         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
   if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index)
     return fail(document.file(), fmt::format("accessor {} does not hold unsigned indices", index),
-                "export the scene again");
+                kExportAgain);
   const auto bytes =
       static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
   std::vector<std::uint32_t> indices(accessor.count, 0);

@@ -11,6 +11,7 @@
 
 #include "baker/import/accessor.hpp"
 #include "baker/import/convert.hpp"
+#include "baker/import/hints.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -18,7 +19,6 @@ namespace {
 using gltf::AnimationChannel;
 using nlohmann::json;
 
-constexpr const char* kExport = "export the scene again";
 // Channels may share accessors, so without a limit a small file could claim any amount.
 constexpr std::size_t kMaxNumbers = 1u << 26;
 
@@ -38,9 +38,10 @@ AnimationChannel::Interpolation interpolationOf(const std::string& word) {
 Result<void> checkTimes(const std::vector<float>& times, const std::string& file, const std::string& name) {
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!std::isfinite(times[i]) || times[i] < 0.0f)
-      return fail(file, fmt::format("{}: the time of key {} is not a number from 0 up", name, i), kExport);
+      return fail(file, fmt::format("{}: the time of key {} is not a number from 0 up", name, i),
+                  kExportAgain);
     if (i > 0 && !(times[i - 1] < times[i]))
-      return fail(file, fmt::format("{}: times do not rise at key {}", name, i), kExport);
+      return fail(file, fmt::format("{}: times do not rise at key {}", name, i), kExportAgain);
   }
   return {};
 }
@@ -54,7 +55,7 @@ Result<void> normalizeRotations(AnimationChannel& channel, const std::string& fi
     const float* q = each == 12 ? values + 4 : values;
     const float length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(length > 1e-6f))
-      return fail(file, fmt::format("{}: the rotation of key {} is zero", name, key), kExport);
+      return fail(file, fmt::format("{}: the rotation of key {} is zero", name, key), kExportAgain);
     for (std::size_t i = 0; i < each; ++i) values[i] /= length;
   }
   return {};
@@ -73,13 +74,13 @@ Result<AnimationChannel> readChannel(const Document& document, const json& sampl
   const std::size_t each = channel.interpolation == AnimationChannel::Interpolation::Cubic ? 3 : 1;
   if (values->count() != each * times->count())
     return fail(file, fmt::format("{}: {} values for {} keys", name, values->count(), times->count()),
-                kExport);
+                kExportAgain);
   channel.times_s = std::move(times->values);
   channel.values = std::move(values->values);
   if (auto checked = checkTimes(channel.times_s, file, name); !checked) return failAgain(checked.error());
   for (std::size_t i = 0; i < channel.values.size(); ++i)
     if (!std::isfinite(channel.values[i]))
-      return fail(file, fmt::format("{}: value {} is not finite", name, i / components), kExport);
+      return fail(file, fmt::format("{}: value {} is not finite", name, i / components), kExportAgain);
   if (channel.path == AnimationChannel::Path::Rotation)
     if (auto done = normalizeRotations(channel, file, name); !done) return failAgain(done.error());
   return channel;
@@ -156,7 +157,7 @@ Result<void> convertAnimation(const Document& document, const json& source, cons
     if (map.scene_node[node] < 0) continue;  // the node belongs to another scene
     if (!targets.emplace(node, *path).second)
       return fail(document.file(), fmt::format("{} moves the {} of node {} twice", name, word, node),
-                  kExport);
+                  kExportAgain);
     AnimationChannel wanted;
     wanted.node = static_cast<std::uint32_t>(map.scene_node[node]);
     wanted.path = *path;

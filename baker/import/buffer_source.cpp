@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "baker/import/container.hpp"
+#include "baker/import/hints.hpp"
 #include "baker/import/meshopt.hpp"
 #include "baker/import/uri.hpp"
 
@@ -54,7 +55,7 @@ BufferSource::BufferSource(json& document, std::vector<std::byte> binary, const 
 
 Result<std::vector<std::byte>> BufferSource::read(std::size_t i) {
   if (i >= wanted_.size())
-    return fail(path_.string(), fmt::format("buffer {} does not exist", i), "export the scene again");
+    return fail(path_.string(), fmt::format("buffer {} does not exist", i), kExportAgain);
   auto bytes = wanted_[i].coded.empty() ? load(i) : decode(wanted_[i]);
   if (bytes) bytes->resize(wanted_[i].length);
   return bytes;
@@ -72,7 +73,7 @@ Result<std::vector<std::byte>> BufferSource::decode(const Wanted& buffer) {
   for (const auto& [source, list] : ranges) coded_bytes += bytesCovered(list);
   if (buffer.length / kMeshoptLargestRatio > coded_bytes)
     return fail(path_.string(), fmt::format("claims {} bytes coded in {}", buffer.length, coded_bytes),
-                "export the scene again");
+                kExportAgain);
   std::vector<std::byte> bytes(buffer.length);
   for (const CodedView& view : buffer.coded) {
     const auto source = view.extension["buffer"].get<std::size_t>();
@@ -97,7 +98,7 @@ Result<std::vector<std::byte>> BufferSource::load(std::size_t i) {
   std::vector<std::byte> bytes;
   if (uri.empty()) {
     if (i != 0 || binary_.empty())
-      return fail(path_.string(), object + " has neither a URI nor a binary chunk", "export the scene again");
+      return fail(path_.string(), object + " has neither a URI nor a binary chunk", kExportAgain);
     bytes = std::exchange(binary_, {});
   } else {
     auto read = readUri(path_, uri, options_, object);

@@ -25,17 +25,17 @@ void checkList(const Object& object, const char* key, double above, double below
           "correct it"};
 }
 
-constexpr double kLargest = 1e12, kSmallest = 1e-12;
+constexpr double kLargestNumber = 1e12, kSmallestNumber = 1e-12;
 
 void checkVolume(const Object& volume) {
   if (volume.text("file").empty())
     throw BrokenField{fmt::format("{} names no file", volume.name),
                       "name a .vdb or .nrrd file beside the scene"};
   volume.text("grid");
-  checkReal(volume, "density_scale", 0.0, kLargest);
+  checkReal(volume, "density_scale", 0.0, kLargestNumber);
   checkList(volume, "albedo", 0.0, 1.0);
   checkReal(volume, "g", -0.99, 0.99);
-  checkList(volume, "size", kSmallest, kLargest);
+  checkList(volume, "size", kSmallestNumber, kLargestNumber);
 }
 
 void checkNeighborhood(const Object& request) {
@@ -47,7 +47,7 @@ void checkNeighborhood(const Object& request) {
     if (const std::uint64_t points = request.toNumber(entry, "size"); points < 2 || points > kMostPoints)
       throw BrokenField{fmt::format("{}: size has {}, not 2 to {} points", request.name, points, kMostPoints),
                         "correct it"};
-  checkList(request, "extent", kSmallest, kLargest);
+  checkList(request, "extent", kSmallestNumber, kLargestNumber);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "baker/import/hints.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/bundle/glb.hpp"
 
@@ -15,8 +16,6 @@ namespace lambent::baker {
 namespace {
 
 using bundle::kGlbChunkHeaderBytes, bundle::kGlbHeaderBytes, bundle::kGlbMagic;
-
-constexpr const char* kExport = "export the scene again";
 
 std::uint32_t readU32(std::span<const std::byte> bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -32,32 +31,33 @@ struct Chunk {
 // Reads the chunk at `at` and moves `at` past it.
 Result<Chunk> readChunk(std::span<const std::byte> glb, std::size_t& at, const std::string& file) {
   if (glb.size() - at < kGlbChunkHeaderBytes)
-    return fail(file, fmt::format("GLB chunk at byte {} has no header", at), kExport);
+    return fail(file, fmt::format("GLB chunk at byte {} has no header", at), kExportAgain);
   const std::uint32_t length = readU32(glb, at);
   const std::uint32_t type = readU32(glb, at + 4);
   at += kGlbChunkHeaderBytes;
   if (length > glb.size() - at)
     return fail(file, fmt::format("GLB chunk at byte {} claims {} bytes of {}", at, length, glb.size() - at),
-                kExport);
+                kExportAgain);
   const Chunk chunk{type, glb.subspan(at, length)};
   at += length;
   return chunk;
 }
 
 Result<Container> takeApart(std::span<const std::byte> glb, const std::string& file) {
-  if (glb.size() < kGlbHeaderBytes) return fail(file, "GLB is truncated", kExport);
+  if (glb.size() < kGlbHeaderBytes) return fail(file, "GLB is truncated", kExportAgain);
   if (readU32(glb, 4) != 2)
     return fail(file, fmt::format("GLB has version {}, not 2", readU32(glb, 4)),
                 "convert the scene to glTF 2.0");
   const std::uint32_t length = readU32(glb, 8);
   if (length > glb.size() || length < kGlbHeaderBytes)
-    return fail(file, fmt::format("GLB is truncated: {} bytes of {}", glb.size(), length), kExport);
+    return fail(file, fmt::format("GLB is truncated: {} bytes of {}", glb.size(), length), kExportAgain);
   glb = glb.first(length);
 
   std::size_t at = kGlbHeaderBytes;
   auto json = readChunk(glb, at, file);
   if (!json) return failAgain(std::move(json.error()));
-  if (json->type != bundle::kGlbJsonChunk) return fail(file, "GLB does not start with a JSON chunk", kExport);
+  if (json->type != bundle::kGlbJsonChunk)
+    return fail(file, "GLB does not start with a JSON chunk", kExportAgain);
   Container container;
   container.json.assign(reinterpret_cast<const char*>(json->bytes.data()), json->bytes.size());
   if (at < glb.size()) {
@@ -91,7 +91,7 @@ Result<Container> openContainer(const std::filesystem::path& path) {
   auto bytes = readBytes(path, file);
   if (!bytes) return failAgain(std::move(bytes.error()));
   if (bytes->size() >= 4 && readU32(*bytes, 0) == kGlbMagic) return takeApart(*bytes, file);
-  if (bytes->empty()) return fail(file, "is empty", kExport);
+  if (bytes->empty()) return fail(file, "is empty", kExportAgain);
   Container container;
   container.json.assign(reinterpret_cast<const char*>(bytes->data()), bytes->size());
   return container;

@@ -14,6 +14,7 @@
 #include "baker/import/buffer_source.hpp"
 #include "baker/import/check.hpp"
 #include "baker/import/container.hpp"
+#include "baker/import/hints.hpp"
 #include "baker/import/reason.hpp"
 #include "baker/import/tinygltf.hpp"
 
@@ -37,7 +38,7 @@ Result<json> parseJson(const std::string& text, const std::string& file) {
     return document;
   } catch (const json::exception& exception) {
     return fail(file, fmt::format("is not glTF: its JSON cannot be parsed ({})", reasonOf(exception)),
-                "export the scene again");
+                kExportAgain);
   }
 }
 
@@ -138,11 +139,10 @@ Result<Document> Document::open(const std::filesystem::path& path, const ImportO
         loader.LoadASCIIFromString(model.get(), &error, &warning, text.data(),
                                    static_cast<unsigned>(text.size()), /*base_dir=*/"", tinygltf::NO_REQUIRE);
     if (asker.error) return failAgain(*asker.error);
-    if (!loaded)
-      return fail(file, fmt::format("is not valid glTF ({})", firstLine(error)), "export the scene again");
+    if (!loaded) return fail(file, fmt::format("is not valid glTF ({})", firstLine(error)), kExportAgain);
     return Document(path, options, std::move(model), std::make_unique<nlohmann::json>(std::move(*document)));
   } catch (const std::exception& exception) {
-    return fail(file, fmt::format("cannot be read ({})", reasonOf(exception)), "export the scene again");
+    return fail(file, fmt::format("cannot be read ({})", reasonOf(exception)), kExportAgain);
   }
 }
 

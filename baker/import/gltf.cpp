@@ -13,6 +13,7 @@
 #include "baker/import/check.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/document.hpp"
+#include "baker/import/hints.hpp"
 #include "baker/import/reason.hpp"
 #include "baker/import/tinygltf.hpp"
 #include "runtime/bundle/description.hpp"
@@ -97,8 +98,7 @@ Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions
   try {
     return convert(*document);
   } catch (const std::exception& exception) {
-    return fail(path.string(), fmt::format("cannot be imported ({})", reasonOf(exception)),
-                "export the scene again");
+    return fail(path.string(), fmt::format("cannot be imported ({})", reasonOf(exception)), kExportAgain);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "baker/import/accessor.hpp"
 #include "baker/import/convert.hpp"
+#include "baker/import/hints.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -33,7 +34,7 @@ Result<void> readAttribute(const Document& document, const json& attributes, con
       return fail(
           document.file(),
           fmt::format("{}: {} of instance {} is not finite", node, attribute.name, i / floats->components),
-          "export the scene again");
+          kExportAgain);
   attribute.values = std::move(*floats);
   return {};
 }
@@ -74,7 +75,7 @@ Result<void> expand(const Document& document, const json& attributes, std::size_
       return fail(document.file(),
                   fmt::format("{}: {} is there for {} instances where others are for {}", name,
                               attribute->name, here, count),
-                  "export the scene again");
+                  kExportAgain);
     if (here != 0) count = here;
   }
   if (count == 0) return {};  // it has only custom attributes, so it is drawn once

@@ -23,7 +23,7 @@ glm::vec2 pairOr(const tinygltf::Value& object, const char* key, glm::vec2 fallb
 }
 
 // Returns a textureInfo without its texture: the coordinate set and KHR_texture_transform.
-gltf::TextureRef placement(const tinygltf::ExtensionMap& extensions, int texcoord) {
+gltf::TextureRef placementOf(const tinygltf::ExtensionMap& extensions, int texcoord) {
   gltf::TextureRef ref;
   ref.texcoord = static_cast<std::uint32_t>(std::max(texcoord, 0));
   const auto extension = extensions.find("KHR_texture_transform");
@@ -63,7 +63,7 @@ MaterialTextures::MaterialTextures(const Document& document, Scene& scene)
 Result<gltf::TextureRef> MaterialTextures::refer(int index, const tinygltf::ExtensionMap& extensions,
                                                  int texcoord, std::size_t material, const char* use) {
   if (index < 0) return gltf::TextureRef{};
-  gltf::TextureRef ref = placement(extensions, texcoord);
+  gltf::TextureRef ref = placementOf(extensions, texcoord);
   if (ref.texcoord > 1) {
     scene_.warnings.push_back(
         fmt::format("material {}: its {} uses TEXCOORD_{}: only 0 and 1 are read, it is left out", material,

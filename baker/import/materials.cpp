@@ -14,7 +14,7 @@ namespace {
 // Copies colours and factors, which are lists of doubles of any length; values that are missing or not finite
 // keep their default.
 template <typename Vector>
-void assign(Vector& target, const std::vector<double>& values) {
+void assignVector(Vector& target, const std::vector<double>& values) {
   if (values.size() != static_cast<std::size_t>(Vector::length())) return;
   for (int i = 0; i < Vector::length(); ++i)
     if (std::isfinite(values[static_cast<std::size_t>(i)]))
@@ -24,8 +24,8 @@ void assign(Vector& target, const std::vector<double>& values) {
 gltf::Material convertMaterial(const tinygltf::Material& source) {
   gltf::Material material;
   material.name = source.name;
-  assign(material.base_color, source.pbrMetallicRoughness.baseColorFactor);
-  assign(material.emissive, source.emissiveFactor);
+  assignVector(material.base_color, source.pbrMetallicRoughness.baseColorFactor);
+  assignVector(material.emissive, source.emissiveFactor);
   if (const auto strength = source.extensions.find("KHR_materials_emissive_strength");
       strength != source.extensions.end())
     material.emissive *= numberOr(strength->second, "emissiveStrength", 1.0f);

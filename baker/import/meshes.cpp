@@ -10,6 +10,7 @@
 
 #include "baker/import/accessor.hpp"
 #include "baker/import/convert.hpp"
+#include "baker/import/hints.hpp"
 #include "baker/import/primitives.hpp"
 #include "baker/import/texture_transfer.hpp"
 #include "baker/import/tinygltf.hpp"
@@ -46,7 +47,7 @@ Result<std::vector<glm::dmat4>> jointMatrices(const Document& document, std::siz
       return fail(document.file(),
                   fmt::format("skin {}: {} inverse bind matrices for {} joints", number, floats->count(),
                               joints.size()),
-                  "export the scene again");
+                  kExportAgain);
     for (std::size_t j = 0; j < joints.size(); ++j)
       for (int i = 0; i < 16; ++i)
         matrices[j][i / 4][i % 4] = double{floats->values[16 * j + static_cast<std::size_t>(i)]};
@@ -56,7 +57,7 @@ Result<std::vector<glm::dmat4>> jointMatrices(const Document& document, std::siz
     for (int i = 0; i < 16; ++i)
       if (!std::isfinite(matrices[j][i / 4][i % 4]))
         return fail(document.file(), fmt::format("skin {}: the matrix of joint {} is not finite", number, j),
-                    "export the scene again");
+                    kExportAgain);
   }
   return matrices;
 }

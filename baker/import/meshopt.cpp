@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/import/check_fields.hpp"
+#include "baker/import/hints.hpp"
 
 namespace lambent::baker {
 
@@ -58,7 +59,7 @@ Result<void> decodeMeshopt(const nlohmann::json& extension, std::span<const std:
   if (failed != 0)
     return fail(subject,
                 fmt::format("{}: its {} bytes are not {} coded by meshoptimizer", object, coded.size(), mode),
-                "export the scene again");
+                kExportAgain);
   if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(view.data(), count, stride);
   if (filter == "QUATERNION") meshopt_decodeFilterQuat(view.data(), count, stride);
   if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(view.data(), count, stride);

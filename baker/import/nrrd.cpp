@@ -20,7 +20,7 @@
 namespace lambent::baker {
 namespace {
 
-struct Broken {
+struct BrokenNrrd {
   std::string problem;
   std::string hint = "save it as NRRD of three dimensions with raw encoding";
 };
@@ -52,22 +52,22 @@ Number numberOf(std::string_view text, const char* field) {
   bool good = error == std::errc{} && end == text.data() + text.size();
   if constexpr (std::is_floating_point_v<Number>) good = good && std::isfinite(value);
   if (!good)
-    throw Broken{
+    throw BrokenNrrd{
         fmt::format("its field \"{}\" has \"{}\", which is not a number", field, text.substr(0, 40))};
   return value;
 }
 
 // Parses a vector such as "(1,0,0)".
-glm::dvec3 vectorOf(std::string_view text, const char* field) {
+glm::dvec3 parseVector(std::string_view text, const char* field) {
   glm::dvec3 vector(0.0);
   if (text.size() < 2 || text.front() != '(' || text.back() != ')')
-    throw Broken{
+    throw BrokenNrrd{
         fmt::format("its field \"{}\" has \"{}\", which is not a vector", field, text.substr(0, 40))};
   text = text.substr(1, text.size() - 2);
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t comma = text.find(',');
     if ((comma == std::string_view::npos) != (axis == 2))
-      throw Broken{fmt::format("its field \"{}\" has a vector that is not of three numbers", field)};
+      throw BrokenNrrd{fmt::format("its field \"{}\" has a vector that is not of three numbers", field)};
     vector[axis] = numberOf<double>(trimmed(text.substr(0, comma)), field);
     if (axis < 2) text.remove_prefix(comma + 1);
   }
@@ -79,10 +79,11 @@ class Header {
   // Takes the header off the front of the file.
   explicit Header(std::span<const std::byte> file) {
     const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
-    if (!text.starts_with("NRRD000")) throw Broken{"does not begin like an NRRD file", "name a .nrrd file"};
+    if (!text.starts_with("NRRD000"))
+      throw BrokenNrrd{"does not begin like an NRRD file", "name a .nrrd file"};
     for (bool first = true;; first = false) {
       const std::size_t end = text.find('\n', size_);
-      if (end == std::string_view::npos) throw Broken{"ends within its header"};
+      if (end == std::string_view::npos) throw BrokenNrrd{"ends within its header"};
       const std::string_view line = trimmed(text.substr(size_, end - size_));
       size_ = end + 1;
       if (line.empty()) return;
@@ -98,7 +99,7 @@ class Header {
   }
   std::string_view required(const std::string& name) const {
     const auto value = find(name);
-    if (!value) throw Broken{fmt::format("its header has no field \"{}\"", name)};
+    if (!value) throw BrokenNrrd{fmt::format("its header has no field \"{}\"", name)};
     return *value;
   }
 
@@ -108,9 +109,9 @@ class Header {
       return;  // comments, and keys of other programs
     const std::size_t colon = line.find(": ");
     if (colon == std::string_view::npos)
-      throw Broken{fmt::format("its header has the line \"{}\"", line.substr(0, 60))};
+      throw BrokenNrrd{fmt::format("its header has the line \"{}\"", line.substr(0, 60))};
     if (!fields_.try_emplace(std::string(line.substr(0, colon)), trimmed(line.substr(colon + 1))).second)
-      throw Broken{fmt::format("its header has the field \"{}\" twice", line.substr(0, colon))};
+      throw BrokenNrrd{fmt::format("its header has the field \"{}\" twice", line.substr(0, colon))};
   }
 
   std::size_t size_ = 0;
@@ -132,29 +133,30 @@ ValueType typeOf(std::string_view name) {
       {"uint16_t", ValueType::Ushort}};
   for (const auto& [known, type] : kNames)
     if (known == name) return type;
-  throw Broken{fmt::format("has values of the type \"{}\"", name),
-               "save it as float, double, uchar or ushort"};
+  throw BrokenNrrd{fmt::format("has values of the type \"{}\"", name),
+                   "save it as float, double, uchar or ushort"};
 }
 
 // Returns file_from_grid: the first voxel's centre, (1/2, 1/2, 1/2), lies at "space origin".
-glm::dmat4 placement(const Header& header) {
+glm::dmat4 fileFromGrid(const Header& header) {
   glm::dmat4 matrix(1.0);
   if (const auto directions = header.find("space directions")) {
     const auto words = wordsOf(*directions);
-    if (words.size() != 3) throw Broken{"its field \"space directions\" is not three vectors"};
+    if (words.size() != 3) throw BrokenNrrd{"its field \"space directions\" is not three vectors"};
     for (int axis = 0; axis < 3; ++axis)
-      matrix[axis] = glm::dvec4(vectorOf(words[static_cast<std::size_t>(axis)], "space directions"), 0.0);
+      matrix[axis] = glm::dvec4(parseVector(words[static_cast<std::size_t>(axis)], "space directions"), 0.0);
   } else if (const auto spacings = header.find("spacings")) {
     const auto words = wordsOf(*spacings);
-    if (words.size() != 3) throw Broken{"its field \"spacings\" is not three numbers"};
+    if (words.size() != 3) throw BrokenNrrd{"its field \"spacings\" is not three numbers"};
     for (int axis = 0; axis < 3; ++axis)
       matrix[axis][axis] = numberOf<double>(words[static_cast<std::size_t>(axis)], "spacings");
   }
   const glm::dvec4 half = 0.5 * (matrix[0] + matrix[1] + matrix[2]);
   const auto origin = header.find("space origin");
-  const glm::dvec3 first = origin ? vectorOf(*origin, "space origin") : glm::dvec3(half);
+  const glm::dvec3 first = origin ? parseVector(*origin, "space origin") : glm::dvec3(half);
   matrix[3] = glm::dvec4(first - glm::dvec3(half), 1.0);
-  if (!(std::abs(glm::determinant(glm::dmat3(matrix))) > 0.0)) throw Broken{"is flat by its own placement"};
+  if (!(std::abs(glm::determinant(glm::dmat3(matrix))) > 0.0))
+    throw BrokenNrrd{"is flat by its own placement"};
   return matrix;
 }
 
@@ -191,39 +193,40 @@ std::vector<float> valuesOf(std::span<const std::byte> bytes, ValueType type, bo
   return values;
 }
 
-DensityGrid read(std::span<const std::byte> file, const std::string& subject) {
+DensityGrid readValues(std::span<const std::byte> file, const std::string& subject) {
   const Header header(file);
   if (numberOf<std::uint32_t>(header.required("dimension"), "dimension") != 3)
-    throw Broken{fmt::format("has {} dimensions, not 3", header.required("dimension"))};
+    throw BrokenNrrd{fmt::format("has {} dimensions, not 3", header.required("dimension"))};
   for (const char* elsewhere : {"data file", "datafile", "line skip", "lineskip", "byte skip", "byteskip"})
     if (header.find(elsewhere))
-      throw Broken{
+      throw BrokenNrrd{
           fmt::format("has the field \"{}\": only values that follow the header are read", elsewhere)};
   if (header.required("encoding") != "raw")
-    throw Broken{fmt::format("has the encoding \"{}\"", header.required("encoding"))};
+    throw BrokenNrrd{fmt::format("has the encoding \"{}\"", header.required("encoding"))};
   const ValueType type = typeOf(header.required("type"));
   const std::size_t width = kBytesOf[static_cast<std::size_t>(type)];
   bool swapped = false;
   if (width > 1) {
     const std::string_view endian = header.required("endian");
-    if (endian != "little" && endian != "big") throw Broken{fmt::format("has the byte order \"{}\"", endian)};
+    if (endian != "little" && endian != "big")
+      throw BrokenNrrd{fmt::format("has the byte order \"{}\"", endian)};
     swapped = (endian == "little") != (std::endian::native == std::endian::little);
   }
   const auto sizes = wordsOf(header.required("sizes"));
-  if (sizes.size() != 3) throw Broken{"its field \"sizes\" is not three numbers"};
+  if (sizes.size() != 3) throw BrokenNrrd{"its field \"sizes\" is not three numbers"};
   glm::u64vec3 size;
   for (int axis = 0; axis < 3; ++axis)
     size[axis] = numberOf<std::uint32_t>(sizes[static_cast<std::size_t>(axis)], "sizes");
   if (auto checked = checkGridSize(size, subject); !checked)
-    throw Broken{checked.error().problem, checked.error().hint};
+    throw BrokenNrrd{checked.error().problem, checked.error().hint};
 
   const std::uint64_t wanted = size.x * size.y * size.z * width, there = file.size() - header.size();
   if (there != wanted)
-    throw Broken{fmt::format("has {} bytes of values where its sizes ask for {}", there, wanted),
-                 "take it from its source again"};
+    throw BrokenNrrd{fmt::format("has {} bytes of values where its sizes ask for {}", there, wanted),
+                     "take it from its source again"};
   DensityGrid grid;
   grid.size = glm::uvec3(size);
-  grid.file_from_grid = placement(header);
+  grid.file_from_grid = fileFromGrid(header);
   grid.values = valuesOf(file.subspan(header.size()), type, swapped);
   return grid;
 }
@@ -243,8 +246,8 @@ Result<DensityGrid> readNrrd(const std::filesystem::path& file) {
   auto bytes = readBytes(file, file.string());
   if (!bytes) return failAgain(std::move(bytes.error()));
   try {
-    return read(*bytes, file.string());
-  } catch (const Broken& broken) {
+    return readValues(*bytes, file.string());
+  } catch (const BrokenNrrd& broken) {
     return fail(file.string(), broken.problem, broken.hint);
   }
 }

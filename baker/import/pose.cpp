@@ -8,12 +8,11 @@
 #include <glm/matrix.hpp>
 
 #include "baker/import/accessor.hpp"
+#include "baker/import/hints.hpp"
 #include "baker/import/tinygltf.hpp"
 
 namespace lambent::baker {
 namespace {
-
-constexpr const char* kExport = "export the scene again";
 
 // Returns the inverse transpose times the absolute determinant: it rotates normals and needs no division by
 // zero.
@@ -32,7 +31,7 @@ Result<void> addDisplacements(const Document& document, int accessor, float weig
     return fail(
         document.file(),
         fmt::format("{}: {} has {} elements, the mesh {}", name, semantic, floats->count(), values.size()),
-        kExport);
+        kExportAgain);
   for (std::size_t v = 0; v < values.size(); ++v)
     for (int c = 0; c < 3; ++c) values[v][c] += weight * floats->values[3 * v + static_cast<std::size_t>(c)];
   return {};
@@ -69,12 +68,13 @@ Result<void> applySkin(const std::vector<Influences>& sets, const std::vector<gl
       for (int c = 0; c < 4; ++c) {
         const float weight = set.weights[v][c], joint = set.joints[v][c];
         if (!std::isfinite(weight) || weight < 0.0f)
-          return fail(file, fmt::format("{}: vertex {} has a joint weight of {}", name, v, weight), kExport);
+          return fail(file, fmt::format("{}: vertex {} has a joint weight of {}", name, v, weight),
+                      kExportAgain);
         if (weight == 0.0f) continue;
         if (!(joint >= 0.0f && joint < static_cast<float>(joints.size())))
           return fail(file,
                       fmt::format("{}: vertex {} hangs on joint {} of {}", name, v, joint, joints.size()),
-                      kExport);
+                      kExportAgain);
         matrix += static_cast<double>(weight) * joints[static_cast<std::size_t>(joint)];
         sum += static_cast<double>(weight);
       }

@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 
 #include "baker/import/accessor.hpp"
+#include "baker/import/hints.hpp"
 #include "baker/import/tinygltf.hpp"
 
 namespace lambent::baker {
 namespace {
 
-constexpr const char* kExport = "export the scene again";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
 template <typename Vector>
@@ -34,7 +34,7 @@ Result<std::vector<Vector>> readVectors(const Document& document, const tinygltf
 
 // Moves a result's value into `target`; returns false, and keeps the error, if there is none.
 template <typename T>
-bool assign(T& target, Result<T> result, Error& error) {
+bool moveResult(T& target, Result<T> result, Error& error) {
   if (!result) {
     error = std::move(result.error());
     return false;
@@ -56,14 +56,14 @@ Result<bundle::MeshData> readPlain(const Document& document, const tinygltf::Pri
   bundle::MeshData mesh;
   Error error;
   const bool read =
-      assign(mesh.positions, readVectors<glm::vec3>(document, primitive, "POSITION", {3}), error) &&
-      assign(mesh.normals, readVectors<glm::vec3>(document, primitive, "NORMAL", {3}), error) &&
-      assign(mesh.texcoords0, readVectors<glm::vec2>(document, primitive, "TEXCOORD_0", {2}), error) &&
-      assign(mesh.texcoords1, readVectors<glm::vec2>(document, primitive, "TEXCOORD_1", {2}), error) &&
-      assign(mesh.colors, readVectors<glm::vec4>(document, primitive, "COLOR_0", {3, 4}), error) &&
+      moveResult(mesh.positions, readVectors<glm::vec3>(document, primitive, "POSITION", {3}), error) &&
+      moveResult(mesh.normals, readVectors<glm::vec3>(document, primitive, "NORMAL", {3}), error) &&
+      moveResult(mesh.texcoords0, readVectors<glm::vec2>(document, primitive, "TEXCOORD_0", {2}), error) &&
+      moveResult(mesh.texcoords1, readVectors<glm::vec2>(document, primitive, "TEXCOORD_1", {2}), error) &&
+      moveResult(mesh.colors, readVectors<glm::vec4>(document, primitive, "COLOR_0", {3, 4}), error) &&
       (!tangents ||
-       assign(mesh.tangents, readVectors<glm::vec4>(document, primitive, "TANGENT", {4}), error)) &&
-      (indices < 0 || assign(mesh.indices, readIndices(document, indices), error));
+       moveResult(mesh.tangents, readVectors<glm::vec4>(document, primitive, "TANGENT", {4}), error)) &&
+      (indices < 0 || moveResult(mesh.indices, readIndices(document, indices), error));
   if (!read) return failAgain(std::move(error));
   if (indices < 0) {
     mesh.indices.resize(mesh.positions.size());
@@ -99,7 +99,8 @@ Result<DracoSource> dracoSource(const Document& document, const tinygltf::Primit
   const auto position = primitive.attributes.find("POSITION");
   const int indices = indexAccessor(primitive);
   if (position == primitive.attributes.end() || source.announced.attributes.position < 0 || indices < 0)
-    return fail(document.file(), fmt::format("{}: compressed without POSITION or indices", name), kExport);
+    return fail(document.file(), fmt::format("{}: compressed without POSITION or indices", name),
+                kExportAgain);
   source.announced.vertex_count =
       static_cast<std::uint32_t>(model.accessors[static_cast<std::size_t>(position->second)].count);
   source.announced.index_count =
@@ -148,13 +149,13 @@ Result<void> checkCounts(const bundle::MeshData& mesh, const std::vector<Influen
   for (const auto& [semantic, count] : counts)
     if (count != vertices)
       return fail(file, fmt::format("{}: {} has {} elements, POSITION {}", name, semantic, count, vertices),
-                  kExport);
+                  kExportAgain);
   for (std::size_t i = 0; i < mesh.indices.size(); ++i)
     if (mesh.indices[i] >= vertices)
       return fail(file,
                   fmt::format("{}: index {} at place {} but there are {} vertices", name, mesh.indices[i], i,
                               vertices),
-                  kExport);
+                  kExportAgain);
   return {};
 }
 

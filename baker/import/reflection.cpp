@@ -19,7 +19,7 @@ const tinygltf::Value* extensionOf(const tinygltf::Material& source, const char*
 }
 
 // Sets `target` to what `refer` returns, if `wanted` says that the texture could change anything.
-Result<void> assign(gltf::TextureRef& target, bool wanted, auto refer) {
+Result<void> assignTexture(gltf::TextureRef& target, bool wanted, auto refer) {
   if (!wanted) return {};
   Result<gltf::TextureRef> ref = refer();
   if (!ref) return failAgain(std::move(ref.error()));
@@ -28,11 +28,11 @@ Result<void> assign(gltf::TextureRef& target, bool wanted, auto refer) {
 }
 
 // Numbers may exceed 1 by rounding.
-void read(const nlohmann::json& value, const gltf::MaterialJson& json, float& factor) {
+void readField(const nlohmann::json& value, const gltf::MaterialJson& range, float& factor) {
   factor = value.get<float>();
-  if (json.allowed == gltf::MaterialJson::Allowed::ZeroToOne) factor = std::min(factor, 1.0f);
+  if (range.allowed == gltf::MaterialJson::Allowed::ZeroToOne) factor = std::min(factor, 1.0f);
 }
-void read(const nlohmann::json& value, const gltf::MaterialJson&, glm::vec3& color) {
+void readField(const nlohmann::json& value, const gltf::MaterialJson&, glm::vec3& color) {
   for (int c = 0; c < 3; ++c) color[c] = value[static_cast<std::size_t>(c)].get<float>();
 }
 
@@ -54,7 +54,7 @@ void readFactors(const nlohmann::json& source, gltf::Material& material) {
         place = &*found;
       }
       if (const auto value = place->find(row.json.key); value != place->end())
-        read(*value, row.json, material.*row.member);
+        readField(*value, row.json, material.*row.member);
     }
   });
 }
@@ -63,14 +63,14 @@ void readFactors(const nlohmann::json& source, gltf::Material& material) {
 Result<void> referSpecular(const tinygltf::Value& extension, std::size_t number, MaterialTextures& textures,
                            gltf::Material& material) {
   const bool reflects = material.specular > 0.0f;
-  if (auto done =
-          assign(material.specular_texture, reflects,
-                 [&] { return textures.refer(extension, "specularTexture", number, "specular texture"); });
+  if (auto done = assignTexture(
+          material.specular_texture, reflects,
+          [&] { return textures.refer(extension, "specularTexture", number, "specular texture"); });
       !done)
     return done;
-  return assign(material.specular_color_texture, reflects && material.specular_color != glm::vec3(0.0f), [&] {
-    return textures.refer(extension, "specularColorTexture", number, "specular color texture");
-  });
+  return assignTexture(
+      material.specular_color_texture, reflects && material.specular_color != glm::vec3(0.0f),
+      [&] { return textures.refer(extension, "specularColorTexture", number, "specular color texture"); });
 }
 
 }  // namespace
@@ -105,14 +105,14 @@ Result<void> convertReflection(const Document& document, std::size_t number, Mat
   if (const auto* specular = extensionOf(source, "KHR_materials_specular"))
     if (auto done = referSpecular(*specular, number, textures, material); !done) return done;
   if (const auto* anisotropy = extensionOf(source, "KHR_materials_anisotropy")) {
-    auto done = assign(material.anisotropy_texture, material.anisotropy > 0.0f, [&] {
+    auto done = assignTexture(material.anisotropy_texture, material.anisotropy > 0.0f, [&] {
       return textures.refer(*anisotropy, "anisotropyTexture", number, "anisotropy texture");
     });
     if (!done) return done;
   }
   const auto& texture = source.pbrMetallicRoughness.metallicRoughnessTexture;
   const bool reflects = material.metallic > 0.0f || (material.specular > 0.0f && material.roughness > 0.0f);
-  return assign(material.metallic_roughness_texture, reflects, [&] {
+  return assignTexture(material.metallic_roughness_texture, reflects, [&] {
     return textures.refer(texture.index, texture.extensions, texture.texCoord, number,
                           "metallic-roughness texture");
   });

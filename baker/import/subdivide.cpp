@@ -12,7 +12,7 @@ namespace lambent::baker {
 namespace {
 
 using bundle::MeshData;
-using Corners = std::array<std::uint32_t, 3>;
+using CornerVertices = std::array<std::uint32_t, 3>;
 
 // Returns the same number from either end, because differences only change sign.
 double squaredLength(const glm::vec3& a, const glm::vec3& b) {
@@ -47,7 +47,7 @@ class Splitter {
   std::size_t countAfter() const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < mesh_.indices.size(); i += 3) {
-      const Corners v = corners(i);
+      const CornerVertices v = corners(i);
       count += 1u + isMarked(v[0], v[1]) + isMarked(v[1], v[2]) + isMarked(v[2], v[0]);
     }
     return count;
@@ -64,11 +64,11 @@ class Splitter {
  private:
   bool isMarked(std::uint32_t a, std::uint32_t b) const { return share_of_(a, b) > 0.0f; }
 
-  Corners corners(std::size_t i) const {
+  CornerVertices corners(std::size_t i) const {
     return {mesh_.indices[i], mesh_.indices[i + 1], mesh_.indices[i + 2]};
   }
 
-  void split(Corners v) {
+  void split(CornerVertices v) {
     const std::array<bool, 3> marked{isMarked(v[0], v[1]), isMarked(v[1], v[2]), isMarked(v[2], v[0])};
     const int count = marked[0] + marked[1] + marked[2];
     if (count == 0) return emit(v[0], v[1], v[2]);

@@ -30,7 +30,7 @@ constexpr float kSlack = 1e-4f;
 // two triangles.
 constexpr double kInside = 1e-6;
 
-using Corners = std::array<glm::dvec2, 3>;
+using TexcoordCorners = std::array<glm::dvec2, 3>;
 
 double crossOf(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
@@ -42,7 +42,7 @@ class Raster {
   explicit Raster(std::uint32_t side) : side_(side), covered_(std::size_t{side} * side, 0) {}
 
   // Returns whether a point of the triangle was covered before.
-  bool cover(const Corners& corners) {
+  bool cover(const TexcoordCorners& corners) {
     const auto side = static_cast<double>(side_);
     const glm::dvec2 low = glm::min(corners[0], glm::min(corners[1], corners[2])) * side,
                      high = glm::max(corners[0], glm::max(corners[1], corners[2])) * side;
@@ -94,7 +94,7 @@ std::string faultOfCharts(const bundle::MeshData& mesh, std::uint32_t set, std::
       return fmt::format("leaves the texture at ({}, {})", at.x, at.y);
   Raster raster(2 * texels);
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    Corners corners;
+    TexcoordCorners corners;
     for (std::size_t c = 0; c < 3; ++c) corners[c] = glm::dvec2(coordinates[mesh.indices[i + c]]);
     if (crossOf(corners[1] - corners[0], corners[2] - corners[0]) == 0.0)
       return fmt::format("has no area in triangle {}", i / 3);

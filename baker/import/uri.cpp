@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "baker/import/container.hpp"
+#include "baker/import/hints.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -76,7 +77,7 @@ Result<std::filesystem::path> resolveUri(const std::filesystem::path& folder, co
                 "save the data into the scene's folder");
   const std::string name = decodePercent(uri);
   if (name.empty() || name.find('\0') != std::string::npos)
-    return fail(subject, fmt::format("{} has an empty or broken URI", object), "export the scene again");
+    return fail(subject, fmt::format("{} has an empty or broken URI", object), kExportAgain);
 
   std::error_code error;
   // A scene named without a folder lies in the current one; an empty path has no canonical form.
@@ -96,8 +97,7 @@ Result<std::vector<std::byte>> readUri(const std::filesystem::path& file, const 
   if (uri.starts_with("data:")) {
     auto bytes = decodeData(uri);
     if (!bytes)
-      return fail(file.string(), fmt::format("{} has a data URI that is not base64", object),
-                  "export the scene again");
+      return fail(file.string(), fmt::format("{} has a data URI that is not base64", object), kExportAgain);
     return std::move(*bytes);
   }
   const auto found = resolveUri(file.parent_path(), uri, options, file.string(), object);

@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint64_t kLeastRoom = std::uint64_t{1} << 30, kMostRoom = std::uint64_t{6} << 30;
 constexpr std::uint64_t kRoomPerByte = 1000;
 
-constexpr const char* kHint = "write it again as a fog volume of float values";
+constexpr const char* kWriteAgain = "write it again as a fog volume of float values";
 
 std::string gridName(const OIIO::ImageSpec& spec) {
   const std::string name = spec.get_string_attribute("openvdb:name");
@@ -34,7 +34,7 @@ Result<glm::dmat4> fileFromIndex(const OIIO::ImageSpec& spec, const std::string&
   const OIIO::ParamValue* value = spec.find_attribute("openvdb:indextoworld");
   glm::dmat4 matrix(1.0);
   if (value == nullptr || value->type().aggregate != OIIO::TypeDesc::MATRIX44)
-    return fail(subject, "has no affine transform from voxels to space", kHint);
+    return fail(subject, "has no affine transform from voxels to space", kWriteAgain);
   for (int i = 0; i < 16; ++i)
     matrix[i / 4][i % 4] = value->type().basetype == OIIO::TypeDesc::DOUBLE
                                ? static_cast<const double*>(value->data())[i]
@@ -42,17 +42,17 @@ Result<glm::dmat4> fileFromIndex(const OIIO::ImageSpec& spec, const std::string&
   return matrix;
 }
 
-Result<DensityGrid> readGrid(OIIO::ImageInput& input, const std::string& subject) {
+Result<DensityGrid> readVoxels(OIIO::ImageInput& input, const std::string& subject) {
   const OIIO::ImageSpec& spec = input.spec();
   if (spec.nchannels != 1)
-    return fail(subject, fmt::format("has {} values in each voxel", spec.nchannels), kHint);
+    return fail(subject, fmt::format("has {} values in each voxel", spec.nchannels), kWriteAgain);
   DensityGrid grid;
   grid.name = gridName(spec);
   const glm::i64vec3 stored_min(spec.x, spec.y, spec.z), stored(spec.width, spec.height, spec.depth);
   const glm::i64vec3 first(spec.full_x, spec.full_y, spec.full_z);
   const glm::i64vec3 size(spec.full_width, spec.full_height, spec.full_depth);
   for (int axis = 0; axis < 3; ++axis)
-    if (stored[axis] < 1 || size[axis] < 1) return fail(subject, "holds no voxel", kHint);
+    if (stored[axis] < 1 || size[axis] < 1) return fail(subject, "holds no voxel", kWriteAgain);
   for (const glm::i64vec3& box : {stored, size})
     if (auto checked = checkGridSize(glm::u64vec3(box), subject); !checked) return failAgain(checked.error());
   const auto matrix = fileFromIndex(spec, subject);
@@ -80,7 +80,7 @@ Result<DensityGrid> readGrid(OIIO::ImageInput& input, const std::string& subject
   return grid;
 }
 
-Result<DensityGrid> read(const std::filesystem::path& file, const std::string& wanted) {
+Result<DensityGrid> readFog(const std::filesystem::path& file, const std::string& wanted) {
   const auto input = OIIO::ImageInput::open(file.string());
   if (!input) {
     const std::string why = OIIO::geterror();
@@ -98,7 +98,7 @@ Result<DensityGrid> read(const std::filesystem::path& file, const std::string& w
     return fail(file.string(), fmt::format("has no grid \"{}\"", name),
                 fmt::format("it has: {}", fmt::join(names, ", ")));
   input->seek_subimage(static_cast<int>(found - names.begin()), 0);
-  return readGrid(*input, fmt::format("{}: grid \"{}\"", file.string(), name));
+  return readVoxels(*input, fmt::format("{}: grid \"{}\"", file.string(), name));
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ Result<DensityGrid> readVdb(const std::filesystem::path& file, const std::string
   const std::uint64_t bytes = std::filesystem::file_size(file, ignored);
   const MemoryLimit limit(std::clamp(bytes * kRoomPerByte, kLeastRoom, kMostRoom));
   try {
-    return read(file, grid);
+    return readFog(file, grid);
   } catch (const std::exception& exception) {
     return fail(file.string(), fmt::format("cannot be read ({})", reasonOf(exception)),
                 "take it from its source again");

@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 
 template <typename Vector>
-std::optional<Vector> vectorOf(const json& object, const char* key) {
+std::optional<Vector> vectorField(const json& object, const char* key) {
   if (!object.contains(key)) return std::nullopt;
   Vector vector;
   for (int i = 0; i < 3; ++i)
@@ -40,8 +40,8 @@ Result<DensityGrid> procedural(const std::string& words, const std::string& subj
   return proceduralCloud(seed);
 }
 
-Result<DensityGrid> read(const Document& document, const std::string& uri, const std::string& grid,
-                         const std::string& object) {
+Result<DensityGrid> readGrid(const Document& document, const std::string& uri, const std::string& grid,
+                             const std::string& object) {
   const std::string subject = fmt::format("{}: {}", document.file(), object);
   if (uri.starts_with("procedural:")) return procedural(uri, subject);
   const auto file =
@@ -79,7 +79,7 @@ std::size_t scaleDensities(std::vector<float>& values, float scale) {
 Result<void> addVolume(const Document& document, const json& source, std::uint32_t node,
                        const std::string& object, Scene& scene) {
   const auto uri = source["file"].get<std::string>();
-  auto densities = read(document, uri, source.value("grid", ""), object);
+  auto densities = readGrid(document, uri, source.value("grid", ""), object);
   if (!densities) return failAgain(std::move(densities.error()));
 
   SceneVolume volume;
@@ -93,11 +93,11 @@ Result<void> addVolume(const Document& document, const json& source, std::uint32
         fmt::format("{}: {} of {} densities are negative or not finite and are taken as 0", object, bad,
                     volume.density.size()));
   glm::dmat4 node_from_grid = densities->file_from_grid;
-  if (const auto size = vectorOf<glm::dvec3>(source, "size"))
+  if (const auto size = vectorField<glm::dvec3>(source, "size"))
     node_from_grid =
         glm::scale(glm::translate(glm::dmat4(1.0), -0.5 * *size), *size / glm::dvec3(volume.size));
   volume.node_from_grid = glm::mat4(node_from_grid);
-  volume.albedo = vectorOf<glm::vec3>(source, "albedo").value_or(glm::vec3(1.0f));
+  volume.albedo = vectorField<glm::vec3>(source, "albedo").value_or(glm::vec3(1.0f));
   volume.g = source.value("g", 0.0f);
   scene.volumes.push_back(std::move(volume));
   return {};
@@ -117,8 +117,8 @@ Result<void> convertGrids(const Document& document, const NodeMap& map, Scene& s
     if (const auto request = ours->find("neighborhood"); request != ours->end())
       scene.neighborhoods.push_back(
           {.node = number,
-           .size = vectorOf<glm::uvec3>(*request, "size").value_or(glm::uvec3(0)),
-           .extent = vectorOf<glm::vec3>(*request, "extent").value_or(glm::vec3(0.0f))});
+           .size = vectorField<glm::uvec3>(*request, "size").value_or(glm::uvec3(0)),
+           .extent = vectorField<glm::vec3>(*request, "extent").value_or(glm::vec3(0.0f))});
     const auto volume = ours->find("volume");
     if (volume == ours->end()) continue;
     const std::string object = fmt::format("node {}: its volume", map.file_node[node]);

@@ -16,10 +16,10 @@ constexpr std::size_t kMost = transfer::kLightsPerSample;
 constexpr std::uint32_t kSteps = 255;
 
 // This is lambda of blendWeights: how much nearness counts beside the point that the weights add up to.
-constexpr double kNearness = 0.1;
+constexpr double kNearnessOfBlend = 0.1;
 // This is relative to squared lengths, and makes the choice of weights unique if light probes lie in a plane.
 constexpr double kRidge = 1e-10;
-constexpr int kMostRounds = 256;
+constexpr int kMostRoundsOfWeights = 256;
 
 // Solves the first n rows and columns, with the right-hand side in column n; returns false if they are
 // singular.
@@ -71,7 +71,7 @@ class Blend {
   }
 
   void minimize() {
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMostRoundsOfWeights; ++round) {
       const std::size_t asked = mostAskedFor();
       if (asked == all_.size() || used_.size() > kMost) return;
       used_.push_back(asked);
@@ -150,7 +150,7 @@ BlendWeights blendWeights(glm::vec3 place, std::span<const glm::vec3> lights, do
   double squares = 0.0;
   for (const glm::vec3& light : lights) {
     const glm::dvec3 way = glm::dvec3(light) - glm::dvec3(place);
-    all.push_back({way, kNearness * (glm::dot(way, way) + eps_m2 * drawn(light))});
+    all.push_back({way, kNearnessOfBlend * (glm::dot(way, way) + eps_m2 * drawn(light))});
     squares += glm::dot(way, way);
   }
   Blend blend(all, kRidge * squares / static_cast<double>(all.size()));
@@ -206,7 +206,7 @@ std::vector<std::uint32_t> lightsNear(glm::vec3 box_min, glm::vec3 box_max,
   // s² + lambda m <= (1 + lambda) d² (the value for the nearest alone). Lights in use all have the slope 2
   // e·s + lambda e² = 2 s² + lambda m <= s² + (1 + lambda) d², so lambda e² - 2 e s is at most that, and e is
   // longest where s is, at s² = (1 + lambda) d².
-  const double l = kNearness, root = std::sqrt(1.0 + l);
+  const double l = kNearnessOfBlend, root = std::sqrt(1.0 + l);
   const double reach = (root + std::sqrt((1.0 + l) * (1.0 + 2.0 * l))) / l;
   const double half = 0.5 * double{glm::distance(box_min, box_max)};
   const double farthest = reach * (*std::ranges::min_element(distances) + half) + half;

@@ -20,7 +20,7 @@ constexpr int kRounds = 4;
 constexpr double kNearness = 0.3;  // mu
 // This many samples, taken evenly through each cell, say how the surface lies.
 constexpr std::size_t kLeastUsed = 16384, kUsedPerPoint = 64;
-constexpr std::size_t kGrain = 512;
+constexpr std::size_t kGrainOfFit = 512;
 constexpr int kSweeps = 64, kHalvings = 12;
 
 struct Used {
@@ -52,7 +52,7 @@ void blend(std::vector<Used>& used, const SampleSet& samples, std::span<const gl
     near.push_back(lightsNear(samples.cells[c].bounds_min, samples.cells[c].bounds_max, points));
     for (const std::uint32_t k : near.back()) places[c].push_back(points[k]);
   }
-  parallelRanges(used.size(), kGrain, {}, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(used.size(), kGrainOfFit, {}, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Used& u = used[i];
       u.blend = blendWeights(samples.positions[u.sample], places[u.cell], eps_m2);

@@ -11,7 +11,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr int kMostRounds = 32;
+constexpr int kMostRoundsOfPoints = 32;
 constexpr float kSettled = 1e-4f;  // of the points' size; centres that move less have converged
 
 struct Points {
@@ -92,7 +92,7 @@ std::vector<glm::vec3> lightPoints(std::span<const glm::vec3> points, std::span<
   for (const glm::dvec3& place : used.places) size = std::max(size, squared(place - mean));
 
   std::vector<glm::dvec3> centres = farthestPoints(used, mean, std::max<std::size_t>(count, 1));
-  for (int round = 0; round < kMostRounds; ++round)
+  for (int round = 0; round < kMostRoundsOfPoints; ++round)
     if (moveToMeans(used, centres) <= double{kSettled} * double{kSettled} * size) break;
   std::vector<glm::vec3> out;
   for (const glm::dvec3& centre : centres) out.emplace_back(centre);

@@ -19,7 +19,7 @@ namespace {
 // These are relative to the group's diagonal: points nearer than kMerge are one; kFlat decides which light
 // probes blend where several would do equally well; kDepth is how deep under the surface they lie at least.
 constexpr float kMerge = 1e-6f, kFlat = 1e-3f, kDepth = 5e-3f;
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kGrainOfSamples = 4096;
 
 LightProbes atCentre(const SampleSet& samples, glm::vec3 bounds_min, glm::vec3 bounds_max) {
   LightProbes out;
@@ -60,7 +60,7 @@ Weighed weigh(const SampleSet& samples, const SampleCell& cell, std::span<const 
   std::vector<glm::vec3> places;
   for (const std::uint32_t k : out.near) places.push_back(points[k]);
   out.weights.resize(cell.count);
-  parallelRanges(cell.count, kGrain, {}, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(cell.count, kGrainOfSamples, {}, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       out.weights[i] = quantized(blendWeights(samples.positions[cell.first + i], places, eps_m2));
   });

@@ -27,7 +27,7 @@ int gathered(const BakeOptions& options) {
   return options.bounces < 0 ? kMostGathered : std::min(options.bounces, kMostGathered);
 }
 
-double at(const StageSeconds& stages, const std::string& stage) {
+double secondsIn(const StageSeconds& stages, const std::string& stage) {
   const auto found = stages.find(stage);
   return found == stages.end() ? 0.0 : found->second;
 }
@@ -156,13 +156,15 @@ double secondsOf(const Progress::Stage& now, const StageSeconds& before,
   // A bake of several groups has a stage more than once; what was spent before is taken for that of the
   // first.
   const bool first = std::ranges::find(finished, now.name, &Progress::Stage::name) == finished.end();
-  return now.seconds + (first ? at(before, now.name) : 0.0);
+  return now.seconds + (first ? secondsIn(before, now.name) : 0.0);
 }
 
 double secondsLeft(const StageSeconds& expected, const StageSeconds& before,
                    std::span<const Progress::Stage> finished, const Progress::Stage& now) {
   const StageSeconds spent = sumSeconds(finished);
-  const auto spentOn = [&](const std::string& stage) { return at(spent, stage) + at(before, stage); };
+  const auto spentOn = [&](const std::string& stage) {
+    return secondsIn(spent, stage) + secondsIn(before, stage);
+  };
   // Once another stage begins after bounces, no further bounce will come.
   bool past_bounces = !isBounce(now.name);
   if (past_bounces)
@@ -186,7 +188,7 @@ double secondsLeft(const StageSeconds& expected, const StageSeconds& before,
     const double of_stage = goesWithSamples(stage) && spentOn(stage) == 0.0 ? slower * seconds : seconds;
     left += std::max(0.0, of_stage - spentOn(stage));
   }
-  const double this_one = std::max(0.0, at(expected, now.name) - spentOn(now.name));
+  const double this_one = std::max(0.0, secondsIn(expected, now.name) - spentOn(now.name));
   // The stage's own rate is used once it is meaningful, plus what is expected for later groups.
   if (hasRate(now, took)) return left + own + std::max(0.0, this_one - now.seconds - own);
   return left + std::max(0.0, this_one - now.seconds);

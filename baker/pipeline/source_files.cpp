@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 
 // Returns the member of that name, or null. Nothing in the text has been validated.
-const json& at(const json& value, const char* name) {
+const json& memberOf(const json& value, const char* name) {
   static const json kNone;
   if (!value.is_object()) return kNone;
   const auto found = value.find(name);
@@ -37,11 +37,11 @@ std::vector<std::filesystem::path> sourceFiles(const std::filesystem::path& scen
   const json document = json::parse(container->json, nullptr, /*allow_exceptions=*/false);
   const std::filesystem::path folder = scene.parent_path();
   for (const char* list : {"buffers", "images"})
-    for (const json& entry : at(document, list)) add(at(entry, "uri"), folder, files);
-  for (const json& node : at(document, "nodes"))
-    add(at(at(at(at(node, "extras"), "lambent"), "volume"), "file"), folder, files);
-  for (const json& material : at(document, "materials"))
-    add(at(at(at(material, "extras"), "lambent"), "brdf"), folder, files);
+    for (const json& entry : memberOf(document, list)) add(memberOf(entry, "uri"), folder, files);
+  for (const json& node : memberOf(document, "nodes"))
+    add(memberOf(memberOf(memberOf(memberOf(node, "extras"), "lambent"), "volume"), "file"), folder, files);
+  for (const json& material : memberOf(document, "materials"))
+    add(memberOf(memberOf(memberOf(material, "extras"), "lambent"), "brdf"), folder, files);
   return files;
 }
 

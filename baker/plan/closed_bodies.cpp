@@ -30,11 +30,11 @@ constexpr double kMostBoxes = 3e8;  // likewise, comparisons of boxes
 // something between on the surface.
 constexpr double kWithin = 0.25;
 
-struct Box {
+struct BodyBox {
   glm::dvec3 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
 
   void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
-  bool holds(const Box& other) const {
+  bool holds(const BodyBox& other) const {
     return glm::all(glm::lessThanEqual(low, other.low)) && glm::all(glm::lessThanEqual(other.high, high));
   }
 };
@@ -57,7 +57,7 @@ double signedVolume(const Part& part, const std::vector<glm::vec3>& positions) {
 }
 
 std::vector<Part> partsOfMesh(const bundle::MeshData& mesh) {
-  Box box;
+  BodyBox box;
   for (const glm::vec3& p : mesh.positions) box.add(glm::dvec3(p));
   const double tolerance = kSameCorner * glm::distance(box.low, box.high);
   if (!(tolerance > 0.0) || !std::isfinite(tolerance)) return {};
@@ -97,7 +97,7 @@ double windingNumber(const std::vector<std::array<glm::dvec3, 3>>& triangles, co
 
 // A Thing may stand within a body: a part of a surface, a camera, a lamp or a volume's middle.
 struct Thing {
-  Box box;
+  BodyBox box;
   std::vector<glm::dvec3> points;                    // world
   std::vector<std::array<glm::dvec3, 3>> triangles;  // of a closed part that may be a body
   bool closed = false;

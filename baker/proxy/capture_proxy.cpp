@@ -29,7 +29,7 @@ constexpr std::size_t kSilhouetteTriangles = 32768;
 // A level is worth having if it has at most this share of the triangles of the one before.
 constexpr double kFewer = 0.75;
 
-double areaOf(const SimpleMesh& mesh) {
+double meshArea(const SimpleMesh& mesh) {
   double sum = 0.0;
   for (const glm::uvec3& t : mesh.triangles)
     sum += 0.5 * double{glm::length(glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
@@ -53,11 +53,11 @@ std::optional<std::vector<std::size_t>> shares(const std::vector<ProxyPart>& par
     double area = 0.0;
     for (std::size_t p = 0; p < parts.size(); ++p)
       if (counts[p] < meshes[p].triangles.size())
-        area += areaOf(meshes[p]) * static_cast<double>(parts[p].sides());
+        area += meshArea(meshes[p]) * static_cast<double>(parts[p].sides());
     const auto left = static_cast<double>(most - taken);
     std::size_t given = 0;
     for (std::size_t p = 0; p < parts.size() && area > 0.0; ++p) {
-      const std::size_t more = std::min(static_cast<std::size_t>(left * areaOf(meshes[p]) / area),
+      const std::size_t more = std::min(static_cast<std::size_t>(left * meshArea(meshes[p]) / area),
                                         meshes[p].triangles.size() - counts[p]);
       counts[p] += more;
       given += more * parts[p].sides();

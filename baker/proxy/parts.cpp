@@ -37,7 +37,7 @@ void append(const std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& 
   to.insert(to.end(), from.begin(), from.end());
 }
 
-float areaOf(const GroupGeometry& geometry, const ProxyPart& part) {
+float partArea(const GroupGeometry& geometry, const ProxyPart& part) {
   float sum = 0.0f;
   for (const std::uint32_t triangle : part.front) sum += triangleArea(geometry, triangle);
   return sum;
@@ -47,7 +47,7 @@ void darkenSmallest(const GroupGeometry& geometry, std::vector<ProxyPart>& parts
   std::size_t smallest = parts.size();
   for (std::size_t p = 0; p < parts.size(); ++p)
     if (parts[p].light != kNoLight &&
-        (smallest == parts.size() || areaOf(geometry, parts[p]) < areaOf(geometry, parts[smallest])))
+        (smallest == parts.size() || partArea(geometry, parts[p]) < partArea(geometry, parts[smallest])))
       smallest = p;
   const ProxyPart darkened = std::move(parts[smallest]);
   parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(smallest));

@@ -21,7 +21,6 @@ namespace {
 // A triangle is probed at n² points if its longest edge is n times this share of the group's diagonal.
 constexpr float kProbeSpacing = 1.0f / 32.0f;
 constexpr int kMostProbesAlong = 8;
-constexpr std::size_t kPointsPerRange = 64;     // probed points in one range of work
 constexpr std::uint32_t kUnused = 0xffffffffu;  // a sample of no triangle that is looked at
 // No edge is split if its triangle's longest edge is below this share of the diagonal.
 constexpr float kShortestEdge = 1.0f / 1024.0f;

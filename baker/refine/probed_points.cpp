@@ -8,12 +8,6 @@
 
 namespace lambent::baker {
 
-namespace {
-
-constexpr std::size_t kPointsPerRange = 64;  // in one range of work
-
-}  // namespace
-
 Result<const RayScene*> ProbedScene::rays() {
   if (!rays_) {
     auto built = build_();

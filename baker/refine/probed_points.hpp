@@ -19,6 +19,8 @@
 
 namespace lambent::baker {
 
+inline constexpr std::size_t kPointsPerRange = 64;  // probed points in one range of work
+
 // A ProbedScene is what points of a group look at: the group before any split.
 class ProbedScene {
  public:

@@ -13,7 +13,8 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr double kWidth = 380.0, kHeight = 230.0, kLeft = 46.0, kRight = 12.0, kTop = 12.0, kFloor = 168.0;
+constexpr double kChartWidth = 380.0, kChartHeight = 230.0, kChartLeft = 46.0, kChartRight = 12.0,
+                 kChartTop = 12.0, kChartFloor = 168.0;
 
 // Returns a round step with which about four lines fill the height.
 double roundStep(double most) {
@@ -38,34 +39,34 @@ std::string chartOf(const std::string& title, const std::vector<ChartColumn>& co
     most_cost = std::max(most_cost, column.cost);
   }
   const double step = roundStep(most), ceiling = step * std::ceil(1.02 * most / step);
-  const double wide =
-      (kWidth - kLeft - kRight) / static_cast<double>(std::max<std::size_t>(columns.size(), 1));
-  const auto height = [&](double error) { return kFloor - (kFloor - kTop) * error / ceiling; };
+  const double wide = (kChartWidth - kChartLeft - kChartRight) /
+                      static_cast<double>(std::max<std::size_t>(columns.size(), 1));
+  const auto height = [&](double error) { return kChartFloor - (kChartFloor - kChartTop) * error / ceiling; };
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot chart\" viewBox=\"0 0 {} {}\" role=\"img\" "
       "aria-label=\"{}\">\n",
-      kWidth, kHeight, htmlText(title));
+      kChartWidth, kChartHeight, htmlText(title));
   for (double value = 0.0; value <= ceiling * 1.001; value += step)
     out += fmt::format(
         "<line class=\"grid\" x1=\"{0}\" y1=\"{1:.1f}\" x2=\"{2}\" y2=\"{1:.1f}\"/>"
         "<text class=\"tick\" x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
-        kLeft, height(value), kWidth - kRight, kLeft - 6.0, height(value) + 4.0,
+        kChartLeft, height(value), kChartWidth - kChartRight, kChartLeft - 6.0, height(value) + 4.0,
         htmlText(tickPercent(value)));
   std::vector<std::array<double, 2>> lit, banded;
   std::string dots;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const ChartColumn& column = columns[i];
-    const double x = kLeft + wide * (static_cast<double>(i) + 0.5),
-                 bar = 0.86 * (kFloor - kTop) * column.cost / most_cost;
+    const double x = kChartLeft + wide * (static_cast<double>(i) + 0.5),
+                 bar = 0.86 * (kChartFloor - kChartTop) * column.cost / most_cost;
     out +=
         fmt::format("<rect class=\"cost\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n",
-                    x - 0.3 * wide, kFloor - bar, 0.6 * wide, bar);
+                    x - 0.3 * wide, kChartFloor - bar, 0.6 * wide, bar);
     out += fmt::format(
         "<text class=\"value{}\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>"
         "<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>"
         "<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
-        column.base ? " base" : "", x, kFloor + 19.0, htmlText(column.value), x, kFloor + 37.0,
-        htmlText(column.cost_text), x, kFloor + 53.0, htmlText(column.other_text));
+        column.base ? " base" : "", x, kChartFloor + 19.0, htmlText(column.value), x, kChartFloor + 37.0,
+        htmlText(column.cost_text), x, kChartFloor + 53.0, htmlText(column.other_text));
     lit.push_back({x, height(column.error)});
     banded.push_back({x, height(column.error_of_bands)});
     dots += fmt::format(

@@ -63,7 +63,7 @@ double secondsOf(const json& report) {
   return seconds;
 }
 
-std::optional<BakeRow::Parts> partsOf(const json& report) {
+std::optional<BakeRow::Parts> bakePartsOf(const json& report) {
   BakeRow::Parts sum;
   double points = 0.0;
   for (const json& group : report.at("groups")) {
@@ -227,7 +227,7 @@ Result<BakeRow> Measurer::runBake(const Setting& setting) {
            .transfer_bytes = median.report.at("transferBytes").get<std::uint64_t>(),
            .vertices = median.report.at("vertices").get<std::uint64_t>(),
            .samples = median.report.at("samples").get<std::uint64_t>(),
-           .parts = partsOf(median.report)};
+           .parts = bakePartsOf(median.report)};
   });
   if (!read) return failAgain(read.error());
   return row;

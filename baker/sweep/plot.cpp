@@ -16,7 +16,8 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr double kWidth = 860.0, kHeight = 440.0, kLeft = 62.0, kRight = 26.0, kBottom = 52.0;
+constexpr double kPlotWidth = 860.0, kPlotHeight = 440.0, kPlotLeft = 62.0, kPlotRight = 26.0,
+                 kPlotBottom = 52.0;
 constexpr double kTextWidth = 7.4, kTextHeight = 16.0;  // of a letter, about
 
 // An Axis maps values to places by their logarithm.
@@ -94,8 +95,8 @@ class Labels {
       const double shift = tried.anchor[0] == 's' ? 0.0 : tried.anchor[0] == 'e' ? 1.0 : 0.5;
       const Box box{x + tried.dx - shift * width, y + tried.dy - kTextHeight + 3.0,
                     x + tried.dx + (1.0 - shift) * width, y + tried.dy + 3.0};
-      const bool inside =
-          box.left > kLeft && box.right < kWidth && box.top > top && box.bottom < kHeight - kBottom;
+      const bool inside = box.left > kPlotLeft && box.right < kPlotWidth && box.top > top &&
+                          box.bottom < kPlotHeight - kPlotBottom;
       if (!inside || std::ranges::any_of(taken_, [&](const Box& other) { return box.meets(other); }))
         continue;
       found = box;
@@ -158,17 +159,17 @@ std::string pointText(const PlotPoint& point, const Axis& x, const Axis& y) {
 
 std::string svgOf(const Plot& plot, PlotPlace place) {
   const double top = place == PlotPlace::Alone ? 46.0 : 14.0;
-  const Axis x = axisOf(plot.points, &PlotPoint::x, kLeft, kWidth - kRight);
-  const Axis y = axisOf(plot.points, &PlotPoint::y, kHeight - kBottom, top);
+  const Axis x = axisOf(plot.points, &PlotPoint::x, kPlotLeft, kPlotWidth - kPlotRight);
+  const Axis y = axisOf(plot.points, &PlotPoint::y, kPlotHeight - kPlotBottom, top);
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" "
       "aria-label=\"{}\">\n",
-      kWidth, kHeight, htmlText(plot.title));
+      kPlotWidth, kPlotHeight, htmlText(plot.title));
   if (place == PlotPlace::Alone)
     out += fmt::format(
         "<style>{}</style>\n<rect class=\"paper\" width=\"{}\" height=\"{}\" rx=\"10\"/>\n"
         "<text class=\"title\" x=\"{}\" y=\"28\">{}</text>\n",
-        embedded::lambent_sweep::find("plot.css"), kWidth, kHeight, kLeft, htmlText(plot.title));
+        embedded::lambent_sweep::find("plot.css"), kPlotWidth, kPlotHeight, kPlotLeft, htmlText(plot.title));
   out += axesText(plot, x, y);
   std::string line;
   for (const std::size_t i : plot.front)

@@ -63,7 +63,7 @@ void forDiscPoints(std::size_t rays, const Add& add) {
   }
 }
 
-void append(DirectionTable& table, double x, double y, double z) {
+void appendDirection(DirectionTable& table, double x, double y, double z) {
   table.x.push_back(static_cast<float>(x));
   table.y.push_back(static_cast<float>(y));
   table.z.push_back(static_cast<float>(z));
@@ -73,8 +73,9 @@ void append(DirectionTable& table, double x, double y, double z) {
 
 DirectionTable cosineTable(std::size_t rays) {
   DirectionTable table;
-  forDiscPoints(
-      rays, [&](double x, double y) { append(table, x, y, std::sqrt(std::max(0.0, 1.0 - x * x - y * y))); });
+  forDiscPoints(rays, [&](double x, double y) {
+    appendDirection(table, x, y, std::sqrt(std::max(0.0, 1.0 - x * x - y * y)));
+  });
   return table;
 }
 
@@ -83,7 +84,7 @@ DirectionTable uniformTable(std::size_t rays) {
   // This is Lambert's equal-area map from the disc: z = 1 - r².
   forDiscPoints(rays, [&](double x, double y) {
     const double r2 = x * x + y * y, stretch = std::sqrt(std::max(0.0, 2.0 - r2));
-    append(table, stretch * x, stretch * y, std::max(0.0, 1.0 - r2));
+    appendDirection(table, stretch * x, stretch * y, std::max(0.0, 1.0 - r2));
   });
   return table;
 }

@@ -65,8 +65,8 @@ void appendCharts(const ScenePrimitive& primitive, const bundle::MeshData& mesh,
     geometry.chart_coordinates.push_back(glm::clamp(at, glm::vec2(0.0f), glm::vec2(1.0f)));
 }
 
-void append(const PlannedDraw& draw, const ScenePrimitive& primitive, const bundle::MeshData& mesh,
-            const gltf::Material* material, bool with_glossy, GroupGeometry& geometry) {
+void appendDraw(const PlannedDraw& draw, const ScenePrimitive& primitive, const bundle::MeshData& mesh,
+                const gltf::Material* material, bool with_glossy, GroupGeometry& geometry) {
   DrawGeometry out{.first_vertex = static_cast<std::uint32_t>(geometry.positions.size()),
                    .vertex_count = static_cast<std::uint32_t>(mesh.positions.size()),
                    .first_triangle = static_cast<std::uint32_t>(geometry.triangles.size()),
@@ -144,7 +144,7 @@ GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
     const ScenePrimitive& primitive = scene.meshes[draw.mesh].primitives[draw.primitive];
     const std::int32_t index = primitive.material;
     const gltf::Material* material = index < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(index)];
-    append(draw, primitive, decoded[draw.mesh][draw.primitive], material, with_glossy, geometry);
+    appendDraw(draw, primitive, decoded[draw.mesh][draw.primitive], material, with_glossy, geometry);
   }
   if (!geometry.positions.empty()) geometry.bounds_min = geometry.bounds_max = geometry.positions.front();
   for (const glm::vec3& p : geometry.positions) {

@@ -13,7 +13,7 @@ namespace lambent::editor {
 
 namespace {
 
-struct Words {
+struct OptionWords {
   std::vector<std::string> files, lights;
   std::string size, script, cache, output;
   float scale = 0.0f;
@@ -23,7 +23,7 @@ struct Words {
   std::string quality = "standard";
 };
 
-void declare(CLI::App& app, Words& words) {
+void declare(CLI::App& app, OptionWords& words) {
   app.add_option("FILE", words.files,
                  "Scenes (.gltf, .glb), bundles (.lmb.glb), folders of them,\nor a world (.json)")
       ->type_name("");
@@ -63,7 +63,7 @@ void declare(CLI::App& app, Words& words) {
   app.set_version_flag("--version", "lambent-editor " LAMBENT_VERSION);
 }
 
-Result<Options> understand(const Words& words) {
+Result<Options> understand(const OptionWords& words) {
   Options options;
   options.session.files.assign(words.files.begin(), words.files.end());
   options.session.light_words = words.lights;
@@ -99,7 +99,7 @@ void printError(const Error& error) {
 std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
   CLI::App app("Opens, bakes and lights scenes, and shows what accuracy costs.", "lambent-editor");
   app.footer("Exit codes: 0 done, 1 failed, 2 wrong usage.");
-  Words words;
+  OptionWords words;
   declare(app, words);
   try {
     app.parse(argc, argv);

@@ -34,7 +34,7 @@ Answer useAsset(Session& session, Words words) {
   return answerOf(session.files.open({asset->file}));
 }
 
-constexpr std::array kRows = {
+constexpr std::array kAssetRows = {
     scripted("assets", "Environment maps, scenes, bundles and worlds to choose from, searched", "[SEARCH]", 0,
              1, &assets),
     scripted("use-asset", "Light from this environment map; open this scene, bundle or world", "FILE", 1, 1,
@@ -44,7 +44,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> assetCommands() {
-  return kRows;
+  return kAssetRows;
 }
 
 }  // namespace lambent::editor

@@ -73,11 +73,8 @@ bool anyUnfinished(const Session& session) {
 bool baking(const Session& session) {
   return session.scenes.busy();
 }
-bool anyOpen(const Session& session) {
-  return !session.scenes.entries().empty();
-}
 
-constexpr std::array kRows = {
+constexpr std::array kBakeRows = {
     Command{.id = "bake",
             .title = "Bake",
             .menu = "Bake",
@@ -136,7 +133,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> bakeCommands() {
-  return kRows;
+  return kBakeRows;
 }
 
 }  // namespace lambent::editor

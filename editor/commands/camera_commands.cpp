@@ -47,7 +47,7 @@ bool previews(const Session& session) {
   return session.preferences.camera_preview;
 }
 
-constexpr std::array kRows = {
+constexpr std::array kCameraRows = {
     separator("View"),
     Command{.id = "look-through",
             .title = "Look through this camera",
@@ -87,7 +87,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> cameraCommands() {
-  return kRows;
+  return kCameraRows;
 }
 
 }  // namespace lambent::editor

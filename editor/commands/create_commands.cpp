@@ -56,7 +56,7 @@ Answer light(Session& session, Words words) {
   const std::string word(scene::kLightKindWords[static_cast<std::size_t>(Kind)]);
   return create(session, newLight(session, Kind, freshName(session, word), *at));
 }
-Answer camera(Session& session, Words words) {
+Answer createCamera(Session& session, Words words) {
   return put(session, cameraEntity(freshName(session, "camera")), words);
 }
 Answer empty(Session& session, Words words) {
@@ -75,26 +75,26 @@ constexpr Command row(const char* id, const char* title, const char* help,
           .run = run};
 }
 
-using Kind = scene::LocalLightComponent::Kind;
+using LampKind = scene::LocalLightComponent::Kind;
 
-constexpr std::array kRows = {
+constexpr std::array kCreateRows = {
     row("create-point", "Point light", "A lamp without size, in front of what the camera sees",
-        &light<Kind::Point>),
+        &light<LampKind::Point>),
     row("create-spot", "Spot light", "A lamp that shines along its -Z, at what the camera sees",
-        &light<Kind::Spot>),
+        &light<LampKind::Spot>),
     row("create-directional", "Directional light", "Light from one direction, without end",
-        &light<Kind::Directional>),
-    row("create-sphere", "Sphere of light", "A lamp with a radius: soft shadows", &light<Kind::Sphere>),
-    row("create-disc", "Disc of light", "A flat lamp that shines to one side", &light<Kind::Disc>),
+        &light<LampKind::Directional>),
+    row("create-sphere", "Sphere of light", "A lamp with a radius: soft shadows", &light<LampKind::Sphere>),
+    row("create-disc", "Disc of light", "A flat lamp that shines to one side", &light<LampKind::Disc>),
     separator("Create"),
-    row("create-camera", "Camera", "A camera that stands in the world", &camera),
+    row("create-camera", "Camera", "A camera that stands in the world", &createCamera),
     row("create-empty", "Empty", "A place to hang other things from", &empty),
 };
 
 }  // namespace
 
 std::span<const Command> createCommands() {
-  return kRows;
+  return kCreateRows;
 }
 
 }  // namespace lambent::editor

@@ -133,9 +133,9 @@ Answer rename(Session& session, Words words) {
   return nullptr;
 }
 
-constexpr std::size_t kMany = 1000;
+constexpr std::size_t kMostSelected = 1000;
 
-constexpr std::array kRows = {
+constexpr std::array kEditRows = {
     Command{.id = "undo",
             .title = "Undo",
             .menu = "Edit",
@@ -227,14 +227,14 @@ constexpr std::array kRows = {
         .help = "Select by name, id (id:0123...) or search (type:light); the first named is the primary one",
         .arguments = "NAME...",
         .least_words = 1,
-        .most_words = kMany,
+        .most_words = kMostSelected,
         .run = &select},
 };
 
 }  // namespace
 
 std::span<const Command> editCommands() {
-  return kRows;
+  return kEditRows;
 }
 
 }  // namespace lambent::editor

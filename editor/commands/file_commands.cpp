@@ -62,13 +62,9 @@ Answer quit(Session& session, Words) {
   return nullptr;
 }
 
-bool anyOpen(const Session& session) {
-  return !session.scenes.entries().empty();
-}
+constexpr std::size_t kMostFiles = 1000;
 
-constexpr std::size_t kMany = 1000;
-
-constexpr std::array kRows = {
+constexpr std::array kFileRows = {
     Command{.id = "new",
             .title = "New world",
             .menu = "File",
@@ -83,7 +79,7 @@ constexpr std::array kRows = {
             .help = "Open scenes (.gltf, .glb), bundles (.lmb.glb) or a world (.json)",
             .arguments = "FILE...",
             .least_words = 1,
-            .most_words = kMany,
+            .most_words = kMostFiles,
             .run = &open},
     Command{.id = "watch",
             .title = "Open and watch a folder...",
@@ -134,7 +130,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> fileCommands() {
-  return kRows;
+  return kFileRows;
 }
 
 }  // namespace lambent::editor

@@ -88,7 +88,7 @@ constexpr Command withWords(const char* arguments, std::size_t most, Command com
   return command;
 }
 
-constexpr std::array kRows = {
+constexpr std::array kHandleRows = {
     separator("View"),
     toggle("View", "move", "Move", "W", "Handles that move what is selected", &mode<GizmoMode::Move>,
            &isMode<GizmoMode::Move>),
@@ -111,7 +111,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> handleCommands() {
-  return kRows;
+  return kHandleRows;
 }
 
 }  // namespace lambent::editor

@@ -42,7 +42,7 @@ Answer commands(Session&, Words) {
   return rows;
 }
 
-constexpr std::array kRows = {
+constexpr std::array kHelpRows = {
     Command{.id = "shortcuts",
             .title = "Keys and pointer",
             .menu = "Help",
@@ -76,7 +76,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> helpCommands() {
-  return kRows;
+  return kHelpRows;
 }
 
 }  // namespace lambent::editor

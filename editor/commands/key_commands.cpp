@@ -113,7 +113,7 @@ Answer qualityCosts(Session& session, Words) {
   return json{{"qualities", rows}, {"width", size.width}, {"height", size.height}};
 }
 
-constexpr std::array kRows = {
+constexpr std::array kKeyRows = {
     scripted("keys", "The key lights that were found: where they stand, how strong they are", "", 0, 0,
              &keys),
     scripted("move-key", "A key light stands there, in degrees of the world", "NUMBER AZ EL", 3, 3, &moveKey),
@@ -130,7 +130,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> keyCommands() {
-  return kRows;
+  return kKeyRows;
 }
 
 }  // namespace lambent::editor

@@ -92,7 +92,7 @@ Answer movePanel(Session& session, Words words) {
   return nullptr;
 }
 
-constexpr std::array kRows = {
+constexpr std::array kLayoutRows = {
     toggle("Window", "view-only", "Picture only", "F11",
            "The view fills the window; again, all panels are back", &viewOnly, &isViewOnly),
     separator("Window"),
@@ -127,7 +127,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> layoutCommands() {
-  return kRows;
+  return kLayoutRows;
 }
 
 }  // namespace lambent::editor

@@ -112,10 +112,10 @@ Answer exposure(Session& session, Words words) {
   return nullptr;
 }
 
-constexpr std::size_t kMany = 100;
+constexpr std::size_t kMostLights = 100;
 
-constexpr std::array kRows = {
-    scripted("lights", "The lights from infinity, in place of those there are", "LIGHT...", 1, kMany,
+constexpr std::array kLightRows = {
+    scripted("lights", "The lights from infinity, in place of those there are", "LIGHT...", 1, kMostLights,
              &lights),
     scripted("add-light", "One more light from infinity", "LIGHT", 1, 1, &addLight),
     scripted("remove-light", "Take one away, counted from 0", "NUMBER", 1, 1, &removeLight),
@@ -130,7 +130,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> lightCommands() {
-  return kRows;
+  return kLightRows;
 }
 
 }  // namespace lambent::editor

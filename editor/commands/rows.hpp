@@ -69,6 +69,10 @@ constexpr Command formerly(const char* id, Command command) {
   return command;
 }
 
+inline bool anyOpen(const Session& session) {
+  return !session.scenes.entries().empty();
+}
+
 inline Answer answerOf(const Result<void>& done, nlohmann::json answer = nullptr) {
   if (!done) return failAgain(done.error());
   return answer;

@@ -60,12 +60,12 @@ Result<scene::Value> readValue(const scene::FieldInfo& field, Words words) {
 }
 
 // Takes "Light.strength", a field of the selection, or "ball:Light.strength", a field of a named entity.
-struct Place {
+struct FieldPlace {
   std::vector<ecs::Entity> entities;
   const scene::FieldInfo* field = nullptr;
 };
-Result<Place> placeOf(Session& session, const std::string& word) {
-  Place place;
+Result<FieldPlace> fieldPlaceOf(Session& session, const std::string& word) {
+  FieldPlace place;
   const std::size_t colon = word.rfind(':'), dot = word.rfind('.');
   if (dot == std::string::npos)
     return fail(word, "is no field", "give COMPONENT.FIELD or NAME:COMPONENT.FIELD");
@@ -86,7 +86,7 @@ Result<Place> placeOf(Session& session, const std::string& word) {
 }
 
 Answer set(Session& session, Words words) {
-  const auto place = placeOf(session, words[0]);
+  const auto place = fieldPlaceOf(session, words[0]);
   if (!place) return failAgain(place.error());
   const auto value = readValue(*place->field, words.subspan(1));
   if (!value) return failAgain(value.error());
@@ -97,7 +97,7 @@ Answer set(Session& session, Words words) {
 }
 
 Answer get(Session& session, Words words) {
-  const auto place = placeOf(session, words[0]);
+  const auto place = fieldPlaceOf(session, words[0]);
   if (!place) return failAgain(place.error());
   const ecs::Entity entity = place->entities.back();
   const scene::ComponentInfo* component = scene::findComponent(place->field->component);
@@ -253,13 +253,13 @@ Answer plan(Session& session, Words) {
   return json{{"ready", true}, {"effects", effects}, {"groups", (*made)->plan.groups.size()}};
 }
 
-constexpr std::size_t kMany = 16;
+constexpr std::size_t kMostWords = 16;
 
-constexpr std::array kRows = {
+constexpr std::array kStateRows = {
     scripted("state", "Everything at a glance", "", 0, 0, &state),
     scripted("inspect", "All components of an entity", "[NAME]", 0, 1, &inspect),
     scripted("get", "A field of what is selected or named", "[NAME:]COMPONENT.FIELD", 1, 1, &get),
-    scripted("set", "The same, given a value", "[NAME:]COMPONENT.FIELD VALUE...", 2, kMany, &set),
+    scripted("set", "The same, given a value", "[NAME:]COMPONENT.FIELD VALUE...", 2, kMostWords, &set),
     scripted("tree", "What the scene tree shows, searched", "[SEARCH]", 0, 1, &tree),
     scripted("reference", "The reference beside: samples, difference", "", 0, 0, &reference),
     scripted("passes", "Passes of the last frame, their times and why they ran", "", 0, 0, &passes),
@@ -270,7 +270,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> stateCommands() {
-  return kRows;
+  return kStateRows;
 }
 
 }  // namespace lambent::editor

@@ -58,7 +58,7 @@ Answer frameAll(Session& session, Words) {
   session.viewing.frame(session.document, {});
   return nullptr;
 }
-Answer camera(Session& session, Words words) {
+Answer setCamera(Session& session, Words words) {
   return answerOf(session.viewing.setCamera(session.document, words[0]));
 }
 Answer ortho(Session& session, Words) {
@@ -129,7 +129,7 @@ Answer time(Session& session, Words words) {
 
 using O = frame::OverlayOptions;
 
-constexpr std::array kRows = {
+constexpr std::array kViewRows = {
     toggle("View", "view-final", "Final", "1", "The light as it is", &show<SurfaceView::Final>,
            &shows<SurfaceView::Final>),
     toggle("View", "view-irradiance", "Irradiance", "2", "What arrives at surfaces, without their own color",
@@ -196,7 +196,7 @@ constexpr std::array kRows = {
             .run = &frameAll},
     toggle("View", "orthographic", "Orthographic", "O", "A view without perspective", &ortho, &isOrtho),
     scripted("camera", "Look from there: orbit:AZ,EL,DIST,FOV, pose:... or a camera's name", "CAMERA", 1, 1,
-             &camera),
+             &setCamera),
     toggle("View", "play", "Play animations", "Space", "Animations run", &play, &plays),
     scripted("time", "Where animations stand", "SECONDS", 1, 1, &time),
 };
@@ -204,7 +204,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const Command> viewCommands() {
-  return kRows;
+  return kViewRows;
 }
 
 }  // namespace lambent::editor

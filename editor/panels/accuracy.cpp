@@ -15,11 +15,11 @@ namespace lambent::editor {
 
 namespace {
 
-double milliseconds(const frame::SettingPoint& point) {
+double frameMilliseconds(const frame::SettingPoint& point) {
   return point.gpu_ms > 0.0 ? point.gpu_ms : point.cpu_ms;
 }
 
-std::string errorText(double error) {
+std::string percentText(double error) {
   return error <= 0.0 ? "none" : fmt::format("{:.2g} %", 100.0 * error);
 }
 
@@ -29,8 +29,8 @@ void drawSweep(const frame::SettingRow& row, const std::vector<frame::SettingPoi
   std::string table = fmt::format("{:>10}  {:>10}  {:>8}\n", row.name, "error", "ms");
   for (const frame::SettingPoint& point : points) {
     errors.push_back(static_cast<float>(100.0 * point.error));
-    table += fmt::format("{:>10.4g}  {:>10}  {:>8.2f}\n", point.value, errorText(point.error),
-                         milliseconds(point));
+    table += fmt::format("{:>10.4g}  {:>10}  {:>8.2f}\n", point.value, percentText(point.error),
+                         frameMilliseconds(point));
   }
   ImGui::PlotLines("##sweep", errors.data(), static_cast<int>(errors.size()), 0, nullptr, 0.0f, FLT_MAX,
                    ImVec2(em(8.7f), em(1.6f)));
@@ -102,11 +102,11 @@ void drawAccuracy(Session& session, Marks& marks) {
     drawSetting(session, marks, row);
     const bool known = found != session.settings.rows().end() && !found->second.cost.now.passes.empty();
     ImGui::TableNextColumn();
-    if (known) ImGui::TextUnformatted(errorText(found->second.cost.now.error).c_str());
+    if (known) ImGui::TextUnformatted(percentText(found->second.cost.now.error).c_str());
     ImGui::TableNextColumn();
-    if (known) ImGui::Text("%.2f", milliseconds(found->second.cost.now));
+    if (known) ImGui::Text("%.2f", frameMilliseconds(found->second.cost.now));
     ImGui::TableNextColumn();
-    if (known) ImGui::Text("%.2f", milliseconds(found->second.cost.finest));
+    if (known) ImGui::Text("%.2f", frameMilliseconds(found->second.cost.finest));
     ImGui::TableNextColumn();
     if (found != session.settings.rows().end() && !found->second.sweep.empty()) {
       drawSweep(row, found->second.sweep);

@@ -33,7 +33,7 @@ ImVec2 sizeOfText(const std::string& text) {
 }
 
 // Fills the rectangle with the middle of the picture.
-void drawPicture(const AssetPictures::Picture& picture, const ImVec2& low, const ImVec2& high) {
+void drawAssetPicture(const AssetPictures::Picture& picture, const ImVec2& low, const ImVec2& high) {
   ImVec2 cut(0.0f, 0.0f);
   if (picture.aspect > kShape)
     cut.x = 0.5f * (1.0f - kShape / picture.aspect);
@@ -45,7 +45,7 @@ void drawPicture(const AssetPictures::Picture& picture, const ImVec2& low, const
 }
 
 // Writes a word over the lower left corner of a picture.
-void drawSign(const std::string& word, const ImVec2& corner) {
+void drawCornerSign(const std::string& word, const ImVec2& corner) {
   const ImVec2 text = sizeOfText(word);
   const ImVec2 at(corner.x + em(0.25f), corner.y - text.y - em(0.1f));
   ImDrawList* canvas = ImGui::GetWindowDrawList();
@@ -66,9 +66,9 @@ bool drawAssetTile(Session& session, const Asset& asset, float width_ems, bool s
   const AssetPictures::Picture& picture = session.asset_pictures.of(asset);
   const std::string kind(kindWord(asset.kind));
   if (picture.texture != 0) {
-    drawPicture(picture, low, high);
+    drawAssetPicture(picture, low, high);
     // A picture shows by itself that it is an environment map.
-    if (asset.kind != AssetKind::EnvironmentMap) drawSign(kind, ImVec2(low.x, high.y));
+    if (asset.kind != AssetKind::EnvironmentMap) drawCornerSign(kind, ImVec2(low.x, high.y));
   } else {
     canvas->AddRectFilled(low, high, colorOf(asset.kind));
     const std::string words = ellipsized(picture.error.empty() ? kind : "cannot be read", width - em(0.4f));

@@ -21,7 +21,7 @@ void tellHelp(const baker::OptionRow& row) {
 }
 
 // Returns true when another word was chosen or typed.
-bool editWord(Marks& marks, const baker::OptionRow& row, const std::string& mark, std::string& word) {
+bool editOptionWord(Marks& marks, const baker::OptionRow& row, const std::string& mark, std::string& word) {
   ImGui::SetNextItemWidth(em(10.7f));
   if (!row.only_words) {
     const bool changed = ImGui::InputText(
@@ -58,7 +58,7 @@ void drawBakeOptions(Session& session, Marks& marks, std::size_t scene) {
     ImGui::TextUnformatted(name.c_str());
     tellHelp(row);
     ImGui::TableNextColumn();
-    if (editWord(marks, row, "bake-option." + name, word)) {
+    if (editOptionWord(marks, row, "bake-option." + name, word)) {
       const std::array words = {name, word, std::to_string(scene)};
       runOrLog(session, "bake-option", words);
     }

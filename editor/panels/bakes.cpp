@@ -56,7 +56,7 @@ std::string newsOf(const baker::JobState& job) {
 }
 
 // Returns how wrong the pictures of the shown bundle are by what its bake measured, in percent.
-std::string errorText(const Session& session, const SceneEntry& entry) {
+std::string pictureErrorText(const Session& session, const SceneEntry& entry) {
   if (!entry.slot) return {};
   double worst = -1.0;
   for (const bundle::Group& group : session.stage.world().description(*entry.slot).groups)
@@ -114,7 +114,7 @@ bool drawScene(Session& session, Marks& marks, std::size_t i) {
   if (working) drawProgress(*job);
   marks.put(mark + "progress");
   std::string news = job ? newsOf(*job) : std::string();
-  if (const std::string error = errorText(session, entry); !working && !error.empty())
+  if (const std::string error = pictureErrorText(session, entry); !working && !error.empty())
     news = news.empty() ? error : error + "; " + news;
   fittedText(news);
   ImGui::TableNextColumn();

@@ -12,7 +12,7 @@ namespace lambent::editor {
 
 namespace {
 
-void milliseconds(double value) {
+void drawMilliseconds(double value) {
   if (value < 0.0)
     ImGui::TextDisabled("-");
   else
@@ -41,9 +41,9 @@ void drawPasses(const std::vector<gpu::PassTime>& passes) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(pass.name.c_str());
     ImGui::TableNextColumn();
-    milliseconds(pass.cpu_ms);
+    drawMilliseconds(pass.cpu_ms);
     ImGui::TableNextColumn();
-    milliseconds(pass.gpu_ms);
+    drawMilliseconds(pass.gpu_ms);
     ImGui::TableNextColumn();
     ImGui::Text("%llu", static_cast<unsigned long long>(pass.counters.dispatches));
     ImGui::TableNextColumn();
@@ -60,9 +60,9 @@ void drawPasses(const std::vector<gpu::PassTime>& passes) {
   ImGui::TableNextColumn();
   ImGui::TextUnformatted("all");
   ImGui::TableNextColumn();
-  milliseconds(cpu);
+  drawMilliseconds(cpu);
   ImGui::TableNextColumn();
-  milliseconds(gpu);
+  drawMilliseconds(gpu);
   ImGui::EndTable();
 }
 

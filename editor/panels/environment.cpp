@@ -8,6 +8,7 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/asset_tile.hpp"
+#include "editor/panels/fields.hpp"
 #include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/session/environment_map_shelf.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 constexpr float kLabelEms = 5.0f;  // room for the labels behind widgets
 
-void run(Session& session, const char* command, std::initializer_list<std::string> words) {
+void runWithWords(Session& session, const char* command, std::initializer_list<std::string> words) {
   const std::vector<std::string> list(words);
   runOrLog(session, command, list);
 }
@@ -36,12 +37,6 @@ std::string sunWord(const spec::SunLight& sun) {
 }
 std::string constantWord(const glm::vec3& radiance) {
   return fmt::format("constant:{:.7g},{:.7g},{:.7g}", radiance.r, radiance.g, radiance.b);
-}
-
-// Makes one step of the history from a drag of a widget.
-void asOneStep(Session& session, const char* name) {
-  if (ImGui::IsItemActivated()) session.history.beginDrag(name);
-  if (ImGui::IsItemDeactivated()) session.history.endDrag();
 }
 
 // Edits radiance as a colour and a strength, because suns are far brighter than a colour picker's range.
@@ -102,7 +97,7 @@ void drawLight(Session& session, Marks& marks, std::size_t index, const std::str
       title.c_str(), ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap);
   marks.put(mark);
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - em(1.2f));
-  if (ImGui::SmallButton("x")) run(session, "remove-light", {std::to_string(index)});
+  if (ImGui::SmallButton("x")) runWithWords(session, "remove-light", {std::to_string(index)});
   marks.put(mark + ".remove");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Take this light away");
   if (open && light) {
@@ -125,12 +120,12 @@ void drawShelf(Session& session, Marks& marks) {
   for (const Asset& environment_map : session.environment_maps.environment_maps()) {
     if (std::exchange(follows, true)) sameLineIfFits(em(kTileEms));
     if (drawAssetTile(session, environment_map, kTileEms, /*selected=*/false))
-      run(session, "environment-map", {environment_map.file.string()});
+      runWithWords(session, "environment-map", {environment_map.file.string()});
     marks.put("environment-map." + environment_map.file.stem().string());
     if (ImGui::IsItemHovered())
       tooltip(describe(session, environment_map) + "\nClick: the light from outside is this environment map");
   }
-  if (ImGui::Button("Add folder of environment maps...")) run(session, "environment-map-folder", {});
+  if (ImGui::Button("Add folder of environment maps...")) runWithWords(session, "environment-map-folder", {});
   marks.put("environment.add-folder");
 }
 
@@ -164,13 +159,13 @@ void drawEnvironment(Session& session, Marks& marks) {
   ImGui::Separator();
   const std::vector<std::string> lights = session.document.world().lights;
   for (std::size_t i = 0; i < lights.size(); ++i) drawLight(session, marks, i, lights[i]);
-  if (ImGui::Button("Add sun")) run(session, "add-light", {"sun:35,45,6,30,28,25"});
+  if (ImGui::Button("Add sun")) runWithWords(session, "add-light", {"sun:35,45,6,30,28,25"});
   marks.put("environment.add-sun");
   sameLineIfFits("Add constant");
-  if (ImGui::Button("Add constant")) run(session, "add-light", {"constant:0.3,0.35,0.45"});
+  if (ImGui::Button("Add constant")) runWithWords(session, "add-light", {"constant:0.3,0.35,0.45"});
   marks.put("environment.add-constant");
   sameLineIfFits("Add environment map...");
-  if (ImGui::Button("Add environment map...")) run(session, "environment-map", {});
+  if (ImGui::Button("Add environment map...")) runWithWords(session, "environment-map", {});
   marks.put("environment.add-map");
   drawKeyLights(session, marks);
   ImGui::PopItemWidth();

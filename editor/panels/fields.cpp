@@ -29,10 +29,6 @@ using scene::ComponentInfo;
 using scene::FieldInfo;
 using scene::Value;
 
-void checked(Session& session, const Result<void>& done) {
-  if (!done) session.log.error(done.error());
-}
-
 // Returns the value without a sign where it is shown as zero.
 double unsignedZero(double value, int digits) {
   return std::abs(value) < 0.5 * std::pow(10.0, -digits) ? 0.0 : value;
@@ -78,7 +74,7 @@ const char* formatOfThree(const std::vector<double>& numbers, float width, int d
 }
 
 // A field of the selected entities, the primary last.
-struct Row {
+struct FieldRow {
   const FieldInfo& field;
   std::span<const ecs::Entity> entities;
   std::vector<Value> values;
@@ -90,7 +86,7 @@ struct Row {
 
 // Returns the values after an edit of one of their numbers. It is relative to the values at the beginning of
 // the drag.
-std::vector<Value> valuesAfter(Session& session, const Row& row, std::size_t channel,
+std::vector<Value> valuesAfter(Session& session, const FieldRow& row, std::size_t channel,
                                const NumberEdit& edit) {
   FieldEditState& state = session.field_edit;
   std::vector<Value> values = row.values;
@@ -109,7 +105,7 @@ std::vector<Value> valuesAfter(Session& session, const Row& row, std::size_t cha
 
 // Edits the numbers of a field, which lie beside each other. Returns the values of all entities if they
 // changed.
-std::optional<std::vector<Value>> editNumbers(Session& session, Marks& marks, const Row& row) {
+std::optional<std::vector<Value>> editNumbers(Session& session, Marks& marks, const FieldRow& row) {
   constexpr std::array kAxes = {".x", ".y", ".z"};
   FieldEditState& state = session.field_edit;
   std::vector<std::vector<double>> numbers;
@@ -147,7 +143,7 @@ std::optional<std::vector<Value>> editNumbers(Session& session, Marks& marks, co
   return after;
 }
 
-bool editWord(const Row& row, scene::Word& word, Marks& marks) {
+bool editFieldWord(const FieldRow& row, scene::Word& word, Marks& marks) {
   const bool open = ImGui::BeginCombo("##value", row.mixed ? kMixedText : word.text.c_str());
   marks.put(row.mark());
   if (!open) return false;
@@ -162,7 +158,7 @@ bool editWord(const Row& row, scene::Word& word, Marks& marks) {
 }
 
 // Edits which measured BRDF replaces a material's reflection, by its name.
-bool editBrdf(const Session& session, const Row& row, std::int32_t& value) {
+bool editBrdf(const Session& session, const FieldRow& row, std::int32_t& value) {
   const auto brdfs =
       measuredBrdfs(session, session.document.registry().get<scene::MaterialComponent>(row.primary()));
   const auto found = std::ranges::find(brdfs, value, &std::pair<std::int32_t, std::string>::first);
@@ -200,7 +196,7 @@ void chooseUnit(Session& session, Marks& marks, ecs::Entity entity) {
 }
 
 // Edits a color of all entities. A dash on the swatch says that they differ.
-bool editColor(const Row& row, glm::vec3& color) {
+bool editColor(const FieldRow& row, glm::vec3& color) {
   constexpr ImGuiColorEditFlags kColor = ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR;
   // Three numbers take the room of a color's swatch where there is little, and mean nothing where they
   // differ.
@@ -218,7 +214,7 @@ bool editColor(const Row& row, glm::vec3& color) {
 }
 
 // Edits a value that is not made of numbers. All entities get the same.
-bool editWhole(Session& session, Marks& marks, const Row& row, Value& value) {
+bool editWhole(Session& session, Marks& marks, const FieldRow& row, Value& value) {
   if (auto* flag = std::get_if<bool>(&value)) {
     ImGui::PushItemFlag(ImGuiItemFlags_MixedValue, row.mixed);
     const bool changed = ImGui::Checkbox("##value", flag);
@@ -226,7 +222,7 @@ bool editWhole(Session& session, Marks& marks, const Row& row, Value& value) {
     if (changed && row.mixed) *flag = true;
     return changed;
   }
-  if (auto* word = std::get_if<scene::Word>(&value)) return editWord(row, *word, marks);
+  if (auto* word = std::get_if<scene::Word>(&value)) return editFieldWord(row, *word, marks);
   if (auto* whole = std::get_if<std::int32_t>(&value)) return editBrdf(session, row, *whole);
   if (auto* color = std::get_if<glm::vec3>(&value)) return editColor(row, *color);
   auto* text = std::get_if<std::string>(&value);
@@ -236,7 +232,7 @@ bool editWhole(Session& session, Marks& marks, const Row& row, Value& value) {
 }
 
 // Draws the widget, and returns the values of all entities if it changed them.
-std::optional<std::vector<Value>> editValues(Session& session, Marks& marks, const Row& row) {
+std::optional<std::vector<Value>> editValues(Session& session, Marks& marks, const FieldRow& row) {
   const float unit = isStrengthOfLight(row.field) ? em(4.6f) + ImGui::GetStyle().ItemInnerSpacing.x : 0.0f;
   ImGui::SetNextItemWidth(
       std::min(-ImGui::GetFrameHeight() - ImGui::GetStyle().ItemInnerSpacing.x - unit, -1.0f));
@@ -272,15 +268,15 @@ void drawReset(Session& session, Marks& marks, const FieldInfo& field,
     return;
   ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
   if (ImGui::SmallButton("o"))
-    checked(session, resetToDefault(session.document, session.history, baseline, entities, field.component,
-                                    field.name));
+    logRefusal(session, resetToDefault(session.document, session.history, baseline, entities, field.component,
+                                       field.name));
   marks.put(fmt::format("inspector.reset.{}.{}", field.component, field.name));
   tooltip("Back to " + scene::valueText(defaultValue(session.document, baseline, entities.back(), field)));
 }
 
 void drawField(Session& session, Marks& marks, const FieldInfo& field,
                std::span<const ecs::Entity> entities) {
-  Row row{field, entities, {}};
+  FieldRow row{field, entities, {}};
   for (const ecs::Entity entity : entities)
     row.values.push_back(field.get(session.document.registry(), entity));
   row.mixed = std::ranges::any_of(
@@ -297,7 +293,7 @@ void drawField(Session& session, Marks& marks, const FieldInfo& field,
     std::vector<FieldEdit> edits;
     for (std::size_t i = 0; i < entities.size(); ++i)
       edits.push_back({entities[i], field.component, field.name, (*after)[i]});
-    checked(session, session.history.setFields(edits));
+    logRefusal(session, session.history.setFields(edits));
   }
   // Tab goes from one number of the field to the next, which begins a step of its own.
   if (deactivated && !activated) session.history.endDrag();
@@ -321,6 +317,15 @@ void beginFieldRow(std::string_view label, std::string_view help) {
   ImGui::AlignTextToFramePadding();
   fittedText(label, help);
   ImGui::TableNextColumn();
+}
+
+void asOneStep(Session& session, const char* name) {
+  if (ImGui::IsItemActivated()) session.history.beginDrag(name);
+  if (ImGui::IsItemDeactivated()) session.history.endDrag();
+}
+
+void logRefusal(Session& session, const Result<void>& done) {
+  if (!done) session.log.error(done.error());
 }
 
 void drawFields(Session& session, Marks& marks, const ComponentInfo& component,

@@ -21,4 +21,9 @@ bool beginFieldTable(const char* id, float labels = 0.38f);
 // Begins a row: draws its label, and goes to its value.
 void beginFieldRow(std::string_view label, std::string_view help);
 
+// Makes one step of the history from a drag of the widget that was drawn last.
+void asOneStep(Session& session, const char* name);
+// Logs why an edit was refused, if it was.
+void logRefusal(Session& session, const Result<void>& done);
+
 }  // namespace lambent::editor

@@ -20,10 +20,6 @@ namespace {
 
 using scene::ComponentInfo;
 
-void checked(Session& session, const Result<void>& done) {
-  if (!done) session.log.error(done.error());
-}
-
 bool allCreated(const Session& session, std::span<const ecs::Entity> entities) {
   return std::ranges::all_of(entities, [&](ecs::Entity entity) { return session.document.created(entity); });
 }
@@ -40,15 +36,15 @@ void drawComponentMenu(Session& session, const ComponentInfo& component,
   const char* clip = ImGui::GetClipboardText();
   const Clip held = peekClip(clip ? clip : "");
   if (ImGui::MenuItem("Paste", nullptr, false, held.kind == Pasted::Component))
-    checked(session, pasteComponent(session.document, session.history, entities, clip));
+    logRefusal(session, pasteComponent(session.document, session.history, entities, clip));
   if (ImGui::MenuItem("Reset"))
-    checked(session, resetToDefault(session.document, session.history, session.changes.baseline(), entities,
-                                    component.name));
+    logRefusal(session, resetToDefault(session.document, session.history, session.changes.baseline(),
+                                       entities, component.name));
   if (component.removable && allCreated(session, entities) && ImGui::MenuItem("Remove")) {
     session.history.begin(
         fmt::format("removal of {} from {}", component.name, entitiesName(session.document, entities)));
     for (const ecs::Entity entity : entities)
-      checked(session, session.history.removeComponent(entity, component.name));
+      logRefusal(session, session.history.removeComponent(entity, component.name));
     session.history.commit();
   }
   ImGui::EndPopup();
@@ -84,7 +80,7 @@ void drawAdd(Session& session, Marks& marks, std::span<const ecs::Entity> select
     if (ImGui::MenuItem(name.c_str())) {
       session.history.begin(fmt::format("{} of {}", name, entitiesName(session.document, lacking)));
       for (const ecs::Entity entity : lacking)
-        checked(session, session.history.addComponent(entity, component.name));
+        logRefusal(session, session.history.addComponent(entity, component.name));
       session.history.commit();
     }
     marks.put("inspector.add." + name);

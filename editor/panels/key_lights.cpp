@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "editor/panels/fields.hpp"
 #include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/ui/fitting.hpp"
@@ -14,16 +15,6 @@
 namespace lambent::editor {
 
 namespace {
-
-// Makes one step of the history from a drag of a widget.
-void asOneStep(Session& session, const char* name) {
-  if (ImGui::IsItemActivated()) session.history.beginDrag(name);
-  if (ImGui::IsItemDeactivated()) session.history.endDrag();
-}
-
-void tell(Session& session, const Result<void>& done) {
-  if (!done) session.log.error(done.error());
-}
 
 void swatch(const glm::vec3& radiance) {
   const float peak = std::max({radiance.r, radiance.g, radiance.b, 1e-6f});
@@ -69,7 +60,7 @@ void drawTable(Session& session, Marks& marks, const std::vector<KeyLight>& keys
   ImGui::EndTable();
 }
 
-void drawFields(Session& session, Marks& marks, std::size_t index, const KeyLight& key) {
+void drawKeyLight(Session& session, Marks& marks, std::size_t index, const KeyLight& key) {
   const std::string mark = fmt::format("key.{}", index);
   float azimuth = key.azimuth_deg, elevation = key.elevation_deg;
   HeldNumber& held = session.field_edit.number;
@@ -84,7 +75,8 @@ void drawFields(Session& session, Marks& marks, std::size_t index, const KeyLigh
   asOneStep(session, "height of key light");
   marks.put(mark + ".elevation");
   if (moved)
-    tell(session, moveKeyLight(session, index, spec::directionFromAzimuthElevation(azimuth, elevation)));
+    logRefusal(session,
+               moveKeyLight(session, index, spec::directionFromAzimuthElevation(azimuth, elevation)));
   if (!key.in_map) {
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextDisabled("Strength and color are those of %s, above.", key.source().c_str());
@@ -101,9 +93,9 @@ void drawFields(Session& session, Marks& marks, std::size_t index, const KeyLigh
   changed |= ImGui::ColorEdit3("tint##key", &tint.x, ImGuiColorEditFlags_Float);
   asOneStep(session, "color of key light");
   marks.put(mark + ".tint");
-  if (changed) tell(session, dimKeyLight(session, index, strength * glm::max(tint, 0.0f)));
+  if (changed) logRefusal(session, dimKeyLight(session, index, strength * glm::max(tint, 0.0f)));
   if (!key.edited) return;
-  if (ImGui::Button("As found")) tell(session, resetKeyLights(session, index));
+  if (ImGui::Button("As found")) logRefusal(session, resetKeyLights(session, index));
   marks.put(mark + ".reset");
 }
 
@@ -123,7 +115,7 @@ void drawKeyLights(Session& session, Marks& marks) {
   drawTable(session, marks, keys);
   std::optional<std::size_t>& at_hand = session.viewing.key_at_hand;
   if (at_hand && *at_hand >= keys.size()) at_hand.reset();
-  if (at_hand) drawFields(session, marks, *at_hand, keys[*at_hand]);
+  if (at_hand) drawKeyLight(session, marks, *at_hand, keys[*at_hand]);
 }
 
 }  // namespace lambent::editor

@@ -13,20 +13,20 @@ namespace lambent::editor {
 
 namespace {
 
-using Row = std::pair<const char*, const char*>;
+using KeyRow = std::pair<const char*, const char*>;
 
 constexpr std::array kPointer = {
-    Row{"Middle drag", "Orbit; also Alt and the left button"},
-    Row{"Shift+middle", "Pan"},
-    Row{"Wheel", "Nearer, farther"},
-    Row{"Right drag", "Look around"},
-    Row{"Right+WASDQE", "Fly; with Shift faster"},
-    Row{"Right click", "Menu of the selection"},
-    Row{"Click", "Select; with Ctrl or Shift several"},
-    Row{"Shift+drag", "Finer: numbers, handles"},
-    Row{"Ctrl+drag", "In steps, or freely"},
-    Row{"Alt+drag", "Coarser: numbers"},
-    Row{"Double click", "In the tree: frame"},
+    KeyRow{"Middle drag", "Orbit; also Alt and the left button"},
+    KeyRow{"Shift+middle", "Pan"},
+    KeyRow{"Wheel", "Nearer, farther"},
+    KeyRow{"Right drag", "Look around"},
+    KeyRow{"Right+WASDQE", "Fly; with Shift faster"},
+    KeyRow{"Right click", "Menu of the selection"},
+    KeyRow{"Click", "Select; with Ctrl or Shift several"},
+    KeyRow{"Shift+drag", "Finer: numbers, handles"},
+    KeyRow{"Ctrl+drag", "In steps, or freely"},
+    KeyRow{"Alt+drag", "Coarser: numbers"},
+    KeyRow{"Double click", "In the tree: frame"},
 };
 
 constexpr float kColumnEms = 22.0f, kKeyEms = 7.5f;
@@ -37,7 +37,7 @@ void drawKeys(Session& session, Marks& marks) {
   if (!session.window.keys) return;
   constexpr const char* kTitle = "Keys and pointer";
   if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
-  std::vector<Row> rows;
+  std::vector<KeyRow> rows;
   for (const Command& command : commandList())
     if (*command.shortcut != '\0') rows.emplace_back(command.shortcut, command.title);
   rows.insert(rows.end(), kPointer.begin(), kPointer.end());

@@ -13,8 +13,6 @@ namespace lambent::editor {
 
 namespace {
 
-constexpr float kClickPixels = 4.0f;  // a press that moves no further is a click
-
 void paint(const Painting& painting, const Viewport& viewport) {
   ImDrawList* canvas = ImGui::GetWindowDrawList();
   canvas->PushClipRect(ImVec2(viewport.x, viewport.y),

@@ -33,7 +33,7 @@ void runAfterFields(Session& session, const Command& command) {
   session.window.wanted_commands.emplace_back(command.id);
 }
 
-void drawItem(Session& session, Marks& marks, const Command& command) {
+void drawMenuItem(Session& session, Marks& marks, const Command& command) {
   const bool enabled = !command.enabled || command.enabled(session);
   const bool checked = command.checked && command.checked(session);
   if (ImGui::MenuItem(titleOf(session, command).c_str(), command.shortcut, checked, enabled))
@@ -66,7 +66,7 @@ void runShortcuts(Session& session) {
   }
 }
 
-void drawRecent(Session& session, Marks& marks) {
+void drawRecentMenu(Session& session, Marks& marks) {
   const bool open = ImGui::BeginMenu("Recent", !session.preferences.recent.empty());
   marks.put("menu.recent");
   if (!open) return;
@@ -109,7 +109,7 @@ void drawPanelItems(Session& session, Marks& marks) {
 }
 
 // Draws at the right end what scenes lack, which a click explains in the Bakes panel, and the picture's time.
-void drawStatus(Session& session, Marks& marks) {
+void drawStatusLine(Session& session, Marks& marks) {
   const SceneStatus scenes = worstStatus(session);
   const std::string picture = pictureStatus(session);
   const float gap = em(1.0f), picture_width = ImGui::CalcTextSize(picture.c_str()).x + gap;
@@ -146,14 +146,14 @@ void drawMenus(Session& session, Marks& marks) {
       if (*command.title == '-')
         ImGui::Separator();
       else if (*command.title != '\0')
-        drawItem(session, marks, command);
-      if (std::strcmp(command.id, "open") == 0) drawRecent(session, marks);
+        drawMenuItem(session, marks, command);
+      if (std::strcmp(command.id, "open") == 0) drawRecentMenu(session, marks);
       if (std::strcmp(command.id, "save-layout") == 0) drawSavedLayouts(session, marks);
     }
     if (std::strcmp(menu, "Window") == 0) drawPanelItems(session, marks);
     ImGui::EndMenu();
   }
-  drawStatus(session, marks);
+  drawStatusLine(session, marks);
   ImGui::EndMainMenuBar();
 }
 

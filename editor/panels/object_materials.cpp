@@ -24,7 +24,7 @@ MaterialPictures::Pictures picturesOf(Session& session, ecs::Entity material) {
   return found == session.material_pictures.of.end() ? MaterialPictures::Pictures{} : found->second;
 }
 
-void drawPicture(std::uint32_t picture, float size) {
+void drawThumbnail(std::uint32_t picture, float size) {
   if (picture != 0)
     ImGui::Image(idOf(picture), ImVec2(size, size));
   else
@@ -34,7 +34,7 @@ void drawPicture(std::uint32_t picture, float size) {
 void drawMaterial(Session& session, Marks& marks, ecs::Entity material) {
   const std::string name = session.document.nameOf(material);
   const float height = em(kSwatchEms);
-  drawPicture(picturesOf(session, material).preview, height);
+  drawThumbnail(picturesOf(session, material).preview, height);
   ImGui::SameLine();
   const float select = ImGui::CalcTextSize("Select").x + 3.0f * ImGui::GetStyle().FramePadding.x;
   const std::string shown =
@@ -57,14 +57,14 @@ void drawMaterial(Session& session, Marks& marks, ecs::Entity material) {
 void drawMaterialPictures(Session& session, Marks& marks, ecs::Entity material) {
   const MaterialPictures::Pictures pictures = picturesOf(session, material);
   const float size = em(kPictureEms), right = ImGui::GetWindowContentRegionMax().x + ImGui::GetWindowPos().x;
-  drawPicture(pictures.preview, size);
+  drawThumbnail(pictures.preview, size);
   marks.put("inspector.preview");
   tooltip("The material's factors, without its textures");
   for (const MaterialPictures::Texture& texture : pictures.textures) {
     ImGui::SameLine();
     if (ImGui::GetCursorScreenPos().x + size > right) ImGui::NewLine();
     ImGui::BeginGroup();
-    drawPicture(texture.picture, size);
+    drawThumbnail(texture.picture, size);
     ImGui::EndGroup();
     marks.put("inspector.texture." + std::string(texture.use));
     const std::string pixels =

@@ -19,7 +19,7 @@ bool matches(const Command& command, const std::string& words) {
                     words);
 }
 
-void run(Session& session, const Command& command) {
+void runAndClose(Session& session, const Command& command) {
   session.window.palette = false;
   ImGui::CloseCurrentPopup();
   runOrLog(session, command.id, {});
@@ -57,7 +57,7 @@ void drawPalette(Session& session, Marks& marks) {
     ImGui::TextDisabled("%s   %s", command.menu, command.shortcut);
     first = false;
     if (chosen) {
-      run(session, command);
+      runAndClose(session, command);
       break;
     }
   }

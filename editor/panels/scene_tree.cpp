@@ -35,7 +35,7 @@ void drawLeafSpace() {
   ImGui::Dummy(ImVec2(ImGui::GetFrameHeight(), ImGui::GetFrameHeight()));
 }
 
-void drawSign(std::string_view kind) {
+void drawKindSign(std::string_view kind) {
   for (const KindLook& look : kLooks)
     if (look.kind == kind) {
       ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(look.color), "%s", look.sign);
@@ -60,7 +60,7 @@ void select(Session& session, const std::vector<TreeRow>& rows, const TreeRow& r
 }
 
 // Writes behind the row of a bundle what its picture lacks.
-void drawStatus(Session& session, Marks& marks, const TreeRow& row) {
+void drawBundleStatus(Session& session, Marks& marks, const TreeRow& row) {
   const auto& entries = session.scenes.entries();
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (!entries[i].slot || session.stage.world().instance(*entries[i].slot).root != row.entity) continue;
@@ -84,7 +84,7 @@ bool drawUnshown(Session& session, Marks& marks, std::size_t i) {
   ImGui::PushID(static_cast<int>(i));
   drawLeafSpace();
   ImGui::SameLine(0.0f, 4.0f);
-  drawSign("bundle");
+  drawKindSign("bundle");
   ImGui::SameLine(0.0f, 6.0f);
   ImGui::TextDisabled("%s", entry.id.c_str());
   ImGui::SameLine();
@@ -112,8 +112,8 @@ void drawRowMenu(Session& session, Marks& marks, const TreeRow& row) {
   ImGui::EndPopup();
 }
 
-void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector<TreeRow>& rows,
-             const TreeRow& row) {
+void drawTreeRow(Session& session, Marks& marks, TreeQuery& query, const std::vector<TreeRow>& rows,
+                 const TreeRow& row) {
   ImGui::PushID(static_cast<int>(row.id.value ^ row.id.value >> 32));
   const float indent = em(0.8f) * static_cast<float>(row.depth);
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
@@ -128,7 +128,7 @@ void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector
     drawLeafSpace();
   }
   ImGui::SameLine(0.0f, 4.0f);
-  drawSign(row.kind);
+  drawKindSign(row.kind);
   ImGui::SameLine(0.0f, 6.0f);
   if (!row.matches) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
   const std::string shown = ellipsized(row.name, ImGui::GetContentRegionAvail().x);
@@ -156,7 +156,7 @@ void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector
     }
     ImGui::EndDragDropTarget();
   }
-  if (row.kind == "bundle") drawStatus(session, marks, row);
+  if (row.kind == "bundle") drawBundleStatus(session, marks, row);
   ImGui::PopID();
 }
 
@@ -183,7 +183,7 @@ void drawSceneTree(Session& session, Marks& marks) {
   clipper.Begin(static_cast<int>(rows.size()));
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-      drawRow(session, marks, query, rows, rows[static_cast<std::size_t>(i)]);
+      drawTreeRow(session, marks, query, rows, rows[static_cast<std::size_t>(i)]);
   if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsAnyItemHovered())
     session.selection.clear();
   ImGui::EndChild();

@@ -19,7 +19,7 @@ constexpr std::array kItems = {"frame", "rename", "duplicate", "delete",    "",
 
 constexpr std::array kCameraItems = {"look-through", "camera-to-view"};
 
-void drawItem(Session& session, Marks& marks, const Command& command) {
+void drawContextItem(Session& session, Marks& marks, const Command& command) {
   const bool enabled = !command.enabled || command.enabled(session);
   const bool checked = command.checked && command.checked(session);
   if (ImGui::MenuItem(command.title, command.shortcut, checked, enabled)) runOrLog(session, command.id, {});
@@ -32,13 +32,13 @@ void drawItem(Session& session, Marks& marks, const Command& command) {
 void drawSelectionMenu(Session& session, Marks& marks) {
   const Command* first = findCommand(kCameraItems.front());
   if (first && first->enabled(session)) {
-    for (const char* id : kCameraItems) drawItem(session, marks, *findCommand(id));
+    for (const char* id : kCameraItems) drawContextItem(session, marks, *findCommand(id));
     ImGui::Separator();
   }
   for (const char* id : kItems) {
     const Command* command = findCommand(id);
     if (command)
-      drawItem(session, marks, *command);
+      drawContextItem(session, marks, *command);
     else
       ImGui::Separator();
   }

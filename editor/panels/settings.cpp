@@ -27,7 +27,7 @@ std::string capitalized(std::string_view label) {
   return text;
 }
 
-void drawRow(Session& session, Marks& marks, const frame::SettingRow& row) {
+void drawSettingRow(Session& session, Marks& marks, const frame::SettingRow& row) {
   using Kind = frame::SettingRow::Kind;
   frame::FrameSettings settings = session.stage.settings();
   const double value = row.get(settings);
@@ -143,7 +143,7 @@ void drawSlice(Session& session, Marks& marks) {
 }
 
 void drawRows(Session& session, Marks& marks) {
-  for (const frame::SettingRow& row : frame::settingRows()) drawRow(session, marks, row);
+  for (const frame::SettingRow& row : frame::settingRows()) drawSettingRow(session, marks, row);
   beginFieldRow("Pixels", "Pixels of the picture for each of the window along an edge: less is faster");
   ImGui::SetNextItemWidth(-1.0f);
   if (ImGui::SliderFloat("##pixels", &session.viewing.scale.whole, 0.25f, 2.0f, "%.2f",

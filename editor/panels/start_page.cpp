@@ -29,7 +29,7 @@ void drawTitle(const char* title) {
 }
 
 // Draws a row of pictures; a click opens one.
-void drawAssets(Session& session, Marks& marks, const std::vector<Asset>& assets) {
+void drawAssetTiles(Session& session, Marks& marks, const std::vector<Asset>& assets) {
   for (std::size_t i = 0; i < assets.size(); ++i) {
     if (i > 0) sameLineIfFits(em(kTileEms));
     const bool clicked = drawAssetTile(session, assets[i], kTileEms, /*selected=*/false);
@@ -41,7 +41,7 @@ void drawAssets(Session& session, Marks& marks, const std::vector<Asset>& assets
 
 // Draws what was opened last: files as pictures, and below them the names of folders and of files that are
 // not there any more.
-void drawRecent(Session& session, Marks& marks) {
+void drawRecentFiles(Session& session, Marks& marks) {
   std::vector<std::string> recent = session.preferences.recent;
   recent.resize(std::min(recent.size(), kMostRecent));
   if (recent.empty()) return;
@@ -54,7 +54,7 @@ void drawRecent(Session& session, Marks& marks) {
     else
       others.push_back(file);
   ImGui::PushID("recent");
-  drawAssets(session, marks, assets);
+  drawAssetTiles(session, marks, assets);
   for (const std::string& file : others) {
     const std::string name = std::filesystem::path(file).filename().string();
     ImGui::PushID(file.c_str());
@@ -75,7 +75,7 @@ void drawSamples(Session& session, Marks& marks) {
       if (asset.kind != AssetKind::EnvironmentMap) scenes.push_back(asset);
   if (scenes.empty()) return;
   drawTitle("Samples");
-  drawAssets(session, marks, scenes);
+  drawAssetTiles(session, marks, scenes);
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ void drawStartPage(Session& session, Marks& marks) {
   }
   if (ImGui::Button("Open...")) runOrLog(session, "open", {});
   marks.put("start.open");
-  drawRecent(session, marks);
+  drawRecentFiles(session, marks);
   drawSamples(session, marks);
   content = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y;
   ImGui::EndChild();

@@ -19,7 +19,6 @@ namespace lambent::editor {
 namespace {
 
 constexpr float kBarWidth = 3.0f;
-constexpr float kClickPixels = 4.0f;  // a press that moves no further is a click
 constexpr float kFlyFast = 4.0f;
 
 ImTextureID handleOf(const gpu::Texture& texture) {
@@ -52,7 +51,7 @@ void moveEye(Session& session, const Viewport& viewport, bool hovered) {
   if (any) session.viewing.move(session.document, input);
 }
 
-void drawPicture(const Session& session, const Renderer& renderer, const ImVec2& low, const ImVec2& high) {
+void drawFrame(const Session& session, const Renderer& renderer, const ImVec2& low, const ImVec2& high) {
   ImDrawList* canvas = ImGui::GetWindowDrawList();
   // Row 0 of the frame's pictures is the bottom.
   canvas->AddImage(handleOf(renderer.picture()), low, high, ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
@@ -202,7 +201,7 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
   const float scale = session.viewing.scale.now();
   renderer.update(session, {static_cast<std::uint32_t>(std::max(16.0f, scale * viewport.width)),
                             static_cast<std::uint32_t>(std::max(16.0f, scale * viewport.height))});
-  drawPicture(session, renderer, low, high);
+  drawFrame(session, renderer, low, high);
   const bool over_split = dragSplit(session, marks, low, high);
   const bool over_preview = drawPreview(session, renderer, marks, low, high);
 

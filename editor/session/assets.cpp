@@ -23,7 +23,7 @@ std::optional<AssetKind> kindByName(const std::filesystem::path& file) {
 }
 
 // Looks for the mark of world files in the beginning of the file.
-bool isWorld(const std::filesystem::path& file) {
+bool holdsWorld(const std::filesystem::path& file) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 20;
   std::string head(kMostBytes, '\0');
   std::ifstream in(file, std::ios::binary);
@@ -73,7 +73,7 @@ std::vector<Asset> listAssets(const std::filesystem::path& folder, std::optional
   for (auto at = std::filesystem::directory_iterator(folder, wrong);
        !wrong && at != std::filesystem::directory_iterator(); at.increment(wrong))
     if (auto asset = assetAt(at->path()); asset && (!only || asset->kind == *only))
-      if (asset->kind != AssetKind::World || isWorld(asset->file)) assets.push_back(std::move(*asset));
+      if (asset->kind != AssetKind::World || holdsWorld(asset->file)) assets.push_back(std::move(*asset));
   std::ranges::sort(assets, {}, &Asset::file);
   return assets;
 }

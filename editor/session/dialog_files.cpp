@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostPlaces = 8;
 
-std::vector<DialogPlace> placesOf(const Session& session) {
+std::vector<DialogPlace> dialogPlacesOf(const Session& session) {
   std::vector<DialogPlace> places;
   const auto add = [&](std::string name, const std::filesystem::path& folder) {
     std::error_code ignored;
@@ -60,7 +60,7 @@ std::vector<DialogFile> filesOf(const Dialog& dialog) {
 }  // namespace
 
 void DialogFiles::update(const Session& session, const Dialog& dialog) {
-  if (placed_.renew()) places_ = placesOf(session);
+  if (placed_.renew()) places_ = dialogPlacesOf(session);
   std::error_code ignored;
   if (listed_.renew(dialog.folder, std::filesystem::last_write_time(dialog.folder, ignored), dialog.filter))
     files_ = filesOf(dialog);

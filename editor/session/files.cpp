@@ -13,7 +13,7 @@ namespace lambent::editor {
 
 namespace {
 
-bool isWorld(const std::filesystem::path& path) {
+bool namesWorld(const std::filesystem::path& path) {
   return path.extension() == ".json";
 }
 
@@ -23,7 +23,7 @@ bool Files::asksToOpen(const std::vector<std::filesystem::path>& paths) {
   if (!modified()) return false;
   // A file that cannot be read takes no place, so nothing needs to be asked for it.
   const auto world = std::ranges::find_if(
-      paths, [](const std::filesystem::path& path) { return isWorld(path) && loadWorldFile(path); });
+      paths, [](const std::filesystem::path& path) { return namesWorld(path) && loadWorldFile(path); });
   if (world == paths.end()) return false;
   unlessUnsaved(fmt::format("The world has edits that are not saved. Open {} without them?",
                             world->filename().string()),
@@ -48,7 +48,7 @@ void Files::openAll(const std::vector<std::filesystem::path>& paths) {
 }
 
 Result<void> Files::openNow(const std::filesystem::path& path) {
-  if (isWorld(path)) {
+  if (namesWorld(path)) {
     auto file = loadWorldFile(path);
     if (!file) return failAgain(file.error());
     openWorld(path, std::move(*file));

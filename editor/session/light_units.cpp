@@ -8,7 +8,6 @@ namespace lambent::editor {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::string_view kFlux = "all light that leaves the lamp, lumen",
                            kIntensity = "light into a direction, candela";
 
@@ -17,17 +16,17 @@ double solidAngleOfSpot(const scene::LocalLightComponent& light) {
   const double outer = std::cos(double{light.outer_cone_rad}),
                inner =
                    std::max(outer, std::cos(double{std::min(light.inner_cone_rad, light.outer_cone_rad)}));
-  return 2.0 * kPi * ((1.0 - inner) + (inner - outer) / 3.0);
+  return 2.0 * std::numbers::pi * ((1.0 - inner) + (inner - outer) / 3.0);
 }
 
 }  // namespace
 
 std::vector<LightUnit> unitsOf(const scene::LocalLightComponent& light) {
   using Kind = scene::LocalLightComponent::Kind;
-  const double area = kPi * double{light.radius_m} * double{light.radius_m};
+  const double area = std::numbers::pi * double{light.radius_m} * double{light.radius_m};
   switch (light.kind) {
     case Kind::Point:
-      return {{"cd", kIntensity, 1.0}, {"lm", kFlux, 4.0 * kPi}};
+      return {{"cd", kIntensity, 1.0}, {"lm", kFlux, 4.0 * std::numbers::pi}};
     case Kind::Spot: {
       std::vector<LightUnit> units = {{"cd", kIntensity, 1.0}};
       if (const double angle = solidAngleOfSpot(light); angle > 0.0) units.push_back({"lm", kFlux, angle});
@@ -41,7 +40,7 @@ std::vector<LightUnit> unitsOf(const scene::LocalLightComponent& light) {
       if (!(area > 0.0)) return units;
       units.push_back({"cd", kIntensity, area});
       // A Lambertian surface sends pi times its radiance from each side that shines.
-      units.push_back({"lm", kFlux, kPi * (light.kind == Kind::Sphere ? 4.0 * area : area)});
+      units.push_back({"lm", kFlux, std::numbers::pi * (light.kind == Kind::Sphere ? 4.0 * area : area)});
       return units;
     }
   }

@@ -11,7 +11,7 @@ namespace lambent::editor {
 
 namespace {
 
-std::string nameOf(const baker::BakeRequest& request) {
+std::string sceneNameOf(const baker::BakeRequest& request) {
   return request.scene.filename().string();
 }
 
@@ -26,7 +26,7 @@ void Scenes::findUnfinished() {
   if (unfinished_.empty()) return;
   log_.note(
       unfinished_.size() == 1
-          ? nameOf(unfinished_.front()) +
+          ? sceneNameOf(unfinished_.front()) +
                 ": its bake was cut short in an earlier session; the Bakes panel offers to go on"
           : fmt::format("{} bakes were cut short in an earlier session; the Bakes panel offers to go on",
                         unfinished_.size()));
@@ -57,7 +57,7 @@ void Scenes::takeUnseen(const baker::BakeEvent& event) {
     if (job.id != event.job) continue;
     if (event.kind == baker::BakeEvent::Kind::Failed && job.error) log_.error(*job.error);
     if (event.kind == baker::BakeEvent::Kind::Bundle && event.preview_level == baker::PreviewLevel::Final)
-      log_.note(nameOf(job.request) + ": the bake that was cut short is done");
+      log_.note(sceneNameOf(job.request) + ": the bake that was cut short is done");
   }
 }
 

@@ -10,6 +10,9 @@
 
 namespace lambent {
 
+// The hint of errors about damaged bytes of a bundle.
+inline constexpr const char* kCopyAgain = "copy it again or bake it again";
+
 // Appends 16-bit words as a run of low bytes and a run of high bytes. The entropy coder works on bytes, and
 // the two kinds have different statistics.
 inline void appendSplit(std::vector<std::byte>& out, std::span<const std::uint16_t> words) {

@@ -130,7 +130,7 @@ std::vector<std::byte> encodeBrdfTable(const BrdfTable& table) {
 
 Result<BrdfTable> decodeBrdfTable(std::span<const std::byte> bytes, const std::string& subject) {
   const auto damaged = [&](const char* why) {
-    return fail(subject, std::string("has a damaged BRDF table: ") + why, "copy it again or bake it again");
+    return fail(subject, std::string("has a damaged BRDF table: ") + why, kCopyAgain);
   };
   Front front(bytes);
   const auto head = front.values<std::uint32_t>(6);

@@ -14,8 +14,8 @@ namespace lambent::bundle {
 namespace {
 
 // Levels have at most three positions per triangle, so 16 bits hold every index.
-constexpr std::uint32_t kMaxTriangles = kMaxProxyLevels * kMaxProxyTriangles;
-constexpr std::uint32_t kMaxPositions = 3 * kMaxTriangles;
+constexpr std::uint32_t kMaxTrianglesOfLevels = kMaxProxyLevels * kMaxProxyTriangles;
+constexpr std::uint32_t kMaxPositionsOfLevels = 3 * kMaxTrianglesOfLevels;
 constexpr float kOne = 65535.0f, kByteOne = 255.0f;
 constexpr std::uint32_t kFrontOnly = 0x80;
 
@@ -101,7 +101,7 @@ PatchSurface patchSurfaceOf(const CaptureProxy& proxy) {
 }
 
 std::vector<std::byte> encodeCaptureProxy(const CaptureProxy& proxy) {
-  assert(proxy.triangles.size() <= kMaxTriangles && proxy.positions.size() <= kMaxPositions);
+  assert(proxy.triangles.size() <= kMaxTrianglesOfLevels && proxy.positions.size() <= kMaxPositionsOfLevels);
   std::vector<std::uint32_t> head = {
       static_cast<std::uint32_t>(proxy.levels.size()), static_cast<std::uint32_t>(proxy.positions.size()),
       static_cast<std::uint32_t>(proxy.triangles.size()), static_cast<std::uint32_t>(proxy.entries.size())};
@@ -143,15 +143,14 @@ std::vector<std::byte> encodeCaptureProxy(const CaptureProxy& proxy) {
 Result<CaptureProxy> decodeCaptureProxy(std::span<const std::byte> bytes, std::uint32_t sample_count,
                                         std::uint32_t light_count, const std::string& subject) {
   const auto damaged = [&](const char* why) {
-    return fail(subject, std::string("has a damaged capture proxy: ") + why,
-                "copy it again or bake it again");
+    return fail(subject, std::string("has a damaged capture proxy: ") + why, kCopyAgain);
   };
   Front front(bytes);
   const auto head = front.values<std::uint32_t>(4);
   if (head.size() != 4) return damaged("too short");
   const std::uint32_t levels = head[0], positions = head[1], triangles = head[2], entries = head[3];
-  if (levels == 0 || levels > kMaxProxyLevels || positions > kMaxPositions || triangles > kMaxTriangles ||
-      entries > triangles * kMaxProxyEntries)
+  if (levels == 0 || levels > kMaxProxyLevels || positions > kMaxPositionsOfLevels ||
+      triangles > kMaxTrianglesOfLevels || entries > triangles * kMaxProxyEntries)
     return damaged("more or fewer parts than one may have");
   const auto counts = front.values<std::uint32_t>(levels);
   const auto errors = front.values<float>(levels);

@@ -1,5 +1,6 @@
 #include "runtime/bundle/description_json.hpp"
 
+#include "runtime/base/payload_bytes.hpp"
 #include "runtime/bundle/json_fields.hpp"
 
 namespace lambent::bundle {
@@ -38,7 +39,7 @@ Result<Description> fromJson(const std::string& text, std::uint64_t binary_bytes
   } catch (const JsonFault& fault) {
     return fail(file, fmt::format("is damaged: {}", fault.what()), "bake it again");
   } catch (const Json::exception&) {
-    return fail(file, "is damaged: its JSON cannot be read", "copy it again or bake it again");
+    return fail(file, "is damaged: its JSON cannot be read", kCopyAgain);
   }
 }
 

@@ -4,13 +4,9 @@
 
 #include <zstd.h>
 
+#include "runtime/base/payload_bytes.hpp"
+
 namespace lambent::bundle {
-
-namespace {
-
-constexpr const char* kHint = "copy it again or bake it again";
-
-}  // namespace
 
 std::vector<std::byte> compressZstd(std::span<const std::byte> bytes, int level) {
   std::vector<std::byte> out(ZSTD_compressBound(bytes.size()));
@@ -24,11 +20,11 @@ Result<std::vector<std::byte>> decompressZstd(std::span<const std::byte> bytes, 
                                               const std::string& subject) {
   // The frame says how much it holds: a false raw_length cannot make us allocate what is not there.
   if (ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != raw_length)
-    return fail(subject, "has a damaged payload: it does not hold as many bytes as it says", kHint);
+    return fail(subject, "has a damaged payload: it does not hold as many bytes as it says", kCopyAgain);
   std::vector<std::byte> out(raw_length);
   const std::size_t size = ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(size) || size != raw_length)
-    return fail(subject, "has a damaged payload: it cannot be decompressed", kHint);
+    return fail(subject, "has a damaged payload: it cannot be decompressed", kCopyAgain);
   return out;
 }
 

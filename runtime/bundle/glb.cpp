@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "runtime/base/atomic_file.hpp"
+#include "runtime/base/payload_bytes.hpp"
 
 namespace lambent::bundle {
 
@@ -19,8 +20,6 @@ static_assert(std::endian::native == std::endian::little,
               "GLB is little endian; a big-endian port must swap here");
 
 namespace {
-
-constexpr const char* kCopyAgain = "copy it again or bake it again";
 
 template <std::size_t N>
 std::array<std::uint32_t, N> words(std::span<const std::byte> bytes) {

@@ -15,7 +15,7 @@ namespace {
 
 // This is more than any mesh that fits into a bundle, but little enough that a machine survives the
 // allocation.
-constexpr std::uint32_t kMaxTriangles = 1u << 26;
+constexpr std::uint32_t kMaxMeshTriangles = 1u << 26;
 constexpr std::size_t kHeaderBytes = 11;
 constexpr std::uint8_t kMajor = 2, kMinor = 2;  // version of the bitstream in KHR_draco_mesh_compression
 constexpr std::uint8_t kTriangularMesh = 1, kEdgebreaker = 1;
@@ -62,7 +62,7 @@ Result<void> checkHeader(std::span<const std::byte> bytes, const Primitive& prim
     vertices = readVarint(bytes, at);
   }
   if (!faces || !vertices) return fail(subject, "is truncated", kReencode);
-  if (*faces * 3 != primitive.index_count || *faces > kMaxTriangles)
+  if (*faces * 3 != primitive.index_count || *faces > kMaxMeshTriangles)
     return fail(
         subject,
         fmt::format("has {} triangles where {} indices were announced", *faces, primitive.index_count),

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/base/payload_bytes.hpp"
 #include "runtime/bundle/checksum.hpp"
 #include "runtime/bundle/description_json.hpp"
 #include "runtime/bundle/entropy_coder.hpp"
@@ -36,8 +37,7 @@ Result<void> checkJson(const GlbFile& glb) {
   if (auto read = glb.readBinary(0, std::as_writable_bytes(std::span(stored))); !read) return read;
   const std::uint64_t found = checksum(std::as_bytes(std::span(glb.json())));
   if (stored[0] != found || stored[1] != ~found)
-    return fail(glb.path().string(), "is damaged: its description does not match its checksum",
-                "copy it again or bake it again");
+    return fail(glb.path().string(), "is damaged: its description does not match its checksum", kCopyAgain);
   return {};
 }
 
@@ -80,7 +80,7 @@ Result<std::vector<std::byte>> Reader::readView(std::uint32_t index) const {
   if (auto read = file_->glb.readBinary(view.offset, bytes); !read) return failAgain(read.error());
   if (checksum(bytes) != view.checksum)
     return fail(path().string(), fmt::format("is damaged: byte range {} does not match its checksum", index),
-                "copy it again or bake it again");
+                kCopyAgain);
   bytes.resize(view.length);
   return bytes;
 }

@@ -6,15 +6,8 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
-#include "lambent_debug_embedded.hpp"
-#include "lambent_draws_embedded.hpp"
-#include "lambent_effects_neighborhood_embedded.hpp"
-#include "lambent_evaluate_embedded.hpp"
-#include "lambent_lighting_embedded.hpp"
-#include "lambent_shadows_embedded.hpp"
-#include "lambent_surface_embedded.hpp"
-#include "lambent_tone_map_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
+#include "runtime/debug/shaders.hpp"
+#include "runtime/draws/view_block.hpp"
 
 namespace lambent::frame {
 
@@ -22,23 +15,8 @@ namespace {
 
 using evaluate::TransferValue;
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find,
-                                      &embedded::lambent_draws::find,
-                                      &embedded::lambent_surface::find,
-                                      &embedded::lambent_shadows::find,
-                                      &embedded::lambent_tone_map::find,
-                                      &embedded::lambent_lighting::find,
-                                      &embedded::lambent_evaluate::find,
-                                      &embedded::lambent_transfer::find,
-                                      &embedded::lambent_effects_neighborhood::find};
-
 // These are the uniform locations of data_view.frag.
 constexpr GLint kDrawIndex = 0, kRange = 1, kWireColor = 2;
-
-struct ViewBlock {
-  glm::mat4 view_from_world, clip_from_view;
-  glm::vec4 eye;
-};
 
 struct CodingErrors {
   std::vector<float> of_cells;  // per cell, the larger error of its transfers of distant light
@@ -121,8 +99,8 @@ Result<void> DataView::drawAll(World& world, const spec::View& view, Kind kind, 
     if (kind != Kind::Wires) defines.push_back({"LAMBENT_VALUES", "1"});
     if (numbers_) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
     Result<gpu::Program> made = gpu::Program::create(
-        "data view", {{GL_VERTEX_SHADER, "data_view.vert"}, {GL_FRAGMENT_SHADER, "data_view.frag"}}, kShaders,
-        defines);
+        "data view", {{GL_VERTEX_SHADER, "data_view.vert"}, {GL_FRAGMENT_SHADER, "data_view.frag"}},
+        kDebugShaders, defines);
     if (!made) return failAgain(made.error());
     programs_.emplace(kind, std::move(*made));
   }

@@ -5,44 +5,22 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "lambent_debug_embedded.hpp"
-#include "lambent_draws_embedded.hpp"
-#include "lambent_effects_neighborhood_embedded.hpp"
-#include "lambent_evaluate_embedded.hpp"
-#include "lambent_lighting_embedded.hpp"
-#include "lambent_shadows_embedded.hpp"
-#include "lambent_surface_embedded.hpp"
-#include "lambent_tone_map_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
 #include "runtime/debug/overlay_keys.hpp"
 #include "runtime/debug/overlay_lines.hpp"
 #include "runtime/debug/overlay_slice_shared.h"
+#include "runtime/debug/shaders.hpp"
 #include "runtime/draws/surface_shared.h"
+#include "runtime/draws/view_block.hpp"
 #include "runtime/effects/neighborhood/neighborhood_shared.h"
 
 namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find,
-                                      &embedded::lambent_draws::find,
-                                      &embedded::lambent_surface::find,
-                                      &embedded::lambent_shadows::find,
-                                      &embedded::lambent_tone_map::find,
-                                      &embedded::lambent_lighting::find,
-                                      &embedded::lambent_evaluate::find,
-                                      &embedded::lambent_transfer::find,
-                                      &embedded::lambent_effects_neighborhood::find};
-
 // These are the uniform locations and bindings of the shaders.
 constexpr GLint kSizePx = 0, kStrength = 1;
 constexpr GLuint kBindLines = 1, kBindExposure = 7;
 constexpr float kHiddenStrength = 0.22f;
-
-struct ViewBlock {
-  glm::mat4 view_from_world, clip_from_view;
-  glm::vec4 eye;
-};
 
 struct LineRecord {
   glm::vec4 from_and_width, to, color;
@@ -69,7 +47,7 @@ Result<Overlays> Overlays::create(std::uint32_t samples, bool linear) {
   Overlays overlays(samples, linear);
   Result<gpu::Program> compose = gpu::Program::create(
       "overlay compose",
-      {{GL_VERTEX_SHADER, "full_screen.vert"}, {GL_FRAGMENT_SHADER, "overlay_compose.frag"}}, kShaders,
+      {{GL_VERTEX_SHADER, "full_screen.vert"}, {GL_FRAGMENT_SHADER, "overlay_compose.frag"}}, kDebugShaders,
       overlays.defines());
   if (!compose) return failAgain(compose.error());
   overlays.compose_ = std::move(*compose);
@@ -152,7 +130,7 @@ Result<void> Overlays::drawSlices(const OverlayOptions& options, const OverlaySc
   if (!slices_program_) {
     Result<gpu::Program> made = gpu::Program::create(
         "overlay slices",
-        {{GL_VERTEX_SHADER, "overlay_slice.vert"}, {GL_FRAGMENT_SHADER, "overlay_slice.frag"}}, kShaders,
+        {{GL_VERTEX_SHADER, "overlay_slice.vert"}, {GL_FRAGMENT_SHADER, "overlay_slice.frag"}}, kDebugShaders,
         defines());
     if (!made) return failAgain(made.error());
     slices_program_ = std::move(*made);
@@ -188,7 +166,7 @@ Result<void> Overlays::drawLines(const OverlayOptions& options, const OverlaySce
   if (!lines_program_) {
     Result<gpu::Program> made = gpu::Program::create(
         "overlay lines", {{GL_VERTEX_SHADER, "overlay_line.vert"}, {GL_FRAGMENT_SHADER, "overlay_line.frag"}},
-        kShaders, defines());
+        kDebugShaders, defines());
     if (!made) return failAgain(made.error());
     lines_program_ = std::move(*made);
   }

@@ -10,30 +10,13 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "lambent_debug_embedded.hpp"
-#include "lambent_draws_embedded.hpp"
-#include "lambent_effects_neighborhood_embedded.hpp"
-#include "lambent_evaluate_embedded.hpp"
-#include "lambent_lighting_embedded.hpp"
-#include "lambent_shadows_embedded.hpp"
-#include "lambent_surface_embedded.hpp"
-#include "lambent_tone_map_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
+#include "runtime/debug/shaders.hpp"
 #include "runtime/surface/surfaces.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find,
-                                      &embedded::lambent_draws::find,
-                                      &embedded::lambent_surface::find,
-                                      &embedded::lambent_shadows::find,
-                                      &embedded::lambent_tone_map::find,
-                                      &embedded::lambent_lighting::find,
-                                      &embedded::lambent_evaluate::find,
-                                      &embedded::lambent_transfer::find,
-                                      &embedded::lambent_effects_neighborhood::find};
 constexpr GLint kClipFromWorld = 0;  // as in pick.vert
 
 struct Ray {
@@ -81,7 +64,7 @@ Result<void> Picker::compile(const PickOptions& options) {
   std::vector<gpu::Define> defines;
   if (options.finest_texels) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
   Result<gpu::Program> program = gpu::Program::create(
-      "pick", {{GL_VERTEX_SHADER, "pick.vert"}, {GL_FRAGMENT_SHADER, "pick.frag"}}, kShaders, defines);
+      "pick", {{GL_VERTEX_SHADER, "pick.vert"}, {GL_FRAGMENT_SHADER, "pick.frag"}}, kDebugShaders, defines);
   if (!program) return failAgain(program.error());
   program_ = std::move(*program);
   seen_ = gpu::Texture("picked", {.format = GL_RGBA32UI});

@@ -9,30 +9,12 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
-#include "lambent_debug_embedded.hpp"
-#include "lambent_draws_embedded.hpp"
-#include "lambent_effects_neighborhood_embedded.hpp"
-#include "lambent_evaluate_embedded.hpp"
-#include "lambent_lighting_embedded.hpp"
-#include "lambent_shadows_embedded.hpp"
-#include "lambent_surface_embedded.hpp"
-#include "lambent_tone_map_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
+#include "runtime/debug/shaders.hpp"
 #include "runtime/scene/bounds.hpp"
 
 namespace lambent::frame {
 
 namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find,
-                                      &embedded::lambent_draws::find,
-                                      &embedded::lambent_surface::find,
-                                      &embedded::lambent_shadows::find,
-                                      &embedded::lambent_tone_map::find,
-                                      &embedded::lambent_lighting::find,
-                                      &embedded::lambent_evaluate::find,
-                                      &embedded::lambent_transfer::find,
-                                      &embedded::lambent_effects_neighborhood::find};
 
 // These are the bindings and uniform locations of the shaders.
 constexpr GLuint kBindSigns = 1, kBindLights = 2, kBindCubes = 3, kBindDiscs = 4;
@@ -75,12 +57,12 @@ Result<ProbeMarkers> ProbeMarkers::create(const std::vector<gpu::Define>& define
   ProbeMarkers signs;
   Result<gpu::Program> program = gpu::Program::create(
       "light probe signs",
-      {{GL_VERTEX_SHADER, "probe_marker.vert"}, {GL_FRAGMENT_SHADER, "probe_marker.frag"}}, kShaders,
+      {{GL_VERTEX_SHADER, "probe_marker.vert"}, {GL_FRAGMENT_SHADER, "probe_marker.frag"}}, kDebugShaders,
       defines);
   if (!program) return failAgain(program.error());
   signs.program_ = std::move(*program);
-  Result<gpu::Program> gather =
-      gpu::Program::create("light probe gather", {{GL_COMPUTE_SHADER, "probe_marker_gather.comp"}}, kShaders);
+  Result<gpu::Program> gather = gpu::Program::create(
+      "light probe gather", {{GL_COMPUTE_SHADER, "probe_marker_gather.comp"}}, kDebugShaders);
   if (!gather) return failAgain(gather.error());
   signs.gather_program_ = std::move(*gather);
   return signs;

@@ -6,15 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "lambent_evaluate_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
+#include "runtime/evaluate/shaders.hpp"
 #include "runtime/lighting/seen_kernel.hpp"
 
 namespace lambent::evaluate {
 
 namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_evaluate::find, &embedded::lambent_transfer::find};
 
 // Returns how much of a group's transfer has arrived, as a number that changes when it pays to look again:
 // when a cell becomes usable, and when it is complete.
@@ -167,7 +164,7 @@ Result<const gpu::Program*> SeenSky::program(const char* file, std::uint32_t out
   if (const auto found = programs_.find(variant); found != programs_.end()) return &found->second;
   const std::vector<gpu::Define> defines = {{"LAMBENT_OUTPUTS", std::to_string(outputs)}};
   Result<gpu::Program> made = gpu::Program::create(fmt::format("{} outputs {}", file, outputs),
-                                                   {{GL_COMPUTE_SHADER, file}}, kShaders, defines);
+                                                   {{GL_COMPUTE_SHADER, file}}, kEvaluateShaders, defines);
   if (!made) return failAgain(made.error());
   return &programs_.emplace(variant, std::move(*made)).first->second;
 }

@@ -5,17 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "lambent_evaluate_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
+#include "runtime/evaluate/shaders.hpp"
 #include "runtime/sh/gaunt.hpp"
 
 namespace lambent::evaluate {
-
-namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_evaluate::find, &embedded::lambent_transfer::find};
-
-}  // namespace
 
 TransferValues::TransferValues()
     : cells_("transfer value cells"),
@@ -89,7 +82,7 @@ Result<const gpu::Program*> TransferValues::program(TransferValue value, std::ui
   if (visibility > 0) defines.push_back({"LAMBENT_VISIBILITY", std::to_string(visibility)});
   Result<gpu::Program> made =
       gpu::Program::create(fmt::format("transfer values {} visibility {}", variant[0], visibility),
-                           {{GL_COMPUTE_SHADER, "transfer_values.comp"}}, kShaders, defines);
+                           {{GL_COMPUTE_SHADER, "transfer_values.comp"}}, kEvaluateShaders, defines);
   if (!made) return failAgain(made.error());
   return &programs_.emplace(variant, std::move(*made)).first->second;
 }

@@ -13,11 +13,11 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
-#include "lambent_lighting_embedded.hpp"
 #include "runtime/base/parallel.hpp"
 #include "runtime/lighting/capture_combine.hpp"
 #include "runtime/lighting/capture_shared.h"
 #include "runtime/lighting/capture_table.hpp"
+#include "runtime/lighting/shaders.hpp"
 #include "runtime/sh/cube_map.hpp"
 #include "runtime/sh/projection.hpp"
 
@@ -27,7 +27,6 @@ namespace {
 
 using namespace capture;
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
 // These are the uniform locations of capture.vert, capture_resolve.comp and capture_project.comp.
 constexpr GLint kClipFromPixel = 0, kDepth = 1;
 constexpr GLint kFirstTexel = 0, kTexelCount = 1, kFirstWord = 2, kWordCount = 3, kSubsamples = 4;
@@ -135,17 +134,18 @@ Result<Capture> Capture::create(const CaptureOptions& options, const Environment
   auto sky = CaptureSky::create(options, environment);
   if (!sky) return failAgain(sky.error());
   capture.sky_ = std::move(*sky);
-  auto draw = gpu::Program::create(
-      "capture", {{GL_VERTEX_SHADER, "capture.vert"}, {GL_FRAGMENT_SHADER, "capture.frag"}}, kShaders);
+  auto draw = gpu::Program::create("capture",
+                                   {{GL_VERTEX_SHADER, "capture.vert"}, {GL_FRAGMENT_SHADER, "capture.frag"}},
+                                   kLightingShaders);
   if (!draw) return failAgain(draw.error());
   capture.draw_program_ = std::move(*draw);
-  auto resolve =
-      gpu::Program::create("capture resolve", {{GL_COMPUTE_SHADER, "capture_resolve.comp"}}, kShaders);
+  auto resolve = gpu::Program::create("capture resolve", {{GL_COMPUTE_SHADER, "capture_resolve.comp"}},
+                                      kLightingShaders);
   if (!resolve) return failAgain(resolve.error());
   capture.resolve_program_ = std::move(*resolve);
   const gpu::Define order{"ORDER", std::to_string(options.order)};
   auto project = gpu::Program::create("capture projection", {{GL_COMPUTE_SHADER, "capture_project.comp"}},
-                                      kShaders, std::span(&order, 1));
+                                      kLightingShaders, std::span(&order, 1));
   if (!project) return failAgain(project.error());
   capture.project_program_ = std::move(*project);
   capture.array_ = gpu::VertexArray("capture");

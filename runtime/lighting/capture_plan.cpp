@@ -26,10 +26,6 @@ constexpr double kOutsideShare = 1e-6;
 // Rectangles grow by this share of a texel, so that rounding cannot cut a body's edge.
 constexpr double kRectMargin = 1e-4;
 
-bool finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 struct Sphere {
   glm::dvec3 centre{0.0};  // relative to the point
   double radius_m = 0;     // 0: there is nothing to see

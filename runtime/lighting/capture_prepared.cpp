@@ -13,10 +13,6 @@ namespace lambent::lighting::capture {
 
 namespace {
 
-bool finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 // Builds the vertices of one level. A triangle's id comes from its last corner, so each triangle needs a
 // corner that is last in no other. Closed meshes have half as many vertices as triangles, so about half of
 // the triangles need an extra vertex. Black last corners are shared by all triangles that end there.

@@ -13,9 +13,9 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
-#include "lambent_lighting_embedded.hpp"
 #include "runtime/lighting/capture_shared.h"
 #include "runtime/lighting/capture_table.hpp"
+#include "runtime/lighting/shaders.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/cube_map.hpp"
 
@@ -25,11 +25,10 @@ namespace {
 
 using namespace capture;
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
-
 // These are the uniform locations of capture_sky.comp.
-constexpr GLint kLightFromWorld = 0, kSize = 1, kSubsamples = 2, kLevels = 3, kConstant = 4, kShares = 5;
-constexpr GLint kTexelCount = 0;  // as in capture_sky_light.comp
+constexpr GLint kSkyFromWorld = 0, kSkySize = 1, kSkySubsamples = 2, kLevels = 3, kConstant = 4,
+                kSkyShares = 5;
+constexpr GLint kSkyTexelCount = 0;  // as in capture_sky_light.comp
 constexpr std::uint32_t kLargestProbeCube = 512;
 
 // Returns a power of two, for the mip maps, that gives at least a texel of the cube per texel of the
@@ -46,8 +45,8 @@ std::uint32_t probeCubeSize(const std::vector<const spec::EnvironmentMap*>& envi
 }
 
 // Each texel is the mean over 2 x 2 places in it.
-std::vector<glm::vec4> faceTexels(const std::vector<const spec::EnvironmentMap*>& environment_maps, int face,
-                                  std::uint32_t size) {
+std::vector<glm::vec4> meanFaceTexels(const std::vector<const spec::EnvironmentMap*>& environment_maps,
+                                      int face, std::uint32_t size) {
   constexpr double kPlaces[] = {0.25, 0.75};
   std::vector<glm::vec4> texels;
   texels.reserve(std::size_t{size} * size);
@@ -77,7 +76,7 @@ gpu::Texture probeCube(const std::vector<const spec::EnvironmentMap*>& environme
   std::vector<std::future<std::vector<glm::vec4>>> faces;
   for (int face = 0; face < 6; ++face)
     faces.push_back(std::async(std::launch::async, [&environment_maps, face, size] {
-      return faceTexels(environment_maps, face, size);
+      return meanFaceTexels(environment_maps, face, size);
     }));
   for (int face = 0; face < 6; ++face)
     glTextureSubImage3D(cube.id(), 0, 0, 0, face, static_cast<GLsizei>(size), static_cast<GLsizei>(size), 1,
@@ -93,12 +92,12 @@ Result<CaptureSky> CaptureSky::create(const CaptureOptions& options, const Envir
   sky.options_ = options;
   const gpu::Define order{"ORDER", std::to_string(options.order)};
   const std::span<const gpu::Define> defines(&order, 1);
-  Result<gpu::Program> program =
-      gpu::Program::create("capture sky", {{GL_COMPUTE_SHADER, "capture_sky.comp"}}, kShaders, defines);
+  Result<gpu::Program> program = gpu::Program::create(
+      "capture sky", {{GL_COMPUTE_SHADER, "capture_sky.comp"}}, kLightingShaders, defines);
   if (!program) return failAgain(program.error());
   sky.program_ = std::move(*program);
   program = gpu::Program::create("capture sky light", {{GL_COMPUTE_SHADER, "capture_sky_light.comp"}},
-                                 kShaders, defines);
+                                 kLightingShaders, defines);
   if (!program) return failAgain(program.error());
   sky.light_program_ = std::move(*program);
   sky.takeLights(environment);
@@ -144,12 +143,12 @@ void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& wor
     if (!environment.set(i).environment_maps.empty()) shares[i] = environment.shareOf(i);
   }
   program_.use();
-  glUniformMatrix3fv(kLightFromWorld, 1, GL_FALSE, glm::value_ptr(light_from_world));
-  glUniform1ui(kSize, options_.size);
-  glUniform1ui(kSubsamples, options_.subsamples);
+  glUniformMatrix3fv(kSkyFromWorld, 1, GL_FALSE, glm::value_ptr(light_from_world));
+  glUniform1ui(kSkySize, options_.size);
+  glUniform1ui(kSkySubsamples, options_.subsamples);
   glUniform2f(kLevels, levelOf(environment_maps_[0]), levelOf(environment_maps_[1]));
   glUniform3fv(kConstant, 1, glm::value_ptr(constant));
-  glUniform2f(kShares, shares[0], shares[1]);
+  glUniform2f(kSkyShares, shares[0], shares[1]);
   for (GLuint i = 0; i < Environment::kSets; ++i) {
     environment_maps_[i].bind(i);
     glBindSampler(i, sampler_.id());
@@ -163,7 +162,7 @@ void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& wor
   for (GLuint i = 0; i < Environment::kSets; ++i) glBindSampler(i, 0);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   light_program_.use();
-  glUniform1ui(kTexelCount, texel_count);
+  glUniform1ui(kSkyTexelCount, texel_count);
   bindTables();
   light_.bindStorage(kBindSkyLight);
   glDispatchCompute(1, 1, 1);

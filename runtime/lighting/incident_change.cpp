@@ -23,7 +23,7 @@ float turnBetween(const glm::mat4& a, const glm::mat4& b) {
 
 BodyChange changeOf(const BodyPose& before, const glm::vec3& place_before, const BodyPose& after,
                     const glm::vec3& place_after, float radius_m) {
-  constexpr float kPi = std::numbers::pi_v<float>;
+  constexpr float kHalfTurn_rad = std::numbers::pi_v<float>;
   const auto drift = static_cast<float>(after.radiance_drift - before.radiance_drift);
   const glm::vec3 offset_before = before.center_ws - place_before,
                   offset_after = after.center_ws - place_after;
@@ -31,7 +31,8 @@ BodyChange changeOf(const BodyPose& before, const glm::vec3& place_before, const
                       radius_m * turnBetween(before.world_from_proxy, after.world_from_proxy);
   const float distance = std::min(glm::length(offset_before), glm::length(offset_after));
   // Inside the body's sphere nothing can be ruled out.
-  if (distance <= radius_m) return {.half_angle = kPi, .angle = moved > 0.0f ? kPi : 0.0f, .drift = drift};
+  if (distance <= radius_m)
+    return {.half_angle = kHalfTurn_rad, .angle = moved > 0.0f ? kHalfTurn_rad : 0.0f, .drift = drift};
   return {
       .half_angle = std::asin(radius_m / distance), .angle = moved / (distance - radius_m), .drift = drift};
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <span>
 
@@ -12,6 +11,7 @@
 #include "runtime/lighting/light_blocks.hpp"
 #include "runtime/lighting/light_loss.hpp"
 #include "runtime/lighting/light_pieces.hpp"
+#include "runtime/sh/basis.hpp"
 #include "runtime/sh/image_layout.hpp"
 
 namespace lambent::lighting {
@@ -22,7 +22,7 @@ namespace {
 // (docs/pictures/penumbra.png).
 constexpr float kWidestDisc_rad = 0.79f;
 
-constexpr double kPi = std::numbers::pi;
+using sh::kPi;
 // If the largest number of small pieces does not suffice, pieces grow in these steps from the largest to the
 // widest radius.
 constexpr std::array<double, 3> kWidths = {0.0, 0.5, 1.0};

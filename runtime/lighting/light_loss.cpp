@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "runtime/sh/zonal.hpp"
 
@@ -10,9 +9,7 @@ namespace lambent::lighting {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr int kBands = FluxGrid::kBands;
-constexpr std::size_t kRows = FluxGrid::kRows, kColumns = FluxGrid::kColumns;
+using sh::kPi;
 
 // Returns p_l; see the header.
 double transferPower(int l) {
@@ -22,6 +19,8 @@ double transferPower(int l) {
 // Holds the normalised associated Legendre functions at the centres of the rows, times sqrt(4pi) so that band
 // 0 is 1, and with the sqrt(2) of m > 0; and the cosine and sine of m times the azimuth.
 struct Tables {
+  static constexpr int kBands = FluxGrid::kBands;
+  static constexpr std::size_t kRows = FluxGrid::kRows, kColumns = FluxGrid::kColumns;
   std::array<std::array<std::array<double, kRows>, kBands>, kBands> legendre{};  // [m][l][row]
   std::array<std::array<double, kColumns>, kBands> cosines{}, sines{};           // [m][column]
 
@@ -123,7 +122,7 @@ double discLoss(int order, double radius_rad) {
   const double radius = std::max(radius_rad, 1e-5);  // approaches a point
   const double mean = sh::discZonal(0, radius);
   double lost = 0.0;
-  for (int l = order; l < kBands; ++l) {
+  for (int l = order; l < FluxGrid::kBands; ++l) {
     const double zonal = sh::discZonal(l, radius) / mean;
     lost += transferPower(l) * zonal * zonal;
   }

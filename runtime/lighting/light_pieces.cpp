@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <numeric>
 
 #include <glm/geometric.hpp>
+
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::lighting {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using sh::kPi;
 constexpr int kShifts = 4, kRounds = 8;
 constexpr std::size_t kSeeds = 64;  // more than the pieces wanted
 // Discs side by side leave gaps, so a piece also takes the light in the gaps around it.

@@ -7,15 +7,14 @@
 
 #include <glm/matrix.hpp>
 
-#include "lambent_lighting_embedded.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/prefiltered_lobe.hpp"
+#include "runtime/lighting/shaders.hpp"
 
 namespace lambent::lighting {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
 constexpr std::uint32_t kLargestSize = 256, kLeastSize = 64;  // kLeastSize allows kReflectedLevels levels
 // Returns the number of samples of the lobe that look at the sky: more where the lobe is wide and texels are
 // few.
@@ -24,7 +23,7 @@ int sharesOf(std::uint32_t level) {
 }
 
 // These are the uniform locations of prefiltered_environment.comp.
-constexpr GLint kSize = 0, kLobe = 1, kSkyShares = 2, kDiscCount = 3;
+constexpr GLint kSize = 0, kLobe = 1, kReflectedSkyShares = 2, kReflectedDiscCount = 3;
 
 // Returns the sky with all mip levels, so that wide lookups are cheap.
 gpu::Texture withLevels(const gpu::Texture& sky, const gpu::Program& program, gpu::Counters& counters) {
@@ -80,10 +79,10 @@ struct PrefilteredEnvironment::Source {
 Result<PrefilteredEnvironment> PrefilteredEnvironment::make(const Environment& environment, const Sky& sky,
                                                             gpu::Counters& counters) {
   Result<gpu::Program> program = gpu::Program::create(
-      "prefiltered environment", {{GL_COMPUTE_SHADER, "prefiltered_environment.comp"}}, kShaders);
+      "prefiltered environment", {{GL_COMPUTE_SHADER, "prefiltered_environment.comp"}}, kLightingShaders);
   if (!program) return failAgain(program.error());
-  Result<gpu::Program> weigh =
-      gpu::Program::create("reflected source", {{GL_COMPUTE_SHADER, "prefiltered_source.comp"}}, kShaders);
+  Result<gpu::Program> weigh = gpu::Program::create(
+      "reflected source", {{GL_COMPUTE_SHADER, "prefiltered_source.comp"}}, kLightingShaders);
   if (!weigh) return failAgain(weigh.error());
   PrefilteredEnvironment made;
   std::vector<ReflectedLobe> lobes;
@@ -136,8 +135,8 @@ gpu::Texture PrefilteredEnvironment::prefilter(const Source& from, gpu::Counters
     angles.bindStorage(kBindLobe);
     glUniform1i(kSize, static_cast<GLint>(side));
     glUniform2f(kLobe, lobe.alpha, lobe.scale);
-    glUniform1i(kSkyShares, from.pictured ? sharesOf(level) : 1);
-    glUniform1ui(kDiscCount, static_cast<GLuint>(discs.size()));
+    glUniform1i(kReflectedSkyShares, from.pictured ? sharesOf(level) : 1);
+    glUniform1ui(kReflectedDiscCount, static_cast<GLuint>(discs.size()));
     glBindImageTexture(0, cube.id(), static_cast<GLint>(level), GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
     const std::uint32_t groups = (side + kReflectedGroup - 1) / kReflectedGroup;
     glDispatchCompute(groups, groups, 6);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "runtime/sh/zonal.hpp"
 
@@ -10,7 +9,7 @@ namespace lambent::lighting {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using sh::kPi;
 constexpr int kSteps = 16384;
 
 double shape(double alpha, double cos_theta) {

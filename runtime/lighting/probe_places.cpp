@@ -21,10 +21,10 @@ constexpr int kApart = 3;              // voxels between candidates
 constexpr float kLeastHidden = 0.75f;  // a statue on a floor hides a little more than half of the directions
 constexpr float kMostBacks = 0.4f;  // of the directions; from inside a body all surfaces are seen from behind
 constexpr float kLeastRoom = 0.1f;  // share of the box that is air in rooms; a niche under a statue has less
-constexpr float kLeastFacing = 0.3f;  // component of a normal
-constexpr float kWideAir = 4.0f;      // voxels of air around a candidate; more is no better
-constexpr float kSeenBefore = 0.25f;  // what a voxel still counts if an earlier probe sees it
-constexpr float kLeastGain = 0.1f;    // of the first probe's; others see too little that is new
+constexpr float kLeastFacing = 0.3f;       // component of a normal
+constexpr float kWideAir = 4.0f;           // voxels of air around a candidate; more is no better
+constexpr float kSeenBefore = 0.25f;       // what a voxel still counts if an earlier probe sees it
+constexpr float kLeastGainOfProbe = 0.1f;  // of the first probe's; others see too little that is new
 
 struct Candidate {
   glm::vec3 place{0.0f};            // in voxels
@@ -143,7 +143,7 @@ std::vector<glm::vec3> chooseProbePlaces(const SurfaceVoxels& voxels, std::size_
         best_gain = gain;
       }
     }
-    if (best == nullptr || best_gain < kLeastGain * first_gain) break;
+    if (best == nullptr || best_gain < kLeastGainOfProbe * first_gain) break;
     if (chosen.empty()) first_gain = best_gain;
     chosen.push_back(voxels.origin + voxels.edge_m * best->place);
     for (const std::size_t voxel : best->voxels) worth[voxel] *= kSeenBefore;

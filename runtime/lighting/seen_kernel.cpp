@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include <glm/geometric.hpp>
@@ -17,8 +16,8 @@ namespace lambent::lighting {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr int kBands = static_cast<int>(transfer::kSeenBands);
+using sh::kPi;
+constexpr int kSeenKernelBands = static_cast<int>(transfer::kSeenBands);
 constexpr std::size_t kCount = transfer::kSeenWeights;
 using Vector = std::array<double, kCount>;
 using Matrix = std::array<Vector, kCount>;
@@ -45,8 +44,8 @@ std::vector<Node> quadrature() {
                 .solid_angle = 2.0 * kPi / (kHeights * kAzimuths),
                 .functions = {}};
       std::array<double, transfer::kSeenCoefficients> y;
-      sh::evaluate(kBands, node.direction, y);
-      for (int l = 0; l < kBands; ++l)
+      sh::evaluate(kSeenKernelBands, node.direction, y);
+      for (int l = 0; l < kSeenKernelBands; ++l)
         for (int m = 0; m <= l; ++m)
           node.functions[static_cast<std::size_t>(l * (l + 1) / 2 + m)] =
               y[static_cast<std::size_t>(l * (l + 1) + m)] * z / kPi;
@@ -120,7 +119,7 @@ double cosineAt(double axis) {
 SeenKernel makeSeenKernel() {
   const std::vector<Node> nodes = quadrature();
   const Matrix factor = factorOf(normalMatrix(nodes));
-  const sh::ZonalFactors factors = sh::ZonalFactors::isotropic(kBands);
+  const sh::ZonalFactors factors = sh::ZonalFactors::isotropic(kSeenKernelBands);
   SeenKernel kernel;
   kernel.texels.assign(std::size_t{kSeenLayers} * kSeenRoughnesses * kSeenCosines, glm::vec4(0.0f));
   for (std::uint32_t r = 0; r < kSeenRoughnesses; ++r) {

@@ -10,18 +10,17 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
-#include "lambent_lighting_embedded.hpp"
+#include "runtime/lighting/shaders.hpp"
 #include "runtime/sh/cube_map.hpp"
 
 namespace lambent::lighting {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
 constexpr float kLargestHalf = 65504.0f;
 
 // These are the binding and the uniform locations of sky.frag.
-constexpr GLuint kBindDiscs = 0;
+constexpr GLuint kBindSkyDiscs = 0;
 constexpr GLint kWorldFromClip = 0, kLightFromWorld = 1, kDiscCount = 2, kPixelAngle = 3, kShares = 4;
 struct DiscRecord {
   glm::vec4 direction_and_radius;  // lights' own frame; w: radius in radians
@@ -80,7 +79,7 @@ gpu::Texture skyCube(std::span<const spec::EnvironmentMap* const> environment_ma
 Result<Sky> Sky::create(const Environment& environment) {
   Sky sky;
   Result<gpu::Program> program = gpu::Program::create(
-      "sky", {{GL_VERTEX_SHADER, "sky.vert"}, {GL_FRAGMENT_SHADER, "sky.frag"}}, kShaders);
+      "sky", {{GL_VERTEX_SHADER, "sky.vert"}, {GL_FRAGMENT_SHADER, "sky.frag"}}, kLightingShaders);
   if (!program) return failAgain(program.error());
   sky.program_ = std::move(*program);
   sky.no_vertices_ = gpu::VertexArray("sky");
@@ -121,7 +120,7 @@ void Sky::draw(const Environment& environment, const glm::mat4& view_from_world,
     cubes_[i].bind(i);
     glBindSampler(i, 0);
   }
-  discs_.bindStorage(kBindDiscs);
+  discs_.bindStorage(kBindSkyDiscs);
   glBindVertexArray(no_vertices_.id());
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   glDepthFunc(GL_LEQUAL);

@@ -13,6 +13,7 @@
 
 #include <concepts>
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -20,6 +21,8 @@
 #include <glm/vec3.hpp>
 
 namespace lambent::sh {
+
+inline constexpr double kPi = std::numbers::pi;
 
 constexpr int kMaxOrder = 8;        // largest order of light and of everything that is stored for it
 constexpr int kMaxBasisOrder = 13;  // largest order of basis and rotations, for 5 + 9 - 1 bands in gaunt.hpp
@@ -74,8 +77,6 @@ constexpr double constexprSqrt(double value) {
     root = next;
   return root;
 }
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Returns K_mm P_mm / sin(theta)^m without the factor sqrt(2) of functions with m != 0.
 constexpr double sectoral(int m) {

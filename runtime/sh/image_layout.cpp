@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
+#include "runtime/sh/basis.hpp"
 #include "runtime/sh/cube_map.hpp"
 
 namespace lambent::sh {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // Squares of the cross by row and column. Squares in the middle row and column show the cube from inside with
 // +Y up. The bottom one is attached below -Y, so it shows +Z rotated by 180 degrees.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -14,8 +13,6 @@
 namespace lambent::sh {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);

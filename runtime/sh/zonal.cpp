@@ -4,13 +4,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 namespace lambent::sh {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // Returns the factor by which convolution with a zonal kernel of coefficient z_l scales band l.
 double convolutionFactor(int l, double zonal) {

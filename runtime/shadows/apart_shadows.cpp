@@ -15,8 +15,8 @@ namespace lambent::frame {
 
 namespace {
 
-constexpr std::size_t kLevel = 1;     // level of the proxies
-constexpr float kLeastShare = 1e-5f;  // in radii of a body; nearer triangles are ignored
+constexpr std::size_t kProxyLevel = 1;  // level of the proxies
+constexpr float kLeastShare = 1e-5f;    // in radii of a body; nearer triangles are ignored
 
 // Makes proxies on demand, placed in the world.
 class Blockers {
@@ -28,7 +28,7 @@ class Blockers {
     if (!made || body.body.proxy >= proxies_.size()) return place->second;
     const bundle::CaptureProxy& proxy = *proxies_[body.body.proxy];
     if (proxy.levels.empty()) return place->second;
-    const bundle::ProxyLevel& level = proxy.levels[std::min(kLevel, proxy.levels.size() - 1)];
+    const bundle::ProxyLevel& level = proxy.levels[std::min(kProxyLevel, proxy.levels.size() - 1)];
     std::vector<lighting::RayTriangle> triangles;
     for (std::uint32_t t = 0; t < level.triangle_count; ++t) {
       const bundle::ProxyTriangle& from = proxy.triangles[level.first_triangle + t];

@@ -8,14 +8,12 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "lambent_draws_embedded.hpp"
-#include "lambent_shadows_embedded.hpp"
+#include "runtime/shadows/shaders.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_shadows::find, &embedded::lambent_draws::find};
 constexpr std::size_t kViewStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr std::uint32_t kLeastSize = 256;
 constexpr std::uint32_t kLeastRays = 8;
@@ -77,12 +75,12 @@ Result<void> KeyShadows::compile() {
     if (masked) defines.push_back({"LAMBENT_MASKED", "1"});
     Result<gpu::Program> program = gpu::Program::create(
         "key caster", {{GL_VERTEX_SHADER, "key_caster.vert"}, {GL_FRAGMENT_SHADER, "key_caster.frag"}},
-        kShaders, defines);
+        kShadowShaders, defines);
     if (!program) return failAgain(program.error());
     programs_[masked ? 1 : 0] = std::move(*program);
   }
   Result<gpu::Program> pyramid =
-      gpu::Program::create("key blockers", {{GL_COMPUTE_SHADER, "key_blockers.comp"}}, kShaders);
+      gpu::Program::create("key blockers", {{GL_COMPUTE_SHADER, "key_blockers.comp"}}, kShadowShaders);
   if (!pyramid) return failAgain(pyramid.error());
   pyramid_program_ = std::move(*pyramid);
   return {};

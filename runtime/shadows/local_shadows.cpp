@@ -8,9 +8,8 @@
 
 #include <glm/matrix.hpp>
 
-#include "lambent_draws_embedded.hpp"
-#include "lambent_shadows_embedded.hpp"
 #include "runtime/shadows/local_faces.hpp"
+#include "runtime/shadows/shaders.hpp"
 #include "runtime/shadows/shadowed_light_record.hpp"
 
 namespace lambent::frame {
@@ -18,7 +17,6 @@ namespace lambent::frame {
 namespace {
 
 using lighting::ShadowedLight;
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_shadows::find, &embedded::lambent_draws::find};
 constexpr std::uint32_t kFaces = 6;
 constexpr std::size_t kFaceStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr float kLocalPlane_m = 2e-3f;
@@ -74,7 +72,7 @@ Result<void> LocalShadows::compile() {
     if (masked) defines.push_back({"LAMBENT_MASKED", "1"});
     Result<gpu::Program> program = gpu::Program::create(
         "shadow caster", {{GL_VERTEX_SHADER, "local_caster.vert"}, {GL_FRAGMENT_SHADER, "local_caster.frag"}},
-        kShaders, defines);
+        kShadowShaders, defines);
     if (!program) return failAgain(program.error());
     programs_[masked ? 1 : 0] = std::move(*program);
   }

@@ -19,7 +19,7 @@ namespace {
 // Prefixes for each set of lights.
 constexpr std::array<std::string_view, 2> kPrefixes = {"key:", "fade-key:"};
 
-tl::unexpected<Error> wrong(std::string_view word, std::string problem) {
+tl::unexpected<Error> wrongKeyEdit(std::string_view word, std::string problem) {
   return fail("key light \"" + std::string(word) + "\"", std::move(problem),
               "write key:AZ,EL,TO_AZ,TO_EL,R[,G,B] in degrees, elevations -90..90, and factors of 0 to a "
               "million; or fade-key:... for the lights that are faded to");
@@ -42,20 +42,20 @@ Result<KeyEdit> parseKeyEdit(std::string_view word) {
   for (std::size_t set = 0; set < kPrefixes.size(); ++set) {
     if (!word.starts_with(kPrefixes[set])) continue;
     const auto values = parseNumbers(word.substr(kPrefixes[set].size()));
-    if (!values) return wrong(word, "is not a list of numbers");
-    if (values->size() != 5 && values->size() != 7) return wrong(word, "needs five or seven numbers");
+    if (!values) return wrongKeyEdit(word, "is not a list of numbers");
+    if (values->size() != 5 && values->size() != 7) return wrongKeyEdit(word, "needs five or seven numbers");
     const std::vector<float>& v = *values;
     if (std::abs(v[1]) > 90.0f || std::abs(v[3]) > 90.0f)
-      return wrong(word, "has an elevation outside -90..90");
+      return wrongKeyEdit(word, "has an elevation outside -90..90");
     if (std::ranges::any_of(std::span(v).subspan(4),
                             [](float factor) { return factor < 0.0f || factor > kMostKeyFactor; }))
-      return wrong(word, "has a factor outside 0..1000000");
+      return wrongKeyEdit(word, "has a factor outside 0..1000000");
     return KeyEdit{.set = set,
                    .found = directionFromAzimuthElevation(v[0], v[1]),
                    .towards = directionFromAzimuthElevation(v[2], v[3]),
                    .factor = v.size() == 5 ? glm::vec3(v[4]) : glm::vec3(v[4], v[5], v[6])};
   }
-  return wrong(word, "is no edit of a key light");
+  return wrongKeyEdit(word, "is no edit of a key light");
 }
 
 std::string keyEditWord(const KeyEdit& edit) {

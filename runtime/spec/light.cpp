@@ -29,7 +29,7 @@ constexpr std::string_view kDiscForm =
     "write disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B] in metres: it shines along NX,NY,NZ, which is not 0; radius "
     "of 0 or more, radiances of 0 to 1e15";
 
-tl::unexpected<Error> wrong(std::string_view word, std::string problem, std::string_view hint) {
+tl::unexpected<Error> wrongLight(std::string_view word, std::string problem, std::string_view hint) {
   return fail("light \"" + std::string(word) + "\"", std::move(problem), std::string(hint));
 }
 
@@ -43,49 +43,51 @@ std::optional<glm::vec3> parseRadiance(std::span<const float> values) {
 
 Result<Light> parseConstant(std::string_view word, std::string_view text) {
   const auto values = parseNumbers(text);
-  if (!values) return wrong(word, "is not a list of numbers", kConstantForm);
-  if (values->size() != 3) return wrong(word, "needs three numbers", kConstantForm);
+  if (!values) return wrongLight(word, "is not a list of numbers", kConstantForm);
+  if (values->size() != 3) return wrongLight(word, "needs three numbers", kConstantForm);
   const auto colour = parseRadiance(*values);
-  if (!colour) return wrong(word, "has a radiance outside 0..1e15", kConstantForm);
+  if (!colour) return wrongLight(word, "has a radiance outside 0..1e15", kConstantForm);
   return ConstantLight{*colour};
 }
 
 Result<Light> parseSun(std::string_view word, std::string_view text) {
   const auto values = parseNumbers(text);
-  if (!values) return wrong(word, "is not a list of numbers", kSunForm);
-  if (values->size() != 4 && values->size() != 6) return wrong(word, "needs four or six numbers", kSunForm);
+  if (!values) return wrongLight(word, "is not a list of numbers", kSunForm);
+  if (values->size() != 4 && values->size() != 6)
+    return wrongLight(word, "needs four or six numbers", kSunForm);
   const float azimuth = (*values)[0], elevation = (*values)[1], angle = (*values)[2];
-  if (std::abs(elevation) > 90.0f) return wrong(word, "has an elevation outside -90..90", kSunForm);
-  if (angle <= 0.0f || angle > 180.0f) return wrong(word, "has an angular radius outside 0..180", kSunForm);
+  if (std::abs(elevation) > 90.0f) return wrongLight(word, "has an elevation outside -90..90", kSunForm);
+  if (angle <= 0.0f || angle > 180.0f)
+    return wrongLight(word, "has an angular radius outside 0..180", kSunForm);
   const auto colour = parseRadiance(std::span(*values).subspan(3));
-  if (!colour) return wrong(word, "has a radiance outside 0..1e15", kSunForm);
+  if (!colour) return wrongLight(word, "has a radiance outside 0..1e15", kSunForm);
   return SunLight{azimuth, elevation, angle, *colour};
 }
 
 Result<Light> parseSphere(std::string_view word, std::string_view text) {
   const auto values = parseNumbers(text);
-  if (!values) return wrong(word, "is not a list of numbers", kSphereForm);
+  if (!values) return wrongLight(word, "is not a list of numbers", kSphereForm);
   if (values->size() != 5 && values->size() != 7)
-    return wrong(word, "needs five or seven numbers", kSphereForm);
+    return wrongLight(word, "needs five or seven numbers", kSphereForm);
   const std::vector<float>& v = *values;
-  if (v[3] < 0.0f) return wrong(word, "has a negative radius", kSphereForm);
+  if (v[3] < 0.0f) return wrongLight(word, "has a negative radius", kSphereForm);
   const auto colour = parseRadiance(std::span(v).subspan(4));
-  if (!colour) return wrong(word, "has a radiance outside 0..1e15", kSphereForm);
+  if (!colour) return wrongLight(word, "has a radiance outside 0..1e15", kSphereForm);
   return SphereLight{{v[0], v[1], v[2]}, v[3], *colour};
 }
 
 Result<Light> parseDisc(std::string_view word, std::string_view text) {
   const auto values = parseNumbers(text);
-  if (!values) return wrong(word, "is not a list of numbers", kDiscForm);
+  if (!values) return wrongLight(word, "is not a list of numbers", kDiscForm);
   if (values->size() != 8 && values->size() != 10)
-    return wrong(word, "needs eight or ten numbers", kDiscForm);
+    return wrongLight(word, "needs eight or ten numbers", kDiscForm);
   const std::vector<float>& v = *values;
   // In double precision squares of floats neither overflow nor underflow.
   const glm::dvec3 normal(v[3], v[4], v[5]);
-  if (!(glm::length(normal) > 0.0)) return wrong(word, "has a normal of length 0", kDiscForm);
-  if (v[6] < 0.0f) return wrong(word, "has a negative radius", kDiscForm);
+  if (!(glm::length(normal) > 0.0)) return wrongLight(word, "has a normal of length 0", kDiscForm);
+  if (v[6] < 0.0f) return wrongLight(word, "has a negative radius", kDiscForm);
   const auto colour = parseRadiance(std::span(v).subspan(7));
-  if (!colour) return wrong(word, "has a radiance outside 0..1e15", kDiscForm);
+  if (!colour) return wrongLight(word, "has a radiance outside 0..1e15", kDiscForm);
   return DiscLight{{v[0], v[1], v[2]}, glm::vec3(glm::normalize(normal)), v[6], *colour};
 }
 
@@ -93,7 +95,7 @@ Result<Light> parseDisc(std::string_view word, std::string_view text) {
 
 Result<Light> parseLight(std::string_view word) {
   constexpr std::string_view kConstant = "constant:", kSun = "sun:", kSphere = "sphere:", kDisc = "disc:";
-  if (word.empty()) return wrong(word, "is empty", kForms);
+  if (word.empty()) return wrongLight(word, "is empty", kForms);
   if (word.starts_with(kConstant)) return parseConstant(word, word.substr(kConstant.size()));
   if (word.starts_with(kSun)) return parseSun(word, word.substr(kSun.size()));
   if (word.starts_with(kSphere)) return parseSphere(word, word.substr(kSphere.size()));
@@ -101,7 +103,7 @@ Result<Light> parseLight(std::string_view word) {
   const std::filesystem::path file(word);
   const std::string extension = lowerCase(file.extension().string());
   if (extension != ".hdr" && extension != ".exr")
-    return wrong(word, "is no kind of light known here", kForms);
+    return wrongLight(word, "is no kind of light known here", kForms);
   return EnvironmentMapLight{file, std::nullopt};
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kHint = "replace the image in the scene and bake it again";
 
-const stbi_uc* bytesOf(std::span<const std::byte> file) {
+const stbi_uc* stbBytes(std::span<const std::byte> file) {
   return reinterpret_cast<const stbi_uc*>(file.data());
 }
 
@@ -35,7 +35,7 @@ Result<ImageSize> imageSize(std::span<const std::byte> file, const std::string& 
   int width = 0, height = 0, channels = 0;
   if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     return fail(subject, "is a file of more than 2 GiB", kHint);
-  if (stbi_info_from_memory(bytesOf(file), static_cast<int>(file.size()), &width, &height, &channels) == 0)
+  if (stbi_info_from_memory(stbBytes(file), static_cast<int>(file.size()), &width, &height, &channels) == 0)
     return fail(subject, fmt::format("is not a PNG or JPEG that can be read ({})", stbi_failure_reason()),
                 kHint);
   if (width <= 0 || height <= 0) return fail(subject, "has no texels", kHint);
@@ -52,7 +52,7 @@ Result<std::vector<std::uint8_t>> decodeRgba(std::span<const std::byte> file, co
   if (!size) return failAgain(size.error());
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, FreePixels> pixels(stbi_load_from_memory(
-      bytesOf(file), static_cast<int>(file.size()), &width, &height, &channels, STBI_rgb_alpha));
+      stbBytes(file), static_cast<int>(file.size()), &width, &height, &channels, STBI_rgb_alpha));
   if (!pixels) return fail(subject, fmt::format("is damaged ({})", stbi_failure_reason()), kHint);
   return std::vector<std::uint8_t>(pixels.get(), pixels.get() + size->rgbaBytes());
 }

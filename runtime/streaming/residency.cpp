@@ -14,11 +14,6 @@ namespace lambent::streaming {
 
 namespace {
 
-template <typename T>
-std::span<const std::byte> bytesOf(const std::vector<T>& values) {
-  return std::as_bytes(std::span(values));
-}
-
 // Smallest size of a page, which small bundles share.
 constexpr std::uint64_t kMinPageBytes = std::uint64_t{1} << 20;
 
@@ -219,7 +214,7 @@ Result<void> Residency::put(At at, const WeightsChunk& item) {
   if (!block) return failAgain(block.error());
   rows_.write(*block, 0, std::as_bytes(offsets));
   rows_.write(*block, samples_at, std::as_bytes(samples));
-  rows_.write(*block, weights_at, bytesOf(weights));
+  rows_.write(*block, weights_at, std::as_bytes(std::span(weights)));
   draw.rows = *block;
   draw.row_entries = static_cast<std::uint32_t>(entries);
   draw.version = version_;
@@ -284,7 +279,8 @@ Result<void> Residency::put(At at, const LightWeightsChunk& item) {
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
   assert(item.samples.size() == cell.sample_count && cell.light_probes.size() > 1);
   static_assert(sizeof(transfer::LightWeights) == 4 * kLightWeightWords);
-  transfer_.write(cell.block, 4ull * (cell.light_weights_word - cell.block.word()), bytesOf(item.samples));
+  transfer_.write(cell.block, 4ull * (cell.light_weights_word - cell.block.word()),
+                  std::as_bytes(std::span(item.samples)));
   cell.light_weights_resident = true;
   cell.version = version_;
   return {};
@@ -316,7 +312,7 @@ Result<void> Residency::put(At at, const DensityChunk& item) {
 Result<void> Residency::put(At at, const VoxelsChunk& item) {
   ResidentVolume& volume = volumeOf(at.tables, at.bundle, item.group);
   assert(item.voxels.size() == volume.sample_count);
-  const std::span<const std::byte> bytes = bytesOf(item.voxels);
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(item.voxels));
   volume.voxels = gpu::Buffer("voxels", std::max<std::size_t>(bytes.size(), 4));
   volume.voxels.writeBytes(0, bytes);
   volume.version = version_;

@@ -10,7 +10,7 @@ namespace lambent::streaming {
 
 namespace {
 
-std::uint64_t bytesOf(const gpu::Texture& texture) {
+std::uint64_t bytesOfTexture(const gpu::Texture& texture) {
   return texture ? textureBytes({texture.desc().width, texture.desc().height}) : 0;
 }
 
@@ -69,7 +69,7 @@ void Residency::finish(ResidentBundle& owner, ImageUpload upload, std::uint32_t 
   const auto take = [&](gpu::Texture& made, gpu::Texture& shown) {
     if (!made) return;
     glGenerateTextureMipmap(made.id());
-    owner.texture_bytes += bytesOf(made) - bytesOf(shown);
+    owner.texture_bytes += bytesOfTexture(made) - bytesOfTexture(shown);
     shown = std::move(made);
   };
   take(upload.color, owner.images[image]);
@@ -98,7 +98,7 @@ void Residency::dropLevels(std::uint32_t bundle, std::uint32_t image, std::uint3
     if (!*texture || texture->desc().levels <= levels) continue;
     ++version_;
     gpu::Texture rest = coarser(*texture, texture->desc().levels - levels, labelOf(image));
-    owner.texture_bytes -= bytesOf(*texture) - bytesOf(rest);
+    owner.texture_bytes -= bytesOfTexture(*texture) - bytesOfTexture(rest);
     *texture = std::move(rest);
   }
 }
@@ -107,7 +107,7 @@ std::uint64_t Residency::comingBytes() const {
   std::uint64_t bytes = 0;
   for (const auto& [bundle, coming] : coming_)
     if (const auto* upload = std::get_if<ImageUpload>(&coming))
-      bytes += bytesOf(upload->color) + bytesOf(upload->linear);
+      bytes += bytesOfTexture(upload->color) + bytesOfTexture(upload->linear);
   return bytes;
 }
 

@@ -28,7 +28,7 @@ std::span<const std::byte> bytesOf(const std::vector<T>& values) {
 constexpr std::size_t kMeshParts = 7;
 using MeshParts = std::array<std::span<const std::byte>, kMeshParts>;
 
-MeshParts partsOf(const bundle::MeshData& data, const std::vector<std::uint64_t>& colors) {
+MeshParts meshPartsOf(const bundle::MeshData& data, const std::vector<std::uint64_t>& colors) {
   return {bytesOf(data.positions), bytesOf(data.normals),  bytesOf(data.texcoords0), bytesOf(data.texcoords1),
           bytesOf(colors),         bytesOf(data.tangents), bytesOf(data.indices)};
 }
@@ -46,7 +46,7 @@ gpu::Texture makeIrradiance(std::uint32_t side) {
   return texture;
 }
 
-std::uint64_t bytesOf(const MeshParts& parts) {
+std::uint64_t bytesOfParts(const MeshParts& parts) {
   std::uint64_t bytes = 0;
   for (const std::span<const std::byte> part : parts) bytes += part.size();
   return bytes;
@@ -121,7 +121,7 @@ Result<std::uint64_t> Residency::proceed(const Whose& whose, std::uint64_t max_b
     }
   } else if (auto* mesh = std::get_if<MeshUpload>(&found->second)) {
     bytes = proceed(*mesh, max_bytes);
-    if (mesh->bytes_done == bytesOf(partsOf(mesh->item.data, mesh->colors)))
+    if (mesh->bytes_done == bytesOfParts(meshPartsOf(mesh->item.data, mesh->colors)))
       done = finish(into, std::get<MeshUpload>(whole()));
   } else if (auto* codebook = std::get_if<CodebookUpload>(&found->second)) {
     bytes = proceed(into, *codebook, max_bytes);
@@ -146,7 +146,8 @@ Result<Residency::MeshUpload> Residency::begin(MeshChunk item) {
   MeshUpload upload{.item = std::move(item), .colors = {}, .block = {}};
   upload.colors.reserve(upload.item.data.colors.size());
   for (const glm::vec4& color : upload.item.data.colors) upload.colors.push_back(glm::packUnorm4x16(color));
-  const Result<gpu::Allocation> block = geometry_.allocate(bytesOf(partsOf(upload.item.data, upload.colors)));
+  const Result<gpu::Allocation> block =
+      geometry_.allocate(bytesOfParts(meshPartsOf(upload.item.data, upload.colors)));
   if (!block) return failAgain(block.error());
   upload.block = *block;
   return upload;
@@ -155,7 +156,7 @@ Result<Residency::MeshUpload> Residency::begin(MeshChunk item) {
 std::uint64_t Residency::proceed(MeshUpload& upload, std::uint64_t max_bytes) {
   const std::uint64_t before = upload.bytes_done;
   std::uint64_t first = 0;  // offset of the part
-  for (const std::span<const std::byte> part : partsOf(upload.item.data, upload.colors)) {
+  for (const std::span<const std::byte> part : meshPartsOf(upload.item.data, upload.colors)) {
     const std::uint64_t left = max_bytes - (upload.bytes_done - before);
     if (const std::uint64_t from = upload.bytes_done - first; left > 0 && from < part.size()) {
       const std::uint64_t count = std::min<std::uint64_t>(left, part.size() - from);
@@ -178,7 +179,7 @@ Result<void> Residency::finish(At at, const MeshUpload& upload) {
   const std::array<std::uint32_t*, kMeshParts> word_of = {
       &mesh.positions_word, &mesh.normals_word,  &mesh.texcoords_word[0], &mesh.texcoords_word[1],
       &mesh.colors_word,    &mesh.tangents_word, &mesh.indices_word};
-  const MeshParts parts = partsOf(item.data, upload.colors);
+  const MeshParts parts = meshPartsOf(item.data, upload.colors);
   std::uint64_t offset = 0;
   for (std::size_t i = 0; i < kMeshParts; ++i) {
     if (parts[i].empty()) continue;

@@ -1,9 +1,8 @@
 #include "runtime/surface/light_modules.hpp"
 
 #include "lambent_bounces_embedded.hpp"
-#include "lambent_lighting_embedded.hpp"
 #include "lambent_shadows_embedded.hpp"
-#include "lambent_surface_embedded.hpp"
+#include "runtime/surface/shaders.hpp"
 
 namespace lambent::frame {
 
@@ -11,8 +10,6 @@ namespace {
 
 constexpr gpu::FindText kShadowShaders[] = {&embedded::lambent_shadows::find};
 constexpr gpu::FindText kBounceShaders[] = {&embedded::lambent_bounces::find};
-constexpr gpu::FindText kSurfaceShaders[] = {&embedded::lambent_surface::find,
-                                             &embedded::lambent_lighting::find};
 
 constexpr SurfaceFunction kLocal[] = {
     {SurfaceHook::Received, CalledBy::All, "local_surface.glsl", "addLocalLights"}};

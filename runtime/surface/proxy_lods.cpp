@@ -5,24 +5,22 @@
 #include <cstring>
 #include <utility>
 
-#include "lambent_surface_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
 #include "runtime/shadows/lit_scene.hpp"
 #include "runtime/shadows/shadowed_light_choice.hpp"
 #include "runtime/streaming/sizes.hpp"
+#include "runtime/surface/shaders.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find, &embedded::lambent_transfer::find};
 constexpr std::uint64_t kPageBytes = std::uint64_t{1} << 20;
-constexpr int kBands = 3;  // of the light; higher bands hardly reach a diffuse surface
+constexpr int kProxyLightBands = 3;  // of the light; higher bands hardly reach a diffuse surface
 
 static_assert(sizeof(ProxyLodTriangle) == streaming::kProxyLodTriangleBytes &&
               sizeof(ProxyLodGroup) == streaming::kProxyLodGroupBytes);
 
-struct ViewBlock {
+struct ProxyViewBlock {
   glm::mat4 view_from_world, clip_from_view;
 };
 
@@ -136,7 +134,7 @@ void ProxyLods::light(const World& world, const lighting::Environment& environme
     if (!windowed[order]) {
       const sh::LightVector all = environment.light().truncated(static_cast<int>(order));
       windows_[order].follow(all, options.window);
-      windowed[order] = sh::applyWeights(all, windows_[order].weights()).truncated(kBands);
+      windowed[order] = sh::applyWeights(all, windows_[order].weights()).truncated(kProxyLightBands);
     }
     sh::LightVector light = *windowed[order];
     ProxyLodGroup& record = groups[slot];
@@ -146,7 +144,7 @@ void ProxyLods::light(const World& world, const lighting::Environment& environme
       const glm::vec3 center_ws(record.world_from_group * glm::vec4(bounds.center(), 1.0f));
       for (const lighting::LocalLight& local : lights)
         if (!standsWithin(bounds, record.world_from_group, local))
-          light += lighting::lightAt(local, center_ws, kBands);
+          light += lighting::lightAt(local, center_ws, kProxyLightBands);
     }
     if (options.diffuse)
       for (std::size_t i = 0; i < std::size(record.light); ++i) record.light[i] = glm::vec4(light.c[i], 0.0f);
@@ -188,7 +186,7 @@ Result<void> ProxyLods::prepare(const World& world, const lighting::Environment&
   if (program_) return {};
   Result<gpu::Program> made = gpu::Program::create(
       "proxy levels of detail",
-      {{GL_VERTEX_SHADER, "proxy_lod.vert"}, {GL_FRAGMENT_SHADER, "proxy_lod.frag"}}, kShaders, {});
+      {{GL_VERTEX_SHADER, "proxy_lod.vert"}, {GL_FRAGMENT_SHADER, "proxy_lod.frag"}}, kSurfaceShaders, {});
   if (!made) return failAgain(made.error());
   program_ = std::move(*made);
   no_vertices_ = gpu::VertexArray("proxy levels of detail");
@@ -197,8 +195,8 @@ Result<void> ProxyLods::prepare(const World& world, const lighting::Environment&
 
 void ProxyLods::draw(const spec::View& view, gpu::Counters& counters) {
   if (batches_.empty()) return;
-  const ViewBlock block{view.view_from_world, view.clip_from_view};
-  view_.assign(std::span<const ViewBlock>(&block, 1));
+  const ProxyViewBlock block{view.view_from_world, view.clip_from_view};
+  view_.assign(std::span<const ProxyViewBlock>(&block, 1));
   program_->use();
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindProxyLodView, view_.buffer().id());
   groups_table_.bindStorage(kBindProxyLodGroups);

@@ -9,9 +9,8 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "lambent_lighting_embedded.hpp"
-#include "lambent_surface_embedded.hpp"
 #include "runtime/lighting/prefiltered_shared.h"
+#include "runtime/surface/shaders.hpp"
 
 namespace lambent::frame {
 
@@ -20,7 +19,6 @@ namespace {
 static_assert(kProbeLevels == lighting::kReflectedLevels, "reflection_probes.glsl uses levelOf()");
 static_assert(kProbeShares == lighting::kLobeShares);
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find, &embedded::lambent_lighting::find};
 // These are the uniform locations of the kernels.
 constexpr GLint kFace = 0, kImageLayer = 1, kDistanceLayer = 2, kProjection = 3;
 constexpr GLint kSize = 0, kLobe = 1, kShares = 2, kFirstLayer = 3;
@@ -54,11 +52,11 @@ spec::View probeFaceView(const glm::vec3& place_ws, int face, float near_m, floa
 
 Result<ReflectionProbes> ReflectionProbes::create() {
   ReflectionProbes probes;
-  Result<gpu::Program> store =
-      gpu::Program::create("probe store", {{GL_COMPUTE_SHADER, "reflection_probe_store.comp"}}, kShaders);
+  Result<gpu::Program> store = gpu::Program::create(
+      "probe store", {{GL_COMPUTE_SHADER, "reflection_probe_store.comp"}}, kSurfaceShaders);
   if (!store) return failAgain(store.error());
-  Result<gpu::Program> filter =
-      gpu::Program::create("probe filter", {{GL_COMPUTE_SHADER, "reflection_probe_filter.comp"}}, kShaders);
+  Result<gpu::Program> filter = gpu::Program::create(
+      "probe filter", {{GL_COMPUTE_SHADER, "reflection_probe_filter.comp"}}, kSurfaceShaders);
   if (!filter) return failAgain(filter.error());
   probes.store_ = std::move(*store);
   probes.filter_ = std::move(*filter);

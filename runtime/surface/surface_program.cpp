@@ -6,26 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "lambent_draws_embedded.hpp"
-#include "lambent_effects_glossy_embedded.hpp"
-#include "lambent_effects_neighborhood_embedded.hpp"
-#include "lambent_lighting_embedded.hpp"
-#include "lambent_shadows_embedded.hpp"
-#include "lambent_surface_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
+#include "runtime/surface/shaders.hpp"
 #include "runtime/transfer/seen_sky_shared.h"
 
 namespace lambent::frame {
 
 namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find,
-                                      &embedded::lambent_draws::find,
-                                      &embedded::lambent_transfer::find,
-                                      &embedded::lambent_lighting::find,
-                                      &embedded::lambent_shadows::find,
-                                      &embedded::lambent_effects_glossy::find,
-                                      &embedded::lambent_effects_neighborhood::find};
 
 std::string_view vertexFileOf(SurfaceReceiver receiver) {
   if (isGlossy(receiver)) return "glossy_vertex.glsl";
@@ -123,7 +109,7 @@ Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
                                         std::span<const SurfaceModule* const> modules, bool finest_texels) {
   const SurfaceReceiver receiver = kind.receiver();
   std::vector<SurfaceFunction> functions;
-  std::vector<gpu::FindText> tables(std::begin(kShaders), std::end(kShaders));
+  std::vector<gpu::FindText> tables(std::begin(kSurfaceShaders), std::end(kSurfaceShaders));
   for (std::size_t m = 0; m < modules.size(); ++m) {
     if ((kind.modules & bitOf(m)) == 0) continue;
     std::ranges::copy_if(modules[m]->functions(), std::back_inserter(functions),

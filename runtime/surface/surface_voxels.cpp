@@ -7,22 +7,21 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
-#include "lambent_surface_embedded.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/surface/reflection_probes_shared.h"
+#include "runtime/surface/shaders.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find};
 constexpr GLint kFromMesh = 0, kCount = 1, kMesh = 2;  // uniform locations
 
 }  // namespace
 
 Result<SurfaceVoxelizer> SurfaceVoxelizer::create() {
   Result<gpu::Program> program =
-      gpu::Program::create("surface voxels", {{GL_COMPUTE_SHADER, "surface_voxels.comp"}}, kShaders);
+      gpu::Program::create("surface voxels", {{GL_COMPUTE_SHADER, "surface_voxels.comp"}}, kSurfaceShaders);
   if (!program) return failAgain(program.error());
   SurfaceVoxelizer made;
   made.program_ = std::move(*program);

@@ -8,15 +8,11 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/draws/in_view.hpp"
+#include "runtime/draws/view_block.hpp"
 
 namespace lambent::frame {
 
 namespace {
-
-struct ViewBlock {
-  glm::mat4 view_from_world, clip_from_view;
-  glm::vec4 eye;  // see glossy_receiver.glsl
-};
 
 glm::vec4 eyeOf(const spec::View& view) {
   const bool perspective = view.clip_from_view[2][3] != 0.0f;

@@ -11,7 +11,7 @@ namespace lambent::frame {
 
 namespace {
 
-constexpr std::uint32_t kBands = 8;
+constexpr std::uint32_t kTransferBands = 8;
 
 constexpr bool inOrder() {
   for (std::size_t i = 0; i < kSurfaceViews.size(); ++i)
@@ -27,7 +27,7 @@ std::string knownViews() {
   for (const SurfaceViewRow& row : kSurfaceViews) {
     if (!known.empty()) known += ", ";
     known += row.name;
-    if (row.view == SurfaceView::TransferBand) known += fmt::format("[:0..{}]", kBands - 1);
+    if (row.view == SurfaceView::TransferBand) known += fmt::format("[:0..{}]", kTransferBands - 1);
   }
   return known;
 }
@@ -45,7 +45,7 @@ Result<ViewChoice> parseView(std::string_view word) {
   if (row->view != SurfaceView::TransferBand) return unknown("has no bands");
   const std::string_view band = word.substr(colon + 1);
   const auto [end, error] = std::from_chars(band.data(), band.data() + band.size(), choice.band);
-  if (error != std::errc{} || end != band.data() + band.size() || choice.band >= kBands)
+  if (error != std::errc{} || end != band.data() + band.size() || choice.band >= kTransferBands)
     return unknown("names no band");
   return choice;
 }

@@ -16,7 +16,6 @@ namespace lambent::transfer {
 
 namespace {
 
-constexpr const char* kHint = "copy it again or bake it again";
 // First word of a codebook payload.
 constexpr std::uint32_t kPlainForm = 0, kSharedForm = 1;
 // This is more than any cell needs. It keeps a small damaged file from demanding much memory.
@@ -119,7 +118,7 @@ Codebook expand(const SharedCodebook& codebook) {
 Result<Codebook> decodeCodebook(std::span<const std::byte> bytes, const TransferShape& shape,
                                 std::uint32_t clusters, const std::string& subject) {
   const auto damaged = [&](const char* why) {
-    return fail(subject, fmt::format("has a damaged codebook: {}", why), kHint);
+    return fail(subject, fmt::format("has a damaged codebook: {}", why), kCopyAgain);
   };
   const std::uint64_t size = shape.size();
   if (clusters == 0 || size == 0) return damaged("it is of nothing");
@@ -185,12 +184,12 @@ Result<std::vector<std::uint32_t>> decodeClusterIds(std::span<const std::byte> b
                                                     std::uint32_t sample_count, const std::string& subject) {
   const bool wide = clusters > 256;
   if (bytes.size() != std::size_t{sample_count} * (wide ? 2 : 1))
-    return fail(subject, "has damaged cluster ids: wrong size", kHint);
+    return fail(subject, "has damaged cluster ids: wrong size", kCopyAgain);
   std::vector<std::uint32_t> cluster_of(sample_count);
   for (std::size_t s = 0; s < cluster_of.size(); ++s) {
     cluster_of[s] = wide ? splitWord(bytes, sample_count, s) : std::to_integer<std::uint32_t>(bytes[s]);
     if (cluster_of[s] >= clusters)
-      return fail(subject, "has damaged cluster ids: a cluster that does not exist", kHint);
+      return fail(subject, "has damaged cluster ids: a cluster that does not exist", kCopyAgain);
   }
   return cluster_of;
 }
@@ -234,9 +233,10 @@ std::vector<std::byte> encodeWeightPlane(std::span<const std::uint32_t> codes, s
 
 Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> bytes, std::uint32_t bits,
                                                      std::uint32_t count, const std::string& subject) {
-  if (bits != 8 && bits != 16) return fail(subject, "has a damaged weight plane: not of 8 or 16 bits", kHint);
+  if (bits != 8 && bits != 16)
+    return fail(subject, "has a damaged weight plane: not of 8 or 16 bits", kCopyAgain);
   if (bytes.size() != std::size_t{count} * bits / 8)
-    return fail(subject, "has a damaged weight plane: wrong size", kHint);
+    return fail(subject, "has a damaged weight plane: wrong size", kCopyAgain);
   std::vector<std::uint32_t> codes(count);
   std::uint32_t code = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {

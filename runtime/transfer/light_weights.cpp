@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "runtime/base/payload_bytes.hpp"
+
 namespace lambent::transfer {
 
 std::vector<std::byte> encodeLightWeights(std::span<const LightWeights> samples) {
@@ -18,7 +20,7 @@ Result<std::vector<LightWeights>> decodeLightWeights(std::span<const std::byte> 
                                                      std::size_t sample_count, std::size_t light_count,
                                                      const std::string& subject) {
   const auto damaged = [&](const char* why) {
-    return fail(subject, std::string("has damaged light weights: ") + why, "copy it again or bake it again");
+    return fail(subject, std::string("has damaged light weights: ") + why, kCopyAgain);
   };
   if (bytes.size() / (2 * kLightsPerSample) != sample_count || bytes.size() % (2 * kLightsPerSample) != 0)
     return damaged("of another number of samples");

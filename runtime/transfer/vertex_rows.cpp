@@ -7,11 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "runtime/base/payload_bytes.hpp"
+
 namespace lambent::transfer {
 
 namespace {
 
-constexpr const char* kHint = "copy it again or bake it again";
 // First word of a rows payload. Format version 1 used 0 and 1 for samples that were not stored as
 // differences.
 constexpr std::uint32_t kSingleRows = 2, kSparseRows = 3;
@@ -83,7 +84,7 @@ std::vector<std::byte> encodeRows(const VertexWeights& rows) {
 Result<VertexWeights> decodeRows(std::span<const std::byte> bytes, std::uint32_t vertex_count,
                                  std::uint32_t sample_count, const std::string& subject) {
   const auto damaged = [&](const char* why) {
-    return fail(subject, fmt::format("has damaged vertex rows: {}", why), kHint);
+    return fail(subject, fmt::format("has damaged vertex rows: {}", why), kCopyAgain);
   };
   if (bytes.size() < 8) return damaged("too short");
   const auto head = takeFront<std::uint32_t>(bytes, 2);

@@ -11,13 +11,12 @@
 #include <gtest/gtest.h>
 
 #include "runtime/base/atomic_file.hpp"
+#include "tests/docs/source.hpp"
 
 namespace lambent {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kSource = LAMBENT_SOURCE_DIR;
 
 // Returns the names in `foreach(room ...)`.
 std::vector<std::string> roomsInOrder(const std::string& root) {

@@ -12,13 +12,12 @@
 #include <gtest/gtest.h>
 
 #include "runtime/base/atomic_file.hpp"
+#include "tests/docs/source.hpp"
 
 namespace lambent {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kSource = LAMBENT_SOURCE_DIR;
 
 std::vector<fs::path> pages() {
   std::vector<fs::path> found = {kSource / "README.md", kSource / "CHANGELOG.md",

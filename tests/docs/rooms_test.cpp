@@ -8,13 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "runtime/base/atomic_file.hpp"
+#include "tests/docs/source.hpp"
 
 namespace lambent {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kSource = LAMBENT_SOURCE_DIR;
 
 bool makesATarget(const fs::path& cmake_lists) {
   const Result<std::string> text = readTextFile(cmake_lists);

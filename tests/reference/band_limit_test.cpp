@@ -12,15 +12,11 @@ namespace lambent::baker::reference {
 namespace {
 
 using testing::expectMean;
+using testing::kPlace;
+using testing::limited;
 using testing::measured;
 using testing::samples;
 using testing::sceneOf;
-
-Options limited(std::uint32_t spp, int in, std::optional<int> out = {}) {
-  Options options = samples(spp, 0);
-  options.band_limit = BandLimit{in, out};
-  return options;
-}
 
 // Returns E/pi on a surface with nothing around.
 double open(const sh::LightVector& light, glm::vec3 normal) {
@@ -32,7 +28,7 @@ double open(const sh::LightVector& light, glm::vec3 normal) {
   return sum;
 }
 
-const glm::vec3 kEye(0.3f, 2, 0.4f), kPlace(0.1f, 0, 0.2f);
+const glm::vec3 kEye(0.3f, 2, 0.4f);
 
 TEST(BandLimit, LeavesAConstantLightAsItIs) {
   const Scene floor = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});

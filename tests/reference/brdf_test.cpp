@@ -29,7 +29,7 @@ struct Floor {
     return surfaces.pointAt({.surface = 0, .triangle = 0, .u = 0.3f, .v = 0.3f, .t = 1.0f}, -view).reflector;
   }
 };
-Floor floorOf(const gltf::Material& material, std::vector<MeasuredBrdf> brdfs = {}) {
+Floor knownFloor(const gltf::Material& material, std::vector<MeasuredBrdf> brdfs = {}) {
   Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 2.0f, 1)});
   auto& mesh = scene.meshes[0].primitives[0].mesh;
   mesh.tangents.assign(mesh.positions.size(), glm::vec4(1, 0, 0, 1));
@@ -70,7 +70,7 @@ Ggx lobeOf(const Reflector& reflector) {
 
 TEST(Brdf, OfMetalsReflectsOfUniformLightWhatQuadratureSays) {
   for (const float roughness : kRoughness) {
-    const Floor floor = floorOf(metal(roughness));
+    const Floor floor = knownFloor(metal(roughness));
     for (const float cosine : kCosines) {
       const Reflector reflector = floor.towards(viewAt(cosine));
       const glm::dvec2 parts = lobeOf(reflector).albedo(glm::dvec3(reflector.view));
@@ -84,7 +84,7 @@ TEST(Brdf, OfMetalsReflectsOfUniformLightWhatQuadratureSays) {
 TEST(Brdf, OfAnisotropicMetalsReflectsOfUniformLightWhatQuadratureSays) {
   for (const float roughness : {0.1f, 0.4f, 0.8f})
     for (const float strength : {0.3f, 1.0f}) {
-      const Floor floor = floorOf(metal(roughness, strength));
+      const Floor floor = knownFloor(metal(roughness, strength));
       for (const float cosine : {1.0f, 0.5f, 0.1f, 0.001f})
         for (const float azimuth : {0.0f, 1.0f, 4.7f}) {
           const Reflector reflector = floor.towards(viewAt(cosine, azimuth));
@@ -104,7 +104,7 @@ TEST(Brdf, OfDielectricsGivesTheDiffusePartWhatTheSpecularOneLeaves) {
       gltf::Material material = plastic(roughness, ior);
       if (material.isDiffuse()) material.roughness = 0.99f;
       material.base_color = glm::vec4(1.0f, 0.5f, 0.0f, 1.0f);
-      const Floor floor = floorOf(material);
+      const Floor floor = knownFloor(material);
       const double step = ior > 0.0f ? (double{ior} - 1.0) / (double{ior} + 1.0) : 1.0;
       for (const float cosine : kCosines) {
         const Reflector reflector = floor.towards(viewAt(cosine));
@@ -126,7 +126,7 @@ TEST(Brdf, MixesDielectricAndMetal) {
   material.base_color = glm::vec4(0.8f, 0.4f, 0.2f, 1.0f);
   material.specular = 0.5f;
   material.specular_color = {1.0f, 2.0f, 100.0f};
-  const Floor floor = floorOf(material);
+  const Floor floor = knownFloor(material);
   for (const float cosine : {1.0f, 0.4f, 0.05f}) {
     const Reflector reflector = floor.towards(viewAt(cosine));
     const glm::dvec3 f0 = 0.75 * 0.5 * glm::dvec3(0.04, 0.08, 1.0) + 0.25 * glm::dvec3(0.8, 0.4, 0.2);
@@ -140,7 +140,7 @@ TEST(Brdf, MixesDielectricAndMetal) {
 
 TEST(Brdf, IsReciprocalInItsSpecularPart) {
   for (const float strength : {0.0f, 0.7f}) {
-    const Floor floor = floorOf(metal(0.5f, strength));
+    const Floor floor = knownFloor(metal(0.5f, strength));
     for (int i = 0; i < 50; ++i) {
       const glm::vec3 a = viewAt(0.05f + 0.019f * static_cast<float>(i), 2.4f * static_cast<float>(i)),
                       b = viewAt(0.03f + 0.017f * static_cast<float>(i * 7 % 50),
@@ -213,17 +213,17 @@ void expectDrawnByDensity(const Reflector& reflector, const char* what) {
 
 TEST(Brdf, DirectionsAreDrawnAsTheirDensitiesSay) {
   for (const float cosine : {0.95f, 0.4f, 0.05f}) {
-    expectDrawnByDensity(floorOf(metal(0.6f)).towards(viewAt(cosine)), "metal");
-    expectDrawnByDensity(floorOf(metal(0.5f, 0.7f)).towards(viewAt(cosine, 2.0f)), "anisotropic");
-    expectDrawnByDensity(floorOf(plastic(0.7f)).towards(viewAt(cosine)), "plastic");
-    Reflector measured = floorOf(plastic(0.7f)).towards(viewAt(cosine));  // draws as a measured one would
+    expectDrawnByDensity(knownFloor(metal(0.6f)).towards(viewAt(cosine)), "metal");
+    expectDrawnByDensity(knownFloor(metal(0.5f, 0.7f)).towards(viewAt(cosine, 2.0f)), "anisotropic");
+    expectDrawnByDensity(knownFloor(plastic(0.7f)).towards(viewAt(cosine)), "plastic");
+    Reflector measured = knownFloor(plastic(0.7f)).towards(viewAt(cosine));  // draws as a measured one would
     measured.specular_share = 0.5f;
     expectDrawnByDensity(measured, "measured");
   }
 }
 
 TEST(Brdf, OfAViewUnderThePlaneIsThatOfTheLowestOneInItsDirection) {
-  const Floor floor = floorOf(metal(0.4f));
+  const Floor floor = knownFloor(metal(0.4f));
   const Reflector low = floor.towards(viewAt(0.0f)), lifted = floor.towards(viewAt(kLeastCosine));
   for (const float azimuth : {0.0f, 1.0f, 3.0f})
     for (int c = 0; c < 3; ++c)
@@ -238,12 +238,12 @@ TEST(Brdf, OfAViewUnderThePlaneIsThatOfTheLowestOneInItsDirection) {
 
 TEST(Brdf, TurnsItsLobeByRotationAndTexture) {
   gltf::Material material = metal(0.3f, 0.8f);
-  const auto along = [&] { return glm::abs(floorOf(material).towards({0, 0, 1}).world_from_local[0]); };
+  const auto along = [&] { return glm::abs(knownFloor(material).towards({0, 0, 1}).world_from_local[0]); };
   EXPECT_NEAR(along().x, 1.0f, 1e-6f);
   material.anisotropy_rotation_rad = kPi / 2.0f;  // towards the bitangent
   EXPECT_NEAR(along().z, 1.0f, 1e-6f);
   material.anisotropy_rotation_rad = kPi / 4.0f;  // between +X and cross(n, t) = -Z
-  const glm::mat3 frame = floorOf(material).towards({0, 0, 1}).world_from_local;
+  const glm::mat3 frame = knownFloor(material).towards({0, 0, 1}).world_from_local;
   EXPECT_NEAR(std::abs(glm::dot(frame[0], glm::normalize(glm::vec3(1, 0, -1)))), 1.0f, 1e-6f);
   EXPECT_NEAR(glm::dot(frame[2], glm::vec3(0, 1, 0)), 1.0f, 1e-6f);
 }
@@ -285,7 +285,7 @@ TEST(Brdf, OfAMeasurementIsTheWeighedMeanAndReciprocal) {
   LAMBENT_NEEDS_SHARED(testing::sharedFile("brdf"));
   for (const char* name : {"acryl_blue.brdf", "garnet_red.brdf"}) {
     const MeasuredBrdf brdf = measuredFile(name);
-    const Floor floor = floorOf(measuredMaterial(), {brdf});
+    const Floor floor = knownFloor(measuredMaterial(), {brdf});
     for (int i = 0; i < 60; ++i) {
       const glm::vec3 a = viewAt(0.3f + 0.011f * static_cast<float>(i), 2.4f * static_cast<float>(i)),
                       b = viewAt(0.25f + 0.012f * static_cast<float>(i * 7 % 60),
@@ -308,7 +308,7 @@ TEST(Brdf, OfAMeasurementReflectsOfUniformLightWhatQuadratureSaysAndNeverMoreTha
   for (BrdfMeasurement& m : bright.measurements) m.value *= 30.0f;
   bool scaled = false;
   for (const MeasuredBrdf& brdf : {measuredFile("acryl_blue.brdf"), bright}) {
-    const Floor floor = floorOf(measuredMaterial(), {brdf});
+    const Floor floor = knownFloor(measuredMaterial(), {brdf});
     for (const float cosine : kCosines) {
       const Reflector reflector = floor.towards(viewAt(cosine));
       glm::dvec3 expected(0.0);

@@ -15,11 +15,11 @@ namespace {
 
 using testing::expectMean;
 using testing::Ggx;
+using testing::kPlace;
+using testing::limited;
 using testing::measured;
 using testing::samples;
 using testing::sceneOf;
-
-const glm::vec3 kPlace(0.1f, 0, 0.2f);
 
 struct Sample {
   const char* name;
@@ -35,7 +35,7 @@ gltf::Material glossy(float metallic, float roughness, float anisotropy = 0.0f) 
   return material;
 }
 
-Scene floorOf(const gltf::Material& material, float width = 4.0f) {
+Scene glossyFloor(const gltf::Material& material, float width = 4.0f) {
   Scene scene = sceneOf({testing::grid({0, 0, 0}, width, 1)});
   auto& mesh = scene.meshes[0].primitives[0].mesh;
   mesh.tangents.assign(mesh.positions.size(), glm::vec4(1, 0, 0, 1));
@@ -93,12 +93,6 @@ glm::dvec3 dot(const sh::LightVector& a, const sh::LightVector& b) {
   return sum;
 }
 
-Options limited(std::uint32_t spp, int in, int out) {
-  Options options = samples(spp, 0);
-  options.band_limit = BandLimit{in, out};
-  return options;
-}
-
 const spec::SunLight kSun{
     .azimuth_deg = 200, .elevation_deg = 40, .angle_deg = 8, .radiance = glm::vec3(100)};
 
@@ -116,7 +110,7 @@ TEST(Glossy, KernelTimesLightIsWhatAnOpenFloorShows) {
       for (const int order : {3, 5}) {
         const glm::vec3 eye = eyeAt(elevation, 25.0f);
         const sh::LightVector kernel = kernelOf(sample.material, glm::normalize(eye - kPlace), order);
-        const auto seen = measured(floorOf(sample.material), eye, kPlace, {kSun}, limited(4, 5, order));
+        const auto seen = measured(glossyFloor(sample.material), eye, kPlace, {kSun}, limited(4, 5, order));
         const glm::dvec3 expected = dot(kernel, light.truncated(order));
         for (int c = 0; c < 3; ++c)
           EXPECT_NEAR(seen.mean[c], expected[c], 0.004 * std::max(0.2, std::abs(expected[c])))
@@ -150,7 +144,7 @@ TEST(Glossy, WholePicturesOfASunAreWhatQuadratureSays) {
         expected += 30.0 * (glm::dvec3(sample.material.base_color) * parts.x + parts.y) *
                     (2.0 * std::numbers::pi * cap / (kCount * kCount));
       }
-    const auto seen = measured(floorOf(sample.material), eye, kPlace, {sun}, samples(256));
+    const auto seen = measured(glossyFloor(sample.material), eye, kPlace, {sun}, samples(256));
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(seen.mean[c], expected[c], 4.0 * seen.error[c] + 1e-3 * expected[c]) << sample.name;
     EXPECT_LT(seen.error.g, 0.01 * expected.g) << sample.name;
@@ -160,7 +154,7 @@ TEST(Glossy, WholePicturesOfASunAreWhatQuadratureSays) {
 TEST(Glossy, MirrorsShowTheLightInTheReflectedDirection) {
   gltf::Material mirror = glossy(1.0f, 0.0f);
   mirror.base_color = glm::vec4(0.9f, 0.6f, 0.3f, 1.0f);
-  const Scene floor = floorOf(mirror);
+  const Scene floor = glossyFloor(mirror);
   const spec::SunLight sun{.azimuth_deg = 200, .elevation_deg = 30, .angle_deg = 3, .radiance = glm::vec3(7)};
   // From the opposite side at the same height the floor shows the sun; 5 degrees away it is black.
   const auto seen = measured(floor, eyeAt(30.0f, 20.0f), kPlace, {sun}, samples(64));
@@ -175,7 +169,7 @@ TEST(Glossy, MirrorsShowTheLightInTheReflectedDirection) {
 
 TEST(Glossy, SurfacesAreSeenInEachOther) {
   // A slanted view of a mirror floor below a lamp shows the lamp's radiance.
-  Scene scene = floorOf(glossy(1.0f, 0.0f));
+  Scene scene = glossyFloor(glossy(1.0f, 0.0f));
   scene.materials[0].base_color = glm::vec4(1.0f);
   gltf::Material shining = testing::matte();
   shining.emissive = glm::vec3(3.0f);
@@ -186,7 +180,7 @@ TEST(Glossy, SurfacesAreSeenInEachOther) {
 
 // Makes a floor and a ceiling so wide that it hides the sky.
 Scene underCeiling(const gltf::Material& floor, const gltf::Material& ceiling) {
-  Scene scene = floorOf(floor);
+  Scene scene = glossyFloor(floor);
   testing::add(scene, testing::flipped(testing::grid({0, 1, 0}, 1e3f, 1)), ceiling);
   return scene;
 }
@@ -245,7 +239,7 @@ double received(const sh::LightVector& kernel, const Open& open) {
 
 TEST(Glossy, LimitedKernelsSeeAWallInFrontOfHalfTheSky) {
   // The wall also hides its image below the floor.
-  Scene scene = floorOf(glossy(1.0f, 0.5f));
+  Scene scene = glossyFloor(glossy(1.0f, 0.5f));
   addWall(scene);
   const glm::vec3 eye = kPlace + glm::vec3(1.0f, 0.6f, 0.2f);
   const double expected = received(kernelOf(glossy(1.0f, 0.5f), glm::normalize(eye - kPlace), 5),
@@ -260,7 +254,7 @@ TEST(Glossy, LimitedKernelsMirrorWhatLiesBelowSmoothNormalsInThem) {
   // Bundles' surfaces may have such normals. Above a tilted normal, all directions that do not point to the
   // wall are open, also those below the floor, whose mirror images do not point to it either.
   for (const float lean : {0.4f, -0.4f}) {
-    Scene scene = floorOf(glossy(1.0f, 0.5f));
+    Scene scene = glossyFloor(glossy(1.0f, 0.5f));
     const glm::vec3 normal = glm::normalize(glm::vec3(lean, 1.0f, 0.0f));
     for (glm::vec3& n : scene.meshes[0].primitives[0].mesh.normals) n = normal;
     addWall(scene);
@@ -285,7 +279,7 @@ TEST(Glossy, LimitedKernelsMirrorWhatLiesBelowSmoothNormalsInThem) {
 }
 
 TEST(Glossy, LimitedKernelsTakePunctualLightsByTheirDirection) {
-  Scene scene = floorOf(glossy(1.0f, 0.4f));
+  Scene scene = glossyFloor(glossy(1.0f, 0.4f));
   scene.lights = {
       {.name = "", .type = gltf::Light::Type::Directional, .color = glm::vec3(1), .intensity = 3.0f}};
   gltf::Node node;
@@ -302,7 +296,7 @@ TEST(Glossy, LimitedKernelsTakePunctualLightsByTheirDirection) {
 
 TEST(Glossy, KernelsOfMeasurementsHaveTheirDirectionalAlbedo) {
   LAMBENT_NEEDS_SHARED(testing::sharedFile("brdf"));
-  Scene scene = floorOf({});
+  Scene scene = glossyFloor({});
   scene.materials[0].brdf = 0;
   scene.brdfs = {*readMeasuredBrdf(testing::sharedFile("brdf/garnet_red.brdf"))};
   for (const float elevation : {80.0f, 30.0f, 8.0f}) {
@@ -317,7 +311,7 @@ TEST(Glossy, KernelsOfMeasurementsHaveTheirDirectionalAlbedo) {
 TEST(Glossy, StaysFiniteInHardPlaces) {
   for (const float roughness : {0.0f, 1.0f})
     for (const float anisotropy : {0.0f, 1.0f}) {
-      Scene scene = floorOf(glossy(0.5f, roughness, anisotropy));
+      Scene scene = glossyFloor(glossy(0.5f, roughness, anisotropy));
       scene.meshes[0].primitives[0].mesh.tangents.clear();
       for (const float elevation : {90.0f, 0.05f})
         for (const bool cut : {false, true}) {

@@ -14,13 +14,12 @@ namespace {
 
 using testing::add;
 using testing::Ggx;
+using testing::kPlace;
 using testing::measured;
 using testing::samples;
 using testing::sceneOf;
 
-const glm::vec3 kPlace(0.1f, 0, 0.2f);
-
-gltf::Material metal(float roughness) {
+gltf::Material isotropicMetal(float roughness) {
   gltf::Material material;
   material.metallic = 1.0f;
   material.roughness = roughness;
@@ -98,7 +97,7 @@ TEST(LeaningNormals, ReflectAllOfUniformLight) {
   for (const float roughness : {0.3f, 0.6f})
     for (const float lean : {kLean, -kLean}) {
       const double expected = albedo(roughness, lean);
-      const auto seen = measured(floorThatLeans(metal(roughness), lean), eye(), kPlace,
+      const auto seen = measured(floorThatLeans(isotropicMetal(roughness), lean), eye(), kPlace,
                                  {testing::uniform(1.0f)}, samples(256));
       EXPECT_NEAR(seen.mean.g, expected, 4.0 * seen.error.g + 1e-3) << roughness << ' ' << lean;
     }
@@ -109,7 +108,7 @@ TEST(LeaningNormals, ReflectAllOfWhatShinesAllAround) {
   for (const float roughness : {0.3f, 0.6f}) {
     const double expected = 2.0 * albedo(roughness, kLean);
     const spec::SphereLight around{.position_ws = {0, 3, 0}, .radius_m = 100, .radiance = glm::vec3(2)};
-    Scene floor = floorThatLeans(metal(roughness), kLean);
+    Scene floor = floorThatLeans(isotropicMetal(roughness), kLean);
     const auto sphere = measured(floor, eye(), kPlace, {around}, samples(256, 0));
     EXPECT_NEAR(sphere.mean.g, expected, 4.0 * sphere.error.g + 2e-3) << roughness;
     add(floor, testing::flipped(testing::grid({0, 1, 0}, 1e3f, 1)), shining(2.0f));
@@ -120,13 +119,13 @@ TEST(LeaningNormals, ReflectAllOfWhatShinesAllAround) {
 }
 
 TEST(LeaningNormals, ShowTheSkyOfTheHiddenDirectionItself) {
-  const Scene floor = floorThatLeans(metal(0.0f), kLean);
+  const Scene floor = floorThatLeans(isotropicMetal(0.0f), kLean);
   EXPECT_NEAR(measured(floor, eye(), kPlace, {sunAt(-kHidden)}, samples(64)).mean.g, 7.0, 0.02);
   EXPECT_LT(measured(floor, eye(), kPlace, {sunAt(kHidden)}, samples(64)).mean.g, 0.01);
 }
 
 TEST(LeaningNormals, ShowWhatStandsInTheMirrorImage) {
-  Scene lit = floorThatLeans(metal(0.0f), kLean);
+  Scene lit = floorThatLeans(isotropicMetal(0.0f), kLean);
   add(lit, wall(), shining(3.0f));
   // Neither the sun behind the wall nor the one in front of the mirror image is visible.
   const auto seen = measured(lit, eye(), kPlace, {sunAt(-kHidden), sunAt(kHidden)}, samples(64, 0));
@@ -135,9 +134,9 @@ TEST(LeaningNormals, ShowWhatStandsInTheMirrorImage) {
 
 TEST(LeaningNormals, LoseNothingAtLaterHitsEither) {
   // A mirror on the ceiling shows the floor.
-  Scene scene = floorThatLeans(metal(0.3f), kLean);
+  Scene scene = floorThatLeans(isotropicMetal(0.3f), kLean);
   const glm::vec3 down = glm::normalize(kPlace - eye());
-  add(scene, testing::flipped(testing::grid({-3.0f, 2.0f, 0.2f}, 1.0f, 1)), metal(0.0f));
+  add(scene, testing::flipped(testing::grid({-3.0f, 2.0f, 0.2f}, 1.0f, 1)), isotropicMetal(0.0f));
   const float height = 2.0f / -down.y;
   const glm::vec3 on_ceiling = kPlace - height * down,
                   below = on_ceiling + 0.5f * glm::vec3(-down.x, down.y, -down.z);

@@ -19,7 +19,7 @@ namespace {
 constexpr int kOrder = 5;
 
 // Makes 4 x 4 texels of which every channel differs, read without filtering, as the baker reads them.
-gltf::TextureRef texture(Scene& scene, std::uint32_t seed) {
+gltf::TextureRef noise(Scene& scene, std::uint32_t seed) {
   spec::Rgba8Image image{4, 4, {}};
   for (std::uint32_t i = 0; i < 64; ++i)
     image.texels.push_back(static_cast<std::uint8_t>(hash32(seed + i) % 200 + 40));
@@ -108,11 +108,11 @@ TEST(KernelTwins, AgreeOnAnisotropyAndTextures) {
   m.metallic = 0.8f;
   m.anisotropy = 0.5f;
   m.anisotropy_rotation_rad = 0.6f;
-  m.base_color_texture = texture(scene, 1);
-  m.metallic_roughness_texture = texture(scene, 2);
-  m.specular_texture = texture(scene, 3);
-  m.specular_color_texture = texture(scene, 4);
-  m.anisotropy_texture = texture(scene, 5);
+  m.base_color_texture = noise(scene, 1);
+  m.metallic_roughness_texture = noise(scene, 2);
+  m.specular_texture = noise(scene, 3);
+  m.specular_color_texture = noise(scene, 4);
+  m.anisotropy_texture = noise(scene, 5);
   m.metallic_roughness_texture.scale = {1.7f, 0.6f};
   m.anisotropy_texture.rotation_rad = 0.4f;
   EXPECT_LT(apart(scene), 0.03);

@@ -22,7 +22,7 @@ Scene floorAndCard(const gltf::Material& material, float width = 2.0f) {
 }
 
 // Makes a texture of `texels` (RGBA, n wide, 1 high), read without filtering.
-gltf::TextureRef texture(Scene& scene, const std::vector<std::uint8_t>& texels) {
+gltf::TextureRef stripes(Scene& scene, const std::vector<std::uint8_t>& texels) {
   spec::Rgba8Image image{static_cast<std::uint32_t>(texels.size() / 4), 1, texels};
   const std::vector<std::uint8_t> bytes = spec::encodePng(image);
   SceneImage file{"stripes", "image/png", {}};
@@ -41,7 +41,7 @@ TEST(Material, OfCutOutsLetsRaysThroughByItsTexture) {
   Scene scene = floorAndCard(testing::matte());
   gltf::Material& cut = scene.materials[1];
   cut.alpha_mode = gltf::AlphaMode::Mask;
-  cut.base_color_texture = texture(scene, {255, 255, 255, 255, 255, 255, 255, 100});  // left half stands
+  cut.base_color_texture = stripes(scene, {255, 255, 255, 255, 255, 255, 255, 100});  // left half stands
   const auto seen = [&](glm::vec3 eye, glm::vec3 target) {
     return measured(scene, eye, target, {kZenith}, samples(16, 0));
   };
@@ -132,7 +132,7 @@ TEST(Material, OfMirroredNodesKeepsItsFront) {
 TEST(Material, OfTexturesIsLinearAndMultiplies) {
   Scene scene = sceneOf({testing::grid({0, 0, 0}, 2.0f, 1)});
   scene.materials[0].base_color = glm::vec4(1.0f, 0.5f, 1.0f, 1.0f);
-  scene.materials[0].base_color_texture = texture(scene, {128, 128, 128, 255, 255, 255, 255, 255});
+  scene.materials[0].base_color_texture = stripes(scene, {128, 128, 128, 255, 255, 255, 255, 255});
   auto& mesh = scene.meshes[0].primitives[0].mesh;
   mesh.colors.assign(mesh.positions.size(), glm::vec4(0.5f, 1, 1, 1));
   const auto seen = [&](float x) {
@@ -156,7 +156,7 @@ TEST(Material, OfEmissiveTexturesShinesWhereTheyAreBright) {
     return measured(lit, {x, 0.9f, 3}, {x, 0, 0}, {}, samples(256, 0));
   };
   const Measured whole = at(scene, 0.6f);
-  scene.materials[1].emissive_texture = texture(scene, {0, 0, 0, 255, 255, 255, 255, 255});
+  scene.materials[1].emissive_texture = stripes(scene, {0, 0, 0, 255, 255, 255, 255, 255});
   const Measured near = at(scene, 0.6f), far = at(scene, -0.6f);
   EXPECT_GT(near.mean.g, 1.3 * far.mean.g);
   EXPECT_NEAR(near.mean.g + far.mean.g, whole.mean.g, 4.0 * (near.error.g + far.error.g + whole.error.g));
@@ -171,7 +171,7 @@ TEST(Material, OfNormalMapsTurnsTheCosineOnly) {
     for (const int axis : {0, 1}) {
       Scene scene = sceneOf({testing::grid({0, 0, 0}, 2.0f, 1)});
       scene.materials[0].normal_texture =
-          axis == 0 ? texture(scene, {lean, 128, 255, 255}) : texture(scene, {128, lean, 255, 255});
+          axis == 0 ? stripes(scene, {lean, 128, 255, 255}) : stripes(scene, {128, lean, 255, 255});
       auto& mesh = scene.meshes[0].primitives[0].mesh;
       if (tangents) mesh.tangents.assign(mesh.positions.size(), glm::vec4(1, 0, 0, 1));
       const float share = 2.0f * static_cast<float>(lean) / 255.0f - 1.0f,

@@ -110,4 +110,12 @@ inline spec::Light uniform(float radiance) {
   return spec::ConstantLight{.radiance = glm::vec3(radiance)};
 }
 
+inline const glm::vec3 kPlace(0.1f, 0, 0.2f);  // that tests of one place look at
+
+inline baker::reference::Options limited(std::uint32_t spp, int in, std::optional<int> out = {}) {
+  baker::reference::Options options = samples(spp, 0);
+  options.band_limit = baker::reference::BandLimit{in, out};
+  return options;
+}
+
 }  // namespace lambent::testing

@@ -13,8 +13,6 @@ using testing::measured;
 using testing::samples;
 using testing::sceneOf;
 
-constexpr double kPi = std::numbers::pi;
-
 gltf::Material lamp(float radiance) {
   gltf::Material material = testing::matte();
   material.base_color = glm::vec4(0, 0, 0, 1);
@@ -44,7 +42,7 @@ double formFactor(const std::vector<glm::dvec3>& corners, const glm::dvec3& p, c
                      b = glm::normalize(corners[(i + 1) % corners.size()] - p);
     sum += std::acos(glm::dot(a, b)) * glm::dot(glm::normalize(glm::cross(a, b)), n);
   }
-  return std::abs(sum) / (2.0 * kPi);
+  return std::abs(sum) / (2.0 * std::numbers::pi);
 }
 
 TEST(EmissiveSurface, LightsAFloorByItsFormFactor) {
@@ -99,10 +97,11 @@ TEST(PunctualLight, OfPointsFallsWithTheSquareOfTheDistance) {
   gltf::Light light{
       .name = {}, .type = gltf::Light::Type::Point, .color = {0.5f, 1.0f, 2.0f}, .intensity = 7.0f};
   for (const float x : {0.0f, 1.0f, 5.0f})
-    EXPECT_NEAR(seenAt(floorWithLight(light, above(2)), x), 7.0 / kPi * 2.0 / std::pow(x * x + 4.0, 1.5),
-                2e-5);
+    EXPECT_NEAR(seenAt(floorWithLight(light, above(2)), x),
+                7.0 / std::numbers::pi * 2.0 / std::pow(x * x + 4.0, 1.5), 2e-5);
   light.range_m = 4.0f;
-  EXPECT_NEAR(seenAt(floorWithLight(light, above(2)), 0), 7.0 / kPi / 4.0 * (1.0 - 1.0 / 16.0), 2e-5);
+  EXPECT_NEAR(seenAt(floorWithLight(light, above(2)), 0), 7.0 / std::numbers::pi / 4.0 * (1.0 - 1.0 / 16.0),
+              2e-5);
   EXPECT_EQ(seenAt(floorWithLight(light, above(2)), 4), 0.0);
 }
 
@@ -118,7 +117,7 @@ TEST(PunctualLight, OfSpotsFadesBetweenItsCones) {
     const double share = (std::cos(angle) - std::cos(0.6)) / (std::cos(0.3) - std::cos(0.6));
     const double inside = std::clamp(share, 0.0, 1.0);
     EXPECT_NEAR(seenAt(scene, static_cast<float>(x)),
-                inside * inside * 5.0 / kPi * std::pow(std::cos(angle), 3.0) / 4.0, 5e-5)
+                inside * inside * 5.0 / std::numbers::pi * std::pow(std::cos(angle), 3.0) / 4.0, 5e-5)
         << angle;
   }
 }
@@ -126,8 +125,8 @@ TEST(PunctualLight, OfSpotsFadesBetweenItsCones) {
 TEST(PunctualLight, OfDirectionsIsLuxOnAFacingSurface) {
   const gltf::Light light{.name = {}, .type = gltf::Light::Type::Directional, .intensity = 3.0f};
   const glm::mat4 slanted = glm::rotate(above(2), glm::radians(60.0f), {0, 1, 0});
-  EXPECT_NEAR(seenAt(floorWithLight(light, above(2)), 1), 3.0 / kPi, 1e-5);
-  EXPECT_NEAR(seenAt(floorWithLight(light, slanted), 1), 1.5 / kPi, 1e-5);
+  EXPECT_NEAR(seenAt(floorWithLight(light, above(2)), 1), 3.0 / std::numbers::pi, 1e-5);
+  EXPECT_NEAR(seenAt(floorWithLight(light, slanted), 1), 1.5 / std::numbers::pi, 1e-5);
 }
 
 TEST(PunctualLight, CastsShadowsAndAddsUp) {
@@ -138,13 +137,13 @@ TEST(PunctualLight, CastsShadowsAndAddsUp) {
   node.light = 1;
   node.parent_from_node = above(9);
   scene.nodes.push_back(node);
-  const double both = 7.0 / kPi / 4.0 + 3.0 / kPi;
+  const double both = 7.0 / std::numbers::pi / 4.0 + 3.0 / std::numbers::pi;
   expectMean(measured(scene, {0, 3, 4}, {0, 0, 0}, {}, samples(64, 0)), both, 1e-4);
   // A card is between the two lights, wider than it has to be for the floor's point.
   Scene shaded = sceneOf({testing::grid({0, 0, 0}, 20.0f, 1), testing::grid({0, 3, 0}, 1.0f, 1)});
   for (std::size_t i = 1; i < scene.nodes.size(); ++i) shaded.nodes.push_back(scene.nodes[i]);
   shaded.lights = scene.lights;
-  expectMean(measured(shaded, {0, 1, 4}, {0, 0, 0}, {}, samples(64, 0)), 7.0 / kPi / 4.0, 1e-4);
+  expectMean(measured(shaded, {0, 1, 4}, {0, 0, 0}, {}, samples(64, 0)), 7.0 / std::numbers::pi / 4.0, 1e-4);
 }
 
 }  // namespace

@@ -11,10 +11,15 @@
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/plan/rigid_groups.hpp"
+#include "baker/transport/frame.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::testing {
+
+inline glm::mat3 upright() {
+  return glm::mat3(baker::localFrame({0, 1, 0}));
+}
 
 struct Transport {
   baker::Scene scene;

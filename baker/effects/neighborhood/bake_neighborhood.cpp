@@ -11,7 +11,7 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kProbeRays = 256;
-constexpr int kDiffuseBands = 3, kLeastMatrixBands = 4;
+constexpr int kLeastMatrixBands = 4;
 
 // Changed holds a grid and the change at its points. The grid is empty if nothing is to be baked.
 struct Changed {

@@ -15,7 +15,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kCodesPerRange = 256;
 constexpr int kMostAttempts = 4;
 constexpr double kFiner = 0.6, kLooser = 2.0;  // least factors from one attempt to the next
 constexpr int kQuickLevel = 3;                 // of zstd; the bundle's payloads are compressed better
@@ -85,7 +85,7 @@ class CellCoder {
       for (std::size_t i = 0; i < wrong_bounced.size(); ++i) wrong_bounced[i] -= bounced_[i];
     }
     std::vector<double> ratios(count_, -1.0);
-    parallelRanges(count_, kGrain, {}, [&](std::size_t begin, std::size_t end) {
+    parallelRanges(count_, kCodesPerRange, {}, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         const auto of = [&](std::span<const float> visibility, std::span<const float> bounced) {
           return meter_.measure(visibility.subspan(p * shape_.visibilitySize(), shape_.visibilitySize()),

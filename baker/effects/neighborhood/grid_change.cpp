@@ -14,7 +14,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kGrain = 64;
+constexpr std::size_t kGridPointsPerRange = 64;
 // Distance from the surface, relative to the spacing of points, that counts as on the surface.
 constexpr float kOnSurface = 1e-3f;
 
@@ -49,7 +49,7 @@ class Filler {
     return runStage({.name = "neighborhood",
                      .unit = "points",
                      .count = grid_.count(),
-                     .grain = kGrain,
+                     .grain = kGridPointsPerRange,
                      .writes = {rowsOf(change_.outside), rowsOf(backs),
                                 rowsOf(change_.visibility, change_.shape.visibilitySize()),
                                 rowsOf(change_.bounced, change_.shape.bouncedSize())},
@@ -64,7 +64,7 @@ class Filler {
     std::vector<std::size_t> border;
     for (std::size_t p = 0; p < grid_.count(); ++p)
       if (!change_.outside[p] && besideOutside(p)) border.push_back(p);
-    return parallelRanges(border.size(), kGrain, stop, [&](std::size_t begin, std::size_t end) {
+    return parallelRanges(border.size(), kGridPointsPerRange, stop, [&](std::size_t begin, std::size_t end) {
       PointChange on(body_, directions_, change_.shape), before(body_, directions_, change_.shape);
       for (std::size_t b = begin; b < end; ++b) {
         const std::size_t p = border[b];
@@ -154,7 +154,7 @@ std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& gr
 }
 
 void dropChange(const BakeContext& context, std::size_t points) {
-  dropStage(context, points, kGrain);
+  dropStage(context, points, kGridPointsPerRange);
 }
 
 }  // namespace lambent::baker

@@ -14,7 +14,6 @@ namespace lambent::baker {
 namespace {
 
 constexpr double kInsideShare = 0.5;
-constexpr int kDiffuseBands = 3;
 constexpr BandPower kDiffusePower = {1.0, 4.0 / 9.0, 1.0 / 16.0, 0.0, 1.0 / 576.0, 0.0};
 constexpr BandPower kShadowedPower = {1.0, 0.625, 0.25, 0.072, 0.019, 0.01};
 

@@ -19,6 +19,9 @@
 
 namespace lambent::baker {
 
+// Bands of the change that diffuse receivers read.
+inline constexpr int kDiffuseBands = 3;
+
 struct ChangeShape {
   int order = 5, order_out = 3;
   std::uint32_t channels = 0;  // of the bounced part: 0 (there is none), 1 or 3

@@ -4,12 +4,6 @@
 
 namespace lambent::baker {
 
-namespace {
-
-constexpr double kY0 = 0.28209479177387814;
-
-}  // namespace
-
 Arrival FirstLight::look(const glm::vec3& place, const SphereTable& table, std::span<float> transfer) {
   const std::size_t columns = transfer.size();
   reach_.resize(table.size());
@@ -32,7 +26,8 @@ Arrival FirstLight::look(const glm::vec3& place, const SphereTable& table, std::
   // sums of y_i over the table, which are nearly 0, are corrected for thick air.
   open *= share;
   for (std::size_t i = 0; i < columns; ++i)
-    transfer[i] = static_cast<float>(i == 0 ? kY0 * open : (1.0 - open) * table.mean(i) - lost_[i] * share);
+    transfer[i] =
+        static_cast<float>(i == 0 ? kMeanOfBandZero * open : (1.0 - open) * table.mean(i) - lost_[i] * share);
   return {met * share, out * share};
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kPlacesPerVoxel = 8;
 constexpr std::size_t kLeastRays = 16;
 constexpr float kThin = 0.25f;  // optical depth of a voxel whose centre is accurate enough
-constexpr std::size_t kGrain = 64;
+constexpr std::size_t kPlacesPerRange = 64;
 constexpr std::size_t kTogether = 1u << 13;  // places whose light is kept at a time
 
 struct Place {
@@ -125,7 +125,7 @@ bool fitWithinVoxels(const Medium& medium, const VolumeSettings& settings, const
       }
     };
     const auto done = runStage({.count = count,
-                                .grain = kGrain,
+                                .grain = kPlacesPerRange,
                                 .writes = {rowsOf(values, width), rowsOf(weights)},
                                 .compute = compute},
                                context.part("places", start));
@@ -145,7 +145,7 @@ bool fitWithinVoxels(const Medium& medium, const VolumeSettings& settings, const
 void dropWithinVoxels(const BakeContext& context, const DensityField& density, const TransferGrid& grid) {
   const std::size_t places = placesIn(density, grid).size();
   for (std::size_t start = 0; start < places; start += kTogether)
-    dropStage(context.part("places", start), std::min(kTogether, places - start), kGrain);
+    dropStage(context.part("places", start), std::min(kTogether, places - start), kPlacesPerRange);
 }
 
 }  // namespace lambent::baker

@@ -13,59 +13,60 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kC = kBlockColumns;
-constexpr std::size_t kGrain = 512;  // rows that are summed up together
-using Columns = std::array<double, kC>;
+constexpr std::size_t kRowsPerSum = 512;  // rows that are summed up together
+using ColumnSums = std::array<double, kBlockColumns>;
 using Vector = std::vector<float>;
 
 template <typename Body>
 void overRows(std::size_t rows, const Body& body) {
-  parallelRanges(rows, kGrain, {}, [&](std::size_t begin, std::size_t end) { body(begin, end); });
+  parallelRanges(rows, kRowsPerSum, {}, [&](std::size_t begin, std::size_t end) { body(begin, end); });
 }
 
-Columns dots(std::span<const float> a, std::span<const float> b) {
-  const std::size_t rows = a.size() / kC;
-  std::vector<Columns> partial((rows + kGrain - 1) / kGrain);
+ColumnSums dots(std::span<const float> a, std::span<const float> b) {
+  const std::size_t rows = a.size() / kBlockColumns;
+  std::vector<ColumnSums> partial((rows + kRowsPerSum - 1) / kRowsPerSum);
   overRows(rows, [&](std::size_t begin, std::size_t end) {
-    Columns sum{};
+    ColumnSums sum{};
     for (std::size_t r = begin; r < end; ++r)
-      for (std::size_t c = 0; c < kC; ++c) sum[c] += double{a[r * kC + c]} * double{b[r * kC + c]};
-    partial[begin / kGrain] = sum;
+      for (std::size_t c = 0; c < kBlockColumns; ++c)
+        sum[c] += double{a[r * kBlockColumns + c]} * double{b[r * kBlockColumns + c]};
+    partial[begin / kRowsPerSum] = sum;
   });
-  Columns sum{};
-  for (const Columns& part : partial)
-    for (std::size_t c = 0; c < kC; ++c) sum[c] += part[c];
+  ColumnSums sum{};
+  for (const ColumnSums& part : partial)
+    for (std::size_t c = 0; c < kBlockColumns; ++c) sum[c] += part[c];
   return sum;
 }
 
 // Adds factor * from to `to`, column by column.
-void add(std::span<float> to, std::span<const float> from, const Columns& factor) {
-  std::array<float, kC> f;
-  for (std::size_t c = 0; c < kC; ++c) f[c] = static_cast<float>(factor[c]);
-  overRows(to.size() / kC, [&](std::size_t begin, std::size_t end) {
+void addColumns(std::span<float> to, std::span<const float> from, const ColumnSums& factor) {
+  std::array<float, kBlockColumns> f;
+  for (std::size_t c = 0; c < kBlockColumns; ++c) f[c] = static_cast<float>(factor[c]);
+  overRows(to.size() / kBlockColumns, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r)
-      for (std::size_t c = 0; c < kC; ++c) to[r * kC + c] += f[c] * from[r * kC + c];
+      for (std::size_t c = 0; c < kBlockColumns; ++c)
+        to[r * kBlockColumns + c] += f[c] * from[r * kBlockColumns + c];
   });
 }
 
-double lengthOf(const Columns& squares) {
+double lengthOf(const ColumnSums& squares) {
   double sum = 0.0;
   for (const double s : squares) sum += s;
   return std::sqrt(sum);
 }
 
 // Divides each column by its length; columns of length 0 become 0. Returns the lengths.
-Columns normalize(std::span<float> v) {
-  Columns length = dots(v, v), inverse;
-  for (std::size_t c = 0; c < kC; ++c) {
+ColumnSums normalize(std::span<float> v) {
+  ColumnSums length = dots(v, v), inverse;
+  for (std::size_t c = 0; c < kBlockColumns; ++c) {
     length[c] = std::sqrt(length[c]);
     inverse[c] = length[c] > 1e-30 ? 1.0 / length[c] : 0.0;
   }
-  std::array<float, kC> f;
-  for (std::size_t c = 0; c < kC; ++c) f[c] = static_cast<float>(inverse[c]);
-  overRows(v.size() / kC, [&](std::size_t begin, std::size_t end) {
+  std::array<float, kBlockColumns> f;
+  for (std::size_t c = 0; c < kBlockColumns; ++c) f[c] = static_cast<float>(inverse[c]);
+  overRows(v.size() / kBlockColumns, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r)
-      for (std::size_t c = 0; c < kC; ++c) v[r * kC + c] *= f[c];
+      for (std::size_t c = 0; c < kBlockColumns; ++c) v[r * kBlockColumns + c] *= f[c];
   });
   return length;
 }
@@ -75,7 +76,7 @@ Columns normalize(std::span<float> v) {
 GmresResult solveGmres(std::span<const float> b, std::span<float> x,
                        const std::function<bool(std::span<const float>, std::span<float>)>& apply,
                        const GmresSettings& settings, const BakeContext& context) {
-  const std::size_t rows = b.size() / kC;
+  const std::size_t rows = b.size() / kBlockColumns;
   const double wanted = lengthOf(dots(b, b));
   if (wanted == 0.0) {
     std::fill(x.begin(), x.end(), 0.0f);
@@ -97,11 +98,12 @@ GmresResult solveGmres(std::span<const float> b, std::span<float> x,
       ++state.iterations;
       basis.assign(1, Vector(b.size()));
       overRows(rows, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin * kC; i < end * kC; ++i) basis[0][i] = b[i] - x[i] + image[i];
+        for (std::size_t i = begin * kBlockColumns; i < end * kBlockColumns; ++i)
+          basis[0][i] = b[i] - x[i] + image[i];
       });
-      const Columns length = normalize(basis[0]);
-      Columns squares;
-      for (std::size_t c = 0; c < kC; ++c)
+      const ColumnSums length = normalize(basis[0]);
+      ColumnSums squares;
+      for (std::size_t c = 0; c < kBlockColumns; ++c)
         state.small[c].begin(length[c]), squares[c] = length[c] * length[c];
       state.residual = lengthOf(squares) / wanted;
       // Rounding sets a floor: a residual that a whole round hardly improves will not get better.
@@ -120,17 +122,17 @@ GmresResult solveGmres(std::span<const float> b, std::span<float> x,
       ++state.iterations;
       Vector next(b.size());
       overRows(rows, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin * kC; i < end * kC; ++i) next[i] = v[i] - image[i];
+        for (std::size_t i = begin * kBlockColumns; i < end * kBlockColumns; ++i) next[i] = v[i] - image[i];
       });
-      std::array<std::vector<double>, kC> column;
+      std::array<std::vector<double>, kBlockColumns> column;
       for (const Vector& earlier : basis) {
-        Columns h = dots(next, earlier);
-        for (std::size_t c = 0; c < kC; ++c) column[c].push_back(h[c]), h[c] = -h[c];
-        add(next, earlier, h);
+        ColumnSums h = dots(next, earlier);
+        for (std::size_t c = 0; c < kBlockColumns; ++c) column[c].push_back(h[c]), h[c] = -h[c];
+        addColumns(next, earlier, h);
       }
-      const Columns last = normalize(next);
+      const ColumnSums last = normalize(next);
       double left = 0.0;
-      for (std::size_t c = 0; c < kC; ++c) {
+      for (std::size_t c = 0; c < kBlockColumns; ++c) {
         column[c].push_back(last[c]);
         state.small[c].add(std::move(column[c]));
         left += state.small[c].g.back() * state.small[c].g.back();
@@ -139,12 +141,12 @@ GmresResult solveGmres(std::span<const float> b, std::span<float> x,
       if (std::sqrt(left) <= settings.tolerance * wanted) break;
       checkpoints.saveIfDue(state, x);
     }
-    std::array<std::vector<double>, kC> y;
-    for (std::size_t c = 0; c < kC; ++c) y[c] = state.small[c].solve();
+    std::array<std::vector<double>, kBlockColumns> y;
+    for (std::size_t c = 0; c < kBlockColumns; ++c) y[c] = state.small[c].solve();
     for (std::size_t j = 0; j < y[0].size(); ++j) {
-      Columns factor;
-      for (std::size_t c = 0; c < kC; ++c) factor[c] = y[c][j];
-      add(x, basis[j], factor);
+      ColumnSums factor;
+      for (std::size_t c = 0; c < kBlockColumns; ++c) factor[c] = y[c][j];
+      addColumns(x, basis[j], factor);
     }
     basis.clear();
     state.small = {};

@@ -13,7 +13,7 @@ namespace {
 // This is h relative to a typical voxel's weight: a few places at a voxel's rim do not move it far.
 constexpr double kHold = 0.01;
 constexpr int kMostSteps = 200;
-constexpr double kTolerance = 1e-5;  // relative residual
+constexpr double kFitTolerance = 1e-5;  // relative residual
 
 }  // namespace
 
@@ -96,7 +96,7 @@ void GridFit::solveColumn(std::size_t column, double hold, std::vector<float>& o
     along[q] = scaled(q);
     size += rest[q] * along[q];
   }
-  const double enough = kTolerance * kTolerance * size;
+  const double enough = kFitTolerance * kFitTolerance * size;
   for (int step = 0; step < kMostSteps && size > enough; ++step) {
     double bend = 0.0;
     for (std::size_t q = 0; q < n; ++q) {

@@ -13,20 +13,18 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kC = kBlockColumns;
-constexpr double kY0 = 0.28209479177387814;
 constexpr std::size_t kNodeGrain = 256;
-using Columns = std::array<float, kC>;
+using ColumnValues = std::array<float, kBlockColumns>;
 
 // Adds factor * from to `to`.
-void add(float* to, const float* from, float factor) {
-  for (std::size_t c = 0; c < kC; ++c) to[c] += factor * from[c];
+void addScaled(float* to, const float* from, float factor) {
+  for (std::size_t c = 0; c < kBlockColumns; ++c) to[c] += factor * from[c];
 }
 
-// Computes the radiance along a ray from coefficients [output][kC].
+// Computes the radiance along a ray from coefficients [output][kBlockColumns].
 void look(const float* coefficients, std::span<const float> as, float* out) {
-  Columns sum{};
-  for (std::size_t i = 0; i < as.size(); ++i) add(sum.data(), coefficients + i * kC, as[i]);
+  ColumnValues sum{};
+  for (std::size_t i = 0; i < as.size(); ++i) addScaled(sum.data(), coefficients + i * kBlockColumns, as[i]);
   std::copy(sum.begin(), sum.end(), out);
 }
 
@@ -112,7 +110,7 @@ void PhaseScattering::sumUp(std::span<const float> clear, const Chunk& chunk, st
     }
     away_[p] = away / static_cast<double>(rays);
     for (std::size_t i = 0; i < n; ++i)
-      amiss_[p * n + i] = static_cast<float>(kY0 * (double{clear[p * n + i]} - out[i]));
+      amiss_[p * n + i] = static_cast<float>(kMeanOfBandZero * (double{clear[p * n + i]} - out[i]));
   }
 }
 
@@ -153,7 +151,7 @@ std::optional<PhaseScattering> PhaseScattering::build(const VolumeScene& scene, 
 // 24, taken as 1/24. The nodes above the samples are corrected by both. Samples themselves are not, since
 // rays read them from near, at a few places only.
 void PhaseScattering::bend(std::span<const float> nodes, std::span<float> bent) const {
-  const std::size_t width = outputs() * kC, above = scene_.grid.nodes() - samples();
+  const std::size_t width = outputs() * kBlockColumns, above = scene_.grid.nodes() - samples();
   parallelRanges(above, kNodeGrain, {}, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t node = samples() + i;
@@ -185,8 +183,8 @@ std::optional<std::array<std::size_t, 3>> PhaseScattering::curveAt(std::size_t n
   return std::array{static_cast<std::size_t>(before), std::size_t{middle}, static_cast<std::size_t>(after)};
 }
 
-// Evaluates one ray direction. `near` is [sample][kNear][kC]: the radiance at the samples, then its second
-// differences along the axes. `far` is [node above the samples][kC].
+// Evaluates one ray direction. `near` is [sample][kNear][kBlockColumns]: the radiance at the samples, then
+// its second differences along the axes. `far` is [node above the samples][kBlockColumns].
 bool PhaseScattering::see(std::size_t ray, std::span<const float> x, std::span<const float> bent,
                           std::span<float> near, std::span<float> far, const std::stop_token& stop) const {
   const std::size_t n = outputs();
@@ -194,27 +192,31 @@ bool PhaseScattering::see(std::size_t ray, std::span<const float> x, std::span<c
   return parallelRanges(samples(), kNodeGrain, stop,
                         [&](std::size_t begin, std::size_t end) {
                           for (std::size_t p = begin; p < end; ++p)
-                            look(&x[p * n * kC], as, &near[p * kNear * kC]);
+                            look(&x[p * n * kBlockColumns], as, &near[p * kNear * kBlockColumns]);
                         }) &&
          parallelRanges(samples(), kNodeGrain, stop,
                         [&](std::size_t begin, std::size_t end) {
                           for (std::size_t p = begin; p < end; ++p)
                             for (int axis = 0; axis < 3; ++axis) {
-                              float* to = &near[(p * kNear + 1 + static_cast<std::size_t>(axis)) * kC];
+                              float* to =
+                                  &near[(p * kNear + 1 + static_cast<std::size_t>(axis)) * kBlockColumns];
                               const auto around = curveAt(p, axis);
                               if (!around) {
-                                std::fill_n(to, kC, 0.0f);
+                                std::fill_n(to, kBlockColumns, 0.0f);
                                 continue;
                               }
-                              const float* a = &near[(*around)[0] * kNear * kC];
-                              const float* b = &near[(*around)[1] * kNear * kC];
-                              const float* c = &near[(*around)[2] * kNear * kC];
-                              for (std::size_t k = 0; k < kC; ++k) to[k] = (a[k] - b[k]) + (c[k] - b[k]);
+                              const float* a = &near[(*around)[0] * kNear * kBlockColumns];
+                              const float* b = &near[(*around)[1] * kNear * kBlockColumns];
+                              const float* c = &near[(*around)[2] * kNear * kBlockColumns];
+                              for (std::size_t k = 0; k < kBlockColumns; ++k)
+                                to[k] = (a[k] - b[k]) + (c[k] - b[k]);
                             }
                         }) &&
-         parallelRanges(far.size() / kC, kNodeGrain, stop, [&](std::size_t begin, std::size_t end) {
-           for (std::size_t i = begin; i < end; ++i) look(&bent[i * n * kC], as, &far[i * kC]);
-         });
+         parallelRanges(far.size() / kBlockColumns, kNodeGrain, stop,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (std::size_t i = begin; i < end; ++i)
+                            look(&bent[i * n * kBlockColumns], as, &far[i * kBlockColumns]);
+                        });
 }
 
 void PhaseScattering::gather(std::size_t index, std::size_t first_ray, std::span<const Seen> seen,
@@ -226,7 +228,7 @@ void PhaseScattering::gather(std::size_t index, std::size_t first_ray, std::span
   const Chunk traced = has ? Chunk{} : trace(index, first_ray, end_ray);
   const Chunk& chunk = has ? kept : traced;
   const std::size_t stride = has ? rays : end_ray - first_ray, offset = has ? first_ray : 0;
-  Columns sum;
+  ColumnValues sum;
   const std::size_t begin = index * kChunk, end = std::min(begin + kChunk, samples());
   for (std::size_t p = begin; p < end; ++p) {
     const glm::dvec3 from = scene_.grid.gridFromGroup(glm::dvec3(scene_.grid.place(p)));
@@ -235,8 +237,8 @@ void PhaseScattering::gather(std::size_t index, std::size_t first_ray, std::span
       const std::size_t ray = (p - begin) * stride + offset + (r - first_ray);
       const glm::dvec3 along = scene_.grid.gridDirection(glm::dvec3(table_->direction(r)));
       const Seen& by = seen[r - first_ray];
-      const float* const own = &by.near[p * kNear * kC];
-      for (std::size_t c = 0; c < kC; ++c) sum[c] = -chunk.left[ray] * own[c];
+      const float* const own = &by.near[p * kNear * kBlockColumns];
+      for (std::size_t c = 0; c < kBlockColumns; ++c) sum[c] = -chunk.left[ray] * own[c];
       for (std::uint32_t s = chunk.begins[ray]; s < chunk.begins[ray + 1]; ++s) {
         const RayStep& step = chunk.steps[s];
         const double t = double{step.t};
@@ -246,33 +248,36 @@ void PhaseScattering::gather(std::size_t index, std::size_t first_ray, std::span
         for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
           const float weight = step.share * static_cast<float>(at.weight[k]);
           if (level > 0) {
-            const float* node = &by.far[(at.node[k] - samples()) * kC];
-            for (std::size_t c = 0; c < kC; ++c) sum[c] += weight * (node[c] - own[c]);
+            const float* node = &by.far[(at.node[k] - samples()) * kBlockColumns];
+            for (std::size_t c = 0; c < kBlockColumns; ++c) sum[c] += weight * (node[c] - own[c]);
             continue;
           }
-          const float* node = &by.near[at.node[k] * kNear * kC];
-          for (std::size_t c = 0; c < kC; ++c)
-            sum[c] += weight * ((node[c] - own[c]) - bend.x * node[kC + c] - bend.y * node[2 * kC + c] -
-                                bend.z * node[3 * kC + c]);
+          const float* node = &by.near[at.node[k] * kNear * kBlockColumns];
+          for (std::size_t c = 0; c < kBlockColumns; ++c)
+            sum[c] += weight * ((node[c] - own[c]) - bend.x * node[kBlockColumns + c] -
+                                bend.y * node[2 * kBlockColumns + c] - bend.z * node[3 * kBlockColumns + c]);
         }
       }
-      for (std::size_t i = 0; i < n; ++i) add(&out[(p * n + i) * kC], sum.data(), duals_[r * n + i]);
+      for (std::size_t i = 0; i < n; ++i)
+        addScaled(&out[(p * n + i) * kBlockColumns], sum.data(), duals_[r * n + i]);
     }
   }
 }
 
 bool PhaseScattering::apply(std::span<const float> x, std::span<float> out, const std::stop_token& stop) {
   const std::size_t n = outputs(), nodes = scene_.grid.nodes(), above = nodes - samples();
-  std::vector<float> values(nodes * n * kC), bent(above * n * kC);
+  std::vector<float> values(nodes * n * kBlockColumns), bent(above * n * kBlockColumns);
   std::array<Seen, kRays> seen;
-  for (Seen& by : seen) by.near.resize(samples() * kNear * kC), by.far.resize(above * kC);
+  for (Seen& by : seen)
+    by.near.resize(samples() * kNear * kBlockColumns), by.far.resize(above * kBlockColumns);
   std::copy(x.begin(), x.end(), values.begin());
-  scene_.grid.raise(values, n * kC);
+  scene_.grid.raise(values, n * kBlockColumns);
   bend(values, bent);
   // Uniform light is corrected to the result of many rays.
   for (std::size_t p = 0; p < samples(); ++p)
     for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t c = 0; c < kC; ++c) out[(p * n + i) * kC + c] = -amiss_[p * n + i] * x[p * n * kC + c];
+      for (std::size_t c = 0; c < kBlockColumns; ++c)
+        out[(p * n + i) * kBlockColumns + c] = -amiss_[p * n + i] * x[p * n * kBlockColumns + c];
   for (std::size_t first = 0; first < table_->size(); first += kRays) {
     const std::size_t count = std::min(kRays, table_->size() - first);
     for (std::size_t r = 0; r < count; ++r)

@@ -10,8 +10,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kGrain = 16;
-constexpr double kY0 = 0.28209479177387814;
+constexpr std::size_t kLightPerRange = 16;
 
 // Computes int f y_i ds of a function f with the mean `mean`, where `lost` are the sums of (1 - f) y_i over
 // the table. Losses are taken off the closed form of f = 1, so that thin air is exact; the sums of y_i over
@@ -19,8 +18,9 @@ constexpr double kY0 = 0.28209479177387814;
 void project(const SphereTable& table, double mean, std::span<const double> lost, std::span<float> out) {
   const double share = 1.0 / static_cast<double>(table.size());
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = static_cast<float>(4.0 * std::numbers::pi *
-                                (i == 0 ? kY0 * mean : (1.0 - mean) * table.mean(i) - lost[i] * share));
+    out[i] = static_cast<float>(
+        4.0 * std::numbers::pi *
+        (i == 0 ? kMeanOfBandZero * mean : (1.0 - mean) * table.mean(i) - lost[i] * share));
 }
 
 void findLight(const VolumeScene& scene, const SphereTable& table, std::size_t begin, std::size_t end,
@@ -66,7 +66,7 @@ std::optional<PhasedLight> findPhasedLight(const VolumeScene& scene, const Spher
   };
   const auto done = runStage({.name = "light into volumes",
                               .count = samples,
-                              .grain = kGrain,
+                              .grain = kLightPerRange,
                               .writes = {rowsOf(light.visibility, size), rowsOf(light.clear, outputs)},
                               .compute = compute},
                              context);
@@ -76,7 +76,7 @@ std::optional<PhasedLight> findPhasedLight(const VolumeScene& scene, const Spher
 }
 
 void dropPhasedLight(const BakeContext& context, std::size_t samples) {
-  dropStage(context, samples, kGrain);
+  dropStage(context, samples, kLightPerRange);
 }
 
 }  // namespace lambent::baker

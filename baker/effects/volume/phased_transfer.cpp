@@ -15,9 +15,8 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kLeastScatteringRays = 64, kRaysPerOutput = 6;
-constexpr std::size_t kGrain = 64;
-constexpr double kTolerance = 1e-5;
+constexpr std::size_t kRaysPerOutput = 6;
+constexpr std::size_t kScatteredPerRange = 64;
 // The number of the solver's vectors depends on the size of the system, not on the machine's memory, so that
 // results do not either.
 constexpr std::uint64_t kSolverBytes = std::uint64_t{1} << 30, kLeastKept = 6, kMostKept = 24;
@@ -54,7 +53,7 @@ class PhasedSystem {
         [&](std::span<const float> x, std::span<float> y) {
           if (!scattering_.apply(x, y, context_.stop)) return false;
           const std::size_t n = scattering_.outputs();
-          parallelRanges(scale_.size(), kGrain * n, {}, [&](std::size_t begin, std::size_t end) {
+          parallelRanges(scale_.size(), kScatteredPerRange * n, {}, [&](std::size_t begin, std::size_t end) {
             for (std::size_t row = begin; row < end; ++row) {
               const double away = scattering_.factor(row % n) * scattering_.away(row / n);
               for (std::size_t i = row * kBlockColumns; i < (row + 1) * kBlockColumns; ++i)
@@ -63,7 +62,7 @@ class PhasedSystem {
           });
           return true;
         },
-        {.tolerance = kTolerance, .restart = kept_vectors_}, context_);
+        {.tolerance = kScatteringTolerance, .restart = kept_vectors_}, context_);
   }
 
   // Computes so many scatterings one after the other.
@@ -90,8 +89,8 @@ class PhasedSystem {
   int kept_vectors_ = 0;
 };
 
-bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, VolumeTransfer& out,
-             const BakeContext& context) {
+bool scatterOutputs(PhaseScattering& scattering, const VolumeSettings& settings, VolumeTransfer& out,
+                    const BakeContext& context) {
   context.progress.begin("scattered light", out.columns() * out.full_channels, "columns");
   const std::size_t columns = out.columns(), block_size = out.outputs() * columns,
                     rows = out.grid.samples() * out.outputs();
@@ -139,7 +138,7 @@ bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, co
   out.rays = light->samples_traced * table.size();
   out.rays_kept = (samples - light->samples_traced) * table.size();
   const sh::GauntTable products = sh::makeGauntTable(out.order, out.bands);
-  parallelRanges(samples, kGrain, {}, [&](std::size_t begin, std::size_t end) {
+  parallelRanges(samples, kScatteredPerRange, {}, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)
       sh::addVisibilityMatrix(
           products, std::span(light->visibility).subspan(p * light->visibility_size, light->visibility_size),
@@ -158,7 +157,7 @@ bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, co
   out.rays += scattering->samplesTraced() * few.size();
   out.rays_kept += (samples - scattering->samplesTraced()) * few.size();
   out.row_bytes = scattering->bytes();
-  return scatter(*scattering, settings, out, context);
+  return scatterOutputs(*scattering, settings, out, context);
 }
 
 void dropPhasedParts(const BakeContext& context, std::size_t samples) {

@@ -11,6 +11,8 @@
 
 namespace lambent::baker {
 
+inline constexpr double kMeanOfBandZero = 0.28209479177387814;  // y_00
+
 class SphereTable {
  public:
   // rays > 0; order 1..sh::kMaxBasisOrder. `turn` rotates the directions, so that neighbouring tables differ.

@@ -16,9 +16,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kLeastScatteringRays = 64;
-constexpr std::size_t kGrain = 16;
-constexpr double kTolerance = 1e-5;
+constexpr std::size_t kSamplesPerRange = 16;
 
 // FirstLights hold the light that arrives unscattered, and how much the medium takes.
 struct FirstLights {
@@ -45,7 +43,7 @@ std::optional<FirstLights> lightIn(const VolumeScene& scene, const SphereTable& 
   const auto done =
       runStage({.name = "light into volumes",
                 .count = samples,
-                .grain = kGrain,
+                .grain = kSamplesPerRange,
                 .writes = {rowsOf(light.transfer, columns), rowsOf(light.met), rowsOf(light.out)},
                 .compute = compute},
                context);
@@ -88,7 +86,7 @@ class Scattering {
             y[i] = static_cast<float>(albedo_ * scale_[i / kBlockColumns] * double{y[i]});
           return true;
         },
-        {.tolerance = kTolerance}, context_);
+        {.tolerance = kScatteringTolerance}, context_);
   }
 
   // Computes so many scatterings one after the other.
@@ -114,8 +112,8 @@ class Scattering {
   std::vector<double> scale_;
 };
 
-bool scatter(const ScatterRows& rows, const FirstLights& light, const VolumeSettings& settings,
-             VolumeTransfer& out, const BakeContext& context) {
+bool scatterColumns(const ScatterRows& rows, const FirstLights& light, const VolumeSettings& settings,
+                    VolumeTransfer& out, const BakeContext& context) {
   context.progress.begin("scattered light", out.columns() * out.full_channels, "columns");
   const std::size_t columns = out.columns(), samples = out.grid.samples();
   std::vector<float> first(samples * kBlockColumns), result(first.size());
@@ -153,7 +151,7 @@ void dropParts(const BakeContext& context, const VolumeTransfer& transfer) {
   if (transfer.bands > 1) {
     dropPhasedParts(context, samples);
   } else {
-    dropStage(context.part("light"), samples, kGrain);
+    dropStage(context.part("light"), samples, kSamplesPerRange);
     ScatterRows::drop(context.part("rows"), samples);
     dropWithinVoxels(context.part("within voxels"), *transfer.density, transfer.grid);
   }
@@ -190,7 +188,7 @@ bool bakeTransfer(const Medium& medium, const VolumeSettings& settings, const Oc
   out.rays += rows->samplesTraced() * few.size();
   out.rays_kept += (samples - rows->samplesTraced()) * few.size();
   out.row_bytes = rows->bytes();
-  return scatter(*rows, *light, settings, out, context) && fit(&*rows);
+  return scatterColumns(*rows, *light, settings, out, context) && fit(&*rows);
 }
 
 }  // namespace

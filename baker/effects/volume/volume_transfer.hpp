@@ -46,6 +46,8 @@ inline int bandsOfPhase(float g, int order) {
 // system of a medium that no light leaves is singular.
 inline constexpr double kLargestAlbedo = 1.0 - 1e-7;
 
+inline constexpr std::size_t kLeastScatteringRays = 64;
+inline constexpr double kScatteringTolerance = 1e-5;
 inline constexpr std::size_t kRaysPerScatteringRay = 4;  // rays for unscattered per ray for scattered light
 
 struct VolumeSettings {

@@ -4,8 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "lambent_effects_diffuse_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
+#include "runtime/effects/diffuse/shaders.hpp"
 
 namespace lambent::effects::diffuse {
 
@@ -13,9 +12,6 @@ static_assert(transfer::kLightStride == lighting::GroupLights::kStride &&
               transfer::kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
 
 namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_diffuse::find,
-                                      &embedded::lambent_transfer::find};
 
 // Returns the order that is compiled into the kernel; 0 selects the kernel that loops over any order.
 std::uint32_t variantOf(std::uint32_t order) {
@@ -154,7 +150,7 @@ Result<const gpu::Program*> Diffuse::program(Stage stage, std::uint32_t kind, st
   if (stage != Project) defines.push_back({"LAMBENT_OUTPUTS", std::to_string(outputs)});
   Result<gpu::Program> made =
       gpu::Program::create(fmt::format("{} kind {} outputs {}", kFiles[stage], kind, outputs),
-                           {{GL_COMPUTE_SHADER, kFiles[stage]}}, kShaders, defines);
+                           {{GL_COMPUTE_SHADER, kFiles[stage]}}, kDiffuseShaders, defines);
   if (!made) return failAgain(made.error());
   return &programs.emplace(variant, std::move(*made)).first->second;
 }
@@ -231,7 +227,7 @@ Result<void> Diffuse::runDraws(streaming::Residency& residency, const lighting::
 Result<void> Diffuse::runTexels(streaming::Residency& residency, gpu::Counters& counters) {
   if (!texels_program_) {
     Result<gpu::Program> made = gpu::Program::create(
-        "diffuse_texels.comp", {{GL_COMPUTE_SHADER, "diffuse_texels.comp"}}, kShaders, {});
+        "diffuse_texels.comp", {{GL_COMPUTE_SHADER, "diffuse_texels.comp"}}, kDiffuseShaders, {});
     if (!made) return failAgain(made.error());
     texels_program_ = std::move(*made);
   }

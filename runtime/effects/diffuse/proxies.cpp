@@ -6,15 +6,11 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "lambent_effects_diffuse_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
+#include "runtime/effects/diffuse/shaders.hpp"
 
 namespace lambent::effects::diffuse {
 
 namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_diffuse::find,
-                                      &embedded::lambent_transfer::find};
 
 // A triangle without area may have any normal, since nobody sees it.
 glm::vec3 normalOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangle& triangle) {
@@ -121,8 +117,8 @@ Result<void> Proxies::shade(streaming::Residency& residency, const lighting::Gro
   }
   if (work_.empty()) return {};
   if (!program_) {
-    Result<gpu::Program> made =
-        gpu::Program::create("diffuse proxies", {{GL_COMPUTE_SHADER, "diffuse_proxies.comp"}}, kShaders, {});
+    Result<gpu::Program> made = gpu::Program::create(
+        "diffuse proxies", {{GL_COMPUTE_SHADER, "diffuse_proxies.comp"}}, kDiffuseShaders, {});
     if (!made) return failAgain(made.error());
     program_ = std::move(*made);
   }

@@ -6,17 +6,13 @@
 
 #include <glm/common.hpp>
 
-#include "lambent_effects_neighborhood_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
+#include "runtime/effects/neighborhood/shaders.hpp"
 
 namespace lambent::effects::neighborhood {
 
 static_assert(kWriteGroupsX == gpu::WorkList::kMaxGroupsX);
 
 namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_neighborhood::find,
-                                      &embedded::lambent_transfer::find};
 
 gpu::Handle<gpu::TextureTraits> makeAtlas(const glm::uvec3& size) {
   GLuint id = 0;
@@ -143,7 +139,7 @@ Result<void> Neighborhood::update(streaming::Residency& residency, const lightin
 Result<void> Neighborhood::write(streaming::Residency& residency, gpu::Counters& counters) {
   if (!program_) {
     Result<gpu::Program> made = gpu::Program::create(
-        "neighborhood write", {{GL_COMPUTE_SHADER, "neighborhood_write.comp"}}, kShaders);
+        "neighborhood write", {{GL_COMPUTE_SHADER, "neighborhood_write.comp"}}, kNeighborhoodShaders);
     if (!made) return failAgain(made.error());
     program_ = std::move(*made);
   }

@@ -6,16 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "lambent_effects_neighborhood_embedded.hpp"
-#include "lambent_transfer_embedded.hpp"
+#include "runtime/effects/neighborhood/shaders.hpp"
 #include "runtime/sh/rotation.hpp"
 
 namespace lambent::effects::neighborhood {
 
 namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_neighborhood::find,
-                                      &embedded::lambent_transfer::find};
 
 // The receivers of one dispatch, which share a kernel and pages.
 struct Batch {
@@ -84,8 +80,8 @@ Result<const gpu::Program*> VertexReceivers::program(std::uint32_t order) {
   const char* const file = order == 0 ? "neighborhood_places.comp" : "neighborhood_vertices.comp";
   std::vector<gpu::Define> defines;
   if (order != 0) defines.push_back({"LAMBENT_ORDER", fmt::format("{}u", order)});
-  Result<gpu::Program> made = gpu::Program::create(fmt::format("{} order {}", file, order),
-                                                   {{GL_COMPUTE_SHADER, file}}, kShaders, defines);
+  Result<gpu::Program> made = gpu::Program::create(
+      fmt::format("{} order {}", file, order), {{GL_COMPUTE_SHADER, file}}, kNeighborhoodShaders, defines);
   if (!made) return failAgain(made.error());
   return &programs_.emplace(order, std::move(*made)).first->second;
 }

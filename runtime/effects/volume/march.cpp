@@ -9,14 +9,12 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
-#include "lambent_effects_volume_embedded.hpp"
+#include "runtime/effects/volume/shaders.hpp"
 #include "runtime/transfer/codebook.hpp"
 
 namespace lambent::effects::volume {
 
 namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_volume::find};
 
 // These are the uniform locations of volume_march.frag.
 constexpr GLint kScale = 0, kOffset = 1, kPictureSize = 2, kPerspective = 3, kStepVoxels = 4;
@@ -117,7 +115,7 @@ Result<const gpu::Program*> March::program(const Kind& kind) {
   if (options_.jitter) defines.push_back({"LAMBENT_JITTER", "1"});
   Result<gpu::Program> made = gpu::Program::create(
       fmt::format("march {} volumes {} bands", kind.volumes, kind.bands),
-      {{GL_VERTEX_SHADER, "volume_march.vert"}, {GL_FRAGMENT_SHADER, "volume_march.frag"}}, kShaders,
+      {{GL_VERTEX_SHADER, "volume_march.vert"}, {GL_FRAGMENT_SHADER, "volume_march.frag"}}, kVolumeShaders,
       defines);
   if (!made) return failAgain(made.error());
   return &programs_.emplace(kind, std::move(*made)).first->second;
@@ -128,8 +126,8 @@ Result<const gpu::Program*> March::compositeProgram(std::uint32_t samples) {
   const gpu::Define defines[] = {{"LAMBENT_SAMPLES", std::to_string(samples)}};
   Result<gpu::Program> made = gpu::Program::create(
       "volume composite",
-      {{GL_VERTEX_SHADER, "volume_march.vert"}, {GL_FRAGMENT_SHADER, "volume_composite.frag"}}, kShaders,
-      defines);
+      {{GL_VERTEX_SHADER, "volume_march.vert"}, {GL_FRAGMENT_SHADER, "volume_composite.frag"}},
+      kVolumeShaders, defines);
   if (!made) return failAgain(made.error());
   return &composites_.emplace(samples, std::move(*made)).first->second;
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "lambent_effects_volume_embedded.hpp"
+#include "runtime/effects/volume/shaders.hpp"
 #include "runtime/streaming/volume_blocks.hpp"
 
 namespace lambent::effects::volume {
@@ -10,8 +10,6 @@ namespace lambent::effects::volume {
 static_assert(kBlock == streaming::kVolumeBlock && kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
 
 namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_volume::find};
 
 // Returns whether the samples of the cell hold nothing for the mode, so that the light itself is shown. The
 // glossy effect fills its own samples.
@@ -102,7 +100,7 @@ Result<void> Volume::shade(streaming::Residency& residency, const ShadedLight& l
     std::vector<gpu::Define> defines;
     if (precise_) defines.push_back({"LAMBENT_PRECISE", "1"});
     Result<gpu::Program> made = gpu::Program::create(
-        "volume scatter", {{GL_COMPUTE_SHADER, "volume_scatter.comp"}}, kShaders, defines);
+        "volume scatter", {{GL_COMPUTE_SHADER, "volume_scatter.comp"}}, kVolumeShaders, defines);
     if (!made) return failAgain(made.error());
     program_ = std::move(*made);
   }

@@ -6,7 +6,7 @@ namespace lambent::baker {
 namespace {
 
 // A grey picture of 64 x 64 pixels, whose left half may have another grey.
-spec::Rgba8Image grey(std::uint8_t left, std::uint8_t right) {
+spec::Rgba8Image twoGreys(std::uint8_t left, std::uint8_t right) {
   spec::Rgba8Image picture{64, 64, {}};
   for (int i = 0; i < 64 * 64; ++i) {
     const std::uint8_t value = i % 64 < 32 ? left : right;
@@ -16,12 +16,12 @@ spec::Rgba8Image grey(std::uint8_t left, std::uint8_t right) {
 }
 
 TEST(Perceptual, EqualPicturesShowNothing) {
-  EXPECT_EQ(visibleShare(grey(128, 128), grey(128, 128), "a").value(), 0.0);
+  EXPECT_EQ(visibleShare(twoGreys(128, 128), twoGreys(128, 128), "a").value(), 0.0);
 }
 
 TEST(Perceptual, OneStepOfEightBitsIsInvisibleAndAHalfInAnotherGreyIsNot) {
-  EXPECT_EQ(visibleShare(grey(129, 128), grey(128, 128), "a").value(), 0.0);
-  EXPECT_NEAR(visibleShare(grey(220, 128), grey(128, 128), "a").value(), 0.5, 0.1);
+  EXPECT_EQ(visibleShare(twoGreys(129, 128), twoGreys(128, 128), "a").value(), 0.0);
+  EXPECT_NEAR(visibleShare(twoGreys(220, 128), twoGreys(128, 128), "a").value(), 0.5, 0.1);
 }
 
 // One grey level in the other column: the same differences, finer than what an eye resolves.
@@ -41,7 +41,7 @@ TEST(Perceptual, FineContrastsHideWhatCoarseOnesShow) {
 }
 
 TEST(Perceptual, SizesMustBeEqual) {
-  EXPECT_FALSE(visibleShare(grey(1, 1), spec::Rgba8Image{1, 1, {0, 0, 0, 255}}, "a"));
+  EXPECT_FALSE(visibleShare(twoGreys(1, 1), spec::Rgba8Image{1, 1, {0, 0, 0, 255}}, "a"));
 }
 
 }  // namespace

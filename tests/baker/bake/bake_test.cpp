@@ -46,7 +46,7 @@ class Bake : public ::testing::Test {
 };
 
 // Makes a static floor and box, and a movable ball: two groups.
-Scene stage() {
+Scene twoGroups() {
   Scene scene = sceneOf(
       {grid({0, 0, 0}, 4.0f, 24), box({-0.8f, 0.5f, 0}, {1, 1, 1}, 6), icosphere({0, 0, 0}, 0.5f, 3)});
   scene.nodes[2].movable = true;
@@ -55,7 +55,7 @@ Scene stage() {
   return scene;
 }
 
-BakeOptions draft() {
+BakeOptions unrefinedDraft() {
   BakeOptions options;
   options.quality = Quality::Draft;
   options.refine_bound = 0.0f;  // meshes as they come
@@ -63,8 +63,8 @@ BakeOptions draft() {
 }
 
 TEST_F(Bake, GivesTheSameBytesWithOneAndTwoThreads) {
-  const Scene scene = stage();
-  BakeOptions one = draft(), two = draft();
+  const Scene scene = twoGroups();
+  BakeOptions one = unrefinedDraft(), two = unrefinedDraft();
   one.threads = 1;
   two.threads = 2;
   ASSERT_TRUE(bakeTo("one.lmb.glb", scene, one));
@@ -74,7 +74,7 @@ TEST_F(Bake, GivesTheSameBytesWithOneAndTwoThreads) {
 }
 
 TEST_F(Bake, WritesABundleThatIsWhole) {
-  const auto report = bakeTo("stage.lmb.glb", stage(), draft());
+  const auto report = bakeTo("stage.lmb.glb", twoGroups(), unrefinedDraft());
   ASSERT_TRUE(report) << report.error().line();
   auto reader = bundle::Reader::open(folder_ / "stage.lmb.glb");
   ASSERT_TRUE(reader) << reader.error().line();
@@ -94,7 +94,7 @@ TEST_F(Bake, WritesABundleThatIsWhole) {
 }
 
 TEST_F(Bake, StoresTransferThatDecodesToTheScene) {
-  ASSERT_TRUE(bakeTo("stage.lmb.glb", stage(), draft()));
+  ASSERT_TRUE(bakeTo("stage.lmb.glb", twoGroups(), unrefinedDraft()));
   const auto reader = bundle::Reader::open(folder_ / "stage.lmb.glb");
   ASSERT_TRUE(reader);
   const bundle::Description& d = reader->description();
@@ -126,21 +126,21 @@ TEST_F(Bake, StoresTransferThatDecodesToTheScene) {
 }
 
 TEST_F(Bake, StoresLightProbesAndProxiesInTheGroupsFrame) {
-  Scene scene = stage();
+  Scene scene = twoGroups();
   scene.nodes[2].parent_from_node = glm::translate(glm::mat4(1.0f), {100, 0.6f, 0});
   const auto open = [&] { return bundle::Reader::open(folder_ / "stage.lmb.glb"); };
-  ASSERT_TRUE(bakeTo("stage.lmb.glb", scene, draft()));
+  ASSERT_TRUE(bakeTo("stage.lmb.glb", scene, unrefinedDraft()));
   auto reader = open();
   ASSERT_TRUE(reader) << reader.error().line();
   for (const bundle::Group& group : reader->description().groups)
     EXPECT_EQ(group.light_probes, std::vector{0.5f * (group.bounds_min + group.bounds_max)});
 
-  BakeOptions options = draft();
+  BakeOptions options = unrefinedDraft();
   options.light_probes = 8;
   options.effects = "diffuse";  // no grid, which has cells of its own
   const auto report = bakeTo("stage.lmb.glb", scene, options);
   ASSERT_TRUE(report) << report.error().line();
-  EXPECT_FALSE(isUpToDate(scene, draft(), folder_ / "stage.lmb.glb"));
+  EXPECT_FALSE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));
   reader = open();
   ASSERT_TRUE(reader->checkAll());
   for (std::uint32_t g = 0; g < 2; ++g) {
@@ -163,7 +163,7 @@ TEST_F(Bake, StoresLightProbesAndProxiesInTheGroupsFrame) {
 
 // Our own importer reads a bundle as any glTF reader does, and finds what was in the scene.
 TEST_F(Bake, WritesAnOrdinaryScene) {
-  Scene scene = stage();
+  Scene scene = twoGroups();
   scene.lights = {{.name = "lamp", .type = gltf::Light::Type::Spot, .color = {1, 0.5f, 0}, .intensity = 9}};
   scene.nodes[1].light = 0;
   scene.nodes[2].trs = gltf::Trs{.translation = {0.8f, 0.6f, 0}, .scale = {1, -1, 1}};
@@ -178,7 +178,7 @@ TEST_F(Bake, WritesAnOrdinaryScene) {
   scene.materials[0].normal_texture = {.texture = 0, .offset = {0.5f, 0.25f}, .rotation_rad = 1.0f};
   bundle::MeshData& floor = scene.meshes[0].primitives[0].mesh;
   floor.tangents.assign(floor.positions.size(), {1, 0, 0, -1});
-  const auto baked = bakeTo("stage.lmb.glb", scene, draft());
+  const auto baked = bakeTo("stage.lmb.glb", scene, unrefinedDraft());
   ASSERT_TRUE(baked) << baked.error().line();
 
   // Bundles are no scenes to bake. Other readers pass over the extension, whose name they do not know.
@@ -206,7 +206,7 @@ TEST_F(Bake, WritesAnOrdinaryScene) {
 
 TEST_F(Bake, SplitsLongEdgesSoThatAFloorOfTwoTrianglesCatchesAShadow) {
   const Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 1), icosphere({0, 0.8f, 0}, 0.6f, 2)});
-  BakeOptions options = draft();
+  BakeOptions options = unrefinedDraft();
   const auto coarse = bakeTo("coarse.lmb.glb", scene, options);
   options.max_edge_m = 0.25f;
   const auto fine = bakeTo("fine.lmb.glb", scene, options);
@@ -217,7 +217,7 @@ TEST_F(Bake, SplitsLongEdgesSoThatAFloorOfTwoTrianglesCatchesAShadow) {
 
 TEST_F(Bake, SplitsEdgesWhereAShadowFallsUnlessToldNotTo) {
   const Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 1), icosphere({0, 0.8f, 0}, 0.6f, 2)});
-  BakeOptions options = draft();
+  BakeOptions options = unrefinedDraft();
   options.refine_bound = -1.0f;
   const auto report = bakeTo("refined.lmb.glb", scene, options);
   ASSERT_TRUE(report) << report.error().line();
@@ -228,21 +228,21 @@ TEST_F(Bake, SplitsEdgesWhereAShadowFallsUnlessToldNotTo) {
 }
 
 TEST_F(Bake, KnowsWhenABundleIsUpToDate) {
-  Scene scene = stage();
-  EXPECT_FALSE(isUpToDate(scene, draft(), folder_ / "stage.lmb.glb"));
-  ASSERT_TRUE(bakeTo("stage.lmb.glb", scene, draft()));
-  EXPECT_TRUE(isUpToDate(scene, draft(), folder_ / "stage.lmb.glb"));
-  BakeOptions other = draft();
+  Scene scene = twoGroups();
+  EXPECT_FALSE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));
+  ASSERT_TRUE(bakeTo("stage.lmb.glb", scene, unrefinedDraft()));
+  EXPECT_TRUE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));
+  BakeOptions other = unrefinedDraft();
   other.threads = 1;
   EXPECT_TRUE(isUpToDate(scene, other, folder_ / "stage.lmb.glb"));
   other.order = 4;
   EXPECT_FALSE(isUpToDate(scene, other, folder_ / "stage.lmb.glb"));
   scene.meshes[0].primitives[0].mesh.positions[3].y += 0.01f;
-  EXPECT_FALSE(isUpToDate(scene, draft(), folder_ / "stage.lmb.glb"));
+  EXPECT_FALSE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));
 }
 
 TEST_F(Bake, IsOutOfDateWhenLightsMaterialsOrMotionChange) {
-  Scene scene = stage();
+  Scene scene = twoGroups();
   scene.lights = {gltf::Light{}};
   scene.nodes[2].trs = gltf::Trs{};
   scene.animations = {{"roll", {{.node = 2, .times_s = {0, 1}, .values = {0, 0, 0, 1, 0, 0}}}}};
@@ -272,26 +272,27 @@ TEST_F(Bake, IsOutOfDateWhenLightsMaterialsOrMotionChange) {
 }
 
 TEST_F(Bake, ThatIsStoppedOrFailsLeavesTheOldBundle) {
-  ASSERT_TRUE(bakeTo("stage.lmb.glb", stage(), draft()));
+  ASSERT_TRUE(bakeTo("stage.lmb.glb", twoGroups(), unrefinedDraft()));
   const std::string before = bytes("stage.lmb.glb");
   std::stop_source stop;
   stop.request_stop();
   Progress progress;
-  const auto stopped = bake(stage(), draft(), folder_ / "stage.lmb.glb", {progress, stop.get_token()});
+  const auto stopped =
+      bake(twoGroups(), unrefinedDraft(), folder_ / "stage.lmb.glb", {progress, stop.get_token()});
   ASSERT_FALSE(stopped);
   EXPECT_NE(stopped.error().problem.find("stopped"), std::string::npos);
-  BakeOptions wrong = draft();
+  BakeOptions wrong = unrefinedDraft();
   wrong.order = 9;
-  EXPECT_FALSE(bakeTo("stage.lmb.glb", stage(), wrong));
+  EXPECT_FALSE(bakeTo("stage.lmb.glb", twoGroups(), wrong));
   EXPECT_TRUE(bytes("stage.lmb.glb") == before);
   EXPECT_EQ(files(), 1);
 }
 
 TEST_F(Bake, NamesTheOptionThatIsWrong) {
   const auto refused = [&](auto spoil, const char* name) {
-    BakeOptions options = draft();
+    BakeOptions options = unrefinedDraft();
     spoil(options);
-    const auto report = bakeTo("x.lmb.glb", stage(), options);
+    const auto report = bakeTo("x.lmb.glb", twoGroups(), options);
     ASSERT_FALSE(report) << name;
     EXPECT_EQ(report.error().subject, name);
     EXPECT_FALSE(report.error().hint.empty());
@@ -307,10 +308,10 @@ TEST_F(Bake, NamesTheOptionThatIsWrong) {
 
 TEST_F(Bake, TakesEveryOrder) {
   for (int order = 1; order <= 8; ++order) {
-    BakeOptions options = draft();
+    BakeOptions options = unrefinedDraft();
     options.order = order;
     options.effects = "diffuse";
-    const auto report = bakeTo("stage.lmb.glb", stage(), options);
+    const auto report = bakeTo("stage.lmb.glb", twoGroups(), options);
     ASSERT_TRUE(report) << report.error().line();
     EXPECT_LE(report->worst_error, 0.01) << order;
   }

@@ -17,7 +17,7 @@ namespace {
 using testing::Transport;
 
 // Makes a box on a coarse floor, diffuse or of metal.
-Scene boxOnFloor(float metallic) {
+Scene boxOnCoarseFloor(float metallic) {
   Scene scene = testing::sceneOf({testing::grid({0.0f, 0.0f, 0.0f}, 4.0f, 10),
                                   testing::box({0.13f, 0.4f, -0.21f}, {0.7f, 0.8f, 0.7f}, 3)});
   scene.materials[0].metallic = metallic;
@@ -84,7 +84,7 @@ TracedScene withSamples(const Transport& t, const SampleSet& samples) {
 constexpr std::size_t kRays = 1024, kTrueRays = 4096;
 
 TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
-  const Transport t(boxOnFloor(1.0f), /*with_glossy=*/true);
+  const Transport t(boxOnCoarseFloor(1.0f), /*with_glossy=*/true);
   ASSERT_EQ(t.samples.glossy.begin, 0u);
   const Truth truth(t);
   const TracedScene true_view = withSamples(t, truth.points);
@@ -122,7 +122,7 @@ TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
 }
 
 TEST(FitVertices, ShowsIrradianceOverMatteFacesBetterThanWhatTheVerticesSee) {
-  const Transport t(boxOnFloor(0.0f));
+  const Transport t(boxOnCoarseFloor(0.0f));
   const Truth truth(t);
   const TracedScene view = t.diffuse(), true_view = withSamples(t, truth.points);
   Progress progress;
@@ -142,7 +142,7 @@ TEST(FitVertices, ShowsIrradianceOverMatteFacesBetterThanWhatTheVerticesSee) {
 }
 
 TEST(FitVertices, ShowsBouncedLightOverMatteFacesBetterThanWhatTheVerticesReceive) {
-  const Transport t(boxOnFloor(0.0f));
+  const Transport t(boxOnCoarseFloor(0.0f));
   const Truth truth(t);
   const TracedScene view = t.diffuse(), true_view = withSamples(t, truth.points);
   Progress progress;

@@ -170,7 +170,7 @@ gltf::Material materialOf(glm::vec3 color, float metallic, float roughness) {
   return material;
 }
 
-const std::array<double, 5> kCosines = {0.02, 0.1, 0.35, 0.7, 0.98};
+const std::array<double, 5> kViewCosines = {0.02, 0.1, 0.35, 0.7, 0.98};
 
 TEST(SurfaceBrdfs, FollowTheConventionsFormulaOfMetalsAndDielectrics) {
   gltf::Material mixed = materialOf({0.8f, 0.4f, 0.1f}, 0.3f, 0.61f);
@@ -197,7 +197,7 @@ TEST(SurfaceBrdfs, FollowTheConventionsFormulaOfMetalsAndDielectrics) {
     const Square square(material, ++seed);
     ASSERT_TRUE(square.brdfs->glossy(0));
     EXPECT_FALSE(square.brdfs->grey());
-    for (const double cosine : kCosines)
+    for (const double cosine : kViewCosines)
       for (const double phi : {0.3, 2.2, 4.4}) {
         const glm::dvec3 v = direction(cosine, phi);
         EXPECT_LT(relativeError(square.kernel(v), byQuadrature(square, expected, v)), 0.005)
@@ -215,7 +215,7 @@ TEST(SurfaceBrdfs, TurnAnisotropicLobesWithTangentAndRotation) {
   const Expected expected{glm::dvec3(0.9), glm::dvec3(0.9), 1, 1, alpha_t, 0.36, 0.5};
   const Square stored(material, 3, /*with_tangents=*/true), derived(material, 3);
   EXPECT_TRUE(stored.brdfs->grey());
-  for (const double cosine : kCosines)
+  for (const double cosine : kViewCosines)
     for (const double phi : {0.3, 1.1, 2.2, 3.9, 5.5}) {
       const glm::dvec3 v = direction(cosine, phi);
       const auto kernel = stored.kernel(v);
@@ -275,7 +275,7 @@ TEST(SurfaceBrdfs, NeverSendOutMoreThanUniformLightBrings) {
 // A white dielectric loses nothing: what its surface does not reflect leaves its diffuse part.
 TEST(SurfaceBrdfs, OfWhiteDielectricsLoseNothing) {
   const Square square(materialOf({1.0f, 1.0f, 1.0f}, 0.0f, 0.5f));
-  for (const double cosine : kCosines)
+  for (const double cosine : kViewCosines)
     EXPECT_NEAR(reflected(square.kernel(direction(cosine, 1.0)), 0), 1.0, 1e-4) << cosine;
 }
 

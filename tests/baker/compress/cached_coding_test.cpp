@@ -12,13 +12,13 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kCount = 6000, kHeaps = 24;
-constexpr transfer::TransferShape kVisibility{.order = 5, .outputs = 25, .visibility_bands = 9};
+constexpr transfer::TransferShape kVisibilityShape{.order = 5, .outputs = 25, .visibility_bands = 9};
 
 std::vector<float> heaps() {
-  return testing::heaps(kCount, kHeaps, kVisibility.size(), 31);
+  return testing::heaps(kCount, kHeaps, kVisibilityShape.size(), 31);
 }
 
-std::vector<std::byte> bytesOf(const CodedTransfer& coded) {
+std::vector<std::byte> keptBytes(const CodedTransfer& coded) {
   ByteWriter out;
   write(coded, out);
   return out.take();
@@ -39,7 +39,7 @@ CodedTransfer codeUntilKept(Cache& cache, const std::vector<float>& vectors, con
     stop.request_stop();
   });
   Progress progress;
-  return CachedCoding({progress, stop.get_token(), &cache}).code(vectors, kCount, kVisibility, settings);
+  return CachedCoding({progress, stop.get_token(), &cache}).code(vectors, kCount, kVisibilityShape, settings);
 }
 
 }  // namespace
@@ -49,9 +49,9 @@ TEST(CachedCoding, GoesOnFromEachOfItsCheckpointsToTheSameCodes) {
   // The second case has to search again, for fewer clusters; the third misses its error bound.
   for (const CodingSettings& settings :
        {CodingSettings{.bound = 0.004f},
-        CodingSettings{.bound = 0.01f, .most_expanded_bytes = 40 * kVisibility.size() * sizeof(float)},
+        CodingSettings{.bound = 0.01f, .most_expanded_bytes = 40 * kVisibilityShape.size() * sizeof(float)},
         CodingSettings{.bound = 1e-5f, .shown_energy = 1.0}}) {
-    const CodedTransfer whole = codeTransfer(vectors, kCount, kVisibility, settings);
+    const CodedTransfer whole = codeTransfer(vectors, kCount, kVisibilityShape, settings);
     const testing::TemporaryFolder folder;
     auto cache = Cache::open(folder.path());
     ASSERT_TRUE(cache);
@@ -63,7 +63,7 @@ TEST(CachedCoding, GoesOnFromEachOfItsCheckpointsToTheSameCodes) {
       if (!coded.cluster_of.empty()) break;
     }
     EXPECT_GE(stopped, 2) << "times; of some ten checkpoints, as the other thread finds them";
-    EXPECT_EQ(bytesOf(coded), bytesOf(whole)) << "bound " << settings.bound;
+    EXPECT_EQ(keptBytes(coded), keptBytes(whole)) << "bound " << settings.bound;
   }
 }
 
@@ -76,12 +76,12 @@ TEST(CachedCoding, LeavesNothingOnceWhatItLedToIsKept) {
   Progress progress;
   const BakeContext context{progress, {}, &*cache};
   CachedCoding coding(context);
-  const CodedTransfer coded = coding.code(vectors, kCount, kVisibility, {.bound = 0.01f});
+  const CodedTransfer coded = coding.code(vectors, kCount, kVisibilityShape, {.bound = 0.01f});
   EXPECT_EQ(entriesIn(folder.path()), 1u) << "the codes";
   const auto before = cache->figures().stored;
-  const CodedTransfer found = CachedCoding(context).code(vectors, kCount, kVisibility, {.bound = 0.01f});
+  const CodedTransfer found = CachedCoding(context).code(vectors, kCount, kVisibilityShape, {.bound = 0.01f});
   EXPECT_EQ(cache->figures().stored, before) << "found";
-  EXPECT_EQ(bytesOf(found), bytesOf(coded));
+  EXPECT_EQ(keptBytes(found), keptBytes(coded));
   coding.drop();
   EXPECT_EQ(entriesIn(folder.path()), 0u);
 }
@@ -92,7 +92,7 @@ TEST(CachedCoding, WritesNoCheckpointsBeforeItIsTime) {
   ASSERT_TRUE(cache);
   cache->setCheckpointEvery(1e9);
   Progress progress;
-  CachedCoding({progress, {}, &*cache}).code(heaps(), kCount, kVisibility, {.bound = 0.01f});
+  CachedCoding({progress, {}, &*cache}).code(heaps(), kCount, kVisibilityShape, {.bound = 0.01f});
   EXPECT_EQ(cache->figures().stored, 1u) << "the codes alone";
 }
 

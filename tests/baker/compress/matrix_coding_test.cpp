@@ -93,7 +93,7 @@ std::vector<float> bouncedMatrices(std::size_t count, unsigned seed, float noise
   return out;
 }
 
-std::vector<float> decoded(const CodedTransfer& coded) {
+std::vector<float> decodedMatrix(const CodedTransfer& coded) {
   std::vector<std::vector<std::uint32_t>> codes;
   for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
   return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
@@ -120,7 +120,7 @@ TEST(MatrixCoding, KeepsItsBoundOnVisibility) {
   for (const float bound : {0.03f, 0.01f, 0.003f}) {
     const CodedTransfer coded = codeTransfer(vectors, 3000, kVisibility, {.bound = bound});
     EXPECT_LE(coded.error, bound);
-    EXPECT_NEAR(radianceError(vectors, decoded(coded), kVisibility), double{coded.error}, 1e-7);
+    EXPECT_NEAR(radianceError(vectors, decodedMatrix(coded), kVisibility), double{coded.error}, 1e-7);
   }
 }
 
@@ -169,7 +169,8 @@ TEST(MatrixCoding, BoundsBouncedLightRelativeToAllThatIsShown) {
     const CodedTransfer coded =
         codeTransfer(vectors, 1500, kBounced, {.bound = 0.01f, .shown_energy = beside * own});
     EXPECT_LE(coded.error, 0.01f);
-    EXPECT_NEAR(radianceError(vectors, decoded(coded), kBounced, beside * own), double{coded.error}, 1e-7);
+    EXPECT_NEAR(radianceError(vectors, decodedMatrix(coded), kBounced, beside * own), double{coded.error},
+                1e-7);
     EXPECT_GT(coded.error, 0.005f) << "what is allowed is made use of";
   }
 }
@@ -224,7 +225,7 @@ TEST(MatrixCoding, IsVectorQuantizationWithoutAxes) {
   const CodedTransfer coded =
       codeTransfer(vectors, 1000, kVisibility, {.bound = 1e-4f, .clusters = 16, .axes = 0});
   EXPECT_TRUE(coded.planes.empty());
-  const std::vector<float> found = decoded(coded);
+  const std::vector<float> found = decodedMatrix(coded);
   std::vector<std::array<double, 81>> means(coded.codebook.clusters());
   std::vector<double> members(means.size(), 0.0);
   for (std::size_t s = 0; s < 1000; ++s) {
@@ -303,8 +304,8 @@ TEST(MatrixCoding, StaysFiniteAndTheSameOnDegenerateInput) {
       const CodingSettings settings{.bound = 0.01f, .clusters = clusters};
       const CodedTransfer a = codeTransfer(*vectors, vectors->size() / 81, kVisibility, settings);
       const CodedTransfer b = codeTransfer(*vectors, vectors->size() / 81, kVisibility, settings);
-      for (const float value : decoded(a)) ASSERT_TRUE(std::isfinite(value));
-      EXPECT_EQ(decoded(a), decoded(b));
+      for (const float value : decodedMatrix(a)) ASSERT_TRUE(std::isfinite(value));
+      EXPECT_EQ(decodedMatrix(a), decodedMatrix(b));
       EXPECT_LE(a.error, 0.01f);
     }
 }

@@ -17,7 +17,7 @@ using testing::GltfWriter;
 using testing::oneTriangle;
 using testing::TemporaryFolder;
 
-struct Case {
+struct BrokenCase {
   const char* names;  // which the error must contain
   std::function<void(json&)> bend;
 };
@@ -28,7 +28,7 @@ json withLight(json document, const char* light) {
 }
 
 TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
-  const std::vector<Case> cases{
+  const std::vector<BrokenCase> cases{
       {"accessor 0", [](json& j) { j["accessors"][0]["count"] = 4; }},
       {"accessor 0",
        [](json& j) { j["accessors"][0]["count"] = 6148914691236517206u; }},  // count * 12 wraps to 8

@@ -12,15 +12,10 @@ namespace lambent::baker {
 namespace {
 
 using testing::GltfWriter;
+using testing::imported;
 using testing::oneTriangle;
 using testing::TemporaryFolder;
 using Indices = std::vector<std::uint32_t>;
-
-Scene imported(const std::filesystem::path& path) {
-  auto scene = importScene(path);
-  EXPECT_TRUE(scene) << (scene ? "" : scene.error().line());
-  return scene ? std::move(*scene) : Scene{};
-}
 
 const bundle::MeshData& firstMesh(const Scene& scene) {
   return scene.meshes.at(0).primitives.at(0).mesh;

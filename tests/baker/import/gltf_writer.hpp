@@ -13,6 +13,8 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "baker/import/gltf.hpp"
+
 namespace lambent::testing {
 
 class TemporaryFolder {
@@ -95,6 +97,22 @@ inline GltfWriter oneTriangle() {
   GltfWriter writer;
   writer.addPositions({0, 0, 0, 1, 0, 0, 0, 1, 0});
   return writer;
+}
+
+inline baker::Scene imported(const std::filesystem::path& path) {
+  auto scene = baker::importScene(path);
+  EXPECT_TRUE(scene) << (scene ? "" : scene.error().line());
+  return scene ? std::move(*scene) : baker::Scene{};
+}
+inline baker::Scene imported(GltfWriter writer, const TemporaryFolder& folder) {
+  return imported(writer.writeText(folder));
+}
+
+// Returns why the importer refuses the document.
+inline std::string refusal(GltfWriter writer, const TemporaryFolder& folder) {
+  const auto scene = baker::importScene(writer.writeText(folder));
+  EXPECT_FALSE(scene);
+  return scene ? "" : scene.error().line();
 }
 
 }  // namespace lambent::testing

@@ -11,6 +11,7 @@ namespace {
 
 using nlohmann::json;
 using testing::GltfWriter;
+using testing::imported;
 using testing::oneTriangle;
 using testing::TemporaryFolder;
 
@@ -30,12 +31,6 @@ GltfWriter withMaterial(const TemporaryFolder& folder, const char* material) {
   folder.write("b.png", "\x89PNG\r\n\x1a\n and so on");
   folder.write("c.webp", "RIFF....WEBP");
   return writer;
-}
-
-Scene imported(GltfWriter writer, const TemporaryFolder& folder) {
-  auto scene = importScene(writer.writeText(folder));
-  EXPECT_TRUE(scene) << (scene ? "" : scene.error().line());
-  return scene ? std::move(*scene) : Scene{};
 }
 
 TEST(Materials, ShineTheirFactorTimesTheirStrength) {

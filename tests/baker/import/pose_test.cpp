@@ -11,6 +11,7 @@ namespace {
 
 using nlohmann::json;
 using testing::GltfWriter;
+using testing::imported;
 using testing::oneTriangle;
 using testing::TemporaryFolder;
 
@@ -28,12 +29,6 @@ std::vector<glm::vec3> worldPositions(const Scene& scene, std::size_t node, std:
 void expectNear(const std::vector<glm::vec3>& found, const std::vector<glm::vec3>& expected) {
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_LT(glm::distance(found[i], expected[i]), 1e-5f) << i;
-}
-
-Scene imported(GltfWriter& writer, const TemporaryFolder& folder) {
-  auto scene = importScene(writer.writeText(folder));
-  EXPECT_TRUE(scene) << (scene ? "" : scene.error().line());
-  return scene ? std::move(*scene) : Scene{};
 }
 
 TEST(MorphTargets, MoveVerticesByTheWeightsOfTheNodeOrElseOfTheMesh) {

@@ -1,6 +1,5 @@
 // Tests the reflection of materials: metal and roughness, the related extensions, and measured BRDFs.
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -13,7 +12,9 @@ namespace {
 
 using nlohmann::json;
 using testing::GltfWriter;
+using testing::imported;
 using testing::oneTriangle;
+using testing::refusal;
 using testing::TemporaryFolder;
 
 GltfWriter withMaterials(const TemporaryFolder& folder, const json& materials) {
@@ -29,20 +30,8 @@ GltfWriter withMaterials(const TemporaryFolder& folder, const json& materials) {
   for (const char* name : {"a.png", "b.png", "c.png"}) folder.write(name, "\x89PNG\r\n\x1a\n and so on");
   return writer;
 }
-GltfWriter withMaterial(const TemporaryFolder& folder, const char* material) {
+GltfWriter withOneMaterial(const TemporaryFolder& folder, const char* material) {
   return withMaterials(folder, json::array({json::parse(material)}));
-}
-
-Scene imported(GltfWriter writer, const TemporaryFolder& folder) {
-  auto scene = importScene(writer.writeText(folder));
-  EXPECT_TRUE(scene) << (scene ? "" : scene.error().line());
-  return scene ? std::move(*scene) : Scene{};
-}
-
-std::string refusal(GltfWriter writer, const TemporaryFolder& folder) {
-  const auto scene = importScene(writer.writeText(folder));
-  EXPECT_FALSE(scene);
-  return scene ? "" : scene.error().line();
 }
 
 constexpr const char* kEverything = R"({"pbrMetallicRoughness":{"metallicFactor":0.5,"roughnessFactor":0.25,
@@ -54,7 +43,7 @@ constexpr const char* kEverything = R"({"pbrMetallicRoughness":{"metallicFactor"
 
 TEST(Reflection, OfEveryKindIsReadWithItsTextures) {
   TemporaryFolder folder;
-  const Scene scene = imported(withMaterial(folder, kEverything), folder);
+  const Scene scene = imported(withOneMaterial(folder, kEverything), folder);
   const gltf::Material& m = scene.materials.at(0);
   EXPECT_EQ(m.metallic, 0.5f);
   EXPECT_EQ(m.roughness, 0.25f);
@@ -80,7 +69,7 @@ TEST(Reflection, OfEveryKindIsReadWithItsTextures) {
 
 TEST(Reflection, IsWhatGltfSaysWhereTheFileSaysNothing) {
   TemporaryFolder folder;
-  const gltf::Material m = imported(withMaterial(folder, R"({"extensions":{"KHR_materials_ior":{},
+  const gltf::Material m = imported(withOneMaterial(folder, R"({"extensions":{"KHR_materials_ior":{},
       "KHR_materials_specular":{},"KHR_materials_anisotropy":{}}})"),
                                     folder)
                                .materials.at(0);
@@ -107,7 +96,7 @@ TEST(Reflection, TexturesThatCouldChangeNothingStayOut) {
 TEST(Reflection, KeepsTangentsWhereTheLobeIsNotRound) {
   TemporaryFolder folder;
   const auto tangents = [&](const char* material) {
-    return imported(withMaterial(folder, material), folder)
+    return imported(withOneMaterial(folder, material), folder)
         .meshes.at(0)
         .primitives.at(0)
         .mesh.tangents.size();
@@ -122,7 +111,7 @@ TEST(Reflection, KeepsTangentsWhereTheLobeIsNotRound) {
 TEST(Reflection, FactorsThatAreNoneAreRefusedByName) {
   TemporaryFolder folder;
   const auto refused = [&](const char* material, const char* words) {
-    const std::string line = refusal(withMaterial(folder, material), folder);
+    const std::string line = refusal(withOneMaterial(folder, material), folder);
     EXPECT_NE(line.find(words), std::string::npos) << line;
     EXPECT_NE(line.find("material 0"), std::string::npos) << line;
   };
@@ -227,7 +216,7 @@ TEST(MeasuredBrdf, ThatASceneCannotUseNamesFileAndMaterial) {
   folder.write("broken.brdf", "2\n");
   const auto refused = [&](const char* file, const char* words) {
     const std::string material = std::string(R"({"extras":{"lambent":{"brdf":")") + file + "\"}}}";
-    const std::string line = refusal(withMaterial(folder, material.c_str()), folder);
+    const std::string line = refusal(withOneMaterial(folder, material.c_str()), folder);
     for (const char* part : {words, "scene.gltf", "material 0"})
       EXPECT_NE(line.find(part), std::string::npos) << line;
   };

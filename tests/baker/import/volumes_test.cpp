@@ -18,7 +18,9 @@ namespace {
 
 using nlohmann::json;
 using testing::GltfWriter;
+using testing::imported;
 using testing::oneTriangle;
+using testing::refusal;
 using testing::TemporaryFolder;
 
 constexpr const char* kHeader =
@@ -40,18 +42,6 @@ GltfWriter withVolume(const json& volume) {
       {{"translation", {1, 2, 3}}, {"extras", {{"lambent", {{"volume", volume}}}}}});
   writer.json["scenes"][0]["nodes"].push_back(1);
   return writer;
-}
-
-Scene imported(GltfWriter writer, const TemporaryFolder& folder) {
-  auto scene = importScene(writer.writeText(folder));
-  EXPECT_TRUE(scene) << (scene ? "" : scene.error().line());
-  return scene ? std::move(*scene) : Scene{};
-}
-
-std::string refusal(GltfWriter writer, const TemporaryFolder& folder) {
-  const auto scene = importScene(writer.writeText(folder));
-  EXPECT_FALSE(scene);
-  return scene ? "" : scene.error().line();
 }
 
 TEST(Volume, IsReadFromNrrdWithItsPlacement) {

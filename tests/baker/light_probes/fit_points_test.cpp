@@ -16,7 +16,7 @@ namespace {
 
 using testing::Transport;
 
-constexpr double kEps = 1e-6;
+constexpr double kFitTolerance = 1e-6;
 constexpr float kDepth = 0.01f;
 
 struct Fitted {
@@ -29,7 +29,7 @@ struct Fitted {
         areas(sampleAreas(transport.geometry, transport.samples)),
         means(lightPoints(transport.samples.positions, areas, count)),
         points(means) {
-    fitPoints(points, transport.samples, areas, kEps, kDepth);
+    fitPoints(points, transport.samples, areas, kFitTolerance, kDepth);
   }
 };
 
@@ -38,7 +38,7 @@ double missed(const Fitted& fit, const std::vector<glm::vec3>& points) {
   double sum = 0.0, areas = 0.0;
   for (std::size_t i = 0; i < fit.areas.size(); ++i) {
     const glm::vec3 place = fit.transport.samples.positions[i];
-    const BlendWeights weights = blendWeights(place, points, kEps);
+    const BlendWeights weights = blendWeights(place, points, kFitTolerance);
     glm::dvec3 away = -glm::dvec3(place);
     for (std::size_t k = 0; k < 4; ++k) away += weights.weight[k] * glm::dvec3(points[weights.light[k]]);
     sum += double{fit.areas[i]} * glm::dot(away, away);

@@ -8,7 +8,7 @@
 namespace lambent::baker {
 namespace {
 
-using Kind = WatchEvent::Kind;
+using WatchKind = WatchEvent::Kind;
 
 class SourceWatchTest : public testing::PipelineTest {
  protected:
@@ -67,7 +67,7 @@ TEST_F(SourceWatchTest, AHalfWrittenSceneIsToldOnlyOnceItIsWhole) {
   SourceWatch watch({folder}, quick());
   auto event = next(watch);
   ASSERT_TRUE(event);
-  EXPECT_EQ(event->kind, Kind::Found);
+  EXPECT_EQ(event->kind, WatchKind::Found);
   EXPECT_EQ(event->scene, file);
   const std::string other = sceneBytes(assets::knot());
   for (const double share : {0.0, 0.001, 0.3, 0.9, 0.999}) {
@@ -78,7 +78,7 @@ TEST_F(SourceWatchTest, AHalfWrittenSceneIsToldOnlyOnceItIsWhole) {
   writeBytes(file, other);
   event = next(watch);
   ASSERT_TRUE(event);
-  EXPECT_EQ(event->kind, Kind::Changed);
+  EXPECT_EQ(event->kind, WatchKind::Changed);
   EXPECT_FALSE(next(watch, kQuiet)) << "one change, one event";
 }
 
@@ -89,13 +89,13 @@ TEST_F(SourceWatchTest, WhatStaysBrokenIsToldOnceAndMendedIsToldAgain) {
   SourceWatch watch({folder}, quick());
   auto event = next(watch);
   ASSERT_TRUE(event);
-  EXPECT_EQ(event->kind, Kind::Broken);
+  EXPECT_EQ(event->kind, WatchKind::Broken);
   ASSERT_TRUE(event->error);
   EXPECT_FALSE(next(watch, kQuiet));
   writeBytes(file, bytes);
   event = next(watch);
   ASSERT_TRUE(event);
-  EXPECT_EQ(event->kind, Kind::Found);
+  EXPECT_EQ(event->kind, WatchKind::Found);
 }
 
 TEST_F(SourceWatchTest, ABufferThatAFileNamesBelongsToTheScene) {
@@ -107,14 +107,14 @@ TEST_F(SourceWatchTest, ABufferThatAFileNamesBelongsToTheScene) {
   writeBytes(buffer, triangleBytes(1.0f));
   auto event = next(watch);
   ASSERT_TRUE(event);
-  if (event->kind == Kind::Broken) event = next(watch);  // on a machine that stood still for a while
+  if (event->kind == WatchKind::Broken) event = next(watch);  // on a machine that stood still for a while
   ASSERT_TRUE(event);
-  EXPECT_EQ(event->kind, Kind::Found);
+  EXPECT_EQ(event->kind, WatchKind::Found);
   EXPECT_FALSE(next(watch, kQuiet));
   writeBytes(buffer, triangleBytes(2.0f) + "    ");
   event = next(watch);
   ASSERT_TRUE(event);
-  EXPECT_EQ(event->kind, Kind::Changed);
+  EXPECT_EQ(event->kind, WatchKind::Changed);
   EXPECT_EQ(event->scene, scene);
 }
 
@@ -131,7 +131,7 @@ TEST_F(SourceWatchTest, ARemovedSceneIsToldAndBundlesAndHiddenFilesAreNoScenes) 
   std::filesystem::remove(event->scene);
   event = next(watch);
   ASSERT_TRUE(event);
-  EXPECT_EQ(event->kind, Kind::Removed);
+  EXPECT_EQ(event->kind, WatchKind::Removed);
   EXPECT_FALSE(next(watch, kQuiet));
 }
 

@@ -11,7 +11,7 @@ using testing::grid;
 using testing::icosphere;
 using testing::sceneOf;
 
-struct Planned {
+struct PlannedLight {
   std::vector<RigidGroup> groups;
   std::vector<PlannedLightProbes> samples;
 
@@ -23,8 +23,8 @@ struct Planned {
   }
 };
 
-Planned plan(const Scene& scene) {
-  Planned out{findRigidGroups(scene), {}};
+PlannedLight planLight(const Scene& scene) {
+  PlannedLight out{findRigidGroups(scene), {}};
   out.samples = planLightProbes(scene, out.groups);
   return out;
 }
@@ -57,43 +57,43 @@ void move(Scene& scene, std::uint32_t node, glm::vec3 from, glm::vec3 to) {
 
 TEST(LightProbeCounts, AreOneForOneGroupWithNothingOutside) {
   Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 2)});
-  EXPECT_EQ(plan(scene).samples.at(0).count.count, 1u);
-  EXPECT_NE(plan(scene).samples.at(0).reason.find("far away"), std::string::npos);
+  EXPECT_EQ(planLight(scene).samples.at(0).count.count, 1u);
+  EXPECT_NE(planLight(scene).samples.at(0).reason.find("far away"), std::string::npos);
   // Its own lights are in its transfer.
   scene.materials[0].emissive = glm::vec3(5.0f);
   scene.lights.resize(1);
   scene.nodes[0].light = 0;
-  EXPECT_EQ(plan(scene).samples.at(0).count.count, 1u);
+  EXPECT_EQ(planLight(scene).samples.at(0).count.count, 1u);
 }
 
 TEST(LightProbeCounts, RiseWithSizeOverDistanceOfALamp) {
   const float half = std::sqrt(3.0f);
   for (const auto& [ratio, count] :
        {std::pair{0.04f, 1u}, {0.12f, 4u}, {0.2f, 8u}, {0.4f, 16u}, {0.6f, 32u}, {5.0f, 32u}})
-    EXPECT_EQ(plan(ballAndLamp(half / ratio)).samples.at(0).count.count, count) << ratio;
-  EXPECT_NE(plan(ballAndLamp(half / 0.6f)).samples[0].reason.find("the light of torch is up to 0.60"),
+    EXPECT_EQ(planLight(ballAndLamp(half / ratio)).samples.at(0).count.count, count) << ratio;
+  EXPECT_NE(planLight(ballAndLamp(half / 0.6f)).samples[0].reason.find("the light of torch is up to 0.60"),
             std::string::npos)
-      << plan(ballAndLamp(half / 0.6f)).samples[0].reason;
+      << planLight(ballAndLamp(half / 0.6f)).samples[0].reason;
 }
 
 TEST(LightProbeCounts, IgnoreLampsThatAreDarkDirectionalOrOutOfRange) {
   Scene scene = ballAndLamp(2.0f);
   scene.lights[0].type = gltf::Light::Type::Directional;
-  EXPECT_EQ(plan(scene).samples[0].count.count, 1u);
+  EXPECT_EQ(planLight(scene).samples[0].count.count, 1u);
   scene = ballAndLamp(2.0f);
   scene.lights[0].intensity = 0.0f;
-  EXPECT_EQ(plan(scene).samples[0].count.count, 1u);
+  EXPECT_EQ(planLight(scene).samples[0].count.count, 1u);
   scene = ballAndLamp(10.0f);
-  EXPECT_EQ(plan(scene).samples[0].count.count, 8u);
+  EXPECT_EQ(planLight(scene).samples[0].count.count, 8u);
   scene.lights[0].range_m = 5.0f;
-  EXPECT_EQ(plan(scene).samples[0].count.count, 1u);
+  EXPECT_EQ(planLight(scene).samples[0].count.count, 1u);
 }
 
 TEST(LightProbeCounts, LookAlongTheWholeWayOfAnAnimation) {
   Scene scene = ballAndLamp(50.0f);
-  EXPECT_EQ(plan(scene).samples[0].count.count, 1u);
+  EXPECT_EQ(planLight(scene).samples[0].count.count, 1u);
   move(scene, 1, {0, 50, 0}, {0, 4, 0});
-  EXPECT_EQ(plan(scene).samples[0].count.count, 16u);
+  EXPECT_EQ(planLight(scene).samples[0].count.count, 16u);
 }
 
 TEST(LightProbeCounts, CountSurfacesOfOthersThatGiveOffLightAsLamps) {
@@ -102,28 +102,28 @@ TEST(LightProbeCounts, CountSurfacesOfOthersThatGiveOffLightAsLamps) {
   scene.nodes[0].movable = true;
   scene.materials.push_back(scene.materials[0]);
   scene.meshes[1].primitives[0].material = 1;
-  EXPECT_EQ(plan(scene).of("ball").count.count, 4u) << "it only reflects";
+  EXPECT_EQ(planLight(scene).of("ball").count.count, 4u) << "it only reflects";
   scene.materials[1].emissive = glm::vec3(1.0f);
-  EXPECT_EQ(plan(scene).of("ball").count.count, 32u) << "√3 / 3";
+  EXPECT_EQ(planLight(scene).of("ball").count.count, 32u) << "√3 / 3";
 }
 
 TEST(LightProbeCounts, AreMostOfAFloorThatBodiesMoveOver) {
   Scene scene = sceneOf({grid({0, 0, 0}, 20.0f, 4), icosphere({0, 0, 0}, 1.0f, 3)});
   scene.nodes[1].name = "ball";
   move(scene, 1, {-5, 1, 0}, {5, 1, 0});
-  EXPECT_EQ(plan(scene).of("static").count.count, kMostLightProbes);
-  EXPECT_EQ(plan(scene).of("static").reason, "ball can come within its bounds");
-  EXPECT_EQ(plan(scene).of("ball").count.count, 4u);
+  EXPECT_EQ(planLight(scene).of("static").count.count, kMostLightProbes);
+  EXPECT_EQ(planLight(scene).of("static").reason, "ball can come within its bounds");
+  EXPECT_EQ(planLight(scene).of("ball").count.count, 4u);
   // High above it the ball is a small thing, and the floor a far one.
   move(scene, 1, {-5, 400, 0}, {5, 400, 0});
-  EXPECT_EQ(plan(scene).of("static").count.count, 1u);
-  EXPECT_EQ(plan(scene).of("ball").count.count, 1u);
+  EXPECT_EQ(planLight(scene).of("static").count.count, 1u);
+  EXPECT_EQ(planLight(scene).of("ball").count.count, 1u);
 }
 
 TEST(LightProbeCounts, OfAPointStayFinite) {
   Scene scene = ballAndLamp(0.0f);
   for (glm::vec3& p : scene.meshes[0].primitives[0].mesh.positions) p = glm::vec3(0.0f);
-  EXPECT_EQ(plan(scene).samples[0].count.count, 1u) << "no size, one place";
+  EXPECT_EQ(planLight(scene).samples[0].count.count, 1u) << "no size, one place";
 }
 
 TEST(LightsInside, AreThoseWhoseWayMeetsAGroupsBounds) {

@@ -15,7 +15,7 @@ using testing::grid;
 using testing::icosphere;
 using testing::sceneOf;
 
-struct Planned {
+struct PlannedBodies {
   std::vector<RigidGroup> groups;
   std::vector<PlannedNeighborhood> plans;
 
@@ -28,8 +28,8 @@ struct Planned {
   const PlannedNeighborhood& of(const std::string& name) const { return plans[indexOf(name)]; }
 };
 
-Planned plan(const Scene& scene) {
-  Planned out{findRigidGroups(scene), {}};
+PlannedBodies planBodies(const Scene& scene) {
+  PlannedBodies out{findRigidGroups(scene), {}};
   out.plans = planNeighborhoods(scene, out.groups);
   return out;
 }
@@ -56,18 +56,18 @@ Scene rolling(Scene scene) {
 }
 
 TEST(NeighborhoodPlans, AreForBodiesOnGroupsOfMoreThanTwiceTheirSize) {
-  const Planned planned = plan(ballsOver(1, 0.5f));
+  const PlannedBodies planned = planBodies(ballsOver(1, 0.5f));
   EXPECT_TRUE(planned.of("ball 0").baked);
   EXPECT_FALSE(planned.of("ball 0").asked);
   EXPECT_FALSE(planned.of("static").baked);
   EXPECT_TRUE(planned.of("ball 0").carries(planned.indexOf("static")));
   EXPECT_NE(planned.of("ball 0").reason.find("bounds of static"), std::string::npos);
   // Nothing requests a neighborhood high above.
-  EXPECT_FALSE(plan(rolling(ballsOver(1, 3.0f))).of("ball 0").baked);
+  EXPECT_FALSE(planBodies(rolling(ballsOver(1, 3.0f))).of("ball 0").baked);
 }
 
 TEST(NeighborhoodPlans, KnowWhereReceiversStandInTheGroupsFrame) {
-  const PlannedNeighborhood& ball = plan(rolling(ballsOver(1, 0.5f))).of("ball 0");
+  const PlannedNeighborhood& ball = planBodies(rolling(ballsOver(1, 0.5f))).of("ball 0");
   EXPECT_NEAR(ball.receivers_min.y, -0.5f, 1e-4f);
   EXPECT_NEAR(ball.receivers_max.y, -0.5f, 1e-4f);
   EXPECT_NEAR(ball.receivers_min.x, -1.0f, 1e-4f);  // the floor ends there
@@ -76,8 +76,8 @@ TEST(NeighborhoodPlans, KnowWhereReceiversStandInTheGroupsFrame) {
 }
 
 TEST(NeighborhoodPlans, CutLargeTrianglesToTheReach) {
-  const PlannedNeighborhood &coarse = plan(rolling(ballsOver(1, 0.5f, 1))).of("ball 0"),
-                            &fine = plan(rolling(ballsOver(1, 0.5f, 40))).of("ball 0");
+  const PlannedNeighborhood &coarse = planBodies(rolling(ballsOver(1, 0.5f, 1))).of("ball 0"),
+                            &fine = planBodies(rolling(ballsOver(1, 0.5f, 40))).of("ball 0");
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(coarse.receivers_min[axis], fine.receivers_min[axis], 1e-3f);
     EXPECT_NEAR(coarse.receivers_max[axis], fine.receivers_max[axis], 1e-3f);
@@ -90,16 +90,16 @@ TEST(NeighborhoodPlans, KnowHowReceiversFaceInTheGroupsFrame) {
     return facing[k] / facing[0] / std::sqrt(3.0f);
   };
   Scene scene = rolling(ballsOver(1, 0.5f));
-  const FacingArea up = plan(scene).of("ball 0").receivers_face;
+  const FacingArea up = planBodies(scene).of("ball 0").receivers_face;
   EXPECT_NEAR(along(up, 1), 1.0f, 1e-4f);
   EXPECT_NEAR(along(up, 2), 0.0f, 1e-4f);
-  const PlannedNeighborhood ball = plan(scene).of("ball 0");
+  const PlannedNeighborhood ball = planBodies(scene).of("ball 0");
   const glm::vec3 reach = ball.receivers_max - ball.receivers_min;
   EXPECT_NEAR(up[0] / 0.28209479f, reach.x * reach.z, 1e-3f * reach.x * reach.z);
   // As the ball stands, the floor faces along its z.
   scene.nodes[1].parent_from_node =
       scene.nodes[1].parent_from_node * glm::rotate(glm::mat4(1.0f), 1.57079633f, glm::vec3(-1, 0, 0));
-  const FacingArea turned = plan(scene).of("ball 0").receivers_face;
+  const FacingArea turned = planBodies(scene).of("ball 0").receivers_face;
   EXPECT_NEAR(std::abs(along(turned, 2)), 1.0f, 1e-3f);
   EXPECT_NEAR(along(turned, 1), 0.0f, 1e-3f);
 }
@@ -113,21 +113,21 @@ TEST(NeighborhoodPlans, FollowTheAnimation) {
                          .path = gltf::AnimationChannel::Path::Translation,
                          .times_s = {0.0f, 2.0f},
                          .values = {0, 3, 0, 0, 0.5f, 0}}}}};
-  const PlannedNeighborhood& ball = plan(scene).of("ball 0");
+  const PlannedNeighborhood& ball = planBodies(scene).of("ball 0");
   EXPECT_TRUE(ball.baked);
   EXPECT_NEAR(ball.receivers_min.y, -3.0f, 1e-3f);
   EXPECT_NEAR(ball.receivers_max.y, -0.5f, 1e-3f);
 }
 
 TEST(NeighborhoodPlans, AreForBodiesThatCanBeMovedByHandWhereverTheyStand) {
-  const Planned planned = plan(ballsOver(1, 3.0f));
+  const PlannedBodies planned = planBodies(ballsOver(1, 3.0f));
   const PlannedNeighborhood& ball = planned.of("ball 0");
   EXPECT_TRUE(ball.baked);
   EXPECT_TRUE(ball.by_hand);
   EXPECT_TRUE(ball.carries(planned.indexOf("static")));
   EXPECT_EQ(ball.reason, "it can be moved by hand onto static");
-  EXPECT_TRUE(plan(ballsOver(1, 0.5f)).of("ball 0").by_hand) << "also where it stands on the floor";
-  EXPECT_FALSE(plan(rolling(ballsOver(1, 0.5f))).of("ball 0").by_hand);
+  EXPECT_TRUE(planBodies(ballsOver(1, 0.5f)).of("ball 0").by_hand) << "also where it stands on the floor";
+  EXPECT_FALSE(planBodies(rolling(ballsOver(1, 0.5f))).of("ball 0").by_hand);
   for (std::size_t k = 1; k < ball.receivers_face.size(); ++k)
     EXPECT_EQ(ball.receivers_face[k], 0.0f) << "surfaces may face anywhere";
 }
@@ -135,15 +135,15 @@ TEST(NeighborhoodPlans, AreForBodiesThatCanBeMovedByHandWhereverTheyStand) {
 TEST(NeighborhoodPlans, OfBodiesMovedByHandCostThoseThatMoveAboutNothing) {
   Scene scene = ballsOver(9, 0.5f);
   scene.nodes[9].parent_from_node[3].y = 3.0f;
-  const Planned planned = plan(scene);
+  const PlannedBodies planned = planBodies(scene);
   EXPECT_TRUE(planned.of("ball 3").baked);
   EXPECT_FALSE(planned.of("ball 8").baked);
   EXPECT_NE(planned.of("ball 8").reason.find("8 other bodies"), std::string::npos);
 }
 
 TEST(NeighborhoodPlans, AreForNoneOfMany) {
-  EXPECT_TRUE(plan(ballsOver(8, 0.5f)).of("ball 3").baked);
-  const Planned planned = plan(ballsOver(9, 0.5f));
+  EXPECT_TRUE(planBodies(ballsOver(8, 0.5f)).of("ball 3").baked);
+  const PlannedBodies planned = planBodies(ballsOver(9, 0.5f));
   for (const PlannedNeighborhood& one : planned.plans) EXPECT_FALSE(one.baked);
   EXPECT_NE(planned.of("ball 3").reason.find("8 other bodies"), std::string::npos);
 }
@@ -153,7 +153,7 @@ TEST(NeighborhoodPlans, AreNotForBodiesThatGiveOffLight) {
   scene.materials.push_back(scene.materials[0]);
   scene.materials[1].emissive = glm::vec3(1.0f);
   scene.meshes[1].primitives[0].material = 1;
-  const Planned planned = plan(scene);
+  const PlannedBodies planned = planBodies(scene);
   EXPECT_FALSE(planned.of("ball 0").baked);
   EXPECT_NE(planned.of("ball 0").reason.find("gives off light"), std::string::npos);
 }
@@ -161,7 +161,7 @@ TEST(NeighborhoodPlans, AreNotForBodiesThatGiveOffLight) {
 TEST(NeighborhoodPlans, TakeWhatTheSceneAsksFor) {
   Scene scene = ballsOver(9, 2.0f);
   scene.neighborhoods = {{.node = 2, .size = {16, 16, 4}, .extent = {8, 8, 2}}};
-  const PlannedNeighborhood& ball = plan(scene).of("ball 1");
+  const PlannedNeighborhood& ball = planBodies(scene).of("ball 1");
   EXPECT_TRUE(ball.baked);
   EXPECT_TRUE(ball.asked);
   EXPECT_EQ(ball.size, glm::uvec3(16, 16, 4));
@@ -178,8 +178,8 @@ TEST(NeighborhoodPlans, WantAllBandsForFineSurfacesThatShadowThemselves) {
     scene.neighborhoods = {{.node = 1}};
     return scene;
   };
-  EXPECT_TRUE(plan(hilly(120)).of("ball 0").matrices);
-  EXPECT_FALSE(plan(hilly(20)).of("ball 0").matrices);
+  EXPECT_TRUE(planBodies(hilly(120)).of("ball 0").matrices);
+  EXPECT_FALSE(planBodies(hilly(20)).of("ball 0").matrices);
 }
 
 TEST(NeighborhoodPlans, AreForVolumesWithSurfacesInReach) {
@@ -192,7 +192,7 @@ TEST(NeighborhoodPlans, AreForVolumesWithSurfacesInReach) {
     scene.roots.push_back(1);
     scene.volumes.push_back(
         {.name = "fog", .node = 1, .size = glm::uvec3(2), .density = std::vector<float>(8, 1.0f)});
-    const Planned planned = plan(scene);
+    const PlannedBodies planned = planBodies(scene);
     EXPECT_EQ(planned.of("cloud").baked, height < 10.0f);
     EXPECT_EQ(planned.of("cloud").carries(planned.indexOf("static")), height < 10.0f);
   }
@@ -200,7 +200,7 @@ TEST(NeighborhoodPlans, AreForVolumesWithSurfacesInReach) {
 
 TEST(NeighborhoodPlans, MakeLightProbesForTheBodyNeedless) {
   const Scene scene = ballsOver(1, 0.5f);
-  const Planned planned = plan(scene);
+  const PlannedBodies planned = planBodies(scene);
   const std::size_t floor = planned.indexOf("static");
   EXPECT_EQ(planLightProbes(scene, planned.groups)[floor].count.count, 32u);
   EXPECT_EQ(planLightProbes(scene, planned.groups, planned.plans)[floor].count.count, 1u);

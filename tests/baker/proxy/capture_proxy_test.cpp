@@ -52,7 +52,7 @@ std::vector<Corners> cornersOf(const GroupGeometry& geometry) {
   return out;
 }
 
-float areaOf(const Corners& c) {
+float triangleArea(const Corners& c) {
   return 0.5f * glm::length(glm::cross(c[1] - c[0], c[2] - c[0]));
 }
 
@@ -140,7 +140,7 @@ TEST(CaptureProxyPatches, ShowAHouseToItselfMoreFinelyThanToOthers) {
   float area = 0.0f;
   for (const bundle::PatchTriangle& triangle : patches.triangles) {
     const auto& v = triangle.vertices;
-    area += areaOf({patches.positions[v[0]], patches.positions[v[1]], patches.positions[v[2]]});
+    area += triangleArea({patches.positions[v[0]], patches.positions[v[1]], patches.positions[v[2]]});
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(triangle.albedo[c], scene.materials[0].base_color[c], 1e-5f);
   }
   EXPECT_NEAR(area / (4.0f * std::numbers::pi_v<float>), 1.0f, 0.02f);  // its corners lie on the sphere
@@ -188,7 +188,7 @@ TEST(CaptureProxyLight, OfASphereOfTwoColoursHasItsMeans) {
     float area = 0.0f;
     for (std::uint32_t i = 0; i < level.triangle_count; ++i) {
       const bundle::ProxyTriangle& triangle = proxy.triangles[level.first_triangle + i];
-      const float here = areaOf(cornersOf(proxy, level)[i]);
+      const float here = triangleArea(cornersOf(proxy, level)[i]);
       area += here, mean += here * reflectanceOf(proxy, triangle);
       for (std::uint32_t e = 0; e < triangle.entry_count; ++e) {
         const bundle::ProxyEntry& entry = proxy.entries[triangle.first_entry + e];
@@ -248,7 +248,7 @@ TEST(CaptureProxyLight, ThatIsGivenOffKeepsItsPower) {
     ASSERT_EQ(t.lights.size(), 1u);
     double exact = 0.0;
     for (std::uint32_t i = 0; i < t.geometry.triangles.size(); ++i)
-      exact += t.colors.lightOf(i) == 0 ? double{areaOf(cornersOf(t.geometry)[i])} : 0.0;
+      exact += t.colors.lightOf(i) == 0 ? double{triangleArea(cornersOf(t.geometry)[i])} : 0.0;
     const bundle::CaptureProxy proxy = proxyOf(t);
     ASSERT_EQ(proxy.levels.size(), 3u);
     for (const bundle::ProxyLevel& level : proxy.levels) {
@@ -259,7 +259,7 @@ TEST(CaptureProxyLight, ThatIsGivenOffKeepsItsPower) {
         EXPECT_EQ(triangle.emission.r, triangle.emission.g) << "at unit strength";
         // Panel and lamp are black, the ball is white.
         EXPECT_NEAR(reflectanceOf(proxy, triangle).g, triangle.light == 0 ? 0.0f : 1.0f, 1e-5f);
-        power += double{triangle.emission.g} * double{areaOf(cornersOf(proxy, level)[i])};
+        power += double{triangle.emission.g} * double{triangleArea(cornersOf(proxy, level)[i])};
       }
       EXPECT_NEAR(power / exact, 1.0, 0.01) << level.triangle_count;
     }

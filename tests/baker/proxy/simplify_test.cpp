@@ -22,7 +22,7 @@ SimpleMesh whole(const GroupGeometry& geometry) {
   return welded(geometry, all);
 }
 
-float areaOf(const SimpleMesh& mesh) {
+float meshArea(const SimpleMesh& mesh) {
   float sum = 0.0f;
   for (const glm::uvec3& t : mesh.triangles)
     sum += 0.5f * glm::length(glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
@@ -35,7 +35,7 @@ TEST(Simplified, KeepsFlatFacesExactly) {
   const SimpleMesh mesh = simplified(whole(t.geometry), 12);
   EXPECT_EQ(mesh.triangles.size(), 12u);
   EXPECT_EQ(mesh.positions.size(), 8u);
-  EXPECT_FLOAT_EQ(areaOf(mesh), 28.0f);
+  EXPECT_FLOAT_EQ(meshArea(mesh), 28.0f);
   EXPECT_LT(mesh.error_m, 1e-3f);
 }
 

@@ -17,10 +17,7 @@ using testing::grid;
 using testing::joined;
 using testing::sceneOf;
 using testing::Transport;
-
-glm::mat3 upright() {
-  return glm::mat3(localFrame({0, 1, 0}));
-}
+using testing::upright;
 
 // Makes a sliver just above the floor, seen from behind, with the floor's normals.
 bundle::MeshData sliver() {

@@ -15,10 +15,7 @@ using testing::flipped;
 using testing::grid;
 using testing::sceneOf;
 using testing::Transport;
-
-glm::mat3 upright() {
-  return glm::mat3(localFrame({0, 1, 0}));
-}
+using testing::upright;
 
 TEST(CosineTable, HasNoDirectionInTheHorizonWhereAFlatFaceWouldBlockIt) {
   for (const std::size_t rays : {128u, 256u, 1024u, 4096u})

@@ -10,7 +10,7 @@
 namespace lambent::editor {
 namespace {
 
-glm::mat4 at(float x, float y, float z) {
+glm::mat4 placedAt(float x, float y, float z) {
   return glm::translate(glm::mat4(1.0f), glm::vec3(x, y, z));
 }
 
@@ -46,7 +46,7 @@ TEST_F(NodeEdits, ANodeThatIsHungElsewhereIsBakedWhereItStands) {
   ASSERT_TRUE(history.setField(camera, "Transform", "translation", glm::vec3(3.0f, 1.0f, 5.0f)));
   ASSERT_TRUE(history.setField(table, "Transform", "translation", glm::vec3(0.0f, 0.0f, 7.0f)));
   const glm::mat4 now = worldFromNode(world.registry, lamp);
-  EXPECT_TRUE(samePlace(now, at(3.0f, 0.0f, 0.0f) * before));
+  EXPECT_TRUE(samePlace(now, placedAt(3.0f, 0.0f, 0.0f) * before));
   EXPECT_TRUE(samePlace(baked(edits(), "lamp"), now));
   EXPECT_TRUE(samePlace(baked(edits(), "table"), worldFromNode(world.registry, table)));
   history.undo(), history.undo(), history.undo();
@@ -54,10 +54,10 @@ TEST_F(NodeEdits, ANodeThatIsHungElsewhereIsBakedWhereItStands) {
 }
 
 TEST(SamePlace, ForgivesRoundingButNoMove) {
-  const glm::mat4 far = at(1000.0f, 0.0f, -3.0f), small = glm::scale(glm::mat4(1.0f), glm::vec3(1e-3f));
-  EXPECT_TRUE(samePlace(at(1000.003f, 0.0f, -3.0f), far));
-  EXPECT_FALSE(samePlace(at(1000.02f, 0.0f, -3.0f), far));
-  EXPECT_FALSE(samePlace(at(0.0f, 2e-5f, 0.0f), at(0.0f, 0.0f, 0.0f)));
+  const glm::mat4 far = placedAt(1000.0f, 0.0f, -3.0f), small = glm::scale(glm::mat4(1.0f), glm::vec3(1e-3f));
+  EXPECT_TRUE(samePlace(placedAt(1000.003f, 0.0f, -3.0f), far));
+  EXPECT_FALSE(samePlace(placedAt(1000.02f, 0.0f, -3.0f), far));
+  EXPECT_FALSE(samePlace(placedAt(0.0f, 2e-5f, 0.0f), placedAt(0.0f, 0.0f, 0.0f)));
   // A thousandth of the size of a small thing counts as a change.
   EXPECT_FALSE(samePlace(glm::scale(small, glm::vec3(1.001f)), small));
   EXPECT_TRUE(samePlace(glm::scale(small, glm::vec3(1.000001f)), small));

@@ -26,7 +26,7 @@ const std::vector<transfer::LightWeights> kWeights = {
 
 // Makes a description that uses every list except meshes (mesh_test.cpp has those), with values that are
 // easily lost.
-Sample sampleBundle() {
+Sample sampleOfEveryList() {
   Sample s;
   Description& d = s.description;
   d.generator = {"lambent", "0.1.0", "x86-64-v3", {{"order", "2"}, {"rays", "64"}}};
@@ -124,7 +124,7 @@ Sample sampleBundle() {
 }
 
 TEST_F(BundleFile, GivesBackWhatWasWritten) {
-  const Sample sample = sampleBundle();
+  const Sample sample = sampleOfEveryList();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   auto reader = Reader::open(path_);
   ASSERT_TRUE(reader) << reader.error().line();
@@ -146,7 +146,7 @@ TEST_F(BundleFile, GivesBackWhatWasWritten) {
 }
 
 TEST_F(BundleFile, GivesBackClustersLampsAndNormalMappedCells) {
-  const Sample sample = sampleBundle();
+  const Sample sample = sampleOfEveryList();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   auto reader = Reader::open(path_);
   ASSERT_TRUE(reader) << reader.error().line();
@@ -185,7 +185,7 @@ TEST_F(BundleFile, GivesBackClustersLampsAndNormalMappedCells) {
 }
 
 TEST_F(BundleFile, GivesBackLightProbesAndProxies) {
-  Sample sample = sampleBundle();
+  Sample sample = sampleOfEveryList();
   sample.description.groups.emplace_back().name = "bare";  // no cells, no proxy
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   auto reader = Reader::open(path_);
@@ -209,7 +209,7 @@ TEST_F(BundleFile, GivesBackLightProbesAndProxies) {
 
 TEST_F(BundleFile, IsNotWrittenOfTransferThatIsNotANumber) {
   for (const bool of_plane : {false, true}) {
-    Sample sample = sampleBundle();
+    Sample sample = sampleOfEveryList();
     CellTransfer& transfer = sample.description.groups[0].cells[0].transfers[0];
     (of_plane ? transfer.planes.at(0).variance : transfer.error) = std::nanf("");
     const auto written = write(path_, sample.description, sample.blobs);
@@ -220,7 +220,7 @@ TEST_F(BundleFile, IsNotWrittenOfTransferThatIsNotANumber) {
 }
 
 TEST_F(BundleFile, IsTheSameBytesTwice) {
-  const Sample sample = sampleBundle();
+  const Sample sample = sampleOfEveryList();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   const std::string first = bytes();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
@@ -228,7 +228,7 @@ TEST_F(BundleFile, IsTheSameBytesTwice) {
 }
 
 TEST_F(BundleFile, TruncatedAtAnyPrefixIsRefusedInOneLine) {
-  const Sample sample = sampleBundle();
+  const Sample sample = sampleOfEveryList();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   const std::string whole = bytes();
   for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -243,7 +243,7 @@ TEST_F(BundleFile, TruncatedAtAnyPrefixIsRefusedInOneLine) {
 }
 
 TEST_F(BundleFile, AnyFlippedByteIsRefused) {
-  const Sample sample = sampleBundle();
+  const Sample sample = sampleOfEveryList();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   const std::string whole = bytes();
   for (std::size_t at = 0; at < whole.size(); ++at) {
@@ -257,7 +257,7 @@ TEST_F(BundleFile, AnyFlippedByteIsRefused) {
 }
 
 TEST_F(BundleFile, TooNewIsCalledTooNew) {
-  Sample sample = sampleBundle();
+  Sample sample = sampleOfEveryList();
   sample.description.version = kVersionCurrent + 1;
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   const auto reader = Reader::open(path_);
@@ -268,7 +268,7 @@ TEST_F(BundleFile, TooNewIsCalledTooNew) {
 
 TEST_F(BundleFile, AnOlderVersionIsToBeBakedAgain) {
   for (const std::uint32_t version : {kVersionFirstLight, kVersionClusteredTransfer}) {
-    Sample sample = sampleBundle();
+    Sample sample = sampleOfEveryList();
     sample.description.version = version;
     ASSERT_TRUE(write(path_, sample.description, sample.blobs));
     const auto reader = Reader::open(path_);
@@ -279,7 +279,7 @@ TEST_F(BundleFile, AnOlderVersionIsToBeBakedAgain) {
 }
 
 TEST_F(BundleFile, WhatACheckRefusesDoesNotTakeThePlaceOfTheOldOne) {
-  Sample sample = sampleBundle();
+  Sample sample = sampleOfEveryList();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   const std::string before = bytes();
   sample.description.roots = {99};
@@ -296,7 +296,7 @@ TEST_F(BundleFile, WhatACheckRefusesDoesNotTakeThePlaceOfTheOldOne) {
 }
 
 TEST_F(BundleFile, ADeepChainOfNodesIsReadInNoTime) {
-  Sample sample = sampleBundle();
+  Sample sample = sampleOfEveryList();
   std::vector<gltf::Node>& nodes = sample.description.nodes;
   constexpr std::size_t kDeep = 100'000;  // with a walk to the root from each node this takes half a minute
   while (nodes.size() < kDeep) {
@@ -310,7 +310,7 @@ TEST_F(BundleFile, ADeepChainOfNodesIsReadInNoTime) {
 }
 
 TEST_F(BundleFile, AnEmptyListOfScenesIsRefused) {
-  Sample sample = sampleBundle();
+  Sample sample = sampleOfEveryList();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   auto glb = GlbFile::open(path_);
   ASSERT_TRUE(glb);
@@ -325,7 +325,7 @@ TEST_F(BundleFile, AnEmptyListOfScenesIsRefused) {
 // Surrounds nonsense with valid checksums, as a hostile or buggy writer could.
 TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   const auto refused = [&](auto spoil, const char* place) {
-    Sample sample = sampleBundle();
+    Sample sample = sampleOfEveryList();
     spoil(sample.description);
     ASSERT_TRUE(write(path_, sample.description, sample.blobs));
     const auto reader = Reader::open(path_);
@@ -404,7 +404,7 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
 }
 
 TEST_F(BundleFile, ClustersThatContradictThePlanesAreRefusedBeforeUse) {
-  Sample sample = sampleBundle();
+  Sample sample = sampleOfEveryList();
   const auto ids = static_cast<std::uint32_t>(sample.description.groups[0].cells[0].transfers[0].cluster_ids);
   sample.blobs[sample.description.payloads[ids].view] =
       transfer::encodeClusterIds(std::vector{0u, 0u, 0u}, 2);
@@ -420,7 +420,7 @@ TEST_F(BundleFile, ClustersThatContradictThePlanesAreRefusedBeforeUse) {
 
 TEST_F(BundleFile, CodebooksOfAnotherSizeThanDescribedAreRefusedBeforeUse) {
   const auto refused = [&](auto spoil) {
-    Sample sample = sampleBundle();
+    Sample sample = sampleOfEveryList();
     spoil(sample.description.groups[0].cells[0].transfers[0]);
     ASSERT_TRUE(write(path_, sample.description, sample.blobs));
     auto reader = Reader::open(path_);
@@ -454,7 +454,7 @@ TEST_F(BundleFile, APlainGltfFileIsSaidNotToBeBaked) {
 
 TEST_F(BundleFile, AFailedWriteLeavesTheOldFile) {
   replace("precious");
-  const Sample sample = sampleBundle();
+  const Sample sample = sampleOfEveryList();
   const auto written = write(folder_ / "missing" / "scene.lmb.glb", sample.description, sample.blobs);
   ASSERT_FALSE(written);
   EXPECT_NE(written.error().problem.find("folder does not exist"), std::string::npos);

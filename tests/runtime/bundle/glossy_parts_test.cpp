@@ -9,7 +9,7 @@ namespace {
 
 // Makes one plain cell of two samples and one glossy cell of three, with visibility, bounced light, a lamp,
 // and two tables.
-Sample sampleBundle() {
+Sample glossySample() {
   Sample s;
   Description& d = s.description;
   d.generator = {"lambent", "0.4.0", "x86-64-v3", {{"glossyOrder", "4"}}};
@@ -45,7 +45,7 @@ Sample sampleBundle() {
 using GlossyParts = BundleFile;
 
 TEST_F(GlossyParts, ComeBackAsTheyWereWritten) {
-  const Sample sample = sampleBundle();
+  const Sample sample = glossySample();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   const auto reader = Reader::open(path_);
   ASSERT_TRUE(reader) << reader.error().line();
@@ -70,7 +70,7 @@ TEST_F(GlossyParts, ComeBackAsTheyWereWritten) {
 
 TEST_F(GlossyParts, ThatContradictThemselvesAreRefusedByName) {
   const auto refused = [&](auto spoil, const char* place) {
-    Sample sample = sampleBundle();
+    Sample sample = glossySample();
     spoil(sample.description);
     ASSERT_TRUE(write(path_, sample.description, sample.blobs));
     const auto reader = Reader::open(path_);
@@ -99,7 +99,7 @@ TEST_F(GlossyParts, ThatContradictThemselvesAreRefusedByName) {
 }
 
 TEST_F(GlossyParts, TablesOfOtherBandsThanTheTransferAreRefused) {
-  Sample sample = sampleBundle();
+  Sample sample = glossySample();
   const BrdfTable table{.order = 5, .lobes = 2, .angles = 2, .values = std::vector<float>(60, 0.1f)};
   const std::uint32_t payload = sample.description.brdf_tables[1].payload;
   const Blob bytes = encodeBrdfTable(table);
@@ -115,7 +115,7 @@ TEST_F(GlossyParts, TablesOfOtherBandsThanTheTransferAreRefused) {
 }
 
 TEST_F(GlossyParts, TablesThatAreDamagedAreNamed) {
-  Sample sample = sampleBundle();
+  Sample sample = glossySample();
   const std::uint32_t payload = sample.description.brdf_tables[1].payload;
   sample.blobs[sample.description.payloads[payload].view].resize(8);
   sample.description.payloads[payload].raw_length = 8;

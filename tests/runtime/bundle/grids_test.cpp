@@ -12,7 +12,7 @@ const std::vector<std::uint32_t> kVoxels = {0, 1, 5, 7};
 
 // Makes a body with two plain samples and a neighborhood of eight points, and a cloud of 4 x 3 x 2 voxels
 // with four samples on a transfer grid of 2 x 2 x 2, within the first group.
-Sample sampleBundle() {
+Sample gridSample() {
   Sample s;
   Description& d = s.description;
   d.generator = {"lambent", "0.5.0", "x86-64-v3", {}};
@@ -64,7 +64,7 @@ Sample sampleBundle() {
 using Grids = BundleFile;
 
 TEST_F(Grids, ComeBackAsTheyWereWritten) {
-  const Sample sample = sampleBundle();
+  const Sample sample = gridSample();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   const auto reader = Reader::open(path_);
   ASSERT_TRUE(reader) << reader.error().line();
@@ -95,7 +95,7 @@ TEST_F(Grids, ComeBackAsTheyWereWritten) {
 
 TEST_F(Grids, ThatContradictThemselvesAreRefusedByName) {
   const auto refused = [&](auto spoil, const char* place) {
-    Sample sample = sampleBundle();
+    Sample sample = gridSample();
     spoil(sample.description.groups[0], sample.description.groups[1], *sample.description.groups[1].volume);
     ASSERT_TRUE(write(path_, sample.description, sample.blobs));
     const auto reader = Reader::open(path_);

@@ -15,7 +15,7 @@ using testing::BundleBuilder;
 using testing::LiveStage;
 using testing::quadMesh;
 
-const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+using testing::kWhite;
 
 glm::mat4 at(glm::vec3 place) {
   return glm::translate(glm::mat4(1.0f), place);

@@ -19,7 +19,7 @@ using testing::quadMesh;
 using testing::sphereMesh;
 using testing::ViewStage;
 
-const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+using testing::kWhite;
 
 // Returns the unoccluded input of a normal-mapped surface: the light itself.
 BundleBuilder& openMapped(BundleBuilder& builder) {

@@ -14,7 +14,7 @@ using testing::quadMesh;
 using testing::ViewStage;
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
-const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+using testing::kWhite;
 
 // Makes a square of 2 m times `scale` that faces the camera, at this z.
 testing::BuiltMesh square(float z, float scale = 1.0f, gltf::AlphaMode alpha_mode = gltf::AlphaMode::Opaque,

@@ -9,6 +9,7 @@
 #include "runtime/effects/glossy/glossy_kernel_ref.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/bounds.hpp"
+#include "tests/runtime/frame/ggx_table.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -18,12 +19,7 @@ namespace {
 using testing::BundleBuilder;
 using testing::sphereMesh;
 
-const bundle::BrdfTable& ggxTable() {
-  static const bundle::BrdfTable table =
-      baker::integrateTable(*baker::makeGgx(/*anisotropic=*/false), 5,
-                            {.angles = 12, .azimuths = 1, .roughnesses = 6, .strengths = 1});
-  return table;
-}
+using testing::ggxTable;
 
 gltf::Material metal(const glm::vec3& color, float roughness) {
   gltf::Material material;
@@ -33,7 +29,7 @@ gltf::Material metal(const glm::vec3& color, float roughness) {
   return material;
 }
 
-struct Stage {
+struct GlossyStage {
   std::filesystem::path path;
   World world;
   lighting::Environment environment;
@@ -42,8 +38,8 @@ struct Stage {
       .azimuth_deg = 20.0f, .elevation_deg = 10.0f, .distance_radii = 2.0f, .fov_deg = 40.0f};
   spec::Size size{96, 96};
 
-  Stage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, bool residual = false,
-        Output output = Output::Linear, const spec::Size& picture_size = {96, 96})
+  GlossyStage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, bool residual = false,
+              Output output = Output::Linear, const spec::Size& picture_size = {96, 96})
       : path(std::filesystem::path(::testing::TempDir()) /
              fmt::format("{}-{}.lmb.glb", getpid(),
                          ::testing::UnitTest::GetInstance()->current_test_info()->name())),
@@ -65,7 +61,7 @@ struct Stage {
     EXPECT_TRUE(made) << made.error().line();
     if (made) frame.emplace(std::move(*made));
   }
-  ~Stage() { std::filesystem::remove(path); }
+  ~GlossyStage() { std::filesystem::remove(path); }
 
   spec::View view() {
     world.updateTransforms();
@@ -101,8 +97,8 @@ std::optional<Hit> hitSphere(const spec::View& view, const glm::mat4& world_from
   return Hit{glm::normalize(view.eye_ws + (middle - std::sqrt(1.0f - rim)) * ray), -ray, rim};
 }
 
-const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
-const spec::Light kSun = spec::SunLight{
+using testing::kWhite;
+const spec::Light kWideSun = spec::SunLight{
     .azimuth_deg = 70, .elevation_deg = 35, .angle_deg = 30, .radiance = glm::vec3(3.0f, 2.5f, 2.0f)};
 
 }  // namespace
@@ -116,7 +112,7 @@ TEST_F(FrameGlossy, AnOpenMetalSphereUnderASunIsWhatTheKernelMakesOfTheLight) {
   builder.add({sphereMesh(40, 80), metal(color, kRoughness)})
       .glossy(5, bundle::BrdfFamily::Ggx, ggxTable())
       .groupRotation(glm::angleAxis(0.7f, glm::normalize(glm::vec3(1, 2, 3))));
-  Stage stage(builder, {kSun});
+  GlossyStage stage(builder, {kWideSun});
   stage.render();
   const spec::RgbaImage image = stage.frame->readLinear();
   const spec::View view = stage.view();
@@ -151,7 +147,7 @@ TEST_F(FrameGlossy, UniformLightOnWhiteMetalGivesItsDirectionalAlbedoAndPlasticN
     material.metallic = metallic;
     BundleBuilder builder(5);
     builder.add({sphereMesh(24, 48), material}).glossy(5, bundle::BrdfFamily::Ggx, ggxTable());
-    Stage stage(builder, {kWhite});
+    GlossyStage stage(builder, {kWhite});
     stage.render();
     std::size_t count = 0;
     for (const glm::vec4& texel : stage.frame->readLinear().texels) {
@@ -171,7 +167,7 @@ TEST_F(FrameGlossy, AMovingCameraUnderStillLightDispatchesNothing) {
   BundleBuilder builder(5);
   builder.add({sphereMesh(12, 24), metal(glm::vec3(1.0f), 0.3f)})
       .glossy(5, bundle::BrdfFamily::Ggx, ggxTable());
-  Stage stage(builder, {kSun});
+  GlossyStage stage(builder, {kWideSun});
   stage.render();
   ASSERT_TRUE(stage.counts("glossy"));
   EXPECT_EQ(stage.counts("glossy")->dispatches, 2u) << "visibility and samples";
@@ -191,7 +187,7 @@ TEST_F(FrameGlossy, AMatteSceneHasNoPassAndNoTableForGloss) {
   BundleBuilder builder(5);
   gltf::Material material;
   builder.add({sphereMesh(12, 24), material});
-  Stage stage(builder, {kSun});
+  GlossyStage stage(builder, {kWideSun});
   stage.render();
   EXPECT_FALSE(stage.counts("glossy"));
   EXPECT_TRUE(stage.world.residency().bundles()[0].brdf_tables.empty());
@@ -207,7 +203,7 @@ TEST_F(FrameGlossy, MeasuredSurfacesShowTheirTable) {
   material.brdf = 0;
   BundleBuilder builder(4);
   builder.add({sphereMesh(12, 24), material}).glossy(4, bundle::BrdfFamily::Measured, table);
-  Stage stage(builder, {kWhite});
+  GlossyStage stage(builder, {kWhite});
   stage.render();
   for (const glm::vec4& texel : stage.frame->readLinear().texels)
     EXPECT_LT(texel.a * glm::distance(glm::vec3(texel), glm::vec3(0.6f, 0.4f, 0.2f)), 1e-3f);
@@ -220,7 +216,7 @@ double errorUnderASun(float roughness, bool residual, const spec::SunLight& sun)
   BundleBuilder builder(5);
   builder.add({sphereMesh(40, 80), metal(glm::vec3(1.0f), roughness)})
       .glossy(5, bundle::BrdfFamily::Ggx, ggxTable());
-  Stage stage(builder, {sun}, residual);
+  GlossyStage stage(builder, {sun}, residual);
   stage.render();
   const spec::RgbaImage image = stage.frame->readLinear();
   const spec::View view = stage.view();
@@ -278,7 +274,7 @@ TEST_F(FrameGlossy, TheResidualIsMadeOnceAndLeavesUniformLightAsItIs) {
       .glossy(5, bundle::BrdfFamily::Ggx, ggxTable());
   spec::RgbaImage image;
   {
-    Stage with(builder, {kWhite}, /*residual=*/true);
+    GlossyStage with(builder, {kWhite}, /*residual=*/true);
     with.render();
     ASSERT_TRUE(with.counts("specular environment"));
     EXPECT_GT(with.counts("specular environment")->dispatches, 0u);
@@ -287,7 +283,7 @@ TEST_F(FrameGlossy, TheResidualIsMadeOnceAndLeavesUniformLightAsItIs) {
     with.render();
     EXPECT_FALSE(with.counts("specular environment"));
   }
-  Stage without(builder, {kWhite}, /*residual=*/false);
+  GlossyStage without(builder, {kWhite}, /*residual=*/false);
   without.render();
   EXPECT_FALSE(without.counts("specular environment"));
   const spec::RgbaImage plain = without.frame->readLinear();

@@ -14,6 +14,7 @@
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal_factors.hpp"
 #include "runtime/transfer/seen_sky_ref.hpp"
+#include "tests/runtime/frame/ggx_table.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -26,12 +27,7 @@ constexpr std::uint32_t kSide = 64;
 constexpr int kOrder = 5;
 using Vector = std::array<float, transfer::kSeenCoefficients>;
 
-const bundle::BrdfTable& ggxTable() {
-  static const bundle::BrdfTable table =
-      baker::integrateTable(*baker::makeGgx(/*anisotropic=*/false), kOrder,
-                            {.angles = 12, .azimuths = 1, .roughnesses = 6, .strengths = 1});
-  return table;
-}
+using testing::ggxTable;
 
 gltf::Material plastic(const glm::vec3& color, float roughness) {
   gltf::Material material;

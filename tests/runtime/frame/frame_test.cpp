@@ -22,11 +22,7 @@ using testing::BundleBuilder;
 using testing::quadMesh;
 using testing::sphereMesh;
 
-gltf::Material colored(glm::vec4 color) {
-  gltf::Material material;
-  material.base_color = color;
-  return material;
-}
+using testing::colored;
 
 // Several builds may run their tests at the same time.
 std::filesystem::path temporary(const std::string& name) {
@@ -89,7 +85,7 @@ const FrameOptions kLinear = [] {
   options.output = Output::Linear;
   return options;
 }();
-const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+using testing::kWhite;
 
 glm::vec4 at(const spec::RgbaImage& image, std::uint32_t x, std::uint32_t y) {
   return image.texels[y * image.width + x];

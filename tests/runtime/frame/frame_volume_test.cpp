@@ -24,14 +24,10 @@ using testing::BundleBuilder;
 using testing::quadMesh;
 using testing::sphereMesh;
 
-constexpr std::uint32_t kSide = 64;
-const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+constexpr std::uint32_t kVolumeSide = 64;
+using testing::kWhite;
 
-gltf::Material colored(const glm::vec4& color) {
-  gltf::Material material;
-  material.base_color = color;
-  return material;
-}
+using testing::colored;
 
 FrameOptions linearOptions(const std::function<void(FrameOptions&)>& change = {}) {
   FrameOptions options;
@@ -50,15 +46,15 @@ BuiltVolume mist(float extinction, float albedo = 1.0f) {
 }
 
 // Shows one bundle in a world, by an orthographic camera of 3 m, 10 m away on +Z.
-struct Stage {
+struct VolumeStage {
   std::filesystem::path path;
   World world;
   lighting::Environment environment;
   std::optional<Frame> frame;
   spec::View view;
 
-  Stage(const BundleBuilder& builder, const std::vector<spec::Light>& lights = {kWhite},
-        FrameOptions options = linearOptions(), bool load = true)
+  VolumeStage(const BundleBuilder& builder, const std::vector<spec::Light>& lights = {kWhite},
+              FrameOptions options = linearOptions(), bool load = true)
       : path(std::filesystem::path(::testing::TempDir()) /
              fmt::format("{}-{}.lmb.glb", getpid(),
                          ::testing::UnitTest::GetInstance()->current_test_info()->name())),
@@ -73,7 +69,7 @@ struct Stage {
       EXPECT_TRUE(loaded) << loaded.error().line();
     }
     world.updateTransforms();
-    options.size = {kSide, kSide};
+    options.size = {kVolumeSide, kVolumeSide};
     Result<Frame> made = Frame::create(options, environment);
     EXPECT_TRUE(made) << made.error().line();
     if (made) frame.emplace(std::move(*made));
@@ -81,7 +77,7 @@ struct Stage {
     view.view_from_world = glm::lookAt(view.eye_ws, glm::vec3(0.0f), glm::vec3(0, 1, 0));
     view.clip_from_view = glm::ortho(-1.5f, 1.5f, -1.5f, 1.5f, 1.0f, 20.0f);
   }
-  ~Stage() { std::filesystem::remove(path); }
+  ~VolumeStage() { std::filesystem::remove(path); }
 
   void render() {
     const Result<void> done = frame->render(world, environment, view);
@@ -99,11 +95,11 @@ struct Stage {
   }
 };
 
-glm::vec4 at(const spec::RgbaImage& image, std::uint32_t x, std::uint32_t y) {
+glm::vec4 texelAt(const spec::RgbaImage& image, std::uint32_t x, std::uint32_t y) {
   return image.texels[y * image.width + x];
 }
 glm::vec4 middle(const spec::RgbaImage& image) {
-  return at(image, kSide / 2, kSide / 2);
+  return texelAt(image, kVolumeSide / 2, kVolumeSide / 2);
 }
 
 }  // namespace
@@ -111,7 +107,7 @@ glm::vec4 middle(const spec::RgbaImage& image) {
 using FrameVolume = testing::GpuTest;
 
 TEST_F(FrameVolume, ABundleOfNothingButAVolumeIsFramedAndShows) {
-  Stage stage(BundleBuilder().volume(mist(0.7f, 0.5f)));
+  VolumeStage stage(BundleBuilder().volume(mist(0.7f, 0.5f)));
   const scene::Box bounds = scene::worldBounds(stage.world.registry());
   EXPECT_LT(glm::distance(bounds.min, glm::vec3(-1.0f)), 1e-5f);
   EXPECT_LT(glm::distance(bounds.max, glm::vec3(1.0f)), 1e-5f);
@@ -121,7 +117,7 @@ TEST_F(FrameVolume, ABundleOfNothingButAVolumeIsFramedAndShows) {
       glm::distance(middle(image), glm::vec4(glm::vec3(0.5f * (1.0f - through) + through), 1.0f - through)),
       1e-3f)
       << "codebooks are of half floats";
-  EXPECT_EQ(at(image, 1, 1).a, 0.0f);
+  EXPECT_EQ(texelAt(image, 1, 1).a, 0.0f);
   EXPECT_EQ(stage.frame->counts()["volumes"], 1u);
   EXPECT_EQ(stage.frame->counts()["volumes_drawn"], 1u);
 }
@@ -130,7 +126,7 @@ TEST_F(FrameVolume, ATurnedGroupIsBoundedByItsCorners) {
   BuiltVolume turned = mist(1.0f);
   turned.rest_rotation = glm::angleAxis(glm::radians(45.0f), glm::vec3(0, 0, 1));
   turned.rest_translation = {5.0f, 0.0f, 0.0f};
-  Stage stage(BundleBuilder().volume(turned));
+  VolumeStage stage(BundleBuilder().volume(turned));
   const scene::Box bounds = scene::worldBounds(stage.world.registry());
   EXPECT_LT(glm::distance(bounds.max, glm::vec3(5.0f + std::sqrt(2.0f), std::sqrt(2.0f), 1.0f)), 1e-5f);
 }
@@ -143,7 +139,7 @@ TEST_F(FrameVolume, EverythingWhiteUnderWhiteLightIsWhite) {
   builder.add(
       {quadMesh(), colored(glm::vec4(1.0f)), glm::translate(glm::mat4(1.0f), glm::vec3(0.7f, 0.0f, -2.0f))});
   for (const float extinction : {1e-6f, 1.0f, 30.0f, 1e6f}) {
-    Stage stage(BundleBuilder(builder).volume(mist(extinction)));
+    VolumeStage stage(BundleBuilder(builder).volume(mist(extinction)));
     const spec::RgbaImage image = stage.picture();
     for (const glm::vec4& texel : image.texels)
       for (int c = 0; c < 3; ++c) ASSERT_NEAR(texel[c], 1.0f, 1e-3f) << extinction;
@@ -156,7 +152,7 @@ TEST_F(FrameVolume, DimsSurfacesByWhatLiesBeforeThem) {
   for (const auto& [z, way] : {std::pair{-2.0f, 2.0f}, {-0.5f, 1.5f}, {0.75f, 0.25f}, {2.0f, 0.0f}}) {
     BundleBuilder builder;
     builder.add({quadMesh(), colored(glm::vec4(1.0f)), glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, z))});
-    Stage stage(builder.volume(mist(0.8f, 0.0f)));
+    VolumeStage stage(builder.volume(mist(0.8f, 0.0f)));
     for (const bool perspective : {false, true}) {
       if (perspective) stage.view.clip_from_view = glm::perspective(glm::radians(10.0f), 1.0f, 1.0f, 20.0f);
       const glm::vec4 texel = middle(stage.picture());
@@ -169,7 +165,7 @@ TEST_F(FrameVolume, DimsSurfacesByWhatLiesBeforeThem) {
 TEST_F(FrameVolume, BlendedSurfacesLieBehindIt) {
   gltf::Material glass = colored({1.0f, 0.0f, 0.0f, 0.25f});
   glass.alpha_mode = gltf::AlphaMode::Blend;
-  Stage stage(BundleBuilder().add({quadMesh(), glass}).volume(mist(0.5f, 0.0f)));
+  VolumeStage stage(BundleBuilder().add({quadMesh(), glass}).volume(mist(0.5f, 0.0f)));
   const float through = std::exp(-1.0f);
   const glm::vec4 texel = middle(stage.picture());
   EXPECT_LT(
@@ -178,7 +174,7 @@ TEST_F(FrameVolume, BlendedSurfacesLieBehindIt) {
 }
 
 TEST_F(FrameVolume, AStillFrameOnlyMarches) {
-  Stage stage(
+  VolumeStage stage(
       BundleBuilder().volume(mist(1.0f)),
       {spec::SunLight{.azimuth_deg = 90, .elevation_deg = 0, .angle_deg = 30, .radiance = glm::vec3(1)}});
   stage.render();
@@ -202,7 +198,7 @@ TEST_F(FrameVolume, AStillFrameOnlyMarches) {
 }
 
 TEST_F(FrameVolume, IsNotShadedWhileTheViewPassesBy) {
-  Stage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}).volume(mist(1.0f)));
+  VolumeStage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}).volume(mist(1.0f)));
   const glm::mat4 at_it = stage.view.view_from_world;
   stage.view.view_from_world = glm::lookAt(stage.view.eye_ws, {20, 0, 10}, glm::vec3(0, 1, 0));
   const spec::RgbaImage beside = stage.picture();
@@ -225,7 +221,7 @@ TEST_F(FrameVolume, IsNotShadedWhileTheViewPassesBy) {
 }
 
 TEST_F(FrameVolume, ASceneWithoutOneHasNoPassForIt) {
-  Stage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}));
+  VolumeStage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}));
   stage.render();
   EXPECT_EQ(stage.pass("volume"), nullptr);
   EXPECT_EQ(stage.pass("march"), nullptr);
@@ -238,7 +234,7 @@ TEST_F(FrameVolume, AnEmptyVolumeLeavesThePictureToTheLastBit) {
   builder.add({sphereMesh(12, 24), colored({0.3f, 0.5f, 0.8f, 1.0f})});
   BuiltVolume empty = mist(1.0f);
   empty.density = [](const glm::vec3&) { return 0.0f; };
-  Stage without(builder), with(BundleBuilder(builder).volume(empty));
+  VolumeStage without(builder), with(BundleBuilder(builder).volume(empty));
   EXPECT_EQ(with.picture().texels, without.picture().texels);
   EXPECT_EQ(with.frame->counts()["volumes_drawn"], 0u);
 }
@@ -256,8 +252,8 @@ TEST_F(FrameVolume, TheWordsOfTransferChooseTheBlock) {
   for (const auto& [mode, expected] : {std::pair{TransferMode::Full, glm::vec3(0.4f, 0.6f, 0.8f)},
                                        {TransferMode::Shadowed, glm::vec3(0.25f)},
                                        {TransferMode::Unshadowed, glm::vec3(1.0f)}}) {
-    Stage stage(BundleBuilder().volume(volume), {kWhite},
-                linearOptions([&](FrameOptions& options) { options.settings.transfer = mode; }));
+    VolumeStage stage(BundleBuilder().volume(volume), {kWhite},
+                      linearOptions([&](FrameOptions& options) { options.settings.transfer = mode; }));
     EXPECT_LT(glm::distance(glm::vec3(middle(stage.picture())), expected), 1e-3f);
   }
 }
@@ -267,10 +263,11 @@ TEST_F(FrameVolume, ForwardScatteringShowsTheSunBehindIt) {
   volume.g = 0.7f;
   volume.shape = {.order = 4, .outputs = 16, .visibility_bands = 7};
   for (const float azimuth : {0.0f, 180.0f}) {  // 180: behind the volume, the camera looks into it
-    Stage stage(BundleBuilder().volume(volume),
-                {spec::SunLight{
-                    .azimuth_deg = azimuth, .elevation_deg = 0, .angle_deg = 20, .radiance = glm::vec3(1)}},
-                linearOptions([](FrameOptions& options) { options.settings.window = sh::Window::Off; }));
+    VolumeStage stage(
+        BundleBuilder().volume(volume),
+        {spec::SunLight{
+            .azimuth_deg = azimuth, .elevation_deg = 0, .angle_deg = 20, .radiance = glm::vec3(1)}},
+        linearOptions([](FrameOptions& options) { options.settings.window = sh::Window::Off; }));
     const sh::LightVector& light = stage.environment.light();
     const glm::vec3 along(0, 0, -1);
     std::array<float, 16> y{};
@@ -290,7 +287,7 @@ TEST_F(FrameVolume, ALightInsideShinesByHarmonics) {
   // Local lights are for surfaces: rays through the mist look up no shadow cube.
   const spec::Light lamp = spec::SphereLight{
       .position_ws = glm::vec3(0.3f, 0.0f, 0.0f), .radius_m = 0.1f, .radiance = glm::vec3(50.0f)};
-  Stage stage(BundleBuilder().volume(mist(2.0f)), {lamp});
+  VolumeStage stage(BundleBuilder().volume(mist(2.0f)), {lamp});
   const spec::RgbaImage image = stage.picture();
   EXPECT_EQ(stage.frame->counts()["local_lights"], 1u);
   EXPECT_EQ(stage.frame->counts()["shadowed_lights"], 0u);
@@ -302,7 +299,7 @@ TEST_F(FrameVolume, TheSurfacesThatItStandsInAreNotCapturedAtItsLightProbes) {
   for (const std::int32_t within : {-1, 0}) {
     BuiltVolume volume = mist(1.0f);
     volume.within = within;
-    Stage stage(BundleBuilder().add({sphereMesh(8, 16), colored(glm::vec4(1.0f))}).volume(volume));
+    VolumeStage stage(BundleBuilder().add({sphereMesh(8, 16), colored(glm::vec4(1.0f))}).volume(volume));
     const LitScene before = gatherLitScene(stage.world, 1.0f);
     EXPECT_FALSE(before.needsSampling()) << "there is no body yet";
     bundle::CaptureProxy proxy;
@@ -322,32 +319,33 @@ TEST_F(FrameVolume, DisplayPicturesShowTheSameThing) {
   builder.add({sphereMesh(16, 32), colored({0.8f, 0.5f, 0.2f, 1.0f}),
                glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-0.3f, 0.2f, 0.9f)), glm::vec3(0.5f))});
   builder.volume(mist(0.9f, 0.6f));
-  Stage display(builder, {kWhite}, linearOptions([](FrameOptions& options) {
-                  options.output = Output::Display;
-                  options.settings.exposure_ev = 0.0f;
-                }));
-  Stage linear(builder);
+  VolumeStage display(builder, {kWhite}, linearOptions([](FrameOptions& options) {
+                        options.output = Output::Display;
+                        options.settings.exposure_ev = 0.0f;
+                      }));
+  VolumeStage linear(builder);
   const spec::RgbaImage wanted = linear.picture();
   display.render();
   const spec::Rgba8Image shown = display.frame->readDisplay();
   std::size_t compared = 0;
-  for (std::uint32_t y = 4; y < kSide; y += 5)
-    for (std::uint32_t x = 4; x < kSide; x += 5) {
+  for (std::uint32_t y = 4; y < kVolumeSide; y += 5)
+    for (std::uint32_t x = 4; x < kVolumeSide; x += 5) {
       bool edge = false;  // where neighbours differ
       for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
-        if (x + 1 < kSide && y + 1 < kSide)
-          edge |= glm::distance(at(wanted, x, y), at(wanted, x + static_cast<std::uint32_t>(dx),
-                                                     y + static_cast<std::uint32_t>(dy))) > 0.01f;
+        if (x + 1 < kVolumeSide && y + 1 < kVolumeSide)
+          edge |= glm::distance(texelAt(wanted, x, y), texelAt(wanted, x + static_cast<std::uint32_t>(dx),
+                                                               y + static_cast<std::uint32_t>(dy))) > 0.01f;
       if (edge) continue;
       ++compared;
       for (int c = 0; c < 3; ++c) {
         // This is the tone curve of resolve.frag below its shoulder.
-        const glm::vec3 texel(at(wanted, x, y));
+        const glm::vec3 texel(texelAt(wanted, x, y));
         const float low = std::min({texel.r, texel.g, texel.b});
         float value = texel[c] - (low < 0.08f ? low - 6.25f * low * low : 0.04f);
         if (std::max({texel.r, texel.g, texel.b}) - 0.04f >= 0.76f) continue;
         value = value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
-        EXPECT_NEAR(shown.texels[4 * (y * kSide + x) + static_cast<std::uint32_t>(c)], 255.0f * value, 2.0f)
+        EXPECT_NEAR(shown.texels[4 * (y * kVolumeSide + x) + static_cast<std::uint32_t>(c)], 255.0f * value,
+                    2.0f)
             << x << " " << y;
       }
     }
@@ -360,11 +358,11 @@ TEST_F(FrameVolume, StreamsInWithoutEverShowingNonsense) {
   volume.shape.outputs = 9;
   volume.g = 0.3f;
   const auto builder = BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}).volume(volume);
-  Stage whole(builder);
+  VolumeStage whole(builder);
   const spec::RgbaImage expected = whole.picture();
-  Stage stage(builder, {kWhite},
-              linearOptions([](FrameOptions& options) { options.upload_budget_bytes = 1; }),
-              /*load=*/false);
+  VolumeStage stage(builder, {kWhite},
+                    linearOptions([](FrameOptions& options) { options.upload_budget_bytes = 1; }),
+                    /*load=*/false);
   for (int frame = 0; frame < 100'000 && !stage.world.loaded(); ++frame)
     for (const glm::vec4& texel : stage.picture().texels) {
       ASSERT_TRUE(std::isfinite(texel.g));

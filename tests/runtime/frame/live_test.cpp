@@ -21,18 +21,18 @@ using testing::LiveStage;
 using testing::quadMesh;
 using testing::sphereMesh;
 
-const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+using testing::kWhite;
 const spec::Light kSun = spec::SunLight{
     .azimuth_deg = 60, .elevation_deg = 35, .angle_deg = 8, .radiance = glm::vec3(30.0f, 25.0f, 20.0f)};
 
-gltf::Material colored(glm::vec4 color) {
+gltf::Material diffuseColored(glm::vec4 color) {
   gltf::Material material;
   material.base_color = color;
   material.metallic = 0.0f;  // and roughness 1: diffuse
   return material;
 }
 
-gltf::Material metal(glm::vec3 color, float roughness) {
+gltf::Material metalOf(glm::vec3 color, float roughness) {
   gltf::Material material;
   material.base_color = glm::vec4(color, 1.0f);
   material.roughness = roughness;
@@ -58,7 +58,7 @@ BundleBuilder ballAndCloud() {
       for (const float value : open) blocks.push_back(factor * value);
     return blocks;
   });
-  builder.add({sphereMesh(12, 24), colored({0.8f, 0.6f, 0.4f, 1.0f})});
+  builder.add({sphereMesh(12, 24), diffuseColored({0.8f, 0.6f, 0.4f, 1.0f})});
   testing::BuiltVolume cloud;
   cloud.group_from_grid = glm::translate(glm::mat4(1.0f), glm::vec3(0.5f, -1.0f, 0.5f)) *
                           glm::scale(glm::mat4(1.0f), glm::vec3(0.25f));
@@ -72,19 +72,19 @@ BundleBuilder ballAndCloud() {
 using LiveFrame = testing::GpuTest;
 
 TEST_F(LiveFrame, AChangedColorIsWhatABundleOfThatColorShows) {
-  LiveStage live(BundleBuilder().add({sphereMesh(12, 24), colored({0.2f, 0.9f, 0.1f, 1.0f})}), {kSun});
+  LiveStage live(BundleBuilder().add({sphereMesh(12, 24), diffuseColored({0.2f, 0.9f, 0.1f, 1.0f})}), {kSun});
   live.picture();
   live.editMaterial(0).base_color = {0.7f, 0.3f, 0.5f};
   live.editMaterial(0).emission = {0.1f, 0.2f, 0.3f};
   const auto found = live.picture();
-  gltf::Material wanted = colored({0.7f, 0.3f, 0.5f, 1.0f});
+  gltf::Material wanted = diffuseColored({0.7f, 0.3f, 0.5f, 1.0f});
   wanted.emissive = {0.1f, 0.2f, 0.3f};
   LiveStage baked(BundleBuilder().add({sphereMesh(12, 24), wanted}), {kSun});
   EXPECT_EQ(farthest(found, baked.picture()), 0.0f);
 }
 
 TEST_F(LiveFrame, AChangedLobeIsWhatABundleOfThatLobeShows) {
-  LiveStage live(glossyBall(metal(glm::vec3(0.9f), 0.7f)), {kSun});
+  LiveStage live(glossyBall(metalOf(glm::vec3(0.9f), 0.7f)), {kSun});
   const auto before = live.picture();
   scene::MaterialComponent& material = live.editMaterial(0);
   material.base_color = {0.9f, 0.5f, 0.2f};
@@ -93,7 +93,7 @@ TEST_F(LiveFrame, AChangedLobeIsWhatABundleOfThatLobeShows) {
   material.ior = 1.8f;
   const auto found = live.picture();
   EXPECT_GT(farthest(found, before), 0.1f);
-  gltf::Material wanted = metal({0.9f, 0.5f, 0.2f}, 0.3f);
+  gltf::Material wanted = metalOf({0.9f, 0.5f, 0.2f}, 0.3f);
   wanted.metallic = 0.5f;
   wanted.ior = 1.8f;
   LiveStage baked(glossyBall(wanted), {kSun});
@@ -103,7 +103,7 @@ TEST_F(LiveFrame, AChangedLobeIsWhatABundleOfThatLobeShows) {
 TEST_F(LiveFrame, OnlyTheChangedMaterialGoesToTheGpuAndNothingIsShaded) {
   BundleBuilder builder;
   for (int i = 0; i < 10; ++i)
-    builder.add({quadMesh(), colored(glm::vec4(1.0f)),
+    builder.add({quadMesh(), diffuseColored(glm::vec4(1.0f)),
                  glm::translate(glm::mat4(1.0f), glm::vec3(static_cast<float>(i), 0, 0))});
   LiveStage stage(builder, {kWhite});
   stage.picture();
@@ -118,7 +118,7 @@ TEST_F(LiveFrame, OnlyTheChangedMaterialGoesToTheGpuAndNothingIsShaded) {
 }
 
 TEST_F(LiveFrame, AnisotropyWithoutATableStillShowsTheSurface) {
-  LiveStage stage(glossyBall(metal(glm::vec3(0.9f), 0.5f)), {kSun});
+  LiveStage stage(glossyBall(metalOf(glm::vec3(0.9f), 0.5f)), {kSun});
   const auto before = stage.picture();
   stage.editMaterial(0).anisotropy = 0.5f;
   EXPECT_EQ(farthest(stage.picture(), before), 0.0f);
@@ -146,7 +146,7 @@ TEST_F(LiveFrame, EverySettingComesBackToTheSamePicture) {
     stage.set(name, was);
     EXPECT_EQ(farthest(stage.picture(), before), 0.0f) << name << " back to " << was;
   }
-  LiveStage glossy(glossyBall(metal(glm::vec3(0.9f), 0.5f)), {kSun}, plain);
+  LiveStage glossy(glossyBall(metalOf(glm::vec3(0.9f), 0.5f)), {kSun}, plain);
   const auto shiny = glossy.picture();
   for (const auto& [name, word] :
        {std::pair{"glossy", "off"}, {"specular-environment", "off"}, {"glossy-order", "3"}}) {
@@ -159,7 +159,7 @@ TEST_F(LiveFrame, EverySettingComesBackToTheSamePicture) {
 }
 
 TEST_F(LiveFrame, WhatIsOffIsBlackAndCostsNothing) {
-  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun});
+  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), diffuseColored(glm::vec4(1.0f))}), {kSun});
   stage.set("diffuse", "off");
   const auto picture = stage.picture();
   EXPECT_EQ(picture[32 * 64 + 32], glm::vec4(0, 0, 0, 1));
@@ -168,7 +168,7 @@ TEST_F(LiveFrame, WhatIsOffIsBlackAndCostsNothing) {
   EXPECT_EQ(stage.pass("shade")->counters.dispatches, 0u);
   stage.set("diffuse", "on");
   const auto back = stage.picture();
-  LiveStage fresh(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun});
+  LiveStage fresh(BundleBuilder().add({sphereMesh(12, 24), diffuseColored(glm::vec4(1.0f))}), {kSun});
   fresh.environment.setTurn(30.0f);
   EXPECT_EQ(farthest(back, fresh.picture()), 0.0f) << "it catches up";
 }
@@ -176,8 +176,8 @@ TEST_F(LiveFrame, WhatIsOffIsBlackAndCostsNothing) {
 TEST_F(LiveFrame, BandsThatDoNotCountAreAsIfTheTransferHadNone) {
   FrameSettings sharp;
   sharp.window = sh::Window::Off;
-  LiveStage many(BundleBuilder(5).add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun}, sharp);
-  LiveStage few(BundleBuilder(3).add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun}, sharp);
+  LiveStage many(BundleBuilder(5).add({sphereMesh(12, 24), diffuseColored(glm::vec4(1.0f))}), {kSun}, sharp);
+  LiveStage few(BundleBuilder(3).add({sphereMesh(12, 24), diffuseColored(glm::vec4(1.0f))}), {kSun}, sharp);
   const auto all = many.picture(), expected = few.picture();
   EXPECT_GT(farthest(all, expected), 0.01f);
   many.set("order", "3");
@@ -193,7 +193,7 @@ TEST_F(LiveFrame, AnotherProbeIsAsIfItHadBeenThereFromTheStart) {
   ASSERT_TRUE(spec::writeHdr(file, image));
   const std::vector<spec::Light> environment_map = {spec::EnvironmentMapLight{.file = file, .layout = {}},
                                                     kSun};
-  for (const auto& builder : {glossyBall(metal(glm::vec3(0.9f), 0.2f)), ballAndCloud()}) {
+  for (const auto& builder : {glossyBall(metalOf(glm::vec3(0.9f), 0.2f)), ballAndCloud()}) {
     LiveStage swapped(builder, {kWhite});
     swapped.picture();
     swapped.environment = *lighting::Environment::create(environment_map);
@@ -205,7 +205,7 @@ TEST_F(LiveFrame, AnotherProbeIsAsIfItHadBeenThereFromTheStart) {
 }
 
 TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
-  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun});
+  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), diffuseColored(glm::vec4(1.0f))}), {kSun});
   stage.render();
   EXPECT_EQ(stage.reason("shade"), "first frame");
   stage.picture();
@@ -235,7 +235,7 @@ TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
 }
 
 TEST_F(LiveFrame, SettingsOutOfRangeChangeNothing) {
-  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun});
+  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), diffuseColored(glm::vec4(1.0f))}), {kSun});
   FrameSettings settings = stage.frame->settings();
   settings.order = 9;
   const Result<void> set = stage.frame->setSettings(settings);

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/sh/basis.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -17,7 +17,7 @@ namespace lambent::lighting {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using sh::kPi;
 
 double luminance(const glm::vec3& c) {
   return 0.2126 * static_cast<double>(c.r) + 0.7152 * static_cast<double>(c.g) +

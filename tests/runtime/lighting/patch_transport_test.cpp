@@ -17,8 +17,6 @@ using testing::RoomBuilder;
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 // Returns E/pi from an unoccluded point light of one candela.
 std::vector<float> litFrom(const Patches& patches, const glm::vec3& light) {
   std::vector<float> direct;
@@ -27,7 +25,7 @@ std::vector<float> litFrom(const Patches& patches, const glm::vec3& light) {
     for (const glm::vec3& point : patch.points) {
       const glm::vec3 to = light - point;
       const float d2 = glm::dot(to, to);
-      sum += std::max(glm::dot(to, patch.normal), 0.0f) / (d2 * std::sqrt(d2)) / kPi;
+      sum += std::max(glm::dot(to, patch.normal), 0.0f) / (d2 * std::sqrt(d2)) / std::numbers::pi_v<float>;
     }
     direct.push_back(sum / static_cast<float>(kPatchPoints));
   }
@@ -238,7 +236,8 @@ TEST(PatchTransport, ASmallBrightSpotIsMissedFromNowhere) {
       for (const glm::vec3& point : patches.all()[i].points) {
         const glm::vec3 way = point - points[p].position;
         const double d2 = glm::dot(way, way);
-        expected += double{given_off[i].r} * 4.0 / (kPi * d2 * d2) * patches.all()[i].area / kPatchPoints;
+        expected += double{given_off[i].r} * 4.0 / (std::numbers::pi_v<float> * d2 * d2) *
+                    patches.all()[i].area / kPatchPoints;
       }
     const double found = gathered(transport, links, p, given_off).r;
     EXPECT_NEAR(found / expected, 1.0, 0.55) << p;

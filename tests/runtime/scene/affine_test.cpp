@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/scene/components.hpp"
+#include "tests/runtime/scene/values.hpp"
 #include "tests/support/differences.hpp"
 
 namespace lambent::scene {
@@ -31,8 +32,7 @@ glm::quat randomTurn(std::mt19937& random) {
   return glm::normalize(glm::quat(normal(random), normal(random), normal(random), normal(random)));
 }
 
-// Numbers of size 1 to 10 are rounded a few times; 1e-5 is ten times the errors observed.
-constexpr float kRounding = 1e-5f;
+using testing::kRounding;
 
 TEST(Affine, TranslationRotationScaleComeBackAsTheyWere) {
   std::mt19937 random(1);

@@ -10,6 +10,7 @@
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/lights.hpp"
 #include "runtime/scene/transforms.hpp"
+#include "tests/runtime/scene/values.hpp"
 
 namespace lambent::scene {
 namespace {
@@ -17,8 +18,8 @@ namespace {
 using Path = gltf::AnimationChannel::Path;
 using Interpolation = gltf::AnimationChannel::Interpolation;
 
-constexpr float kRounding = 1e-5f;
-constexpr glm::vec3 kUp(0.0f, 1.0f, 0.0f);
+using testing::kRounding;
+using testing::kUp;
 
 gltf::AnimationChannel channel(std::uint32_t node, Path path, std::vector<float> times,
                                std::vector<float> values) {

@@ -14,12 +14,13 @@
 #include "runtime/scene/materials.hpp"
 #include "runtime/scene/stable_id.hpp"
 #include "runtime/scene/transforms.hpp"
+#include "tests/runtime/scene/values.hpp"
 
 namespace lambent::scene {
 namespace {
 
-constexpr float kRounding = 1e-5f;
-constexpr glm::vec3 kUp(0.0f, 1.0f, 0.0f);
+using testing::kRounding;
+using testing::kUp;
 
 glm::mat4 moved(glm::vec3 by) {
   return glm::translate(glm::mat4(1.0f), by);

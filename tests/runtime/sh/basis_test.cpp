@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,8 +12,6 @@ namespace lambent::sh {
 namespace {
 
 using testing::Random;
-
-constexpr double kPi = std::numbers::pi;
 
 std::vector<double> evaluated(int order, const glm::dvec3& dir) {
   std::vector<double> y(static_cast<std::size_t>(coefficientCount(order)));

@@ -18,7 +18,7 @@ namespace {
 
 using testing::Random;
 
-constexpr double kDegree = std::numbers::pi / 180;
+using testing::kDegree;
 
 TEST(ShCubeProjector, FoldsToTheSameSumAsThePlainTable) {
   Random random(16);

@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/sh/sphere.hpp"
 #include "tests/support/differences.hpp"
@@ -20,7 +20,6 @@ using testing::gaussLegendre;
 using testing::Node;
 using testing::Random;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const glm::vec3 kWhite(1.0f);

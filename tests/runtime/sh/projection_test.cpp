@@ -11,16 +11,16 @@
 namespace lambent::sh {
 namespace {
 
-struct Shape {
+struct PictureShape {
   ImageLayout layout;
   int width, height;
   double tolerance;  // of a constant picture's other coefficients: the layout's quadrature, O(1/width²)
 };
-constexpr Shape kShapes[] = {{ImageLayout::LatLong, 512, 256, 2e-4},
-                             {ImageLayout::AngularMap, 400, 400, 2e-4},
-                             {ImageLayout::VerticalCross, 384, 512, 2e-4}};
+constexpr PictureShape kPictureShapes[] = {{ImageLayout::LatLong, 512, 256, 2e-4},
+                                           {ImageLayout::AngularMap, 400, 400, 2e-4},
+                                           {ImageLayout::VerticalCross, 384, 512, 2e-4}};
 
-std::vector<glm::vec3> picture(const Shape& shape, const LightVector& light) {
+std::vector<glm::vec3> picture(const PictureShape& shape, const LightVector& light) {
   std::vector<glm::vec3> texels;
   for (int y = 0; y < shape.height; ++y)
     for (int x = 0; x < shape.width; ++x)
@@ -30,7 +30,7 @@ std::vector<glm::vec3> picture(const Shape& shape, const LightVector& light) {
 }
 
 TEST(ShProjection, MakesAConstantPictureConstantLight) {
-  for (const Shape& shape : kShapes) {
+  for (const PictureShape& shape : kPictureShapes) {
     const std::vector<glm::vec3> texels(static_cast<std::size_t>(shape.width * shape.height),
                                         glm::vec3(1, 2, 0.5f));
     ProjectionReport report;
@@ -47,7 +47,7 @@ TEST(ShProjection, MakesAConstantPictureConstantLight) {
 
 TEST(ShProjection, GivesBackABandLimitedLight) {
   const LightVector light = discLight(6, {0.6f, 0.48f, 0.64f}, 0.5, {3, 1, 2}) + constantLight(6, {1, 1, 1});
-  for (const Shape& shape : kShapes) {
+  for (const PictureShape& shape : kPictureShapes) {
     const LightVector back = projectImage(6, shape.layout, shape.width, shape.height, picture(shape, light));
     for (std::size_t i = 0; i < 36; ++i)
       for (int channel = 0; channel < 3; ++channel)

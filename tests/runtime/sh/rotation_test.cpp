@@ -2,7 +2,6 @@
 
 #include <array>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -16,9 +15,9 @@ namespace {
 
 using testing::Random;
 
-constexpr double kDegree = std::numbers::pi / 180;
+using testing::kDegree;
 
-std::array<double, kMaxCoefficients> evaluated(const glm::dvec3& dir) {
+std::array<double, kMaxCoefficients> functionsAt(const glm::dvec3& dir) {
   std::array<double, kMaxCoefficients> y;
   evaluate(kMaxOrder, dir, y);
   return y;
@@ -66,8 +65,8 @@ TEST(ShRotation, TurnsTheBasisUpToOrder8NearThePoles) {
     for (const glm::dvec3& dir :
          {glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1), random.direction(), random.direction()}) {
       std::array<double, kMaxCoefficients> turned;
-      rotation.apply(evaluated(dir), std::span<double>(turned));
-      EXPECT_LE(lambent::testing::largestDifference(turned, evaluated(matrix * dir)), 1e-12)
+      rotation.apply(functionsAt(dir), std::span<double>(turned));
+      EXPECT_LE(lambent::testing::largestDifference(turned, functionsAt(matrix * dir)), 1e-12)
           << "quaternion " << q.w << " " << q.x << " " << q.y << " " << q.z;
     }
   }
@@ -93,7 +92,7 @@ TEST(ShRotation, ComposesAsRotationsDo) {
   Random random(7);
   for (int k = 0; k < 50; ++k) {
     const glm::dquat a = random.rotation(), b = random.rotation();
-    const auto y = evaluated(random.direction());
+    const auto y = functionsAt(random.direction());
     std::array<double, kMaxCoefficients> once, twice, together;
     Rotation(b, kMaxOrder).apply(y, std::span<double>(once));
     Rotation(a, kMaxOrder).apply(once, std::span<double>(twice));
@@ -192,8 +191,8 @@ TEST(ShRotation, DoesNotDriftOver100000SmallTurns) {
   for (int k = 0; k < kTurns; ++k) q = (1.0 + 1e-5) * (step * q);
   const glm::dvec3 dir = glm::normalize(glm::dvec3(-1, 0.5, 0.2));
   std::array<double, kMaxCoefficients> turned;
-  Rotation(q, kMaxOrder).apply(evaluated(dir), std::span<double>(turned));
-  const auto expected = evaluated(glm::angleAxis(90 * kDegree, axis) * dir);
+  Rotation(q, kMaxOrder).apply(functionsAt(dir), std::span<double>(turned));
+  const auto expected = functionsAt(glm::angleAxis(90 * kDegree, axis) * dir);
   EXPECT_LE(lambent::testing::largestDifference(turned, expected), 1e-9);
 }
 

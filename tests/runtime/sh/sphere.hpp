@@ -12,6 +12,8 @@
 
 namespace lambent::sh::testing {
 
+inline constexpr double kDegree = std::numbers::pi / 180;
+
 struct Node {
   double at, weight;
 };

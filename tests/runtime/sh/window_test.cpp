@@ -1,7 +1,6 @@
 #include "runtime/sh/window.hpp"
 
 #include <limits>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -15,7 +14,7 @@ namespace {
 
 using testing::Random;
 
-constexpr double kDegree = std::numbers::pi / 180;
+using testing::kDegree;
 
 // Returns the least radiance of any channel over 20000 directions, relative to that channel's mean.
 float leastRadiance(const LightVector& light) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "runtime/sh/basis.hpp"
 #include "tests/runtime/sh/sphere.hpp"
 #include "tests/support/differences.hpp"
 
@@ -14,8 +14,7 @@ namespace {
 
 using testing::Random;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
+using testing::kDegree;
 
 double zonalValue(int order, double angular_radius_rad, double angle_rad) {
   double sum = 0;

@@ -9,28 +9,21 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/sh/basis.hpp"
 #include "runtime/shadows/key_light_ref.hpp"
 #include "tests/runtime/shadows/key_maps.hpp"
+#include "tests/runtime/shadows/random.hpp"
 #include "tests/support/differences.hpp"
 
 namespace lambent::frame {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using sh::kPi;
 constexpr float kDegree = std::numbers::pi_v<float> / 180.0f;
 constexpr glm::vec3 kUp(0, 0, 1);
 constexpr float kRounding = 1e-6f;  // weights of four texels sum to 1 but for that
 
-struct Random {
-  std::mt19937 engine{7};
-  float number(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine); }
-  glm::vec3 direction() {
-    for (;;) {
-      const glm::vec3 v(number(-1, 1), number(-1, 1), number(-1, 1));
-      if (const float squared = glm::dot(v, v); squared > 0.01f && squared < 1.0f) return glm::normalize(v);
-    }
-  }
-};
+using testing::Random;
 
 // Distances along rays are negative if there is no hit.
 // Returns the share that is visible where all counts of which the map cannot tell.
@@ -266,7 +259,7 @@ TEST(KeyLight, AParapetAlongWhichLightComesBlocksTheRaysThatCrossIt) {
 }
 
 TEST(KeyLight, NothingInTheWayIsAllOfTheLightAtAnyTilt) {
-  Random random;
+  Random<float> random(7);
   for (const int size : {64, 256, 512})
     for (const float degrees : {0.27f, 2.0f, 8.0f})
       for (const float facing : {1.0f, 0.9f, 0.6f, 0.3f, 0.1f, 0.05f, 0.025f}) {
@@ -324,7 +317,7 @@ TEST(KeyLight, AWallThatLightGrazesIsLitDownToTheFloor) {
       const MadeMap map = madeMap(key, kSize, [&](const KeyRay& ray) {
         return nearer(toPlane(ray, glm::dvec3(kUp), 0.0), toBox(ray, {{-3, -3, -1}, {0, 3, 1}}));
       });
-      Random random;
+      Random<float> random(7);
       // Nearer to the floor than a quarter of a texel, the texel between both may take a little: a bias of
       // one texel is the price of walls that let no light through at their foot.
       const float foot = 0.25f / key.scale.x;
@@ -341,7 +334,7 @@ TEST(KeyLight, NoLightComesThroughThinWallsAndClosedRooms) {
   // Points are in a closed box of walls without thickness, on the walls and on things inside.
   constexpr int kSize = 512;
   const Slab room{{-1, -1, -1}, {1, 1, 1}};
-  Random random;
+  Random<float> random(7);
   int tried = 0;
   for (const float degrees : {0.27f, 2.0f, 8.0f})
     for (int light = 0; light < 12; ++light) {
@@ -456,7 +449,7 @@ TEST(KeyLight, OfADiscThatIsPartlyBelowTheHorizonTheRestShines) {
 }
 
 TEST(KeyLight, SharesStayBetweenNothingAndAllForDegenerateInputs) {
-  Random random;
+  Random<float> random(7);
   const auto blocks = [](const KeyRay& ray) { return toBox(ray, {{-0.3, -0.3, 0.1}, {0.3, 0.3, 0.4}}); };
   for (const int size : {8, 64})
     for (const float radius : {1e-4f, 0.1f, 0.99f})

@@ -11,23 +11,17 @@
 #include <glm/vec4.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/runtime/shadows/random.hpp"
 #include "tests/support/differences.hpp"
 
 namespace lambent::frame {
 namespace {
 
-struct Random {
-  std::mt19937 engine{3};
-  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); }
+struct RandomPlaces : testing::Random<double> {
+  RandomPlaces() : Random(3) {}
   glm::dvec3 inBox(const scene::Box& box) {
     return glm::mix(glm::dvec3(box.min), glm::dvec3(box.max),
                     glm::dvec3(number(0, 1), number(0, 1), number(0, 1)));
-  }
-  glm::dvec3 direction() {
-    for (;;) {
-      const glm::dvec3 v(number(-1, 1), number(-1, 1), number(-1, 1));
-      if (const double squared = glm::dot(v, v); squared > 0.01 && squared < 1.0) return glm::normalize(v);
-    }
   }
 };
 
@@ -57,7 +51,7 @@ const scene::Box kBox{.min = {-2, 0, -1}, .max = {3, 1.5f, 2}};
 }  // namespace
 
 TEST(KeyRegion, HoldsAllOfTheBoxThatIsSeenAndWhatLightItGets) {
-  Random random;
+  RandomPlaces random;
   int seen_points = 0;
   for (int i = 0; i < 300; ++i) {
     const glm::vec3 eye = glm::vec3(random.number(0.1, 6.0) * random.direction());
@@ -89,7 +83,7 @@ TEST(KeyRegion, HoldsAllOfTheBoxThatIsSeenAndWhatLightItGets) {
 }
 
 TEST(KeyRegion, IsHardlyLargerThanWhatMustBeShown) {
-  Random random;
+  RandomPlaces random;
   for (int i = 0; i < 60; ++i) {
     // Half of the views see the whole box.
     const glm::mat4 view = i % 2 == 0 ? viewFrom({9, 7, 8}, {0.5f, 0.7f, 0.5f}, 60.0f)

@@ -14,7 +14,7 @@ namespace lambent::frame {
 namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::test_local_shadows::find, &embedded::lambent_shadows::find};
-constexpr int kSize = 64;
+constexpr int kMapSize = 64;
 
 struct Case {
   ShadowedLightRecord light;
@@ -33,7 +33,7 @@ static_assert(sizeof(Case) == 128);
 float distanceAt(int face, glm::ivec2 texel) {
   if (((texel.x / 8 + texel.y / 8 + face) & 1) == 0 && face != 3)
     return 0.5f + 0.01f * static_cast<float>(face);
-  const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, kSize);
+  const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, kMapSize);
   return direction.y < 0.0f ? -1.0f / direction.y : ref::kNothing;
 }
 
@@ -101,7 +101,7 @@ TEST_F(LocalShader, DoesWhatItsTwinDoes) {
     // Arc functions of GPUs are good to 1e-4.
     EXPECT_NEAR(results[i].z, share, 1e-3f * share + 2e-4f) << "case " << i << " kind " << c.light.kind;
     const glm::vec3 radiance = ref::localRadiance(
-        distanceAt, c.light, {c.position, c.normal, c.horizon, c.shading_normal}, {kSize, 16, c.turns});
+        distanceAt, c.light, {c.position, c.normal, c.horizon, c.shading_normal}, {kMapSize, 16, c.turns});
     const float whole = share * c.light.power.y;
     if (radiance.y > 0.02f * whole && radiance.y < 0.98f * whole) ++partly;
     // A tap on the border of two texels may fall to either side by rounding: one or two taps of sixteen,

@@ -3,30 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/sh/basis.hpp"
 #include "runtime/shadows/local_faces.hpp"
 #include "runtime/shadows/local_shadow_ref.hpp"
+#include "tests/runtime/shadows/random.hpp"
 
 namespace lambent::frame {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-struct Random {
-  std::mt19937 engine{11};
-  float number(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine); }
-  glm::vec3 direction() {
-    for (;;) {
-      const glm::vec3 v(number(-1, 1), number(-1, 1), number(-1, 1));
-      if (const float squared = glm::dot(v, v); squared > 0.01f && squared < 1.0f) return glm::normalize(v);
-    }
-  }
-};
+using sh::kPi;
+using testing::Random;
 
 // Returns (1/pi) times the integral of the clamped cosine over a cone about +Z, with the normal tilted in the
 // xz plane.
@@ -95,7 +86,7 @@ TEST(ShadowedLight, ASphereOverheadGivesPiLTimesTheSquareOfItsSine) {
 }
 
 TEST(ShadowedLight, ADiscGivesWhatAQuadratureOfItsAreaGivesAlsoAcrossTheHorizon) {
-  Random random;
+  Random<float> random(11);
   for (int i = 0; i < 40; ++i) {
     const glm::vec3 normal = random.direction(), direction = random.direction();
     const glm::vec3 to_light = random.number(0.5f, 3.0f) * random.direction();
@@ -156,7 +147,7 @@ TEST(ShadowedLight, StaysFiniteAtTheLightItself) {
 }
 
 TEST(LocalShadow, EveryDirectionFindsItsTexel) {
-  Random random;
+  Random<float> random(11);
   for (int i = 0; i < 2000; ++i) {
     const glm::vec3 direction = random.direction();
     const int face = ref::shadowFace(direction), size = 64;
@@ -183,7 +174,7 @@ TEST(LocalShadow, FacesAreDrawnWhereTheyAreLookedUp) {
 }
 
 TEST(LocalShadow, BoxesMeetTheFacesThatTheirPointsFall) {
-  Random random;
+  Random<float> random(11);
   for (int i = 0; i < 500; ++i) {
     const glm::vec3 center = 2.0f * random.direction(), half(random.number(0.01f, 1.0f));
     const scene::Box box{.min = center - half, .max = center + half};
@@ -210,7 +201,7 @@ TEST(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
     return direction.y * wall < 0.45f ? std::min(wall, floor_only(face, texel)) : floor_only(face, texel);
   };
   constexpr float kRounding = 1e-5f;  // weights of four texels sum to 1 but for that
-  Random random;
+  Random<float> random(11);
   ShadowedLightRecord sphere = lightOf(kLocalSphere);
   sphere.radius = 0.02f;
   const glm::vec3 up(0, 1, 0);
@@ -245,7 +236,7 @@ TEST(LocalShadow, ALampInAClosedShellLightsNothingOutsideOfIt) {
   };
   const std::array<float (*)(glm::vec3), 3> shells = {box, flat, bumpy};
   constexpr int kSize = 512, kPlaces = 1000;
-  Random random;
+  Random<float> random(11);
   ShadowedLightRecord sphere = lightOf(kLocalSphere);
   for (std::size_t shell = 0; shell < shells.size(); ++shell) {
     const auto walls = [&](int face, glm::ivec2 texel) {

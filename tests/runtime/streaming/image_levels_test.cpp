@@ -8,7 +8,7 @@ namespace lambent::streaming {
 
 namespace {
 
-std::vector<std::uint8_t> texels(const ImageSize& size, auto&& value) {
+std::vector<std::uint8_t> texelsOf(const ImageSize& size, auto&& value) {
   std::vector<std::uint8_t> rgba;
   for (std::uint32_t y = 0; y < size.height; ++y)
     for (std::uint32_t x = 0; x < size.width; ++x)
@@ -33,7 +33,7 @@ TEST(ImageLevels, AreAsOpenGlCountsAndRoundsThem) {
 
 TEST(ImageLevels, MeansOfColoursAreOfTheirLightAndOfNumbersOfTheirCodes) {
   const ImageSize size{8, 8};
-  const auto chequered = texels(
+  const auto chequered = texelsOf(
       size, [](auto x, auto y, auto) { return static_cast<std::uint8_t>((x + y) % 2 == 0 ? 255 : 0); });
   const auto color = shrink(chequered, size, 1, /*color=*/true);
   const auto numbers = shrink(chequered, size, 1, /*color=*/false);
@@ -48,14 +48,14 @@ TEST(ImageLevels, OfAnySizeKeepTheMeanAndWhatIsEven) {
   for (const ImageSize size : {ImageSize{7, 5}, ImageSize{1, 9}, ImageSize{16, 3}, ImageSize{33, 64}})
     for (std::uint32_t level = 1; level < levelCount(size); ++level) {
       const auto even =
-          texels(size, [](auto, auto, auto c) { return static_cast<std::uint8_t>(40 + 60 * c); });
+          texelsOf(size, [](auto, auto, auto c) { return static_cast<std::uint8_t>(40 + 60 * c); });
       const ImageSize small = sizeAt(size, level);
       for (const bool color : {true, false}) {
         const auto found = shrink(even, size, level, color);
         ASSERT_EQ(found.size(), small.rgbaBytes());
         for (std::size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i], 40 + 60 * (i % 4));
       }
-      const auto ramp = texels(
+      const auto ramp = texelsOf(
           size, [](auto x, auto y, auto) { return static_cast<std::uint8_t>((37 * x + 11 * y) % 256); });
       const auto meanOf = [](const std::vector<std::uint8_t>& values) {
         double sum = 0.0;

@@ -22,7 +22,7 @@ namespace lambent::frame {
 namespace {
 
 namespace kernel = effects::glossy::ref;
-constexpr std::uint32_t kSize = 16;
+constexpr std::uint32_t kGlossySize = 16;
 using Picture = std::vector<glm::vec4>;
 
 // These are the words of the geometry page: positions, normals, tangents, TEXCOORD_0 and indices, for four
@@ -239,10 +239,10 @@ class GlossySurface : public testing::GpuTest {
       glTextureParameteri(textures.back().id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     }
     table->texture.bind(kUnitBrdf);
-    const gpu::Texture target("target", {.format = GL_RGBA32F, .width = kSize, .height = kSize});
+    const gpu::Texture target("target", {.format = GL_RGBA32F, .width = kGlossySize, .height = kGlossySize});
     const gpu::Framebuffer framebuffer("target", target, nullptr);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
-    glViewport(0, 0, kSize, kSize);
+    glViewport(0, 0, kGlossySize, kGlossySize);
     DrawIndices indices("draws");
     indices.reserve(2);
     indices.bind(geometry.buffer());
@@ -255,7 +255,7 @@ class GlossySurface : public testing::GpuTest {
     samples.bindStorage(kBindSamples);
     gpu::Counters counters;
     DrawIndices::draw(0, 2, counters);
-    Picture picture(kSize * kSize);
+    Picture picture(kGlossySize * kGlossySize);
     glGetTextureImage(target.id(), 0, GL_RGBA, GL_FLOAT,
                       static_cast<GLsizei>(picture.size() * sizeof(glm::vec4)), picture.data());
     return picture;
@@ -265,13 +265,14 @@ class GlossySurface : public testing::GpuTest {
     const Picture picture = draw(scene);
     ASSERT_FALSE(picture.empty());
     double largest = 0.0, difference = 0.0;
-    for (std::uint32_t y = 0; y < kSize; ++y)
-      for (std::uint32_t x = 0; x < kSize; ++x) {
-        const glm::vec3 place((2.0f * static_cast<float>(x) + 1.0f) / kSize - 1.0f,
-                              (2.0f * static_cast<float>(y) + 1.0f) / kSize - 1.0f, 0.0f);
+    for (std::uint32_t y = 0; y < kGlossySize; ++y)
+      for (std::uint32_t x = 0; x < kGlossySize; ++x) {
+        const glm::vec3 place((2.0f * static_cast<float>(x) + 1.0f) / kGlossySize - 1.0f,
+                              (2.0f * static_cast<float>(y) + 1.0f) / kGlossySize - 1.0f, 0.0f);
         const glm::vec3 expected = expectedAt(scene, place);
         largest = testing::larger(largest, glm::length(expected));
-        difference = testing::larger(difference, glm::distance(expected, glm::vec3(picture[y * kSize + x])));
+        difference =
+            testing::larger(difference, glm::distance(expected, glm::vec3(picture[y * kGlossySize + x])));
       }
     // Hardware interpolates the table with 8 bits between nodes, an error of 0.6 % on an H100; the shader's
     // own interpolation agrees there to 0.003 %.

@@ -14,9 +14,18 @@
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/bundle/writer.hpp"
+#include "runtime/spec/light.hpp"
 #include "tests/support/built_volume.hpp"
 
 namespace lambent::testing {
+
+inline const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+
+inline gltf::Material colored(const glm::vec4& color) {
+  gltf::Material material;
+  material.base_color = color;
+  return material;
+}
 
 // Returns the transfer vector of a sample with this normal, in the group's frame: order² entries, with
 // bounces twice as many (the shadowed block, then the full one), for normal maps nine times as many, by

@@ -24,8 +24,6 @@ using testing::Transport;
 using testing::turned;
 using testing::uniformRadiance;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 float triangleArea(const bundle::MeshData& mesh, std::size_t first) {
   const glm::vec3 a = mesh.positions[mesh.indices[first]], b = mesh.positions[mesh.indices[first + 1]],
                   c = mesh.positions[mesh.indices[first + 2]];
@@ -201,7 +199,7 @@ TEST(Bounces, AreTheSameForAnyMemoryAndNumberOfThreads) {
 
 TEST(Bounces, LoseNoLightByHitsThatAreNotKept) {
   Scene lit = sceneOf({flipped(icosphere({0, 0, 0}, 1.0f, 3))});  // a white room of radius 1
-  lit.lights.emplace_back();  // a point light
+  lit.lights.emplace_back();                                      // a point light
   gltf::Node lamp;
   lamp.parent_from_node = glm::translate(glm::mat4(1.0f), glm::vec3(0.4f, 0.1f, 0.0f));
   lamp.light = 0;

@@ -27,8 +27,6 @@ using testing::Transport;
 using testing::turned;
 using testing::uniformRadiance;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 std::vector<float> open(int order, glm::vec3 normal) {
   std::vector<float> out(static_cast<std::size_t>(sh::coefficientCount(order)));
   sh::unoccludedTransfer(order, normal, out);
@@ -76,7 +74,8 @@ TEST(DirectTransfer, UnderASphereMatchesTheClosedForm) {
     std::vector<float> local(25);
     up_to_z.apply(field.at(t.sampleAt({0, 0, 0})), local);
     for (int l = 0; l < 5; ++l)
-      EXPECT_NEAR(local[static_cast<std::size_t>(sh::coefficientIndex(l, 0))] * kPi, row.m[l], 4e-3f)
+      EXPECT_NEAR(local[static_cast<std::size_t>(sh::coefficientIndex(l, 0))] * std::numbers::pi_v<float>,
+                  row.m[l], 4e-3f)
           << "R/d " << row.ratio << " l " << l;
   }
 }
@@ -111,7 +110,7 @@ TEST(DirectTransfer, BesideAnInfiniteWallMatchesTheHalfPlane) {
                          Value{3, 3, .078672479f}, Value{4, 0, -.055389183f}, Value{4, 1, -.131370506f},
                          Value{4, 3, .115854788f}})
     expected[static_cast<std::size_t>(sh::coefficientIndex(v.l, v.m))] =
-        (v.m % 2 ? -1.0f : 1.0f) * v.value / kPi;
+        (v.m % 2 ? -1.0f : 1.0f) * v.value / std::numbers::pi_v<float>;
   EXPECT_LT(largestDifference(field.at(sample), expected), 3e-3f);
 }
 

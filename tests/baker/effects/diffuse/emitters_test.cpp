@@ -15,8 +15,6 @@ using testing::sceneOf;
 using testing::transformed;
 using testing::Transport;
 
-constexpr double kPi = std::numbers::pi;
-
 // Returns irradiance over pi at `p` with normal `n` from a polygon of radiance 1 that is entirely above its
 // horizon (Lambert 1760: sum over edges of the angle times the edge plane's normal).
 double underPolygon(glm::dvec3 p, glm::dvec3 n, const std::vector<glm::dvec3>& corners) {
@@ -27,7 +25,7 @@ double underPolygon(glm::dvec3 p, glm::dvec3 n, const std::vector<glm::dvec3>& c
     const glm::dvec3 across = glm::cross(a, b);
     sum += std::atan2(glm::length(across), glm::dot(a, b)) * glm::dot(glm::normalize(across), n);
   }
-  return std::abs(sum) / (2.0 * kPi);
+  return std::abs(sum) / (2.0 * std::numbers::pi);
 }
 
 // Makes a floor under a square panel that emits downwards.
@@ -114,7 +112,7 @@ TEST(GroupLights, PointLightFallsOffWithTheSquareAndTheCosine) {
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
     const glm::vec3 offset = at - t.samples.positions[s];
     const float d2 = glm::dot(offset, offset);
-    const float expected = offset.y / std::sqrt(d2) / d2 / static_cast<float>(kPi);
+    const float expected = offset.y / std::sqrt(d2) / d2 / static_cast<float>(std::numbers::pi);
     EXPECT_NEAR(field.at(s)[4], expected, 0.02f * expected);  // origins stand 3 % into the faces
   }
 }
@@ -138,14 +136,15 @@ TEST(GroupLights, SpotHasItsConeAndDirectionalLightNeither) {
   spot.inner_cone_rad = glm::radians(20.0f), spot.outer_cone_rad = glm::radians(30.0f);
   const Transport t(underLight(spot, lookingDown({0, 2, 0})));
   const auto field = t.direct(2, 128);
-  EXPECT_NEAR(field.at(t.sampleAt({0, 0, 0}))[4], 1.0 / 4.0 / kPi, 2e-3);
+  EXPECT_NEAR(field.at(t.sampleAt({0, 0, 0}))[4], 1.0 / 4.0 / std::numbers::pi, 2e-3);
   EXPECT_EQ(field.at(t.sampleAt({1.5f, 0, 0}))[4], 0.0f);  // 37 degrees off its axis
 
   gltf::Light sun;
   sun.type = gltf::Light::Type::Directional;
   const Transport lit(underLight(sun, lookingDown({0, -5, 0})));  // wherever its node stands
   const auto everywhere = lit.direct(2, 128);
-  for (std::size_t s = 0; s < lit.samples.size(); ++s) EXPECT_NEAR(everywhere.at(s)[4], 1.0 / kPi, 1e-5);
+  for (std::size_t s = 0; s < lit.samples.size(); ++s)
+    EXPECT_NEAR(everywhere.at(s)[4], 1.0 / std::numbers::pi, 1e-5);
 }
 
 TEST(GroupLights, RangeEndsALight) {

@@ -24,8 +24,7 @@ using testing::transformed;
 using testing::Transport;
 using testing::turned;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-const float kUniform = std::sqrt(4.0f * kPi);  // the coefficient of the function 1
+const float kUniform = std::sqrt(4.0f * std::numbers::pi_v<float>);  // the coefficient of the function 1
 
 std::span<const float> visibilityOf(const GlossyField& field, std::size_t s) {
   return std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize());

@@ -26,8 +26,7 @@ using testing::Transport;
 using testing::turned;
 using testing::uniformRadiance;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kUniform = 3.54490770f;
+constexpr float kUniformLight = 3.54490770f;
 
 // Adds a mesh of a metal to a scene.
 void addMetal(bundle::MeshData mesh, float roughness, const glm::vec3& color, Scene& scene) {
@@ -49,7 +48,8 @@ bundle::MeshData ring(float height, int around) {
   bundle::MeshData mesh;
   for (int i = 0; i <= around; ++i)
     for (int top = 0; top < 2; ++top) {
-      const float angle = -2.0f * kPi * static_cast<float>(i) / static_cast<float>(around);
+      const float angle =
+          -2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(around);
       mesh.positions.emplace_back(std::cos(angle), top ? height : 0.0f, std::sin(angle));
       mesh.normals.emplace_back(std::cos(angle), 0.0f, std::sin(angle));
     }
@@ -117,7 +117,8 @@ TEST(Mirrors, BesideAFloorShowItTheOtherHalfOfTheSky) {
   for (int i = 0; i < kSteps; ++i)
     for (int j = 0; j < 2 * kSteps; ++j) {
       // Equal shares of the cosine-weighted hemisphere.
-      const double square = (i + 0.5) / kSteps, turn = 2.0 * double{kPi} * (j + 0.5) / (2 * kSteps);
+      const double square = (i + 0.5) / kSteps,
+                   turn = 2.0 * double{std::numbers::pi_v<float>} * (j + 0.5) / (2 * kSteps);
       const double r = std::sqrt(square);
       sh::evaluate(5, glm::vec3(std::abs(r * std::cos(turn)), std::sqrt(1.0 - square), r * std::sin(turn)),
                    y);
@@ -198,7 +199,7 @@ TEST(Mirrors, TakeTheColourOfTheMetal) {
   const auto bounced = baked.bounced.field.at(room.transport.sampleAt({0.75f, 0, 0}));
   ASSERT_EQ(baked.bounced.field.channels, 3u);
   const float white = bounced[0];
-  EXPECT_GT(kUniform * white, 0.01f);
+  EXPECT_GT(kUniformLight * white, 0.01f);
   for (const int c : {1, 2}) {
     const float share = bounced[static_cast<std::size_t>(25 * c)] / white;
     EXPECT_GT(share, gold[c] - 0.01f);

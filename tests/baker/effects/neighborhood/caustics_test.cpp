@@ -14,14 +14,13 @@ using testing::glossyScene;
 using testing::matrixOf;
 using testing::Transport;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 // Makes a two-sided ring about the z axis, of radius 1, from z = 0 to z = height.
 bundle::MeshData ring(float height, int around) {
   bundle::MeshData mesh;
   for (int i = 0; i < around; ++i)
     for (int top = 0; top < 2; ++top) {
-      const float angle = 2.0f * kPi * static_cast<float>(i) / static_cast<float>(around);
+      const float angle =
+          2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(around);
       mesh.positions.emplace_back(std::cos(angle), std::sin(angle), top ? height : 0.0f);
       mesh.normals.emplace_back(std::cos(angle), std::sin(angle), 0.0f);
     }

@@ -100,8 +100,9 @@ TEST(PhasedTransfer, IsTheIsotropicOneAsGGoesToZero) {
 
 // Estimates what arrives at a place by random walks with delta tracking, backwards: coefficients for uniform
 // light and for y_10, [output][2].
-std::vector<std::array<double, 2>> walked(const DensityField& density, float largest, glm::vec3 place,
-                                          double albedo, float g, int bands, int walks) {
+std::vector<std::array<double, 2>> walkedWithPhase(const DensityField& density, float largest,
+                                                   glm::vec3 place, double albedo, float g, int bands,
+                                                   int walks) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   const auto outputs = static_cast<std::size_t>(bands * bands);
@@ -137,7 +138,7 @@ void expectWalks(const Fog& fog, float largest, float g, const VolumeSettings& s
                  const std::vector<glm::vec3>& places, double tolerance) {
   const VolumeTransfer t = phased(fog, settings, g, static_cast<float>(albedo));
   for (const glm::vec3& place : places) {
-    const auto wanted = walked(*fog.field, largest, place, albedo, g, t.bands, 60000);
+    const auto wanted = walkedWithPhase(*fog.field, largest, place, albedo, g, t.bands, 60000);
     double off = 0.0, all = 0.0;
     for (std::size_t i = 0; i < t.outputs(); ++i)
       for (std::size_t c = 0; c < 2; ++c) {

@@ -9,15 +9,14 @@
 
 namespace lambent::effects::diffuse {
 
-using Bench = DiffuseBench;
 using DiffuseGpu = testing::GpuTest;
 
 TEST_F(DiffuseGpu, MatchesItsTwinAtEveryOrderAndPrefix) {
   testing::BundleMaker maker(11);
   for (std::uint32_t order = 1; order <= 8; ++order)
     for (const std::uint32_t prefix : {1u, 4u, 7u}) {
-      Bench bench(maker,
-                  {.order = order, .shadowed_channels = order % 2 == 0 ? 3u : 1u, .samples = 97 + order});
+      DiffuseBench bench(
+          maker, {.order = order, .shadowed_channels = order % 2 == 0 ? 3u : 1u, .samples = 97 + order});
       bench.uploadMeshes();
       bench.uploadRows();
       bench.uploadTransfer(prefix);
@@ -28,7 +27,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinAtEveryOrderAndPrefix) {
 
 TEST_F(DiffuseGpu, ShadesTexelsAsItsTwinAndAveragesThemInMipLevels) {
   testing::BundleMaker maker(31);
-  Bench bench(maker, {.mapped_cells = 1, .samples = 97, .texels = 32});
+  DiffuseBench bench(maker, {.mapped_cells = 1, .samples = 97, .texels = 32});
   bench.uploadMeshes();
   bench.shade();
   for (const glm::vec4& texel : bench.textureOf(0, 0))
@@ -37,8 +36,8 @@ TEST_F(DiffuseGpu, ShadesTexelsAsItsTwinAndAveragesThemInMipLevels) {
   bench.uploadTransfer(4);
   bench.shade();
   EXPECT_LT(bench.differenceToTwin(), 1e-3) << "vertices are shaded as without texels";
-  const Bench::Pages samples = Bench::pagesOf(bench.residency.samples()),
-                     rows = Bench::pagesOf(bench.residency.rows());
+  const DiffuseBench::Pages samples = DiffuseBench::pagesOf(bench.residency.samples()),
+                            rows = DiffuseBench::pagesOf(bench.residency.rows());
   std::size_t textures = 0;
   for (std::size_t d = 0; d < bench.diffuse.tables().draws.size(); ++d) {
     const DrawRecord& draw = bench.diffuse.tables().draws[d];
@@ -79,14 +78,14 @@ TEST_F(DiffuseGpu, MatchesItsTwinWithClustersLampsBothBlocksAndNormalMaps) {
   for (const std::uint32_t clusters : {1u, 3u, 300u})
     for (const std::uint32_t lamps : {0u, 1u, 70u})
       for (const std::uint32_t mapped : {0u, 2u}) {
-        Bench bench(maker, {.order = 4,
-                            .shadowed_channels = 1,
-                            .full_channels = 3,
-                            .clusters = clusters,
-                            .lamps = lamps,
-                            .cells = 2,
-                            .mapped_cells = mapped,
-                            .samples = 423});
+        DiffuseBench bench(maker, {.order = 4,
+                                   .shadowed_channels = 1,
+                                   .full_channels = 3,
+                                   .clusters = clusters,
+                                   .lamps = lamps,
+                                   .cells = 2,
+                                   .mapped_cells = mapped,
+                                   .samples = 423});
         bench.uploadMeshes();
         bench.uploadRows();
         bench.uploadTransfer(4);
@@ -103,13 +102,13 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereSomeLampsStandApart) {
   testing::BundleMaker maker(27);
   for (const std::uint32_t full : {0u, 1u, 3u})
     for (const bool keys : {false, true}) {
-      Bench bench(maker, {.order = 4,
-                          .full_channels = full,
-                          .clusters = 3,
-                          .lamps = 3,
-                          .cells = 1,
-                          .mapped_cells = 1,
-                          .samples = 222});
+      DiffuseBench bench(maker, {.order = 4,
+                                 .full_channels = full,
+                                 .clusters = 3,
+                                 .lamps = 3,
+                                 .cells = 1,
+                                 .mapped_cells = 1,
+                                 .samples = 222});
       if (keys) bench.shineByKeyLights();
       for (lighting::GroupPlace& place : bench.places) place.lamps_apart = {1.0f, 0.0f, 0.25f};
       bench.uploadMeshes();
@@ -138,15 +137,15 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
   for (const std::uint32_t full : {0u, 1u, 3u})
     for (const std::uint32_t shadowed : {1u, 3u})
       for (const std::uint32_t lights : {1u, 5u}) {
-        Bench bench(maker, {.order = 5,
-                            .shadowed_channels = shadowed,
-                            .full_channels = full,
-                            .clusters = 3,
-                            .lamps = 2,
-                            .cells = 1,
-                            .mapped_cells = 1,
-                            .samples = 222,
-                            .light_probes = lights});
+        DiffuseBench bench(maker, {.order = 5,
+                                   .shadowed_channels = shadowed,
+                                   .full_channels = full,
+                                   .clusters = 3,
+                                   .lamps = 2,
+                                   .cells = 1,
+                                   .mapped_cells = 1,
+                                   .samples = 222,
+                                   .light_probes = lights});
         bench.shineByKeyLights();
         bench.uploadMeshes();
         bench.uploadRows();
@@ -185,14 +184,14 @@ TEST_F(DiffuseGpu, BlendsSeveralLightProbesAsItsTwin) {
   testing::BundleMaker maker(21);
   for (const std::uint32_t lights : {3u, 33u})
     for (const std::uint32_t mapped : {0u, 1u}) {
-      Bench bench(maker, {.order = 5,
-                          .full_channels = 3,
-                          .clusters = 5,
-                          .lamps = 2,
-                          .cells = 2,
-                          .mapped_cells = mapped,
-                          .samples = 423,
-                          .light_probes = lights});
+      DiffuseBench bench(maker, {.order = 5,
+                                 .full_channels = 3,
+                                 .clusters = 5,
+                                 .lamps = 2,
+                                 .cells = 2,
+                                 .mapped_cells = mapped,
+                                 .samples = 423,
+                                 .light_probes = lights});
       bench.uploadMeshes();
       bench.uploadRows();
       bench.uploadTransfer(7);
@@ -203,7 +202,7 @@ TEST_F(DiffuseGpu, BlendsSeveralLightProbesAsItsTwin) {
 
 TEST_F(DiffuseGpu, ShadesOnlyCellsWhoseLightProbesChanged) {
   testing::BundleMaker maker(22);
-  Bench bench(maker, {.groups = 2, .cells = 2, .light_probes = 4});
+  DiffuseBench bench(maker, {.groups = 2, .cells = 2, .light_probes = 4});
   bench.uploadMeshes();
   bench.uploadRows();
   bench.uploadTransfer(7);
@@ -219,13 +218,13 @@ TEST_F(DiffuseGpu, ShadesOnlyCellsWhoseLightProbesChanged) {
 
 TEST_F(DiffuseGpu, ProxiesSendOutWhatTheirSamplesReceive) {
   testing::BundleMaker maker(23);
-  Bench bench(maker, {.order = 4,
-                      .lamps = 3,
-                      .groups = 3,
-                      .cells = 1,
-                      .mapped_cells = 1,
-                      .light_probes = 5,
-                      .proxy_triangles = 77});
+  DiffuseBench bench(maker, {.order = 4,
+                             .lamps = 3,
+                             .groups = 3,
+                             .cells = 1,
+                             .mapped_cells = 1,
+                             .light_probes = 5,
+                             .proxy_triangles = 77});
   bench.uploadMeshes();
   bench.uploadRows();
   for (const auto& item : bench.made.proxies) bench.upload(item);
@@ -269,8 +268,8 @@ TEST_F(DiffuseGpu, ProxiesSendOutWhatTheirSamplesReceive) {
 
 TEST_F(DiffuseGpu, MatchesItsTwinWithMorePlanesThanLanes) {
   testing::BundleMaker maker(12);
-  Bench bench(maker,
-              {.order = 8, .shadowed_channels = 3, .planes = 70, .groups = 1, .cells = 2, .samples = 66});
+  DiffuseBench bench(
+      maker, {.order = 8, .shadowed_channels = 3, .planes = 70, .groups = 1, .cells = 2, .samples = 66});
   bench.uploadMeshes();
   bench.uploadRows();
   bench.uploadTransfer(70);
@@ -280,14 +279,14 @@ TEST_F(DiffuseGpu, MatchesItsTwinWithMorePlanesThanLanes) {
 
 TEST_F(DiffuseGpu, NormalMappedDrawsHaveTheLightItselfUntilTransferIsThere) {
   testing::BundleMaker maker(17);
-  Bench bench(maker, {.order = 5, .lamps = 2, .cells = 1, .mapped_cells = 1});
+  DiffuseBench bench(maker, {.order = 5, .lamps = 2, .cells = 1, .mapped_cells = 1});
   bench.uploadMeshes();
   bench.uploadRows();
   bench.shade();
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
   const streaming::ResidentDraw& draw = bench.residency.draws()[1];
   ASSERT_EQ(draw.outputs, 9u);
-  const auto pages = Bench::pagesOf(bench.residency.radiance());
+  const auto pages = DiffuseBench::pagesOf(bench.residency.radiance());
   const auto light = bench.lights.coefficients().subspan(bench.lights.firstOf(draw.group));
   for (uint j = 0; j < 9; ++j)
     EXPECT_EQ(std::bit_cast<float>(pages[draw.radiance.page][draw.radiance.word() + 3 * j]), light[j].r);
@@ -295,27 +294,27 @@ TEST_F(DiffuseGpu, NormalMappedDrawsHaveTheLightItselfUntilTransferIsThere) {
 
 TEST_F(DiffuseGpu, ALampThatDimsIsShadedAgainAndUnshadowedIsDark) {
   testing::BundleMaker maker(18);
-  Bench bench(maker, {.lamps = 2, .groups = 1});
+  DiffuseBench bench(maker, {.lamps = 2, .groups = 1});
   bench.uploadMeshes();
   bench.uploadRows();
   bench.uploadTransfer(7);
   EXPECT_EQ(bench.shade(), 5u) << "two kernels project, then the environment, the lamps, the vertices";
   EXPECT_EQ(bench.shade(), 0u);
-  const auto before = Bench::pagesOf(bench.residency.radiance());
+  const auto before = DiffuseBench::pagesOf(bench.residency.radiance());
   bench.places[0].lamps[1] = glm::vec3(0.0f);
   EXPECT_EQ(bench.shade(), 5u);
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
-  EXPECT_NE(Bench::pagesOf(bench.residency.radiance()), before);
+  EXPECT_NE(DiffuseBench::pagesOf(bench.residency.radiance()), before);
   EXPECT_EQ(bench.shade(evaluate::TransferMode::Unshadowed), 1u);
-  const auto unshadowed = Bench::pagesOf(bench.residency.radiance());
+  const auto unshadowed = DiffuseBench::pagesOf(bench.residency.radiance());
   bench.places[0].lamps[0] = glm::vec3(50.0f);
   bench.shade(evaluate::TransferMode::Unshadowed);
-  EXPECT_EQ(Bench::pagesOf(bench.residency.radiance()), unshadowed);
+  EXPECT_EQ(DiffuseBench::pagesOf(bench.residency.radiance()), unshadowed);
 }
 
 TEST_F(DiffuseGpu, MatchesItsTwinOverSeveralPages) {
   testing::BundleMaker maker(16);
-  Bench bench(maker, {.groups = 4}, /*page_bytes=*/6000);
+  DiffuseBench bench(maker, {.groups = 4}, /*page_bytes=*/6000);
   bench.uploadMeshes();
   bench.uploadRows();
   bench.uploadTransfer(7);
@@ -327,7 +326,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinOverSeveralPages) {
 
 TEST_F(DiffuseGpu, ShadesUnshadowedUntilTransferIsThere) {
   testing::BundleMaker maker(13);
-  Bench bench(maker, {});
+  DiffuseBench bench(maker, {});
   bench.uploadMeshes();
   EXPECT_EQ(bench.shade(), 1u) << "vertices only";
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
@@ -341,7 +340,7 @@ TEST_F(DiffuseGpu, ShadesUnshadowedUntilTransferIsThere) {
 
 TEST_F(DiffuseGpu, UnshadowedModeLeavesTransferAside) {
   testing::BundleMaker maker(14);
-  Bench bench(maker, {});
+  DiffuseBench bench(maker, {});
   bench.uploadMeshes();
   bench.uploadRows();
   bench.uploadTransfer(7);
@@ -354,13 +353,13 @@ TEST_F(DiffuseGpu, UnshadowedModeLeavesTransferAside) {
 
 TEST_F(DiffuseGpu, WhatComesInPiecesIsShadedAsWhatComesWhole) {
   testing::BundleMaker maker(16);
-  Bench bench(maker, {.order = 8,
-                      .full_channels = 3,
-                      .planes = 30,
-                      .clusters = 24,
-                      .groups = 1,
-                      .cells = 1,
-                      .vertices = 4001});
+  DiffuseBench bench(maker, {.order = 8,
+                             .full_channels = 3,
+                             .planes = 30,
+                             .clusters = 24,
+                             .groups = 1,
+                             .cells = 1,
+                             .vertices = 4001});
   std::uint32_t pieces = 0, items = 0;
   const auto bring = [&](const streaming::Ready& item) {
     ASSERT_TRUE(bench.residency.begin(0, item));
@@ -389,7 +388,7 @@ TEST_F(DiffuseGpu, WhatComesInPiecesIsShadedAsWhatComesWhole) {
 
 TEST_F(DiffuseGpu, RunsOnlyWhenLightRotationOrResidencyChanged) {
   testing::BundleMaker maker(15);
-  Bench bench(maker, {});
+  DiffuseBench bench(maker, {});
   bench.uploadMeshes();
   bench.uploadRows();
   bench.uploadTransfer(1);

@@ -25,7 +25,7 @@ struct Asked {
   }
 };
 
-struct Bench : testing::ShadingBench<Asked> {
+struct ValuesBench : testing::ShadingBench<Asked> {
   using ShadingBench::ShadingBench;
 
   std::vector<evaluate::SampleValue> ask(const evaluate::TransferQuestion& question) {
@@ -85,7 +85,7 @@ using TransferValuesTest = testing::GpuTest;
 
 TEST_F(TransferValuesTest, DcAndBandsAreThoseOfTheDecodedVectorsOfEveryKindOfSample) {
   testing::BundleMaker maker(11);
-  Bench bench(maker, everyKind());
+  ValuesBench bench(maker, everyKind());
   bench.uploadTransfer();
   for (const evaluate::TransferMode mode : {evaluate::TransferMode::Full, evaluate::TransferMode::Shadowed})
     for (const int band : {-1, 0, 1, 2, 3}) {
@@ -132,7 +132,7 @@ TEST_F(TransferValuesTest, DcAndBandsAreThoseOfTheDecodedVectorsOfEveryKindOfSam
 
 TEST_F(TransferValuesTest, ClustersAndWhatCellsSayAreExact) {
   testing::BundleMaker maker(12);
-  Bench bench(maker, everyKind());
+  ValuesBench bench(maker, everyKind());
   bench.uploadTransfer();
   const auto values = bench.ask({.value = evaluate::TransferValue::OfCell});
   std::size_t surfaces = 0;
@@ -151,7 +151,7 @@ TEST_F(TransferValuesTest, ClustersAndWhatCellsSayAreExact) {
 
 TEST_F(TransferValuesTest, ASampleWhoseCodesAreNotHereHasNone) {
   testing::BundleMaker maker(13);
-  Bench bench(maker, {.clusters = 2, .groups = 1, .cells = 2});
+  ValuesBench bench(maker, {.clusters = 2, .groups = 1, .cells = 2});
   bench.uploadCell(1);
   auto values = bench.ask({.value = evaluate::TransferValue::Dc});
   EXPECT_EQ(values[bench.firstValue(0)].cluster, evaluate::kNoCluster);
@@ -165,7 +165,7 @@ TEST_F(TransferValuesTest, ASampleWhoseCodesAreNotHereHasNone) {
 
 TEST_F(TransferValuesTest, TheSameQuestionTwiceDispatchesNothing) {
   testing::BundleMaker maker(14);
-  Bench bench(maker, {.clusters = 2});
+  ValuesBench bench(maker, {.clusters = 2});
   bench.uploadTransfer();
   const evaluate::TransferQuestion question{.value = evaluate::TransferValue::BandEnergy, .band = 1};
   EXPECT_GT(bench.shadeIn(question), 0u);

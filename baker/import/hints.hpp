@@ -1,0 +1,9 @@
+// What errors of this room advise.
+#pragma once
+
+namespace lambent::baker {
+
+// For files that break the rules of glTF.
+inline constexpr const char* kExportAgain = "export the scene again";
+
+}  // namespace lambent::baker
