@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "runtime/base/finite.hpp"
+
 namespace lambent::baker {
 
 namespace {
@@ -17,10 +19,6 @@ double percentile(std::vector<double>& values, double share) {
       values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), at, values.end());
   return *at;
-}
-
-bool finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 // Two infinite depths (no surface) are the same. NaN differs from every depth.
@@ -69,7 +67,7 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
     error.pixels_apart += most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage;
     if (!(least >= spec::kLeastCoverage)) continue;
     const glm::dvec3 x(picture.texels[i]), a(reference.texels[i]), b(second.texels[i]), mean = 0.5 * (a + b);
-    if (!finite(x) || !finite(a) || !finite(b))
+    if (!isFinite(x) || !isFinite(a) || !isFinite(b))
       return fail(
           subject,
           fmt::format("or its reference is not finite at pixel {}, {}", i % picture.width, i / picture.width),

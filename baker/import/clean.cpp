@@ -8,6 +8,7 @@
 
 #include "baker/import/convert.hpp"
 #include "baker/import/gather_vertices.hpp"
+#include "runtime/base/finite.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -17,10 +18,6 @@ using bundle::MeshData;
 // Triangles smaller than this share of the bounding box's squared diagonal are dropped: ray tracers report
 // false hits on them, and they carry no light.
 constexpr double kDegenerateArea = 1e-12;
-
-bool isFinite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // Returns twice the area along the geometric normal, in double because of small triangles far from the
 // origin.
@@ -142,9 +139,7 @@ template <typename Vector>
 std::size_t repairValues(std::vector<Vector>& values, const Vector& replacement) {
   std::size_t count = 0;
   for (Vector& value : values) {
-    bool finite = true;
-    for (int c = 0; c < Vector::length(); ++c) finite = finite && std::isfinite(value[c]);
-    if (finite) continue;
+    if (isFinite(value)) continue;
     value = replacement;
     ++count;
   }

@@ -1,26 +1,14 @@
 #include "editor/session/node_edits.hpp"
 
-#include <cmath>
-
 #include <glm/matrix.hpp>
 
 #include "editor/document/document.hpp"
 #include "editor/session/same_place.hpp"
+#include "runtime/base/finite.hpp"
 #include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
 
 namespace lambent::editor {
-
-namespace {
-
-bool finite(const glm::mat4& matrix) {
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row)
-      if (!std::isfinite(matrix[column][row])) return false;
-  return true;
-}
-
-}  // namespace
 
 void addNodeEdits(const ecs::Registry& registry, const bundle::Description& description,
                   const scene::SceneInstance& instance, baker::SceneEdits& edits) {
@@ -35,7 +23,7 @@ void addNodeEdits(const ecs::Registry& registry, const bundle::Description& desc
       now = glm::mat4(glm::inverse(glm::dmat4(worldFromNode(registry, parent))) *
                       glm::dmat4(worldFromNode(registry, instance.nodes[i])));
     // Below a flat parent no Transform gives it that place; it stays where the scene has it.
-    if (finite(now) && !samePlace(now, node.parent_from_node)) edits.nodes.push_back({i, node.name, now});
+    if (isFinite(now) && !samePlace(now, node.parent_from_node)) edits.nodes.push_back({i, node.name, now});
   }
 }
 

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/sh/cube_map.hpp"
 
 namespace lambent::lighting::capture {
@@ -217,7 +218,7 @@ class PointPlanner {
   }
 
   void add(std::uint32_t index, const CapturePoint& point) {
-    if (!finite(point.position_ws)) return;
+    if (!isFinite(point.position_ws)) return;
     seen_.clear();
     double near_m = std::numeric_limits<double>::max();
     for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
@@ -320,7 +321,7 @@ ProxyBounds ProxyBounds::of(const bundle::CaptureProxy& proxy) {
   bool any = false;
   for (const bundle::ProxyTriangle& triangle : proxy.triangles)
     for (const std::uint32_t v : triangle.vertices) {
-      if (!finite(proxy.positions[v])) continue;
+      if (!isFinite(proxy.positions[v])) continue;
       lowest = glm::min(lowest, proxy.positions[v]);
       highest = glm::max(highest, proxy.positions[v]);
       any = true;
@@ -332,7 +333,7 @@ ProxyBounds ProxyBounds::of(const bundle::CaptureProxy& proxy) {
   double squared = 0;
   for (const bundle::ProxyTriangle& triangle : proxy.triangles)
     for (const std::uint32_t v : triangle.vertices) {
-      if (!finite(proxy.positions[v])) continue;
+      if (!isFinite(proxy.positions[v])) continue;
       const glm::dvec3 d = glm::dvec3(proxy.positions[v]) - glm::dvec3(bounds.centre);
       squared = std::max(squared, glm::dot(d, d));
     }

@@ -6,7 +6,6 @@
 // page), tiles and draws.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -19,10 +18,6 @@
 #include "runtime/lighting/capture_scene.hpp"
 
 namespace lambent::lighting::capture {
-
-inline bool finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // Describes the texels [x0, x1) x [y0, y1) of a face.
 struct TexelRect {

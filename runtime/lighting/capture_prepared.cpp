@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include <glm/geometric.hpp>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/lighting/capture_closed.hpp"
 #include "runtime/lighting/capture_shared.h"
 
@@ -90,7 +90,7 @@ PreparedProxy PreparedProxy::of(const bundle::CaptureProxy& proxy) {
     LevelVertices level_vertices(proxy, made.vertices);
     for (std::uint32_t t = level.first_triangle; t < level.first_triangle + level.triangle_count; ++t) {
       const bundle::ProxyTriangle& triangle = proxy.triangles[t];
-      const auto usable = [&](std::uint32_t v) { return finite(proxy.positions[v]); };
+      const auto usable = [&](std::uint32_t v) { return isFinite(proxy.positions[v]); };
       if (!std::all_of(triangle.vertices.begin(), triangle.vertices.end(), usable)) continue;
       std::array<std::uint32_t, 3> corners = triangle.vertices;
       LevelTriangle& added = drawn.triangles.emplace_back();

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/scene/components.hpp"
 
 namespace lambent::scene {
@@ -128,10 +129,6 @@ ComponentInfo row(By by) {
   return info;
 }
 
-bool finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 }  // namespace
 
 std::span<const ComponentInfo> components() {
@@ -212,7 +209,7 @@ Result<void> FieldInfo::check(const Value& value) const {
       return inRange(number);
     }
     case ValueKind::Vector:
-      if (!finite(std::get<glm::vec3>(value))) return wrong("is not finite", "give three finite numbers");
+      if (!isFinite(std::get<glm::vec3>(value))) return wrong("is not finite", "give three finite numbers");
       if (const glm::vec3 v = std::get<glm::vec3>(value); color && (v.x < 0.0f || v.y < 0.0f || v.z < 0.0f))
         return wrong(fmt::format("{} is a color with a negative part", valueText(value)), "");
       return {};

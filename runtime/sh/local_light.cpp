@@ -8,15 +8,12 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/sh/zonal.hpp"
 
 namespace lambent::sh {
 
 namespace {
-
-bool finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 template <typename Coefficient>
 LightVector scaled(int order, const glm::vec3& rgb, Coefficient&& coefficient) {
@@ -80,7 +77,7 @@ constexpr double kFar = 1e7;
 
 std::optional<DiscSight> sightOf(const glm::dvec3& center, const glm::dvec3& normal, double radius) {
   const double length = glm::length(normal);
-  if (!(radius > 0.0) || !std::isfinite(radius) || !(length > 0.0) || !finite(normal) || !finite(center))
+  if (!(radius > 0.0) || !std::isfinite(radius) || !(length > 0.0) || !isFinite(normal) || !isFinite(center))
     return std::nullopt;
   DiscSight sight;
   sight.ahead = -normal / length;
@@ -130,7 +127,7 @@ void alongRim(const DiscSight& sight, int order, F&& f) {
 }  // namespace
 
 LightVector sphereLight(int order, const glm::dvec3& center, double radius, const glm::vec3& radiance) {
-  if (!(radius > 0.0) || !finite(center)) return {.order = order};
+  if (!(radius > 0.0) || !isFinite(center)) return {.order = order};
   const double distance = glm::length(center);
   if (distance <= radius) return constantLight(order, radiance);
   const double angle = std::asin(radius / distance);
@@ -173,7 +170,7 @@ LightVector discAreaLight(int order, const glm::dvec3& center, const glm::dvec3&
 }
 
 LightVector pointLight(int order, const glm::dvec3& light, const glm::vec3& intensity, double range) {
-  if (!finite(light)) return {.order = order};
+  if (!isFinite(light)) return {.order = order};
   const double distance = glm::length(light), from = std::max(distance, kLeastPointDistance);
   const double irradiance = rangeFade(from, range) / (from * from);
   const double nearness = distance / from;
@@ -187,7 +184,7 @@ LightVector pointLight(int order, const glm::dvec3& light, const glm::vec3& inte
 LightVector spotLight(int order, const glm::dvec3& light, const SpotCone& cone, const glm::vec3& intensity,
                       double range) {
   const double length = glm::length(cone.axis), distance = glm::length(light);
-  if (!(length > 0.0) || !finite(cone.axis) || !finite(light)) return {.order = order};
+  if (!(length > 0.0) || !isFinite(cone.axis) || !isFinite(light)) return {.order = order};
   const double cosine = distance > 0.0 ? glm::dot(cone.axis / length, -light / distance) : 1.0;
   const double fade = coneFade(cosine, cone.inner_rad, cone.outer_rad);
   if (!(fade > 0.0)) return {.order = order};
@@ -196,7 +193,7 @@ LightVector spotLight(int order, const glm::dvec3& light, const SpotCone& cone, 
 
 LightVector directionalLight(int order, const glm::dvec3& to_light, const glm::vec3& irradiance) {
   const double length = glm::length(to_light);
-  if (!(length > 0.0) || !finite(to_light)) return {.order = order};
+  if (!(length > 0.0) || !isFinite(to_light)) return {.order = order};
   std::array<double, kMaxCoefficients> y;
   evaluate(order, to_light / length, y);
   return scaled(order, irradiance, [&](int i) { return y[static_cast<std::size_t>(i)]; });

@@ -9,6 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/surface_shared.h"
 #include "runtime/world/boxes.hpp"
@@ -74,13 +75,6 @@ bool localShadowsDiffer(const LitScene& scene, std::size_t body, std::size_t rec
     const lighting::IncidentGroup& lit = scene.groups[body];
     return !cube.source || (lit.lit_by[*cube.source] != 0 && lit.apart[*cube.source] < 1.0f);
   });
-}
-
-bool finite(const glm::dmat4& matrix) {
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row)
-      if (!std::isfinite(matrix[column][row])) return false;
-  return true;
 }
 
 double scaleOf(const glm::mat4& matrix) {
@@ -242,7 +236,7 @@ void Neighborhoods::findReceivers(const World& world, evaluate::TransferMode mod
       if (!world_from_position) world_from_position = worldFromPosition(world, d, describe(world, d));
       const glm::dmat4 grid_from_position =
           grid_from_body * glm::inverse(glm::dmat4(world_from_body)) * *world_from_position;
-      if (!finite(grid_from_position)) continue;  // something is flattened
+      if (!isFinite(grid_from_position)) continue;  // something is flattened
       const glm::quat body_from_group =
           glm::conjugate(world.rotationOf(grid.group)) * world.rotationOf(draw.group);
       const glm::mat3x4 to_grid(glm::mat4(glm::transpose(grid_from_position)));

@@ -1,7 +1,6 @@
 #include "runtime/effects/volume/march.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -9,6 +8,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/effects/volume/shaders.hpp"
 #include "runtime/transfer/codebook.hpp"
 
@@ -18,13 +18,6 @@ namespace {
 
 // These are the uniform locations of volume_march.frag.
 constexpr GLint kScale = 0, kOffset = 1, kPictureSize = 2, kPerspective = 3, kStepVoxels = 4;
-
-bool finite(const glm::dmat4& matrix) {
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row)
-      if (!std::isfinite(matrix[column][row])) return false;
-  return true;
-}
 
 void storeRows(const glm::dmat4& affine, glm::vec4 (&rows)[3]) {
   for (int row = 0; row < 3; ++row)
@@ -57,7 +50,7 @@ std::optional<MarchRecord> describeMarch(const streaming::ResidentVolume& volume
   const glm::dmat4 grid_from_box = glm::scale(glm::dmat4(1.0), glm::dvec3(volume.grid.size));
   const glm::dmat4 box_from_view =
       glm::inverse(view_from_group * glm::dmat4(volume.grid.group_from_grid) * grid_from_box);
-  if (!finite(group_from_view) || !finite(box_from_view)) return {};
+  if (!isFinite(group_from_view) || !isFinite(box_from_view)) return {};
   const SlabLayout layout = slabLayoutOf(volume.grid.transfer_size, volume.outputs);
   MarchRecord record{};
   storeRows(box_from_view, record.box_from_view);
