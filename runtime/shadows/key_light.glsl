@@ -78,16 +78,18 @@ float blockerHeight(KeyRecord key, KeyReceiver receiver, ivec2 texel) {
   return depth < limit ? receiver.depth - depth : 0.0;
 }
 
-// Returns the visibility of a light without width, interpolated between the four texels around a place.
-float texelVisible(KeyRecord key, KeyReceiver receiver, vec2 place) {
+// Returns the visible and the hidden share of a light without width, interpolated between the four texels around a
+// place. A share that no texel has is exactly 0.
+vec2 texelShares(KeyRecord key, KeyReceiver receiver, vec2 place) {
   vec2 corner = floor(place - 0.5), part = place - 0.5 - corner;
-  float visible = 0.0;
+  vec2 shares = vec2(0.0);
   for (int i = 0; i < 4; ++i) {
     vec2 side = vec2(float(i & 1), float(i >> 1));
     vec2 share = side * part + (1.0 - side) * (1.0 - part);
-    if (blockerHeight(key, receiver, ivec2(corner + side)) == 0.0) visible += share.x * share.y;
+    bool visible = blockerHeight(key, receiver, ivec2(corner + side)) == 0.0;
+    shares[visible ? 0 : 1] += share.x * share.y;
   }
-  return visible;
+  return shares;
 }
 
 // Returns the i-th of `count` points on the unit disc [Vogel 1979].
@@ -163,11 +165,13 @@ int rayFate(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
 // near to it as faces of one lit surface are to each other. It is looked for on the side that the receiver faces, where
 // the receiver's own surface is lower.
 float doubtOfBias(KeyRecord key, KeyReceiver receiver, vec3 normal) {
-  vec2 faced = vec2(dot(normal, normalize(key.right.xyz)), dot(normal, normalize(key.up.xyz)));
-  float visible = texelVisible(key, receiver, receiver.place);
-  receiver.bias *= kDoubtfulBias;
-  float sure = texelVisible(key, receiver, receiver.place + kTexelsAside * faced);
-  return visible > sure ? 1.0 - sure / visible : 0.0;
+  vec2 faced = vec2(dot(normal, key.right.xyz), dot(normal, key.up.xyz)) / key.scale.xy;
+  KeyReceiver strict = receiver;
+  strict.bias *= kDoubtfulBias;
+  vec2 sure = texelShares(key, strict, receiver.place + kTexelsAside * faced);
+  if (sure.y == 0.0) return 0.0;  // as nearly everywhere
+  float visible = texelShares(key, receiver, receiver.place).x;
+  return visible > sure.x ? 1.0 - sure.x / visible : 0.0;
 }
 
 // Returns keyVisible() without what the bias leaves doubtful.
@@ -193,11 +197,11 @@ vec2 visibleBeyondBias(KeyRecord key, KeyReceiver receiver, vec3 normal, vec3 sh
   vec3 right = normalize(key.right.xyz), up = normalize(key.up.xyz);
   if (!open) {
     float widest = reach * key.scale.w * max(key.scale.x, key.scale.y);
-    if (widest < kSharpTexels && receiver.above) return vec2(texelVisible(key, receiver, receiver.place), 0.0);
+    if (widest < kSharpTexels && receiver.above) return vec2(texelShares(key, receiver, receiver.place).x, 0.0);
     layers = keyLayers(key, receiver, reach, max(rays, kLeastSearch));
     if (layers.low == 0.0 && receiver.above) return vec2(1.0, 0.0);
     if (layers.high * key.scale.w * max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
-      return vec2(texelVisible(key, receiver, receiver.place), 0.0);
+      return vec2(texelShares(key, receiver, receiver.place).x, 0.0);
   }
   float visible = 0.0, unsure = 0.0, all = 0.0;
   for (int i = 0; i < rays; ++i) {

@@ -83,15 +83,16 @@ float blockerHeight(const Map& map, const KeyRecord& key, const KeyReceiver& rec
 }
 
 template <typename Map>
-float texelVisible(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, glm::vec2 place) {
+glm::vec2 texelShares(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, glm::vec2 place) {
   const glm::vec2 corner = glm::floor(place - 0.5f), part = place - 0.5f - corner;
-  float visible = 0.0f;
+  glm::vec2 shares(0.0f);
   for (int i = 0; i < 4; ++i) {
     const glm::vec2 side(static_cast<float>(i & 1), static_cast<float>(i >> 1));
     const glm::vec2 share = side * part + (1.0f - side) * (1.0f - part);
-    if (blockerHeight(map, key, receiver, glm::ivec2(corner + side)) == 0.0f) visible += share.x * share.y;
+    const bool visible = blockerHeight(map, key, receiver, glm::ivec2(corner + side)) == 0.0f;
+    shares[visible ? 0 : 1] += share.x * share.y;
   }
-  return visible;
+  return shares;
 }
 
 inline glm::vec2 keyPoint(int i, int count) {
@@ -166,13 +167,16 @@ int rayFate(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, f
 }
 
 template <typename Map>
-float doubtOfBias(const Map& map, const KeyRecord& key, KeyReceiver receiver, glm::vec3 normal) {
-  const glm::vec2 faced(glm::dot(normal, glm::normalize(glm::vec3(key.right))),
-                        glm::dot(normal, glm::normalize(glm::vec3(key.up))));
-  const float visible = texelVisible(map, key, receiver, receiver.place);
-  receiver.bias *= kDoubtfulBias;
-  const float sure = texelVisible(map, key, receiver, receiver.place + kTexelsAside * faced);
-  return visible > sure ? 1.0f - sure / visible : 0.0f;
+float doubtOfBias(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, glm::vec3 normal) {
+  const glm::vec2 faced =
+      glm::vec2(glm::dot(normal, glm::vec3(key.right)), glm::dot(normal, glm::vec3(key.up))) /
+      glm::vec2(key.scale);
+  KeyReceiver strict = receiver;
+  strict.bias *= kDoubtfulBias;
+  const glm::vec2 sure = texelShares(map, key, strict, receiver.place + kTexelsAside * faced);
+  if (sure.y == 0.0f) return 0.0f;
+  const float visible = texelShares(map, key, receiver, receiver.place).x;
+  return visible > sure.x ? 1.0f - sure.x / visible : 0.0f;
 }
 
 template <typename Map>
@@ -201,11 +205,11 @@ glm::vec2 visibleBeyondBias(const Map& map, const KeyRecord& key, const KeyRecei
   if (!open) {
     const float widest = reach * key.scale.w * std::max(key.scale.x, key.scale.y);
     if (widest < kSharpTexels && receiver.above)
-      return {texelVisible(map, key, receiver, receiver.place), 0.0f};
+      return {texelShares(map, key, receiver, receiver.place).x, 0.0f};
     layers = keyLayers(map, key, receiver, reach, std::max(rays, kLeastSearch));
     if (layers.low == 0.0f && receiver.above) return {1.0f, 0.0f};
     if (layers.high * key.scale.w * std::max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
-      return {texelVisible(map, key, receiver, receiver.place), 0.0f};
+      return {texelShares(map, key, receiver, receiver.place).x, 0.0f};
   }
   float visible = 0.0f, unsure = 0.0f, all = 0.0f;
   for (int i = 0; i < rays; ++i) {
