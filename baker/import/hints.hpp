@@ -1,4 +1,4 @@
-// What errors of this room advise.
+// Advice that several errors of this room give.
 #pragma once
 
 namespace lambent::baker {

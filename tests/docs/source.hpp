@@ -1,4 +1,4 @@
-// Where the sources of the project are.
+// Names the folder with the sources of the project.
 #pragma once
 
 #include <filesystem>

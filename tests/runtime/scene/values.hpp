@@ -1,4 +1,4 @@
-// What tests of transforms use.
+// Values that several tests of transforms use.
 #pragma once
 
 #include <glm/vec3.hpp>
