@@ -121,6 +121,7 @@ class Coder {
         checkpoint_(context),
         count_(vectors.size() / shape.size()),
         space_(weightedSpace(vectors, shape, settings.shown_energy, settings.kernel_power)),
+        importance_(sampleImportance(vectors, shape, settings.shown_energy, settings.kernel_power)),
         least_bits_(shape.beyondDiffuse() ? kGlossyWeightBits : kPlainWeightBits) {
     const double bound = double{settings.bound};
     allowed_ = bound * bound * space_.blocks / static_cast<double>(count_);
@@ -134,7 +135,7 @@ class Coder {
     points_ = coordinates(vectors_, space_.roots, state_.basis);
     for (;;) {
       if (state_.step == CodingState::Step::Search && !searchAndAssign()) return {};
-      auto found = refine(points_, settings_.axes, kFinalRounds, /*held_out=*/false);
+      auto found = refine(points_, settings_.axes, kFinalRounds, /*held_out=*/false, importance_);
       if (!found) return {};
       const bool fewer = settings_.clusters == 0 && found->clusters.size() > 1;
       if (state_.step == CodingState::Step::Fit || !fewer || fits(*found)) {
@@ -183,11 +184,18 @@ class Coder {
   CodedTransfer dark() const;
   // Runs iterative PCA, which fits and moves samples in turn, from state_.rounds on. Returns nothing if
   // stopped.
-  std::optional<Clustering> refine(const Points& points, int axes, std::uint32_t rounds, bool held_out);
-  Clustering fitted(const Points& points, ClusterIds ids, int axes, bool held_out) const;
+  std::optional<Clustering> refine(const Points& points, int axes, std::uint32_t rounds, bool held_out,
+                                   Importance importance);
+  Clustering fitted(const Points& points, ClusterIds ids, int axes, bool held_out,
+                    Importance importance) const;
   std::optional<Clustering> fromSome(std::uint32_t clusters, int axes);
   std::vector<std::uint32_t> searchedSamples(std::uint32_t clusters) const {
     return someSamples(count_, std::max(kLeastSearched, kSearchedPerCluster * clusters));
+  }
+  std::vector<float> importanceOf(std::span<const std::uint32_t> samples) const {
+    std::vector<float> out;
+    for (const std::uint32_t s : samples) out.push_back(importance_[s]);
+    return out;
   }
   std::optional<Clustering> search();
   // Assigns all samples to clusters that were found from some of them. Returns false if stopped.
@@ -203,6 +211,7 @@ class Coder {
   CodingCheckpoint checkpoint_;
   std::size_t count_;
   WeightedSpace space_;
+  std::vector<float> importance_;
   double least_bits_, allowed_ = 0.0;
   Points points_;
   CodingState state_;
@@ -213,7 +222,10 @@ void Coder::findBasis() {
   double left_out = 0.0;
   const double size = static_cast<double>(shape_.size());
   const auto looked_at = std::max(kBasisSamples, static_cast<std::size_t>(kBasisWork / (size * size)));
-  const Points some = weighted(vectors_, space_.roots, someSamples(count_, looked_at));
+  const auto looked = someSamples(count_, looked_at);
+  Points some = weighted(vectors_, space_.roots, looked);
+  for (std::size_t s = 0; s < looked.size(); ++s)
+    some.col(static_cast<Eigen::Index>(s)) *= std::sqrt(importance_[looked[s]]);
   Spectrum spectrum = leadingSpectrum(some, kTailShare * allowed_, settings_.most_components, left_out);
   // If the components that were looked for leave out more than is allowed, the rest is coded to match.
   state_.reachable = std::max(allowed_, kBesideLeftOut * left_out);
@@ -240,23 +252,25 @@ CodedTransfer Coder::dark() const {
   return coded;
 }
 
-Clustering Coder::fitted(const Points& points, ClusterIds ids, int axes, bool held_out) const {
+Clustering Coder::fitted(const Points& points, ClusterIds ids, int axes, bool held_out,
+                         Importance importance) const {
   Clustering found{std::move(ids), {}, 0.0};
-  found.clusters = fitClusters(points, found.ids, held_out, least_bits_);
+  found.clusters = fitClusters(points, found.ids, held_out, least_bits_, importance);
   found.step = stepFor(found.clusters, state_.budget);
   if (axes >= 0) keepSoMany(found.clusters, axes);
   return found;
 }
 
-std::optional<Clustering> Coder::refine(const Points& points, int axes, std::uint32_t rounds, bool held_out) {
+std::optional<Clustering> Coder::refine(const Points& points, int axes, std::uint32_t rounds, bool held_out,
+                                        Importance importance) {
   Rounds& at = state_.rounds;
   for (;;) {
-    Clustering found = fitted(points, at.ids, axes, held_out);
+    Clustering found = fitted(points, at.ids, axes, held_out, importance);
     if (at.next >= rounds || found.clusters.size() == 1) {
       at = {found.ids, rounds};
       return found;
     }
-    at = {assignClusters(points, found.clusters, found.step, found.ids), at.next + 1};
+    at = {assignClusters(points, found.clusters, found.step, found.ids, importance), at.next + 1};
     if (stopped()) return std::nullopt;
   }
 }
@@ -264,8 +278,9 @@ std::optional<Clustering> Coder::refine(const Points& points, int axes, std::uin
 std::optional<Clustering> Coder::fromSome(std::uint32_t clusters, int axes) {
   const auto some = searchedSamples(clusters);
   const Points searched = columnsOf(points_, some);
-  if (state_.rounds.ids.empty()) state_.rounds = {seedClusters(searched, clusters), 0};
-  return refine(searched, axes, kSearchRounds, some.size() < count_);
+  const std::vector<float> counts = importanceOf(some);
+  if (state_.rounds.ids.empty()) state_.rounds = {seedClusters(searched, clusters, counts), 0};
+  return refine(searched, axes, kSearchRounds, some.size() < count_, counts);
 }
 
 // Finds the number of clusters that codes to the fewest bytes, by estimates from some of the samples.
@@ -273,7 +288,7 @@ std::optional<Clustering> Coder::search() {
   Clustering best;
   if (!state_.best.ids.empty()) {
     const auto some = searchedSamples(kClusterCounts[state_.tried - 1]);
-    best = fitted(columnsOf(points_, some), state_.best.ids, -1, some.size() < count_);
+    best = fitted(columnsOf(points_, some), state_.best.ids, -1, some.size() < count_, importanceOf(some));
   }
   for (; state_.tried < std::size(kClusterCounts); ++state_.tried, state_.rounds = {}) {
     const std::uint32_t clusters = kClusterCounts[state_.tried];
@@ -293,7 +308,7 @@ std::optional<Clustering> Coder::search() {
 bool Coder::searchAndAssign() {
   const auto few = settings_.clusters > 0 ? fromSome(settings_.clusters, settings_.axes) : search();
   if (!few) return false;
-  state_.rounds = {assignClusters(points_, few->clusters, few->step, {}), 0};
+  state_.rounds = {assignClusters(points_, few->clusters, few->step, {}, importance_), 0};
   state_.step = CodingState::Step::Refine;
   return !stopped();
 }
@@ -317,9 +332,11 @@ std::optional<bool> Coder::fitToBound(Clustering& found) {
     if (met && double{best.error} > 0.98 * bound) break;
     if (best.planes.empty() && met) break;  // nothing left to save
     // Part of the error does not depend on the step (rounded means and axes, the weaker of the two blocks).
-    // The rest has to make up for it, so the step goes down by the square of the ratio.
+    // The rest has to make up for it, so the step goes down by the square of the ratio, and by more where
+    // that has not sufficed.
     const double ratio = 0.995 * bound / std::max(double{error}, 1e-12);
-    state_.quantum *= std::clamp(met ? ratio : ratio * ratio, 0.3, 1.5);
+    const double power = met ? 1.0 : state_.attempt < 2 ? 2.0 : std::exp2(state_.attempt);
+    state_.quantum *= std::clamp(std::pow(ratio, power), 0.3, 1.5);
     ++state_.attempt;
     if (stopped()) return std::nullopt;
   }

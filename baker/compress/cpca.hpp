@@ -1,12 +1,14 @@
 // The room baker/compress owns lossy coding: this file codes the transfer vectors of one cell, and
 // draco_encode.hpp codes meshes. It follows clustered principal components (Sloan, Hall, Hart, Snyder 2003)
 // with quantized weights, and keeps the relative RMS error of shaded radiance over real lights under a bound:
-//   sqrt( sum_s sum_i W_i (t_s,i - t'_s,i)² / sum_s sum_i W_i t_s,i² ) <= bound
-// The bound holds for each block (shadowed light, and full light, which is shown) by itself. W_i is the band
-// power of light (light_weights.hpp) for columns of the environment; columns of the group's lights are
-// weighted so that each light counts as much as the whole environment. W_i is multiplied by (A_l/pi)² of the
-// output's band for normal maps, and by the power of a lobe in that band for glossy surfaces. For visibility,
-// an error in coefficient k changes what is reflected by a power of Σ_ij lobe_i light_j Γ_ijk².
+//   sqrt( sum_s G_s sum_i W_i (t_s,i - t'_s,i)² / sum_s sum_i W_i t_s,i² ) <= bound
+// G_s makes errors in dark samples count more, since eyes adapt (sampleImportance in cpca_space.hpp); each
+// cluster has steps of its own by it. The bound holds for each block (shadowed light, and full light, which
+// is shown) by itself. W_i is the band power of light (light_weights.hpp) for columns of the environment;
+// columns of the group's lights are weighted so that each light counts as much as the whole environment. W_i
+// is multiplied by (A_l/pi)² of the output's band for normal maps, and by the power of a lobe in that band
+// for glossy surfaces. For visibility, an error in coefficient k changes what is reflected by a power of Σ_ij
+// lobe_i light_j Γ_ijk².
 //
 // The number of clusters and of axes in each is whatever codes to the fewest bytes (codebook, ids and weights
 // after entropy coding). Planes come by falling variance, so any prefix renders. Coding works on several

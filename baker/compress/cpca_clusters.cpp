@@ -45,14 +45,16 @@ double hashed(std::uint64_t counter) {
   return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53;
 }
 
-double expectedError(const Cluster& cluster, double step) {
+double expectedError(const Cluster& cluster, double common_step) {
+  const double step = stepOf(cluster, common_step);
   double error = 0.0;
   for (Eigen::Index j = 0; j < cluster.variances.size(); ++j)
     error += j < cluster.kept ? step * step / 12.0 : cluster.variances(j);
-  return error;
+  return cluster.importance * error;
 }
 
-void keepAxesOf(Cluster& cluster, double step) {
+void keepAxesOf(Cluster& cluster, double common_step) {
+  const double step = stepOf(cluster, common_step);
   cluster.kept = 0;
   const double noise = step * step / 12.0, price = bitPrice(step);
   for (Eigen::Index j = 0; j < cluster.variances.size(); ++j) {
@@ -92,12 +94,16 @@ std::vector<std::vector<std::uint32_t>> candidates(const Eigen::MatrixXf& distan
 
 }  // namespace
 
+double stepOf(const Cluster& cluster, double step) {
+  return step / std::sqrt(cluster.importance);
+}
+
 double axisGrid(Eigen::Index rank, double variance, double step, double count) {
   const double share = std::clamp(static_cast<double>(rank) / count, kLeastAxisShare, kMostAxisShare);
   return step * std::sqrt(share / (static_cast<double>(rank) * variance));
 }
 
-ClusterIds seedClusters(const Points& points, std::uint32_t clusters) {
+ClusterIds seedClusters(const Points& points, std::uint32_t clusters, Importance importance) {
   const auto count = static_cast<std::size_t>(points.cols());
   ClusterIds ids(count, 0);
   std::vector<double> distance(count, std::numeric_limits<double>::infinity());
@@ -105,7 +111,8 @@ ClusterIds seedClusters(const Points& points, std::uint32_t clusters) {
   for (std::uint32_t c = 0; c < clusters; ++c) {
     parallelRanges(count, kPointsPerRange, {}, [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
-        const double d = double{(points.col(static_cast<Eigen::Index>(s)) - points.col(seed)).squaredNorm()};
+        const double d = double{(points.col(static_cast<Eigen::Index>(s)) - points.col(seed)).squaredNorm()} *
+                         (importance.empty() ? 1.0 : double{importance[s]});
         if (d >= distance[s]) continue;
         distance[s] = d;
         ids[s] = c;
@@ -125,7 +132,8 @@ ClusterIds seedClusters(const Points& points, std::uint32_t clusters) {
   return ids;
 }
 
-std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out, double least_bits) {
+std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out, double least_bits,
+                                 Importance importance) {
   const std::uint32_t numbered = ids.empty() ? 0 : *std::max_element(ids.begin(), ids.end()) + 1;
   std::vector<std::vector<std::uint32_t>> members(numbered);
   for (std::uint32_t s = 0; s < ids.size(); ++s) members[ids[s]].push_back(s);
@@ -145,6 +153,11 @@ std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool hel
     const std::vector<std::uint32_t>& own = members[c];
     cluster.count = static_cast<double>(own.size());
     cluster.least_bits = least_bits;
+    if (!importance.empty()) {
+      double sum = 0.0;
+      for (const std::uint32_t s : own) sum += double{importance[s]};
+      cluster.importance = sum / cluster.count;
+    }
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(points.rows());
     for (const std::uint32_t s : own) sum += points.col(s).cast<double>();
     cluster.mean = (sum / cluster.count).cast<float>();
@@ -184,9 +197,10 @@ void keepSoMany(std::vector<Cluster>& clusters, int axes) {
 }
 
 double stepFor(std::vector<Cluster>& clusters, double budget) {
-  double total = 0.0, largest = 0.0;
+  double total = 0.0, largest = 0.0, most = 1.0;
   for (const Cluster& cluster : clusters) {
     total += cluster.count;
+    most = std::max(most, cluster.importance);
     if (cluster.variances.size() > 0) largest = std::max(largest, cluster.variances.maxCoeff());
   }
   const auto error = [&](double step) {
@@ -195,7 +209,7 @@ double stepFor(std::vector<Cluster>& clusters, double budget) {
     for (const Cluster& cluster : clusters) sum += cluster.count * expectedError(cluster, step);
     return sum / total;
   };
-  double high = std::sqrt(12.0 * std::max(largest, budget)), low = 1e-6 * high;
+  double high = std::sqrt(12.0 * std::max(largest, budget) * most), low = 1e-6 * high;
   if (error(high) <= budget) return high;
   for (int i = 0; i < 24; ++i) {
     const double middle = std::sqrt(low * high);
@@ -206,10 +220,11 @@ double stepFor(std::vector<Cluster>& clusters, double budget) {
 }
 
 ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clusters, double step,
-                          std::span<const std::uint32_t> before) {
+                          std::span<const std::uint32_t> before, Importance importance) {
   struct Prepared {
     Eigen::VectorXf spread;  // price of a weight's distance from 0
-    float cost = 0.0f;
+    float noise = 0.0f;      // square error of the weights
+    float cost = 0.0f;       // price of the bits
   };
   const double price = bitPrice(step);
   double largest = 0.0;
@@ -220,15 +235,17 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
     const Cluster& cluster = clusters[c];
     means.col(static_cast<Eigen::Index>(c)) = cluster.mean;
     prepared[c].spread.resize(cluster.kept);
-    double cost = 0.0;
+    const double own_step = stepOf(cluster, step);
+    double cost = 0.0, noise = 0.0;
     for (Eigen::Index j = 0; j < cluster.kept; ++j) {
       const double variance = cluster.variances(j);
-      cost += step * step / 12.0 +
-              price * (weightBits(std::min(variance, cluster.innovation(j)), step, cluster.least_bits) -
+      noise += own_step * own_step / 12.0;
+      cost += price * (weightBits(std::min(variance, cluster.innovation(j)), own_step, cluster.least_bits) -
                        0.5 / std::numbers::ln2);
       prepared[c].spread(j) =
-          static_cast<float>(price * 0.5 / std::numbers::ln2 / (variance + step * step / 12.0));
+          static_cast<float>(price * 0.5 / std::numbers::ln2 / (variance + own_step * own_step / 12.0));
     }
+    prepared[c].noise = static_cast<float>(noise);
     // Small clusters lose their members to others, unless all clusters are small.
     const bool open = cluster.count >= std::min(largest, kFewestMembers);
     prepared[c].cost = open ? static_cast<float>(cost) : std::numeric_limits<float>::max();
@@ -255,8 +272,9 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
       for (Eigen::Index m = 0; m < count; ++m) {
         const std::uint32_t in_block = samples[static_cast<std::size_t>(m)];
         const std::size_t s = begin + in_block;
-        float cost = off.col(m).squaredNorm() - weights.col(m).squaredNorm() + prepared[c].cost +
-                     weights.col(m).cwiseAbs2().dot(prepared[c].spread);
+        const float counts = importance.empty() ? 1.0f : importance[s];
+        float cost = counts * (off.col(m).squaredNorm() - weights.col(m).squaredNorm() + prepared[c].noise) +
+                     prepared[c].cost + weights.col(m).cwiseAbs2().dot(prepared[c].spread);
         // The id of a cluster costs almost nothing if a neighbour has the same one.
         if (!before.empty() &&
             !((s > 0 && before[s - 1] == c) || (s + 1 < before.size() && before[s + 1] == c)))
@@ -270,11 +288,11 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
   return ids;
 }
 
-double expectedBytes(const std::vector<Cluster>& clusters, double step, double count) {
+double expectedBytes(const std::vector<Cluster>& clusters, double common_step, double count) {
   double total = 0.0, bits = 0.0;
   for (const Cluster& cluster : clusters) total += cluster.count;
   for (const Cluster& cluster : clusters) {
-    const double share = cluster.count / total * count;
+    const double share = cluster.count / total * count, step = stepOf(cluster, common_step);
     for (Eigen::Index j = 0; j < cluster.kept; ++j)
       bits += share * weightBits(std::min(cluster.variances(j), cluster.innovation(j)), step,
                                  cluster.least_bits) +

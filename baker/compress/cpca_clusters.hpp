@@ -14,8 +14,12 @@
 
 namespace lambent::baker {
 
+// How much an error in each sample counts (sampleImportance in cpca_space.hpp). Empty: 1 for all.
+using Importance = std::span<const float>;
+
 struct Cluster {
   double count = 0.0;
+  double importance = 1.0;  // mean of its samples
   Eigen::VectorXf mean;
   Eigen::MatrixXf axes;        // all that the cluster's samples span, by falling variance
   Eigen::VectorXd variances;   // variances of the weights along each axis
@@ -28,12 +32,15 @@ using ClusterIds = std::vector<std::uint32_t>;
 
 // Chooses means by k-means++ (Arthur and Vassilvitskii 2007) with hashed instead of random numbers. Returns
 // fewer than `clusters` if there are fewer distinct points.
-ClusterIds seedClusters(const Points& points, std::uint32_t clusters);
+ClusterIds seedClusters(const Points& points, std::uint32_t clusters, Importance importance = {});
 
 // Drops clusters without samples and renumbers the ids. With `held_out`, variances are estimated as for
 // samples that were not fitted, which suits estimates from few samples.
 std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out,
-                                 double least_bits = 0.1);
+                                 double least_bits = 0.1, Importance importance = {});
+
+// Returns the step of a cluster's weights: errors of samples that count more are smaller.
+double stepOf(const Cluster& cluster, double step);
 
 // Returns how finely the coordinates of a unit axis must be known if its `count` weights have this variance.
 // One bit less on any number, coordinate or weight, should add the same error; so errors of the axis times
@@ -52,7 +59,7 @@ double stepFor(std::vector<Cluster>& clusters, double budget);
 
 // Moves every sample to the cluster where it costs least. `before` holds the current ids, or is empty.
 ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clusters, double step,
-                          std::span<const std::uint32_t> before);
+                          std::span<const std::uint32_t> before, Importance importance = {});
 
 // Returns the expected size of codebook, ids and weights if the clusters held `count` samples in all.
 double expectedBytes(const std::vector<Cluster>& clusters, double step, double count);

@@ -31,7 +31,8 @@ struct CodedCluster {
 };
 
 CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> members, const Cluster& cluster,
-                         double mean_grid, double step) {
+                         double mean_grid, double common_step) {
+  const double step = stepOf(cluster, common_step);
   const Eigen::Index rank = points.rows();
   CodedCluster coded;
   Eigen::VectorXd mean(rank);
@@ -112,12 +113,14 @@ CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::v
     coded.cluster_of.push_back(place[ids[s]]);
     members[place[ids[s]]].push_back(s);
   }
-  double mean_axes = 1.0;
+  double mean_axes = 1.0, most = 1e-300;
+  for (const Cluster& cluster : clusters) most = std::max(most, cluster.importance);
   for (const Cluster& cluster : clusters)
     mean_axes += cluster.count / static_cast<double>(ids.size()) * static_cast<double>(cluster.kept);
   const auto rank = static_cast<std::size_t>(points.rows());
   // Errors of the means add a fiftieth, since no weight corrects them along axes that are left out.
-  double mean_grid = step * std::sqrt(0.02 * mean_axes / static_cast<double>(std::max<std::size_t>(rank, 1)));
+  double mean_grid =
+      step * std::sqrt(0.02 * mean_axes / (most * static_cast<double>(std::max<std::size_t>(rank, 1))));
   for (const Cluster& cluster : clusters)
     mean_grid = std::max(mean_grid, double{cluster.mean.cwiseAbs().maxCoeff()} / kLargestCoordinate);
   mean_grid = double{static_cast<float>(mean_grid)};

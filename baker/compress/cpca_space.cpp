@@ -17,6 +17,7 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kSamplesPerSum = 1024;  // samples in one range of a sum
+constexpr double kDarkest = 0.02;             // share of the RMS below which samples count alike
 
 std::size_t shadowedSize(const transfer::TransferShape& shape) {
   if (shape.isVisibility()) return shape.size();
@@ -143,6 +144,34 @@ double transferEnergy(std::span<const float> vectors, const transfer::TransferSh
   return channelWeight(shape) * sum;
 }
 
+std::vector<float> sampleImportance(std::span<const float> vectors, const transfer::TransferShape& shape,
+                                    double shown_energy, const BandPower& kernel_power) {
+  const std::size_t size = shape.size(), count = vectors.size() / size;
+  if (shown_energy > 0.0 || shape.isVisibility()) return std::vector<float>(count, 1.0f);
+  const std::vector<double> roots = normalisedRoots(vectors, shape, 0.0, kernel_power);
+  std::vector<double> squares(count, 0.0);
+  parallelRanges(count, kSamplesPerSum, {}, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      for (std::size_t i = 0; i < size; ++i) {
+        const double v = roots[i] * double{vectors[s * size + i]};
+        squares[s] += v * v;
+      }
+  });
+  double energy = 0.0;
+  for (const double square : squares) energy += square;
+  if (!(energy > 0.0)) return std::vector<float>(count, 1.0f);
+  std::vector<double> counts(count);
+  double eased = 0.0;
+  for (std::size_t s = 0; s < count; ++s) {
+    const double x = std::sqrt(squares[s] * static_cast<double>(count) / energy);
+    counts[s] = 1.0 / (kDarkest + x);
+    eased += counts[s] * squares[s];
+  }
+  std::vector<float> importance(count);
+  for (std::size_t s = 0; s < count; ++s) importance[s] = static_cast<float>(counts[s] * energy / eased);
+  return importance;
+}
+
 WeightedSpace weightedSpace(std::span<const float> vectors, const transfer::TransferShape& shape,
                             double shown_energy, const BandPower& kernel_power) {
   WeightedSpace space{normalisedRoots(vectors, shape, shown_energy, kernel_power), 1.0};
@@ -159,8 +188,11 @@ double radianceError(std::span<const float> truth, std::span<const float> coded,
   const std::size_t size = shape.size();
   assert(truth.size() == coded.size() && truth.size() % size == 0);
   const std::vector<double> roots = normalisedRoots(truth, shape, shown_energy, kernel_power);
-  const auto off = energies(size, truth.size() / size,
-                            [&](std::size_t at) { return double{coded[at]} - double{truth[at]}; });
+  std::vector<float> importance = sampleImportance(truth, shape, shown_energy, kernel_power);
+  for (float& one : importance) one = std::sqrt(one);
+  const auto off = energies(size, truth.size() / size, [&](std::size_t at) {
+    return double{importance[at / size]} * (double{coded[at]} - double{truth[at]});
+  });
   double worst = 0.0;
   for (const Block& block : blocksOf(shape)) {
     double sum = 0.0;

@@ -13,6 +13,14 @@
 
 namespace lambent::baker {
 
+// Returns how much the square error of each sample counts: 1 / (ε + x), x being the sample's brightness
+// relative to the RMS of all, scaled so that the energy of all samples together stays what it is. An eye that
+// has adapted to a room sees errors relative to what is there, and not to what stands in the window. It is 1
+// for parts that are shown together with others (CodingSettings::shown_energy, visibility), since the
+// brightness of one part says too little.
+std::vector<float> sampleImportance(std::span<const float> vectors, const transfer::TransferShape& shape,
+                                    double shown_energy, const BandPower& kernel_power);
+
 struct WeightedSpace {
   std::vector<double> roots;  // one per value of a vector; 0 where the cell has no energy
   double blocks = 1.0;        // sum of the energies of all blocks, weighted as in `roots`

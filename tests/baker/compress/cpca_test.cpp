@@ -182,6 +182,20 @@ TEST(ClusteredCoding, OfLampsKnowsTheFewSamplesNextToThem) {
   EXPECT_LE(coded.error, 0.003f);
 }
 
+TEST(ClusteredCoding, OfADarkRoomWithABrightSillKnowsTheRoom) {
+  const auto shape = shapeOf(5);
+  constexpr float kBound = 0.005f;
+  auto vectors = bumpyTransfer(2000, shape, 15);
+  for (std::size_t s = 0; s < 200; ++s)
+    for (std::size_t i = 0; i < shape.size(); ++i) vectors[s * shape.size() + i] *= 100.0f;
+  const auto back = decoded(code(vectors, shape, kBound));
+  const auto first = static_cast<std::ptrdiff_t>(200 * shape.size());
+  const std::vector<float> room(vectors.begin() + first, vectors.end()),
+      coded(back.begin() + first, back.end());
+  // Errors spread evenly would be kBound times the RMS of all, which is 32 times what the room has.
+  EXPECT_LT(radianceError(room, coded, shape), 5.0 * double{kBound});
+}
+
 TEST(ClusteredCoding, AnyPrefixRendersAndMoreIsBetter) {
   const auto shape = shapeOf(5, 1, 3);
   const auto vectors = bumpyTransfer(900, shape, 9);
@@ -342,6 +356,15 @@ TEST(RadianceError, IsRelativeToTheBlockAndTakesTheWorse) {
   coded[1] += 1.2f;  // of an energy of 24
   EXPECT_NEAR(radianceError(truth, coded, shape), 1.2 / std::sqrt(24.0), 1e-6);
   EXPECT_EQ(radianceError(truth, truth, shape), 0.0);
+}
+
+TEST(RadianceError, CountsOneOverTheBrightnessOfASample) {
+  const auto shape = shapeOf(1);
+  const std::vector<float> truth = {1.0f, 0.1f};
+  const double rms = std::sqrt(0.505), bright = 1.0 / (0.02 + 1.0 / rms), dark = 1.0 / (0.02 + 0.1 / rms);
+  const double eased = bright * 1.0 + dark * 0.01;  // of an energy of 1.01
+  EXPECT_NEAR(radianceError(truth, std::vector{1.01f, 0.1f}, shape), 0.01 * std::sqrt(bright / eased), 1e-6);
+  EXPECT_NEAR(radianceError(truth, std::vector{1.0f, 0.11f}, shape), 0.01 * std::sqrt(dark / eased), 1e-6);
 }
 
 TEST(RadianceError, OfWhatIsNotANumberIsNone) {
