@@ -13,6 +13,7 @@
 
 #include "lambent_bounces_embedded.hpp"
 #include "runtime/draws/surface_record.hpp"
+#include "runtime/lighting/light_blocks.hpp"
 #include "runtime/shadows/shadowed_light_record.hpp"
 
 namespace lambent::frame {
@@ -114,9 +115,14 @@ RoomLights PatchBounces::lightsIn(const World& world, const LitScene& scene, con
     found.keys.push_back(key);
   }
   for (std::size_t s = 0; s < resident.light_probes.size(); ++s) {
-    const std::span<const glm::vec4> bands = lights.bands->coefficients().subspan(
-        lights.bands->firstOf(group, s) + lighting::GroupLights::kBlock, lighting::GroupLights::kBlock);
-    found.bands.push_back({.position = resident.light_probes[s], .light = {bands.begin(), bands.end()}});
+    const auto block = [&](std::uint32_t first) {
+      return lights.bands->coefficients().subspan(first, lighting::GroupLights::kBlock);
+    };
+    const std::uint32_t first = lights.bands->firstOf(group, s);
+    const auto rest = block(first), keys = block(first + lighting::GroupLights::kBlock);
+    KeyBands& bands = found.bands.emplace_back(resident.light_probes[s]);
+    bands.keys.assign(keys.begin(), keys.end());
+    for (std::size_t c = 0; c < keys.size(); ++c) bands.all.push_back(rest[c] + keys[c]);
   }
   return found;
 }
@@ -284,7 +290,7 @@ void PatchBounces::layOut(const World& world) {
   for (std::size_t i = 0; i < draws.size(); ++i) {
     if (!draws_[i].links || !lit(world, i)) continue;
     words[i] = word;
-    word += 3 * outputsOf(draws[i]) * world.residency().meshes()[draws[i].mesh].vertex_count;
+    word += (3 * outputsOf(draws[i]) + 1) * world.residency().meshes()[draws[i].mesh].vertex_count;
   }
   if (words == words_) return;
   words_ = std::move(words);
@@ -302,6 +308,11 @@ void PatchBounces::uploadPatches(gpu::Counters& counters) {
     const lighting::PatchRegions& regions = room.room.transport()->regions();
     for (const glm::vec3& radiance : regions.means(room.room.givenOff()))
       patches.emplace_back(radiance, 0.0f);
+    if (!room.room.givenOffByBands().empty()) {
+      glm::vec4* patch = &patches[room.first_patch];
+      for (const glm::vec3& radiance : regions.means(room.room.givenOffByBands()))
+        patch++->w = static_cast<float>(lighting::luminance(radiance));
+    }
     patches.emplace_back(0.0f);
   }
   if (patches.empty()) return;

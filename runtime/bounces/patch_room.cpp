@@ -82,16 +82,16 @@ std::vector<PatchRoom::Source> PatchRoom::shineAll(const RoomLights& lights,
 
 // Interpolates between light probes with weights by squared distance, which is as smooth as probes are meant
 // to be.
-std::vector<glm::vec3> PatchRoom::bandsOnPatches(const std::vector<KeyBands>& bands) const {
+std::vector<glm::vec3> PatchRoom::bandsOnPatches(std::vector<glm::vec4> KeyBands::*light) const {
   const lighting::Patches& patches = transport_->patches();
   const float least = 1e-3f * patches.extent();
   std::vector<glm::vec3> direct;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     glm::vec3 sum(0.0f);
     float weights = 0.0f;
-    for (const KeyBands& probe : bands) {
+    for (const KeyBands& probe : bands_) {
       const float away = std::max(glm::distance(patches.all()[i].points[0], probe.position), least);
-      sum += transport_->direct(i, probe.light) / (away * away);
+      sum += transport_->direct(i, probe.*light) / (away * away);
       weights += 1.0f / (away * away);
     }
     direct.push_back(sum / weights);
@@ -121,8 +121,12 @@ void PatchRoom::light(const RoomLights& lights, const glm::mat4& world_from_grou
   if (same) return;
   if (!same_bands) {
     bands_ = lights.bands;
-    by_bands_.clear();
-    if (!bands_.empty()) by_bands_ = bandsOnPatches(bands_);
+    keys_by_bands_.clear();
+    given_off_by_bands_.clear();
+    if (!bands_.empty()) {
+      keys_by_bands_ = bandsOnPatches(&KeyBands::keys);
+      given_off_by_bands_ = transport_->bounce(bandsOnPatches(&KeyBands::all));
+    }
   }
 
   std::vector<glm::vec3> given_off;
@@ -130,8 +134,8 @@ void PatchRoom::light(const RoomLights& lights, const glm::mat4& world_from_grou
     std::vector<glm::vec3> direct(transport_->patches().size(), glm::vec3(0.0f));
     for (std::size_t k = 0; k < sources_.size(); ++k)
       for (std::size_t i = 0; i < direct.size(); ++i) direct[i] += powers_[k] * sources_[k].direct[i];
-    if (!by_bands_.empty())
-      for (std::size_t i = 0; i < direct.size(); ++i) direct[i] -= by_bands_[i];
+    if (!keys_by_bands_.empty())
+      for (std::size_t i = 0; i < direct.size(); ++i) direct[i] -= keys_by_bands_[i];
     given_off = transport_->bounce(direct);
   }
   drift_ += changeBetween(given_off_, given_off);

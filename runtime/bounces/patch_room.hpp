@@ -4,6 +4,10 @@
 // group's transfer already carries bounced light, as far as a few bands know where they fall. What the bands
 // say is therefore subtracted here: patches carry the difference between a key light with its shadows and its
 // bands, and the detail of transfer is kept. No GL.
+//
+// Patches are coarse, and what they take away may be more than the light that transfer brings. Therefore they
+// also say what they reflect of all light as the bands know it: where that is more than transfer knows of,
+// they take away in proportion (shareOfChange in patch_change.glsl).
 #pragma once
 
 #include <cstdint>
@@ -23,10 +27,12 @@
 
 namespace lambent::frame {
 
-// Holds the bands of the key lights at one light probe, as transfer uses them, in the group's frame.
+// Holds the bands of the light at one light probe, as transfer uses them, in the group's frame. Each has at
+// least as many coefficients as order² of the transport.
 struct KeyBands {
   glm::vec3 position{0.0f};
-  std::vector<glm::vec4> light;  // at least as many coefficients as order² of the transport
+  std::vector<glm::vec4> keys;  // of the key lights
+  std::vector<glm::vec4> all;   // of all light, key lights included
   bool operator==(const KeyBands&) const = default;
 };
 
@@ -53,7 +59,9 @@ class PatchRoom {
   // Returns the exit radiance of each patch after any number of bounces. For key lights it is the difference
   // to their bands, so it may be below 0. Empty if no light shines.
   const std::vector<glm::vec3>& givenOff() const { return given_off_; }
-  // Rises when givenOff() changes.
+  // Returns the exit radiance of each patch by the bands of all light. Empty if there are no key lights.
+  const std::vector<glm::vec3>& givenOffByBands() const { return given_off_by_bands_; }
+  // Rises when one of these changes.
   std::uint64_t version() const { return version_; }
   // Returns the sum of all relative changes of givenOff() so far.
   double drift() const { return drift_; }
@@ -67,16 +75,16 @@ class PatchRoom {
   };
   // Traces rays for the lights that are not in `kept`.
   std::vector<Source> shineAll(const RoomLights& lights, const std::vector<Source>& kept);
-  std::vector<glm::vec3> bandsOnPatches(const std::vector<KeyBands>& bands) const;
+  std::vector<glm::vec3> bandsOnPatches(std::vector<glm::vec4> KeyBands::*light) const;
 
   std::shared_ptr<const lighting::PatchTransport> transport_;
   std::vector<Source> sources_;
   std::vector<glm::vec3> powers_;
   std::vector<KeyBands> bands_;
-  std::vector<glm::vec3> by_bands_;  // E/pi of the patches due to these
+  std::vector<glm::vec3> keys_by_bands_;  // E/pi of the patches due to these
   glm::mat4 world_from_group_{1.0f};
   std::vector<lighting::RayTriangle> others_;
-  std::vector<glm::vec3> given_off_;
+  std::vector<glm::vec3> given_off_, given_off_by_bands_;
   std::uint64_t version_ = 0;
   double drift_ = 0.0;
   std::uint32_t traced_ = 0;

@@ -18,8 +18,8 @@ using glm::mat3x4;
 
 LAMBENT_CONSTANT kBindPatchDraw = 0u;        // uniform block PatchDraw
 LAMBENT_CONSTANT kBindPatchLinks = 0u;       // kPatchLinks patches of 16 bits per vertex
-LAMBENT_CONSTANT kBindPatches = 1u;          // vec4: exit radiance per patch; each group has one more, dark
-LAMBENT_CONSTANT kBindPatchBounced = 2u;     // per vertex 3 floats, E/pi, or 27, light of bands 0..2
+LAMBENT_CONSTANT kBindPatches = 1u;          // vec4 per patch: exit radiance, and the luminance of that by the bands of all light; each group has one more, dark
+LAMBENT_CONSTANT kBindPatchBounced = 2u;     // per vertex 3 floats, E/pi, or 27, light of bands 0..2; then the luminance of the first by the bands of all light
 LAMBENT_CONSTANT kBindPatchGeometry = 3u;    // arena page
 LAMBENT_CONSTANT kBindPatchDirections = 4u;  // vec4: directions of the links, in the vertex's frame
 

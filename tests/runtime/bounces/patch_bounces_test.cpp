@@ -123,4 +123,41 @@ TEST_F(PatchBouncesTest, OutsideOfTheRoomTheLampLeavesNothingInIt) {
   EXPECT_EQ(stage.frame->counts()["shadowed_lights"], 0u);
 }
 
+// Patches are coarse: beside a bright sill they may claim more light than there is. A sun that its bands
+// bring in, and that the ceiling keeps out, then took away all the light there was.
+TEST_F(PatchBouncesTest, WherePatchesClaimMoreThanTransferKnowsTheyTakeAwayInProportion) {
+  for (const bool mapped : {false, true}) {
+    // Transfer knows of a little bounced light. Patches are a floor and a ceiling, whose light is a hundred
+    // times that.
+    const auto pictureOf = [&](float known) {
+      BundleBuilder builder;
+      builder.add(insideOfSphere()).bounces();
+      if (mapped) builder.normalMapped();
+      const std::size_t size = 2 * 9 * (mapped ? 9 : 1);
+      builder.transfer([&](const glm::vec3&) {
+        std::vector<float> transfer(size, 0.0f);
+        transfer[size / 2] = known;
+        return transfer;
+      });
+      LiveStage stage(
+          builder,
+          {spec::ConstantLight{.radiance = glm::vec3(1.0f)},
+           spec::SunLight{
+               .azimuth_deg = 90, .elevation_deg = 0, .angle_deg = 4, .radiance = glm::vec3(2000.0f)}});
+      stage.environment.setMostKeys(FrameSettings::kAutoKeys);
+      const glm::vec3 low(-1.2f), high(1.2f), x(2.4f, 0, 0), z(0, 0, 2.4f), albedo(0.8f);
+      bundle::CaptureProxy hall = RoomBuilder().wall(low, z, x, albedo).wall(high, -x, -z, albedo).proxy();
+      EXPECT_TRUE(stage.world.residency().upload(0, streaming::ProxyChunk{{}, std::move(hall)}));
+      const double shown = middleOf(stage.picture());
+      EXPECT_EQ(stage.frame->counts()["patch_rooms"], 1u);
+      return shown;
+    };
+    EXPECT_NEAR(pictureOf(0.0f), 0.0, 1e-3) << (mapped ? "mapped" : "plain");
+    if (mapped) continue;
+    const double little = pictureOf(1e-3f), twice = pictureOf(2e-3f);
+    EXPECT_GT(little, 0.0) << "the sky's share stays";
+    EXPECT_NEAR(twice / little, 2.0, 0.02);
+  }
+}
+
 }  // namespace lambent::frame

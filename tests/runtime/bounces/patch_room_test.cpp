@@ -226,8 +226,9 @@ spec::Disc sunAt(const glm::vec3& direction, float radius_rad = 0.05f) {
 
 // Returns the part that transfer gets from key lights at an unoccluded light probe.
 KeyBands bandsOf(const std::vector<spec::Disc>& keys, const glm::vec3& position) {
-  KeyBands bands{.position = position, .light = {}};
-  for (const glm::vec3& c : spec::discVector(keys).c) bands.light.emplace_back(c, 0.0f);
+  KeyBands bands{.position = position, .keys = {}, .all = {}};
+  for (const glm::vec3& c : spec::discVector(keys).c) bands.keys.emplace_back(c, 0.0f);
+  bands.all = bands.keys;
   return bands;
 }
 
@@ -235,7 +236,7 @@ KeyBands bandsOf(const std::vector<spec::Disc>& keys, const glm::vec3& position)
 std::vector<glm::vec3> givenOffByBands(const PatchTransport& transport, const KeyBands& bands) {
   std::vector<glm::vec3> direct;
   for (std::size_t i = 0; i < transport.patches().size(); ++i)
-    direct.push_back(transport.direct(i, bands.light));
+    direct.push_back(transport.direct(i, bands.keys));
   return transport.bounce(direct);
 }
 

@@ -1,0 +1,10 @@
+// Bounds what patches take away of the light that transfer brings (patch_room.hpp).
+//
+// known: the first output of transfer (E/pi, or band 0 of the light); change: the same of patches; by_bands: luminance
+// of what patches say that transfer brings. Where patches claim more than transfer knows of, they see more of a bright
+// place than there is to see, and take away in proportion. Returns the share of the change that is applied.
+float shareOfChange(vec3 known, vec3 change, float by_bands) {
+  const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
+  if (dot(change, kLuminance) >= 0.0) return 1.0;
+  return clamp(dot(known, kLuminance) / max(by_bands, 1e-20), 0.0, 1.0);
+}
