@@ -85,10 +85,11 @@ TEST_F(SharedScenes, BakeAndShowOrAreRefusedInOneRightLine) {
   std::size_t shown = 0;
   for (const std::filesystem::path& file : files) {
     const std::string name = file.generic_string();
-    // Few rays and bounces suffice to see that scenes bake, and this is the longest of all tests.
+    // Few rays, bands and bounces suffice to see that scenes bake, and this is the longest of all tests.
     const Outcome baked =
-        run(LAMBENT_PROGRAM, {"bake", (scenes / file).string(), "-o", bundle.string(), "--quality", "draft",
-                              "--rays", "128", "--bounces", "2", "--force"});
+        run(LAMBENT_PROGRAM,
+            {"bake", (scenes / file).string(), "-o", bundle.string(), "--quality", "draft", "--rays", "128",
+             "--bounces", "2", "--refine", "0.1", "--order", "3", "--glossy-order", "4", "--force"});
     const auto refused = kRefused.find(name);
     if (refused != kRefused.end() || isPointsOrLines(name)) {
       const std::string why = refused != kRefused.end() ? refused->second : "has no triangles";
