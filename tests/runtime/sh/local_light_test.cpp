@@ -203,6 +203,18 @@ TEST(ShLocalLight, NothingJumpsWhileADiscPassesBeforeThePoint) {
   }
 }
 
+TEST(ShLocalLight, AtTheRimADiscIsHalfTheSkyBeforeIt) {
+  // From just before the plane the rim is a straight line through the point, and the disc fills a quarter of
+  // all directions. Within a ten thousandth of a radius beside the rim the answer may be that of the rim.
+  for (const double height : {5e-5, 1e-6, 1e-9, 1e-12, 1e-15})
+    for (const double aside : {1.0, 1.0 + 0.3 * height, 1.0 - 0.3 * height}) {
+      const LightVector light = discAreaLight(kMaxOrder, {aside, 0, height}, {0, 0, -1}, 1.0, kWhite);
+      const double turned = std::atan((aside - 1.0) / height);  // of the rim, seen from the point
+      EXPECT_NEAR(double{light.c[0].r} * std::sqrt(4 * kPi), kPi, 2.0 * std::abs(turned) + 0.01)
+          << height << " before the plane, " << aside << " radii aside";
+    }
+}
+
 TEST(ShLocalLight, HardCasesStayFinite) {
   const glm::vec3 bright(1e8f);
   const glm::dvec3 down(0, -1, 0);
