@@ -9,9 +9,14 @@ struct VertexRows {
   uint entries;
 };
 
+// Loops over rows end, whatever memory holds: a GPU that is busy for ever takes its machine with it. Rows have a few
+// entries.
+const uint kMostInRow = 65536u;
+
 // Returns the range of a vertex's entries, [x, y).
 uvec2 rowOf(VertexRows rows, uint vertex) {
-  return uvec2(rowWordAt(rows.word + vertex), rowWordAt(rows.word + vertex + 1u));
+  uint first = rowWordAt(rows.word + vertex);
+  return uvec2(first, min(rowWordAt(rows.word + vertex + 1u), first + kMostInRow));
 }
 
 struct RowEntry {

@@ -16,7 +16,7 @@
 
 const float kInfinity = 1e30;
 const float kDeep = 9.2103404;  // exp(-kDeep) = 1e-4, behind which nothing is seen
-const int kMaxIntervals = 8192;  // more than any ray meets
+const int kMaxIntervals = 8192;  // more than any ray meets, of intervals and of blocks
 
 // Return density and light of volume v, looked up by place in its texture, 0..1.
 float densityAt(int v, vec3 place);
@@ -82,7 +82,8 @@ VolumeRay enterVolume(MarchRecord record, vec3 origin_vs, vec3 dir_vs, float beg
 
 // Follows the ray into the block that contains it at t. Returns false if it has left the volume.
 bool followBlocks(inout VolumeRay ray, float t) {
-  while (min(ray.exits.x, min(ray.exits.y, ray.exits.z)) <= t) {
+  for (int crossed = 0; crossed < kMaxIntervals; ++crossed) {
+    if (!(min(ray.exits.x, min(ray.exits.y, ray.exits.z)) <= t)) return true;
     bvec3 next = bvec3(false, false, true);
     if (ray.exits.x <= min(ray.exits.y, ray.exits.z))
       next = bvec3(true, false, false);
@@ -92,7 +93,7 @@ bool followBlocks(inout VolumeRay ray, float t) {
     ray.exits += vec3(next) * ray.strides;
     if (any(lessThan(ray.block, ivec3(0))) || any(greaterThan(ray.block, ray.last_block))) return false;
   }
-  return true;
+  return false;
 }
 
 bool blockFilled(VolumeRay ray, uint first_block) {
@@ -230,7 +231,7 @@ void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_V
       width = min(width, rays[v].voxel);
     }
     if (filled != 0u) {
-      float steps = max(ceil((end - t) / (step_voxels * width) - 1e-3), 1.0);
+      float steps = clamp(ceil((end - t) / (step_voxels * width) - 1e-3), 1.0, float(kMostSteps));
       width = (end - t) / steps;
       if (jitter < 1.0) steps += 1.0;
       for (float k = 0.0; k < steps && sum.a <= kDeep; k += 1.0) {

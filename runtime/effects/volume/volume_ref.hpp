@@ -216,7 +216,8 @@ inline std::vector<glm::vec4> marchVolumes(std::span<const Medium> media, std::v
       width = std::min(width, ray.voxel);
     }
     if (any) {
-      float steps = std::max(std::ceil((end - t) / (step_voxels * width) - 1e-3f), 1.0f);
+      float steps = std::clamp(std::ceil((end - t) / (step_voxels * width) - 1e-3f), 1.0f,
+                               static_cast<float>(kMostSteps));
       width = (end - t) / steps;
       if (jitter < 1.0f) steps += 1.0f;
       for (float k = 0.0f; k < steps && sum.a <= kDeep; k += 1.0f) {

@@ -36,6 +36,9 @@ LAMBENT_CONSTANT kUnitDensity = 1u;
 LAMBENT_CONSTANT kMaxMarched = 7u;  // volumes in one pass
 LAMBENT_CONSTANT kScatterGroupSize = 64u;
 LAMBENT_CONSTANT kMaxWorkGroupsX = 65535u;  // promised by OpenGL 4.5; longer lists fold into y
+// No ray needs more steps in a block, at the finest step: its diagonal is 14 voxels, and a step an eighth of a voxel or
+// half of that. A ray that is not a number must not keep the GPU busy for ever.
+LAMBENT_CONSTANT kMostSteps = 256u;
 LAMBENT_CONSTANT kBlock = 8u;               // voxels of the density along one side of a block
 LAMBENT_CONSTANT kMaxLightSide = 2048u;     // texels along a texture's side, promised by OpenGL 4.5
 
