@@ -93,7 +93,9 @@ function(lambent_test name)
       add_dependencies(${label}-tests ${name})
     endif()
   endforeach()
+  # gtest_discover_tests() loses all but the first entry of a list. One label of all words is found by each (-L files).
+  string(JOIN "-" label ${TEST_LABELS})
   # ctest begins with the tests of the highest cost, so that the longest does not run alone at the end.
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT ${TEST_TIMEOUT} COST ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
+    PROPERTIES TIMEOUT ${TEST_TIMEOUT} COST ${TEST_TIMEOUT} LABELS "${label}")
 endfunction()

@@ -271,6 +271,9 @@ TEST(VdbFile, OfTheSharedCloudIsTheSameAsItsNrrd) {
 }
 
 TEST(VdbFile, DamagedDoesNotTakeAllMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer ends a process that lacks memory, in place of throwing";
+#endif
   const auto vdb = testing::sharedFile("volumes/wdas_cloud_sixteenth.vdb");
   LAMBENT_NEEDS_SHARED(vdb);
   std::ifstream in(vdb, std::ios::binary);
