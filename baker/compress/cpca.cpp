@@ -255,7 +255,7 @@ CodedTransfer Coder::dark() const {
 Clustering Coder::fitted(const Points& points, ClusterIds ids, int axes, bool held_out,
                          Importance importance) const {
   Clustering found{std::move(ids), {}, 0.0};
-  found.clusters = fitClusters(points, found.ids, held_out, least_bits_, importance);
+  found.clusters = fitClusters(points, found.ids, held_out, importance, least_bits_);
   found.step = stepFor(found.clusters, state_.budget);
   if (axes >= 0) keepSoMany(found.clusters, axes);
   return found;

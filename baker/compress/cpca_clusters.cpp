@@ -112,7 +112,7 @@ ClusterIds seedClusters(const Points& points, std::uint32_t clusters, Importance
     parallelRanges(count, kPointsPerRange, {}, [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
         const double d = double{(points.col(static_cast<Eigen::Index>(s)) - points.col(seed)).squaredNorm()} *
-                         (importance.empty() ? 1.0 : double{importance[s]});
+                         double{importance[s]};
         if (d >= distance[s]) continue;
         distance[s] = d;
         ids[s] = c;
@@ -132,8 +132,8 @@ ClusterIds seedClusters(const Points& points, std::uint32_t clusters, Importance
   return ids;
 }
 
-std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out, double least_bits,
-                                 Importance importance) {
+std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out, Importance importance,
+                                 double least_bits) {
   const std::uint32_t numbered = ids.empty() ? 0 : *std::max_element(ids.begin(), ids.end()) + 1;
   std::vector<std::vector<std::uint32_t>> members(numbered);
   for (std::uint32_t s = 0; s < ids.size(); ++s) members[ids[s]].push_back(s);
@@ -153,11 +153,9 @@ std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool hel
     const std::vector<std::uint32_t>& own = members[c];
     cluster.count = static_cast<double>(own.size());
     cluster.least_bits = least_bits;
-    if (!importance.empty()) {
-      double sum = 0.0;
-      for (const std::uint32_t s : own) sum += double{importance[s]};
-      cluster.importance = sum / cluster.count;
-    }
+    double counts = 0.0;
+    for (const std::uint32_t s : own) counts += double{importance[s]};
+    cluster.importance = counts / cluster.count;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(points.rows());
     for (const std::uint32_t s : own) sum += points.col(s).cast<double>();
     cluster.mean = (sum / cluster.count).cast<float>();
@@ -272,9 +270,9 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
       for (Eigen::Index m = 0; m < count; ++m) {
         const std::uint32_t in_block = samples[static_cast<std::size_t>(m)];
         const std::size_t s = begin + in_block;
-        const float counts = importance.empty() ? 1.0f : importance[s];
-        float cost = counts * (off.col(m).squaredNorm() - weights.col(m).squaredNorm() + prepared[c].noise) +
-                     prepared[c].cost + weights.col(m).cwiseAbs2().dot(prepared[c].spread);
+        float cost =
+            importance[s] * (off.col(m).squaredNorm() - weights.col(m).squaredNorm() + prepared[c].noise) +
+            prepared[c].cost + weights.col(m).cwiseAbs2().dot(prepared[c].spread);
         // The id of a cluster costs almost nothing if a neighbour has the same one.
         if (!before.empty() &&
             !((s > 0 && before[s - 1] == c) || (s + 1 < before.size() && before[s + 1] == c)))

@@ -14,7 +14,7 @@
 
 namespace lambent::baker {
 
-// How much an error in each sample counts (sampleImportance in cpca_space.hpp). Empty: 1 for all.
+// How much an error in each sample counts (sampleImportance in cpca_space.hpp).
 using Importance = std::span<const float>;
 
 struct Cluster {
@@ -32,12 +32,12 @@ using ClusterIds = std::vector<std::uint32_t>;
 
 // Chooses means by k-means++ (Arthur and Vassilvitskii 2007) with hashed instead of random numbers. Returns
 // fewer than `clusters` if there are fewer distinct points.
-ClusterIds seedClusters(const Points& points, std::uint32_t clusters, Importance importance = {});
+ClusterIds seedClusters(const Points& points, std::uint32_t clusters, Importance importance);
 
 // Drops clusters without samples and renumbers the ids. With `held_out`, variances are estimated as for
 // samples that were not fitted, which suits estimates from few samples.
-std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out,
-                                 double least_bits = 0.1, Importance importance = {});
+std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out, Importance importance,
+                                 double least_bits = 0.1);
 
 // Returns the step of a cluster's weights: errors of samples that count more are smaller.
 double stepOf(const Cluster& cluster, double step);
@@ -59,7 +59,7 @@ double stepFor(std::vector<Cluster>& clusters, double budget);
 
 // Moves every sample to the cluster where it costs least. `before` holds the current ids, or is empty.
 ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clusters, double step,
-                          std::span<const std::uint32_t> before, Importance importance = {});
+                          std::span<const std::uint32_t> before, Importance importance);
 
 // Returns the expected size of codebook, ids and weights if the clusters held `count` samples in all.
 double expectedBytes(const std::vector<Cluster>& clusters, double step, double count);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/compress/cpca_clusters.hpp"
+#include "tests/baker/compress/evenly.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -70,7 +71,7 @@ TEST(Clusters, OfFewerSamplesThanCoordinatesHaveNoMoreAxesThanThose) {
   ClusterIds ids(60, 0);
   for (std::size_t s = 50; s < 59; ++s) ids[s] = 1;
   ids[59] = 2;
-  auto clusters = fitClusters(points, ids, /*held_out=*/true);
+  auto clusters = fitClusters(points, ids, /*held_out=*/true, evenly(points));
   ASSERT_EQ(clusters.size(), 3u);
   EXPECT_EQ(clusters[0].axes.cols(), 40);
   EXPECT_LE(clusters[1].axes.cols(), 9);
@@ -87,19 +88,19 @@ TEST(Clusters, OfFewerSamplesThanCoordinatesHaveNoMoreAxesThanThose) {
   EXPECT_EQ(clusters[0].kept, 20);
   EXPECT_LE(clusters[1].kept, 9);
   EXPECT_EQ(clusters[2].kept, 0);
-  EXPECT_EQ(assignClusters(points, clusters, step, ids).size(), 60u);
+  EXPECT_EQ(assignClusters(points, clusters, step, ids, evenly(points)).size(), 60u);
 }
 
 TEST(Clusters, TakeASampleAmongOthersAsTheyTakeItAlone) {
   const Points points = falling(30, 3000, 11);  // more than one range of them
-  ClusterIds ids = seedClusters(points, 20);
-  auto clusters = fitClusters(points, ids, /*held_out=*/false);
+  ClusterIds ids = seedClusters(points, 20, evenly(points));
+  auto clusters = fitClusters(points, ids, /*held_out=*/false, evenly(points));
   const double step = stepFor(clusters, 0.05);
-  const ClusterIds together = assignClusters(points, clusters, step, {});
+  const ClusterIds together = assignClusters(points, clusters, step, {}, evenly(points));
   std::size_t moved = 0;
   for (std::size_t s = 0; s < together.size(); ++s) {
     const Points alone = points.col(static_cast<Eigen::Index>(s));
-    EXPECT_EQ(assignClusters(alone, clusters, step, {}).front(), together[s]) << s;
+    EXPECT_EQ(assignClusters(alone, clusters, step, {}, evenly(alone)).front(), together[s]) << s;
     moved += together[s] != ids[s] ? 1u : 0u;
   }
   EXPECT_GT(moved, 30u) << "not just the nearest means";

@@ -13,6 +13,7 @@
 #include "baker/compress/light_weights.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
+#include "tests/baker/compress/evenly.hpp"
 #include "tests/support/heaps.hpp"
 
 namespace lambent::baker {
@@ -208,8 +209,8 @@ TEST(MatrixCoding, KeepsItsBoundWithFewerClustersWhereMemoryEndsOnTheWayThere) {
 TEST(MatrixCoding, NeverGetsWorseWithMoreAxesWhereTheAssignmentStays) {
   const Points points = pointsOf(wanderingVisibility(2000, 5), 81);
   for (const std::uint32_t count : {1u, 8u, 64u}) {
-    ClusterIds ids = seedClusters(points, count);
-    std::vector<Cluster> clusters = fitClusters(points, ids, /*held_out=*/false);
+    ClusterIds ids = seedClusters(points, count, evenly(points));
+    std::vector<Cluster> clusters = fitClusters(points, ids, /*held_out=*/false, evenly(points));
     double before = std::numeric_limits<double>::infinity();
     for (int axes = 0; axes <= 16; ++axes) {
       keepSoMany(clusters, axes);
@@ -241,7 +242,7 @@ TEST(MatrixCoding, IsVectorQuantizationWithoutAxes) {
 TEST(MatrixCoding, IsPrincipalComponentAnalysisWithOneCluster) {
   const Points points = pointsOf(wanderingVisibility(1500, 13), 81);
   ClusterIds ids(1500, 0);
-  std::vector<Cluster> one = fitClusters(points, ids, /*held_out=*/false);
+  std::vector<Cluster> one = fitClusters(points, ids, /*held_out=*/false, evenly(points));
   const Eigen::VectorXf mean = points.rowwise().mean();
   const Eigen::MatrixXd centred = (points.colwise() - mean).cast<double>();
   const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(centred).singularValues();

@@ -124,7 +124,7 @@ TEST_F(PatchBouncesTest, OutsideOfTheRoomTheLampLeavesNothingInIt) {
 }
 
 // Patches are coarse: beside a bright sill they may claim more light than there is. A sun that its bands
-// bring in, and that the ceiling keeps out, then took away all the light there was.
+// bring in, and whose rays pass along floor and ceiling, then took away all the light there was.
 TEST_F(PatchBouncesTest, WherePatchesClaimMoreThanTransferKnowsTheyTakeAwayInProportion) {
   for (const bool mapped : {false, true}) {
     // Transfer knows of a little bounced light. Patches are a floor and a ceiling, whose light is a hundred
