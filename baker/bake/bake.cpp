@@ -60,6 +60,7 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
     RefineOptions refine{.bound = bound,
                          .rays = rays,
                          .many_rays = kTimesFirstRays * rays,
+                         .glossy = options.refinesGlossy(),
                          .most_growth = options.refineGrowth(),
                          .most_added = options.refineAdded(),
                          .most_wedges = options.refineWedges()};

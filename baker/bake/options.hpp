@@ -73,6 +73,8 @@ struct BakeOptions {
   // They are those of high quality if picture_bound is set.
   double refineGrowth() const;
   std::size_t refineAdded() const;
+  // Whether edges of glossy surfaces are split. Those of drafts are not: it costs most there and shows least.
+  bool refinesGlossy() const;
   double refineWedges() const;  // fans at glossy vertices, relative to the number of vertices
   std::uint64_t effectiveMemory() const;
   std::map<std::string, std::string> settings() const;

@@ -79,17 +79,6 @@ std::vector<std::uint32_t> allOf(std::size_t count) {
   return all;
 }
 
-// Returns the triangles whose vertices pictures show, which they do not where there are texels.
-std::vector<std::uint32_t> shownTriangles(const GroupGeometry& geometry) {
-  std::vector<std::uint32_t> shown = allOf(geometry.triangles.size());
-  for (const DrawGeometry& draw : geometry.draws)
-    if (draw.texels > 0)
-      std::erase_if(shown, [&](std::uint32_t t) {
-        return t >= draw.first_triangle && t < draw.first_triangle + draw.triangle_count;
-      });
-  return shown;
-}
-
 // Gives samples that cannot be seen the most light of their neighbours, as fill.hpp may, and of theirs.
 void lightUnseen(const GroupGeometry& geometry, const SampleSet& samples,
                  std::span<const std::uint32_t> triangles, std::span<const std::uint8_t> seen,
@@ -155,6 +144,15 @@ void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene, co
                  [geometry, &scene, &alpha_maps] { return RayScene::build(geometry, scene, alpha_maps); });
 }
 
+std::vector<std::uint32_t> GroupRefiner::triangles(const GroupGeometry& geometry) const {
+  std::vector<std::uint32_t> triangles;
+  for (const DrawGeometry& draw : geometry.draws) {
+    if (draw.texels > 0 || (draw.kind == SampleKind::Glossy && !with_glossy_)) continue;
+    for (std::uint32_t t = 0; t < draw.triangle_count; ++t) triangles.push_back(draw.first_triangle + t);
+  }
+  return triangles;
+}
+
 double GroupRefiner::squareError() const {
   double sum = 0.0;
   for (const Measured& measured : measured_) sum += measured.square_error;
@@ -180,7 +178,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, double bound, 
     triangle_area_.assign(count, 0.0);
     triangle_lack_.assign(count * 2 * kLackValues, 0.0f);
   }
-  const auto by_few = measureBy(few_, geometry, samples, shownTriangles(geometry), context);
+  const auto by_few = measureBy(few_, geometry, samples, triangles(geometry), context);
   if (!by_few || !*by_few) return by_few;
   const double allowed = bound * bound * seenArea();
   if (!chosen_ && squareError() <= allowed) return true;
@@ -342,8 +340,8 @@ Result<std::optional<std::size_t>> GroupRefiner::markLeaks(std::size_t group, co
                                                            const BakeContext& context) {
   const SampleSet samples = buildSamples(geometry, /*with_texels=*/false);
   const std::vector<SampleKind> kinds = kindsOf(samples);
-  const std::vector<std::uint32_t> triangles = shownTriangles(geometry);
-  const std::vector<std::uint32_t> number = cornerPoints(few_, geometry, samples, kinds, triangles);
+  const std::vector<std::uint32_t> looked_at = triangles(geometry);
+  const std::vector<std::uint32_t> number = cornerPoints(few_, geometry, samples, kinds, looked_at);
   if (const auto probed = few_.probe(*scene_, context); !probed)
     return failAgain(probed.error());
   else if (!*probed)
@@ -360,10 +358,10 @@ Result<std::optional<std::size_t>> GroupRefiner::markLeaks(std::size_t group, co
         for (std::size_t s = begin; s < end; ++s) lookAt(s);
       });
   if (!done) return std::nullopt;
-  lightUnseen(geometry, samples, triangles, seen, light);
+  lightUnseen(geometry, samples, looked_at, seen, light);
   std::vector<Edge> between;
   std::set<std::pair<std::uint32_t, std::uint32_t>> met;
-  for (const std::uint32_t t : triangles)
+  for (const std::uint32_t t : looked_at)
     for (int c = 0; c < 3; ++c) {
       std::uint32_t dark = geometry.triangles[t][c], lit = geometry.triangles[t][(c + 1) % 3];
       if (light[samples.vertex_sample[dark]] > light[samples.vertex_sample[lit]]) std::swap(dark, lit);

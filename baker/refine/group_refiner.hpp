@@ -30,10 +30,13 @@ struct RefineProbes {
 
 class GroupRefiner {
  public:
-  // The probes outlive this. With `for_wedges` it also keeps what addLacks() needs: 300 bytes per triangle,
-  // and as much per probe while measuring.
-  GroupRefiner(const RefineProbes& probes, bool for_wedges)
-      : few_(probes.few), many_(probes.many), for_wedges_(for_wedges) {}
+  // The probes outlive this. Glossy surfaces are looked at `with_glossy` alone. With `for_wedges` it also
+  // keeps what addLacks() needs: 300 bytes per triangle, and as much per probe while measuring.
+  GroupRefiner(const RefineProbes& probes, bool with_glossy, bool for_wedges)
+      : few_(probes.few), many_(probes.many), with_glossy_(with_glossy), for_wedges_(for_wedges) {}
+
+  // Returns whether there is anything to look at.
+  bool any(const GroupGeometry& geometry) const { return !triangles(geometry).empty(); }
 
   // alpha_maps outlive this. The geometry is that before any split: rays are traced against it in all rounds.
   void prepare(const GroupGeometry& geometry, const Scene& scene, const AlphaMaps& alpha_maps);
@@ -78,6 +81,9 @@ class GroupRefiner {
     double seen = 0.0;          // the part of the area that can be seen
   };
 
+  // Returns the triangles that are looked at: those whose vertices pictures show, which they do not where
+  // there are texels.
+  std::vector<std::uint32_t> triangles(const GroupGeometry& geometry) const;
   // Fills in measured_ of the triangles listed.
   Result<bool> measureBy(ProbedPoints& points, const GroupGeometry& geometry, const SampleSet& samples,
                          std::span<const std::uint32_t> triangles, const BakeContext& context);
@@ -95,7 +101,7 @@ class GroupRefiner {
                  std::span<const std::uint8_t> seen, std::span<const float> lacks);
 
   ProbedPoints few_, many_;
-  bool for_wedges_;
+  bool with_glossy_, for_wedges_;
   std::optional<ProbedScene> scene_;
   std::vector<glm::vec3> scene_normals_;  // of the scene's triangles, which are never split
   float diagonal_ = 0.0f;

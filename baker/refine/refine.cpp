@@ -54,7 +54,7 @@ Key outcomeKey(const RefineScene& from, const std::vector<GroupGeometry>& geomet
   const auto& groups = from.groups;
   KeyMaker key = KeyMaker::ofStage("refinement");
   key.add(from.with_glossy).add(options.bound).add(std::uint64_t{options.rays});
-  key.add(std::uint64_t{options.many_rays}).add(options.rounds);
+  key.add(std::uint64_t{options.many_rays}).add(options.rounds).add(options.glossy);
   key.add(options.most_growth).add(std::uint64_t{options.most_added}).add(options.most_wedges);
   key.add(std::uint64_t{options.most_vertices}).add(std::uint64_t{meshes.size()});
   for (const auto& primitives : meshes) {
@@ -121,7 +121,7 @@ class Rounds {
         few_(options.rays),
         many_(options.many_rays) {
     for (std::size_t g = 0; g < from.groups.size(); ++g)
-      refiners_.emplace_back(RefineProbes{few_, many_}, options.most_wedges > 0.0);
+      refiners_.emplace_back(RefineProbes{few_, many_}, options.glossy, options.most_wedges > 0.0);
   }
 
   // `geometries` are those of the groups before any split. Errors: stopped; no memory for the hierarchy.
@@ -155,7 +155,8 @@ class Rounds {
 
  private:
   bool any(std::size_t group) const {
-    return !from_.groups[group].draws.empty() && from_.transport[group].shadows;
+    return !from_.groups[group].draws.empty() && from_.transport[group].shadows &&
+           refiners_[group].any(geometries_[group]);
   }
   std::size_t room() const { return most_ - std::min(most_, countVertices(meshes_)); }
 

@@ -23,7 +23,8 @@ struct RefineOptions {
   float bound = 0.01f;  // on each group's error: relative RMS over its visible surface, see GroupRefiner
   // Rays of a probe over the sphere: few tell where much is wrong, many where little is.
   std::size_t rays = 512, many_rays = 2048;
-  int rounds = 24;  // at most this many
+  int rounds = 24;     // at most this many
+  bool glossy = true;  // false: surfaces with glossy samples are left as they are
   // The scene gets at most most_growth times as many vertices as it had and most_added more, and never more
   // than most_vertices in all.
   double most_growth = 1.5;
