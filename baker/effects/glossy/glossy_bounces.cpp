@@ -33,13 +33,15 @@ constexpr float kUniform = 3.54490770f;
 // pass carries, the shorter its rows. V needs many rays for its edges, while exit radiance at a glossy point
 // costs reading a matrix. Each hit keeps its own weight, so a white furnace stays white in every output.
 // Noise is proportional to share x rays^0.75, so every pass may have rows of 1 / share rays; kCaution
-// shortens them, since late passes add up in white rooms.
+// shortens them, since late passes add up in white rooms. Every row has a few rays: 128 or 256 exit radiances
+// show no more noise than all (docs/decisions/glossy.md).
 constexpr std::uint32_t kMostTogether = 32;
 constexpr double kCaution = 64.0;       // rows have 2 rays up to a share of 1.6 %, 4 up to 0.8 %
 constexpr std::size_t kLeastRows = 64;  // rows over the hemisphere
+constexpr std::size_t kManyRays = 1024;
 
 std::uint32_t raysTogether(double share, std::size_t rays) {
-  std::uint32_t together = 1;
+  std::uint32_t together = rays >= kManyRays ? 4 : 2;
   while (together < kMostTogether && kCaution * together * share <= 1.0 &&
          rays / (2 * together) >= kLeastRows)
     together *= 2;

