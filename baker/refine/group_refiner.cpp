@@ -22,8 +22,9 @@ namespace {
 constexpr float kProbeSpacing = 1.0f / 32.0f;
 constexpr int kMostProbesAlong = 8;
 constexpr std::uint32_t kUnused = 0xffffffffu;  // a sample of no triangle that is looked at
-// No edge is split if its triangle's longest edge is below this share of the diagonal.
-constexpr float kShortestEdge = 1.0f / 1024.0f;
+// Triangles whose longest edge is below this share of the diagonal are not looked at. In a furnished room
+// they are two thirds of all, have a hundredth of the area, and show shadows as they are.
+constexpr float kShortestEdge = 1.0f / 512.0f;
 // Light is never taken to be less than this share of that of an open point: what bounces brightens the dark.
 constexpr double kLeastLight = 0.07;
 // A split triangle splits its edges of at least this share of the longest one.
@@ -42,7 +43,9 @@ constexpr float kDarkShare = 0.05f, kLightShare = 0.05f;
 constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.35;
 // Many rays do not look at the triangles whose errors, as few rays show them with noise, make up this share
 // of all error, or of what is allowed if that is more.
-constexpr double kOverlooked = 0.1;
+// Nor do they look where the square error is so many times what noise adds to it: few rays are enough to
+// tell.
+constexpr double kOverlooked = 0.1, kBeyondDoubt = 2.0;
 
 // An InnerPoint is a point inside a triangle, by the weights of its corners.
 struct InnerPoint {
@@ -145,10 +148,12 @@ void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene, co
 }
 
 std::vector<std::uint32_t> GroupRefiner::triangles(const GroupGeometry& geometry) const {
+  const float shortest = kShortestEdge * glm::distance(geometry.bounds_min, geometry.bounds_max);
   std::vector<std::uint32_t> triangles;
   for (const DrawGeometry& draw : geometry.draws) {
     if (draw.texels > 0 || (draw.kind == SampleKind::Glossy && !with_glossy_)) continue;
-    for (std::uint32_t t = 0; t < draw.triangle_count; ++t) triangles.push_back(draw.first_triangle + t);
+    for (std::uint32_t t = draw.first_triangle; t < draw.first_triangle + draw.triangle_count; ++t)
+      if (longestEdge(geometry, geometry.triangles[t]) >= shortest) triangles.push_back(t);
   }
   return triangles;
 }
@@ -200,6 +205,10 @@ std::vector<std::uint32_t> GroupRefiner::trianglesThatMatter(double square_error
     return overlooked > kOverlooked * square_error;
   });
   order.erase(order.begin(), matters);
+  std::erase_if(order, [&](std::uint32_t t) {
+    const Measured& measured = measured_[t];
+    return measured.square_error > kBeyondDoubt * std::max(measured.with_noise - measured.square_error, 0.0);
+  });
   std::sort(order.begin(), order.end());
   return order;
 }
@@ -317,7 +326,6 @@ Result<std::size_t> GroupRefiner::markWorst(std::size_t group, const GroupGeomet
     if (left <= enough || room < 3) break;
     const glm::uvec3 corners = geometry.triangles[t];
     const float longest = longestEdge(geometry, corners);
-    if (longest < kShortestEdge * diagonal_) continue;
     left -= measured_[t].square_error;
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t a = corners[c], b = corners[(c + 1) % 3];

@@ -82,12 +82,13 @@ class GroupRefiner {
   };
 
   // Returns the triangles that are looked at: those whose vertices pictures show, which they do not where
-  // there are texels.
+  // there are texels, and whose splits would show.
   std::vector<std::uint32_t> triangles(const GroupGeometry& geometry) const;
   // Fills in measured_ of the triangles listed.
   Result<bool> measureBy(ProbedPoints& points, const GroupGeometry& geometry, const SampleSet& samples,
                          std::span<const std::uint32_t> triangles, const BakeContext& context);
-  // Returns the triangles that have nearly all of a square error, whatever noise hides, in ascending order.
+  // Returns the triangles that have nearly all of a square error, whatever noise hides, but for those that
+  // few rays are sure of; in ascending order.
   std::vector<std::uint32_t> trianglesThatMatter(double square_error) const;
   double squareError() const;
   double seenArea() const;
