@@ -260,7 +260,7 @@ Result<bool> GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& 
     seen_at[i] = 1;
     if (for_wedges_)
       for (std::size_t half = 0; half < 2; ++half)
-        std::copy_n(wrong[half].begin(), kLackValues, lack_at.begin() + (2 * i + half) * kLackValues);
+        std::copy_n(wrong[half].begin(), kLackValues, lack_at.data() + (2 * i + half) * kLackValues);
   };
   const bool done =
       parallelRanges(inner.size(), kPointsPerRange, context.stop, [&](std::size_t begin, std::size_t end) {

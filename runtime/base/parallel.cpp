@@ -19,6 +19,8 @@ std::size_t processors() {
 }
 
 struct Job {
+  Job(std::size_t part_count, const std::function<void(std::size_t)>* each) : count(part_count), part(each) {}
+
   std::size_t count;
   const std::function<void(std::size_t)>* part;  // lives until all parts are done
   std::atomic<std::size_t> next = 0, done = 0;

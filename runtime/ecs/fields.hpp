@@ -26,6 +26,8 @@ template <class T>
 struct Range {
   T least, greatest;
 };
+template <class T>
+Range(T, T) -> Range<T>;  // Clang 16 deduces no arguments of aggregates
 
 template <class Owner, class T>
 struct Field {

@@ -31,6 +31,8 @@ template <class... Fs>
 struct Overloaded : Fs... {
   using Fs::operator()...;
 };
+template <typename... Fs>
+Overloaded(Fs...) -> Overloaded<Fs...>;  // Clang 16 deduces no arguments of aggregates
 
 struct Ranked {
   std::uint32_t priority;

@@ -1,0 +1,29 @@
+// Reads world files, which are written and read again, and looks at texts from the clipboard.
+#include "editor/document/actions.hpp"
+#include "editor/document/world_file.hpp"
+#include "tests/fuzz/input_file.hpp"
+#include "tests/fuzz/json_mutator.hpp"
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
+                                               unsigned seed) {
+  lambent::fuzz::Random random(seed);
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  const std::string out = random() % 4 == 0 ? text : lambent::fuzz::mutatedJson(text, random);
+  if (out == text || out.size() > most) return LLVMFuzzerMutate(data, size, most);
+  std::copy(out.begin(), out.end(), data);
+  return out.size();
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace lambent;
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  static_cast<void>(editor::peekClip(text));
+  if (const auto world = editor::parseWorld(text, "world")) {
+    const auto again = editor::worldText(*world);
+    fuzz::require(again.has_value(), "a world that was read is written");
+    fuzz::require(editor::parseWorld(*again, "again").has_value(), "a world that was written is read");
+  }
+  return 0;
+}
