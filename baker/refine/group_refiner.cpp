@@ -148,12 +148,11 @@ void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene, co
 }
 
 std::vector<std::uint32_t> GroupRefiner::triangles(const GroupGeometry& geometry) const {
-  const float shortest = kShortestEdge * glm::distance(geometry.bounds_min, geometry.bounds_max);
   std::vector<std::uint32_t> triangles;
   for (const DrawGeometry& draw : geometry.draws) {
     if (draw.texels > 0 || (draw.kind == SampleKind::Glossy && !with_glossy_)) continue;
     for (std::uint32_t t = draw.first_triangle; t < draw.first_triangle + draw.triangle_count; ++t)
-      if (longestEdge(geometry, geometry.triangles[t]) >= shortest) triangles.push_back(t);
+      if (longestEdge(geometry, geometry.triangles[t]) >= kShortestEdge * diagonal_) triangles.push_back(t);
   }
   return triangles;
 }
@@ -393,6 +392,7 @@ Result<std::optional<std::size_t>> GroupRefiner::markLeaks(std::size_t group, co
 // and none should stand in the cut: each side gets a vertex of its own, a little before it.
 Result<std::vector<float>> GroupRefiner::cutsOf(const GroupGeometry& geometry, std::span<const Edge> list,
                                                 float longest) {
+  if (list.empty()) return {};
   const auto rays = scene_->rays();
   if (!rays) return failAgain(rays.error());
   std::vector<RaySegment> ways;

@@ -35,9 +35,6 @@ class GroupRefiner {
   GroupRefiner(const RefineProbes& probes, bool with_glossy, bool for_wedges)
       : few_(probes.few), many_(probes.many), with_glossy_(with_glossy), for_wedges_(for_wedges) {}
 
-  // Returns whether there is anything to look at.
-  bool any(const GroupGeometry& geometry) const { return !triangles(geometry).empty(); }
-
   // alpha_maps outlive this. The geometry is that before any split: rays are traced against it in all rounds.
   void prepare(const GroupGeometry& geometry, const Scene& scene, const AlphaMaps& alpha_maps);
 

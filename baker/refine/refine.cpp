@@ -155,8 +155,7 @@ class Rounds {
 
  private:
   bool any(std::size_t group) const {
-    return !from_.groups[group].draws.empty() && from_.transport[group].shadows &&
-           refiners_[group].any(geometries_[group]);
+    return !from_.groups[group].draws.empty() && from_.transport[group].shadows;
   }
   std::size_t room() const { return most_ - std::min(most_, countVertices(meshes_)); }
 

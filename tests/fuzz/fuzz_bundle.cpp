@@ -3,20 +3,20 @@
 #include <cstring>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/description.hpp"
+#include "runtime/bundle/glb.hpp"
+#include "runtime/bundle/json_fields.hpp"
 #include "runtime/bundle/reader.hpp"
 #include "tests/fuzz/input_file.hpp"
 #include "tests/fuzz/json_mutator.hpp"
 
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
-
 namespace {
 
+using namespace lambent::bundle;
 using lambent::fuzz::Random;
 
-constexpr std::size_t kJsonAt = 20;
+constexpr std::size_t kJsonAt = kGlbHeaderBytes + kGlbChunkHeaderBytes;
 
 std::uint32_t wordAt(const std::vector<std::uint8_t>& bytes, std::size_t at) {
   std::uint32_t word = 0;
@@ -25,13 +25,13 @@ std::uint32_t wordAt(const std::vector<std::uint8_t>& bytes, std::size_t at) {
 }
 
 std::uint64_t checksumOf(std::span<const std::uint8_t> bytes) {
-  return lambent::bundle::checksum(std::as_bytes(bytes));
+  return checksum(std::as_bytes(bytes));
 }
 
 // Writes the container around JSON and binary chunk, with the checksums that belong to them.
-std::vector<std::uint8_t> container(nlohmann::json json, std::vector<std::uint8_t> binary) {
+std::vector<std::uint8_t> container(Json json, std::vector<std::uint8_t> binary) {
   try {
-    auto& extension = json.at("extensions").at("LAMBENT_radiance_transfer");
+    auto& extension = json.at("extensions").at(std::string(kExtensionName));
     auto& checksums = extension.at("checksums");
     for (std::size_t i = 0; i < checksums.size(); ++i) {
       const auto& view = json.at("bufferViews").at(i);
@@ -40,13 +40,13 @@ std::vector<std::uint8_t> container(nlohmann::json json, std::vector<std::uint8_
       };
       const std::uint64_t offset = number("byteOffset"), length = (number("byteLength") + 7) / 8 * 8;
       if (offset <= binary.size() && length <= binary.size() - offset)
-        checksums[i] = fmt::format("{:016x}", checksumOf(std::span(binary).subspan(offset, length)));
+        checksums[i] = hexJson(checksumOf(std::span(binary).subspan(offset, length)));
     }
   } catch (const nlohmann::json::exception&) {
     // It has lost what would hold them.
   }
   std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  text.append((8 - (kJsonAt + text.size() + 8) % 8) % 8, ' ');
+  text.append((8 - (kJsonAt + text.size() + kGlbChunkHeaderBytes) % 8) % 8, ' ');
   const std::uint64_t whole = checksumOf({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}),
                       complement = ~whole;
   if (binary.size() >= 16) {
@@ -57,10 +57,10 @@ std::vector<std::uint8_t> container(nlohmann::json json, std::vector<std::uint8_
   const auto word = [&](std::uint64_t value) {
     for (int k = 0; k < 4; ++k) out.push_back(static_cast<std::uint8_t>(value >> (8 * k)));
   };
-  word(0x46546C67), word(2), word(kJsonAt + text.size() + 8 + binary.size());
-  word(text.size()), word(0x4E4F534A);
+  word(kGlbMagic), word(2), word(kJsonAt + text.size() + kGlbChunkHeaderBytes + binary.size());
+  word(text.size()), word(kGlbJsonChunk);
   out.insert(out.end(), text.begin(), text.end());
-  word(binary.size()), word(0x004E4942);
+  word(binary.size()), word(kGlbBinChunk);
   out.insert(out.end(), binary.begin(), binary.end());
   return out;
 }
@@ -72,14 +72,15 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   Random random(seed);
   std::vector<std::uint8_t> bytes(data, data + size);
   const std::size_t json_length = wordAt(bytes, 12);
-  if (size < kJsonAt + 8 || json_length > size - kJsonAt - 8 || random() % 16 == 0)
+  if (size < kJsonAt + kGlbChunkHeaderBytes || json_length > size - kJsonAt - kGlbChunkHeaderBytes ||
+      random() % 16 == 0)
     return LLVMFuzzerMutate(data, size, most);
-  nlohmann::json json =
+  Json json =
       nlohmann::json::parse(std::string(bytes.begin() + kJsonAt,
                                         bytes.begin() + static_cast<std::ptrdiff_t>(kJsonAt + json_length)),
                             nullptr, false);
-  std::vector<std::uint8_t> binary(bytes.begin() + static_cast<std::ptrdiff_t>(kJsonAt + json_length + 8),
-                                   bytes.end());
+  std::vector<std::uint8_t> binary(
+      bytes.begin() + static_cast<std::ptrdiff_t>(kJsonAt + json_length + kGlbChunkHeaderBytes), bytes.end());
   if (json.is_discarded()) return LLVMFuzzerMutate(data, size, most);
   if (random() % 2 == 0 && binary.size() > 16) {
     for (std::uint32_t times = 1 + static_cast<std::uint32_t>(random() % 4); times > 0; --times)
@@ -95,6 +96,6 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto path = lambent::fuzz::inputFile("bundle.glb", {data, size});
-  if (const auto reader = lambent::bundle::Reader::open(path)) static_cast<void>(reader->checkAll());
+  if (const auto reader = Reader::open(path)) static_cast<void>(reader->checkAll());
   return 0;
 }

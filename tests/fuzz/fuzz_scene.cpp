@@ -8,16 +8,9 @@
 #include "tests/fuzz/input_file.hpp"
 #include "tests/fuzz/json_mutator.hpp"
 
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
-
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
                                                unsigned seed) {
-  lambent::fuzz::Random random(seed);
-  const std::string text(reinterpret_cast<const char*>(data), size);
-  const std::string out = random() % 16 == 0 ? text : lambent::fuzz::mutatedJson(text, random);
-  if (out == text || out.size() > most) return LLVMFuzzerMutate(data, size, most);
-  std::copy(out.begin(), out.end(), data);
-  return out.size();
+  return lambent::fuzz::mutateText(data, size, most, seed, /*blindly=*/16);
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

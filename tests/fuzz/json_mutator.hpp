@@ -1,10 +1,16 @@
 // Changes JSON so that it stays JSON: most mutants get past the parser and into the code behind it.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <random>
 #include <string>
 
 #include <nlohmann/json.hpp>
+
+// libFuzzer's own mutation of bytes.
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
 namespace lambent::fuzz {
 
@@ -60,9 +66,8 @@ inline void mutate(nlohmann::json& at, Random& random) {
     }
   }
   if (at.is_number_integer() && random() % 3 != 0) {
-    const auto value = at.get<std::int64_t>();
-    at = random() % 2 != 0 ? value + static_cast<std::int64_t>(random() % 5) - 2
-                           : static_cast<std::int64_t>(static_cast<std::uint64_t>(value) << random() % 8);
+    const auto value = static_cast<std::uint64_t>(at.get<std::int64_t>());  // wraps
+    at = static_cast<std::int64_t>(random() % 2 != 0 ? value + random() % 5 - 2 : value << random() % 8);
   } else if (at.is_number_float() && random() % 3 != 0) {
     const double factors[] = {-1.0, 0.0, 1e-3, 0.5, 2.0, 1e3, 1e30, 1e-30};
     at = at.get<double>() * factors[random() % std::size(factors)];
@@ -71,13 +76,19 @@ inline void mutate(nlohmann::json& at, Random& random) {
   }
 }
 
-// Mutates JSON text a few times. Text that is no JSON is returned as it is.
-inline std::string mutatedJson(const std::string& text, Random& random) {
-  nlohmann::json json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (json.is_discarded()) return text;
+// Does what LLVMFuzzerCustomMutator is to do for JSON text: changes it a few times, or its bytes once in
+// `blindly` times, and where the text is no JSON or would be too long.
+inline std::size_t mutateText(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed,
+                              unsigned blindly) {
+  Random random(seed);
+  nlohmann::json json = nlohmann::json::parse(data, data + size, nullptr, /*allow_exceptions=*/false);
+  if (json.is_discarded() || random() % blindly == 0) return LLVMFuzzerMutate(data, size, most);
   for (std::uint32_t times = 1 + static_cast<std::uint32_t>(random() % 3); times > 0; --times)
     mutate(json, random);
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  if (text.size() > most) return LLVMFuzzerMutate(data, size, most);
+  std::copy(text.begin(), text.end(), data);
+  return text.size();
 }
 
 }  // namespace lambent::fuzz
