@@ -6,10 +6,9 @@
 #include <exception>
 #include <span>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include "baker/import/openimageio/module.hpp"
 #include "baker/import/png_chunks.hpp"
 #include "baker/import/reason.hpp"
 #include "runtime/spec/rec709.hpp"
@@ -17,7 +16,6 @@
 namespace lambent::baker {
 namespace {
 
-constexpr int kLargestSide = 1 << 15;
 constexpr std::uint32_t kClampToEdge = 33071, kMirroredRepeat = 33648, kNearest = 9728;
 
 const std::array<float, 256>& srgbTable() {
@@ -53,45 +51,27 @@ glm::vec4 texel(const DecodedImage& image, const gltf::Sampler& sampler, std::in
   return {srgbTable()[p[0]], srgbTable()[p[1]], srgbTable()[p[2]], static_cast<float>(p[3]) / 255.0f};
 }
 
-Result<DecodedImage> decode(const SceneImage& image) {
-  const std::string subject = fmt::format("image \"{}\"", image.name);
+Result<DecodedImage> decode(const SceneImage& image, const std::string& subject) {
+  const auto reader = openImageIo();
+  if (!reader) return failAgain(reader.error());
   std::vector<std::byte> essential;
   std::span<const std::byte> bytes = image.file_bytes;
-  if (image.mime_type == "image/png") {
+  const bool is_png = image.mime_type == "image/png";
+  if (is_png) {
     auto png = essentialPng(bytes, subject);
     if (!png) return failAgain(png.error());
     essential = std::move(*png);
     bytes = essential;
   }
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
-  OIIO::ImageSpec wanted;
-  wanted.attribute("oiio:UnassociatedAlpha", 1);  // glTF colours are not premultiplied by alpha
-  const char* name = image.mime_type == "image/png" ? "memory.png" : "memory.jpg";
-  // The reader takes its bytes from the configuration, because open() forgets the proxy if it gets both.
-  OIIO::Filesystem::IOProxy* proxy = &memory;
-  wanted.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const auto input = OIIO::ImageInput::open(name, &wanted);
-  if (!input)
-    return fail(subject, fmt::format("cannot be decoded ({})", OIIO::geterror()),
-                "save it again as PNG or JPEG");
+  const auto stored = (*reader)->decode(bytes, is_png ? "memory.png" : "memory.jpg", subject);
+  if (!stored) return failAgain(stored.error());
 
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width <= 0 || spec.height <= 0 || spec.width > kLargestSide || spec.height > kLargestSide ||
-      spec.nchannels < 1)
-    return fail(subject, fmt::format("has {} x {} pixels", spec.width, spec.height),
-                "save it again in a usual size");
-  const auto width = static_cast<std::size_t>(spec.width), height = static_cast<std::size_t>(spec.height);
-  const auto channels = static_cast<std::size_t>(spec.nchannels);
-  std::vector<std::uint8_t> stored(width * height * channels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, stored.data()))
-    return fail(subject, fmt::format("is damaged ({})", input->geterror()), "save it again");
-
-  DecodedImage out{
-      .width = static_cast<std::uint32_t>(width), .height = static_cast<std::uint32_t>(height), .rgba = {}};
-  out.rgba.resize(width * height * 4);
+  const std::size_t pixels = std::size_t{stored->width} * stored->height, channels = stored->channels;
+  DecodedImage out{.width = stored->width, .height = stored->height, .rgba = {}};
+  out.rgba.resize(pixels * 4);
   const bool gray = channels < 3, alpha = channels == 2 || channels >= 4;
-  for (std::size_t i = 0; i < width * height; ++i) {
-    const std::uint8_t* p = &stored[i * channels];
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const std::uint8_t* p = &stored->values[i * channels];
     for (std::size_t c = 0; c < 3; ++c) out.rgba[i * 4 + c] = gray ? p[0] : p[c];
     out.rgba[i * 4 + 3] = alpha ? p[channels == 2 ? 1 : 3] : std::uint8_t{255};
   }
@@ -101,11 +81,12 @@ Result<DecodedImage> decode(const SceneImage& image) {
 }  // namespace
 
 Result<DecodedImage> decodeImage(const SceneImage& image) {
+  const std::string subject = fmt::format("image \"{}\"", image.name);
   try {
-    return decode(image);
+    return decode(image, subject);
   } catch (const std::exception& exception) {
-    return fail(fmt::format("image \"{}\"", image.name),
-                fmt::format("cannot be decoded ({})", reasonOf(exception)), "save it again as PNG or JPEG");
+    return fail(subject, fmt::format("cannot be decoded ({})", reasonOf(exception)),
+                "save it again as PNG or JPEG");
   }
 }
 

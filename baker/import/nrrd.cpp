@@ -233,15 +233,6 @@ DensityGrid readValues(std::span<const std::byte> file, const std::string& subje
 
 }  // namespace
 
-Result<void> checkGridSize(const glm::u64vec3& size, const std::string& subject) {
-  const bool sides =
-      std::max({size.x, size.y, size.z}) <= kMostVoxelsAlongAnAxis && std::min({size.x, size.y, size.z}) >= 1;
-  if (sides && size.x * size.y * size.z <= kMostVoxels) return {};
-  return fail(subject, fmt::format("has {} x {} x {} voxels", size.x, size.y, size.z),
-              fmt::format("save it with 1 to {} along each axis, {} at most in all", kMostVoxelsAlongAnAxis,
-                          kMostVoxels));
-}
-
 Result<DensityGrid> readNrrd(const std::filesystem::path& file) {
   auto bytes = readBytes(file, file.string());
   if (!bytes) return failAgain(std::move(bytes.error()));

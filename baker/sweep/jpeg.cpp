@@ -1,10 +1,8 @@
 #include "baker/sweep/jpeg.hpp"
 
 #include <cstdint>
-#include <vector>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include "baker/import/openimageio/module.hpp"
 
 namespace lambent::baker {
 
@@ -24,21 +22,16 @@ std::string base64(std::string_view bytes) {
 
 Result<std::string> jpegUri(const spec::Rgba8Image& picture) {
   constexpr int kQuality = 88;
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  OIIO::ImageSpec spec(static_cast<int>(picture.width), static_cast<int>(picture.height), 3,
-                       OIIO::TypeDesc::UINT8);
-  spec.attribute("Compression", "jpeg:" + std::to_string(kQuality));
-  std::vector<std::uint8_t> rgb;
+  const auto writer = openImageIo();
+  if (!writer) return failAgain(writer.error());
+  Pixels rgb{.width = picture.width, .height = picture.height, .channels = 3, .values = {}};
   for (std::size_t i = 0; i < picture.texels.size(); i += 4)
-    rgb.insert(rgb.end(), picture.texels.begin() + static_cast<std::ptrdiff_t>(i),
-               picture.texels.begin() + static_cast<std::ptrdiff_t>(i) + 3);
-  const auto output = OIIO::ImageOutput::create("picture.jpg", &memory);
-  if (!output || !output->set_ioproxy(&memory) || !output->open("picture.jpg", spec) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) || !output->close())
-    return fail("a picture", "cannot be encoded: " + (output ? output->geterror() : OIIO::geterror()));
+    rgb.values.insert(rgb.values.end(), picture.texels.begin() + static_cast<std::ptrdiff_t>(i),
+                      picture.texels.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+  const auto bytes = (*writer)->encodeJpeg(rgb, kQuality, "a picture");
+  if (!bytes) return failAgain(bytes.error());
   return "data:image/jpeg;base64," +
-         base64(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+         base64(std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
 }
 
 }  // namespace lambent::baker

@@ -1,0 +1,8 @@
+#include "baker/import/openimageio/module.hpp"
+
+extern "C" __attribute__((visibility("default"))) const lambent::baker::OpenImageIo lambent_openimageio;
+
+const lambent::baker::OpenImageIo lambent_openimageio = {
+    .decode = lambent::baker::openimageio::decode,
+    .encodeJpeg = lambent::baker::openimageio::encodeJpeg,
+    .readVdb = lambent::baker::openimageio::readVdb};
