@@ -83,7 +83,7 @@ void checkMaterials(const Root& root) {
   root.forEach("materials", "material", [&](const Object& material) {
     checkMaterialFields(material, root);
     checkTextureInfo(material, "occlusionTexture", root);
-    checkEmissiveStrength(material);
+    checkEmission(material);
   });
 }
 

@@ -8,6 +8,7 @@
 #include "baker/import/check.hpp"
 #include "baker/import/check_fields.hpp"
 #include "runtime/bundle/material_fields.hpp"
+#include "runtime/spec/light.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -24,6 +25,19 @@ double numberFrom(const Object& object, const char* key, double least, double fa
   if (!value->is_number() || !std::isfinite(value->get<float>()) || value->get<double>() < least)
     throw BrokenField{fmt::format("{}: {} is not a number from {} up", object.name, key, least)};
   return value->get<double>();
+}
+
+// Requires that a colour times a factor is light, and no more of it than pictures hold.
+void checkLightOf(const Object& object, const char* color, double factor, const char* what) {
+  checkNumbers(object, color, 3);
+  double most = factor;
+  for (const nlohmann::json& value : object.list(color)) {
+    if (value.get<float>() < 0.0f) throw BrokenField{fmt::format("{}: {} is negative", object.name, color)};
+    most = std::max(most, factor * value.get<double>());
+  }
+  if (most > double{spec::kMostRadiance})
+    throw BrokenField{fmt::format("{} {} {}", object.name, what, most),
+                      fmt::format("the most is {}", spec::kMostRadiance)};
 }
 
 // Requires a number from 0 to 1, up to rounding.
@@ -63,10 +77,7 @@ void checkLight(const Object& light) {
   const std::string type = light.text("type");
   if (type != "directional" && type != "point" && type != "spot")
     throw BrokenField{fmt::format("{} has the unknown type \"{}\"", light.name, type)};
-  checkNumbers(light, "color", 3);
-  for (const nlohmann::json& value : light.list("color"))
-    if (value.get<float>() < 0.0f) throw BrokenField{fmt::format("{}: color is negative", light.name)};
-  numberFrom(light, "intensity", 0.0, 1.0);
+  checkLightOf(light, "color", numberFrom(light, "intensity", 0.0, 1.0), "has an intensity of");
   if (light.find("range") != nullptr && numberFrom(light, "range", 0.0, 0.0) == 0.0)
     throw BrokenField{fmt::format("{}: range is 0", light.name)};
   if (type != "spot") return;
@@ -104,9 +115,10 @@ void checkTextureTransform(const Object& texture_info) {
   transform->number("texCoord");
 }
 
-void checkEmissiveStrength(const Object& material) {
-  if (const auto strength = extension(material, "KHR_materials_emissive_strength"))
-    numberFrom(*strength, "emissiveStrength", 0.0, 1.0);
+void checkEmission(const Object& material) {
+  const auto strength = extension(material, "KHR_materials_emissive_strength");
+  checkLightOf(material, "emissiveFactor",
+               strength ? numberFrom(*strength, "emissiveStrength", 0.0, 1.0) : 1.0, "emits");
 }
 
 void checkTextureInfo(const Object& owner, const char* key, const Root& root) {

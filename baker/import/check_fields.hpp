@@ -101,7 +101,7 @@ void checkNumbers(const Object& object, const char* key, std::size_t count = 0);
 
 // For extensions these check values as well as types, so that conversions can use them as they are.
 void checkTextureTransform(const Object& texture_info);
-void checkEmissiveStrength(const Object& material);
+void checkEmission(const Object& material);
 // Checks a textureInfo under `key`, if there is one.
 void checkTextureInfo(const Object& owner, const char* key, const Root& root);
 // Checks all textures that are read, the numbers and colours of reflection (by the table of a material's

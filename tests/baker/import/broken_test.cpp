@@ -125,6 +125,8 @@ TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
       {"node 0", [](json& j) { j["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0; }},
       {"light 0", [](json& j) { j = withLight(j, R"({"type":"laser"})"); }},
       {"light 0: intensity", [](json& j) { j = withLight(j, R"({"type":"point","intensity":-1})"); }},
+      {"light 0 has an intensity of 3e+38",
+       [](json& j) { j = withLight(j, R"({"type":"point","color":[1,0.5,1],"intensity":3e38})"); }},
       {"light 0: range", [](json& j) { j = withLight(j, R"({"type":"point","range":-1})"); }},
       {"light 0: range", [](json& j) { j = withLight(j, R"({"type":"point","range":0})"); }},
       {"light 0: color", [](json& j) { j = withLight(j, R"({"type":"point","color":[1,-1,0]})"); }},
@@ -140,6 +142,13 @@ TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
          j["materials"] =
              json::parse(R"([{"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":-1}}}])");
        }},
+      {"material 0 emits 3e+38",
+       [](json& j) {
+         j["materials"] = json::parse(
+             R"([{"emissiveFactor":[1,1,1],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":3e38}}}])");
+       }},
+      {"material 0: emissiveFactor is negative",
+       [](json& j) { j["materials"] = json::parse(R"([{"emissiveFactor":[1,-1,1]}])"); }},
       {"KHR_texture_transform: scale",
        [](json& j) {
          j["textures"] = json::parse("[{}]");
