@@ -16,5 +16,12 @@ TEST(Error, IsOneLineThatNamesTheThingTheProblemAndTheMend) {
   EXPECT_EQ((Error{"a\nb", "said\r\nno", ""}).line(), "a b: said  no");
 }
 
+TEST(Error, IsUtf8WhateverBytesAFilesNamesHave) {
+  EXPECT_EQ((Error{"caf\xc3\xa9", "grid \xe2\x82\xac \xf0\x9f\x92\xa1", ""}).line(),
+            "caf\xc3\xa9: grid \xe2\x82\xac \xf0\x9f\x92\xa1");
+  EXPECT_EQ((Error{"", "\xff\xc0 \x80 \xc3", ""}).line(), "?? ? ?");
+  EXPECT_EQ((Error{"", "\xe2\x82", ""}).line(), "??");
+}
+
 }  // namespace
 }  // namespace lambent
