@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.refine_bound = 0.0f;
   // Tables of BRDFs, which take longer than all else, are kept.
   constexpr std::uint64_t kMostKept = std::uint64_t{64} << 20;
-  static auto cache = baker::Cache::open(fuzz::folder() / "cache", kMostKept);
+  static auto cache = baker::Cache::open(fuzz::keptFolder(), kMostKept);
   fuzz::require(cache.has_value(), "a cache is opened");
   baker::Progress progress;
   const auto output = fuzz::folder() / "scene.lmb.glb";

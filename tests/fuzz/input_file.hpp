@@ -27,6 +27,12 @@ inline const std::filesystem::path& folder() {
   return folder.path;
 }
 
+// Returns a folder for what is slow to make, which scripts/fuzz keeps between runs.
+inline std::filesystem::path keptFolder() {
+  const char* kept = std::getenv("LAMBENT_FUZZ_KEPT");
+  return kept ? std::filesystem::path(kept) : folder() / "kept";
+}
+
 inline std::filesystem::path inputFile(const std::string& name, std::span<const std::uint8_t> bytes) {
   std::filesystem::path path = folder() / name;
   std::ofstream(path, std::ios::binary)

@@ -271,7 +271,7 @@ TEST(VdbFile, OfTheSharedCloudIsTheSameAsItsNrrd) {
 }
 
 TEST(VdbFile, DamagedDoesNotTakeAllMemory) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef LAMBENT_SANITIZED
   GTEST_SKIP() << "AddressSanitizer ends a process that lacks memory, in place of throwing";
 #endif
   const auto vdb = testing::sharedFile("volumes/wdas_cloud_sixteenth.vdb");
