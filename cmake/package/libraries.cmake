@@ -1,5 +1,6 @@
-# While installing: copies the shared libraries that PROGRAMS link, and those that these link, to lib/, each under the one
-# name that it is asked for by, and the licences of their packages and of those COMPILED_IN to NOTICES. SYSTEM_LIBRARIES and DISPLAY_LIBRARIES are regular
+# While installing: copies the shared libraries that PROGRAMS and MODULES link, and those that these link, to lib/, each under the one
+# name that it is asked for by, and the licences of their packages and of those COMPILED_IN to NOTICES,
+# beside a bill of materials. SYSTEM_LIBRARIES and DISPLAY_LIBRARIES are regular
 # expressions of names that stay out; HEADLESS_PROGRAMS, which no display can trip, get the latter in lib/headless/. RPATHs
 # lead there (lambent_program in cmake/Lambent.cmake).
 cmake_policy(VERSION 3.25)  # install scripts begin with none
@@ -8,7 +9,7 @@ set(files "")
 
 # To `folder`, but for what lies in lib/ already.
 function(lambent_copy_libraries folder programs excluded)
-  file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${programs}
+  file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${programs} MODULES ${MODULES}
     RESOLVED_DEPENDENCIES_VAR libraries UNRESOLVED_DEPENDENCIES_VAR missing PRE_EXCLUDE_REGEXES ${excluded})
   if(missing)
     message(FATAL_ERROR "lambent: ${programs}: libraries are not to be found: ${missing}")
@@ -54,4 +55,22 @@ if(DPKG_QUERY)
       file(COPY_FILE "${text}" "${prefix}/${NOTICES}/${owner}.txt" ONLY_IF_DIFFERENT)
     endif()
   endforeach()
+
+  # A bill of materials, by CycloneDX 1.5: each package in the version of the machine that packs.
+  set(sbom [[{"bomFormat": "CycloneDX", "specVersion": "1.5", "version": 1, "metadata": {"component": {"type": "application"}}, "components": []}]])
+  string(JSON sbom SET "${sbom}" metadata component name "\"${COMPONENT_NAME}\"")
+  string(JSON sbom SET "${sbom}" metadata component version "\"${COMPONENT_VERSION}\"")
+  set(count 0)
+  list(SORT owners)
+  file(STRINGS /etc/os-release distribution REGEX "^ID=" LIMIT_COUNT 1)
+  string(REGEX REPLACE "^ID=\"?([a-z]*)\"?$" "\\1" distribution "${distribution}")
+  foreach(owner ${owners})
+    execute_process(COMMAND "${DPKG_QUERY}" --show "--showformat=\${Version}\n" "${owner}" OUTPUT_VARIABLE version ERROR_QUIET)
+    string(REGEX REPLACE "\n.*" "" version "${version}")  # the first of several architectures
+    string(REPLACE "+" "%2B" escaped "${version}")
+    string(JSON sbom SET "${sbom}" components ${count} "{\"type\": \"library\", \"name\": \"${owner}\",
+      \"version\": \"${version}\", \"purl\": \"pkg:deb/${distribution}/${owner}@${escaped}\"}")
+    math(EXPR count "${count} + 1")
+  endforeach()
+  file(WRITE "${prefix}/share/doc/lambent/${COMPONENT_NAME}.cdx.json" "${sbom}\n")
 endif()

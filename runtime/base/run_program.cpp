@@ -22,7 +22,9 @@ constexpr int kLookForStopMs = 100;
 struct Pipe {
   std::array<int, 2> ends{-1, -1};
 
-  Pipe() { static_cast<void>(::pipe2(ends.data(), O_CLOEXEC)); }
+  Pipe() {
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) ends = {-1, -1};
+  }
   ~Pipe() {
     close(0);
     close(1);

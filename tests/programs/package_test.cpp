@@ -1,7 +1,10 @@
 // Tests the package: the runtime alone, with its libraries, in a folder that can be anywhere.
 #include <algorithm>
+#include <fstream>
 #include <regex>
 #include <sstream>
+
+#include <nlohmann/json.hpp>
 
 #include "tests/support/program.hpp"
 #include "tests/support/require.hpp"
@@ -106,7 +109,21 @@ TEST_F(Package, OfTheRuntimeRunsWhereItIsPutWithItsOwnLibraries) {
   if (fs::exists("/usr/bin/dpkg-query")) {  // their licences: of a library, and of what is compiled in
     EXPECT_TRUE(fs::exists(notices / "runtime/libdraco7.txt"));
     EXPECT_TRUE(fs::exists(notices / "runtime/libglm-dev.txt"));
+    std::ifstream file(notices / "lambent-runtime.cdx.json");
+    const auto materials = nlohmann::json::parse(file, nullptr, false);
+    EXPECT_EQ(materials["bomFormat"], "CycloneDX");
+    std::vector<std::string> names;
+    for (const auto& component : materials["components"]) {
+      EXPECT_FALSE(component["version"].get<std::string>().empty()) << component;
+      names.push_back(component["name"]);
+    }
+    for (const char* name : {"libdraco7", "libzstd1", "libglm-dev"})
+      EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   }
+  EXPECT_EQ(run("/bin/sh", {"-c", "cd \"$0\" && sha256sum -c \"$1\".sha256", archive.parent_path().string(),
+                            archive.filename().string()})
+                .exit_code,
+            0);
 
   const Outcome version = bare(demo, {"--version"});
   EXPECT_EQ(version.exit_code, 0) << version.err;
@@ -121,11 +138,21 @@ TEST_F(Package, OfTheRuntimeRunsWhereItIsPutWithItsOwnLibraries) {
   EXPECT_GT(fs::file_size(picture), 4000u) << "of one colour";
 }
 
+TEST_F(Package, OfTheRuntimeIsHardened) {
+  const std::string elf = run("/usr/bin/readelf", {"-Whlds", LAMBENT_DEMO}).out;
+  for (const char* mark : {"GNU_RELRO", "BIND_NOW", "Position-Independent Executable", "__stack_chk_fail"})
+    EXPECT_NE(elf.find(mark), std::string::npos) << mark;
+  EXPECT_TRUE(std::regex_search(elf, std::regex("__mem(cpy|set|move)_chk"))) << "no fortified call";
+}
+
 TEST_F(Package, OfTheRuntimeHasNothingOfTheBakerOrTheEditor) {
   const auto parts = bakerPartsOf(ldd(LAMBENT_DEMO), LAMBENT_DEMO);
   EXPECT_TRUE(parts.empty()) << parts[0];
-  // The same check does find these parts in the baker.
-  const auto of_lambent = bakerPartsOf(ldd(LAMBENT_PROGRAM), LAMBENT_PROGRAM);
+  // The same check does find these parts in the baker and its module.
+  auto of_lambent = bakerPartsOf(ldd(LAMBENT_PROGRAM), LAMBENT_PROGRAM);
+  const fs::path module =
+      fs::path(LAMBENT_PROGRAM).parent_path().parent_path() / "lib/liblambent-openimageio.so";
+  for (const std::string& part : bakerPartsOf(ldd(module), module)) of_lambent.push_back(part);
   for (const char* part : {"libOpenImageIO.so", "libembree", "libtbb", "7lambent5baker"})
     EXPECT_TRUE(std::any_of(of_lambent.begin(), of_lambent.end(), [&](const std::string& name) {
       return name.find(part) != std::string::npos;
