@@ -96,8 +96,9 @@ constexpr std::tuple kRows{
         .setting = "",
         .kind = "BYTES",
         .member = &B::memory_bytes,
-        .help = "Memory for what passes keep, in bytes or like 4GB; default half of the machine's. What does "
-                "not fit is computed again: slower, the same result",
+        .help =
+            "The memory that the bake takes if it can, in bytes or like 4GB; default half of the machine's. "
+            "What passes cannot keep in it is computed again: slower, the same result",
         .words = {{{"auto", 0}}},
         .limits = Limits<std::uint64_t>{.least = 1u << 16,
                                         .greatest = kMost<std::uint64_t>,

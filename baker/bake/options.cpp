@@ -134,6 +134,17 @@ std::uint64_t BakeOptions::effectiveMemory() const {
   return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes) / 2;
 }
 
+std::uint64_t BakeOptions::memoryLeft(std::uint64_t used, std::size_t samples) const {
+  const double left = static_cast<double>(effectiveMemory()) - static_cast<double>(used) -
+                      static_cast<double>(samples) * bytesOfTransfer();
+  return static_cast<std::uint64_t>(std::max(0.0, left));
+}
+
+double BakeOptions::bytesOfTransfer() const {
+  constexpr double kCopies = 8.0;
+  return kCopies * static_cast<double>(order) * static_cast<double>(order) * double{sizeof(float)};
+}
+
 std::map<std::string, std::string> BakeOptions::settings() const {
   // These settings follow from the quality, not from the options.
   std::map<std::string, std::string> settings = {

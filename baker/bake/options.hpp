@@ -77,6 +77,12 @@ struct BakeOptions {
   bool refinesGlossy() const;
   double refineWedges() const;  // fans at glossy vertices, relative to the number of vertices
   std::uint64_t effectiveMemory() const;
+  // Returns how many bytes of that passes may keep, now that so much of it is used, before transfer of
+  // `samples` samples is computed.
+  std::uint64_t memoryLeft(std::uint64_t used, std::size_t samples) const;
+  // Returns the bytes of a sample's transfer while it is baked: direct, bounced in three channels, and both
+  // once more to be coded.
+  double bytesOfTransfer() const;
   std::map<std::string, std::string> settings() const;
   // Returns options with those settings, of the quality that they differ from least. Names that settings()
   // does not have are ignored. Returns nothing if a setting is missing or not of its kind. `threads` and

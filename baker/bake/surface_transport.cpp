@@ -6,6 +6,7 @@
 #include "baker/effects/diffuse/inside_faces.hpp"
 #include "baker/effects/glossy/glossy_bounces.hpp"
 #include "baker/effects/glossy/inside_faces.hpp"
+#include "baker/jobs/memory.hpp"
 
 namespace lambent::baker {
 
@@ -101,10 +102,12 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
   const BakeOptions& options = group.bake.options;
   const SurfaceBrdfs* const brdfs = group.brdfs();
   const bool bounces = group.bounces();
+  const std::uint64_t room =
+      options.memoryLeft(residentMemory(), group.samples.diffuse.size() + group.samples.glossy.size());
   const DirectPass pass(group.view(), {.order = options.order,
                                        .rays = options.effectiveRays(),
                                        .keep_hits = bounces,
-                                       .hit_memory = options.effectiveMemory() / (brdfs ? 4 : 2),
+                                       .hit_memory = room / (brdfs ? 4 : 2),
                                        .colored_kernels = brdfs && !brdfs->grey()});
   std::optional<SurfaceTransport> light(std::in_place);
   if (!traceDiffuse(pass, group, context, *light)) return std::nullopt;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/cli/output.hpp"
+#include "baker/jobs/memory.hpp"
 #include "baker/plan/counted.hpp"
 
 namespace lambent::baker {
@@ -48,7 +49,7 @@ std::vector<Held> heldAgainst(const BakeEstimate& estimate, const BakeReport& re
   return {{"seconds", estimate.seconds, secondsOf(report)},
           {"samples", estimate.samples, static_cast<double>(report.samples)},
           {"rays", estimate.rays, static_cast<double>(report.rays)},
-          {"memory", estimate.memory_bytes, peakMemory()},
+          {"memory", estimate.memory_bytes, static_cast<double>(peakMemory())},
           {"bytes", estimate.bytes, static_cast<double>(report.file_bytes)}};
 }
 

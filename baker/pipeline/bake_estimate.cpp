@@ -4,9 +4,8 @@
 #include <cmath>
 #include <span>
 
-#include <sys/resource.h>
-
 #include "baker/jobs/kept_value.hpp"
+#include "baker/jobs/memory.hpp"
 
 namespace lambent::baker {
 
@@ -18,8 +17,6 @@ constexpr double kMostCodesBound = 0.1;
 // Noise of rays takes bytes where codes keep it. With the square root of so many fewer rays as the bound on
 // codes is wider, they keep as little; what is left of the difference was measured on the sample scenes.
 constexpr double kBytesPower = 0.2;
-// Light of a sample in memory: direct, bounced in three channels, and both once more to be coded.
-constexpr double kCopiesOfLight = 8.0;
 // Hits of the points at which the error of pictures is measured take so many times what those of samples do.
 constexpr double kHitsOfView = 6.0;
 
@@ -110,14 +107,13 @@ void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions&
                                : 0.0;
     more_hits = std::max(more_hits, hits - static_cast<double>(group.hit_bytes) + of_view);
     of.hit_bytes = hits;
-    of.memory_bytes =
-        hits + of.samples * kCopiesOfLight * double(options.order * options.order) * double{sizeof(float)};
+    of.memory_bytes = hits + of.samples * options.bytesOfTransfer();
     of.bytes = static_cast<double>(group.transfer_bytes) * of_codes;
   }
   for (std::size_t g = 0; g < std::min(groups.size(), estimate.groups.size()); ++g)
     groups[g].rays += estimate.groups[g].rays, groups[g].seconds += estimate.groups[g].seconds;
   estimate.groups = std::move(groups);
-  estimate.memory_bytes = peakMemory() + more_hits;
+  estimate.memory_bytes = static_cast<double>(peakMemory()) + more_hits;
 }
 
 Key keyOf(const Scene& scene, const BakeOptions& options) {
@@ -170,12 +166,6 @@ std::optional<BakeEstimate> findEstimate(const Scene& scene, const BakeOptions& 
   BakeEstimate estimate;
   if (!findKept({unused, {}, &cache, keyOf(scene, options)}, estimate)) return std::nullopt;
   return estimate;
-}
-
-double peakMemory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
 }  // namespace lambent::baker

@@ -36,7 +36,4 @@ Result<BakeEstimate> estimateBake(const Scene& scene, const BakeOptions& options
 void keepEstimate(const Scene& scene, const BakeOptions& options, const BakeEstimate& estimate, Cache& cache);
 std::optional<BakeEstimate> findEstimate(const Scene& scene, const BakeOptions& options, Cache& cache);
 
-// Returns the most memory that this program has had so far, in bytes.
-double peakMemory();
-
 }  // namespace lambent::baker
