@@ -8,14 +8,12 @@ set(LAMBENT_PKG_CONFIG_MODULES
   "OpenImageIO 2.4"                                        # baker
   "imgui 1.86")                                            # editor
 
-set(versions "")
 macro(lambent_check_version name found least)
   if("${found}" STREQUAL "")
     message(FATAL_ERROR "lambent: ${name} says no version; Lambent needs ${least} or newer")
   elseif("${found}" VERSION_LESS "${least}")
     message(FATAL_ERROR "lambent: ${name} ${found} is too old; Lambent needs ${least} or newer")
   endif()
-  list(APPEND versions "${name} ${found}")
 endmacro()
 
 foreach(package ${LAMBENT_PACKAGES})
