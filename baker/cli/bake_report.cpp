@@ -46,7 +46,11 @@ struct Held {
   double estimated, measured;
 };
 std::vector<Held> heldAgainst(const BakeEstimate& estimate, const BakeReport& report) {
-  return {{"seconds", estimate.seconds, secondsOf(report)},
+  // What is imported is there before a bake is estimated.
+  double imported = 0.0;
+  for (const Progress::Stage& stage : report.stages)
+    if (stage.name == "import") imported += stage.seconds;
+  return {{"seconds", estimate.seconds, secondsOf(report) - imported},
           {"samples", estimate.samples, static_cast<double>(report.samples)},
           {"rays", estimate.rays, static_cast<double>(report.rays)},
           {"memory", estimate.memory_bytes, static_cast<double>(peakMemory())},

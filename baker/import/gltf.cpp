@@ -14,6 +14,7 @@
 #include "baker/import/convert.hpp"
 #include "baker/import/document.hpp"
 #include "baker/import/hints.hpp"
+#include "baker/import/openimageio/module.hpp"
 #include "baker/import/reason.hpp"
 #include "baker/import/tinygltf.hpp"
 #include "runtime/bundle/description.hpp"
@@ -87,6 +88,9 @@ Result<Scene> convert(const Document& document) {
   foldWarnings(scene.warnings);
   if (scene.meshes.empty() && scene.volumes.empty())
     return fail(document.file(), "has no triangles in its scene that have an area", "give it a mesh");
+  // What decodes images is loaded here: half a second that is no part of a bake's work, nor of its estimate.
+  // If it cannot be loaded, the first image says so.
+  if (!scene.images.empty()) static_cast<void>(openImageIo());
   return scene;
 }
 
