@@ -163,7 +163,7 @@ Result<RayTracer> RayTracer::build(const Surfaces& surfaces) {
   state->surfaces = &surfaces;
   state->device.reset(rtcNewDevice(nullptr));
   if (!state->device)
-    return fail("Embree", "cannot be set up", "it lacks memory, or does not run on this processor");
+    return fail("Embree", "cannot be set up", "give it more memory, or check that libembree3 runs on this processor");
   const auto newScene = [&](RTCBuildQuality quality) {
     EmbreeScene scene(rtcNewScene(state->device.get()));
     rtcSetSceneBuildQuality(scene.get(), quality);

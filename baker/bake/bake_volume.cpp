@@ -14,9 +14,9 @@
 #include "baker/effects/volume/marched_volume.hpp"
 #include "baker/effects/volume/volume_transfer.hpp"
 #include "baker/jobs/kept_value.hpp"
-#include "baker/jobs/memory.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/ray_scene.hpp"
+#include "runtime/base/memory.hpp"
 
 namespace lambent::baker {
 
@@ -353,7 +353,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
                              // As in the reference, bounces are counted between surfaces, not in volumes.
                              .scatterings = options.bounces == 0 ? 0 : -1,
                              .grid = options.volume_grid,
-                             .memory = options.memoryLeft(residentMemory(), 0) / 2,
+                             .memory = options.memoryLeft(residentBytes(), 0) / 2,
                              .fit_within_voxels = true}};
   const BakeContext own =
       context.keyed(context.cache ? transferKey(scene, out, placed.settings, placed.within) : Key{});

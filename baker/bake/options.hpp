@@ -77,8 +77,8 @@ struct BakeOptions {
   bool refinesGlossy() const;
   double refineWedges() const;  // fans at glossy vertices, relative to the number of vertices
   std::uint64_t effectiveMemory() const;
-  // Returns how many bytes of that passes may keep, now that so much of it is used, before transfer of
-  // `samples` samples is computed.
+  // Returns how many bytes of effectiveMemory() passes may keep, if so many are used and transfer of
+  // `samples` samples is still to be computed.
   std::uint64_t memoryLeft(std::uint64_t used, std::size_t samples) const;
   // Returns the bytes of a sample's transfer while it is baked: direct, bounced in three channels, and both
   // once more to be coded.

@@ -6,7 +6,7 @@
 #include "baker/effects/diffuse/inside_faces.hpp"
 #include "baker/effects/glossy/glossy_bounces.hpp"
 #include "baker/effects/glossy/inside_faces.hpp"
-#include "baker/jobs/memory.hpp"
+#include "runtime/base/memory.hpp"
 
 namespace lambent::baker {
 
@@ -103,7 +103,7 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
   const SurfaceBrdfs* const brdfs = group.brdfs();
   const bool bounces = group.bounces();
   const std::uint64_t room =
-      options.memoryLeft(residentMemory(), group.samples.diffuse.size() + group.samples.glossy.size());
+      options.memoryLeft(residentBytes(), group.samples.diffuse.size() + group.samples.glossy.size());
   const DirectPass pass(group.view(), {.order = options.order,
                                        .rays = options.effectiveRays(),
                                        .keep_hits = bounces,

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/cli/output.hpp"
-#include "baker/jobs/memory.hpp"
 #include "baker/plan/counted.hpp"
+#include "runtime/base/memory.hpp"
 
 namespace lambent::baker {
 
@@ -46,14 +46,14 @@ struct Held {
   double estimated, measured;
 };
 std::vector<Held> heldAgainst(const BakeEstimate& estimate, const BakeReport& report) {
-  // What is imported is there before a bake is estimated.
+  // An estimate begins after the import.
   double imported = 0.0;
   for (const Progress::Stage& stage : report.stages)
     if (stage.name == "import") imported += stage.seconds;
   return {{"seconds", estimate.seconds, secondsOf(report) - imported},
           {"samples", estimate.samples, static_cast<double>(report.samples)},
           {"rays", estimate.rays, static_cast<double>(report.rays)},
-          {"memory", estimate.memory_bytes, static_cast<double>(peakMemory())},
+          {"memory", estimate.memory_bytes, static_cast<double>(peakBytes())},
           {"bytes", estimate.bytes, static_cast<double>(report.file_bytes)}};
 }
 

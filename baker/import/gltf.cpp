@@ -88,8 +88,8 @@ Result<Scene> convert(const Document& document) {
   foldWarnings(scene.warnings);
   if (scene.meshes.empty() && scene.volumes.empty())
     return fail(document.file(), "has no triangles in its scene that have an area", "give it a mesh");
-  // What decodes images is loaded here: half a second that is no part of a bake's work, nor of its estimate.
-  // If it cannot be loaded, the first image says so.
+  // The module that decodes images takes half a second to load. It is loaded here because the import counts
+  // in no estimate of a bake. If it cannot be loaded, the first image says so.
   if (!scene.images.empty()) static_cast<void>(openImageIo());
   return scene;
 }

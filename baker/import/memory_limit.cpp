@@ -1,10 +1,9 @@
 #include "baker/import/memory_limit.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <mutex>
 
-#include <unistd.h>
+#include "runtime/base/memory.hpp"
 
 namespace lambent::baker {
 
@@ -13,14 +12,6 @@ namespace {
 std::mutex& oneAtATime() {
   static std::mutex mutex;
   return mutex;
-}
-
-// Returns 0 if the system does not say it.
-std::uint64_t addressSpaceBytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::uint64_t pages = 0;
-  const long page_bytes = ::sysconf(_SC_PAGESIZE);
-  return statm >> pages && page_bytes > 0 ? pages * static_cast<std::uint64_t>(page_bytes) : 0;
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "baker/jobs/kept_value.hpp"
-#include "baker/jobs/memory.hpp"
+#include "runtime/base/memory.hpp"
 
 namespace lambent::baker {
 
@@ -113,7 +113,7 @@ void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions&
   for (std::size_t g = 0; g < std::min(groups.size(), estimate.groups.size()); ++g)
     groups[g].rays += estimate.groups[g].rays, groups[g].seconds += estimate.groups[g].seconds;
   estimate.groups = std::move(groups);
-  estimate.memory_bytes = static_cast<double>(peakMemory()) + more_hits;
+  estimate.memory_bytes = static_cast<double>(peakBytes()) + more_hits;
 }
 
 Key keyOf(const Scene& scene, const BakeOptions& options) {

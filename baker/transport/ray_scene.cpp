@@ -153,7 +153,7 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
   // Embree's thread count follows TBB's, which withThreads() limits; its result does not depend on it.
   state->device.reset(rtcNewDevice(nullptr));
   if (!state->device)
-    return fail("Embree", "cannot be set up", "it lacks memory, or does not run on this processor");
+    return fail("Embree", "cannot be set up", "give it more memory, or check that libembree3 runs on this processor");
   state->scene.reset(rtcNewScene(state->device.get()));
   rtcSetSceneBuildQuality(state->scene.get(), RTC_BUILD_QUALITY_HIGH);
 

@@ -1,8 +1,7 @@
-# While installing: copies the shared libraries that PROGRAMS and MODULES link, and those that these link, to lib/, each under the one
-# name that it is asked for by, and the licences of their packages and of those COMPILED_IN to NOTICES,
-# beside a bill of materials. SYSTEM_LIBRARIES and DISPLAY_LIBRARIES are regular
-# expressions of names that stay out; HEADLESS_PROGRAMS, which no display can trip, get the latter in lib/headless/. RPATHs
-# lead there (lambent_program in cmake/Lambent.cmake).
+# While installing: copies the shared libraries that PROGRAMS and MODULES link, and those that these link, to lib/, each under
+# the one name that it is asked for by, and the licences of their packages and of those COMPILED_IN to NOTICES, beside a bill of
+# materials. SYSTEM_LIBRARIES and DISPLAY_LIBRARIES are regular expressions of names that stay out; HEADLESS_PROGRAMS, which no
+# display can trip, get the latter in lib/headless/. RPATHs lead there (lambent_program in cmake/Lambent.cmake).
 cmake_policy(VERSION 3.25)  # install scripts begin with none
 set(prefix "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
 set(files "")

@@ -1,13 +1,12 @@
 // Runs long: bundles, lights and settings come and go, and nothing of them may stay. LAMBENT_LONG_RUN=100000
 // sets the number of frames; docs/robustness.md has what that gave.
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <string>
 
 #include <epoxy/gl.h>
-#include <unistd.h>
 
+#include "runtime/base/memory.hpp"
 #include "runtime/scene/components.hpp"
 #include "tests/support/frame/world_stage.hpp"
 
@@ -16,13 +15,6 @@ namespace {
 
 using testing::WorldStage;
 using WorldTest = testing::WorldTest;
-
-std::uint64_t residentBytes() {
-  std::ifstream file("/proc/self/statm");
-  std::uint64_t all = 0, resident = 0;
-  file >> all >> resident;
-  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-}
 
 // Counts the objects of one kind. `create` makes one, of which the name is above all others: some drivers
 // give no name twice.

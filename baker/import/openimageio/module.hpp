@@ -21,7 +21,7 @@ struct Pixels {
   std::vector<std::uint8_t> values;
 };
 
-// What the module can do. Functions may throw what OpenImageIO and its libraries throw, which are
+// Lists what the module can do. Functions may throw what OpenImageIO and its libraries throw, which are
 // std::exceptions. Errors name `subject`, or the file.
 struct OpenImageIo {
   // Decodes a file in memory; `name` says by its ending of which kind it is.
@@ -38,8 +38,7 @@ struct OpenImageIo {
 // of its libraries is missing. It may be called from any thread.
 Result<const OpenImageIo*> openImageIo();
 
-inline constexpr const char* kOpenImageIoSymbol = "lambent_openimageio";
-
+// These functions are linked by the module alone.
 namespace openimageio {
 
 Result<Pixels> decode(std::span<const std::byte> file, const std::string& name, const std::string& subject);

@@ -1,0 +1,12 @@
+// Says how much memory this program takes, in bytes; 0 where the system does not tell.
+#pragma once
+
+#include <cstdint>
+
+namespace lambent {
+
+std::uint64_t addressSpaceBytes();  // what is reserved now
+std::uint64_t residentBytes();      // what is in physical memory now
+std::uint64_t peakBytes();          // the most that has been in physical memory so far
+
+}  // namespace lambent
