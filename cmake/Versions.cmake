@@ -1,12 +1,14 @@
 # The least versions that Lambent builds with, all in this one place: those of Debian 12. Rooms look for what they use without
 # a version; they find what was found here.
-set(LAMBENT_PACKAGES
-  "fmt 9.1" "glm 0.9.9.8" "nlohmann_json 3.11" "tl-expected 1.0" "CLI11 2.1" "draco 1.5" "glfw3 3.3"  # runtime
-  "embree 3.13" "TBB 2021.8" "Eigen3 3.4" "meshoptimizer 0.18")                                      # baker
-set(LAMBENT_PKG_CONFIG_MODULES
-  "libzstd 1.5" "libxxhash 0.8" "OpenEXR 3.1" "epoxy 1.5"  # runtime
-  "OpenImageIO 2.4"                                        # baker
-  "imgui 1.86")                                            # editor
+set(LAMBENT_PACKAGES "fmt 9.1" "glm 0.9.9.8" "nlohmann_json 3.11" "tl-expected 1.0" "CLI11 2.1" "draco 1.5" "glfw3 3.3")
+set(LAMBENT_PKG_CONFIG_MODULES "libzstd 1.5" "libxxhash 0.8" "OpenEXR 3.1" "epoxy 1.5")
+if(LAMBENT_BAKER)
+  list(APPEND LAMBENT_PACKAGES "embree 3.13" "TBB 2021.8" "Eigen3 3.4" "meshoptimizer 0.18")
+  list(APPEND LAMBENT_PKG_CONFIG_MODULES "OpenImageIO 2.4")
+endif()
+if(LAMBENT_EDITOR)
+  list(APPEND LAMBENT_PKG_CONFIG_MODULES "imgui 1.86")
+endif()
 
 macro(lambent_check_version name found least)
   if("${found}" STREQUAL "")

@@ -25,6 +25,7 @@ void addInfoCommand(CLI::App& app, Command& run);
 void addReferenceCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
 void addAccuracyCommand(CLI::App& app, Command& run);
+void addExportCommand(CLI::App& app, Command& run);
 
 // Adds the options of a bake from their table (baker/bake/option_rows.hpp).
 void addBakeOptions(CLI::App& command, BakeOptions& options);

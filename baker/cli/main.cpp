@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
   baker::addReferenceCommand(app, run);
   baker::addCompareCommand(app, run);
   baker::addAccuracyCommand(app, run);
+  baker::addExportCommand(app, run);
   const std::string version = std::string("lambent ") + LAMBENT_VERSION;
   app.set_version_flag("--version", version);
   for (CLI::App* command : app.get_subcommands({})) command->set_version_flag("--version", version);

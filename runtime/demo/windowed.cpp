@@ -94,7 +94,7 @@ Result<void> runWindowed(const Options& options) {
   window->framebufferSize(size.width, size.height);
   Result<frame::Frame> frame = frame::Frame::create({.size = size,
                                                      .output = frame::Output::Display,
-                                                     .to_window = true,
+                                                     .destination = frame::Destination::Window,
                                                      .settings = options.settings,
                                                      .view = options.view,
                                                      .overlays = options.overlays},

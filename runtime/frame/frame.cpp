@@ -1,6 +1,7 @@
 #include "runtime/frame/frame.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "runtime/debug/data_view.hpp"
 #include "runtime/surface/surfaces.hpp"
@@ -12,7 +13,7 @@ Frame::Frame(const FrameOptions& options, PassList passes, Blackboard board)
     : options_(options),
       board_(std::move(board)),
       passes_(std::move(passes)),
-      targets_(options.output, options.to_window) {
+      targets_(options.output, options.destination) {
   for (const auto* list : {&passes_.step, &passes_.picture})
     for (const auto& pass : *list) counts_.declare(pass->info().counts);
   resize(options.size);
@@ -41,6 +42,26 @@ void Frame::forget() {
 void Frame::resize(const spec::Size& size) {
   options_.size = size;
   targets_.resize(size);
+}
+
+Result<void> Frame::share(GLuint color, GLuint depth) {
+  assert(options_.destination == Destination::Shared);
+  Result<gpu::Texture> hdr = gpu::Texture::sharing("colour target", color);
+  if (!hdr) return failAgain(hdr.error());
+  Result<gpu::Texture> depths = gpu::Texture::sharing("depth target", depth);
+  if (!depths) return failAgain(depths.error());
+  const gpu::TextureDesc &a = hdr->desc(), &b = depths->desc();
+  if (a.format != GL_RGBA16F && a.format != GL_RGBA32F)
+    return fail("colour target", "cannot hold radiance", "make it GL_RGBA16F or GL_RGBA32F");
+  constexpr GLenum kDepths[] = {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32,
+                                GL_DEPTH_COMPONENT32F};
+  if (std::ranges::find(kDepths, b.format) == std::end(kDepths))
+    return fail("depth target", "has no depth, or more than depth", "make it GL_DEPTH_COMPONENT32F");
+  if (a.width != b.width || a.height != b.height || a.samples != b.samples)
+    return fail("targets", "differ in their size or samples", "make colour and depth alike");
+  options_.size = {.width = a.width, .height = a.height};
+  targets_.share(std::move(*hdr), std::move(*depths));
+  return {};
 }
 
 Result<std::optional<Picked>> Frame::pick(World& world, const spec::View& view, float x, float y) {

@@ -50,6 +50,11 @@ class Frame {
   // took.
   Result<std::uint32_t> rest(World& world, const lighting::Environment& environment);
   void resize(const spec::Size& size);
+  // Draws into textures of other code from now on, if the frame was made for Destination::Shared: linear
+  // radiance (GL_RGBA16F or GL_RGBA32F) and depth, of the same size and samples. Their storage stays alive
+  // until others are shared. Fails if they are not such.
+  Result<void> share(GLuint color, GLuint depth);
+  void setShowSky(bool shown) { options_.show_sky = shown; }
   // Returns what the last picture shows at a point, or nothing for the sky. The point is in pixels from the
   // picture's top left corner, so that pixel (i, j) has its centre at (i + 0.5, j + 0.5). Waits for the GPU.
   Result<std::optional<Picked>> pick(World& world, const spec::View& view, float x, float y);

@@ -16,10 +16,18 @@ enum class Output {
   Display  // tone-mapped, sRGB-coded, four samples per pixel
 };
 
+// Tells where pictures go.
+enum class Destination {
+  Picture,  // the frame's own target, which can be read back
+  Window,   // framebuffer 0
+  Shared    // linear radiance into textures of another program's code (Frame::share), on top of what is there
+};
+
 struct FrameOptions {
   spec::Size size;
   Output output = Output::Display;
-  bool to_window = false;  // draw into framebuffer 0
+  Destination destination = Destination::Picture;
+  bool show_sky = true;  // false: nothing is drawn where no surface is
   FrameSettings settings{};
   std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // most bytes per frame
   // If true, less is uploaded when frames take longer than usual.

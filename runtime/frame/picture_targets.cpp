@@ -41,7 +41,7 @@ std::uint32_t samplesOf(Output output) {
 }
 
 void PictureTargets::resize(const spec::Size& size) {
-  if (hdr_ && size == size_) return;
+  if (destination_ == Destination::Shared || (hdr_ && size == size_)) return;
   size_ = size;
   ++version_;
   const std::uint32_t samples = samplesOf(output_);
@@ -55,11 +55,20 @@ void PictureTargets::resize(const spec::Size& size) {
       {.format = GL_DEPTH_COMPONENT32F, .width = size.width, .height = size.height, .samples = samples});
   hdr_target_ = gpu::Framebuffer("hdr", hdr_, &depth_);
   hdr_color_target_ = {};
-  if (to_window_) return;
+  if (destination_ == Destination::Window) return;
   picture_ = gpu::Texture(
       "picture",
       {.format = linear ? GLenum{GL_RGBA32F} : GLenum{GL_RGBA8}, .width = size.width, .height = size.height});
   picture_target_ = gpu::Framebuffer("picture", picture_, nullptr);
+}
+
+void PictureTargets::share(gpu::Texture hdr, gpu::Texture depth) {
+  size_ = {.width = hdr.desc().width, .height = hdr.desc().height};
+  ++version_;
+  hdr_ = std::move(hdr);
+  depth_ = std::move(depth);
+  hdr_target_ = gpu::Framebuffer("hdr", hdr_, &depth_);
+  hdr_color_target_ = {};
 }
 
 void PictureTargets::bindCleared(float grey) {
@@ -68,13 +77,14 @@ void PictureTargets::bindCleared(float grey) {
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
+  if (destination_ == Destination::Shared) return;
   const float background[] = {grey, grey, grey, 0.0f};
   glClearNamedFramebufferfv(hdr_target_.id(), GL_COLOR, 0, background);
   glClearNamedFramebufferfv(hdr_target_.id(), GL_DEPTH, 0, &kFar);
 }
 
 void PictureTargets::bindPicture() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, to_window_ ? 0 : picture_target_.id());
+  glBindFramebuffer(GL_FRAMEBUFFER, destination_ == Destination::Window ? 0 : picture_target_.id());
 }
 
 const gpu::Framebuffer& PictureTargets::hdrColor() {

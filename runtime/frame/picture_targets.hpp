@@ -1,6 +1,7 @@
 // Owns the textures that a frame draws into: linear radiance and depth, and the picture that is made from
-// them unless it goes to the window. It takes the kind and size of the picture, and provides framebuffers for
-// passes and the picture for reading. Render thread only; reading waits for the GPU.
+// them unless it goes elsewhere. Radiance and depth may be shared with other code. It takes the kind and size
+// of the picture, and provides framebuffers for passes and the picture for reading. Render thread only;
+// reading waits for the GPU.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +20,19 @@ std::uint32_t samplesOf(Output output);
 
 class PictureTargets {
  public:
-  PictureTargets(Output output, bool to_window) : output_(output), to_window_(to_window) {}
+  PictureTargets(Output output, Destination destination) : output_(output), destination_(destination) {}
 
   // Makes the textures anew if their size differs.
   void resize(const spec::Size& size);
   const spec::Size& size() const { return size_; }
+  // Draws into these from now on, which share their storage with other code. Both have the same size and
+  // samples.
+  void share(gpu::Texture hdr, gpu::Texture depth);
   // Rises when the textures are made anew.
   std::uint64_t version() const { return version_; }
 
-  // Binds radiance and depth. Radiance is cleared to `grey` with alpha 0, depth to the far end.
+  // Binds radiance and depth. Unless they are shared, radiance is cleared to `grey` with alpha 0, depth to
+  // the far end.
   void bindCleared(float grey);
   // Binds the framebuffer of the picture, or the window's.
   void bindPicture() const;
@@ -46,7 +51,7 @@ class PictureTargets {
 
  private:
   Output output_;
-  bool to_window_;
+  Destination destination_;
   spec::Size size_{};
   std::uint64_t version_ = 0;
   gpu::Texture hdr_, depth_, picture_;

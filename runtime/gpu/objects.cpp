@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <string>
 #include <vector>
 
 namespace lambent::gpu {
@@ -79,6 +80,35 @@ Texture::Texture(std::string_view label, const TextureDesc& desc)
   else
     glTextureStorage2D(id(), static_cast<GLsizei>(desc.levels), desc.format, width, height);
   setLabel(GL_TEXTURE, id(), label);
+}
+
+Result<Texture> Texture::sharing(std::string_view label, GLuint other) {
+  const auto no = [&](std::string why) {
+    return fail(std::string(label), std::move(why),
+                "make it with glCreateTextures and glTextureStorage2D or glTextureStorage2DMultisample");
+  };
+  if (glIsTexture(other) == GL_FALSE) return no(std::to_string(other) + " is no texture");
+  const auto parameter = [&](GLenum name) {
+    GLint value = 0;
+    glGetTextureParameteriv(other, name, &value);
+    return value;
+  };
+  const auto target = static_cast<GLenum>(parameter(GL_TEXTURE_TARGET));
+  if (target != GL_TEXTURE_2D && target != GL_TEXTURE_2D_MULTISAMPLE) return no("is not two-dimensional");
+  if (parameter(GL_TEXTURE_IMMUTABLE_FORMAT) == 0) return no("has storage that may change");
+  const auto ofLevel = [&](GLenum name) {
+    GLint value = 0;
+    glGetTextureLevelParameteriv(other, 0, name, &value);
+    return static_cast<std::uint32_t>(value);
+  };
+  const TextureDesc desc{.format = ofLevel(GL_TEXTURE_INTERNAL_FORMAT),
+                         .width = ofLevel(GL_TEXTURE_WIDTH),
+                         .height = ofLevel(GL_TEXTURE_HEIGHT),
+                         .samples = ofLevel(GL_TEXTURE_SAMPLES)};
+  const GLuint id = made([](GLuint* name) { glGenTextures(1, name); });
+  glTextureView(id, target, other, desc.format, 0, 1, 0, 1);
+  setLabel(GL_TEXTURE, id, label);
+  return Texture(id, desc);
 }
 
 Sampler::Sampler(GLenum wrap_s, GLenum wrap_t, GLenum mag_filter, GLenum min_filter)

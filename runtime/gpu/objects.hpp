@@ -11,6 +11,8 @@
 
 #include <epoxy/gl.h>
 
+#include "runtime/base/result.hpp"
+
 namespace lambent::gpu {
 
 // Owns one GL name; `Traits::destroy` deletes it.
@@ -109,10 +111,15 @@ class Texture : public Handle<TextureTraits> {
  public:
   Texture() = default;
   Texture(std::string_view label, const TextureDesc& desc);
+  // Returns a texture that shares the storage of `other`, a two-dimensional texture with or without samples,
+  // which may belong to another program's code. Fails, naming `label`, if it is none, or if its storage may
+  // change.
+  static Result<Texture> sharing(std::string_view label, GLuint other);
   const TextureDesc& desc() const { return desc_; }
   void bind(GLuint unit) const { glBindTextureUnit(unit, id()); }
 
  private:
+  Texture(GLuint id, const TextureDesc& desc) : Handle(id), desc_(desc) {}
   TextureDesc desc_;
 };
 

@@ -19,7 +19,8 @@ LocalLightComponent lightOf(Kind kind, float radius_m, glm::vec3 radiance) {
           .radius_m = radius_m};
 }
 
-// Returns the smallest rotation that takes -Z to the direction.
+}  // namespace
+
 glm::quat facing(glm::vec3 direction) {
   const glm::dvec3 to = glm::normalize(glm::dvec3(direction)), from(0.0, 0.0, -1.0);
   const double w = 1.0 + glm::dot(from, to);
@@ -27,8 +28,6 @@ glm::quat facing(glm::vec3 direction) {
   const glm::dvec3 axis = glm::cross(from, to);
   return glm::quat(glm::normalize(glm::dquat(w, axis.x, axis.y, axis.z)));
 }
-
-}  // namespace
 
 std::vector<ecs::Entity> addLights(ecs::Registry& registry, std::span<const spec::Light> lights) {
   std::vector<ecs::Entity> entities;

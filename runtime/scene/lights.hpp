@@ -15,6 +15,9 @@ namespace lambent::scene {
 // to the direction in which it shines.
 std::vector<ecs::Entity> addLights(ecs::Registry& registry, std::span<const spec::Light> lights);
 
+// Returns the smallest rotation that takes -Z, along which lights shine, to the direction, which is not 0.
+glm::quat facing(glm::vec3 direction);
+
 ecs::Entity addEnvironment(ecs::Registry& registry, const EnvironmentComponent& environment = {});
 
 }  // namespace lambent::scene

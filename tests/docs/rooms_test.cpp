@@ -18,7 +18,9 @@ namespace fs = std::filesystem;
 bool makesATarget(const fs::path& cmake_lists) {
   const Result<std::string> text = readTextFile(cmake_lists);
   return text && (text->find("lambent_room(") != std::string::npos ||
-                  text->find("lambent_program(") != std::string::npos);
+                  text->find("lambent_program(") != std::string::npos ||
+                  text->find("lambent_library(") != std::string::npos ||
+                  text->find("pybind11_add_module(") != std::string::npos);
 }
 
 std::set<std::string> roomsOnDisk() {

@@ -1,20 +1,36 @@
+#include <string>
 #include <system_error>
 
 #include <dlfcn.h>
+#include <link.h>
 
 #include "baker/import/openimageio/module.hpp"
 
 namespace lambent::baker {
 namespace {
 
-Result<const OpenImageIo*> load() {
-  // It lies in ../lib of the program, in a build folder as where it is installed, or where the loader looks.
-  constexpr const char *kFile = "liblambent-openimageio.so", *kSymbol = "lambent_openimageio";
+// Returns the file that holds this code: the program, or the library that another program has loaded.
+std::filesystem::path ownFile() {
+  Dl_info unused;
+  link_map* file = nullptr;
+  const auto* code = reinterpret_cast<const void*>(&ownFile);
   std::error_code ignored;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  const std::filesystem::path beside = program.parent_path().parent_path() / "lib" / kFile;
-  const bool is_beside = std::filesystem::exists(beside, ignored);
-  void* module = ::dlopen(is_beside ? beside.c_str() : kFile, RTLD_NOW | RTLD_LOCAL);
+  if (::dladdr1(code, &unused, reinterpret_cast<void**>(&file), RTLD_DL_LINKMAP) != 0 && file &&
+      file->l_name[0] != '\0')
+    return std::filesystem::canonical(file->l_name, ignored);
+  return std::filesystem::read_symlink("/proc/self/exe", ignored);
+}
+
+Result<const OpenImageIo*> load() {
+  // It lies beside the library, in ../lib of the program (in a build folder as where it is installed), or
+  // where the loader looks.
+  constexpr const char *kFile = "liblambent-openimageio.so", *kSymbol = "lambent_openimageio";
+  const std::filesystem::path folder = ownFile().parent_path();
+  std::string path = kFile;
+  std::error_code ignored;
+  for (const std::filesystem::path& beside : {folder / kFile, folder.parent_path() / "lib" / kFile})
+    if (std::filesystem::exists(beside, ignored)) path = beside;
+  void* module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   const char* why = module ? nullptr : ::dlerror();
   const void* symbol = module ? ::dlsym(module, kSymbol) : nullptr;
   if (!symbol)

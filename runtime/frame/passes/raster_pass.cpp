@@ -86,7 +86,7 @@ class RasterPass final : public FramePass {
         return done;
       proxy_lods_.draw(view, frame.counters());
     }
-    if (showsLight(shown)) {
+    if (showsLight(shown) && frame.options.show_sky) {
       frame.read<Sky>().draw(frame.environment, view.view_from_world, view.clip_from_view,
                              frame.targets.size().height, frame.counters());
       glDepthFunc(GL_LESS);

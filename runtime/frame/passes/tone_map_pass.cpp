@@ -19,6 +19,9 @@ class ToneMapPass final : public FramePass {
     board.offer(tone_mapper_);
   }
 
+  bool due(const FrameContext& frame) override {
+    return frame.options.destination != Destination::Shared;  // whose owner does it
+  }
   Result<void> update(FrameContext& frame) override {
     frame.targets.bindPicture();
     frame.because();

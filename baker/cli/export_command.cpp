@@ -1,0 +1,233 @@
+// Implements lambent export BUNDLE -o DIR: the numbers of a bundle as arrays that NumPy reads, and a JSON
+// that says what they are (docs/export.md).
+#include <array>
+#include <memory>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/cli/commands.hpp"
+#include "baker/cli/npy.hpp"
+#include "baker/cli/output.hpp"
+#include "lambent/bundle.hpp"
+#include "lambent/sh.hpp"
+#include "runtime/base/atomic_file.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct ExportArguments {
+  fs::path bundle, folder;
+  std::vector<std::string> light;
+  int order = kMaxBands;
+  bool json = false;
+};
+
+Error errorOf(const Failure& failure) {
+  return {failure.subject, failure.problem, failure.hint};
+}
+
+constexpr const char* kForms[] = {"vector", "normal-mapped", "visibility", "matrix"};
+constexpr const char* kPlaces[] = {"surface", "volume", "neighborhood"};
+
+std::array<float, 3> numbers(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+// Writes arrays into the folder, and keeps the first error.
+class ArrayWriter {
+ public:
+  explicit ArrayWriter(fs::path folder) : folder_(std::move(folder)) {}
+
+  // Returns the name under which the JSON refers to the array.
+  template <class Value>
+  std::string write(const std::string& name, const ArrayShape& shape, const std::vector<Value>& values) {
+    if (done_) done_ = writeNpy(folder_ / (name + ".npy"), shape, std::span<const Value>(values));
+    ++arrays_;
+    return name + ".npy";
+  }
+  std::string write(const std::string& name, const std::vector<Vec3>& values) {
+    std::vector<float> flat;
+    for (const Vec3& v : values) flat.insert(flat.end(), {v.x, v.y, v.z});
+    return write(name, {values.size(), 3}, flat);
+  }
+  void fail(const Failure& failure) {
+    if (done_) done_ = failAgain(errorOf(failure));
+  }
+  const Result<void>& done() const { return done_; }
+  int arrays() const { return arrays_; }
+
+ private:
+  fs::path folder_;
+  Result<void> done_;
+  int arrays_ = 0;
+};
+
+// A sample lies where the vertices are that take their light from it, each by its share.
+struct SamplePoints {
+  std::vector<Vec3> positions, normals;
+  std::vector<float> weights;
+};
+
+void addPoints(const SurfaceData& surface, SamplePoints& points) {
+  for (std::size_t v = 0; v + 1 < surface.offsets.size(); ++v)
+    for (std::uint32_t k = surface.offsets[v]; k < surface.offsets[v + 1]; ++k) {
+      const std::uint32_t s = surface.samples[k];
+      const float w = surface.weights[k];
+      const auto add = [w](Vec3& sum, const Vec3& value) {
+        sum = {sum.x + w * value.x, sum.y + w * value.y, sum.z + w * value.z};
+      };
+      add(points.positions[s], surface.positions[v]);
+      add(points.normals[s], surface.normals[v]);
+      points.weights[s] += w;
+    }
+}
+
+json describe(const TransferBlock& block) {
+  return {{"form", kForms[static_cast<std::size_t>(block.form)]},
+          {"place", kPlaces[static_cast<std::size_t>(block.place)]},
+          {"firstSample", block.first_sample},
+          {"samples", block.samples},
+          {"order", block.order},
+          {"lamps", block.lamps},
+          {"shadowedChannels", block.shadowed_channels},
+          {"fullChannels", block.full_channels},
+          {"outputs", block.outputs},
+          {"columns", block.columns}};
+}
+
+json exportGroup(const Bundle& bundle, std::uint32_t index, const SamplePoints& points, ArrayWriter& arrays) {
+  const GroupInfo& group = bundle.groups()[index];
+  const std::string prefix = fmt::format("group{}", index);
+  json described = {{"name", group.name},
+                    {"samples", group.samples},
+                    {"worldFromGroup", group.world_from_group},
+                    {"boundsMin", numbers(group.bounds_min)},
+                    {"boundsMax", numbers(group.bounds_max)},
+                    {"lamps", group.lamps},
+                    {"samplePositions", arrays.write(prefix + ".sample_positions", points.positions)},
+                    {"sampleNormals", arrays.write(prefix + ".sample_normals", points.normals)},
+                    {"transfer", json::array()}};
+  for (std::uint32_t b = 0; b < group.blocks.size() && arrays.done(); ++b) {
+    const TransferBlock& block = group.blocks[b];
+    const Expected<std::vector<float>> values = bundle.transfer(index, b);
+    if (!values) {
+      arrays.fail(values.failure());
+      break;
+    }
+    json one = describe(block);
+    one["values"] = arrays.write(fmt::format("{}.transfer{}", prefix, b),
+                                 {block.samples, block.channels(), block.outputs, block.columns}, *values);
+    described["transfer"].push_back(std::move(one));
+  }
+  return described;
+}
+
+json exportSurface(const SurfaceInfo& info, std::uint32_t index, const SurfaceData& data,
+                   ArrayWriter& arrays) {
+  const std::string prefix = fmt::format("surface{}", index);
+  return {{"mesh", info.mesh},
+          {"material", info.material},
+          {"group", info.group},
+          {"back", info.back},
+          {"form", kForms[static_cast<std::size_t>(info.form)]},
+          {"albedo", numbers(info.albedo)},
+          {"positions", arrays.write(prefix + ".positions", data.positions)},
+          {"normals", arrays.write(prefix + ".normals", data.normals)},
+          {"triangles", arrays.write(prefix + ".triangles", {data.indices.size() / 3, 3}, data.indices)},
+          {"rowOffsets", arrays.write(prefix + ".row_offsets", {data.offsets.size()}, data.offsets)},
+          {"rowSamples", arrays.write(prefix + ".row_samples", {data.samples.size()}, data.samples)},
+          {"rowWeights", arrays.write(prefix + ".row_weights", {data.weights.size()}, data.weights)}};
+}
+
+// Returns the mean of what vertices added. Samples that no vertex takes, as those of volumes, are at 0.
+void finish(SamplePoints& points) {
+  for (std::size_t s = 0; s < points.weights.size(); ++s) {
+    if (points.weights[s] <= 0.0f) continue;
+    const auto scale = [](Vec3& v, float by) { v = {v.x * by, v.y * by, v.z * by}; };
+    scale(points.positions[s], 1.0f / points.weights[s]);
+    const Vec3 n = points.normals[s];
+    const float length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+    if (length > 0.0f) scale(points.normals[s], 1.0f / length);
+  }
+}
+
+Result<void> exportBundle(const ExportArguments& a) {
+  const Expected<Bundle> bundle = Bundle::open(a.bundle.string());
+  if (!bundle) return failAgain(errorOf(bundle.failure()));
+  std::error_code failed;
+  fs::create_directories(a.folder, failed);
+  if (failed)
+    return fail(a.folder.string(), "cannot be made (" + failed.message() + ")", "name another folder");
+  ArrayWriter arrays(a.folder);
+  json described = {{"bundle", a.bundle.filename().string()},
+                    {"program", std::string("lambent ") + LAMBENT_VERSION},
+                    {"groups", json::array()},
+                    {"surfaces", json::array()}};
+  if (!a.light.empty()) {
+    const Expected<LightVector> light = lightFrom(a.light, a.order);
+    if (!light) return failAgain(errorOf(light.failure()));
+    described["light"] = {
+        {"words", a.light}, {"order", a.order}, {"coefficients", arrays.write("light", light->coefficients)}};
+  }
+  std::vector<SamplePoints> points;
+  for (const GroupInfo& group : bundle->groups())
+    points.push_back({std::vector<Vec3>(group.samples), std::vector<Vec3>(group.samples),
+                      std::vector<float>(group.samples)});
+  const std::vector<SurfaceInfo>& surfaces = bundle->surfaces();
+  for (std::uint32_t s = 0; s < surfaces.size() && arrays.done(); ++s) {
+    const Expected<SurfaceData> data = bundle->surface(s);
+    if (!data) return failAgain(errorOf(data.failure()));
+    addPoints(*data, points[surfaces[s].group]);
+    described["surfaces"].push_back(exportSurface(surfaces[s], s, *data, arrays));
+  }
+  for (std::uint32_t g = 0; g < bundle->groups().size() && arrays.done(); ++g) {
+    finish(points[g]);
+    described["groups"].push_back(exportGroup(*bundle, g, points[g], arrays));
+  }
+  if (!arrays.done()) return arrays.done();
+  // The description comes last, so that a folder that has one is whole.
+  Result<AtomicFile> file = AtomicFile::open(a.folder / "bundle.json");
+  if (!file) return failAgain(file.error());
+  if (Result<void> done = file->write(described.dump(2) + "\n"); !done) return done;
+  if (Result<void> done = file->commit(); !done) return done;
+  if (a.json)
+    fmt::print("{}\n", described.dump(2));
+  else
+    fmt::print("{}: {} arrays of {} groups and {} surfaces; bundle.json says what they are\n",
+               a.folder.string(), arrays.arrays(), bundle->groups().size(), surfaces.size());
+  return {};
+}
+
+}  // namespace
+
+void addExportCommand(CLI::App& app, Command& run) {
+  auto a = std::make_shared<ExportArguments>();
+  CLI::App* command = app.add_subcommand("export", "Write the numbers of a bundle as arrays for NumPy");
+  command->add_option("BUNDLE", a->bundle, "The bundle, .lmb.glb")->required();
+  command->add_option("-o,--output", a->folder, "The folder to write arrays (.npy) and bundle.json into")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("--light", a->light,
+                   "Also write the light vector of a light at infinity; several add up (docs/conventions.md)")
+      ->type_name("LIGHT");
+  command->add_option("--order", a->order, "Bands of the light vector, 1..8")
+      ->check(CLI::Range(1, kMaxBands))
+      ->capture_default_str();
+  command->add_flag("--json", a->json, "Print bundle.json");
+  command->callback([a, &run] {
+    run = [a] {
+      const Result<void> done = exportBundle(*a);
+      return done ? 0 : reportError(done.error());
+    };
+  });
+}
+
+}  // namespace lambent::baker
