@@ -85,18 +85,6 @@ function(lambent_embed target)
   target_include_directories(${target} PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/embedded")
 endfunction()
 
-# How all tests are compiled.
-function(lambent_test_flags name)
-  target_link_libraries(${name} PRIVATE lambent_flags GTest::gtest_main)
-  # What is tested is built as it ships. The claims themselves run once; -O1 compiles them in two thirds of the time.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
-  if(LAMBENT_SANITIZE)
-    target_compile_options(${name} PRIVATE -O0 -fno-sanitize=undefined)
-  endif()
-  # Tests find the shared data beside the checkout, if it is there; LAMBENT_SHARED_DATA overrides.
-  target_compile_definitions(${name} PRIVATE "LAMBENT_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" "LAMBENT_BINARY_DIR=\"${CMAKE_BINARY_DIR}\"")
-endfunction()
-
 # lambent_test(NAME SOURCES file... LINK target... [LABELS label...] [TIMEOUT seconds])
 # Labels: gpu needs OpenGL; fast takes seconds in an optimized build and is what scripts/test-sanitized builds and runs;
 # files reads files that may be damaged, and is what scripts/test --sanitized builds and runs with sanitizers too.
@@ -106,11 +94,14 @@ function(lambent_test name)
     set(TEST_TIMEOUT 300)
   endif()
   add_executable(${name} ${TEST_SOURCES})
-  target_link_libraries(${name} PRIVATE ${TEST_LINK})
-  lambent_test_flags(${name})
-  if(TARGET lambent_test_headers)
-    target_precompile_headers(${name} REUSE_FROM lambent_test_headers)
+  target_link_libraries(${name} PRIVATE lambent_flags ${TEST_LINK} GTest::gtest_main)
+  # What is tested is built as it ships. The claims themselves run once; -O1 compiles them in two thirds of the time.
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  if(LAMBENT_SANITIZE)
+    target_compile_options(${name} PRIVATE -O0 -fno-sanitize=undefined)
   endif()
+  # Tests find the shared data beside the checkout, if it is there; LAMBENT_SHARED_DATA overrides.
+  target_compile_definitions(${name} PRIVATE "LAMBENT_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" "LAMBENT_BINARY_DIR=\"${CMAKE_BINARY_DIR}\"")
   foreach(label fast files)
     if(label IN_LIST TEST_LABELS)
       add_dependencies(${label}-tests ${name})

@@ -1,1 +1,0 @@
-// Nothing but the headers that tests share, which are compiled once for all (tests/CMakeLists.txt).
