@@ -353,7 +353,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
                              // As in the reference, bounces are counted between surfaces, not in volumes.
                              .scatterings = options.bounces == 0 ? 0 : -1,
                              .grid = options.volume_grid,
-                             .memory = options.memoryLeft(residentBytes(), 0) / 2,
+                             .memory = options.memoryLeft(residentBytes(), 0, 0) / 2,
                              .fit_within_voxels = true}};
   const BakeContext own =
       context.keyed(context.cache ? transferKey(scene, out, placed.settings, placed.within) : Key{});

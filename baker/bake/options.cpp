@@ -134,15 +134,21 @@ std::uint64_t BakeOptions::effectiveMemory() const {
   return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes) / 2;
 }
 
-std::uint64_t BakeOptions::memoryLeft(std::uint64_t used, std::size_t samples) const {
+std::uint64_t BakeOptions::memoryLeft(std::uint64_t used, std::size_t diffuse, std::size_t glossy) const {
   const double left = static_cast<double>(effectiveMemory()) - static_cast<double>(used) -
-                      static_cast<double>(samples) * bytesOfTransfer();
+                      static_cast<double>(diffuse) * bytesOfTransfer(false) -
+                      static_cast<double>(glossy) * bytesOfTransfer(true);
   return static_cast<std::uint64_t>(std::max(0.0, left));
 }
 
-double BakeOptions::bytesOfTransfer() const {
+double BakeOptions::bytesOfTransfer(bool glossy) const {
   constexpr double kCopies = 8.0;
-  return kCopies * static_cast<double>(order) * static_cast<double>(order) * double{sizeof(float)};
+  const double vector = static_cast<double>(order) * static_cast<double>(order) * double{sizeof(float)};
+  if (!glossy || bounces == 0) return kCopies * vector;
+  constexpr double kChannels = 3.0;
+  const double outputs = static_cast<double>(glossy_order) * static_cast<double>(glossy_order);
+  const double exits = static_cast<double>(exitOrder()) * static_cast<double>(exitOrder());
+  return 2.0 * kChannels * (outputs + exits) * vector;
 }
 
 std::map<std::string, std::string> BakeOptions::settings() const {

@@ -78,11 +78,11 @@ struct BakeOptions {
   double refineWedges() const;  // fans at glossy vertices, relative to the number of vertices
   std::uint64_t effectiveMemory() const;
   // Returns how many bytes of effectiveMemory() passes may keep, if so many are used and transfer of
-  // `samples` samples is still to be computed.
-  std::uint64_t memoryLeft(std::uint64_t used, std::size_t samples) const;
+  // so many diffuse and glossy samples is still to be computed.
+  std::uint64_t memoryLeft(std::uint64_t used, std::size_t diffuse, std::size_t glossy) const;
   // Returns the bytes of a sample's transfer while it is baked: direct, bounced in three channels, and both
-  // once more to be coded.
-  double bytesOfTransfer() const;
+  // once more to be coded. Bounces of glossy samples are matrices, of more bands in two passes.
+  double bytesOfTransfer(bool glossy) const;
   std::map<std::string, std::string> settings() const;
   // Returns options with those settings, of the quality that they differ from least. Names that settings()
   // does not have are ignored. Returns nothing if a setting is missing or not of its kind. `threads` and

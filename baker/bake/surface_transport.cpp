@@ -103,7 +103,7 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
   const SurfaceBrdfs* const brdfs = group.brdfs();
   const bool bounces = group.bounces();
   const std::uint64_t room =
-      options.memoryLeft(residentBytes(), group.samples.diffuse.size() + group.samples.glossy.size());
+      options.memoryLeft(residentBytes(), group.samples.diffuse.size(), group.samples.glossy.size());
   const DirectPass pass(group.view(), {.order = options.order,
                                        .rays = options.effectiveRays(),
                                        .keep_hits = bounces,

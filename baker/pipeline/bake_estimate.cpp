@@ -107,7 +107,7 @@ void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions&
                                : 0.0;
     more_hits = std::max(more_hits, hits - static_cast<double>(group.hit_bytes) + of_view);
     of.hit_bytes = hits;
-    of.memory_bytes = hits + of.samples * options.bytesOfTransfer();
+    of.memory_bytes = hits + of.samples * options.bytesOfTransfer(false);
     of.bytes = static_cast<double>(group.transfer_bytes) * of_codes;
   }
   for (std::size_t g = 0; g < std::min(groups.size(), estimate.groups.size()); ++g)
