@@ -44,8 +44,11 @@ class WindowlessPanels : public testing::Windowless {
   void click(const Panel& panel, const std::string& mark) {
     const auto where = marks.find(mark);
     ASSERT_TRUE(where) << mark << " is not in the panel";
+    ScriptedInput input;
+    input.pointer = where->center();
     for (const bool down : {false, true, true, false, false}) {
-      apply({.pointer = where->center(), .left = down});
+      input.left = down;
+      apply(input);
       draw(panel);
     }
   }
