@@ -11,9 +11,9 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
-#include <embree3/rtcore.h>
 #include <glm/geometric.hpp>
 
+#include "baker/embree/embree.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/transport/frame.hpp"
 #include "baker/transport/ray_packets.hpp"
@@ -67,20 +67,17 @@ struct FilledPacket {
 enum class Call { Incoherent16, Coherent16, Incoherent8, Single };
 
 std::uint64_t traceBare(const Workload& work, std::vector<FilledPacket>& packets, Call call) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags =
-      call == Call::Coherent16 ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  RayQuery query(call == Call::Coherent16 ? RayOrder::Coherent : RayOrder::Incoherent);
   std::uint64_t rays = 0;
   for (FilledPacket& packet : packets) {
     if (call == Call::Incoherent16 || call == Call::Coherent16) {
-      rtcOccluded16(packet.lanes.valid.data(), work.scene, &context, &packet.ray);
+      query.occluded(work.scene, packet.lanes.valid.data(), packet.ray);
     } else {
       if (call == Call::Single) {
         for (unsigned k = 0; k < kPacketWidth; ++k) {
           if (!packet.lanes.valid[k]) continue;
           RTCRay ray = rtcGetRayFromRayN(reinterpret_cast<RTCRayN*>(&packet.ray), kPacketWidth, k);
-          rtcOccluded1(work.scene, &context, &ray);
+          query.occluded(work.scene, ray);
           benchmark::DoNotOptimize(ray.tfar);
         }
       } else {
@@ -97,7 +94,7 @@ std::uint64_t traceBare(const Workload& work, std::vector<FilledPacket>& packets
             ray.tnear[k] = 0.0f, ray.tfar[k] = packet.ray.tfar[from], ray.time[k] = 0.0f, ray.mask[k] = ~0u,
             ray.flags[k] = 0;
           }
-          rtcOccluded8(valid, work.scene, &context, &ray);
+          query.occluded(work.scene, valid, ray);
           benchmark::DoNotOptimize(ray.tfar[0]);
         }
       }

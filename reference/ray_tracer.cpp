@@ -5,12 +5,12 @@
 #include <cstring>
 #include <type_traits>
 
-#include <embree3/rtcore.h>
-
 #if defined(__SSE2__)
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 #endif
+
+#include "baker/embree/embree.hpp"
 
 namespace lambent::baker::reference {
 
@@ -83,14 +83,9 @@ void filterBacks(const RTCFilterFunctionNArguments* args) {
     if (args->valid[i] == -1 && isCulled(args, i)) args->valid[i] = 0;
 }
 
-// Records every hit and lets the ray continue.
-struct LayerContext {
-  RTCIntersectContext embree;
-  std::vector<Hit>* layers;
-};
-
+// Records every hit in the query's list and lets the ray continue.
 void filterLayers(const RTCFilterFunctionNArguments* args) {
-  auto& layers = *reinterpret_cast<LayerContext*>(args->context)->layers;
+  auto& layers = *static_cast<std::vector<Hit>*>(RayQuery::userOf(*args));
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
     if (!isCulled(args, i)) layers.push_back(hitOf(args, i));
@@ -163,13 +158,13 @@ Result<RayTracer> RayTracer::build(const Surfaces& surfaces) {
   state->surfaces = &surfaces;
   state->device.reset(rtcNewDevice(nullptr));
   if (!state->device)
-    return fail("Embree", "cannot be set up", "give it more memory, or check that libembree3 runs on this processor");
+    return fail("Embree", "cannot be set up",
+                "give it more memory, or check that Embree runs on this processor");
   const auto newScene = [&](RTCBuildQuality quality) {
     EmbreeScene scene(rtcNewScene(state->device.get()));
     rtcSetSceneBuildQuality(scene.get(), quality);
     // ROBUST prevents rays from passing through edges that two triangles share.
-    rtcSetSceneFlags(scene.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
-                                                             RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    rtcSetSceneFlags(scene.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | kSceneFlagQueryFilter));
     return scene;
   };
   state->solid = newScene(RTC_BUILD_QUALITY_HIGH);
@@ -191,15 +186,14 @@ Result<RayTracer> RayTracer::build(const Surfaces& surfaces) {
 
 void RayTracer::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
   const FlushDenormals flush;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  RayQuery query(RayOrder::Incoherent);
   alignas(64) RTCRayHit16 packet;
   alignas(64) int valid[kWidth];
   for (std::size_t first = 0; first < rays.size(); first += kWidth) {
     const auto some = rays.subspan(first, std::min(kWidth, rays.size() - first));
     fill(packet.ray, some, valid);
     for (std::size_t k = 0; k < kWidth; ++k) packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect16(valid, state_->solid.get(), &context, &packet);
+    query.intersect(state_->solid.get(), valid, packet);
     for (std::size_t k = 0; k < some.size(); ++k) {
       hits[first + k] = {};
       const std::uint32_t surface = packet.hit.geomID[k];
@@ -212,14 +206,13 @@ void RayTracer::intersect(std::span<const Ray> rays, std::span<Hit> hits) const 
 
 void RayTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
   const FlushDenormals flush;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  RayQuery query(RayOrder::Incoherent);
   alignas(64) RTCRay16 packet;
   alignas(64) int valid[kWidth];
   for (std::size_t first = 0; first < rays.size(); first += kWidth) {
     const auto some = rays.subspan(first, std::min(kWidth, rays.size() - first));
     fill(packet, some, valid);
-    rtcOccluded16(valid, state_->solid.get(), &context, &packet);
+    query.occluded(state_->solid.get(), valid, packet);
     // Embree sets tfar to -inf if the ray is occluded.
     for (std::size_t k = 0; k < some.size(); ++k) blocked[first + k] = packet.tfar[k] < 0.0f;
   }
@@ -230,15 +223,13 @@ void RayTracer::visible(const Ray& ray, std::vector<Hit>& layers) const {
   layers.clear();
   if (!traceable(ray)) return;
   const auto trace = [&](RTCScene scene, RTCFilterFunctionN filter, float far) {
-    LayerContext context{{}, &layers};
-    rtcInitIntersectContext(&context.embree);
-    context.embree.filter = filter;
+    RayQuery query(RayOrder::Incoherent, filter, &layers);
     RTCRayHit hit{};
     hit.ray.org_x = ray.origin.x, hit.ray.org_y = ray.origin.y, hit.ray.org_z = ray.origin.z;
     hit.ray.dir_x = ray.dir.x, hit.ray.dir_y = ray.dir.y, hit.ray.dir_z = ray.dir.z;
     hit.ray.tfar = far, hit.ray.mask = ~0u;
     hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene, &context.embree, &hit);
+    query.intersect(scene, hit);
     return hit;
   };
   const RTCRayHit solid = trace(state_->solid.get(), filterBacks, ray.far);

@@ -60,13 +60,27 @@ struct BufferAsker {
     return true;
   }
 
-  tinygltf::FsCallbacks callbacks() {
-    return {.FileExists = [](const std::string&, void*) { return true; },
-            .ExpandFilePath = [](const std::string& name, void*) { return name; },
-            .ReadWholeFile = [](std::vector<unsigned char>* out, std::string*, const std::string& name,
-                                void* self) { return static_cast<BufferAsker*>(self)->read(*out, name); },
-            .WriteWholeFile = nullptr,
-            .user_data = this};
+  tinygltf::FsCallbacks callbacks() { return filled(tinygltf::FsCallbacks{}); }
+
+ private:
+  // tinygltf from 2.8 on asks for a file's size, too, and ignores callbacks of which one is missing. This is
+  // a template because older versions lack that member.
+  template <typename Callbacks>
+  Callbacks filled(Callbacks callbacks) {
+    callbacks.FileExists = [](const std::string&, void*) { return true; };
+    callbacks.ExpandFilePath = [](const std::string& name, void*) { return name; };
+    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string*, const std::string& name,
+                                 void* self) { return static_cast<BufferAsker*>(self)->read(*out, name); };
+    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
+                                  void*) { return false; };
+    // The size is for a limit of tinygltf's own; the source has its limits.
+    if constexpr (requires { callbacks.GetFileSizeInBytes; })
+      callbacks.GetFileSizeInBytes = [](std::size_t* bytes, std::string*, const std::string&, void*) {
+        *bytes = 0;
+        return true;
+      };
+    callbacks.user_data = this;
+    return callbacks;
   }
 };
 

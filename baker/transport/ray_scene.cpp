@@ -8,8 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include <embree3/rtcore.h>
-
+#include "baker/embree/embree.hpp"
 #include "baker/transport/flipped_faces.hpp"
 #include "baker/transport/ray_packets.hpp"
 
@@ -153,7 +152,8 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
   // Embree's thread count follows TBB's, which withThreads() limits; its result does not depend on it.
   state->device.reset(rtcNewDevice(nullptr));
   if (!state->device)
-    return fail("Embree", "cannot be set up", "give it more memory, or check that libembree3 runs on this processor");
+    return fail("Embree", "cannot be set up",
+                "give it more memory, or check that Embree runs on this processor");
   state->scene.reset(rtcNewScene(state->device.get()));
   rtcSetSceneBuildQuality(state->scene.get(), RTC_BUILD_QUALITY_HIGH);
 
@@ -200,14 +200,12 @@ std::uint32_t RayScene::trace(const SampleRays& rays, std::span<std::uint16_t> m
   const FlushDenormals flush;
   const OriginDealer dealer(rays.origins);
   Packet packet;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   // Embree's path for incoherent rays is the faster one for occlusion, although these rays are coherent.
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  RayQuery query(RayOrder::Incoherent);
   std::uint32_t traced = 0;
   for (std::size_t p = 0; p < masks.size(); ++p) {
     fillPacket(p, rays, dealer, packet.rays.ray, packet.lanes);
-    rtcOccluded16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays.ray);
+    query.occluded(state_->scene.get(), packet.lanes.valid.data(), packet.rays.ray);
     std::uint32_t valid = 0, hit = 0;
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
       valid |= packet.lanes.valid[k] ? 1u << k : 0u;
@@ -225,11 +223,7 @@ std::uint32_t RayScene::traceHits(const SampleRays& rays, bool mostly_blocked, s
   const FlushDenormals flush;
   const OriginDealer dealer(rays.origins);
   Packet packet;
-  RTCIntersectContext any, closest;
-  rtcInitIntersectContext(&any);
-  rtcInitIntersectContext(&closest);
-  any.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  closest.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RayQuery any(RayOrder::Incoherent), closest(RayOrder::Coherent);
   std::uint32_t traced = 0;
   for (std::size_t p = 0; p < masks.size(); ++p) {
     fillPacket(p, rays, dealer, packet.rays.ray, packet.lanes);
@@ -238,7 +232,7 @@ std::uint32_t RayScene::traceHits(const SampleRays& rays, bool mostly_blocked, s
     masks[p] = static_cast<std::uint16_t>(~valid);
     // If few rays hit, it is faster to test occlusion first and then find the hits of blocked rays only.
     if (!mostly_blocked) {
-      rtcOccluded16(packet.lanes.valid.data(), state_->scene.get(), &any, &packet.rays.ray);
+      any.occluded(state_->scene.get(), packet.lanes.valid.data(), packet.rays.ray);
       std::uint32_t blocked = 0;
       for (std::size_t k = 0; k < kPacketWidth; ++k) {
         const bool hit = packet.rays.ray.tfar[k] < 0.0f;
@@ -249,7 +243,7 @@ std::uint32_t RayScene::traceHits(const SampleRays& rays, bool mostly_blocked, s
       if (blocked == 0) continue;
     }
     forgetHits(packet.rays);
-    rtcIntersect16(packet.lanes.valid.data(), state_->scene.get(), &closest, &packet.rays);
+    closest.intersect(state_->scene.get(), packet.lanes.valid.data(), packet.rays);
     const RTCRay16& ray = packet.rays.ray;
     const RTCHit16& hit = packet.rays.hit;
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
@@ -276,9 +270,7 @@ void RayScene::occluded(std::span<const RaySegment> segments, std::span<std::uin
   const FlushDenormals flush;
   alignas(64) RTCRay16 rays;
   alignas(64) std::array<int, kPacketWidth> valid;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  RayQuery query(RayOrder::Incoherent);
   for (std::size_t first = 0; first < segments.size(); first += kPacketWidth) {
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
       valid[k] = first + k < segments.size() ? -1 : 0;
@@ -289,7 +281,7 @@ void RayScene::occluded(std::span<const RaySegment> segments, std::span<std::uin
       rays.tnear[k] = 0.0f, rays.tfar[k] = segment.length;
       rays.time[k] = 0.0f, rays.mask[k] = ~0u, rays.flags[k] = 0;
     }
-    rtcOccluded16(valid.data(), state_->scene.get(), &context, &rays);
+    query.occluded(state_->scene.get(), valid.data(), rays);
     for (std::size_t k = 0; k < kPacketWidth && first + k < segments.size(); ++k)
       blocked[first + k] = rays.tfar[k] < 0.0f ? 1 : 0;
   }
@@ -299,9 +291,7 @@ void RayScene::firstHits(std::span<const RaySegment> rays, std::span<FirstHit> h
   assert(hits.size() == rays.size());
   const FlushDenormals flush;
   Packet packet;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RayQuery query(RayOrder::Coherent);
   RTCRay16& ray = packet.rays.ray;
   for (std::size_t first = 0; first < rays.size(); first += kPacketWidth) {
     forgetHits(packet.rays);
@@ -313,7 +303,7 @@ void RayScene::firstHits(std::span<const RaySegment> rays, std::span<FirstHit> h
       ray.tnear[k] = 0.0f, ray.tfar[k] = from.length;
       ray.time[k] = 0.0f, ray.mask[k] = ~0u, ray.flags[k] = 0;
     }
-    rtcIntersect16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays);
+    query.intersect(state_->scene.get(), packet.lanes.valid.data(), packet.rays);
     const RTCHit16& hit = packet.rays.hit;
     for (std::size_t k = 0; k < kPacketWidth && first + k < rays.size(); ++k) {
       FirstHit& out = hits[first + k] = {};
@@ -337,15 +327,13 @@ float RayScene::meet(const SampleRays& rays, std::span<MetShares> shares) const 
   const FlushDenormals flush;
   const OriginDealer dealer(origins);
   Packet packet;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RayQuery query(RayOrder::Coherent);
   std::vector<std::uint32_t> counts(origins.size(), 0), backs(origins.size(), 0), near(origins.size(), 0);
   std::uint32_t traced = 0, met = 0;
   for (std::size_t p = 0; p < rays.table.packets(); ++p) {
     fillPacket(p, rays, dealer, packet.rays.ray, packet.lanes);
     for (std::size_t k = 0; k < kPacketWidth; ++k) packet.rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays);
+    query.intersect(state_->scene.get(), packet.lanes.valid.data(), packet.rays);
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
       if (!packet.lanes.valid[k]) continue;
       const std::size_t origin = packet.lanes.origin[k];

@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "editor/panels/text.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
@@ -39,9 +40,8 @@ void drawAssetPicture(const AssetPictures::Picture& picture, const ImVec2& low, 
     cut.x = 0.5f * (1.0f - kShape / picture.aspect);
   else
     cut.y = 0.5f * (1.0f - picture.aspect / kShape);
-  ImGui::GetWindowDrawList()->AddImage(
-      reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), low, high, cut,
-      ImVec2(1.0f - cut.x, 1.0f - cut.y));
+  ImGui::GetWindowDrawList()->AddImage(textureOf(picture.texture), low, high, cut,
+                                       ImVec2(1.0f - cut.x, 1.0f - cut.y));
 }
 
 // Writes a word over the lower left corner of a picture.
@@ -77,7 +77,7 @@ bool drawAssetTile(Session& session, const Asset& asset, float width_ems, bool s
                     IM_COL32(235, 235, 235, 255), words.c_str());
   }
   if (selected || ImGui::IsItemHovered())
-    canvas->AddRect(low, high, ImGui::GetColorU32(selected ? ImGuiCol_NavHighlight : ImGuiCol_SliderGrab),
+    canvas->AddRect(low, high, ImGui::GetColorU32(selected ? kColorOfKeyboardCursor : ImGuiCol_SliderGrab),
                     0.0f, 0, em(0.15f));
   canvas->AddText(ImVec2(low.x, high.y + em(0.1f)), ImGui::GetColorU32(ImGuiCol_Text),
                   ellipsized(nameOf(asset), width).c_str());

@@ -9,6 +9,7 @@
 #include "editor/commands/command.hpp"
 #include "editor/panels/asset_tile.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
@@ -53,8 +54,8 @@ void drawTile(Session& session, Marks& marks, const Asset& asset) {
 void drawAssets(Session& session, Marks& marks) {
   AssetBrowser& browser = session.assets;
   browser.update(session);
-  bool enter = ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) && !ImGui::IsAnyItemActive() &&
-               ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter));
+  bool enter =
+      ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) && !ImGui::IsAnyItemActive() && enterPressed();
   ImGui::SetNextItemWidth(std::min(em(16.0f), ImGui::GetContentRegionAvail().x));
   enter |=
       ImGui::InputTextWithHint("##search", "search", &browser.search, ImGuiInputTextFlags_EnterReturnsTrue);

@@ -7,6 +7,7 @@
 
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
@@ -140,8 +141,7 @@ void drawDialogs(Session& session, Marks& marks) {
     marks.put("dialog.third");
   }
   ImGui::SameLine();
-  no = ImGui::Button(dialog.no.c_str(), ImVec2(em(7.4f), 0.0f)) ||
-       ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  no = ImGui::Button(dialog.no.c_str(), ImVec2(em(7.4f), 0.0f)) || escapePressed();
   marks.put("dialog.no");
   if (yes || no || third) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();

@@ -12,6 +12,7 @@
 #include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/session/environment_map_shelf.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 #include "runtime/spec/light.hpp"
 
@@ -93,8 +94,8 @@ void drawLight(Session& session, Marks& marks, std::size_t index, const std::str
                                 ? "Constant"
                                 : "Environment map " + std::filesystem::path(word).filename().string();
   ImGui::PushID(static_cast<int>(index));
-  const bool open = ImGui::CollapsingHeader(
-      title.c_str(), ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap);
+  const bool open =
+      ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen | kTreeNodeAllowOverlap);
   marks.put(mark);
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - em(1.2f));
   if (ImGui::SmallButton("x")) runWithWords(session, "remove-light", {std::to_string(index)});

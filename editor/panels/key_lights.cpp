@@ -9,6 +9,7 @@
 #include "editor/panels/fields.hpp"
 #include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 #include "runtime/spec/light.hpp"
 
@@ -42,7 +43,7 @@ void drawTable(Session& session, Marks& marks, const std::vector<KeyLight>& keys
     ImGui::TableNextColumn();
     const std::string azimuth = fmt::format("{:.1f}", key.azimuth_deg);
     if (ImGui::Selectable(azimuth.c_str(), at_hand == i,
-                          ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap)) {
+                          ImGuiSelectableFlags_SpanAllColumns | kSelectableAllowOverlap)) {
       at_hand = at_hand == i ? std::nullopt : std::optional(i);
       session.viewing.changed = true;  // the overlay shows its box
     }

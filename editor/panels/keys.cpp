@@ -7,6 +7,7 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
@@ -69,8 +70,7 @@ void drawKeys(Session& session, Marks& marks) {
     ImGui::EndTable();
   }
   ImGui::EndChild();
-  const bool close = ImGui::Button("Close", ImVec2(em(7.4f), 0.0f)) ||
-                     ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  const bool close = ImGui::Button("Close", ImVec2(em(7.4f), 0.0f)) || escapePressed();
   marks.put("keys.close");
   if (close || !open) {
     session.window.keys = false;

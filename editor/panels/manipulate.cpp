@@ -9,6 +9,8 @@
 #include <glm/trigonometric.hpp>
 #include <imgui.h>
 
+#include "editor/ui/dear_imgui.hpp"
+
 namespace lambent::editor {
 
 namespace {
@@ -172,7 +174,7 @@ std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewpo
   if (dragging()) {
     const glm::vec2 at = handles.pointer.moved(pixel, /*fine=*/io.KeyShift);
     const bool snaps = gizmo.options.snap != io.KeyCtrl;
-    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+    if (escapePressed()) {
       release();
       session.history.cancel();
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {

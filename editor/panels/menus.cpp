@@ -13,6 +13,7 @@
 #include "editor/panels/panel.hpp"
 #include "editor/session/scene_status.hpp"
 #include "editor/session/status.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
@@ -56,7 +57,7 @@ void runShortcuts(Session& session) {
     if (*command.shortcut == '\0' || (io.WantTextInput && !isUndoOrRedo(command))) continue;
     const auto keys = parseShortcut(command.shortcut);
     if (!keys || io.KeyCtrl != keys->ctrl || io.KeyShift != keys->shift || io.KeyAlt != keys->alt) continue;
-    if (!ImGui::IsKeyPressed(keys->key, /*repeat=*/false)) continue;
+    if (!keyPressed(keys->key, /*repeat=*/false)) continue;
     if (isUndoOrRedo(command) && ImGui::IsAnyItemActive()) {
       runAfterFields(session, command);
       continue;

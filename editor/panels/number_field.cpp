@@ -11,6 +11,8 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include "editor/ui/dear_imgui.hpp"
+
 namespace lambent::editor {
 
 namespace {
@@ -64,7 +66,7 @@ std::optional<NumberEdit> drag(const char* label, double shown, const NumberLook
   held.dragged = number;
   double to = steps && number != held.start ? std::round(number / look.step) * look.step : number;
   if (look.least < look.most) to = std::clamp(to, look.least, look.most);
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+  if (escapePressed()) {
     to = held.start;
     ImGui::ClearActiveID();
   }

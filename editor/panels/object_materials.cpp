@@ -5,6 +5,7 @@
 
 #include "editor/panels/field_words.hpp"
 #include "editor/panels/fields.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
@@ -12,10 +13,6 @@ namespace lambent::editor {
 namespace {
 
 constexpr float kSwatchEms = 1.6f, kPictureEms = 4.0f;
-
-ImTextureID idOf(std::uint32_t picture) {
-  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture));
-}
 
 // Asks for the pictures of a material, and returns those that are there.
 MaterialPictures::Pictures picturesOf(Session& session, ecs::Entity material) {
@@ -26,7 +23,7 @@ MaterialPictures::Pictures picturesOf(Session& session, ecs::Entity material) {
 
 void drawThumbnail(std::uint32_t picture, float size) {
   if (picture != 0)
-    ImGui::Image(idOf(picture), ImVec2(size, size));
+    ImGui::Image(textureOf(picture), ImVec2(size, size));
   else
     ImGui::Dummy(ImVec2(size, size));
 }

@@ -8,6 +8,7 @@
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/session/word_search.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
@@ -62,7 +63,7 @@ void drawPalette(Session& session, Marks& marks) {
     }
   }
   ImGui::EndChild();
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+  if (escapePressed()) {
     session.window.palette = false;
     ImGui::CloseCurrentPopup();
   }

@@ -12,6 +12,7 @@
 #include "editor/panels/panel.hpp"
 #include "editor/render/renderer.hpp"
 #include "editor/session/camera_views.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
@@ -22,7 +23,7 @@ constexpr float kBarWidth = 3.0f;
 constexpr float kFlyFast = 4.0f;
 
 ImTextureID handleOf(const gpu::Texture& texture) {
-  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.id()));
+  return textureOf(texture.id());
 }
 
 // Applies the pointer and the keys to the camera.
@@ -40,7 +41,7 @@ void moveEye(Session& session, const Viewport& viewport, bool hovered) {
     (io.KeyShift ? input.pan_px : input.orbit_px) = delta;
   } else if (active && ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
     input.look_px = delta;
-    const auto held = [](int low) { return ImGui::IsKeyDown(low) ? 1.0f : 0.0f; };
+    const auto held = [](int letter) { return keyHeld(letter) ? 1.0f : 0.0f; };
     input.fly = {held('D') - held('A'), held('E') - held('Q'), held('W') - held('S')};
     input.fly_speed = io.KeyShift ? kFlyFast : 1.0f;
     session.viewing.flying = input.fly != glm::vec3(0.0f);
@@ -77,7 +78,6 @@ bool dragSplit(Session& session, Marks& marks, const ImVec2& low, const ImVec2& 
   ImGui::SetCursorScreenPos(ImVec2(at - 5.0f, low.y));
   ImGui::InvisibleButton("split", ImVec2(10.0f, high.y - low.y));
   marks.put("split");
-  ImGui::SetItemAllowOverlap();
   const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
   if (active || hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   if (active)

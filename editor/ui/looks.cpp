@@ -3,13 +3,14 @@
 #include <array>
 #include <filesystem>
 
-#include <imgui.h>
+#include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
 constexpr float kFontPixels = 15.0f;
+constexpr float kDefaultFontPixels = 13.0f;  // what Dear ImGui's own font was drawn for
 
 constexpr std::array kFonts = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
                                "/usr/share/fonts/TTF/DejaVuSans.ttf",
@@ -45,12 +46,12 @@ void setColors(ImGuiStyle& style) {
   colors[ImGuiCol_ButtonActive] = accent_dim;
   colors[ImGuiCol_Tab] = grey(0.13f);
   colors[ImGuiCol_TabHovered] = grey(0.28f);
-  colors[ImGuiCol_TabActive] = grey(0.23f);
+  colors[kColorOfOpenTab] = grey(0.23f);
   colors[ImGuiCol_CheckMark] = colors[ImGuiCol_SliderGrabActive] = accent;
   colors[ImGuiCol_SliderGrab] = accent_dim;
   colors[ImGuiCol_PlotLines] = accent;
   colors[ImGuiCol_PlotHistogram] = accent_dim;  // of progress bars, too: white text stands on it
-  colors[ImGuiCol_NavHighlight] = accent;
+  colors[kColorOfKeyboardCursor] = accent;
   colors[ImGuiCol_TextSelectedBg] = ImVec4(accent.x, accent.y, accent.z, 0.35f);
   colors[ImGuiCol_Separator] = grey(0.2f);
   colors[ImGuiCol_TableHeaderBg] = grey(0.16f);
@@ -67,8 +68,9 @@ void setLooks(float scale) {
       break;
     }
   if (io.Fonts->Fonts.empty()) {
-    io.Fonts->AddFontDefault();
-    io.FontGlobalScale = scale;
+    ImFontConfig config;
+    config.SizePixels = kDefaultFontPixels * scale;
+    io.Fonts->AddFontDefault(&config);
   }
   ImGuiStyle& style = ImGui::GetStyle();
   setColors(style);

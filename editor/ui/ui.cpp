@@ -12,6 +12,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
 
+#include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/looks.hpp"
 
 namespace lambent::editor {
@@ -28,25 +29,10 @@ struct Ui::State {
 
 namespace {
 
-void apply(const ScriptedInput& scripted, ImGuiIO& io) {
-  if (scripted.pointer) io.MousePos = ImVec2(scripted.pointer->x, scripted.pointer->y);
-  io.MouseDown[0] = scripted.left;
-  io.MouseDown[1] = scripted.right;
-  io.MouseDown[2] = scripted.middle;
-  io.MouseWheel = scripted.wheel;
-  io.KeyCtrl = scripted.ctrl;
-  io.KeyShift = scripted.shift;
-  io.KeyAlt = scripted.alt;
-  std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
-  if (scripted.key >= 0) io.KeysDown[scripted.key] = true;
-  if (!scripted.text.empty()) io.AddInputCharactersUTF8(scripted.text.c_str());
-}
-
 bool anyInput(const ImGuiIO& io) {
   const bool moved = io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f || io.MouseWheel != 0.0f;
   return moved || std::any_of(std::begin(io.MouseDown), std::end(io.MouseDown), [](bool b) { return b; }) ||
-         std::any_of(std::begin(io.KeysDown), std::end(io.KeysDown), [](bool b) { return b; }) ||
-         io.InputQueueCharacters.Size > 0;
+         anyKeyHeld() || io.InputQueueCharacters.Size > 0;
 }
 
 // Reads the back buffer, because the front buffer of a window may not be readable.
@@ -105,9 +91,9 @@ void Ui::begin(const ScriptedInput* scripted) {
   ImGui_ImplGlfw_NewFrame();
   ImGuiIO& io = ImGui::GetIO();
   if (scripted) {
-    apply(*scripted, io);
+    apply(*scripted);
   } else if (state_->scripted_before) {
-    apply({}, io);
+    apply({});
   }
   state_->scripted_before = scripted != nullptr;
   marks_.beginFrame();

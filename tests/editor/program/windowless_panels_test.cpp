@@ -5,6 +5,8 @@
 #include <imgui_internal.h>
 
 #include "editor/panels/panel.hpp"
+#include "editor/ui/dear_imgui.hpp"
+#include "editor/ui/ui.hpp"
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {
@@ -42,10 +44,11 @@ class WindowlessPanels : public testing::Windowless {
   void click(const Panel& panel, const std::string& mark) {
     const auto where = marks.find(mark);
     ASSERT_TRUE(where) << mark << " is not in the panel";
-    ImGuiIO& io = ImGui::GetIO();
-    io.MousePos = ImVec2(where->center().x, where->center().y);
+    ScriptedInput input;
+    input.pointer = where->center();
     for (const bool down : {false, true, true, false, false}) {
-      io.MouseDown[0] = down;
+      input.left = down;
+      apply(input);
       draw(panel);
     }
   }

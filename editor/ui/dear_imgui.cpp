@@ -1,0 +1,126 @@
+#include "editor/ui/dear_imgui.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include "editor/ui/ui.hpp"
+
+namespace lambent::editor {
+
+#if IMGUI_VERSION_NUM >= 18700
+
+namespace {
+
+constexpr std::array kNamedKeys = {
+    std::pair{GLFW_KEY_DELETE, ImGuiKey_Delete},  std::pair{GLFW_KEY_ESCAPE, ImGuiKey_Escape},
+    std::pair{GLFW_KEY_SPACE, ImGuiKey_Space},    std::pair{GLFW_KEY_ENTER, ImGuiKey_Enter},
+    std::pair{GLFW_KEY_TAB, ImGuiKey_Tab},        std::pair{GLFW_KEY_HOME, ImGuiKey_Home},
+    std::pair{GLFW_KEY_LEFT, ImGuiKey_LeftArrow}, std::pair{GLFW_KEY_RIGHT, ImGuiKey_RightArrow},
+    std::pair{GLFW_KEY_UP, ImGuiKey_UpArrow},     std::pair{GLFW_KEY_DOWN, ImGuiKey_DownArrow},
+    std::pair{GLFW_KEY_COMMA, ImGuiKey_Comma},    std::pair{GLFW_KEY_BACKSPACE, ImGuiKey_Backspace}};
+
+// Returns ImGuiKey_None for a key that no shortcut has.
+ImGuiKey keyOf(int glfw_key) {
+  const auto inRow = [&](int first, int last, ImGuiKey named) {
+    return first <= glfw_key && glfw_key <= last ? static_cast<ImGuiKey>(named + (glfw_key - first))
+                                                 : ImGuiKey_None;
+  };
+  for (const auto& [from, to] : kNamedKeys)
+    if (from == glfw_key) return to;
+  if (const ImGuiKey key = inRow('A', 'Z', ImGuiKey_A); key != ImGuiKey_None) return key;
+  if (const ImGuiKey key = inRow('0', '9', ImGuiKey_0); key != ImGuiKey_None) return key;
+  return inRow(GLFW_KEY_F1, GLFW_KEY_F12, ImGuiKey_F1);
+}
+
+// Calls a function with each key of the keyboard. Those of the gamepad and the mouse come behind them.
+template <typename Function>
+void forEachKey(Function function) {
+  for (int key = ImGuiKey_NamedKey_BEGIN; key < ImGuiKey_GamepadStart; ++key)
+    function(static_cast<ImGuiKey>(key));
+}
+
+#if IMGUI_VERSION_NUM >= 18900
+constexpr ImGuiKey kCtrl = ImGuiMod_Ctrl, kShift = ImGuiMod_Shift, kAlt = ImGuiMod_Alt;
+#else
+constexpr ImGuiKey kCtrl = ImGuiKey_ModCtrl, kShift = ImGuiKey_ModShift, kAlt = ImGuiKey_ModAlt;
+#endif
+
+}  // namespace
+
+bool keyPressed(int glfw_key, bool repeat) {
+  const ImGuiKey key = keyOf(glfw_key);
+  return key != ImGuiKey_None && ImGui::IsKeyPressed(key, repeat);
+}
+
+bool keyHeld(int glfw_key) {
+  const ImGuiKey key = keyOf(glfw_key);
+  return key != ImGuiKey_None && ImGui::IsKeyDown(key);
+}
+
+bool anyKeyHeld() {
+  bool any = false;
+  forEachKey([&](ImGuiKey key) { any = any || ImGui::IsKeyDown(key); });
+  return any;
+}
+
+void apply(const ScriptedInput& input) {
+  ImGuiIO& io = ImGui::GetIO();
+  // A script says what happens in which frame, so events are not spread over several.
+  io.ConfigInputTrickleEventQueue = false;
+  if (input.pointer) io.AddMousePosEvent(input.pointer->x, input.pointer->y);
+  io.AddMouseButtonEvent(ImGuiMouseButton_Left, input.left);
+  io.AddMouseButtonEvent(ImGuiMouseButton_Right, input.right);
+  io.AddMouseButtonEvent(ImGuiMouseButton_Middle, input.middle);
+  if (input.wheel != 0.0f) io.AddMouseWheelEvent(0.0f, input.wheel);
+  io.AddKeyEvent(kCtrl, input.ctrl);
+  io.AddKeyEvent(kShift, input.shift);
+  io.AddKeyEvent(kAlt, input.alt);
+  const ImGuiKey pressed = keyOf(input.key);
+  forEachKey([&](ImGuiKey key) { io.AddKeyEvent(key, key == pressed); });
+  if (!input.text.empty()) io.AddInputCharactersUTF8(input.text.c_str());
+}
+
+#else  // Keys are numbered as GLFW numbers them, and input is written where it is read.
+
+bool keyPressed(int glfw_key, bool repeat) {
+  return ImGui::IsKeyPressed(glfw_key, repeat);
+}
+
+bool keyHeld(int glfw_key) {
+  return ImGui::IsKeyDown(glfw_key);
+}
+
+bool anyKeyHeld() {
+  return std::ranges::any_of(ImGui::GetIO().KeysDown, [](bool down) { return down; });
+}
+
+void apply(const ScriptedInput& input) {
+  ImGuiIO& io = ImGui::GetIO();
+  if (input.pointer) io.MousePos = ImVec2(input.pointer->x, input.pointer->y);
+  io.MouseDown[0] = input.left;
+  io.MouseDown[1] = input.right;
+  io.MouseDown[2] = input.middle;
+  io.MouseWheel = input.wheel;
+  io.KeyCtrl = input.ctrl;
+  io.KeyShift = input.shift;
+  io.KeyAlt = input.alt;
+  std::ranges::fill(io.KeysDown, false);
+  if (input.key >= 0) io.KeysDown[input.key] = true;
+  if (!input.text.empty()) io.AddInputCharactersUTF8(input.text.c_str());
+}
+
+#endif
+
+bool enterPressed() {
+  return keyPressed(GLFW_KEY_ENTER);
+}
+
+bool escapePressed() {
+  return keyPressed(GLFW_KEY_ESCAPE);
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,51 @@
+// Includes Dear ImGui, of any version from 1.86 on, and hides what differs between the versions: how keys
+// are named and asked for, how a script's input is handed over, and names that were changed. It keeps no
+// state. Main thread.
+#pragma once
+
+#include <cstdint>
+
+#include <imgui.h>
+
+namespace lambent::editor {
+
+struct ScriptedInput;
+
+// Both take a key as GLFW names it. keyPressed() is true in the frame in which the key goes down, and again
+// while it is held, if it is to repeat.
+bool keyPressed(int glfw_key, bool repeat = true);
+bool keyHeld(int glfw_key);
+bool anyKeyHeld();
+bool enterPressed();
+bool escapePressed();
+
+// Hands over a script's input for the frame that NewFrame() is about to begin. Keys and buttons that are not
+// in it are released.
+void apply(const ScriptedInput& input);
+
+// Returns what Dear ImGui's functions take for an OpenGL texture: an address until 1.91.3, then a number.
+inline ImTextureID textureOf(std::uint32_t gl_name) {
+  return (ImTextureID)(std::uintptr_t{gl_name});  // no other cast does both
+}
+
+#if IMGUI_VERSION_NUM >= 18970
+inline constexpr ImGuiTreeNodeFlags kTreeNodeAllowOverlap = ImGuiTreeNodeFlags_AllowOverlap;
+inline constexpr ImGuiSelectableFlags kSelectableAllowOverlap = ImGuiSelectableFlags_AllowOverlap;
+#else
+inline constexpr ImGuiTreeNodeFlags kTreeNodeAllowOverlap = ImGuiTreeNodeFlags_AllowItemOverlap;
+inline constexpr ImGuiSelectableFlags kSelectableAllowOverlap = ImGuiSelectableFlags_AllowItemOverlap;
+#endif
+
+#if IMGUI_VERSION_NUM >= 19090
+inline constexpr ImGuiCol kColorOfOpenTab = ImGuiCol_TabSelected;
+#else
+inline constexpr ImGuiCol kColorOfOpenTab = ImGuiCol_TabActive;
+#endif
+
+#if IMGUI_VERSION_NUM >= 19140
+inline constexpr ImGuiCol kColorOfKeyboardCursor = ImGuiCol_NavCursor;
+#else
+inline constexpr ImGuiCol kColorOfKeyboardCursor = ImGuiCol_NavHighlight;
+#endif
+
+}  // namespace lambent::editor
