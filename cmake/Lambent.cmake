@@ -87,7 +87,8 @@ endfunction()
 
 # lambent_test(NAME SOURCES file... LINK target... [LABELS label...] [TIMEOUT seconds])
 # Labels: gpu needs OpenGL; fast takes seconds in an optimized build and is what scripts/test-sanitized builds and runs;
-# files reads files that may be damaged, and is what scripts/test --sanitized builds and runs with sanitizers too.
+# files reads files that may be damaged, and is what scripts/test --sanitized builds and runs with sanitizers too; threads
+# works on several threads, and is what scripts/test-sanitized threads builds and runs with ThreadSanitizer.
 function(lambent_test name)
   cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   if(NOT TEST_TIMEOUT)
@@ -102,7 +103,7 @@ function(lambent_test name)
   endif()
   # Tests find the shared data beside the checkout, if it is there; LAMBENT_SHARED_DATA overrides.
   target_compile_definitions(${name} PRIVATE "LAMBENT_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" "LAMBENT_BINARY_DIR=\"${CMAKE_BINARY_DIR}\"")
-  foreach(label fast files)
+  foreach(label fast files threads)
     if(label IN_LIST TEST_LABELS)
       add_dependencies(${label}-tests ${name})
     endif()

@@ -23,7 +23,10 @@ function(lambent_library component)
     LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib" INSTALL_RPATH "$ORIGIN"
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   # The rooms are archives, whose symbols would show.
-  target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL LINKER:--no-undefined)
+  target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
+  if(NOT LAMBENT_SANITIZE)  # whose symbols come with the program
+    target_link_options(${target} PRIVATE LINKER:--no-undefined)
+  endif()
 
   set(package ${CMAKE_INSTALL_LIBDIR}/cmake/lambent)
   install(TARGETS ${target} EXPORT lambent-${component}

@@ -1,6 +1,7 @@
 // Implements lambent bake SCENE [-o OUT.lmb.glb], --watch DIR, --resume.
 #include <memory>
 #include <optional>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -127,6 +128,11 @@ int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::
   int worst = 0;
   for (const BakeRequest& request : unfinished) {
     if (stop.stop_requested()) break;
+    if (std::error_code unknown; !std::filesystem::exists(request.scene, unknown)) {
+      reportNotice(request.scene, "is gone; its bake is given up");
+      journalOf(cache).forget(request);
+      continue;
+    }
     fmt::print(stderr, "lambent: going on with {} to {}\n", request.scene.string(), request.output.string());
     BakeArguments one = a;
     one.scene = request.scene;

@@ -102,6 +102,13 @@ std::string missedText(const FinishedBake& bake) {
   return text;
 }
 
+// The estimate takes it that passes shrink as the last two did. Where the last is no darker than the one
+// before, as with a lamp that lights little directly, that says nothing.
+std::string leftOutText(double left_out) {
+  return left_out < 1.0 ? fmt::format("{:.3f} % left out", 100.0 * left_out)
+                        : "too few to tell what is left out";
+}
+
 }  // namespace
 
 std::string pictureErrorText(const bundle::PictureError& error) {
@@ -243,8 +250,8 @@ void printReport(const FinishedBake& bake) {
                countText(static_cast<double>(r.rays_kept)),
                bytesText(static_cast<double>(r.cache.bytes_read)));
   if (!r.pass_energy.empty())
-    fmt::print("  bounces   {}, the last with {:.3f} % of the direct light; {:.3f} % left out\n",
-               r.pass_energy.size() - 1, 100.0 * r.pass_energy.back(), 100.0 * r.left_out);
+    fmt::print("  bounces   {}, the last with {:.3f} % of the direct light; {}\n", r.pass_energy.size() - 1,
+               100.0 * r.pass_energy.back(), leftOutText(r.left_out));
   for (const BakeReport::Volume& volume : r.volumes)
     fmt::print(
         "  volume    {}: {} voxels, {} samples, density in {} bits ({:.2f} %), scattering solved in {} "

@@ -198,4 +198,16 @@ TEST_F(KilledBake, ResumeFinishesWhatWasCutShortAndIsThenContent) {
   EXPECT_NE(second.err.find("no bake was cut short"), std::string::npos) << second.err;
 }
 
+TEST_F(KilledBake, ResumeGivesUpASceneThatIsGone) {
+  const Ended killed = runFor(arguments("killed.lmb.glb", "cache"), 1.0);
+  ASSERT_TRUE(killed.killed) << "it was faster than a second";
+  std::filesystem::remove(folder / "scene.glb");
+  const std::vector<std::string> resume = {"bake", "--resume", "--cache", (folder / "cache").string()};
+  const auto first = this->run(LAMBENT_PROGRAM, resume);
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_NE(first.err.find("scene.glb: is gone"), std::string::npos) << first.err;
+  const auto second = this->run(LAMBENT_PROGRAM, resume);
+  EXPECT_NE(second.err.find("no bake was cut short"), std::string::npos) << second.err;
+}
+
 }  // namespace lambent

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <memory>
 #include <numeric>
+#include <random>
 #include <string>
 #include <thread>
 #include <variant>
@@ -331,6 +333,41 @@ TEST_F(LoaderTest, PartsOfABundleAreAllOfItEachOnceInAnOrderThatShows) {
         EXPECT_EQ(planesIn(1), 0u) << "codebooks first";
       }
   }
+}
+
+// Loads for as long as LAMBENT_LONG_RUN_SECONDS says (default: half a second), as a camera that wanders would:
+// any parts in any order, by several loaders at once on the same threads, some dropped before they are done.
+TEST_F(LoaderTest, BringsRandomPartsWhileOthersAreDropped) {
+  const char* asked = std::getenv("LAMBENT_LONG_RUN_SECONDS");
+  const std::chrono::duration<double> most(asked ? std::atof(asked) : 0.5);
+  write(testing::sampleBundle());
+  const auto reader = open();
+  const auto parts = partsOf(*reader, /*limited=*/true);
+  ASSERT_TRUE(parts);
+  std::vector<Work> all;
+  for (const Unit& unit : parts->units)
+    for (const Step& step : unit) all.insert(all.end(), step.work.begin(), step.work.end());
+  std::mt19937 random(7);
+  std::vector<Loader> dropped;
+  std::size_t loads = 0;
+  for (const auto start = std::chrono::steady_clock::now(); std::chrono::steady_clock::now() - start < most;
+       ++loads) {
+    std::ranges::shuffle(all, random);
+    const std::size_t count = 1 + random() % all.size();
+    const auto end = all.begin() + static_cast<std::ptrdiff_t>(count);
+    Loader loader(reader, std::vector<Work>(all.begin(), end), threads_, 1 + random() % 3);
+    if (random() % 2 == 0) {
+      EXPECT_EQ(drain(loader, 1 + random() % 20'000).size(), count);
+      EXPECT_FALSE(loader.error());
+      continue;
+    }
+    if (random() % 2 == 0) loader.waitForMore(std::chrono::milliseconds(random() % 3));
+    loader.take(1 + random() % 5'000);
+    loader.stop();
+    dropped.push_back(std::move(loader));
+    std::erase_if(dropped, [](const Loader& one) { return one.idle(); });
+  }
+  EXPECT_GT(loads, 10u);
 }
 
 TEST_F(LoaderTest, FinishesAnEmptyBundleAtOnce) {
