@@ -335,8 +335,9 @@ TEST_F(LoaderTest, PartsOfABundleAreAllOfItEachOnceInAnOrderThatShows) {
   }
 }
 
-// Loads for as long as LAMBENT_LONG_RUN_SECONDS says (default: half a second), as a camera that wanders would:
-// any parts in any order, by several loaders at once on the same threads, some dropped before they are done.
+// Loads for as long as LAMBENT_LONG_RUN_SECONDS says (default: half a second), as a camera that wanders
+// would: any parts in any order, by several loaders at once on the same threads, some dropped before they are
+// done.
 TEST_F(LoaderTest, BringsRandomPartsWhileOthersAreDropped) {
   const char* asked = std::getenv("LAMBENT_LONG_RUN_SECONDS");
   const std::chrono::duration<double> most(asked ? std::atof(asked) : 0.5);
@@ -355,7 +356,8 @@ TEST_F(LoaderTest, BringsRandomPartsWhileOthersAreDropped) {
     std::ranges::shuffle(all, random);
     const std::size_t count = 1 + random() % all.size();
     const auto end = all.begin() + static_cast<std::ptrdiff_t>(count);
-    Loader loader(reader, std::vector<Work>(all.begin(), end), threads_, 1 + random() % 3);
+    Loader loader(reader, std::vector<Work>(all.begin(), end), threads_,
+                  static_cast<unsigned>(1 + random() % 3));
     if (random() % 2 == 0) {
       EXPECT_EQ(drain(loader, 1 + random() % 20'000).size(), count);
       EXPECT_FALSE(loader.error());
