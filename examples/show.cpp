@@ -1,6 +1,5 @@
-// A program with a window, an OpenGL context, shaders and things of its own, which draws a bundle among them:
-// both are drawn into the same HDR colour and depth, so that each hides the other. Usage: show BUNDLE [LIGHT
-// [PICTURE.ppm]]; with a picture it draws one frame unseen, and writes it.
+// A program with a window and things of its own, which draws a bundle among them, in the same HDR colour and depth. Usage:
+// show BUNDLE [LIGHT [PICTURE.ppm]]; with a picture it draws one frame unseen, and writes it.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -84,14 +83,14 @@ int main(int count, char** words) {
     if (const auto lit = scene->setEnvironment({count > 2 ? words[2] : "constant:0.6,0.7,0.9"}); !lit) return fail(lit.failure());
     auto renderer = lambent::Renderer::create();
     if (!renderer) return fail(renderer.failure());
-    if (picture)
-      if (const auto loaded = scene->finishLoading(); !loaded) return fail(loaded.failure());
+    if (const auto loaded = picture ? scene->finishLoading() : lambent::Expected<void>(); !loaded) return fail(loaded.failure());
     const Vec3 low = scene->boundsMin(), high = scene->boundsMax();
     const Vec3 center = {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
     const float radius = std::sqrt(dot(high - low, high - low)) / 2;
     const auto lamp = scene->addLight(
         {.position = {center.x, high.y + radius / 2, center.z}, .color = {1.0f, 0.8f, 0.6f}, .strength = 20.0f, .radius = radius / 10});
     if (!lamp) return fail(lamp.failure());
+    const auto bodies = scene->bodies();  // what does not move comes first
 
     GLuint textures[2], target, no_vertices;
     glCreateTextures(GL_TEXTURE_2D, 2, textures);
@@ -104,7 +103,7 @@ int main(int count, char** words) {
     glBindVertexArray(no_vertices);
     const GLuint cube = program(kCubeVertex, kCubeFragment), screen = program(kScreenVertex, kScreenFragment);
 
-    for (int frame = 0; result == 0 && !glfwWindowShouldClose(window); ++frame) {
+    while (result == 0 && !glfwWindowShouldClose(window)) {
       const float time = picture ? 0.8f : float(glfwGetTime());
       const Vec3 eye = {center.x + 1.7f * radius * std::sin(0.3f * time), center.y + 0.8f * radius,
                         center.z + 1.7f * radius * std::cos(0.3f * time)};
@@ -120,6 +119,9 @@ int main(int count, char** words) {
       glUniformMatrix4fv(0, 1, GL_FALSE, clip_from_world.data());
       glUniform4f(1, center.x + radius / 3 * std::sin(time), center.y, center.z + radius / 3 * std::cos(time), radius / 8);
       glDrawArrays(GL_TRIANGLES, 0, 36);
+      Matrix4 place = bodies.back().world_from_body;
+      place[13] += radius / 10 * std::sin(3 * time);  // up and down
+      if (bodies.size() > 1 && !scene->place(bodies.back().id, place)) result = 1;
       if (const auto drawn = renderer->draw(*scene, camera, {textures[0], textures[1]}); !drawn) result = fail(drawn.failure());
       glDisable(GL_DEPTH_TEST);
       glBindFramebuffer(GL_FRAMEBUFFER, 0);

@@ -75,8 +75,8 @@ class LAMBENT_API Scene {
   Expected<void> setLight(LightId id, const Light& light);
   void removeLight(LightId id);
 
-  // Returns the bodies of all bundles. What does not move in a bundle is one body, too: with it the whole
-  // bundle moves.
+  // Returns the bodies of all bundles, those of a bundle in the order of its groups. What does not move in a
+  // bundle is one body, too: with it the whole bundle moves.
   std::vector<Body> bodies() const;
   // Moves a body. Scale and shear are taken as they come; light is exact for rotations and translations.
   // Fails if there is no such body, or if the matrix is not finite or not affine.
