@@ -57,11 +57,17 @@ endfunction()
 lambent_package(runtime ${LAMBENT_RUNTIME_PROGRAMS})
 lambent_package(tools ${LAMBENT_TOOL_PROGRAMS})
 
-# Something to show at once, baked as scripts/demo does; lambent bakes again only what changed.
+# Something to show at once, baked as scripts/demo does; lambent bakes again only what changed. LAMBENT_PACKAGE_OPTIONS in the
+# environment replaces the options of the bake.
 set(bundle "${CMAKE_BINARY_DIR}/package/${LAMBENT_PACKAGE_SCENE}.lmb.glb")
 install(CODE "
+  set(options \$ENV{LAMBENT_PACKAGE_OPTIONS})
+  if(NOT options)
+    set(options --rays 512 --bounces 4)
+  endif()
+  separate_arguments(options)
   execute_process(COMMAND \"$<TARGET_FILE:lambent>\" bake \"${CMAKE_BINARY_DIR}/assets/${LAMBENT_PACKAGE_SCENE}.glb\"
-                          -o \"${bundle}\" --rays 512 --bounces 4
+                          -o \"${bundle}\" \${options}
                   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)" COMPONENT runtime)
 install(FILES "${bundle}" DESTINATION share/lambent/scenes COMPONENT runtime)
 install(FILES "${CMAKE_BINARY_DIR}/assets/sky.hdr" "${CMAKE_BINARY_DIR}/assets/studio.hdr"
