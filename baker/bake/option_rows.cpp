@@ -22,6 +22,10 @@ using namespace typed_options;
 
 using B = BakeOptions;
 
+// Headings of groups in the help.
+constexpr std::string_view kAccuracy = "Accuracy", kVertices = "Vertices", kGrids = "What is baked",
+                           kMachine = "Machine";
+
 // Settings that a bound on pictures chooses are recorded as "auto"; the bundle says of each group which they
 // are.
 std::string recordRays(const BakeOptions& o) {
@@ -50,18 +54,21 @@ Result<void> checkEffects(const BakeOptions& o) {
 constexpr std::tuple kRows{
     TypedRow<Quality>{
         .name = "quality",
+        .group = kAccuracy,
         .setting = "",
         .kind = "draft|standard|high",
         .member = &B::quality,
         .help = "Rays, refinement and error bounds together; default standard",
         .words = {{{"draft", Quality::Draft}, {"standard", Quality::Standard}, {"high", Quality::High}}}},
     TypedRow<int>{.name = "order",
+                  .group = kAccuracy,
                   .setting = "order",
                   .kind = "N",
                   .member = &B::order,
                   .help = "Bands of spherical harmonics, 1..8; order² coefficients",
                   .limits = Limits<int>{.least = 1, .greatest = 8, .hint = "5 is the default"}},
     TypedRow<int>{.name = "glossy-order",
+                  .group = kAccuracy,
                   .setting = "glossyOrder",
                   .kind = "N",
                   .member = &B::glossy_order,
@@ -69,6 +76,7 @@ constexpr std::tuple kRows{
                   .limits = Limits<int>{.least = 4, .greatest = 6, .hint = "5 is the default"}},
     TypedRow<std::uint32_t>{
         .name = "rays",
+        .group = kAccuracy,
         .setting = "rays",
         .kind = "N",
         .member = &B::rays,
@@ -81,6 +89,7 @@ constexpr std::tuple kRows{
         .help_values = {&recordRays}},
     TypedRow<int>{
         .name = "bounces",
+        .group = kAccuracy,
         .setting = "bounces",
         .kind = "N",
         .member = &B::bounces,
@@ -93,6 +102,7 @@ constexpr std::tuple kRows{
                               .hint = "leave it out to bake as many as the error bound asks for"}},
     TypedRow<std::uint64_t>{
         .name = "max-memory",
+        .group = kMachine,
         .setting = "",
         .kind = "BYTES",
         .member = &B::memory_bytes,
@@ -106,6 +116,7 @@ constexpr std::tuple kRows{
                                         .hint = "give bytes or a unit, as 4GB"}},
     TypedRow<float>{
         .name = "error",
+        .group = kAccuracy,
         .setting = "pictureBound",
         .kind = "E",
         .member = &B::picture_bound,
@@ -121,6 +132,7 @@ constexpr std::tuple kRows{
         .share = true},
     TypedRow<float>{
         .name = "codes",
+        .group = kAccuracy,
         .setting = "errorBound",
         .kind = "E",
         .member = &B::error_bound,
@@ -137,6 +149,7 @@ constexpr std::tuple kRows{
         .share = true},
     TypedRow<float>{
         .name = "max-edge",
+        .group = kVertices,
         .setting = "maxEdge",
         .kind = "M",
         .member = &B::max_edge_m,
@@ -147,6 +160,7 @@ constexpr std::tuple kRows{
                                 .hint = "give a positive number in the scene's units, or leave it out"}},
     TypedRow<float>{
         .name = "refine",
+        .group = kVertices,
         .setting = "refineBound",
         .kind = "E|auto|off",
         .member = &B::refine_bound,
@@ -164,6 +178,7 @@ constexpr std::tuple kRows{
         .share = true},
     TypedRow<std::optional<bool>>{
         .name = "fit",
+        .group = kVertices,
         .setting = "fit",
         .kind = "auto|on|off",
         .member = &B::fit,
@@ -175,6 +190,7 @@ constexpr std::tuple kRows{
         .record = &recordFit},
     TypedRow<int>{
         .name = "light-probes",
+        .group = kGrids,
         .setting = "lightSamples",
         .kind = "N|auto",
         .member = &B::light_probes,
@@ -187,6 +203,7 @@ constexpr std::tuple kRows{
         .former = "light-samples"},
     TypedRow<glm::uvec3>{
         .name = "neighborhood-grid",
+        .group = kGrids,
         .setting = "neighborhoodGrid",
         .kind = "XxYxZ",
         .member = &B::neighborhood_grid,
@@ -198,12 +215,14 @@ constexpr std::tuple kRows{
         .limits = Limits<glm::uvec3>{.least = 2, .greatest = kMostGridPoints, .hint = "64x64x8 is usual"}},
     TypedRow<glm::uvec3>{
         .name = "volume-grid",
+        .group = kGrids,
         .setting = "volumeGrid",
         .kind = "N|XxYxZ",
         .member = &B::volume_grid,
         .help = "Voxels of the grid that a volume's transfer is baked on, 1..256 along each axis; default 32",
         .limits = Limits<glm::uvec3>{.least = 1, .greatest = 256, .hint = "32 is the default"}},
     TypedRow<std::string>{.name = "effects",
+                          .group = kGrids,
                           .setting = "effects",
                           .kind = "LIST",
                           .member = &B::effects,
@@ -212,6 +231,7 @@ constexpr std::tuple kRows{
                               "its decisions can be checked; or a list of effects",
                           .check = &checkEffects},
     TypedRow<unsigned>{.name = "threads",
+                       .group = kMachine,
                        .setting = "",
                        .kind = "N",
                        .member = &B::threads,
@@ -308,8 +328,12 @@ template <std::size_t I>
 OptionRow optionRow() {
   const auto& row = std::get<I>(kRows);
   using T = std::remove_cvref_t<decltype(BakeOptions().*row.member)>;
-  OptionRow out{
-      .name = row.name, .setting = row.setting, .kind = row.kind, .help = helpOf<I>(), .former = row.former};
+  OptionRow out{.name = row.name,
+                .group = row.group,
+                .setting = row.setting,
+                .kind = row.kind,
+                .help = helpOf<I>(),
+                .former = row.former};
   for (const Word<T>& word : row.words)
     if (!word.word.empty()) out.words.push_back(word.word);
   out.only_words = kOnlyWords<T>;

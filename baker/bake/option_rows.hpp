@@ -16,6 +16,7 @@ namespace lambent::baker {
 
 struct OptionRow {
   std::string_view name;     // as in --name, in scripts and journals
+  std::string_view group;    // its heading in the help
   std::string_view setting;  // in the settings that a bundle records; empty: it does not change the bytes
   std::string_view kind;     // what a word looks like, for help: "N|auto"
   std::string help;

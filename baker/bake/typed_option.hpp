@@ -42,7 +42,7 @@ struct Limits {
 
 template <class T>
 struct TypedRow {
-  std::string_view name, setting, kind;
+  std::string_view name, group, setting, kind;
   T BakeOptions::*member;
   std::string_view help;
   std::array<Word<T>, 3> words{};  // unused ones have an empty word

@@ -16,6 +16,7 @@
 #include "baker/sweep/sweep.hpp"
 #include "baker/sweep/write_results.hpp"
 #include "runtime/base/atomic_file.hpp"
+#include "runtime/command_line/help.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/size.hpp"
@@ -28,6 +29,7 @@ struct AccuracyArguments {
   SweepRequest request;
   BakeOptions quality{.quality = Quality::Draft};  // only its quality is asked for
   bool json = false;
+  SayOptions say;
 };
 
 // Lists the names in lines as long as those of the help.
@@ -158,15 +160,16 @@ int runAccuracy(AccuracyArguments a) {
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
   Lines lines;
-  const auto results = runSweep(a.request, lines.listener(), stop.get_token());
-  lines.end();
+  const auto results =
+      runSweep(a.request, a.say.quiet ? SweepListener{} : lines.listener(), stop.get_token());
+  if (!a.say.quiet) lines.end();
   if (!results) return reportError(results.error());
   const auto files = writeResults(*results, a.request.output);
   if (!files) return reportError(files.error());
   for (const std::string& failure : results->failures) reportNotice(a.request.scene, failure);
   if (a.json)
     printSweepJson(*results, *files);
-  else
+  else if (!a.say.quiet)
     printSweep(*results, *files);
   if (results->stopped)
     return reportError(
@@ -225,6 +228,15 @@ void addAccuracyCommand(CLI::App& app, Command& run) {
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--force", request.force, "Measure all anew");
   command->add_flag("--json", a->json, "Print figures as JSON");
+  addQuiet(*command, a->say);
+  command_line::group(*command, "What is measured",
+                      {"--quality", "--knob", "--light", "--camera", "--size", "--spp"});
+  command_line::group(*command, "Files and runs", {"--output", "--force", "--allow-outside"});
+  command_line::group(*command, "Output", {"--json", "--quiet"});
+  command_line::addExamples(
+      *command, {{"lambent accuracy scene.gltf -o page", "measures all knobs and writes page/index.html"},
+                 {"lambent accuracy scene.gltf -o page --knob rays=256,1024 --light sky.hdr",
+                  "measures two values of one knob under this light"}});
   command->callback([a, &run] { run = [a] { return runAccuracy(*a); }; });
 }
 

@@ -1,4 +1,4 @@
-// Implements lambent bake SCENE [-o OUT.lmb.glb], --watch DIR, --resume.
+// Implements lambent bake SCENE [-o OUT.lmb.glb], --watch DIR, --resume; bake_folder.cpp bakes folders.
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -7,96 +7,32 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/bake/bake.hpp"
+#include "baker/cli/bake_folder.hpp"
 #include "baker/cli/bake_report.hpp"
+#include "baker/cli/bake_scene.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/cli/watch.hpp"
 #include "baker/import/gltf.hpp"
-#include "baker/pipeline/bake_estimate.hpp"
 #include "baker/pipeline/journal.hpp"
-#include "baker/pipeline/progress_record.hpp"
 #include "baker/pipeline/source_watch.hpp"
 #include "baker/pipeline/time_budget.hpp"
-#include "runtime/base/atomic_file.hpp"
+#include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-struct BakeArguments {
-  std::filesystem::path scene, output;
-  std::filesystem::path watch;  // a folder; empty means none
-  bool resume = false;
-  double checkpoint_s = 0.0;  // 0 keeps the cache's own interval
-  double time_s = 0.0;        // 0: the options say all
-  BakeOptions options;
-  bool force = false, json = false, allow_outside = false;
-  std::string cache;  // a folder, "off", or empty for the default one
-  std::uint64_t cache_bytes = kCacheBytes;
-};
-
-std::optional<Cache> cacheOf(const BakeArguments& a) {
-  auto cache = openCache(a.cache, a.cache_bytes);
-  if (cache && a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
-  return cache;
-}
-
-// The journal of this program lies in the cache's folder.
-Journal journalOf(const std::optional<Cache>& cache) {
-  return Journal(cache ? cache->folder() / "journal" : std::filesystem::path());
-}
-
-int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
-  if (const auto readable = checkRegularFile(a.scene, "a scene, .gltf or .glb"); !readable)
-    return reportError(readable.error());
-  if (const auto checked = checkRequest(a.options, a.output); !checked) return reportError(checked.error());
-  Journal::Entry record = journalOf(cache).begin({.scene = a.scene,
-                                                  .output = a.output,
-                                                  .options = a.options,
-                                                  .import = {.allow_outside = a.allow_outside}});
-  if (record.error())
-    fmt::print(stderr, "lambent: {}; --resume will not know of this bake\n", record.error()->line());
-  Progress progress;
-  progress.begin("import");
-  auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
-  if (!scene) {
-    record.done();
-    return reportError(scene.error());
-  }
-  for (const std::string& warning : scene->warnings) reportNotice(a.scene, warning);
-  if (!a.force && isUpToDate(*scene, a.options, a.output)) {
-    record.done();
-    if (a.json)
-      fmt::print("{}\n", nlohmann::json{{"output", a.output.string()}, {"upToDate", true}}.dump(2));
+int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
+  if (!outcome) return reportError(outcome.error());
+  if (a.json) {
+    fmt::print("{}\n", outcomeJson(a, *outcome).dump(2));
+  } else if (!a.say.quiet) {
+    if (outcome->report)
+      printReport({a.output, a.options, *outcome->report, outcome->estimate});
     else
       fmt::print("{} is up to date; --force bakes it again\n", a.output.string());
-    return 0;
   }
-  const auto estimate = cache ? findEstimate(*scene, a.options, *cache) : std::nullopt;
-  if (cache) cache->setReading(!a.force);
-  const Key progress_key = progressKey(*scene, a.options);
-  Result<BakeReport> report = [&] {
-    const StageSeconds expected = estimate ? estimate->stages : guessSeconds(*scene, a.options);
-    const ProgressRecord begun = cache ? findProgress(progress_key, *cache) : ProgressRecord{};
-    std::optional<ProgressKeeper> keeper;
-    if (cache) keeper.emplace(progress, expected, begun, *cache, progress_key);
-    const ProgressLine line(progress, WholeProgress(expected, begun));
-    return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
-  }();
-  if (report && cache) cache->drop(progress_key);
-  if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
-  if (!report) {
-    if (stop.stop_requested())
-      report.error().hint = cache ? "bake it again, or give --resume, and it goes on from where it was"
-                                  : "with a cache, the next bake would go on from where it was";
-    return reportError(report.error());
-  }
-  for (const std::string& notice : report->notices) reportNotice(a.scene, notice);
-  if (a.json)
-    printReportJson({a.output, a.options, *report, estimate});
-  else
-    printReport({a.output, a.options, *report, estimate});
   return 0;
 }
 
@@ -108,6 +44,7 @@ Result<void> chooseByTime(BakeArguments& a, const std::stop_token& stop) {
   const auto chosen = optionsForTime(*scene, a.options, a.time_s, {unused, stop});
   if (!chosen) return failAgain(chosen.error());
   a.options = chosen->options;
+  if (a.say.quiet) return {};
   reportNotice(a.scene, fmt::format("baked with {}, which takes about {}{}", chosen->words,
                                     durationText(chosen->seconds),
                                     chosen->seconds > a.time_s ? "; nothing coarser takes less" : ""));
@@ -123,8 +60,8 @@ int wrongUsage(const Error& error) {
 // Bakes everything that was cut short, with the options that it had.
 int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
   if (!cache) return reportError({"--resume", "there is no cache that would tell", "leave out --cache off"});
-  const std::vector<BakeRequest> unfinished = journalOf(cache).unfinished();
-  if (unfinished.empty()) fmt::print(stderr, "lambent: no bake was cut short\n");
+  const std::vector<BakeRequest> unfinished = bakeJournal(cache).unfinished();
+  if (unfinished.empty() && !a.say.quiet) fmt::print(stderr, "lambent: no bake was cut short\n");
   int worst = 0;
   for (const BakeRequest& request : unfinished) {
     if (stop.stop_requested()) break;
@@ -133,13 +70,15 @@ int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::
       journalOf(cache).forget(request);
       continue;
     }
-    fmt::print(stderr, "lambent: going on with {} to {}\n", request.scene.string(), request.output.string());
+    if (!a.say.quiet)
+      fmt::print(stderr, "lambent: going on with {} to {}\n", request.scene.string(),
+                 request.output.string());
     BakeArguments one = a;
     one.scene = request.scene;
     one.output = request.output;
     one.options = request.options;
     one.allow_outside = request.import.allow_outside;
-    worst = std::max(worst, bakeScene(one, cache, stop));
+    worst = std::max(worst, printOutcome(one, bakeScene(one, cache, stop)));
   }
   return worst;
 }
@@ -149,37 +88,46 @@ int runBake(BakeArguments a) {
     if (!a.scene.empty() || a.resume || a.force || a.time_s > 0.0)
       return wrongUsage(
           {"--watch", "is given with a scene, --resume, --force or --time", "give it a folder alone"});
-    std::optional<Cache> cache = cacheOf(a);
-    return watchFolder({a.watch, a.output, a.options, {.allow_outside = a.allow_outside}, a.json},
-                       cache ? &*cache : nullptr);
+    std::optional<Cache> cache = bakeCache(a);
+    return watchFolder(
+        {a.watch, a.output, a.options, {.allow_outside = a.allow_outside}, a.json, a.say.quiet},
+        cache ? &*cache : nullptr);
   }
   if (a.scene.empty() && !a.resume)
-    return wrongUsage({"SCENE", "is missing", "name a scene, or a folder with --watch"});
+    return wrongUsage({"SCENE", "is missing", "name a scene or a folder of scenes"});
   if (a.scene.empty() && !a.output.empty())
     return wrongUsage(
         {"--output", "is given with --resume alone", "leave it out: each bake knows its bundle"});
   if (a.time_s > 0.0 && (a.scene.empty() || a.options.picture_bound > 0.0f))
     return wrongUsage({"--time", "is given with --resume or --error", "give it with a scene, and one bound"});
-  if (a.output.empty()) a.output = bundleBeside(a.scene);
+  std::error_code failed;
+  const bool folder = std::filesystem::is_directory(a.scene, failed);
+  if (folder && a.time_s > 0.0)
+    return wrongUsage({"--time", "is given with a folder", "give it with a single scene"});
+  if (!folder && a.output.empty()) a.output = bundleBeside(a.scene);
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
   if (a.time_s > 0.0) {
     if (const auto checked = checkRequest(a.options, a.output); !checked) return reportError(checked.error());
     if (const auto done = chooseByTime(a, stop.get_token()); !done) return reportError(done.error());
   }
-  std::optional<Cache> cache = cacheOf(a);
-  return a.scene.empty() ? resumeBakes(a, cache, stop.get_token()) : bakeScene(a, cache, stop.get_token());
+  std::optional<Cache> cache = bakeCache(a);
+  if (a.scene.empty()) return resumeBakes(a, cache, stop.get_token());
+  if (folder) return bakeFolder(a, cache, stop.get_token());
+  return printOutcome(a, bakeScene(a, cache, stop.get_token()));
 }
 
 }  // namespace
 
 void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
-  CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene into a bundle");
-  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb");
-  command->add_option("-o,--output", a->output,
-                      "The bundle to write, OUT.lmb.glb, or with --watch a folder for bundles; default: "
-                      "beside the scene, with its name");
+  CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene, or a folder of them, into bundles");
+  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb, or a folder: all scenes in it and below");
+  command
+      ->add_option("-o,--output", a->output,
+                   "The bundle to write, OUT.lmb.glb, or of a folder of scenes one for bundles; default: "
+                   "beside the scene, with its name")
+      ->type_name("PATH");
   command
       ->add_option("--watch", a->watch,
                    "Bake all scenes in DIR and below, then again what changes, until interrupted")
@@ -216,7 +164,20 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->type_name("S");
   command->add_flag("--force", a->force,
                     "Bake all anew, even if the bundle is up to date and whatever the cache holds");
-  command->add_flag("--json", a->json, "Print figures as JSON");
+  command->add_flag("--json", a->json, "Print figures as JSON; of a folder an array of them");
+  addQuiet(*command, a->say);
+  addProgress(*command, a->say);
+  command_line::group(*command, "Files and runs",
+                      {"--output", "--watch", "--resume", "--force", "--allow-outside"});
+  command_line::group(*command, "Accuracy", {"--time"});
+  command_line::group(*command, "Machine", {"--cache", "--cache-size", "--checkpoint"});
+  command_line::group(*command, "Output", {"--json", "--quiet", "--progress"});
+  command_line::addExamples(
+      *command, {{"lambent bake scene.gltf", "bakes the scene to scene.lmb.glb beside it"},
+                 {"lambent bake scene.gltf -o out.lmb.glb --quality draft", "takes the fewest rays"},
+                 {"lambent bake scene.gltf --error 2%", "takes as many rays as 2 % of error need"},
+                 {"lambent bake scenes -o bundles", "bakes all scenes of a folder, and fails if one fails"},
+                 {"lambent bake --watch scenes -o bundles", "goes on with what changes there"}});
   command->callback([a, &run] { run = [a] { return runBake(*a); }; });
 }
 

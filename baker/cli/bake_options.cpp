@@ -15,7 +15,7 @@ CLI::Option* add(CLI::App& command, std::string_view name, const OptionRow& row,
   CLI::Option* option = command.add_option_function<std::string>(
       "--" + std::string(name), [&options, &row](const std::string& word) { row.put(options, word); },
       row.help);
-  option->type_name(std::string(row.kind));
+  option->type_name(std::string(row.kind))->group(std::string(row.group));
   option->check(CLI::Validator(
       [&row](const std::string& word) {
         BakeOptions tried;

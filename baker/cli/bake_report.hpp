@@ -27,6 +27,6 @@ nlohmann::json pictureErrorJson(const std::optional<bundle::PictureError>& error
 
 // Says in its last line if a bound on the error is missed.
 void printReport(const FinishedBake& bake);
-void printReportJson(const FinishedBake& bake);
+nlohmann::json reportJson(const FinishedBake& bake);
 
 }  // namespace lambent::baker

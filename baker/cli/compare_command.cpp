@@ -11,6 +11,7 @@
 #include "baker/accuracy/shrink.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
+#include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
 
@@ -141,6 +142,11 @@ void addCompareCommand(CLI::App& app, Command& run) {
       ->check(CLI::PositiveNumber)
       ->type_name("SHARE");
   command->add_flag("--json", a->json, "Print figures as JSON");
+  command_line::group(*command, "Heat map", {"--heat", "--heat-map", "--heat-range"});
+  command_line::addExamples(*command,
+                            {{"lambent compare shown.exr ref.exr", "prints how far one is from the other"},
+                             {"lambent compare shown.exr ref.exr --reference2 ref2.exr --heat where.png",
+                              "cancels the noise of the references, and draws where the picture is wrong"}});
   command->callback([a, &run] { run = [a] { return runCompare(*a); }; });
 }
 

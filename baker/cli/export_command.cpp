@@ -14,6 +14,7 @@
 #include "lambent/bundle.hpp"
 #include "lambent/sh.hpp"
 #include "runtime/base/atomic_file.hpp"
+#include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
 
@@ -27,6 +28,7 @@ struct ExportArguments {
   std::vector<std::string> light;
   int order = kMaxBands;
   bool json = false;
+  SayOptions say;
 };
 
 Error errorOf(const Failure& failure) {
@@ -199,7 +201,7 @@ Result<void> exportBundle(const ExportArguments& a) {
   if (Result<void> done = file->commit(); !done) return done;
   if (a.json)
     fmt::print("{}\n", described.dump(2));
-  else
+  else if (!a.say.quiet)
     fmt::print("{}: {} arrays of {} groups and {} surfaces; bundle.json says what they are\n",
                a.folder.string(), arrays.arrays(), bundle->groups().size(), surfaces.size());
   return {};
@@ -222,6 +224,9 @@ void addExportCommand(CLI::App& app, Command& run) {
       ->check(CLI::Range(1, kMaxBands))
       ->capture_default_str();
   command->add_flag("--json", a->json, "Print bundle.json");
+  addQuiet(*command, a->say);
+  command_line::addExamples(
+      *command, {{"lambent export scene.lmb.glb -o arrays", "writes arrays/*.npy and arrays/bundle.json"}});
   command->callback([a, &run] {
     run = [a] {
       const Result<void> done = exportBundle(*a);

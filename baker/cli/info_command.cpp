@@ -11,6 +11,7 @@
 #include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
 #include "runtime/bundle/reader.hpp"
+#include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
 
@@ -217,6 +218,8 @@ void addInfoCommand(CLI::App& app, Command& run) {
       app.add_subcommand("info", "Check a bundle and say what is in it: sizes, orders, errors");
   command->add_option("BUNDLE", a->bundle, "The bundle, .lmb.glb")->required();
   command->add_flag("--json", a->json, "Print as JSON");
+  command_line::addExamples(
+      *command, {{"lambent info scene.lmb.glb", "checks the bundle and lists sizes, orders and errors"}});
   command->callback([a, &run] { run = [a] { return runInfo(*a); }; });
 }
 

@@ -11,7 +11,8 @@
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "runtime/base/standard_output.hpp"
-#include "runtime/spec/usage_error.hpp"
+#include "runtime/command_line/help.hpp"
+#include "runtime/command_line/usage_error.hpp"
 
 namespace lambent::baker {
 
@@ -60,15 +61,16 @@ int main(int argc, char** argv) {
   baker::addCompareCommand(app, run);
   baker::addAccuracyCommand(app, run);
   baker::addExportCommand(app, run);
-  const std::string version = std::string("lambent ") + LAMBENT_VERSION;
-  app.set_version_flag("--version", version);
-  for (CLI::App* command : app.get_subcommands({})) command->set_version_flag("--version", version);
+  command_line::addExamples(app, {{"lambent bake scene.gltf", "bakes a scene to scene.lmb.glb"},
+                                  {"lambent info scene.lmb.glb", "checks it and says what is in it"},
+                                  {"lambent bake --help", "lists the options of a command"}});
+  command_line::finish(app, "lambent " LAMBENT_VERSION);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {
     return app.exit(asked);  // --help, --version
   } catch (const CLI::ParseError& wrong) {
-    baker::reportError(spec::usageError(app, wrong));
+    baker::reportError(command_line::usageError(app, wrong));
     return 2;
   }
   return baker::runToItsEnd(run);

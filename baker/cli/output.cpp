@@ -6,10 +6,13 @@
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
+#include <map>
 #include <mutex>
 #include <span>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <pthread.h>
 #include <unistd.h>
 
@@ -17,7 +20,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::chrono::milliseconds kLogEvery = std::chrono::seconds(10);
+constexpr std::chrono::milliseconds kTerminalEvery{100}, kJsonEvery{1000}, kLogEvery{10'000};
 
 std::string scaled(double value, double base, std::span<const char* const> units) {
   std::size_t unit = 0;
@@ -31,6 +34,14 @@ std::string progressText(const WholeProgress::Seen& seen) {
   if (seen.units_per_s > 0.0) text += fmt::format(", {} {}/s", countText(seen.units_per_s), seen.stage.unit);
   if (seen.seconds_left > 0.0) text += fmt::format(", about {} left", durationText(seen.seconds_left));
   return text;
+}
+
+std::string progressJson(const WholeProgress::Seen& seen, const std::filesystem::path& scene) {
+  const nlohmann::json json = {{"scene", scene.string()},          {"share", seen.share},
+                               {"secondsLeft", seen.seconds_left}, {"stage", seen.stage.name},
+                               {"done", seen.stage.done},          {"total", seen.stage.total},
+                               {"unit", seen.stage.unit},          {"unitsPerSecond", seen.units_per_s}};
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -72,21 +83,51 @@ void reportNotice(const std::filesystem::path& subject, const std::string& sente
   fmt::print(stderr, "lambent: {}\n", Error{subject.string(), sentence, {}}.line());
 }
 
-ProgressLine::ProgressLine(const Progress& progress, WholeProgress seen_as) {
-  thread_ = std::jthread([&progress, whole = std::move(seen_as)](std::stop_token stop) mutable {
-    const bool terminal = ::isatty(STDERR_FILENO) != 0;
-    const auto every = terminal ? std::chrono::milliseconds(100) : kLogEvery;
-    std::mutex lock;
-    std::condition_variable_any stopped;  // lets the end of a job come before the next tick
-    std::unique_lock hold(lock);
-    while (!stopped.wait_for(hold, stop, every, [&] { return stop.stop_requested(); })) {
-      if (const auto seen = whole.look(progress); !seen.stage.name.empty())
-        fmt::print(stderr, "{}{}{}", terminal ? "\r\033[K" : "lambent: ", progressText(seen),
-                   terminal ? "" : "\n");
-      std::fflush(stderr);
-    }
-    if (terminal) fmt::print(stderr, "\r\033[K");
-  });
+void addQuiet(CLI::App& command, SayOptions& say) {
+  command.add_flag("-q,--quiet", say.quiet, "Print errors and warnings only, and what --json prints");
+}
+
+void addProgress(CLI::App& command, SayOptions& say) {
+  static const std::map<std::string, SayOptions::Progress> kStyles = {{"text", SayOptions::Progress::Text},
+                                                                      {"json", SayOptions::Progress::Json},
+                                                                      {"off", SayOptions::Progress::Off}};
+  command
+      .add_option_function<std::string>(
+          "--progress", [&say](const std::string& word) { say.progress = kStyles.at(word); },
+          "How stderr says how far it is. text (default): a line that changes, and in a file one every ten "
+          "seconds; json: one object a line each second, for programs")
+      ->check(CLI::IsMember(kStyles).description(""))
+      ->type_name("text|json|off");
+}
+
+ProgressLine::ProgressLine(const Progress& progress, WholeProgress seen_as, const SayOptions& say,
+                           std::filesystem::path scene) {
+  const auto style =
+      say.progress.value_or(say.quiet ? SayOptions::Progress::Off : SayOptions::Progress::Text);
+  if (style == SayOptions::Progress::Off) return;
+  const bool json = style == SayOptions::Progress::Json;
+  const bool terminal = !json && ::isatty(STDERR_FILENO) != 0;
+  const auto every = terminal ? kTerminalEvery : json ? kJsonEvery : kLogEvery;
+  const auto print = [json, terminal, label = say.label,
+                      scene = std::move(scene)](const WholeProgress::Seen& seen) {
+    if (seen.stage.name.empty()) return;
+    if (json)
+      fmt::print(stderr, "{}\n", progressJson(seen, scene));
+    else
+      fmt::print(stderr, "{}{}{}{}", terminal ? "\r\033[K" : "lambent: ", label, progressText(seen),
+                 terminal ? "" : "\n");
+    std::fflush(stderr);
+  };
+  if (json) print(seen_as.look(progress));  // so that a program learns at once what is baked
+  thread_ = std::jthread(
+      [&progress, whole = std::move(seen_as), print, terminal, every](std::stop_token stop) mutable {
+        std::mutex lock;
+        std::condition_variable_any stopped;  // lets the end of a job come before the next tick
+        std::unique_lock hold(lock);
+        while (!stopped.wait_for(hold, stop, every, [&] { return stop.stop_requested(); }))
+          print(whole.look(progress));
+        if (terminal) fmt::print(stderr, "\r\033[K");
+      });
 }
 
 ProgressLine::~ProgressLine() = default;  // the jthread stops and joins

@@ -14,6 +14,10 @@
 #include "baker/pipeline/whole_progress.hpp"
 #include "runtime/base/result.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace lambent::baker {
 
 // These return texts such as "1.2 M", "3.4 MiB" and "1:02".
@@ -31,12 +35,25 @@ int reportError(const Error& error);
 // Prints "lambent: SUBJECT: SENTENCE" to stderr, for what a user should know though it is no error.
 void reportNotice(const std::filesystem::path& subject, const std::string& sentence);
 
+// How much a command says beside its result.
+struct SayOptions {
+  enum class Progress : std::uint8_t { Text, Json, Off };
+  bool quiet = false;  // no progress and no summary, but errors, warnings and what --json asks for
+  std::optional<Progress> progress;  // nothing: text, or off if quiet
+  std::string label;                 // stands before the line of text
+};
+
+// These add --quiet and --progress to a command.
+void addQuiet(CLI::App& command, SayOptions& say);
+void addProgress(CLI::App& command, SayOptions& say);
+
 // Follows `progress` on stderr while it lives: the share of the whole, the stage, its rate and the time left.
-// A terminal has one line that changes, and a log file gets a line every ten seconds. `seen_as` knows what
-// stages will take.
+// As text, a terminal has one line that changes, and a log file gets a line every ten seconds. As JSON it is
+// an object a line each second, for other programs (docs/baking.md). `seen_as` knows what stages will take.
 class ProgressLine {
  public:
-  ProgressLine(const Progress& progress, WholeProgress seen_as);
+  ProgressLine(const Progress& progress, WholeProgress seen_as, const SayOptions& say,
+               std::filesystem::path scene);
   ~ProgressLine();
 
  private:

@@ -17,6 +17,7 @@
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/bake_estimate.hpp"
 #include "baker/plan/counted.hpp"
+#include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
 
@@ -286,7 +287,13 @@ void addPlanCommand(CLI::App& app, Command& run) {
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--json", a->json, "Print as JSON");
-  command->footer(
+  command_line::group(*command, "Machine", {"--cache"});
+  command_line::group(*command, "Files", {"--allow-outside"});
+  command_line::group(*command, "Output", {"--json"});
+  command_line::addExamples(
+      *command,
+      {{"lambent plan scene.gltf", "says what would be baked and why"},
+       {"lambent plan scene.gltf --quality standard", "says also what that takes"}},
       "With an option of the bake beside --effects and --light-probes, such as --quality draft, the plan "
       "also "
       "estimates samples, rays, time, memory and bytes. It rehearses the bake with 128 rays, which takes "

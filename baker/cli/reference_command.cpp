@@ -10,6 +10,7 @@
 #include "baker/import/gltf.hpp"
 #include "reference/reference.hpp"
 #include "runtime/base/atomic_file.hpp"
+#include "runtime/command_line/help.hpp"
 #include "runtime/spec/display.hpp"
 #include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
@@ -24,6 +25,7 @@ struct ReferenceArguments {
   std::string light_layout, camera, size = "1280x720", band_limit, rotate_light = "0", time;
   reference::Options options;
   bool json = false, force = false, allow_outside = false;
+  SayOptions say;
 };
 
 Result<void> understandLights(const ReferenceArguments& a, reference::Request& request) {
@@ -104,6 +106,7 @@ void printReference(const ReferenceArguments& a, const reference::Request& reque
     fmt::print("{}\n", json.dump(2));
     return;
   }
+  if (a.say.quiet) return;
   fmt::print("{}: {} x {}, {} samples a pixel in {}\n", a.output.string(), request.options.size.width,
              request.options.size.height, request.options.spp, durationText(r.seconds));
   fmt::print("  rays   {} ({} a second)\n", countText(static_cast<double>(r.rays)), countText(rate));
@@ -137,7 +140,7 @@ int runReference(const ReferenceArguments& a) {
   }
   for (const std::string& warning : scene->warnings) reportNotice(a.scene, warning);
   const auto report = [&] {
-    const ProgressLine line(progress, WholeProgress(expectedSeconds(request->options)));
+    const ProgressLine line(progress, WholeProgress(expectedSeconds(request->options)), a.say, a.scene);
     return reference::render(*scene, *request, a.output, a.force, progress, stop.get_token());
   }();
   if (!report) return reportError(report.error());
@@ -155,7 +158,9 @@ void addReferenceCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<ReferenceArguments>();
   CLI::App* command = app.add_subcommand("reference", "Path-trace a picture to measure the runtime against");
   command->add_option("SCENE", a->scene, "The scene, .gltf or .glb")->required();
-  command->add_option("-o,--output", a->output, "The picture to write, linear OUT.exr")->required();
+  command->add_option("-o,--output", a->output, "The picture to write, linear OUT.exr")
+      ->required()
+      ->type_name("EXR");
   command
       ->add_option("--png", a->png,
                    "Write it for a screen, too: as lambent-demo shows light at\n--exposure 0")
@@ -209,6 +214,18 @@ void addReferenceCommand(CLI::App& app, Command& run) {
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--force", a->force, "Begin anew even if OUT.exr.partial could be gone on with");
   command->add_flag("--json", a->json, "Print figures as JSON");
+  addQuiet(*command, a->say);
+  addProgress(*command, a->say);
+  command_line::group(*command, "Light", {"--light", "--light-layout", "--rotate-light"});
+  command_line::group(*command, "Picture", {"--camera", "--size", "--time", "--png"});
+  command_line::group(*command, "Paths", {"--spp", "--seed", "--band-limit", "--bounces", "--threads"});
+  command_line::group(*command, "Files and runs", {"--output", "--force", "--allow-outside"});
+  command_line::group(*command, "Output", {"--json", "--quiet", "--progress"});
+  command_line::addExamples(
+      *command,
+      {{"lambent reference scene.gltf -o ref.exr --light sky.hdr --camera main", "traces a picture"},
+       {"lambent reference scene.gltf -o ref5.exr --light sky.hdr --band-limit 5,5",
+        "traces what bakes with five bands can show at best"}});
   command->callback([a, &run] { run = [a] { return runReference(*a); }; });
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "baker/cli/folder_outputs.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/pipeline/bake_queue.hpp"
 #include "baker/pipeline/source_watch.hpp"
@@ -33,6 +34,8 @@ class FolderBakes {
       more["event"] = event;
       if (!scene.empty()) more["scene"] = scene.string();
       fmt::print("{}\n", more.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    } else if (arguments_.quiet) {
+      if (more.contains("error")) reportNotice(scene, text);
     } else {
       fmt::print("{}\n", scene.empty() ? text : scene.string() + ": " + text);
     }
@@ -50,7 +53,7 @@ class FolderBakes {
                    {{"error", event.error->line()}});
       case WatchEvent::Kind::Removed:
         if (const auto job = jobs_.find(event.scene); job != jobs_.end()) queue_.cancel(job->second);
-        std::erase_if(scene_of_, [&](const auto& entry) { return entry.second == event.scene; });
+        outputs_.forget(event.scene);
         failed_.erase(event.scene);
         return say("removed", event.scene, "is gone; its bundle stays");
     }
@@ -97,35 +100,22 @@ class FolderBakes {
 
  private:
   void add(const fs::path& scene) {
-    const fs::path output = outputOf(scene);
-    const auto [entry, added] = scene_of_.try_emplace(output, scene);
-    if (!added && entry->second != scene) {
+    const Result<fs::path> output = outputs_.outputOf(scene);
+    if (!output) {
       failed_.insert(scene);
-      const std::string why = fmt::format("would be baked to {}, where {} is; rename one of them",
-                                          output.string(), entry->second.string());
-      return say("failed", scene, why, {{"output", output.string()}, {"error", why}});
+      return say("failed", scene, output.error().line(), {{"error", output.error().line()}});
     }
-    std::error_code ignored;  // the bake reports that it cannot write
-    fs::create_directories(output.parent_path(), ignored);
     jobs_.insert_or_assign(
         scene,
         queue_.add(
-            {.scene = scene, .output = output, .options = arguments_.options, .import = arguments_.import}));
-  }
-
-  fs::path outputOf(const fs::path& scene) const {
-    const fs::path beside = bundleBeside(scene);
-    if (arguments_.output.empty()) return beside;
-    return (arguments_.output / scene.parent_path().lexically_relative(arguments_.folder))
-               .lexically_normal() /
-           beside.filename();
+            {.scene = scene, .output = *output, .options = arguments_.options, .import = arguments_.import}));
   }
 
   const WatchArguments& arguments_;
   BakeQueue& queue_;
   std::map<fs::path, JobId> jobs_;
-  std::map<fs::path, fs::path> scene_of_;  // by output
-  std::set<fs::path> failed_;              // scenes that are broken or whose last bake failed
+  FolderOutputs outputs_{arguments_.folder, arguments_.output};
+  std::set<fs::path> failed_;  // scenes that are broken or whose last bake failed
 };
 
 }  // namespace

@@ -15,7 +15,8 @@ struct WatchArguments {
   std::filesystem::path output;  // a folder; if empty, bundles lie beside their scenes
   BakeOptions options;
   ImportOptions import;
-  bool json = false;  // prints one object per line
+  bool json = false;   // prints one object per line
+  bool quiet = false;  // without `json`, prints errors only, to stderr
 };
 
 // Runs until it is interrupted, and returns the exit code: 1 if a scene is broken or its last bake failed.

@@ -12,6 +12,7 @@
 #include "baker/import/convert.hpp"
 #include "baker/import/hints.hpp"
 #include "baker/import/primitives.hpp"
+#include "baker/import/tangents.hpp"
 #include "baker/import/texture_transfer.hpp"
 #include "baker/import/tinygltf.hpp"
 
@@ -142,6 +143,8 @@ class MeshConverter {
         scene_.warnings.push_back(
             fmt::format("{}: its morph targets stand as the file's weights say and do not move", name));
       cleanMesh(*data, name, scene_.warnings);
+      if (tangents && data->tangents.empty() && !data->indices.empty())
+        makeTangents(*data, scene_.materials[static_cast<std::size_t>(primitive.material)].normal_texture);
       vertices_ += data->positions.size();
       if (vertices_ > kMaxVertices)
         return fail(document_.file(),

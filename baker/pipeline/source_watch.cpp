@@ -199,6 +199,12 @@ void SourceWatch::Impl::check(const fs::path& scene, Watched& state) {
   tell(std::exchange(state.told, true) ? WatchEvent::Kind::Changed : WatchEvent::Kind::Found, scene);
 }
 
+std::vector<fs::path> scenesIn(const fs::path& folder) {
+  std::set<fs::path> scenes;
+  collect(folder, scenes);
+  return {scenes.begin(), scenes.end()};
+}
+
 SourceWatch::SourceWatch(std::vector<fs::path> sources, WatchSettings settings)
     : impl_(std::make_unique<Impl>()) {
   impl_->settings = settings;

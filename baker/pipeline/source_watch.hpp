@@ -63,6 +63,9 @@ std::vector<std::filesystem::path> sourceFiles(const std::filesystem::path& scen
 // Returns whether the name is that of a scene to bake: .gltf or .glb, not .lmb.glb, not hidden.
 bool isSceneFile(const std::filesystem::path& path);
 
+// Returns the scenes in a folder and its subfolders, without hidden ones, sorted by path.
+std::vector<std::filesystem::path> scenesIn(const std::filesystem::path& folder);
+
 // Returns where a scene is baked to if nothing else is said: NAME.lmb.glb in its own folder.
 std::filesystem::path bundleBeside(const std::filesystem::path& scene);
 

@@ -106,7 +106,10 @@ Result<SweepResults> runSweep(const SweepRequest& request, const SweepListener& 
                      .glossy = facts.glossy,
                      .allow_outside = request.allow_outside,
                      .view = results.view,
-                     .begin = [&](const std::string& what) { listener.begin(done, results.asked, what); }},
+                     .begin =
+                         [&](const std::string& what) {
+                           if (listener.begin) listener.begin(done, results.asked, what);
+                         }},
                     *store, stop);
   for (const Setting& setting : *settings) {
     if (stop.stop_requested()) break;
@@ -121,7 +124,7 @@ Result<SweepResults> runSweep(const SweepRequest& request, const SweepListener& 
       results.failures.push_back(fmt::format("{}: {}", setting.name(), measured.error().line()));
     } else {
       results.settings.push_back(std::move(*measured));
-      listener.measured(done + 1, results.asked, results.settings.back());
+      if (listener.measured) listener.measured(done + 1, results.asked, results.settings.back());
     }
     ++done;
   }

@@ -30,6 +30,11 @@ function(lambent_copy_libraries folder programs excluded)
   set(CMAKE_INSTALL_MANIFEST_FILES "${CMAKE_INSTALL_MANIFEST_FILES}" PARENT_SCOPE)
 endfunction()
 
+# Packages for a system name its libraries as what they depend on, and carry none (deb.cmake.in).
+if(LAMBENT_SYSTEM_PACKAGES)
+  return()
+endif()
+
 set(copied "")
 lambent_copy_libraries(lib "${PROGRAMS}" "${SYSTEM_LIBRARIES};${DISPLAY_LIBRARIES}")
 if(HEADLESS_PROGRAMS)

@@ -5,9 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "runtime/command_line/help.hpp"
+#include "runtime/command_line/usage_error.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/size.hpp"
-#include "runtime/spec/usage_error.hpp"
 
 namespace lambent::editor {
 
@@ -38,9 +39,9 @@ void declare(CLI::App& app, OptionWords& words) {
   app.add_option("--scale", words.scale, "Size of text and widgets, 0.5..4 (default: as it was)")
       ->type_name("FACTOR")
       ->check(CLI::Range(0.5f, 4.0f).description(""));
-  app.add_option("--quality", words.quality, "Of the final bake: draft, standard or high")
+  app.add_option("--quality", words.quality, "Of the final bake")
       ->capture_default_str()
-      ->type_name("NAME")
+      ->type_name("draft|standard|high")
       ->check(CLI::IsMember({"draft", "standard", "high"}).description(""));
   app.add_option("-o,--output", words.output, "Folder for the bundles of scenes (default: beside each scene)")
       ->type_name("DIR");
@@ -60,7 +61,15 @@ void declare(CLI::App& app, OptionWords& words) {
       ->type_name("FILE");
   app.add_flag("--json", words.json, "The script's answers on stdout, a JSON value a line");
   app.add_flag("--fresh", words.fresh, "Forget layout and recent files, and remember none");
-  app.set_version_flag("--version", "lambent-editor " LAMBENT_VERSION);
+  command_line::group(app, "Window", {"--size", "--scale", "--fresh"});
+  command_line::group(app, "Bakes", {"--quality", "--output", "--no-bake", "--threads"});
+  command_line::group(app, "Memory and cache", {"--cache", "--cache-size", "--max-memory"});
+  command_line::group(app, "Scripts", {"--script", "--json"});
+  command_line::addExamples(
+      app, {{"lambent-editor scene.gltf", "shows a scene while it bakes"},
+            {"lambent-editor scenes -o bundles --quality draft", "bakes what is in a folder, as it changes"},
+            {"lambent-editor --script commands.txt --json", "runs commands and quits"}});
+  command_line::finish(app, "lambent-editor " LAMBENT_VERSION);
 }
 
 Result<Options> understand(const OptionWords& words) {
@@ -98,14 +107,13 @@ void printError(const Error& error) {
 
 std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
   CLI::App app("Opens, bakes and lights scenes, and shows what accuracy costs.", "lambent-editor");
-  app.footer("Exit codes: 0 done, 1 failed, 2 wrong usage.");
   OptionWords words;
   declare(app, words);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    printError(spec::usageError(app, error));
+    printError(command_line::usageError(app, error));
     return 2;
   }
   Result<Options> options = understand(words);

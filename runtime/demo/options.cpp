@@ -9,10 +9,11 @@
 #include <fmt/format.h>
 
 #include "runtime/base/lower_case.hpp"
+#include "runtime/command_line/help.hpp"
+#include "runtime/command_line/usage_error.hpp"
 #include "runtime/frame/quality.hpp"
 #include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
-#include "runtime/spec/usage_error.hpp"
 
 namespace lambent::demo {
 
@@ -68,7 +69,7 @@ std::string typeOf(const frame::SettingRow& row) {
     case frame::SettingRow::Kind::Switch:
       return "on|off";
     case frame::SettingRow::Kind::Choice:
-      return "WORD";
+      return fmt::format("{}", fmt::join(row.words, "|"));
     case frame::SettingRow::Kind::Whole:
       return "N";
     case frame::SettingRow::Kind::Real:
@@ -116,9 +117,9 @@ void declare(CLI::App& app, Words& words) {
       app.add_option("--" + std::string(row.former), words.settings[i])->group("");  // hidden in help
   }
   app.add_option("--quality", words.quality,
-                 "low, default or high: how many key lights there are and how finely\nthey shadow; single "
+                 "How many key lights there are and how finely\nthey shadow; single "
                  "options go before it")
-      ->type_name("WORD")
+      ->type_name("low|default|high")
       ->capture_default_str();
   app.add_option("--frames", words.frames,
                  "Frames to render headless, the last one is written or, with # in\nthe name, every one; the "
@@ -133,7 +134,32 @@ void declare(CLI::App& app, Words& words) {
       ->type_name("BYTES")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
   app.add_flag("--json", words.json, "Report on stdout: times, counts, bytes resident");
-  app.set_version_flag("--version", "lambent-demo " LAMBENT_VERSION);
+}
+
+// Puts the options in groups, with examples.
+void describe(CLI::App& app) {
+  command_line::group(
+      app, "Light",
+      {"--light", "--light-layout", "--rotate-light", "--fade-to", "--fade", "--edit-key", "--lamps"});
+  command_line::group(app, "Picture",
+                      {"--camera", "--size", "--headless", "--frames", "--view", "--overlay"});
+  command_line::group(app, "Animation", {"--time", "--step"});
+  command_line::group(app, "Accuracy and effects", {"--quality"});
+  for (const frame::SettingRow& row : frame::settingRows())
+    command_line::group(app, "Accuracy and effects", {"--" + std::string(row.name)});
+  command_line::group(app, "Machine", {"--max-memory"});
+  command_line::group(app, "Output", {"--json"});
+  command_line::addExamples(
+      app,
+      {{"lambent-demo scene.lmb.glb --light sky.hdr", "shows a bundle in a window"},
+       {"lambent-demo bundles --light sun:40,30,0.27,20 --light constant:0.3,0.4,0.6",
+        "shows all bundles of a folder under a sun and an even sky"},
+       {"lambent-demo scene.lmb.glb --headless out-###.png --frames 100 --rotate-light 360",
+        "draws a turn of the light without a display"}},
+      "In the window: drag turns the camera, the wheel moves it, R resets it; the right button drags the "
+      "first light that stands in the scene; space stops lights and animations, A and D turn the lights; H "
+      "shows the keys; Esc quits.");
+  command_line::finish(app, "lambent-demo " LAMBENT_VERSION);
 }
 
 Result<void> understandLights(const Words& words, Options& options) {
@@ -273,18 +299,14 @@ void printError(const Error& error) {
 std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
   CLI::App app("Shows baked scenes under light that changes: in a window, or as a picture with --headless.",
                "lambent-demo");
-  app.footer(
-      "In the window: drag turns the camera, the wheel moves it, R resets it; the right button drags the "
-      "first "
-      "light that stands in the scene; space stops lights and animations, A and D turn the lights; H shows "
-      "the keys; Esc quits.\nExit codes: 0 done, 1 failed, 2 wrong usage.");
   Words words;
   declare(app, words);
+  describe(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    printError(spec::usageError(app, error));
+    printError(command_line::usageError(app, error));
     return 2;
   }
   Result<Options> options = understand(words);

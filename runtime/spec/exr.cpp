@@ -7,11 +7,13 @@
 
 #include <Imath/ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticities.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 
 #include "runtime/spec/file_bytes.hpp"
 #include "runtime/spec/image.hpp"
@@ -147,6 +149,7 @@ Result<void> writeExr(const std::filesystem::path& path, const RgbaImage& image)
   try {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::addChromaticities(header, Imf::Chromaticities());  // by default those of Rec. 709
     Imf::FrameBuffer source;
     const Imath::Box2i window = header.dataWindow();
     for (int component = 0; component < 4; ++component) {

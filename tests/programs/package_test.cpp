@@ -106,6 +106,10 @@ TEST_F(Package, OfTheRuntimeRunsWhereItIsPutWithItsOwnLibraries) {
     EXPECT_FALSE(std::regex_search(name, kSystem)) << name;
   }
 
+  EXPECT_NE(bytesOf(root / "share/man/man1/lambent-demo.1").find("\\-\\-headless"), std::string::npos);
+  EXPECT_NE(bytesOf(root / "share/bash-completion/completions/lambent-demo").find("--headless"),
+            std::string::npos);
+
   const fs::path notices = root / "share/doc/lambent";
   EXPECT_TRUE(fs::exists(notices / "LICENSE"));
   if (fs::exists("/usr/bin/dpkg-query")) {  // their licences: of a library, and of what is compiled in

@@ -1,13 +1,10 @@
 """Finds Lambent's programs and runs them beside Blender. It knows nothing of Blender."""
+import json
 import os
-import re
 import shutil
 import signal
 import subprocess
 from pathlib import Path
-
-# A bake writes "37 %  direct light, 1.2 M samples/s, about 12.0 s left" (baker/cli/output.cpp).
-PROGRESS = re.compile(r"(?:lambent: )?\s*(\d+) %  (.+)")
 
 
 class Problem(Exception):
@@ -33,8 +30,8 @@ def find_program(name: str, chosen: str) -> Path:
 class Child:
     """A program that runs. Whoever started it calls poll() again and again.
 
-    Its stderr is a terminal of its own: there `lambent` says ten times a second how far it is, and only every ten
-    seconds in a file. Its report goes to Blender's stdout.
+    With --progress json `lambent` says each second how far it is, as an object a line among the lines of its stderr
+    (docs/baking.md). Its report goes to Blender's stdout.
     """
 
     def __init__(self, command: list[str]) -> None:
@@ -42,12 +39,12 @@ class Child:
         self.stage = ""
         self.lines: list[str] = []
         self.rest = b""
-        self.terminal, stderr = os.openpty()
-        os.set_blocking(self.terminal, False)
+        self.pipe, stderr = os.pipe()
+        os.set_blocking(self.pipe, False)
         try:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=stderr)
         except OSError as error:
-            os.close(self.terminal)
+            os.close(self.pipe)
             raise Problem(f"{command[0]} does not start: {error.strerror}; "
                           "correct the path in Preferences > Add-ons > Lambent") from None
         finally:
@@ -57,28 +54,30 @@ class Child:
         """Reads what it has said, and returns its exit code, or None while it runs."""
         code = self.process.poll()  # before reading, so that no last word is lost
         try:
-            while self.terminal >= 0 and (said := os.read(self.terminal, 65536)):
+            while self.pipe >= 0 and (said := os.read(self.pipe, 65536)):
                 self.hear(said)
         except BlockingIOError:
             pass
-        except OSError:  # Linux ends a terminal with an error.
-            self.close()
         if code is not None:
             self.hear(b"\n")
             self.close()
         return code
 
     def hear(self, said: bytes) -> None:
-        *lines, self.rest = re.split(rb"[\r\n]+", self.rest + said)
-        for line in map(self.plain, lines):
-            if found := PROGRESS.fullmatch(line):
-                self.share, self.stage = int(found[1]) / 100, found[2]
+        *lines, self.rest = (self.rest + said).split(b"\n")
+        for line in (line.decode(errors="replace").rstrip() for line in lines):
+            if line.startswith("{"):
+                progress = json.loads(line)
+                self.share, self.stage = progress["share"], self.words_of(progress)
             elif line:
                 self.lines.append(line)
 
     @staticmethod
-    def plain(line: bytes) -> str:
-        return line.replace(b"\x1b[K", b"").decode(errors="replace").rstrip()
+    def words_of(progress: dict) -> str:
+        """Returns for example "direct light, about 1:02 min left"."""
+        seconds = round(progress["secondsLeft"])
+        left = f"{seconds} s" if seconds < 60 else f"{seconds // 60}:{seconds % 60:02} min"
+        return progress["stage"] + (f", about {left} left" if seconds > 0 else "")
 
     def interrupt(self) -> None:
         """Asks it to stop after the work in hand; a second time ends it at once."""
@@ -90,6 +89,6 @@ class Child:
         return self.lines[-1] if self.lines else f"{self.process.args[0]} ended with code {self.process.returncode}"
 
     def close(self) -> None:
-        if self.terminal >= 0:
-            os.close(self.terminal)
-            self.terminal = -1
+        if self.pipe >= 0:
+            os.close(self.pipe)
+            self.pipe = -1

@@ -31,7 +31,7 @@ class Bake:
         self.cancelled = False
         # Files of volumes stay where they are.
         self.child = Child([str(program), "bake", str(self.scene), "-o", str(self.output), "--allow-outside",
-                            "--quality", settings.quality, *options])
+                            "--progress", "json", "--quality", settings.quality, *options])
 
     def poll(self) -> bool:
         """Returns whether it still runs; when it ends, says in `state` what became of it."""

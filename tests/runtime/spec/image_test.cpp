@@ -14,8 +14,10 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include "runtime/spec/display.hpp"
 #include "tests/support/differences.hpp"
@@ -213,6 +215,51 @@ TEST_F(SpecImage, PngRoundTripIsExact) {
   EXPECT_EQ(back->width, 13u);
   EXPECT_EQ(back->texels, image.texels);
   EXPECT_FALSE(readPng(write("not.png", "GIF89a")));
+}
+
+// Reads the chunks by hand, with a check that is not the writer's.
+std::vector<std::pair<std::string, std::string>> pngChunks(const std::string& file) {
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = (value << 8) | static_cast<std::uint8_t>(file[at + i]);
+    return value;
+  };
+  std::vector<std::pair<std::string, std::string>> chunks;
+  for (std::size_t at = 8; at + 12 <= file.size();) {
+    const std::uint32_t size = number(at);
+    chunks.emplace_back(file.substr(at + 4, 4), file.substr(at + 8, size));
+    const auto* named = reinterpret_cast<const Bytef*>(file.data() + at + 4);
+    EXPECT_EQ(number(at + 8 + size), ::crc32(0, named, static_cast<uInt>(size + 4))) << chunks.back().first;
+    at += 12 + size;
+  }
+  return chunks;
+}
+
+TEST_F(SpecImage, PngSaysThatItIsSrgb) {
+  ASSERT_TRUE(writePng(folder_ / "picture.png", {2, 1, {1, 2, 3, 4, 5, 6, 7, 8}}));
+  std::ifstream in(folder_ / "picture.png", std::ios::binary);
+  const std::string file{std::istreambuf_iterator<char>(in), {}};
+  const auto chunks = pngChunks(file);
+  ASSERT_GE(chunks.size(), 6u);
+  EXPECT_EQ(chunks[0].first, "IHDR");
+  EXPECT_EQ(chunks[1], std::pair(std::string("sRGB"), std::string(1, '\0'))) << "perceptual";
+  EXPECT_EQ(chunks[2], std::pair(std::string("gAMA"), std::string("\0\0\xb1\x8f", 4))) << "1 / 2.2";
+  EXPECT_EQ(chunks[3].first, "cHRM");
+  EXPECT_EQ(chunks[3].second.size(), 32u);
+  EXPECT_EQ(chunks[3].second.substr(0, 4), std::string("\0\0\x7a\x26", 4)) << "x of white, 0.3127";
+  EXPECT_EQ(chunks[4].first, "IDAT") << "colours are said before the pixels";
+  EXPECT_EQ(chunks.back().first, "IEND");
+}
+
+TEST_F(SpecImage, ExrSaysThatItsColoursAreThoseOfRec709) {
+  ASSERT_TRUE(writeExr(folder_ / "picture.exr", {1, 1, {glm::vec4(1.0f)}}));
+  const Imf::InputFile file((folder_ / "picture.exr").c_str());
+  ASSERT_TRUE(Imf::hasChromaticities(file.header()));
+  const Imf::Chromaticities& said = Imf::chromaticities(file.header());
+  EXPECT_EQ(said.red, Imath::V2f(0.64f, 0.33f));
+  EXPECT_EQ(said.green, Imath::V2f(0.30f, 0.60f));
+  EXPECT_EQ(said.blue, Imath::V2f(0.15f, 0.06f));
+  EXPECT_EQ(said.white, Imath::V2f(0.3127f, 0.3290f));
 }
 
 TEST_F(SpecImage, MissingAndForeignFilesAreToldApart) {

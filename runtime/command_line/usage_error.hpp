@@ -8,10 +8,10 @@ class App;
 class ParseError;
 }  // namespace CLI
 
-namespace lambent::spec {
+namespace lambent::command_line {
 
 // Returns what to print for an error that `app` threw while it parsed. A word that is not known is named with
 // the nearest one that is.
 Error usageError(const CLI::App& app, const CLI::ParseError& wrong);
 
-}  // namespace lambent::spec
+}  // namespace lambent::command_line

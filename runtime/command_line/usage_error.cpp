@@ -1,4 +1,4 @@
-#include "runtime/spec/usage_error.hpp"
+#include "runtime/command_line/usage_error.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace lambent::spec {
+namespace lambent::command_line {
 
 namespace {
 
@@ -81,4 +81,4 @@ Error usageError(const CLI::App& app, const CLI::ParseError& wrong) {
   return {{}, text, text.find("; ") == std::string::npos ? help : ""};  // else it says what to do
 }
 
-}  // namespace lambent::spec
+}  // namespace lambent::command_line

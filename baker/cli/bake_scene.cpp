@@ -1,0 +1,77 @@
+#include "baker/cli/bake_scene.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/cli/bake_report.hpp"
+#include "baker/import/gltf.hpp"
+#include "baker/pipeline/progress_record.hpp"
+#include "runtime/base/atomic_file.hpp"
+
+namespace lambent::baker {
+
+std::optional<Cache> bakeCache(const BakeArguments& a) {
+  auto cache = openCache(a.cache, a.cache_bytes);
+  if (cache && a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
+  return cache;
+}
+
+Journal bakeJournal(const std::optional<Cache>& cache) {
+  return Journal(cache ? cache->folder() / "journal" : std::filesystem::path());
+}
+
+Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cache,
+                              const std::stop_token& stop) {
+  if (const auto readable = checkRegularFile(a.scene, "a scene, .gltf or .glb"); !readable)
+    return failAgain(readable.error());
+  if (const auto checked = checkRequest(a.options, a.output); !checked) return failAgain(checked.error());
+  Journal::Entry record = bakeJournal(cache).begin({.scene = a.scene,
+                                                    .output = a.output,
+                                                    .options = a.options,
+                                                    .import = {.allow_outside = a.allow_outside}});
+  if (record.error())
+    fmt::print(stderr, "lambent: {}; --resume will not know of this bake\n", record.error()->line());
+  Progress progress;
+  progress.begin("import");
+  auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
+  if (!scene) {
+    record.done();
+    return failAgain(scene.error());
+  }
+  for (const std::string& warning : scene->warnings) reportNotice(a.scene, warning);
+  if (!a.force && isUpToDate(*scene, a.options, a.output)) {
+    record.done();
+    return BakeOutcome{};
+  }
+  BakeOutcome outcome;
+  outcome.estimate = cache ? findEstimate(*scene, a.options, *cache) : std::nullopt;
+  if (cache) cache->setReading(!a.force);
+  const Key progress_key = progressKey(*scene, a.options);
+  Result<BakeReport> report = [&] {
+    const StageSeconds expected =
+        outcome.estimate ? outcome.estimate->stages : guessSeconds(*scene, a.options);
+    const ProgressRecord begun = cache ? findProgress(progress_key, *cache) : ProgressRecord{};
+    std::optional<ProgressKeeper> keeper;
+    if (cache) keeper.emplace(progress, expected, begun, *cache, progress_key);
+    const ProgressLine line(progress, WholeProgress(expected, begun), a.say, a.scene);
+    return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
+  }();
+  if (report && cache) cache->drop(progress_key);
+  if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
+  if (!report) {
+    if (stop.stop_requested())
+      report.error().hint = cache ? "bake it again, or give --resume, and it goes on from where it was"
+                                  : "with a cache, the next bake would go on from where it was";
+    return failAgain(report.error());
+  }
+  for (const std::string& notice : report->notices) reportNotice(a.scene, notice);
+  outcome.report = std::move(*report);
+  return outcome;
+}
+
+nlohmann::json outcomeJson(const BakeArguments& a, const BakeOutcome& outcome) {
+  if (!outcome.report) return {{"output", a.output.string()}, {"upToDate", true}};
+  return reportJson({a.output, a.options, *outcome.report, outcome.estimate});
+}
+
+}  // namespace lambent::baker

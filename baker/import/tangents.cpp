@@ -1,0 +1,195 @@
+#include "baker/import/tangents.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "baker/import/gather_vertices.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr std::uint32_t kNone = ~0u;
+
+glm::vec3 unitOrZero(const glm::vec3& v) {
+  const float length = glm::length(v);
+  return length > 0.0f && std::isfinite(length) ? v / length : glm::vec3(0.0f);
+}
+
+glm::vec3 across(const glm::vec3& v, const glm::vec3& normal) {
+  return unitOrZero(v - glm::dot(normal, v) * normal);
+}
+
+// MikkTSpace has one tangent for all corners at a point that have the same normal and texture coordinates,
+// whose faces hang together there by edges, and on whose faces the picture is not mirrored or is mirrored.
+// The corners of a face count with their angles there.
+class TangentMaker {
+ public:
+  TangentMaker(bundle::MeshData& mesh, const gltf::TextureRef& map)
+      : mesh_(mesh), uvs_(map.texcoord == 0 ? mesh.texcoords0 : mesh.texcoords1) {
+    for (glm::vec2& uv : uvs_) uv = map.apply(uv);
+  }
+
+  void make() {
+    joinEqualVertices();
+    lookAtFaces();
+    joinFaces();
+    group_of_.assign(mesh_.indices.size(), kNone);
+    for (std::uint32_t corner = 0; corner < group_of_.size(); ++corner)
+      if (group_of_[corner] == kNone && !faces_[corner / 3].flat) grow(corner);
+    writeTangents();
+  }
+
+ private:
+  struct Face {
+    glm::vec3 along{0.0f};  // unit, the way in which u grows
+    bool mirrored = false;  // the picture is
+    bool flat = false;      // it has no area in the picture, so that it goes with any group
+    bool taken = false;     // a flat one that has a group
+    std::array<std::uint32_t, 3> beyond{kNone, kNone, kNone};  // the face beyond the edge after each corner
+  };
+  struct Group {
+    bool mirrored = false;
+    glm::vec3 sum{0.0f};
+  };
+
+  std::uint32_t point(std::uint32_t corner) const { return point_of_[mesh_.indices[corner]]; }
+  static std::uint32_t cornerAfter(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+
+  // Gives vertices with equal position, normal and texture coordinates one number.
+  void joinEqualVertices() {
+    std::map<std::array<float, 8>, std::uint32_t> numbers;
+    point_of_.resize(mesh_.positions.size());
+    for (std::size_t v = 0; v < point_of_.size(); ++v) {
+      const glm::vec3 &p = mesh_.positions[v], &n = mesh_.normals[v];
+      const std::array<float, 8> key{p.x, p.y, p.z, n.x, n.y, n.z, uvs_[v].x, uvs_[v].y};
+      point_of_[v] = numbers.try_emplace(key, static_cast<std::uint32_t>(v)).first->second;
+    }
+  }
+
+  void lookAtFaces() {
+    faces_.resize(mesh_.indices.size() / 3);
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const std::uint32_t a = mesh_.indices[3 * f], b = mesh_.indices[3 * f + 1],
+                          c = mesh_.indices[3 * f + 2];
+      const glm::vec3 ab = mesh_.positions[b] - mesh_.positions[a],
+                      ac = mesh_.positions[c] - mesh_.positions[a];
+      const glm::vec2 uv_ab = uvs_[b] - uvs_[a], uv_ac = uvs_[c] - uvs_[a];
+      const float area = uv_ab.x * uv_ac.y - uv_ab.y * uv_ac.x;
+      Face& face = faces_[f];
+      face.mirrored = area <= 0.0f;
+      face.along = unitOrZero((face.mirrored ? -1.0f : 1.0f) * (uv_ac.y * ab - uv_ab.y * ac));
+      const glm::vec3 along_v = uv_ab.x * ac - uv_ac.x * ab;
+      face.flat = area == 0.0f || face.along == glm::vec3(0.0f) || along_v == glm::vec3(0.0f);
+    }
+  }
+
+  // Finds the faces beyond edges, which run along them the other way. Of more than two the first ones are
+  // neighbors.
+  void joinFaces() {
+    std::multimap<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> open;  // corners before edges
+    for (std::uint32_t corner = 0; corner < mesh_.indices.size(); ++corner) {
+      const std::uint32_t from = point(corner), to = point(cornerAfter(corner));
+      if (const auto other = open.find({to, from}); other != open.end()) {
+        faces_[corner / 3].beyond[corner % 3] = other->second / 3;
+        faces_[other->second / 3].beyond[other->second % 3] = corner / 3;
+        open.erase(other);
+      } else {
+        open.emplace(std::pair(from, to), corner);
+      }
+    }
+  }
+
+  // Begins a group at this corner and takes in the faces around its point.
+  void grow(std::uint32_t first) {
+    const auto number = static_cast<std::uint32_t>(groups_.size());
+    groups_.push_back({.mirrored = faces_[first / 3].mirrored});
+    std::vector<std::uint32_t> ahead{first};
+    while (!ahead.empty()) {
+      const std::uint32_t corner = ahead.back();
+      ahead.pop_back();
+      Face& face = faces_[corner / 3];
+      if (group_of_[corner] != kNone) continue;
+      if (face.flat && !std::exchange(face.taken, true)) face.mirrored = groups_[number].mirrored;
+      if (face.mirrored != groups_[number].mirrored) continue;
+      group_of_[corner] = number;
+      add(corner);
+      const std::uint32_t before = cornerAfter(cornerAfter(corner));
+      for (const std::uint32_t edge : {corner, before})
+        if (const std::uint32_t next = face.beyond[edge % 3]; next != kNone)
+          for (std::uint32_t other = 3 * next; other < 3 * next + 3; ++other)
+            if (point(other) == point(corner)) ahead.push_back(other);
+    }
+  }
+
+  void add(std::uint32_t corner) {
+    const Face& face = faces_[corner / 3];
+    if (face.flat) return;
+    const auto at = [&](std::uint32_t c) { return mesh_.positions[mesh_.indices[c]]; };
+    const glm::vec3& normal = mesh_.normals[mesh_.indices[corner]];
+    const std::uint32_t after = cornerAfter(corner), before = cornerAfter(after);
+    const float cosine =
+        glm::dot(across(at(after) - at(corner), normal), across(at(before) - at(corner), normal));
+    groups_[group_of_[corner]].sum += std::acos(std::clamp(cosine, -1.0f, 1.0f)) * across(face.along, normal);
+  }
+
+  // Each vertex keeps its first group. Its corners in others get a copy of it.
+  void writeTangents() {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> copies;  // of vertex and group
+    std::vector<std::uint32_t> sources(mesh_.positions.size()), groups(sources.size(), kNone);
+    std::vector<bool> used(sources.size(), false);
+    std::iota(sources.begin(), sources.end(), 0u);
+    for (std::uint32_t corner = 0; corner < mesh_.indices.size(); ++corner) {
+      std::uint32_t& vertex = mesh_.indices[corner];
+      const std::uint32_t group = group_of_[corner];
+      if (!used[vertex]) {
+        used[vertex] = true;
+        groups[vertex] = group;
+      } else if (groups[vertex] != group) {
+        const auto [copy, added] =
+            copies.try_emplace({vertex, group}, static_cast<std::uint32_t>(sources.size()));
+        if (added) {
+          sources.push_back(vertex);
+          groups.push_back(group);
+        }
+        vertex = copy->second;
+      }
+    }
+    gatherVertices(mesh_, sources);
+    for (std::size_t v = 0; v < groups.size(); ++v)
+      mesh_.tangents.push_back(tangentOf(groups[v], mesh_.normals[v]));
+  }
+
+  // In glTF v points down and +Y of normal maps up, so that bitangents are the other way than MikkTSpace's.
+  glm::vec4 tangentOf(std::uint32_t group, const glm::vec3& normal) const {
+    glm::vec3 along(0.0f);
+    if (group != kNone) along = across(groups_[group].sum, normal);
+    if (along == glm::vec3(0.0f))  // the picture shows no direction, so that any is right
+      along = across(std::abs(normal.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0), normal);
+    return {along, group != kNone && groups_[group].mirrored ? 1.0f : -1.0f};
+  }
+
+  bundle::MeshData& mesh_;
+  std::vector<glm::vec2> uvs_;
+  std::vector<std::uint32_t> point_of_;  // by vertex
+  std::vector<Face> faces_;
+  std::vector<Group> groups_;
+  std::vector<std::uint32_t> group_of_;  // by corner
+};
+
+}  // namespace
+
+void makeTangents(bundle::MeshData& mesh, const gltf::TextureRef& map) {
+  mesh.tangents.clear();
+  if ((map.texcoord == 0 ? mesh.texcoords0 : mesh.texcoords1).empty()) return;
+  TangentMaker(mesh, map).make();
+}
+
+}  // namespace lambent::baker

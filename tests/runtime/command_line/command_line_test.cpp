@@ -1,0 +1,140 @@
+// Tests what is made from the tables of options: help in groups, manual pages, and completion in shells.
+#include <algorithm>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/command_line/completion.hpp"
+#include "runtime/command_line/help.hpp"
+#include "runtime/command_line/manual_page.hpp"
+#include "runtime/command_line/option_table.hpp"
+
+namespace lambent::command_line {
+namespace {
+
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    CLI::App* bake = app_.add_subcommand("bake", "Bake a scene");
+    bake->add_option("SCENE", scene_, "The scene; .gltf")->required();
+    bake->add_option("--quality", word_, "How fine it is, which\nsays it all. Really")
+        ->type_name("draft|high|N")
+        ->default_str("draft");
+    bake->add_option("-s,--seconds", seconds_, "Don't take [longer]")
+        ->check(CLI::Range(0.5, 60.0))
+        ->type_name("S");
+    bake->add_option("--former", word_, "Hidden")->group("");
+    bake->add_flag("--force", force_, "Begin anew");
+    group(*bake, "Accuracy", {"--quality"});
+    addExamples(*bake, {{"tool bake a.gltf", "bakes it"}}, "A note that ends the page.");
+    app_.add_subcommand("info", "Say what is in a bundle");
+    addExamples(app_, {});
+    finish(app_, "tool 1.2");
+  }
+
+  // Returns what the program prints for these words, and its exit code.
+  std::pair<std::string, int> printed(std::vector<std::string> words) {
+    std::ranges::reverse(words);  // as the library wants them
+    try {
+      app_.parse(words);
+    } catch (const CLI::ParseError& end) {
+      std::ostringstream out, err;
+      const int code = app_.exit(end, out, err);
+      return {out.str() + err.str(), code};
+    }
+    return {"", 0};
+  }
+
+  CLI::App app_{"Makes tests.", "tool"};
+  std::string scene_, word_;
+  double seconds_ = 0.0;
+  bool force_ = false;
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_F(CommandLine, HelpHasGroupsThenExamplesThenExitCodes) {
+  const auto [help, code] = printed({"bake", "--help"});
+  EXPECT_EQ(code, 0);
+  const std::size_t options = help.find("\nOptions:\n"), accuracy = help.find("\nAccuracy:\n  --quality"),
+                    note = help.find("\nA note that ends the page.\n"),
+                    examples = help.find("\nExamples:\n  tool bake a.gltf\n      bakes it\n"),
+                    codes = help.find("\nExit codes:\n  0  done\n  1  failed\n  2  wrong usage\n");
+  for (const std::size_t at : {options, accuracy, note, examples, codes})
+    EXPECT_NE(at, std::string::npos) << help;
+  EXPECT_TRUE(options < accuracy && accuracy < note && note < examples && examples < codes) << help;
+  EXPECT_TRUE(has(help, "--quality draft|high|N=draft")) << help;
+  EXPECT_TRUE(has(help, "How fine it is, which says it all.")) << "breaks of the source are none of the help";
+  EXPECT_TRUE(has(help, "-s,--seconds S")) << help;
+  EXPECT_TRUE(has(help, "Don't take [longer]; 0.5..60")) << help;
+  EXPECT_FALSE(has(help, "--former") || has(help, "--help-as")) << help;
+}
+
+TEST_F(CommandLine, LinesOfHelpFitATerminal) {
+  CLI::App* command = app_.add_subcommand("long", "Long");
+  std::string words;
+  for (int i = 0; i < 60; ++i) words += "words ";
+  command->add_flag("--long", force_, words);
+  finish(app_, "tool 1.2");
+  std::istringstream help(printed({"long", "--help"}).first);
+  int lines = 0;
+  for (std::string line; std::getline(help, line); ++lines) EXPECT_LE(line.size(), 100u) << line;
+  EXPECT_GT(lines, 6);
+}
+
+TEST_F(CommandLine, WrappedCountsLettersAndNotBytes) {
+  EXPECT_EQ(wrapped("order² is\nmore", 9), "order² is\nmore");
+  EXPECT_EQ(wrapped("  a   b ", 80), "a b");
+  EXPECT_EQ(wrapped("unbreakable word", 3), "unbreakable\nword");
+}
+
+TEST_F(CommandLine, ManualPageHasEveryOptionThatHelpHas) {
+  const auto [page, code] = printed({"bake", "--help-as", "man"});
+  EXPECT_EQ(code, 0) << page;
+  EXPECT_TRUE(page.starts_with(".\\\" Written by")) << page;
+  EXPECT_TRUE(has(page, ".SH NAME\ntool\\-bake \\- Bake a scene\n")) << page;
+  EXPECT_TRUE(has(page, "\\fBtool bake\\fR [\\fIOPTIONS\\fR] \\fISCENE\\fR")) << page;
+  EXPECT_TRUE(has(page, ".SH ARGUMENTS\n.TP\n\\fISCENE\\fR\nThe scene; .gltf\n")) << page;
+  EXPECT_TRUE(has(page, ".TP\n\\fB\\-s\\fR, \\fB\\-\\-seconds\\fR \\fIS\\fR\nDon't take")) << page;
+  EXPECT_TRUE(has(page, ".SS Accuracy\n.TP\n\\fB\\-\\-quality\\fR \\fIdraft|high|N\\fR\n")) << page;
+  EXPECT_TRUE(has(page, "(default: draft)")) << page;
+  EXPECT_TRUE(has(page, ".SH EXAMPLES\n.nf\n  tool bake a.gltf\n")) << page;
+  EXPECT_TRUE(has(page, ".SH EXIT CODES\n.nf\n  0  done\n")) << page;
+  EXPECT_FALSE(has(page, "former")) << page;
+  EXPECT_TRUE(has(printed({"--help-as", "man"}).first, ".TP\n\\fBtool\\-bake\\fR(1)\nBake a scene\n"));
+}
+
+TEST_F(CommandLine, ManualPageEscapesWhatRoffTakesForCommands) {
+  const CommandEntry table{.name = "tool",
+                           .program = "tool",
+                           .help = "Reads C:\\a",
+                           .footer = "",
+                           .options = {{.names = {"--a"}, .help = ".gltf or 'words'"}},
+                           .commands = {}};
+  const std::string page = manualPage(table, "tool 1.2");
+  EXPECT_TRUE(has(page, "\n\\&.gltf or 'words'\n")) << page;
+  EXPECT_TRUE(has(page, "C:\\ea")) << page;
+}
+
+TEST_F(CommandLine, CompletionsKnowCommandsOptionsAndWords) {
+  const std::string bash = printed({"--help-as", "bash"}).first;
+  EXPECT_TRUE(has(bash, "case $word in bake|info)")) << bash;
+  EXPECT_TRUE(has(bash, "\"bake --quality\") COMPREPLY=($(compgen -W \"draft high\"")) << bash;
+  EXPECT_TRUE(has(bash, "\"bake -s\"|\"bake --seconds\") COMPREPLY=($(compgen -f")) << bash;
+  EXPECT_TRUE(has(bash, "complete -o filenames -F _tool tool")) << bash;
+  const std::string zsh = printed({"--help-as", "zsh"}).first;
+  EXPECT_TRUE(zsh.starts_with("#compdef tool\n")) << zsh;
+  EXPECT_TRUE(has(zsh, "'*--quality[How fine it is, which says it all]:value:(draft high)'")) << zsh;
+  EXPECT_TRUE(has(zsh, "'*--seconds[Don'\\''t take \\[longer\\]]:value:_files'")) << zsh;
+  const std::string fish = printed({"--help-as", "fish"}).first;
+  EXPECT_TRUE(has(fish, "-n '__fish_seen_subcommand_from bake' -l quality -x -a 'draft high' -d")) << fish;
+  EXPECT_EQ(printed({"--help-as", "commands"}).first, "bake\ninfo\n");
+  EXPECT_EQ(printed({"--help-as", "runes"}).second != 0, true);
+}
+
+}  // namespace lambent::command_line
