@@ -27,6 +27,10 @@ constexpr std::uint32_t kUnused = 0xffffffffu;  // a sample of no triangle that 
 constexpr float kShortestEdge = 1.0f / 512.0f;
 // Light is never taken to be less than this share of that of an open point: what bounces brightens the dark.
 constexpr double kLeastLight = 0.07;
+// Errors at glossy points count by this factor. What few bands leave of a highlight hides them: a body of
+// gold has the same picture with a quarter of the samples (docs/decisions/vertices.md), and each costs a
+// matrix.
+constexpr double kGlossyCounts = 0.4;
 // A split triangle splits its edges of at least this share of the longest one.
 constexpr float kSplitShare = 0.6f;
 // A vertex stands before a surface that cuts its face by this share of the diagonal, which is a few steps of
@@ -256,6 +260,10 @@ Result<bool> GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& 
     const SampleKind kind = kinds[samples.vertex_sample[geometry.triangles[point.triangle].x]];
     const auto wrong = probe.difference(corners, truth, kind);
     error_at[i] = pointError(wrong, probe.arriving(truth, kind));
+    if (kind == SampleKind::Glossy) {
+      error_at[i].square *= kGlossyCounts * kGlossyCounts;
+      error_at[i].with_noise *= kGlossyCounts * kGlossyCounts;
+    }
     seen_at[i] = 1;
     if (for_wedges_)
       for (std::size_t half = 0; half < 2; ++half)

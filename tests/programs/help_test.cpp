@@ -53,7 +53,9 @@ TEST_F(Help, OfEveryCommandEndsWithExamplesAndExitCodesAndFits) {
     EXPECT_LT(examples, codes) << help;
     std::istringstream lines(help);
     for (std::string line; std::getline(lines, line);)
-      if (line.find("Usage: ") != 0) EXPECT_LE(line.size(), 102u) << line;  // bytes; a few letters have two
+      if (line.find("Usage: ") != 0) {
+        EXPECT_LE(line.size(), 102u) << line;  // bytes; a few letters have two
+      }
   }
 }
 
