@@ -46,7 +46,7 @@ Result<RgbImage> readLightImage(const std::filesystem::path& path);
 
 // Alpha is 1 if the file has none. Depths are the channel Z, if the file has it.
 Result<RgbaImage> readExr(const std::filesystem::path& path);
-// Writes depths, if there are any, as the channel Z.
+// Writes depths, if there are any, as the channel Z. Says in the file that colours are those of Rec. 709.
 Result<void> writeExr(const std::filesystem::path& path, const RgbaImage& image);
 
 Result<RgbImage> readHdr(const std::filesystem::path& path);
@@ -54,8 +54,9 @@ Result<RgbImage> readHdr(const std::filesystem::path& path);
 Result<void> writeHdr(const std::filesystem::path& path, const RgbImage& image);
 
 Result<Rgba8Image> readPng(const std::filesystem::path& path);
+// Says in the file that values are sRGB.
 Result<void> writePng(const std::filesystem::path& path, const Rgba8Image& image);
-// Returns the bytes of the PNG, for embedding.
+// Returns the bytes of the PNG, for embedding in scenes, where its use says what values are.
 std::vector<std::uint8_t> encodePng(const Rgba8Image& image);
 
 }  // namespace lambent::spec

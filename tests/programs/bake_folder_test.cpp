@@ -64,7 +64,7 @@ TEST_F(LambentFolder, BakesBesideTheScenesAndTakesBundlesForNoScenes) {
 TEST_F(LambentFolder, GoesOnAfterAFailureAndFails) {
   writeBytes(folder / "scenes/0.glb", "no scene");
   std::filesystem::copy(kHello, folder / "scenes/a.gltf");  // another scene for a.lmb.glb
-  const Outcome outcome = bakeAll();
+  const Outcome outcome = bakeAll({"--progress", "off"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_EQ(lineCount(outcome.err), 2u) << outcome.err;
   EXPECT_TRUE(outcome.err.starts_with("lambent: " + path("scenes/0.glb") + ": ")) << outcome.err;
