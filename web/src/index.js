@@ -1,0 +1,3 @@
+export { LambentPlugin } from './plugin.js';
+export { LambentScene } from './scene.js';
+export { LightVector, MAX_ORDER } from './light_vector.js';
