@@ -1,0 +1,71 @@
+// Shows bundles in Chromium and holds them against lambent-demo under the same camera and light. The environment says
+// what there is: LAMBENT_BIN is the folder of lambent-demo, LAMBENT_TEST_BUNDLES bundles with commas between them,
+// LAMBENT_TEST_WORK a folder for pictures, CHROMIUM the browser (/usr/bin/chromium).
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdirSync } from 'node:fs';
+import { basename, dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import test from 'node:test';
+import { serve } from './server.js';
+
+const web = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
+const { LAMBENT_BIN: bin, LAMBENT_TEST_BUNDLES: list, LAMBENT_TEST_WORK: work } = process.env;
+const chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const skip = !bin || !list || !work ? 'LAMBENT_BIN, LAMBENT_TEST_BUNDLES or LAMBENT_TEST_WORK is not set'
+  : existsSync(chromium) ? false : `there is no ${chromium}`;
+
+const SIZE = [320, 180];
+const CAMERA = 'orbit:30,30,2.2,40';
+const LIGHTS = {
+  constant: ['constant:1,0.9,0.8'],
+  // A wide sun and a sky have few bands, so lambent-demo needs no key lights for them.
+  soft: ['constant:0.3,0.35,0.5', 'sun:60,35,60,2,1.8,1.5'],
+};
+const BOUND = 0.005;
+
+function picture(bundle, name, transfer) {
+  mkdirSync(work, { recursive: true });
+  const path = join(work, `${basename(bundle, '.lmb.glb')}-${name}-${transfer}.exr`);
+  execFileSync(join(bin, 'lambent-demo'), [
+    bundle, '--camera', CAMERA, '--size', SIZE.join('x'), '--keys', 'off', '--transfer', transfer,
+    ...LIGHTS[name].flatMap((light) => ['--light', light]), '--headless', path,
+  ]);
+  return path;
+}
+
+test('pictures are those of lambent-demo', { skip, timeout: 600000 }, async (t) => {
+  const { default: puppeteer } = await import('puppeteer-core');
+  const browser = await puppeteer.launch({
+    executablePath: chromium,
+    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+    protocolTimeout: 600000,
+  });
+  t.after(() => browser.close());
+  for (const bundle of list.split(',')) {
+    const { server, address } = await serve({ '/web/': web, '/work/': work, '/bundle/': dirname(resolve(bundle)) });
+    t.after(() => server.close());
+    const page = await browser.newPage(), messages = [];
+    page.on('console', (m) => ['error', 'warn'].includes(m.type()) && messages.push(m.text()));
+    page.on('pageerror', (error) => messages.push(String(error)));
+    await page.setViewport({ width: SIZE[0], height: SIZE[1] });
+    await page.goto(`${address}/web/test/browser/page.html`);
+    await page.waitForFunction('window.lambentTest?.ready');
+    for (const [name, transfer] of [['constant', 'full'], ['soft', 'full'], ['soft', 'shadowed'], ['soft', 'unshadowed']]) {
+      const exr = picture(bundle, name, transfer);
+      const result = await page.evaluate((options) => window.lambentTest.render(options), {
+        bundle: `/bundle/${basename(bundle)}`, lights: LIGHTS[name], camera: CAMERA, size: SIZE, transfer,
+        picture: `/work/${basename(exr)}`,
+      });
+      await page.screenshot({ path: exr.replace('.exr', '.png') });
+      const percent = (x) => `${(100 * x).toFixed(3)} %`;
+      t.diagnostic(`${basename(exr)}: ${percent(result.inside)} inside, ${percent(result.all)} with edges, ` +
+        `${result.edges} of ${result.pixels} pixels at edges, light in ${result.update_ms.toFixed(0)} ms`);
+      assert.ok(result.inside < BOUND, `${basename(exr)} differs by ${percent(result.inside)}`);
+      const { before, after } = result.memory;
+      assert.ok(before.geometries > 0 && after.geometries === 0 && after.textures === 0, 'memory is freed on dispose');
+    }
+    assert.deepEqual(messages, [], 'the console has neither errors nor warnings');
+    await page.close();
+  }
+});

@@ -1,0 +1,145 @@
+// Renders a bundle to linear floats and holds them against a picture of lambent-demo.
+import * as THREE from 'three';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { DRACOLoader } from 'three/addons/loaders/DRACOLoader.js';
+import { EXRLoader } from 'three/addons/loaders/EXRLoader.js';
+import { HDRLoader } from 'three/addons/loaders/HDRLoader.js';
+import * as lambent from 'lambent-three';
+
+const DEGREE = Math.PI / 180;
+const renderer = new THREE.WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
+document.body.append(renderer.domElement);
+
+export const toward = (azimuth, elevation) => new THREE.Vector3(
+  Math.sin(azimuth * DEGREE) * Math.cos(elevation * DEGREE), Math.sin(elevation * DEGREE),
+  Math.cos(azimuth * DEGREE) * Math.cos(elevation * DEGREE));
+
+function loader(options) {
+  const draco = new DRACOLoader().setDecoderPath('/web/node_modules/three/examples/jsm/libs/draco/gltf/');
+  return new GLTFLoader().setDRACOLoader(draco).register((parser) => new lambent.LambentPlugin(parser, options));
+}
+
+// Makes a light from words of lambent-demo: constant:R,G,B, sun:AZ,EL,ANGLE,R,G,B or an environment map.
+async function lightOf(word) {
+  const [kind, rest] = word.split(':');
+  const n = rest?.split(',').map(Number);
+  if (kind === 'constant') return lambent.LightVector.constant(n[0], n[1], n[2]);
+  if (kind === 'sun')
+    return lambent.LightVector.disc(
+      toward(n[0], n[1]), n[2] * DEGREE, { r: n[3], g: n[4] ?? n[3], b: n[5] ?? n[3] });
+  const texture = await new HDRLoader().setDataType(THREE.FloatType).loadAsync(word);
+  return lambent.LightVector.fromEquirect(texture);
+}
+
+function orbitCamera(bundle, words, aspect) {
+  const [azimuth, elevation, distance, fov] = words.split(':')[1].split(',').map(Number);
+  const box = new THREE.Box3(), corner = new THREE.Vector3();
+  for (const group of bundle.groups) {
+    const frame = new THREE.Matrix4().compose(
+      new THREE.Vector3(...group.restTranslation), new THREE.Quaternion(...group.restRotation), new THREE.Vector3(1, 1, 1));
+    for (let i = 0; i < 8; ++i) {
+      const pick = (axis) => (i & (1 << axis) ? group.boundsMax : group.boundsMin)[axis];
+      box.expandByPoint(corner.set(pick(0), pick(1), pick(2)).applyMatrix4(frame));
+    }
+  }
+  const centre = box.getCenter(new THREE.Vector3()), radius = 0.5 * box.getSize(new THREE.Vector3()).length();
+  const camera = new THREE.PerspectiveCamera(fov, aspect, radius * 0.01, radius * 20);
+  camera.position.copy(centre).addScaledVector(toward(azimuth, elevation), distance * radius);
+  camera.up.copy(toward(azimuth, elevation + 90));
+  camera.lookAt(centre);
+  return camera;
+}
+
+// Textures are read as one ray through the middle of the pixel sees them, as in linear pictures of lambent-demo.
+function finestTexels(root) {
+  root.traverse((object) => {
+    for (const value of Object.values(object.material ?? {}))
+      if (value?.isTexture) {
+        value.minFilter = THREE.LinearFilter;
+        value.generateMipmaps = false;
+        value.needsUpdate = true;
+      }
+  });
+}
+
+function readFloats(scene, camera, width, height) {
+  const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.FloatType });
+  renderer.setRenderTarget(target);
+  renderer.setClearColor(0x000000, 0);
+  renderer.clear();
+  renderer.render(scene, camera);
+  const pixels = new Float32Array(4 * width * height);
+  renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
+  renderer.setRenderTarget(null);
+  target.dispose();
+  return pixels;
+}
+
+// Returns relative RMS over pixels that show a surface, and the same without pixels at edges of what is seen: two
+// rasterizers may differ there by a pixel. An edge is where neighbouring pixels differ by more than a half.
+function compare(ours, theirs, width, height) {
+  const sums = { all: [0, 0], inside: [0, 0] };
+  let count = 0, edges = 0;
+  const luminance = (pixels, p) => pixels[4 * p] + pixels[4 * p + 1] + pixels[4 * p + 2];
+  for (let y = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x) {
+      const p = y * width + x;
+      if (ours[4 * p + 3] === 0) continue;
+      ++count;
+      let edge = false;
+      for (const [dx, dy] of [[-1, 0], [1, 0], [0, -1], [0, 1]]) {
+        const nx = x + dx, ny = y + dy;
+        if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
+        const q = ny * width + nx;
+        if (ours[4 * q + 3] === 0) edge = true;
+        for (const pixels of [ours, theirs]) {
+          const a = luminance(pixels, p), b = luminance(pixels, q);
+          if (Math.abs(a - b) > 0.3 * Math.max(a, b)) edge = true;
+        }
+      }
+      if (edge) ++edges;
+      for (let c = 0; c < 3; ++c) {
+        const difference = (ours[4 * p + c] - theirs[4 * p + c]) ** 2, square = theirs[4 * p + c] ** 2;
+        sums.all[0] += difference;
+        sums.all[1] += square;
+        if (edge) continue;
+        sums.inside[0] += difference;
+        sums.inside[1] += square;
+      }
+    }
+  const rms = ([difference, square]) => Math.sqrt(difference / square);
+  return { all: rms(sums.all), inside: rms(sums.inside), pixels: count, edges };
+}
+
+async function render({ bundle, lights, camera: words, size, transfer = 'full', picture }) {
+  const [width, height] = size;
+  const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
+  if (!baked) throw new Error('the bundle was shown as plain glTF');
+  scene.add(gltf.scene);
+  baked.light = (await Promise.all(lights.map(lightOf))).reduce((a, b) => a.add(b));
+  baked.transfer = transfer;
+  finestTexels(gltf.scene);
+  scene.updateMatrixWorld();
+  const start = performance.now();
+  baked.update();
+  const update_ms = performance.now() - start;
+  const camera = orbitCamera(baked.bundle, words, width / height);
+  const pixels = readFloats(scene, camera, width, height);
+  renderer.setSize(width, height);
+  renderer.render(scene, camera); // for the eye
+  const result = { update_ms };
+  if (picture) {
+    const theirs = await new EXRLoader().setDataType(THREE.FloatType).loadAsync(picture);
+    Object.assign(result, compare(pixels, theirs.image.data, width, height));
+  }
+  const before = { ...renderer.info.memory };
+  scene.remove(gltf.scene);
+  baked.dispose();
+  gltf.scene.traverse((object) => {
+    for (const value of Object.values(object.material ?? {})) if (value?.isTexture) value.dispose();
+  });
+  result.memory = { before, after: { ...renderer.info.memory } };
+  return result;
+}
+
+window.lambentTest = { render, ready: true };
