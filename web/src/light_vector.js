@@ -1,5 +1,9 @@
-import { Matrix3, Matrix4, Euler, DataUtils, HalfFloatType } from 'three';
-import { MAX_ORDER, evaluateBasis, discZonal, projectEquirect, rotateCoefficients } from './sh.js';
+import {
+  CubeCamera, DataUtils, Euler, FloatType, HalfFloatType, Matrix3, Matrix4, WebGLCubeRenderTarget,
+} from 'three';
+import {
+  MAX_ORDER, discZonal, evaluateBasis, projectCube, projectEquirect, rotateCoefficients,
+} from './sh.js';
 
 const toMatrix3 = (turn) => {
   if (turn.isMatrix3) return turn;
@@ -9,6 +13,22 @@ const toMatrix3 = (turn) => {
   else matrix.makeRotationFromQuaternion(turn);
   return new Matrix3().setFromMatrix4(matrix);
 };
+
+/** Returns the size of an equirectangular texture, and its radiance at a column and a row from the top. */
+export function equirectTexels(texture) {
+  const { data, width, height } = texture.image ?? {};
+  if (!data) throw new Error('light needs a texture with pixels, as HDRLoader makes it');
+  const channels = data.length / (width * height);
+  let value = (at) => data[at];
+  if (texture.type === HalfFloatType) value = (at) => DataUtils.fromHalfFloat(data[at]);
+  else if (!(data instanceof Float32Array)) value = (at) => data[at] / 255;
+  // The first row of the data is the bottom of the picture, unless the upload turns it over.
+  const texel = (column, row) => {
+    const at = ((texture.flipY ? row : height - 1 - row) * width + column) * channels;
+    return [value(at), value(at + 1), value(at + 2)];
+  };
+  return { width, height, texel };
+}
 
 /** Light from infinity: the radiance L(s) = Σ l_i y_i(s) that arrives from direction s, as n² x RGB coefficients. */
 export class LightVector {
@@ -39,23 +59,29 @@ export class LightVector {
 
   /**
    * Projects an equirectangular texture whose pixels are at hand, as HDRLoader and EXRLoader make it: half floats,
-   * floats or bytes, RGB or RGBA, the first row at the bottom where `flipY` is set. three.js looks up direction s at
-   * u = atan2(s.z, s.x) / 2π + 0.5, which is the layout of docs/conventions.md.
+   * floats or bytes (taken as linear), RGB or RGBA. three.js looks up direction s at u = atan2(s.z, s.x) / 2π + 0.5,
+   * which is the layout of docs/conventions.md.
    */
   static fromEquirect(texture, order = 5) {
-    const { data, width, height } = texture.image ?? {};
-    if (!data) throw new Error('LightVector.fromEquirect needs a texture with pixels, as HDRLoader makes it');
-    const channels = data.length / (width * height);
-    const value = texture.type === HalfFloatType
-      ? (at) => DataUtils.fromHalfFloat(data[at])
-      : data instanceof Float32Array ? (at) => data[at] : (at) => data[at] / 255;
-    // Row 0 of the data has v = 0, which is the bottom of the picture, unless the upload turns it over.
-    const fromTop = (row) => (texture.flipY ? row : height - 1 - row);
-    const rgb = projectEquirect(order, width, height, (x, y) => {
-      const at = (fromTop(y) * width + x) * channels;
-      return [value(at), value(at + 1), value(at + 2)];
+    const { width, height, texel } = equirectTexels(texture);
+    return new LightVector(order, projectEquirect(order, width, height, texel));
+  }
+
+  /**
+   * Renders what stands around a point of a scene, its background included, and projects it. Baked scenes should be
+   * hidden meanwhile, as light is what comes from outside of them.
+   */
+  static fromScene(renderer, scene, position, order = 5, size = 32) {
+    const target = new WebGLCubeRenderTarget(size, { type: FloatType }), camera = new CubeCamera(0.1, 1000, target);
+    if (position) camera.position.copy(position);
+    camera.update(renderer, scene);
+    const faces = [0, 1, 2, 3, 4, 5].map((face) => {
+      const pixels = new Float32Array(4 * size * size);
+      renderer.readRenderTargetPixels(target, 0, 0, size, size, pixels, face);
+      return pixels;
     });
-    return new LightVector(order, rgb);
+    target.dispose();
+    return new LightVector(order, projectCube(order, size, faces));
   }
 
   clone() {

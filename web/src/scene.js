@@ -31,6 +31,7 @@ export class LambentScene {
     this._order = 8;
     this._changed = true;
     this._turns = this.groups.map(() => null);
+    this.disposed = false;
   }
 
   /** Light from infinity in the world, without key lights. */
@@ -151,7 +152,9 @@ export class LambentScene {
     this._openChanged = false;
   }
 
+  /** Frees what surfaces have on the GPU, and shades no more. */
   dispose() {
+    this.disposed = true;
     for (const surface of this.surfaces) surface.dispose();
     this.surfaces = [];
     this.groups = [];

@@ -131,6 +131,28 @@ export function projectEquirect(order, width, height, texel) {
   return out;
 }
 
+// Directions of the faces of a cube map in OpenGL's order, of texture coordinates s and t from -1 to 1.
+const CUBE_FACES = [
+  (s, t) => [1, -t, -s], (s, t) => [-1, -t, s], (s, t) => [s, 1, t], (s, t) => [s, -1, -t], (s, t) => [s, -t, 1],
+  (s, t) => [-s, -t, -1],
+];
+
+/** Projects a cube map of light: six arrays of RGBA floats. */
+export function projectCube(order, size, faces) {
+  const out = new Float64Array(3 * order * order), basis = new Float64Array(order * order);
+  faces.forEach((pixels, face) => {
+    for (let i = 0; i < size * size; ++i) {
+      const s = (2 * ((i % size) + 0.5)) / size - 1, t = (2 * (Math.floor(i / size) + 0.5)) / size - 1;
+      const [x, y, z] = CUBE_FACES[face](s, t), length = Math.hypot(x, y, z);
+      evaluateBasis(order, x / length, y / length, z / length, basis);
+      const solidAngle = 4 / (size * size * length ** 3);
+      for (let k = 0; k < basis.length; ++k)
+        for (let c = 0; c < 3; ++c) out[3 * k + c] += basis[k] * solidAngle * pixels[4 * i + c];
+    }
+  });
+  return out;
+}
+
 function legendre(l, t) {
   let before = 1, value = t;
   if (l <= 0) return before;

@@ -3,17 +3,10 @@
 // LAMBENT_TEST_WORK a folder for pictures, CHROMIUM the browser (/usr/bin/chromium).
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdirSync } from 'node:fs';
+import { mkdirSync } from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
-import { fileURLToPath } from 'node:url';
 import test from 'node:test';
-import { serve } from './server.js';
-
-const web = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
-const { LAMBENT_BIN: bin, LAMBENT_TEST_BUNDLES: list, LAMBENT_TEST_WORK: work } = process.env;
-const chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
-const skip = !bin || !list || !work ? 'LAMBENT_BIN, LAMBENT_TEST_BUNDLES or LAMBENT_TEST_WORK is not set'
-  : existsSync(chromium) ? false : `there is no ${chromium}`;
+import { bin, launch, list, open, skip, work } from './browser.js';
 
 const SIZE = [320, 180];
 const CAMERA = 'orbit:30,30,2.2,40';
@@ -35,21 +28,9 @@ function picture(bundle, name, transfer) {
 }
 
 test('pictures are those of lambent-demo', { skip, timeout: 600000 }, async (t) => {
-  const { default: puppeteer } = await import('puppeteer-core');
-  const browser = await puppeteer.launch({
-    executablePath: chromium,
-    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
-    protocolTimeout: 600000,
-  });
-  t.after(() => browser.close());
+  const browser = await launch(t);
   for (const bundle of list.split(',')) {
-    const { server, address } = await serve({ '/web/': web, '/work/': work, '/bundle/': dirname(resolve(bundle)) });
-    t.after(() => server.close());
-    const page = await browser.newPage(), messages = [];
-    page.on('console', (m) => ['error', 'warn'].includes(m.type()) && messages.push(m.text()));
-    page.on('pageerror', (error) => messages.push(String(error)));
-    await page.setViewport({ width: SIZE[0], height: 2 * SIZE[1] });
-    await page.goto(`${address}/web/test/browser/page.html`);
+    const { page, messages } = await open(t, browser, { '/work/': work, '/bundle/': dirname(resolve(bundle)) });
     await page.waitForFunction('window.lambentTest?.ready');
     for (const [name, transfer] of [['constant', 'full'], ['soft', 'full'], ['soft', 'shadowed'], ['soft', 'unshadowed']]) {
       const exr = picture(bundle, name, transfer);

@@ -162,4 +162,71 @@ async function render({ bundle, lights, camera: words, size, transfer = 'full', 
   return result;
 }
 
-window.lambentTest = { render, ready: true };
+// Projects an environment map twice: its pixels, and a scene with it as its background.
+async function projections(map) {
+  const texture = await new HDRLoader().setDataType(THREE.FloatType).loadAsync(map), scene = new THREE.Scene();
+  texture.mapping = THREE.EquirectangularReflectionMapping;
+  scene.background = texture;
+  const pixels = lambent.LightVector.fromEquirect(texture), drawn = lambent.LightVector.fromScene(renderer, scene, null, 5, 128);
+  texture.dispose();
+  let error = 0, sum = 0;
+  pixels.rgb.forEach((value, i) => {
+    error += (value - drawn.rgb[i]) ** 2;
+    sum += value * value;
+  });
+  return Math.sqrt(error / sum);
+}
+
+// Loads a bundle by ranges and tells what came when.
+async function progressive(bundle, camera, size) {
+  const draco = new DRACOLoader().setDecoderPath('/web/node_modules/three/examples/jsm/libs/draco/gltf/');
+  const steps = [], gltf = await lambent.loadProgressively(
+    new GLTFLoader().setDRACOLoader(draco), bundle, { onPlane: (done, all) => steps.push([done, all]) });
+  const baked = gltf.userData.lambent, scene = new THREE.Scene();
+  scene.add(gltf.scene);
+  const view = orbitCamera(baked.bundle, camera, size[0] / size[1]);
+  const shot = () => {
+    scene.updateMatrixWorld();
+    baked.update();
+    return readFloats(scene, view, ...size);
+  };
+  const early = shot();
+  await gltf.userData.planesLoaded;
+  const late = shot(), whole = await loader().loadAsync(bundle);
+  scene.clear().add(whole.scene);
+  whole.userData.lambent.update();
+  scene.updateMatrixWorld();
+  const reference = readFloats(scene, view, ...size);
+  baked.dispose();
+  whole.userData.lambent.dispose();
+  return { steps, early: compare(early, reference, ...size).all, late: compare(late, reference, ...size).all };
+}
+
+// Shows a bundle under an environment map whose suns shine by shadow maps, or else by bands alone.
+async function sunny({ bundle, map, camera, size, keys, picture }) {
+  const texture = await new HDRLoader().setDataType(THREE.FloatType).loadAsync(map), scene = new THREE.Scene();
+  const gltf = await loader().loadAsync(bundle), baked = gltf.userData.lambent;
+  scene.add(gltf.scene);
+  const { rest, key, suns } = lambent.splitKeyLights(texture);
+  baked.light = keys ? rest : rest.add(key);
+  let lights = null;
+  if (keys) {
+    baked.keyLight = key;
+    lights = new lambent.KeyLights(suns).fit(new THREE.Box3().setFromObject(gltf.scene), gltf.scene);
+    scene.add(lights);
+    renderer.shadowMap.enabled = true;
+  }
+  finestTexels(gltf.scene);
+  scene.updateMatrixWorld();
+  baked.update();
+  const view = orbitCamera(baked.bundle, camera, size[0] / size[1]), pixels = readFloats(scene, view, ...size);
+  renderer.setSize(...size);
+  renderer.render(scene, view);
+  const theirs = await new EXRLoader().setDataType(THREE.FloatType).loadAsync(picture);
+  showDifference(pixels, theirs.image.data, ...size);
+  lights?.dispose();
+  baked.dispose();
+  return { suns: suns.length, ...compare(pixels, theirs.image.data, ...size) };
+}
+
+window.lambentTest = { render, projections, progressive, sunny, ready: true };
