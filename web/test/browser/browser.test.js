@@ -22,6 +22,7 @@ function picture(bundle, name, transfer) {
   const path = join(work, `${basename(bundle, '.lmb.glb')}-${name}-${transfer}.exr`);
   execFileSync(join(bin, 'lambent-demo'), [
     bundle, '--camera', CAMERA, '--size', SIZE.join('x'), '--keys', 'off', '--transfer', transfer,
+    '--local-shadows', 'off', '--patch-bounces', 'off', // lamps shine by their columns
     ...LIGHTS[name].flatMap((light) => ['--light', light]), '--headless', path,
   ]);
   return path;
