@@ -23,6 +23,7 @@ function picture(bundle, name, transfer) {
   execFileSync(join(bin, 'lambent-demo'), [
     bundle, '--camera', CAMERA, '--size', SIZE.join('x'), '--keys', 'off', '--transfer', transfer,
     '--local-shadows', 'off', '--patch-bounces', 'off', // lamps shine by their columns
+    '--captures', 'off', '--neighborhoods', 'off', // bodies do not see each other
     ...LIGHTS[name].flatMap((light) => ['--light', light]), '--headless', path,
   ]);
   return path;

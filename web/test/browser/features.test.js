@@ -40,4 +40,8 @@ test('features', { skip: skip || (map ? false : 'LAMBENT_TEST_MAP is not set'), 
   }
   assert.ok(errors.true < errors.false, 'shadow maps are nearer to it than bands');
   assert.deepEqual(messages, []);
+
+  assert.ok(await page.evaluate((url) => window.lambentTest.newerFormat(url), bundle) > 0, 'it is shown as plain glTF');
+  assert.equal(messages.length, 1, 'with one warning');
+  assert.match(messages[0], /format 9/);
 });

@@ -132,7 +132,7 @@ function showDifference(ours, theirs, width, height) {
   context.putImageData(image, 0, 0);
 }
 
-async function render({ bundle, lights, camera: words, size, transfer = 'full', picture }) {
+async function render({ bundle, lights, camera: words, size, transfer = 'full', picture, time }) {
   const [width, height] = size;
   const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
   if (!baked) throw new Error('the bundle was shown as plain glTF');
@@ -140,6 +140,11 @@ async function render({ bundle, lights, camera: words, size, transfer = 'full', 
   baked.light = (await Promise.all(lights.map(lightOf))).reduce((a, b) => a.add(b));
   baked.transfer = transfer;
   finestTexels(gltf.scene);
+  if (time !== undefined) {
+    const mixer = new THREE.AnimationMixer(gltf.scene);
+    for (const clip of gltf.animations) mixer.clipAction(clip).play();
+    mixer.setTime(time);
+  }
   scene.updateMatrixWorld();
   const start = performance.now();
   baked.update();
@@ -204,6 +209,20 @@ async function progressive(bundle, camera, size) {
   return { steps, early: compare(early, reference, ...size).all, late: compare(late, reference, ...size).all };
 }
 
+// Loads a bundle twice that says it is of a newer format. Returns whether it was shown as plain glTF.
+async function newerFormat(bundle) {
+  const bytes = new Uint8Array(await (await fetch(bundle)).arrayBuffer());
+  const length = new DataView(bytes.buffer).getUint32(12, true), json = bytes.subarray(20, 20 + length);
+  const text = new TextDecoder().decode(json), at = text.search(/"version":\d[,}]/) + '"version":'.length;
+  json[at] = '9'.charCodeAt(0);
+  let plain = 0;
+  for (let i = 0; i < 2; ++i) {
+    const gltf = await loader().parseAsync(bytes.slice().buffer, '');
+    gltf.scene.traverse((object) => (plain += object.isMesh && !gltf.userData.lambent ? 1 : 0));
+  }
+  return plain;
+}
+
 // Shows a bundle under an environment map whose suns shine by shadow maps, or else by bands alone.
 async function sunny({ bundle, map, camera, size, keys, picture }) {
   const texture = await new HDRLoader().setDataType(THREE.FloatType).loadAsync(map), scene = new THREE.Scene();
@@ -231,4 +250,4 @@ async function sunny({ bundle, map, camera, size, keys, picture }) {
   return { suns: suns.length, ...compare(pixels, theirs.image.data, ...size) };
 }
 
-window.lambentTest = { render, projections, progressive, sunny, ready: true };
+window.lambentTest = { render, projections, progressive, sunny, newerFormat, ready: true };
