@@ -31,9 +31,10 @@ function show(gltf) {
   scene.add(gltf.scene);
   scene.updateMatrixWorld();
   const sphere = new THREE.Box3().setFromObject(gltf.scene).getBoundingSphere(new THREE.Sphere());
+  const narrow = Math.min(1, innerWidth / innerHeight); // a phone held upright needs more distance
   camera.near = sphere.radius * 0.01;
   camera.far = sphere.radius * 30;
-  camera.position.copy(sphere.center).addScaledVector(new THREE.Vector3(0.4, 0.45, 0.8), 2.6 * sphere.radius);
+  camera.position.copy(sphere.center).addScaledVector(new THREE.Vector3(0.4, 0.45, 0.8), (2.6 * sphere.radius) / narrow);
   controls.target.copy(sphere.center);
   gltf.mixer = new THREE.AnimationMixer(gltf.scene);
   for (const clip of gltf.animations) gltf.mixer.clipAction(clip).play();

@@ -77,44 +77,50 @@ function readFloats(scene, camera, width, height) {
   return pixels;
 }
 
-// Returns relative RMS over pixels that show a surface, and the same without pixels at edges of what is seen: two
-// rasterizers may differ there by a pixel. An edge is where neighbouring pixels differ by more than 10 %.
+// Averages squares of pixels, so that two rasterizers, which differ by a pixel at edges, give pictures that may be
+// compared. What we show no surface at counts as black in both.
+function averaged(pixels, mask, width, height, factor) {
+  const out = new Float32Array((4 * width * height) / factor ** 2), across = width / factor;
+  for (let y = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x) {
+      const from = 4 * (y * width + x), to = 4 * (Math.floor(y / factor) * across + Math.floor(x / factor));
+      if (mask[from + 3] === 0) continue;
+      for (let c = 0; c < 3; ++c) out[to + c] += pixels[from + c] / factor ** 2;
+      out[to + 3] += 1 / factor ** 2;
+    }
+  return out;
+}
+
+// Returns relative RMS over all pixels that show a surface, the same without pixels beside edges, where luminance
+// steps by more than 10 %, and the median of the relative difference.
 function compare(ours, theirs, width, height) {
-  const sums = { all: [0, 0], inside: [0, 0] };
-  let count = 0, edges = 0;
-  const relative = [];
+  const sums = { all: [0, 0], inside: [0, 0] }, relative = [];
   const luminance = (pixels, p) => pixels[4 * p] + pixels[4 * p + 1] + pixels[4 * p + 2];
   for (let y = 0; y < height; ++y)
     for (let x = 0; x < width; ++x) {
       const p = y * width + x;
       if (ours[4 * p + 3] === 0) continue;
-      ++count;
       let edge = false;
       for (let k = 0; k < 9; ++k) {
         const nx = x + (k % 3) - 1, ny = y + Math.floor(k / 3) - 1;
         if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
-        const q = ny * width + nx;
-        if (ours[4 * q + 3] === 0) edge = true;
         for (const pixels of [ours, theirs]) {
-          const a = luminance(pixels, p), b = luminance(pixels, q);
+          const a = luminance(pixels, p), b = luminance(pixels, ny * width + nx);
           if (Math.abs(a - b) > 0.1 * Math.max(a, b)) edge = true;
         }
       }
-      if (edge) ++edges;
       for (let c = 0; c < 3; ++c) {
         const difference = (ours[4 * p + c] - theirs[4 * p + c]) ** 2, square = theirs[4 * p + c] ** 2;
-        sums.all[0] += difference;
-        sums.all[1] += square;
-        if (edge) continue;
-        sums.inside[0] += difference;
-        relative.push(Math.sqrt(difference) / Math.abs(theirs[4 * p + c]));
-        sums.inside[1] += square;
+        for (const sum of edge ? [sums.all] : [sums.all, sums.inside]) {
+          sum[0] += difference;
+          sum[1] += square;
+        }
+        relative.push(Math.sqrt(difference / square));
       }
     }
   const rms = ([difference, square]) => Math.sqrt(difference / square);
   relative.sort((a, b) => a - b);
-  const median = relative[relative.length >> 1];
-  return { all: rms(sums.all), inside: rms(sums.inside), median, pixels: count, edges };
+  return { all: rms(sums.all), inside: rms(sums.inside), median: relative[relative.length >> 1] };
 }
 
 // Shows ten times the difference below the picture, for the eye.
@@ -132,7 +138,7 @@ function showDifference(ours, theirs, width, height) {
   context.putImageData(image, 0, 0);
 }
 
-async function render({ bundle, lights, camera: words, size, transfer = 'full', picture, time }) {
+async function render({ bundle, lights, camera: words, size, transfer = 'full', picture, time, factor = 1 }) {
   const [width, height] = size;
   const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
   if (!baked) throw new Error('the bundle was shown as plain glTF');
@@ -150,14 +156,16 @@ async function render({ bundle, lights, camera: words, size, transfer = 'full', 
   baked.update();
   const update_ms = performance.now() - start;
   const camera = orbitCamera(baked.bundle, words, width / height);
-  const pixels = readFloats(scene, camera, width, height);
+  const pixels = readFloats(scene, camera, factor * width, factor * height);
   renderer.setSize(width, height);
   renderer.render(scene, camera); // for the eye
   const result = { update_ms };
   if (picture) {
     const theirs = await new EXRLoader().setDataType(THREE.FloatType).loadAsync(picture);
-    Object.assign(result, compare(pixels, theirs.image.data, width, height));
-    showDifference(pixels, theirs.image.data, width, height);
+    const average = (picture) => averaged(picture, pixels, factor * width, factor * height, factor);
+    const [a, b] = [average(pixels), average(theirs.image.data)];
+    Object.assign(result, compare(a, b, width, height));
+    showDifference(a, b, width, height);
   }
   const before = { ...renderer.info.memory };
   scene.remove(gltf.scene);
