@@ -1,0 +1,99 @@
+// The plugin of three's GLTFLoader. Register it, load a bundle, and find a LambentScene in gltf.userData.lambent.
+import { Matrix4, Mesh } from 'three';
+import { Bundle, EXTENSION } from './bundle.js';
+import { LambentScene, newGroupMatrices } from './scene.js';
+
+const warned = new Set();
+
+function warnOnce(message) {
+  if (warned.has(message)) return;
+  warned.add(message);
+  console.warn(`lambent-three: ${message}; the scene is shown as plain glTF`);
+}
+
+export class LambentPlugin {
+  /** With `planes: false` the weight planes are left to the caller, as loadProgressively does. */
+  constructor(parser, { planes = true } = {}) {
+    this.name = EXTENSION;
+    this.parser = parser;
+    this.loadsPlanes = planes;
+  }
+
+  async afterRoot(gltf) {
+    const { parser } = this;
+    if (!parser.json.extensions?.[EXTENSION]) return;
+    try {
+      const viewBytes = async (index) => new Uint8Array(await parser.getDependency('bufferView', index));
+      const bundle = new Bundle(parser.json, viewBytes);
+      const scene = await LambentScene.create(bundle, gltf.scene);
+      if (this.loadsPlanes) await scene.loadPlanes();
+      attach(scene, gltf, parser);
+      gltf.userData.lambent = scene;
+    } catch (error) {
+      warnOnce(error.message);
+    }
+  }
+}
+
+// Finds three's objects for nodes and primitives and gives every draw a mesh of its own.
+function attach(scene, gltf, parser) {
+  gltf.scene.updateWorldMatrix(true, true);
+  const nodes = [], meshes = new Map();
+  gltf.scene.traverse((object) => {
+    const place = parser.associations.get(object);
+    if (place?.nodes !== undefined) nodes[place.nodes] = object;
+    if (!object.isMesh || place?.meshes === undefined) return;
+    let owner = object;
+    while (owner && parser.associations.get(owner)?.nodes === undefined) owner = owner.parent;
+    if (!owner) return;
+    meshes.set(`${parser.associations.get(owner).nodes}/${place.primitives ?? 0}`, object);
+    const primitive = parser.json.meshes[place.meshes].primitives[place.primitives ?? 0];
+    if (primitive.material === undefined) object.userData.lambentDefaultMaterial = true;
+  });
+  scene.nodes = nodes;
+  scene.groupFromWorld = newGroupMatrices(scene.groups);
+  scene.restInverses = nodes.map((node) => node.matrixWorld.clone().invert());
+
+  const groupFromWorld = scene.groups.map((_, g) => scene.worldFromGroup(g).invert());
+  const parts = scene.surfaces.filter((surface) => {
+    const { draw } = surface, mesh = meshes.get(`${draw.node}/${draw.primitive}`);
+    if (!mesh || mesh.material.isMeshBasicMaterial) return false;
+    if (mesh.geometry.getAttribute('position').count !== surface.vertexCount)
+      throw new Error(`mesh ${draw.node} was decoded to another number of vertices than transfer was baked for`);
+    const groupFromMesh = new Matrix4().multiplyMatrices(groupFromWorld[draw.group], mesh.matrixWorld);
+    surface.attach(mesh, groupFromMesh, scene.groupFromWorld[draw.group]);
+    surface.mesh = mesh;
+    return true;
+  });
+  scene.surfaces = parts;
+  const replaced = new Set();
+  for (const surface of parts) {
+    const { mesh } = surface;
+    if (!replaced.has(mesh)) {
+      replaced.add(mesh);
+      mesh.geometry = surface.geometry;
+      mesh.material = surface.material;
+      continue;
+    }
+    const side = new Mesh(surface.geometry, surface.material); // the back of a double-sided material
+    side.name = `${mesh.name}_back`;
+    mesh.add(side);
+    surface.mesh = side;
+  }
+  hideLamps(scene);
+}
+
+// Lamps whose light is baked into a group would count twice with three's own lights.
+function hideLamps(scene) {
+  scene.hiddenLamps = [];
+  for (const group of scene.groups)
+    for (const lamp of group.json.lights) {
+      if (lamp.kind !== 'node') continue;
+      scene.nodes[lamp.node]?.traverse((object) => {
+        if (object.isLight) {
+          object.visible = false;
+          scene.hiddenLamps.push(object);
+        }
+      });
+    }
+}
