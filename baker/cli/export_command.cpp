@@ -224,12 +224,12 @@ void addExportCommand(CLI::App& app, Command& run) {
       ->check(CLI::Range(1, kMaxBands))
       ->capture_default_str();
   command->add_flag("--json", a->json, "Print bundle.json");
+  addQuiet(*command, a->say);
   command_line::group(*command, "Light", {"--light", "--order"});
-  command_line::group(*command, "Output", {"--output", "--json"});
+  command_line::group(*command, "Output", {"--output", "--json", "--quiet"});
   command_line::addExamples(*command,
                             {{"lambent export room.lmb.glb -o room --light sky.hdr --order 5",
                               "write arrays for NumPy, and the light vector of an environment map"}});
-  addQuiet(*command, a->say);
   command_line::addExamples(
       *command, {{"lambent export scene.lmb.glb -o arrays", "writes arrays/*.npy and arrays/bundle.json"}});
   command->callback([a, &run] {

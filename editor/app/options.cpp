@@ -61,6 +61,7 @@ void declare(CLI::App& app, OptionWords& words) {
       ->type_name("FILE");
   app.add_flag("--json", words.json, "The script's answers on stdout, a JSON value a line");
   app.add_flag("--fresh", words.fresh, "Forget layout and recent files, and remember none");
+  command_line::group(app, "Light", {"--light"});
   command_line::group(app, "Window", {"--size", "--scale", "--fresh"});
   command_line::group(app, "Bakes", {"--quality", "--output", "--no-bake", "--threads"});
   command_line::group(app, "Memory and cache", {"--cache", "--cache-size", "--max-memory"});
