@@ -1,5 +1,5 @@
 // Implements lambent export BUNDLE -o DIR: the numbers of a bundle as arrays that NumPy reads, and a JSON
-// that says what they are (docs/export.md).
+// that says what they are (docs/python.md).
 #include <array>
 #include <memory>
 #include <system_error>
@@ -227,9 +227,6 @@ void addExportCommand(CLI::App& app, Command& run) {
   addQuiet(*command, a->say);
   command_line::group(*command, "Light", {"--light", "--order"});
   command_line::group(*command, "Output", {"--output", "--json", "--quiet"});
-  command_line::addExamples(*command,
-                            {{"lambent export room.lmb.glb -o room --light sky.hdr --order 5",
-                              "write arrays for NumPy, and the light vector of an environment map"}});
   command_line::addExamples(
       *command, {{"lambent export scene.lmb.glb -o arrays", "writes arrays/*.npy and arrays/bundle.json"}});
   command->callback([a, &run] {
