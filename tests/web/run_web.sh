@@ -4,7 +4,7 @@
 # that a failure. Nothing is fetched from the network.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-programs=$1 assets=$2 web=$here/../../web
+programs=$(cd "$1" && pwd) assets=$(cd "$2" && pwd) web=$here/../../web
 
 lacks() {
   echo "skipped: $1"
