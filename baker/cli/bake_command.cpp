@@ -67,7 +67,7 @@ int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::
     if (stop.stop_requested()) break;
     if (std::error_code unknown; !std::filesystem::exists(request.scene, unknown)) {
       reportNotice(request.scene, "is gone; its bake is given up");
-      Journal(cache->folder() / "journal").forget(request);
+      bakeJournal(cache).forget(request);
       continue;
     }
     if (!a.say.quiet)

@@ -35,9 +35,6 @@ Error errorOf(const Failure& failure) {
   return {failure.subject, failure.problem, failure.hint};
 }
 
-constexpr const char* kForms[] = {"vector", "normal-mapped", "visibility", "matrix"};
-constexpr const char* kPlaces[] = {"surface", "volume", "neighborhood"};
-
 std::array<float, 3> numbers(const Vec3& v) {
   return {v.x, v.y, v.z};
 }
@@ -92,8 +89,8 @@ void addPoints(const SurfaceData& surface, SamplePoints& points) {
 }
 
 json describe(const TransferBlock& block) {
-  return {{"form", kForms[static_cast<std::size_t>(block.form)]},
-          {"place", kPlaces[static_cast<std::size_t>(block.place)]},
+  return {{"form", nameOf(block.form)},
+          {"place", nameOf(block.place)},
           {"firstSample", block.first_sample},
           {"samples", block.samples},
           {"order", block.order},
@@ -138,7 +135,7 @@ json exportSurface(const SurfaceInfo& info, std::uint32_t index, const SurfaceDa
           {"material", info.material},
           {"group", info.group},
           {"back", info.back},
-          {"form", kForms[static_cast<std::size_t>(info.form)]},
+          {"form", nameOf(info.form)},
           {"albedo", numbers(info.albedo)},
           {"positions", arrays.write(prefix + ".positions", data.positions)},
           {"normals", arrays.write(prefix + ".normals", data.normals)},

@@ -10,9 +10,6 @@
 namespace lambent::python {
 namespace {
 
-constexpr const char* kForms[] = {"vector", "normal-mapped", "visibility", "matrix"};
-constexpr const char* kPlaces[] = {"surface", "volume", "neighborhood"};
-
 Floats harmonics(int order, const Floats& directions) {
   const std::vector<Vec3> vectors = vectorsOf(directions, "directions");
   const py::ssize_t count = py::ssize_t{order} * order;
@@ -116,10 +113,8 @@ PYBIND11_MODULE(lambent, module) {
       "The light, changed least so that no direction is negative.", py::arg("light"));
 
   py::class_<TransferBlock>(module, "Block", "Transfer of a run of samples of a group.")
-      .def_property_readonly("form",
-                             [](const TransferBlock& b) { return kForms[static_cast<std::size_t>(b.form)]; })
-      .def_property_readonly(
-          "place", [](const TransferBlock& b) { return kPlaces[static_cast<std::size_t>(b.place)]; })
+      .def_property_readonly("form", [](const TransferBlock& b) { return nameOf(b.form); })
+      .def_property_readonly("place", [](const TransferBlock& b) { return nameOf(b.place); })
       .def_readonly("first_sample", &TransferBlock::first_sample)
       .def_readonly("samples", &TransferBlock::samples)
       .def_readonly("order", &TransferBlock::order)
@@ -144,8 +139,7 @@ PYBIND11_MODULE(lambent, module) {
       .def_readonly("vertices", &SurfaceInfo::vertices)
       .def_readonly("triangles", &SurfaceInfo::triangles)
       .def_readonly("back", &SurfaceInfo::back)
-      .def_property_readonly("form",
-                             [](const SurfaceInfo& s) { return kForms[static_cast<std::size_t>(s.form)]; })
+      .def_property_readonly("form", [](const SurfaceInfo& s) { return nameOf(s.form); })
       .def_property_readonly("albedo", [](const SurfaceInfo& s) { return tupleOf(s.albedo); });
   py::class_<Bundle>(module, "Bundle", "A bundle that lambent baked; read-only.")
       .def(py::init([](const std::string& path) { return valueOf(Bundle::open(path)); }), py::arg("path"))

@@ -76,6 +76,16 @@ TransferBlock blockOf(const bundle::Cell& cell, const transfer::TransferShape& s
 
 }  // namespace
 
+const char* nameOf(TransferForm form) {
+  constexpr const char* kNames[] = {"vector", "normal-mapped", "visibility", "matrix"};
+  return kNames[static_cast<std::size_t>(form)];
+}
+
+const char* nameOf(TransferPlace place) {
+  constexpr const char* kNames[] = {"surface", "volume", "neighborhood"};
+  return kNames[static_cast<std::size_t>(place)];
+}
+
 struct Bundle::File {
   bundle::Reader reader;
   ecs::Registry registry;
@@ -264,8 +274,8 @@ Expected<std::vector<Vec3>> Bundle::shade(std::uint32_t index, const LightVector
     if (outputs == kMapped) {
       std::array<float, kMapped> y{};
       sh::unoccludedTransfer(3, library::toGlm(data->normals[v]), y);
-      for (std::uint32_t j = 1; j < kMapped; ++j) sum[0] += y[j] / y[0] * sum[j];
       sum[0] *= y[0];
+      for (std::uint32_t j = 1; j < kMapped; ++j) sum[0] += y[j] * sum[j];
     }
     result.push_back(fromGlm(sum[0]));
   }

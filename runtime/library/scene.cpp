@@ -11,12 +11,12 @@
 #include <glm/trigonometric.hpp>
 
 #include "runtime/library/convert.hpp"
+#include "runtime/library/distant_words.hpp"
 #include "runtime/library/host_state.hpp"
 #include "runtime/library/scene_state.hpp"
 #include "runtime/scene/affine.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/lights.hpp"
-#include "runtime/spec/light.hpp"
 
 namespace lambent {
 
@@ -27,7 +27,7 @@ using library::fromGlm;
 using library::toGlm;
 using Component = scene::LocalLightComponent;
 
-// An entity as one number, and back.
+// These convert an entity to one number, and back.
 std::uint64_t idOf(ecs::Entity entity) {
   return std::uint64_t{entity.generation} << 32 | entity.index;
 }
@@ -121,15 +121,10 @@ Expected<void> Scene::finishLoading() {
 }
 
 Expected<void> Scene::setEnvironment(const std::vector<std::string>& words) {
-  std::vector<spec::Light> lights;
-  for (const std::string& word : words) {
-    Result<spec::Light> light = spec::parseLight(word);
-    if (!light) return failureOf(light.error());
-    lights.push_back(std::move(*light));
-  }
-  if (!spec::localLights(lights).empty())
-    return Failure{"environment", "spheres and discs stand in the scene", "add them with addLight()"};
-  if (const Result<void> set = state_->environment.setLights(lights); !set) return failureOf(set.error());
+  const auto lights = library::distantLights(
+      words, {"environment", "spheres and discs stand in the scene", "add them with addLight()"});
+  if (!lights) return lights.failure();
+  if (const Result<void> set = state_->environment.setLights(*lights); !set) return failureOf(set.error());
   return {};
 }
 

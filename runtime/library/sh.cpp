@@ -8,6 +8,7 @@
 
 #include "lambent/version.hpp"
 #include "runtime/library/convert.hpp"
+#include "runtime/library/distant_words.hpp"
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/window.hpp"
@@ -96,15 +97,10 @@ Expected<LightVector> projectEquirect(std::span<const Vec3> texels, int width, i
 
 Expected<LightVector> lightFrom(const std::vector<std::string>& words, int order) {
   if (auto checked = checkOrder(order, sh::kMaxOrder); !checked) return checked.failure();
-  std::vector<spec::Light> lights;
-  for (const std::string& word : words) {
-    Result<spec::Light> light = spec::parseLight(word);
-    if (!light) return failureOf(light.error());
-    lights.push_back(std::move(*light));
-  }
-  if (!spec::localLights(lights).empty())
-    return Failure{"light", "spheres and discs stand in the scene", "name lights at infinity"};
-  const Result<spec::DistantLights> loaded = spec::loadDistantLights(lights);
+  const auto lights = library::distantLights(
+      words, {"light", "spheres and discs stand in the scene", "name lights at infinity"});
+  if (!lights) return lights.failure();
+  const Result<spec::DistantLights> loaded = spec::loadDistantLights(*lights);
   if (!loaded) return failureOf(loaded.error());
   return shownLight(loaded->lightVector().truncated(order));
 }

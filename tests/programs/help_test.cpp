@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tests/support/program.hpp"
+#include "tests/support/require.hpp"
 
 namespace lambent {
 namespace {
@@ -85,7 +86,7 @@ TEST_F(Help, StandsInTheManualPagesOptionByOption) {
 }
 
 TEST_F(Help, GivesManualPagesThatManTakesWithoutAWord) {
-  if (!std::filesystem::exists("/usr/bin/groff")) GTEST_SKIP() << "there is no groff";
+  if (!std::filesystem::exists("/usr/bin/groff")) LAMBENT_LACKS("groff", "there is no groff");
   for (const Page& page : pages()) {
     testing::writeBytes(folder / "page.1", ask(page, {"--help-as", "man"}).out);
     const Outcome set = run("/usr/bin/groff", {"-man", "-Tutf8", "-K", "utf8", "-ww", "-rCHECKSTYLE=1", "-z",

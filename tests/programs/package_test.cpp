@@ -55,7 +55,7 @@ class Package : public testing::ProgramTest {
 
   // Packs `component` and unpacks it elsewhere; returns the folder in the archive.
   fs::path unpacked(const std::string& component) const {
-    // What the scene looks like is no claim here.
+    // No claim here depends on what the scene looks like.
     ::setenv("LAMBENT_PACKAGE_OPTIONS", "--quality draft --rays 128 --bounces 1 --refine off", 1);
     const fs::path packed = folder / "packed", there = folder / "there";
     const Outcome made = run(CPACK, {"--config", LAMBENT_BINARY_DIR "/CPackConfig.cmake", "-B",

@@ -34,7 +34,7 @@ Matrix4 matrixOf(const glm::mat4& m) {
   return result;
 }
 
-// What a program would draw into.
+// Holds what a program would draw into.
 struct Textures {
   GLuint color = 0, depth = 0, framebuffer = 0;
 
@@ -62,6 +62,29 @@ struct Textures {
     return texels;
   }
   Target target() const { return {.color = color, .depth = depth}; }
+};
+
+// Holds the picture that a frame draws without the library; without a frame if something failed.
+struct DrawnByFrame {
+  frame::World world;
+  lighting::Environment environment;
+  std::optional<frame::Frame> frame;
+
+  DrawnByFrame(const fs::path& bundle, const spec::View& view, std::uint32_t most_keys)
+      : environment(*lighting::Environment::create(lights())) {
+    environment.setMostKeys(most_keys);
+    gpu::Counters counters;
+    EXPECT_TRUE(world.open(bundle));
+    EXPECT_TRUE(world.uploadAll(counters));
+    auto made = frame::Frame::create({.size = {kSide, kSide}, .output = frame::Output::Linear}, environment);
+    EXPECT_TRUE(made && made->render(world, environment, view));
+    if (made) frame.emplace(std::move(*made));
+  }
+  static std::vector<spec::Light> lights() {
+    std::vector<spec::Light> lights;
+    for (const std::string& word : kLight) lights.push_back(*spec::parseLight(word));
+    return lights;
+  }
 };
 
 class LibraryRenderer : public testing::GpuTest {
@@ -106,20 +129,11 @@ class LibraryRenderer : public testing::GpuTest {
 };
 
 TEST_F(LibraryRenderer, DrawsWhatAFrameDraws) {
-  std::vector<spec::Light> lights;
-  for (const std::string& word : kLight) lights.push_back(*spec::parseLight(word));
-  frame::World world;
-  lighting::Environment environment = *lighting::Environment::create(lights);
-  environment.setMostKeys(frame::FrameSettings{}.mostKeys());
-  ASSERT_TRUE(world.open(path));
-  gpu::Counters counters;
-  ASSERT_TRUE(world.uploadAll(counters));
-  auto frame = frame::Frame::create({.size = {kSide, kSide}, .output = frame::Output::Linear}, environment);
-  ASSERT_TRUE(frame);
-  ASSERT_TRUE(frame->render(world, environment, view));
+  DrawnByFrame drawn_by_frame(path, view, frame::FrameSettings{}.mostKeys());
+  ASSERT_TRUE(drawn_by_frame.frame);
   std::vector<float> expected(4 * kSide * kSide);
-  glGetTextureImage(frame->picture().id(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(4 * expected.size()),
-                    expected.data());
+  glGetTextureImage(drawn_by_frame.frame->picture().id(), 0, GL_RGBA, GL_FLOAT,
+                    static_cast<GLsizei>(4 * expected.size()), expected.data());
 
   Scene scene = sceneWithBundle();
   Renderer renderer = made();
@@ -222,7 +236,7 @@ TEST_F(LibraryRenderer, LeavesTheStateOfTheProgramAsItWas) {
   };
   const std::vector<GLint> before = state();
   scene.turnEnvironment(0.0f);
-  // What the state would spoil is drawn as before.
+  // The picture is drawn as before, whatever the state would spoil.
   glDisable(GL_SCISSOR_TEST);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
@@ -301,19 +315,11 @@ TEST_F(LibraryRenderer, ShadesVerticesAsBundleShadeDoes) {
   ASSERT_TRUE(surface);
   ASSERT_EQ(shaded->size(), surface->positions.size());
 
-  frame::World world;
-  std::vector<spec::Light> lights;
-  for (const std::string& word : kLight) lights.push_back(*spec::parseLight(word));
-  const lighting::Environment environment = *lighting::Environment::create(lights);  // without key lights
-  ASSERT_TRUE(world.open(path));
-  gpu::Counters counters;
-  ASSERT_TRUE(world.uploadAll(counters));
-  auto frame = frame::Frame::create({.size = {kSide, kSide}, .output = frame::Output::Linear}, environment);
-  ASSERT_TRUE(frame);
-  ASSERT_TRUE(frame->render(world, environment, view));
-  const streaming::ResidentDraw& draw = world.residency().draws()[0];
+  DrawnByFrame drawn(path, view, /*most_keys=*/0);
+  ASSERT_TRUE(drawn.frame);
+  const streaming::ResidentDraw& draw = drawn.world.residency().draws()[0];
   std::vector<std::uint32_t> words(draw.radiance.byte_count / 4);
-  world.residency().radiance().page(draw.radiance.page).read(draw.radiance.offset, std::span(words));
+  drawn.world.residency().radiance().page(draw.radiance.page).read(draw.radiance.offset, std::span(words));
   double largest = 0.0;
   const std::size_t stride = words.size() / shaded->size();
   for (std::size_t v = 0; v < shaded->size(); ++v)

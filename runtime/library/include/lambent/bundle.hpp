@@ -26,6 +26,10 @@ enum class TransferForm : std::uint8_t {
 // Tells where samples lie.
 enum class TransferPlace : std::uint8_t { Surface, Volume, Neighborhood };
 
+// Return the words that stand for them in exported descriptions and in Python: "normal-mapped", "surface".
+LAMBENT_API const char* nameOf(TransferForm form);
+LAMBENT_API const char* nameOf(TransferPlace place);
+
 // Describes transfer of a run of samples of a group. The numbers of Bundle::transfer() are indexed
 // [sample][channel][output][column]. The first order² columns belong to the light at infinity, those after
 // them to the group's own lamps. Light of blocks with the same samples is summed.

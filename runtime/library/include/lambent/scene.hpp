@@ -1,6 +1,7 @@
-// What is shown: bundles, the light at infinity, lights among the surfaces, and where bodies stand. A Scene
-// needs an OpenGL 4.5 core context that is current, and is used on the thread of that context; worker threads
-// of its own read bundles. It must end before the context does. Nothing here draws (renderer.hpp).
+// A Scene holds what is shown: bundles, the light at infinity, lights among the surfaces, and where bodies
+// stand. It needs an OpenGL 4.5 core context that is current, and is used on the thread of that context;
+// worker threads of its own read bundles. It must end before the context does. Nothing here draws
+// (renderer.hpp).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The version of the library. Programs that were linked against one run with every later one of the same
-// LAMBENT_ABI, which is the number in the libraries' names (docs/library.md).
+// Tells the version of the library. Programs that were linked against one run with every later one of the
+// same LAMBENT_ABI, which is the number in the libraries' names (docs/library.md).
 #pragma once
 
 #include "lambent/export.hpp"
