@@ -142,8 +142,10 @@ class Assembler {
     for (std::size_t g = 0; g < baked.size(); ++g)
       for (std::size_t c = 0; c < baked[g].cells.size(); ++c)
         for (bundle::CellTransfer& stored : description_.groups[g].cells[c].transfers)
-          if (!stored.shape.beyondDiffuse() && baked[g].codes_bound > 0.0f)
-            stored.error_bound = baked[g].codes_bound;
+          if (const float bound =
+                  stored.shape.beyondDiffuse() ? baked[g].glossy_codes_bound : baked[g].codes_bound;
+              bound > 0.0f)
+            stored.error_bound = bound;
     addBrdfTables();
     addLightWeights(baked);
     addProxies(baked);

@@ -54,8 +54,8 @@ struct BakeReport {
       std::uint64_t rays = 0, rays_kept = 0;
     };
     std::vector<Effect> effects;
-    std::optional<bundle::PictureError> picture_error = {};  // of diffuse surfaces
-    float codes_bound = 0.0f;                                // that of diffuse codes
+    std::optional<bundle::PictureError> picture_error = {};
+    float codes_bound = 0.0f, glossy_codes_bound = 0.0f;
     std::uint64_t samples = 0, transfer_bytes = 0;
     std::uint64_t hit_bytes = 0;                   // memory of the hits kept for the bounces
     std::size_t first_stage = 0, stage_count = 0;  // in `stages`

@@ -68,7 +68,8 @@ void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, Ba
   report.worst_glossy_error = std::max(report.worst_glossy_error, figures.worst_glossy_error);
   report.left_out = std::max(report.left_out, figures.left_out);
   told.picture_error = figures.picture_error;
-  told.codes_bound = figures.codes_bound, told.hit_bytes = figures.hit_bytes;
+  told.codes_bound = figures.codes_bound, told.glossy_codes_bound = figures.glossy_codes_bound;
+  told.hit_bytes = figures.hit_bytes;
   if (figures.pass_energy.size() > report.pass_energy.size()) report.pass_energy = figures.pass_energy;
   report.ray_seconds += figures.ray_seconds;
   const auto add = [&](const char* name, const SurfaceFigures::Rays& rays) {
@@ -131,7 +132,8 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
   const bool around_found = any_around && findAround(around, around_context, baked.neighborhood);
   const auto take = [&](SurfaceCells& from) {
     baked.cells = std::move(from.cells);
-    baked.picture_error = from.figures.picture_error, baked.codes_bound = from.figures.codes_bound;
+    baked.picture_error = from.figures.picture_error;
+    baked.codes_bound = from.figures.codes_bound, baked.glossy_codes_bound = from.figures.glossy_codes_bound;
   };
   if (found) take(cells);
   if (found && (!any_around || around_found)) return finished();

@@ -42,9 +42,11 @@ std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy
   const auto inside = std::make_shared<GlossyInsideFaces>(pass, triangles);
   const auto found = inside->look(glossy.hits.bytesLeft(), insideContext(context, triangles));
   if (!found) return std::nullopt;
-  const FitFigures figures{inside->size(), found->rays, found->rays_kept, context.progress.now().seconds};
-  if (!inside->fit(found->field.visibility, field.visibility, context.stop) ||
-      !inside->fit(found->field.lights_shadowed, field.lights_shadowed, context.stop))
+  const GlossyDirect& traced = inside->points().direct();
+  const FitFigures figures{inside->points().size(), traced.rays, traced.rays_kept,
+                           context.progress.now().seconds};
+  if (!inside->fit(found->visibility, field.visibility, context.stop) ||
+      !inside->fit(found->lights_shadowed, field.lights_shadowed, context.stop))
     return std::nullopt;
   if (pass.plain().settings().keep_hits) glossy.inside = inside;
   return figures;

@@ -75,6 +75,10 @@ float codesBound(const bundle::PictureError& without_codes, float picture_bound)
   return std::min(static_cast<float>(std::max(left, kLeastCodes * double{picture_bound})), kMostCodes);
 }
 
+float glossyCodesBound(float codes_bound) {
+  return codes_bound * (kGlossyCodesShare / kCodesShare);
+}
+
 std::optional<float> nextCodesBound(float bound, const bundle::PictureError& shown, float picture_bound) {
   constexpr double kCloseEnough = 0.8;
   const bool misses = shown.all > picture_bound;

@@ -43,6 +43,8 @@ std::optional<PictureSettings> nextTry(const PictureTry& tried, float picture_bo
 
 // Returns the bound on codes with which pictures meet theirs, if codes err at eyes as they do everywhere.
 float codesBound(const bundle::PictureError& without_codes, float picture_bound);
+// Returns that on codes of glossy surfaces beside it: theirs are dearer for the same error.
+float glossyCodesBound(float codes_bound);
 // Returns a better one after codes with `bound` showed this, or nothing if they are as they should be.
 std::optional<float> nextCodesBound(float bound, const bundle::PictureError& shown, float picture_bound);
 

@@ -1,10 +1,10 @@
 #include "baker/bake/picture_error.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <unordered_map>
 
-#include "baker/compress/light_weights.hpp"
+#include "baker/bake/picture_sums.hpp"
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/sh/basis.hpp"
 
@@ -12,83 +12,10 @@ namespace lambent::baker {
 
 namespace {
 
-// Points are looked at by so many times the rays of vertices, within these limits, but always by more.
+// Points are looked at by so many times the rays of vertices, within these limits, but always by more. Glossy
+// ones have only kLeastTimes as many, since light between glossy surfaces is dear to gather; the noise of
+// both is known and taken off.
 constexpr std::size_t kTimesFewRays = 8, kLeastManyRays = 1024, kMostManyRays = 4096, kLeastTimes = 2;
-constexpr std::size_t kLeastPoints = 64;  // that a figure can be told from
-// Eyes that get less than this share of the light of the mean eye, in squares, stand in the dark between
-// walls.
-constexpr double kLeastLight = 1.0 / 400.0;
-
-// Collects what of the light at points is wrong. A vector holds the coefficients of red, green and blue.
-class Sums {
- public:
-  // `noise_of_exact` is the share of the squared difference between few and many rays that the many make.
-  Sums(int order, std::size_t eyes, double noise_of_exact)
-      : coefficients_(static_cast<std::size_t>(sh::coefficientCount(order))),
-        noise_of_exact_(noise_of_exact),
-        of_eye_(eyes) {}
-
-  std::size_t coefficients() const { return coefficients_; }
-
-  struct Shown {
-    std::span<const float> exact, noisy, fields, codes;
-  };
-  void add(std::uint32_t eye, const glm::vec3& albedo, double squared_shares, const Shown& shown) {
-    const auto square = [&](std::span<const float> a, std::span<const float> b) {
-      return squareOf(albedo, a, b);
-    };
-    const double noise = square(shown.noisy, shown.exact);
-    OfEye& sums = of_eye_[eye];
-    sums.light += square(shown.exact, {});
-    sums.all += square(shown.codes, shown.exact) - noise_of_exact_ * noise;
-    sums.codes += square(shown.codes, shown.fields);
-    sums.samples += squared_shares * (1.0 - noise_of_exact_) * noise;
-    ++sums.points;
-  }
-
-  // Every eye counts alike, as it gets used to the light.
-  std::optional<bundle::PictureError> result() const {
-    double light = 0.0;
-    for (const OfEye& sums : of_eye_) light += sums.light / static_cast<double>(of_eye_.size());
-    double all = 0.0, codes = 0.0, samples = 0.0;
-    std::size_t eyes = 0, points = 0;
-    for (const OfEye& sums : of_eye_) {
-      if (!(sums.light > kLeastLight * light)) continue;
-      all += sums.all / sums.light, codes += sums.codes / sums.light, samples += sums.samples / sums.light;
-      ++eyes;
-      points += sums.points;
-    }
-    if (points < kLeastPoints) return std::nullopt;
-    const auto root = [&](double sum) {
-      return static_cast<float>(std::sqrt(std::max(0.0, sum / static_cast<double>(eyes))));
-    };
-    return bundle::PictureError{.all = root(all),
-                                .samples = root(samples),
-                                .codes = root(codes),
-                                .interpolation = root(all - codes - samples),
-                                .points = static_cast<std::uint32_t>(points)};
-  }
-
- private:
-  double squareOf(const glm::vec3& albedo, std::span<const float> a, std::span<const float> b) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const double difference = double{albedo[static_cast<int>(i / coefficients_)]} *
-                                (double{a[i]} - (b.empty() ? 0.0 : double{b[i]}));
-      const int band = sh::bandOf(static_cast<int>(i % coefficients_));
-      sum += kBandPower[static_cast<std::size_t>(band)] * difference * difference;
-    }
-    return sum;
-  }
-
-  struct OfEye {
-    double light = 0.0, all = 0.0, codes = 0.0, samples = 0.0;
-    std::size_t points = 0;
-  };
-  std::size_t coefficients_;
-  double noise_of_exact_;
-  std::vector<OfEye> of_eye_;
-};
 
 // Adds `weight` times the environment's part of a sample's vector to all channels of `out`.
 void addWeighted(const TransferField& field, std::size_t sample, float weight, std::span<float> out) {
@@ -100,92 +27,255 @@ void addWeighted(const TransferField& field, std::size_t sample, float weight, s
   }
 }
 
-// The environment's transfer of diffuse samples as codes hold it, with all bounces: three channels.
+// What codes hold of the samples that are asked for.
 using Decoded = std::unordered_map<std::uint32_t, std::vector<float>>;
 
-// Fills in the samples that `decoded` names.
-void decode(const TracedScene& scene, const std::vector<std::vector<CodedTransfer>>& cells,
-            Decoded& decoded) {
-  for (std::size_t c = 0; c < scene.samples.cells.size(); ++c) {
-    const SampleCell& cell = scene.samples.cells[c];
-    if (cell.kind != SampleKind::Diffuse) continue;
-    const CodedTransfer& coded = cells[c].front();
-    const std::vector<float> vectors = decodeTransfer(coded);
-    const std::size_t size = coded.shape.columns(), shadowed = coded.shape.shadowed_channels * size;
-    const std::uint32_t full = coded.shape.full_channels;
-    const std::uint32_t channels = full > 0 ? full : coded.shape.shadowed_channels;
-    for (auto& [sample, out] : decoded) {
-      if (sample < cell.first || sample >= cell.first + cell.count) continue;
-      const auto from =
-          std::span(vectors).subspan((sample - cell.first) * coded.shape.size() + (full > 0 ? shadowed : 0));
-      out.resize(3 * size);
-      for (std::size_t i = 0; i < out.size(); ++i) out[i] = from[channels == 3 ? i : i % size];
+// Calls take(sample, its vector) for the samples of a cell that `decoded` names.
+template <typename Take>
+void decodeCell(const SampleCell& cell, const CodedTransfer& coded, Decoded& decoded, const Take& take) {
+  const std::vector<float> vectors = decodeTransfer(coded);
+  for (auto& [sample, out] : decoded)
+    if (sample >= cell.first && sample < cell.first + cell.count)
+      take(std::span(vectors).subspan((sample - cell.first) * coded.shape.size(), coded.shape.size()), out);
+}
+
+double noiseOfMany(std::size_t few, std::size_t many) {
+  return static_cast<double>(few) / static_cast<double>(few + many);
+}
+
+// The points of diffuse surfaces: light that leaves them is albedo times transfer of E/pi.
+class DiffusePoints {
+ public:
+  DiffusePoints(const TracedView& traced, const TracedScene& scene, const BakedVertices& baked)
+      : points_(traced.view.diffuse), traced_(traced), scene_(scene), baked_(baked) {}
+
+  void addTo(PictureSums& sums) {
+    decode();
+    const auto& noisy = traced_.noisy->direct();
+    const auto& exact = traced_.exact->direct();
+    const double noise_of_exact =
+        noiseOfMany(traced_.noisy->pass().settings().rays, traced_.exact->pass().settings().rays);
+    const std::size_t size = 3 * sums.coefficients();
+    std::vector<float> many(size), few(size), fields(size), codes(size);
+    for (std::size_t p = 0; p < points_.eyes.size(); ++p) {
+      if (!seen(p)) continue;
+      for (auto* vector : {&many, &few, &fields, &codes}) std::fill(vector->begin(), vector->end(), 0.0f);
+      addWeighted(noisy.field, p, 1.0f, few);
+      addWeighted(exact.field, p, 1.0f, many);
+      if (!baked_.bounced_at_points.empty()) {
+        addWeighted(baked_.bounced_at_points[0], p, 1.0f, few);
+        addWeighted(baked_.bounced_at_points[1], p, 1.0f, many);
+      }
+      PictureSums::Point point{
+          .eye = points_.eyes[p], .squared_shares = 0.0, .noise_of_exact = noise_of_exact};
+      for (const auto& [sample, weight] : shownAt(p)) {
+        point.squared_shares += double{weight} * double{weight};
+        addWeighted(baked_.direct, sample, weight, fields);
+        if (baked_.bounced) addWeighted(*baked_.bounced, sample, weight, fields);
+        if (!baked_.cells) continue;
+        const std::vector<float>& of_codes = decoded_.at(sample);
+        for (std::size_t i = 0; i < size; ++i) codes[i] += weight * of_codes[i];
+      }
+      if (!baked_.cells) codes = fields;
+      const glm::vec3 albedo =
+          scene_.colors.albedo(points_.points.triangles[p], points_.weights[p].y, points_.weights[p].z);
+      for (auto* vector : {&many, &few, &fields, &codes})
+        for (std::size_t i = 0; i < size; ++i)
+          (*vector)[i] *= albedo[static_cast<int>(i / sums.coefficients())];
+      sums.add(point, {.exact = many, .noisy = few, .fields = fields, .codes = codes});
     }
   }
-}
+
+ private:
+  std::array<SampleShare, 4> shownAt(std::size_t p) const {
+    return shownSamples(scene_.geometry, scene_.samples, points_.points.triangles[p], points_.weights[p]);
+  }
+  bool seen(std::size_t p) const {
+    return traced_.noisy->direct().looks.valid[p] != 0 && traced_.exact->direct().looks.valid[p] != 0;
+  }
+  void decode() {
+    if (!baked_.cells) return;
+    for (std::size_t p = 0; p < points_.eyes.size(); ++p)
+      if (seen(p))
+        for (const SampleShare& shown : shownAt(p)) decoded_[shown.sample];
+    for (std::size_t c = 0; c < scene_.samples.cells.size(); ++c) {
+      const SampleCell& cell = scene_.samples.cells[c];
+      if (cell.kind != SampleKind::Diffuse) continue;
+      const CodedTransfer& coded = (*baked_.cells)[c].front();
+      const std::size_t size = coded.shape.columns(), shadowed = coded.shape.shadowed_channels * size;
+      const std::uint32_t full = coded.shape.full_channels;
+      const std::uint32_t channels = full > 0 ? full : coded.shape.shadowed_channels;
+      decodeCell(cell, coded, decoded_, [&](std::span<const float> vector, std::vector<float>& out) {
+        const auto from = vector.subspan(full > 0 ? shadowed : 0);
+        out.resize(3 * size);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = from[channels == 3 ? i : i % size];
+      });
+    }
+  }
+
+  const ViewPoints& points_;
+  const TracedView& traced_;
+  const TracedScene& scene_;
+  const BakedVertices& baked_;
+  Decoded decoded_;  // three channels of E/pi, with all bounces
+};
+
+// The points of glossy surfaces: light that leaves them towards the eye is the dot product of the exit kernel
+// (surface_brdfs.hpp) with the light that matrices transfer there, direct and bounced.
+class GlossyPoints {
+ public:
+  GlossyPoints(const TracedView& traced, const TracedScene& scene, const BakedVertices& baked)
+      : points_(traced.view.glossy),
+        traced_(traced),
+        scene_(scene),
+        baked_(baked),
+        outputs_(static_cast<std::size_t>(sh::coefficientCount(baked.glossy->order_out))),
+        columns_(static_cast<std::size_t>(sh::coefficientCount(baked.glossy->order_in))),
+        kernel_(3 * outputs_),
+        matrix_(outputs_ * columns_) {}
+
+  void addTo(PictureSums& sums) {
+    decode();
+    const GlossyField &noisy = traced_.noisy_glossy->direct().field,
+                      &exact = traced_.exact_glossy->direct().field;
+    const double noise_of_exact = noiseOfMany(traced_.noisy_glossy->pass().plain().settings().rays,
+                                              traced_.exact_glossy->pass().plain().settings().rays);
+    const std::size_t size = baked_.glossy->visibilitySize() + bouncedSize();
+    std::vector<float> transfer(size), of_codes(size);
+    std::vector<float> many(3 * columns_), few(many), fields(many), codes(many);
+    for (std::size_t p = 0; p < points_.eyes.size(); ++p) {
+      if (!seen(p)) continue;
+      const std::uint32_t triangle = points_.points.triangles[p];
+      const glm::vec3& weights = points_.weights[p];
+      baked_.brdfs->exitKernel(triangle, weights.y, weights.z, points_.to_eyes[p], kernel_);
+      const auto leaves = [&](const GlossyField& field, std::vector<float>& out) {
+        std::fill(transfer.begin(), transfer.end(), 0.0f);
+        addSample(field, p, 1.0f, transfer);
+        exit(transfer, out);
+      };
+      leaves(noisy, few);
+      leaves(exact, many);
+      std::fill(transfer.begin(), transfer.end(), 0.0f);
+      std::fill(of_codes.begin(), of_codes.end(), 0.0f);
+      PictureSums::Point point{.eye = points_.eyes[p],
+                               .weight = static_cast<double>(points_.stands_for),
+                               .squared_shares = 0.0,
+                               .noise_of_exact = noise_of_exact};
+      for (int corner = 0; corner < 3; ++corner) {
+        const std::uint32_t sample = sampleOf(p, corner);
+        point.squared_shares += double{weights[corner]} * double{weights[corner]};
+        addSample(*baked_.glossy, sample - baked_.glossy->first_sample, weights[corner], transfer);
+        if (!baked_.cells) continue;
+        const std::vector<float>& decoded = decoded_.at(sample);
+        for (std::size_t i = 0; i < size; ++i) of_codes[i] += weights[corner] * decoded[i];
+      }
+      exit(transfer, fields);
+      if (baked_.cells) exit(of_codes, codes);
+      sums.add(point,
+               {.exact = many, .noisy = few, .fields = fields, .codes = baked_.cells ? codes : fields});
+    }
+  }
+
+ private:
+  std::size_t bouncedSize() const {
+    return baked_.glossy->bounced.empty() ? 0 : baked_.glossy->channels * outputs_ * columns_;
+  }
+  bool seen(std::size_t p) const {
+    return traced_.noisy_glossy->looks().valid[p] != 0 && traced_.exact_glossy->looks().valid[p] != 0;
+  }
+  std::uint32_t sampleOf(std::size_t p, int corner) const {
+    return scene_.samples.vertex_sample[scene_.geometry.triangles[points_.points.triangles[p]][corner]];
+  }
+  // Adds a sample's visibility, and then its bounced light.
+  void addSample(const GlossyField& field, std::size_t sample, float weight, std::span<float> out) const {
+    const std::size_t visibility = field.visibilitySize(), bounced = bouncedSize();
+    for (std::size_t i = 0; i < visibility; ++i) out[i] += weight * field.visibility[sample * visibility + i];
+    for (std::size_t i = 0; i < bounced; ++i)
+      out[visibility + i] += weight * field.bounced[sample * bounced + i];
+  }
+  // Computes the radiance that leaves by kernel_ where `transfer` is visibility and bounced light.
+  void exit(std::span<const float> transfer, std::span<float> out) {
+    const std::size_t visibility = baked_.glossy->visibilitySize(), size = matrix_.size();
+    std::fill(out.begin(), out.end(), 0.0f);
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::fill(matrix_.begin(), matrix_.end(), 0.0f);
+      sh::addVisibilityMatrix(traced_.exact_glossy->pass().gaunt(), transfer.first(visibility), matrix_);
+      if (bouncedSize() > 0) {
+        const auto bounced =
+            transfer.subspan(visibility + (baked_.glossy->channels == 3 ? c * size : 0), size);
+        for (std::size_t i = 0; i < size; ++i) matrix_[i] += bounced[i];
+      }
+      for (std::size_t k = 0; k < outputs_; ++k)
+        for (std::size_t i = 0; i < columns_; ++i)
+          out[c * columns_ + i] += kernel_[c * outputs_ + k] * matrix_[k * columns_ + i];
+    }
+  }
+  void decode() {
+    if (!baked_.cells) return;
+    for (std::size_t p = 0; p < points_.eyes.size(); ++p)
+      for (int corner = 0; corner < 3 && seen(p); ++corner)
+        decoded_[sampleOf(p, corner)].resize(baked_.glossy->visibilitySize() + bouncedSize());
+    for (std::size_t c = 0; c < scene_.samples.cells.size(); ++c) {
+      const SampleCell& cell = scene_.samples.cells[c];
+      if (cell.kind != SampleKind::Glossy) continue;
+      for (const CodedTransfer& coded : (*baked_.cells)[c]) {
+        if (coded.shape.order == 0) continue;  // light of the group's lamps
+        const std::size_t first = coded.shape.isVisibility() ? 0 : baked_.glossy->visibilitySize();
+        decodeCell(cell, coded, decoded_, [&](std::span<const float> vector, std::vector<float>& out) {
+          std::copy(vector.begin(), vector.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
+        });
+      }
+    }
+  }
+
+  const ViewPoints& points_;
+  const TracedView& traced_;
+  const TracedScene& scene_;
+  const BakedVertices& baked_;
+  std::size_t outputs_, columns_;
+  std::vector<float> kernel_, matrix_;
+  Decoded decoded_;  // visibility, and then bounced light
+};
 
 }  // namespace
 
-std::optional<TracedView> traceView(const DirectPass& vertices, const TracedScene& scene,
+std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order, const TracedScene& scene,
                                     const BakeContext& context) {
-  TracedView traced{viewPoints(scene), nullptr, nullptr};
+  TracedView traced{viewPoints(scene), nullptr, nullptr, nullptr, nullptr};
+  const BakeContext unkept = context.keyed(Key{});
+  const char* const stage = "error of pictures";
+  const std::size_t few = vertices.settings().rays, twice = kLeastTimes * few;
   const auto trace = [&](std::size_t rays) {
     DirectSettings settings = vertices.settings();
     settings.rays = rays;
-    auto points = std::make_shared<TracedPoints>(scene, traced.view.points, settings);
-    return points->look(context.keyed(Key{}), "error of pictures") ? points : nullptr;
+    auto points = std::make_shared<TracedPoints>(scene, traced.view.diffuse.points, settings);
+    return points->look(unkept, stage) ? points : nullptr;
   };
-  const std::size_t few = vertices.settings().rays;
-  traced.noisy = trace(few);
-  traced.exact =
-      trace(std::max(kLeastTimes * few, std::clamp(kTimesFewRays * few, kLeastManyRays, kMostManyRays)));
-  if (!traced.noisy || !traced.exact) return std::nullopt;
+  const auto trace_glossy = [&](std::size_t rays) {
+    DirectSettings settings = vertices.settings();
+    settings.rays = rays;
+    auto points =
+        std::make_shared<TracedGlossyPoints>(scene, traced.view.glossy.points, settings, glossy_order);
+    return points->look(settings.hit_memory, unkept, stage) ? points : nullptr;
+  };
+  if (!scene.samples.diffuse.empty()) {
+    traced.noisy = trace(few);
+    traced.exact = trace(std::max(twice, std::clamp(kTimesFewRays * few, kLeastManyRays, kMostManyRays)));
+    if (!traced.noisy || !traced.exact) return std::nullopt;
+  }
+  if (!scene.samples.glossy.empty()) {
+    traced.noisy_glossy = trace_glossy(few);
+    traced.exact_glossy = trace_glossy(twice);
+    if (!traced.noisy_glossy || !traced.exact_glossy) return std::nullopt;
+  }
   return traced;
 }
 
 std::optional<bundle::PictureError> measurePictureError(const TracedView& traced, const TracedScene& scene,
                                                         const BakedVertices& baked) {
-  const ViewPoints& view = traced.view;
-  const auto& noisy = traced.noisy->direct();
-  const auto& exact = traced.exact->direct();
-  const auto seen = [&](std::size_t p) { return noisy.looks.valid[p] != 0 && exact.looks.valid[p] != 0; };
-  const auto shownAt = [&](std::size_t p) {
-    return shownSamples(scene.geometry, scene.samples, view.points.triangles[p], view.weights[p]);
-  };
-  Decoded decoded;
-  for (std::size_t p = 0; p < view.eyes.size(); ++p)
-    if (baked.cells && seen(p))
-      for (const SampleShare& shown : shownAt(p)) decoded[shown.sample];
-  if (baked.cells) decode(scene, *baked.cells, decoded);
-
-  const auto few_rays = static_cast<double>(traced.noisy->pass().settings().rays),
-             many_rays = static_cast<double>(traced.exact->pass().settings().rays);
-  Sums sums(baked.direct.order, view.eyes.empty() ? 0 : view.eyes.back() + 1,
-            few_rays / (few_rays + many_rays));
-  const std::size_t size = 3 * sums.coefficients();
-  std::vector<float> many(size), few(size), fields(size), codes(size);
-  for (std::size_t p = 0; p < view.eyes.size(); ++p) {
-    if (!seen(p)) continue;
-    for (auto* vector : {&many, &few, &fields, &codes}) std::fill(vector->begin(), vector->end(), 0.0f);
-    addWeighted(noisy.field, p, 1.0f, few);
-    addWeighted(exact.field, p, 1.0f, many);
-    if (!baked.bounced_at_points.empty()) {
-      addWeighted(baked.bounced_at_points[0], p, 1.0f, few);
-      addWeighted(baked.bounced_at_points[1], p, 1.0f, many);
-    }
-    float squared_shares = 0.0f;
-    for (const auto& [sample, weight] : shownAt(p)) {
-      squared_shares += weight * weight;
-      addWeighted(baked.direct, sample, weight, fields);
-      if (baked.bounced) addWeighted(*baked.bounced, sample, weight, fields);
-      if (!baked.cells) continue;
-      const std::vector<float>& of_codes = decoded.at(sample);
-      for (std::size_t i = 0; i < size; ++i) codes[i] += weight * of_codes[i];
-    }
-    if (!baked.cells) codes = fields;
-    sums.add(view.eyes[p], view.albedos[p], squared_shares,
-             {.exact = many, .noisy = few, .fields = fields, .codes = codes});
-  }
+  PictureSums sums(baked.direct.order, traced.view.eyes);
+  if (traced.noisy) DiffusePoints(traced, scene, baked).addTo(sums);
+  if (traced.noisy_glossy) GlossyPoints(traced, scene, baked).addTo(sums);
   return sums.result();
 }
 

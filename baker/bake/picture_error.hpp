@@ -1,7 +1,8 @@
-// Measures how wrong pictures show the diffuse surfaces of a group: relative RMS of the light that leaves
-// them, over real lights that the bake's bands carry. At points that eyes see (view_points.hpp), the light
-// that vertices, codes and interpolation show is compared with what many rays from the point itself find,
-// all bounces included. What few bands of light cannot show is no part of it, and neither is light of lamps.
+// Measures how wrong pictures show the surfaces of a group: relative RMS of the light that leaves them
+// towards eyes, over real lights that the bake's bands carry. At points that eyes see (view_points.hpp), the
+// light that vertices, codes and interpolation show is compared with what many rays from the point itself
+// find, all bounces included. What few bands cannot show, of light or of a highlight, is no part of it, and
+// neither is light of lamps nor that of normal-mapped surfaces.
 #pragma once
 
 #include <memory>
@@ -15,6 +16,7 @@
 #include "baker/compress/cpca.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/diffuse/traced_points.hpp"
+#include "baker/effects/glossy/traced_points.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
@@ -28,22 +30,28 @@ inline bool read(ByteReader& in, bundle::PictureError& error) {
   return in.read(error);
 }
 
-// The same points, traced with as many rays as vertices, whose noise they tell, and with many.
+// The same points, traced with as many rays as vertices, whose noise they tell, and with many. Null without
+// surfaces of the kind in the group.
 struct TracedView {
-  ViewPoints view;
+  View view;
   std::shared_ptr<TracedPoints> noisy, exact;
+  std::shared_ptr<TracedGlossyPoints> noisy_glossy, exact_glossy;
 };
 
-// Returns nothing if stopped. Without diffuse surfaces in sight, there are no points. No result is kept.
-std::optional<TracedView> traceView(const DirectPass& vertices, const TracedScene& scene,
+// Matrices have `glossy_order` bands. Returns nothing if stopped. Without surfaces in sight, there are no
+// points. No result is kept.
+std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order, const TracedScene& scene,
                                     const BakeContext& context);
 
 // What the bake knows of the vertices, and what bounces brought to the points: to the noisy ones, then to the
-// exact ones. Without bounces, both pointers and the list are empty.
+// exact ones. Without bounces, `bounced` is null and the list is empty; without glossy surfaces `glossy` and
+// `brdfs` are null.
 struct BakedVertices {
   const TransferField& direct;
   const TransferField* bounced;
   std::span<const TransferField> bounced_at_points;
+  const GlossyField* glossy;
+  const SurfaceBrdfs* brdfs;
   // These are SurfaceCells::cells. If null, codes do not count, as if they were exact.
   const std::vector<std::vector<CodedTransfer>>* cells;
 };

@@ -57,7 +57,7 @@ std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, Surface
   double square = 0.0;
   for (const CellVectors& part : parts) {
     const bool environment = part.shape.order > 0;
-    float bound = options_.effectiveGlossyErrorBound();
+    float bound = figures.glossy_codes_bound;
     if (environment && any_bounced)
       bound *= part.shape.isVisibility() ? kOfVisibility : std::sqrt(1.0f - kOfVisibility * kOfVisibility);
     coded.push_back(
@@ -98,17 +98,19 @@ void write(const SurfaceCells& cells, ByteWriter& out) {
   out.addList(figures.pass_energy);
   out.add(figures.diffuse.traced + figures.diffuse.kept);
   out.add(figures.glossy.traced + figures.glossy.kept);
-  out.add(figures.picture_error.value_or(bundle::PictureError{})), out.add(figures.codes_bound);
+  out.add(figures.picture_error.value_or(bundle::PictureError{}));
+  out.add(figures.codes_bound), out.add(figures.glossy_codes_bound);
 }
 
 bool read(ByteReader& in, SurfaceCells& cells) {
   SurfaceFigures& figures = cells.figures;
   bundle::PictureError error;
-  const bool whole =
-      read(in, cells.cells) && in.read(figures.filled_samples) && in.read(figures.glossy_samples) &&
-      in.read(figures.hit_bytes) && in.read(figures.worst_error) && in.read(figures.worst_glossy_error) &&
-      in.read(figures.left_out) && in.readList(figures.pass_energy) && in.read(figures.diffuse.kept) &&
-      in.read(figures.glossy.kept) && in.read(error) && in.read(figures.codes_bound);
+  const bool whole = read(in, cells.cells) && in.read(figures.filled_samples) &&
+                     in.read(figures.glossy_samples) && in.read(figures.hit_bytes) &&
+                     in.read(figures.worst_error) && in.read(figures.worst_glossy_error) &&
+                     in.read(figures.left_out) && in.readList(figures.pass_energy) &&
+                     in.read(figures.diffuse.kept) && in.read(figures.glossy.kept) && in.read(error) &&
+                     in.read(figures.codes_bound) && in.read(figures.glossy_codes_bound);
   if (whole && error.points > 0) figures.picture_error = error;
   return whole;
 }
@@ -131,14 +133,16 @@ std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceT
     }
     return true;
   };
-  if (group.anyGlossy() && !code(/*glossy=*/true)) return std::nullopt;
-
   const bool chooses = options.picture_bound > 0.0f && options.error_bound == 0.0f;
   std::optional<float> bound = options.effectiveErrorBound();
   if (chooses)
     if (const auto shown = shownBy(group, light, nullptr)) bound = codesBound(*shown, options.picture_bound);
   for (int codings = 1; bound; ++codings) {
-    out.figures.codes_bound = *bound, out.figures.worst_error = light.figures.worst_error;
+    out.figures.codes_bound = *bound;
+    out.figures.glossy_codes_bound = chooses ? glossyCodesBound(*bound) : options.effectiveGlossyErrorBound();
+    out.figures.worst_error = light.figures.worst_error;
+    out.figures.worst_glossy_error = light.figures.worst_glossy_error;
+    if (group.anyGlossy() && !code(/*glossy=*/true)) return std::nullopt;
     if (!code(/*glossy=*/false)) return std::nullopt;
     auto& shown = out.figures.picture_error = shownBy(group, light, &out.cells);
     bound.reset();

@@ -59,7 +59,7 @@ bool traceGlossy(const GlossyPass& pass, const GroupScene& group, const BakeCont
     add(*fit, figures.glossy, figures);
   }
   if (!diffuseFromGlossy(pass, glossy.field, light.direct, context.stop)) return false;
-  const std::uint64_t inside = glossy.inside ? glossy.inside->hits().bytes() : 0;
+  const std::uint64_t inside = glossy.inside ? glossy.inside->points().direct().hits.bytes() : 0;
   figures.hit_bytes = std::max<std::uint64_t>(figures.hit_bytes, glossy.hits.bytes() + inside);
   figures.glossy_samples = glossy.field.size();
   return true;
@@ -85,8 +85,9 @@ bool bounce(const DirectPass& pass, const GlossyPass* glossy_pass, const GroupSc
   if (partner) {
     partner->finish();
     light.glossy->hits = HitStore();
-    if (light.glossy->inside) light.inside_glossy = light.glossy->inside->size();
+    if (light.glossy->inside) light.inside_glossy = light.glossy->inside->points().size();
     light.glossy->inside.reset();
+    for (const auto& points : light.glossy->watched) points->direct().hits = HitStore();
   }
   light.direct.hits = HitStore();
   if (light.direct.inside) light.inside_diffuse = light.direct.inside->points().size();
@@ -111,17 +112,17 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
                                        .colored_kernels = brdfs && !brdfs->grey()});
   std::optional<SurfaceTransport> light(std::in_place);
   if (!traceDiffuse(pass, group, context, *light)) return std::nullopt;
-  if (!group.samples.diffuse.empty()) {
-    light->view = traceView(pass, group.view(), context);
-    if (!light->view) return std::nullopt;
-    light->direct.watched = {light->view->noisy, light->view->exact};
-  }
   std::optional<GlossyPass> glossy_pass;
   if (brdfs) {
     // Bands beyond those that ship serve exit kernels alone.
     glossy_pass.emplace(pass, group.view(), bounces ? options.exitOrder() : options.glossy_order);
     if (!traceGlossy(*glossy_pass, group, context, *light)) return std::nullopt;
   }
+  auto view = traceView(pass, options.glossy_order, group.view(), context);
+  if (!view) return std::nullopt;
+  light->view = std::move(*view);
+  if (light->view.noisy) light->direct.watched = {light->view.noisy, light->view.exact};
+  if (light->view.noisy_glossy) light->glossy->watched = {light->view.noisy_glossy, light->view.exact_glossy};
   if (bounces && !bounce(pass, glossy_pass ? &*glossy_pass : nullptr, group, context, *light))
     return std::nullopt;
   return light;
@@ -129,13 +130,14 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
 
 std::optional<bundle::PictureError> shownBy(const GroupScene& group, const SurfaceTransport& light,
                                             const std::vector<std::vector<CodedTransfer>>* cells) {
-  if (!light.view) return std::nullopt;
   auto shown = measurePictureError(
-      *light.view, group.view(),
+      light.view, group.view(),
       {.direct = light.direct.field,
        .bounced = light.bounced ? &light.bounced->field : nullptr,
        .bounced_at_points = light.bounced ? std::span<const TransferField>(light.bounced->at_watched)
                                           : std::span<const TransferField>(),
+       .glossy = light.glossy ? &light.glossy->field : nullptr,
+       .brdfs = group.brdfs(),
        .cells = cells});
   if (shown) shown->bound = group.bake.options.picture_bound;
   return shown;

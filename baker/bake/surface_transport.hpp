@@ -23,9 +23,9 @@ struct SurfaceFigures {
     std::uint64_t traced = 0, kept = 0;  // in this run; saved by results of earlier runs
   };
   Rays diffuse, glossy;
-  double ray_seconds = 0.0;                           // of this run
-  std::optional<bundle::PictureError> picture_error;  // of diffuse surfaces
-  float codes_bound = 0.0f;                           // that of diffuse codes
+  double ray_seconds = 0.0;  // of this run
+  std::optional<bundle::PictureError> picture_error;
+  float codes_bound = 0.0f, glossy_codes_bound = 0.0f;
 };
 
 struct SurfaceTransport {
@@ -34,14 +34,14 @@ struct SurfaceTransport {
   std::optional<BounceResult> bounced;
   // Samples inside faces that gathered bounces too.
   std::size_t inside_diffuse = 0, inside_glossy = 0;
-  std::optional<TracedView> view;  // set if there are diffuse samples
-  SurfaceFigures figures;          // without the errors of coding
+  TracedView view;
+  SurfaceFigures figures;  // without the errors of coding
 };
 
 // The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay until
 // dropTransport().
 std::optional<SurfaceTransport> transportLight(const GroupScene& group, const BakeContext& context);
-// Measures how wrong pictures of diffuse surfaces are, as codes show them; without codes, if they are null.
+// Measures how wrong pictures of the surfaces are, as codes show them; without codes, if they are null.
 std::optional<bundle::PictureError> shownBy(const GroupScene& group, const SurfaceTransport& light,
                                             const std::vector<std::vector<CodedTransfer>>* cells);
 void dropTransport(const GroupScene& group, const SurfaceTransport& light, const BakeContext& context);

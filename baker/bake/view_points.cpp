@@ -82,46 +82,86 @@ std::vector<Eye> eyesAround(const TracedScene& scene, float reach) {
   return eyes;
 }
 
-void addPoint(const TracedScene& scene, const FirstHit& hit, std::uint32_t eye, ViewPoints& out) {
-  const GroupGeometry& geometry = scene.geometry;
-  const glm::uvec3 corners = geometry.triangles[hit.triangle];
-  const SampleStretch& diffuse = scene.samples.diffuse;
-  if (const std::uint32_t sample = scene.samples.vertex_sample[corners.x];
-      sample < diffuse.begin || sample >= diffuse.end)
-    return;
-  if (!(triangleArea(geometry, corners) > 0.0)) return;
-  const glm::vec3 weights(1.0f - hit.u - hit.v, hit.u, hit.v);
-  const FacePoint point = facePoint(geometry, corners, weights);
-  if (!(glm::dot(point.normal, point.origin.geometric_normal) > 0.0f)) return;
-  SampleSet& set = out.points.samples;
-  out.points.triangles.push_back(hit.triangle);
-  set.positions.push_back(point.position);
-  set.normals.push_back(point.normal);
-  set.origins.push_back(point.origin);
-  set.origin_offsets.push_back(static_cast<std::uint32_t>(set.origins.size()));
-  out.weights.push_back(weights);
-  out.albedos.push_back(scene.colors.albedo(hit.triangle, hit.u, hit.v));
-  out.eyes.push_back(eye);
-}
+// A Seer collects what eyes see.
+class Seer {
+ public:
+  explicit Seer(const TracedScene& scene) : scene_(scene) {
+    for (ViewPoints* points : {&view_.diffuse, &view_.glossy})
+      points->points.samples.origin_offsets.push_back(0);
+  }
+
+  void add(const Eye& eye) {
+    std::vector<FirstHit> hits(eye.size());
+    scene_.rays.firstHits(eye, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      if (hits[i].any() && !hits[i].back) add(hits[i], -eye[i].direction);
+    ++view_.eyes;
+  }
+
+  View finish() {
+    const std::size_t step = (glossy_.size() + kMostGlossyPoints - 1) / kMostGlossyPoints;
+    for (std::size_t i = 0; i < glossy_.size(); i += step) add(glossy_[i], view_.glossy);
+    view_.glossy.stands_for = static_cast<std::uint32_t>(step);
+    SampleSet &diffuse = view_.diffuse.points.samples, &glossy = view_.glossy.points.samples;
+    diffuse.diffuse = {0, diffuse.size()};
+    diffuse.normal_mapped = diffuse.glossy = {diffuse.size(), diffuse.size()};
+    glossy.glossy = {0, glossy.size()};
+    return std::move(view_);
+  }
+
+ private:
+  struct Seen {
+    FirstHit hit;
+    glm::vec3 to_eye;
+    std::uint32_t eye;
+    FacePoint point;
+  };
+
+  void add(const FirstHit& hit, const glm::vec3& to_eye) {
+    const GroupGeometry& geometry = scene_.geometry;
+    const glm::uvec3 corners = geometry.triangles[hit.triangle];
+    const std::uint32_t sample = scene_.samples.vertex_sample[corners.x];
+    const auto in = [&](const SampleStretch& stretch) {
+      return sample >= stretch.begin && sample < stretch.end;
+    };
+    const bool glossy = in(scene_.samples.glossy);
+    if (!glossy && !in(scene_.samples.diffuse)) return;
+    if (!(triangleArea(geometry, corners) > 0.0)) return;
+    const FacePoint point = facePoint(geometry, corners, {1.0f - hit.u - hit.v, hit.u, hit.v});
+    if (!(glm::dot(point.normal, point.origin.geometric_normal) > 0.0f)) return;
+    const Seen seen{hit, to_eye, view_.eyes, point};
+    if (glossy)
+      glossy_.push_back(seen);
+    else
+      add(seen, view_.diffuse);
+  }
+
+  static void add(const Seen& seen, ViewPoints& out) {
+    SampleSet& set = out.points.samples;
+    out.points.triangles.push_back(seen.hit.triangle);
+    set.positions.push_back(seen.point.position);
+    set.normals.push_back(seen.point.normal);
+    set.origins.push_back(seen.point.origin);
+    set.origin_offsets.push_back(static_cast<std::uint32_t>(set.origins.size()));
+    out.weights.emplace_back(1.0f - seen.hit.u - seen.hit.v, seen.hit.u, seen.hit.v);
+    out.to_eyes.push_back(seen.to_eye);
+    out.eyes.push_back(seen.eye);
+  }
+
+  const TracedScene& scene_;
+  View view_;
+  std::vector<Seen> glossy_;
+};
 
 }  // namespace
 
-ViewPoints viewPoints(const TracedScene& scene) {
+View viewPoints(const TracedScene& scene) {
   const float diagonal = glm::distance(scene.geometry.bounds_min, scene.geometry.bounds_max);
   std::vector<Eye> eyes = eyesInRooms(scene, diagonal);
   if (eyes.empty()) eyes = eyesAround(scene, (kRadii + 1.0f) * diagonal);
-  ViewPoints out;
-  out.points.samples.origin_offsets.push_back(0);
-  std::vector<FirstHit> hits(kRaysOfEye);
-  for (std::uint32_t e = 0; e < eyes.size(); ++e) {
-    scene.rays.firstHits(eyes[e], hits);
-    for (const FirstHit& hit : hits)
-      if (hit.any() && !hit.back) addPoint(scene, hit, e, out);
-  }
-  SampleSet& set = out.points.samples;
-  set.diffuse = {0, set.size()};
-  set.normal_mapped = set.glossy = {set.size(), set.size()};
-  return out;
+  Seer seer(scene);
+  for (const Eye& eye : eyes) seer.add(eye);
+  return seer.finish();
 }
 
 }  // namespace lambent::baker

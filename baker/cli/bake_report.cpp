@@ -65,12 +65,19 @@ nlohmann::json estimatedAndMeasured(const FinishedBake& bake) {
   return json;
 }
 
-// Returns the bound on diffuse codes: the widest, where it was chosen for each group.
+// Return the bounds on codes of diffuse and of glossy surfaces: the widest, where they were chosen for each
+// group.
 double codesBoundOf(const FinishedBake& bake) {
   double bound = 0.0;
   for (const BakeReport::Group& group : bake.report.groups)
     bound = std::max(bound, double{group.codes_bound});
   return bound > 0.0 ? bound : double{bake.options.effectiveErrorBound()};
+}
+double glossyCodesBoundOf(const FinishedBake& bake) {
+  double bound = 0.0;
+  for (const BakeReport::Group& group : bake.report.groups)
+    bound = std::max(bound, double{group.glossy_codes_bound});
+  return bound > 0.0 ? bound : double{bake.options.effectiveGlossyErrorBound()};
 }
 
 // Says why pictures of a group are further off than was asked for.
@@ -84,7 +91,7 @@ std::string whyMissed(const FinishedBake& bake, const bundle::PictureError& erro
 
 // Says which bounds are missed; empty if all are kept.
 std::string missedText(const FinishedBake& bake) {
-  const double bound = codesBoundOf(bake), glossy_bound = bake.options.effectiveGlossyErrorBound();
+  const double bound = codesBoundOf(bake), glossy_bound = glossyCodesBoundOf(bake);
   std::string text;
   for (const BakeReport::Group& group : bake.report.groups)
     if (const auto& error = group.picture_error;
@@ -95,7 +102,7 @@ std::string missedText(const FinishedBake& bake) {
   if (bake.options.picture_bound == 0.0f && bundle::missesBound(bake.report.worst_error, bound))
     text = fmt::format("the error bound: {:.2f} instead of {:.2f} %", 100.0 * bake.report.worst_error,
                        100.0 * bound);
-  if (bundle::missesBound(bake.report.worst_glossy_error, glossy_bound))
+  if (bake.options.picture_bound == 0.0f && bundle::missesBound(bake.report.worst_glossy_error, glossy_bound))
     text += fmt::format("{}: {:.2f} instead of {:.2f} %; --codes keeps more, at a price in bytes and time",
                         text.empty() ? "the error bound of glossy surfaces" : ", of glossy surfaces",
                         100.0 * bake.report.worst_glossy_error, 100.0 * glossy_bound);
@@ -149,7 +156,8 @@ nlohmann::json reportJson(const FinishedBake& bake) {
                       {"proxyTriangles", group.proxy_triangles},
                       {"effects", effects},
                       {"pictureError", pictureErrorJson(group.picture_error)},
-                      {"codesBound", group.codes_bound}});
+                      {"codesBound", group.codes_bound},
+                      {"glossyCodesBound", group.glossy_codes_bound}});
   }
   nlohmann::json neighborhoods = nlohmann::json::array();
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
@@ -272,7 +280,7 @@ void printReport(const FinishedBake& bake) {
              100.0 * r.worst_error, 100.0 * codesBoundOf(bake));
   if (r.worst_glossy_error > 0.0)
     fmt::print("            {:.2f} % of glossy surfaces (bound {:.2f} %)\n", 100.0 * r.worst_glossy_error,
-               100.0 * double{bake.options.effectiveGlossyErrorBound()});
+               100.0 * glossyCodesBoundOf(bake));
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
     fmt::print("  around    {}: {} x {} x {} points, {:.3f} % of irradiance, {:.1f} % of the change\n",
                n.name, n.size.x, n.size.y, n.size.z, 100.0 * n.error, 100.0 * n.change_error);

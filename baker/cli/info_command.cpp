@@ -170,7 +170,7 @@ void printBundle(const bundle::Reader& reader, const Sizes& sizes) {
     fmt::print("  {}, {}\n", counted(group.light_probes.size(), "light probe"),
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
     if (const auto& error = group.picture_error) {
-      fmt::print("  diffuse surfaces are {}\n", pictureErrorText(*error));
+      fmt::print("  surfaces are {}\n", pictureErrorText(*error));
       pictures_missed += error->bound > 0.0f && bundle::missesBound(error->all, error->bound);
     }
     if (const auto& around = group.neighborhood)

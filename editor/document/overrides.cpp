@@ -111,12 +111,4 @@ ApplyReport applyOverrides(Document& document, const Overrides& overrides) {
   return report;
 }
 
-Kept keepForReload(Document& document, const Baseline& before) {
-  return {captureOverrides(document, before)};
-}
-
-ApplyReport restoreAfterReload(Document& document, const Kept& kept) {
-  return applyOverrides(document, kept.overrides);
-}
-
 }  // namespace lambent::editor

@@ -47,13 +47,4 @@ struct ApplyReport {
 // the file has done so.
 ApplyReport applyOverrides(Document& document, const Overrides& overrides);
 
-// ---- Keep the edits of a bundle that is closed and opened again, also by undo of its removal: call
-// keepForReload() before it is closed and restoreAfterReload() after it was opened. (World::replace keeps
-// edits itself.) Selection and history need no such care.
-struct Kept {
-  Overrides overrides;
-};
-Kept keepForReload(Document& document, const Baseline& before);
-ApplyReport restoreAfterReload(Document& document, const Kept& kept);
-
 }  // namespace lambent::editor

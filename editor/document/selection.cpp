@@ -156,8 +156,4 @@ std::vector<TurnedBox> selectionBoxes(const Document& document, const Selection&
   return boxes;
 }
 
-void Selection::prune(const Document& document) {
-  if (std::erase_if(ids_, [&](StableId id) { return !document.find(id); }) > 0) ++version_;
-}
-
 }  // namespace lambent::editor

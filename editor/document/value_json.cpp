@@ -110,12 +110,6 @@ std::map<std::string, std::string> Place::table() const {
   return table;
 }
 
-std::vector<std::string> Place::texts() const {
-  std::vector<std::string> list;
-  for (const Place& item : items()) list.push_back(item.text());
-  return list;
-}
-
 scene::Value Place::value(const scene::FieldInfo& field) const {
   const auto numbers = [&](std::size_t count) {
     const std::vector<Place> parts = items();

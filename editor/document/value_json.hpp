@@ -51,7 +51,6 @@ class Place {
   float number() const;
   std::uint64_t count(std::uint64_t largest) const;
   std::map<std::string, std::string> table() const;  // an object whose values are strings
-  std::vector<std::string> texts() const;
   // Returns the value of a field. Faults if its kind or range is wrong.
   scene::Value value(const scene::FieldInfo& field) const;
 

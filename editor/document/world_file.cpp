@@ -335,20 +335,6 @@ std::filesystem::path resolvePath(const std::filesystem::path& world_path, std::
   return (world_path.parent_path() / std::filesystem::path(path)).lexically_normal();
 }
 
-std::string pathInWorld(const std::filesystem::path& world_path, const std::filesystem::path& file) {
-  std::error_code ignored;
-  const auto folder = std::filesystem::absolute(world_path, ignored).lexically_normal().parent_path();
-  const auto there = std::filesystem::absolute(file, ignored).lexically_normal();
-  const auto relative = there.lexically_relative(folder);
-  return (relative.empty() ? there : relative).generic_string();
-}
-
-std::string resolveLight(const std::filesystem::path& world_path, const std::string& word) {
-  const Result<spec::Light> light = spec::parseLight(word);
-  const auto* environment_map = light ? std::get_if<spec::EnvironmentMapLight>(&*light) : nullptr;
-  return environment_map ? resolvePath(world_path, environment_map->file.generic_string()).string() : word;
-}
-
 Result<WorldFile> loadWorldFile(const std::filesystem::path& path) {
   const Result<std::string> text = readTextFile(path);
   if (!text) return failAgain(text.error());

@@ -41,11 +41,8 @@ Result<std::string> worldText(const WorldFile& world);
 Result<WorldFile> loadWorldFile(const std::filesystem::path& path);
 Result<void> saveWorldFile(const std::filesystem::path& path, const WorldFile& world);
 
-// Convert a bundle's path: from a world file at `world_path` to a file on disk, and back.
+// Returns the file on disk that a world file at `world_path` calls so.
 std::filesystem::path resolvePath(const std::filesystem::path& world_path, std::string_view path);
-std::string pathInWorld(const std::filesystem::path& world_path, const std::filesystem::path& file);
-// Resolves the environment map's path in a light word in the same way.
-std::string resolveLight(const std::filesystem::path& world_path, const std::string& word);
 
 // Captures the document as it is now. `kept` is the file that was loaded; its unknown parts are carried over.
 WorldFile captureWorld(Document& document, const Baseline& baseline, const WorldFile* kept = nullptr);

@@ -142,29 +142,6 @@ CameraPose fromOrbit(const spec::OrbitCamera& orbit, const scene::Box& bounds) {
   return pose;
 }
 
-spec::OrbitCamera toOrbit(const CameraPose& pose, const scene::Box& bounds) {
-  spec::OrbitCamera orbit{pose.azimuth_deg, pose.elevation_deg, pose.distance_m / sizeOf(bounds),
-                          pose.fov_deg};
-  if (isOrbit(pose, bounds)) return orbit;
-  const glm::vec3 offset = pose.eye() - (bounds.empty() ? glm::vec3(0.0f) : bounds.center());
-  const float distance = glm::length(offset);
-  if (!(distance > 1e-6f * sizeOf(bounds))) return orbit;
-  orbit.azimuth_deg = glm::degrees(std::atan2(offset.x, offset.z));
-  orbit.elevation_deg = glm::degrees(std::asin(std::clamp(offset.y / distance, -1.0f, 1.0f)));
-  orbit.distance_radii = distance / sizeOf(bounds);
-  return orbit;
-}
-
-bool isOrbit(const CameraPose& pose, const scene::Box& bounds) {
-  const glm::vec3 center = bounds.empty() ? glm::vec3(0.0f) : bounds.center();
-  return !pose.orthographic && glm::length(pose.target_ws - center) <= 1e-5f * sizeOf(bounds);
-}
-
-std::string orbitWord(const spec::OrbitCamera& orbit) {
-  return fmt::format("orbit:{},{},{},{}", orbit.azimuth_deg, orbit.elevation_deg, orbit.distance_radii,
-                     orbit.fov_deg);
-}
-
 glm::mat4 nodeMatrix(const CameraPose& pose) {
   const Frame frame = frameOf(pose);
   return glm::mat4(glm::vec4(frame.right, 0.0f), glm::vec4(frame.up, 0.0f), glm::vec4(frame.back, 0.0f),

@@ -61,11 +61,6 @@ spec::View viewOf(const CameraPose& pose, const scene::Box& bounds, float aspect
 
 // ---- Conversions.
 CameraPose fromOrbit(const spec::OrbitCamera& orbit, const scene::Box& bounds);
-// Returns the orbit with the same eye that looks at the bounds' centre. It gives the same picture if the pose
-// looks there, too.
-spec::OrbitCamera toOrbit(const CameraPose& pose, const scene::Box& bounds);
-bool isOrbit(const CameraPose& pose, const scene::Box& bounds);
-std::string orbitWord(const spec::OrbitCamera& orbit);  // "orbit:30,15,2.5,40"
 // Converts a camera node of a file. The roll is lost, and the target is put at the depth of the bounds'
 // centre.
 CameraPose fromNode(const glm::mat4& world_from_node, const scene::CameraComponent& camera,

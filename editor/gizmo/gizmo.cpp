@@ -49,12 +49,6 @@ std::string_view handleWord(Handle handle) {
   return kWords[static_cast<std::size_t>(handle)];
 }
 
-std::optional<Handle> parseHandle(std::string_view word) {
-  for (const Handle handle : kHandles)
-    if (handleWord(handle) == word) return handle;
-  return std::nullopt;
-}
-
 void Gizmo::setTargets(std::vector<GizmoTarget> targets) {
   if (!dragging()) targets_ = std::move(targets);
 }

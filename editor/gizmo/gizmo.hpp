@@ -42,7 +42,6 @@ enum class Handle : std::uint8_t {
 inline constexpr std::array kHandles = {Handle::X,  Handle::Y,  Handle::Z,     Handle::YZ,
                                         Handle::ZX, Handle::XY, Handle::Screen};
 std::string_view handleWord(Handle handle);  // "x", "yz", "screen"
-std::optional<Handle> parseHandle(std::string_view word);
 
 struct GizmoOptions {
   GizmoMode mode = GizmoMode::Move;

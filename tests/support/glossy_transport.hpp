@@ -55,7 +55,7 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
         triangles.push_back(i);
     const auto inside = std::make_shared<baker::GlossyInsideFaces>(pass, triangles);
     const auto found = inside->look(glossy->hits.bytesLeft(), {progress});
-    EXPECT_TRUE(found && inside->fit(found->field.visibility, glossy->field.visibility, {}));
+    EXPECT_TRUE(found && inside->fit(found->visibility, glossy->field.visibility, {}));
     if (settings.fit == Fit::AllLight) glossy->inside = inside;
   }
   EXPECT_TRUE(baker::diffuseFromGlossy(pass, glossy->field, *direct, {}));
@@ -67,7 +67,7 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
   EXPECT_TRUE(bounced.has_value());
   partner.finish();
   bake.bounced = std::move(*bounced);
-  if (bake.glossy.inside) bake.hits_inside = bake.glossy.inside->hits().bytes();
+  if (bake.glossy.inside) bake.hits_inside = bake.glossy.inside->points().direct().hits.bytes();
   bake.glossy.inside.reset();  // it refers to the pass
   return bake;
 }

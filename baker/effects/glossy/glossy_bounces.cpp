@@ -287,7 +287,7 @@ void GlossyBounces::visitHits(std::size_t sample, const ExitRadiance& exit, cons
 bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& now,
                              const BakeContext& context) const {
   const double share = std::min(bounce.growth * shareOfBefore(), 1.0);
-  now = zero(direct_.field.order_out, at.pass.size());
+  now = zero(at.pass.shape().order_out, at.pass.size());
   const auto gatherRange = [&](std::size_t begin, std::size_t end) {
     const StoredHits hits(at.hits, at.pass, begin, end);
     Walk walk(at.pass, bounce);
@@ -308,11 +308,25 @@ bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& n
 
 bool GlossyBounces::fitInside(const Bounce& bounce, const BakeContext& context) {
   const GlossyInsideFaces& inside = *direct_.inside;
-  context.progress.begin(fmt::format("bounce {} inside faces", bounce.number), inside.size(), "samples");
+  const TracedGlossyPoints& points = inside.points();
+  context.progress.begin(fmt::format("bounce {} inside faces", bounce.number), points.size(), "samples");
   State there;
-  return gatherAt({inside.pass(), inside.hits(), inside.looks()}, bounce, there, context) &&
+  return gatherAt({points.pass(), points.direct().hits, points.looks()}, bounce, there, context) &&
          inside.fit(there.environment.values, now_.environment.values, context.stop) &&
          inside.fit(there.lights.values, now_.lights.values, context.stop);
+}
+
+bool GlossyBounces::watch(const Bounce& bounce, const BakeContext& context) const {
+  for (const auto& points : direct_.watched) {
+    State there;
+    if (!gatherAt({points->pass(), points->direct().hits, points->looks()}, bounce, there,
+                  context.keyed(Key{})))
+      return false;
+    std::vector<float>& sum = points->direct().field.bounced;
+    sum.resize(there.environment.values.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += there.environment.values[i];
+  }
+  return true;
 }
 
 bool GlossyBounces::gather(const Bounce& bounce, TransferField& now, const BakeContext& context) {
@@ -325,6 +339,7 @@ bool GlossyBounces::gather(const Bounce& bounce, TransferField& now, const BakeC
                                 now_.lights.values);
   }
   if (direct_.inside && !fitInside(bounce, context.part("inside faces"))) return false;
+  if (!watch(bounce, context)) return false;
   if (sum_.environment.values.empty()) sum_ = zero(order_out_, pass_.size());
   return take(now_, &now, context.stop);
 }

@@ -78,6 +78,8 @@ class GlossyBounces : public BouncePartner {
   bool gatherAt(const Receivers& at, const Bounce& bounce, State& now, const BakeContext& context) const;
   // Fits now_ to what the pass adds at the points inside faces.
   bool fitInside(const Bounce& bounce, const BakeContext& context);
+  // Adds what the pass brings to the watched points. Returns false if stopped.
+  bool watch(const Bounce& bounce, const BakeContext& context) const;
   // Computes the energies of `state`; if `plain` is not null, also writes diffuse transfer into it and adds
   // the state to the sum. Returns false if stopped.
   bool take(const State& state, TransferField* plain, const std::stop_token& stop);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/effects/glossy/glossy_hemisphere.hpp"
@@ -48,6 +49,7 @@ class GlossyPass {
 };
 
 class GlossyInsideFaces;
+class TracedGlossyPoints;
 
 struct GlossyDirect {
   GlossyField field;  // visibility and lights_shadowed
@@ -57,6 +59,8 @@ struct GlossyDirect {
   std::uint32_t filled_samples = 0;
   // If direct light was fitted to points inside faces, these are the points; bounces are gathered there too.
   std::shared_ptr<const GlossyInsideFaces> inside = {};
+  // Points at which bounces are gathered too, and fitted to nothing. Passes add to `bounced` of their fields.
+  std::vector<std::shared_ptr<TracedGlossyPoints>> watched = {};
 };
 
 // Returns nothing if stopped. Also fills in the glossy samples of `looks`, which has all samples of the

@@ -35,11 +35,10 @@ class GlossyHemisphere {
   // Returns the share of the hemisphere that a ray stands for; all shares sum to 1.
   double weight(std::size_t ray) const { return weights_[ray]; }
 
-  std::size_t evenCount() const { return even_.size(); }                // number of even harmonics in V
   std::size_t evenOutputs() const { return even_outputs_; }             // number of even harmonics in l'
   std::span<const std::uint16_t> evenIndices() const { return even_; }  // index of each among all harmonics
   // Returns what unit radiance along a ray and along its mirror image adds: even harmonics times solid angle.
-  // There are evenCount() of them, of which the first evenOutputs() belong to l'.
+  // They are those of evenIndices(), of which the first evenOutputs() belong to l'.
   std::span<const float> row(std::size_t ray) const {
     return std::span(rows_).subspan(ray * even_.size(), even_.size());
   }

@@ -6,20 +6,15 @@ namespace lambent::baker {
 
 GlossyInsideFaces::GlossyInsideFaces(const GlossyPass& vertices, std::span<const std::uint32_t> triangles)
     : vertices_(vertices),
-      points_(facePoints(vertices.scene().geometry, vertices.scene().samples, triangles)),
-      diffuse_(vertices.scene().withSamples(points_.samples), vertices.plain().settings()),
-      pass_(diffuse_, vertices.scene().withSamples(points_.samples), vertices.shape().order_out),
-      looks_{std::vector<std::uint8_t>(points_.samples.size(), 0),
-             std::vector<std::uint8_t>(points_.samples.size(), 0)} {}
+      points_(vertices.scene(), facePoints(vertices.scene().geometry, vertices.scene().samples, triangles),
+              vertices.plain().settings(), vertices.shape().order_out) {}
 
-std::optional<GlossyDirect> GlossyInsideFaces::look(std::size_t hit_memory, const BakeContext& context) {
-  auto found = bakeGlossyDirect(pass_, hit_memory, looks_, context, "inside faces");
-  if (!found) return std::nullopt;
-  hits_ = std::exchange(found->hits, {});
+std::optional<GlossyField> GlossyInsideFaces::look(std::size_t hit_memory, const BakeContext& context) {
+  if (!points_.look(hit_memory, context, "inside faces")) return std::nullopt;
   const TracedScene& scene = vertices_.scene();
-  fit_.emplace(scene.geometry, scene.samples, scene.samples.glossy, points_,
-               SampleStretch{0, points_.samples.size()}, looks_.valid);
-  return found;
+  fit_.emplace(scene.geometry, scene.samples, scene.samples.glossy, points_.points(),
+               SampleStretch{0, points_.size()}, points_.looks().valid);
+  return std::exchange(points_.direct().field, {});
 }
 
 bool GlossyInsideFaces::fit(std::span<const float> at_points, std::span<float> at_vertices,

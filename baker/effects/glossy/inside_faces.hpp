@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/effects/glossy/glossy_direct.hpp"
+#include "baker/effects/glossy/traced_points.hpp"
 #include "baker/trace/vertex_fit.hpp"
 #include "baker/transport/face_points.hpp"
 
@@ -19,17 +19,12 @@ class GlossyInsideFaces {
   // Places one sample in each triangle; all triangles must belong to glossy draws. Rays and orders are those
   // of `vertices`, which must outlive this.
   GlossyInsideFaces(const GlossyPass& vertices, std::span<const std::uint32_t> triangles);
-  GlossyInsideFaces(const GlossyInsideFaces&) = delete;  // its passes refer to its points
-  GlossyInsideFaces& operator=(const GlossyInsideFaces&) = delete;
 
-  // Traces direct light at the points, before anything is fitted, as bakeGlossyDirect does; the hits stay
-  // here.
-  std::optional<GlossyDirect> look(std::size_t hit_memory, const BakeContext& context);
+  // Traces direct light at the points, before anything is fitted, and returns it; the hits stay here.
+  // Returns nothing if stopped.
+  std::optional<GlossyField> look(std::size_t hit_memory, const BakeContext& context);
 
-  const GlossyPass& pass() const { return pass_; }  // its samples are the points, starting at 0
-  const SampleVisibilities& looks() const { return looks_; }
-  const HitStore& hits() const { return hits_; }
-  std::size_t size() const { return pass_.size(); }
+  const TracedGlossyPoints& points() const { return points_; }
 
   // Corrects values at vertices by how far interpolation between them is off at the points. Both have the
   // same number of values for each sample, possibly none. Returns false if stopped.
@@ -37,11 +32,7 @@ class GlossyInsideFaces {
 
  private:
   const GlossyPass& vertices_;
-  FacePoints points_;
-  DirectPass diffuse_;
-  GlossyPass pass_;
-  SampleVisibilities looks_;
-  HitStore hits_;
+  TracedGlossyPoints points_;
   std::optional<VertexFit> fit_;
 };
 

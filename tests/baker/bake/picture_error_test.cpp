@@ -37,6 +37,11 @@ Scene openRoom() {
   return scene;
 }
 
+Scene ofMetal(Scene scene) {
+  for (auto& material : scene.materials) material.metallic = 1.0f, material.roughness = 0.5f;
+  return scene;
+}
+
 bundle::PictureError errorOf(const Scene& scene, const BakeOptions& options) {
   const testing::TemporaryFolder folder;
   Progress progress;
@@ -110,20 +115,52 @@ TEST(PictureError, IsLargerThanItsBoundWhereRaysAreFixed) {
   EXPECT_GT(error.all, error.bound);
 }
 
+TEST(PictureError, OfAnOpenMetalSphereIsThatOfItsCodes) {
+  const bundle::PictureError error =
+      errorOf(ofMetal(testing::sceneOf({testing::icosphere(glm::vec3(0.0f), 1.0f, 4)})), plainOptions());
+  EXPECT_GT(error.points, 100u);
+  EXPECT_LT(error.samples, 1e-3f) << "it sees everything above its horizon";
+  EXPECT_LT(error.interpolation, 1e-3f) << "pixels have their own normal";
+  EXPECT_LT(error.codes, 0.03f);
+}
+
+TEST(PictureError, OfMetalsFallsWithMoreVerticesWithMoreRaysAndWithFinerCodes) {
+  BakeOptions options = plainOptions();
+  const bundle::PictureError coarse = errorOf(ofMetal(boxOnFloor(6)), options),
+                             fine = errorOf(ofMetal(boxOnFloor(24)), options);
+  EXPECT_GT(coarse.interpolation, 0.02f);
+  EXPECT_LT(fine.interpolation, 0.5f * coarse.interpolation);
+  options.error_bound = 0.004f;
+  EXPECT_LT(errorOf(ofMetal(boxOnFloor(24)), options).codes, 0.5f * fine.codes);
+  options.rays = 1024;
+  EXPECT_LT(errorOf(ofMetal(boxOnFloor(24)), options).samples, 0.7f * fine.samples);
+}
+
+TEST(PictureError, OfMetalsIsWithinTheBoundThatWasAskedForAndNotFarBelow) {
+  BakeOptions options;
+  options.picture_bound = 0.05f;
+  const bundle::PictureError error = errorOf(ofMetal(openRoom()), options);
+  EXPECT_LE(error.all, options.picture_bound)
+      << "rays " << error.samples << ", codes " << error.codes << ", interpolation " << error.interpolation;
+  EXPECT_GE(error.all, 0.5f * options.picture_bound);
+}
+
 TEST(PictureError, EyesStandInRoomsAndAroundBodies) {
   const Transport room(openRoom());
-  const ViewPoints in_room = viewPoints(room.diffuse());
+  const ViewPoints in_room = viewPoints(room.diffuse()).diffuse;
   ASSERT_GT(in_room.eyes.size(), 300u);
   for (const glm::vec3& normal : in_room.points.samples.normals)
     EXPECT_GE(normal.y, -0.01f) << "there is no ceiling, and walls are not seen from outside";
   const Transport sphere(testing::sceneOf({testing::icosphere(glm::vec3(0.0f), 1.0f, 3)}));
-  const ViewPoints around = viewPoints(sphere.diffuse());
+  const ViewPoints around = viewPoints(sphere.diffuse()).diffuse;
   ASSERT_GT(around.eyes.size(), 300u);
   float least = 1.0f, most = -1.0f;
   for (const glm::vec3& point : around.points.samples.positions)
     least = testing::smaller(least, point.y), most = testing::larger(most, point.y);
   EXPECT_LT(least, -0.8f);
   EXPECT_GT(most, 0.8f);
+  for (std::size_t p = 0; p < around.eyes.size(); ++p)
+    EXPECT_GT(glm::dot(around.to_eyes[p], around.points.samples.positions[p]), -0.1f) << "eyes are outside";
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST(CameraControl, WhatIsFramedFillsThePictureAndStaysInIt) {
   EXPECT_EQ(framed(tilted(), point, kAspect).target_ws, glm::vec3(1.0f));
 }
 
-TEST(CameraControl, OrbitWordsGiveTheVeryPictureAndPosesComeBackExactly) {
+TEST(CameraControl, OrbitsGiveTheVeryPictureAndPosesComeBackExactly) {
   const spec::OrbitCamera orbit{-130.0f, 90.0f, 2.5f, 35.0f};  // straight down
   const CameraPose pose = fromOrbit(orbit, kBounds);
   const spec::View ours = viewOf(pose, kBounds, kAspect),
@@ -105,13 +105,6 @@ TEST(CameraControl, OrbitWordsGiveTheVeryPictureAndPosesComeBackExactly) {
     EXPECT_LT(glm::length(ours.view_from_world[column] - theirs.view_from_world[column]), 1e-4f);
     EXPECT_LT(glm::length(ours.clip_from_view[column] - theirs.clip_from_view[column]), 1e-3f);
   }
-  EXPECT_TRUE(isOrbit(pose, kBounds));
-  EXPECT_EQ(orbitWord(toOrbit(pose, kBounds)), "orbit:-130,90,2.5,35");
-
-  const spec::OrbitCamera near = toOrbit(tilted(), kBounds);
-  EXPECT_FALSE(isOrbit(tilted(), kBounds));
-  EXPECT_LT(glm::length(fromOrbit(near, kBounds).eye() - tilted().eye()), 1e-4f) << "from the same place";
-
   for (const bool orthographic : {false, true})
     EXPECT_EQ(*parsePose(poseWord(tilted(orthographic))), tilted(orthographic));
   EXPECT_FALSE(parsePose("pose:1,2,3"));
