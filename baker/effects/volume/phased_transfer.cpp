@@ -6,6 +6,7 @@
 #include "baker/effects/volume/gmres.hpp"
 #include "baker/effects/volume/phase_scattering.hpp"
 #include "baker/effects/volume/phased_light.hpp"
+#include "baker/effects/volume/scatter_light.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
 #include "baker/jobs/kept_value.hpp"
 #include "baker/jobs/parallel.hpp"
@@ -89,43 +90,6 @@ class PhasedSystem {
   int kept_vectors_ = 0;
 };
 
-bool scatterOutputs(PhaseScattering& scattering, const VolumeSettings& settings, VolumeTransfer& out,
-                    const BakeContext& context) {
-  context.progress.begin("scattered light", out.columns() * out.full_channels, "columns");
-  const std::size_t columns = out.columns(), block_size = out.outputs() * columns,
-                    rows = out.grid.samples() * out.outputs();
-  // A row is one output of a sample; this returns where its columns start in the vectors.
-  const auto at = [&](std::size_t row, std::size_t block) {
-    return &out.vectors[row / out.outputs() * out.vectorSize() + block * block_size +
-                        row % out.outputs() * columns];
-  };
-  std::vector<float> first(rows * kBlockColumns), result(first.size());
-  for (std::size_t begin = 0; begin < columns; begin += kBlockColumns) {
-    const std::size_t width = std::min(kBlockColumns, columns - begin);
-    std::fill(first.begin(), first.end(), 0.0f);
-    for (std::size_t row = 0; row < rows; ++row)
-      std::copy_n(at(row, 0) + begin, width, &first[row * kBlockColumns]);
-    for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
-      const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
-      const BakeContext block_context = context.part("block", begin, channel);
-      PhasedSystem system(scattering, albedo, block_context);
-      SolvedBlock solved{{}, result};
-      const auto found = findOrMake(block_context.part("solved"), solved, [&] {
-        solved.result = settings.scatterings < 0 ? system.solve(first, result)
-                                                 : system.repeat(first, result, settings.scatterings);
-        return !solved.result.stopped;
-      });
-      if (!found) return false;
-      out.iterations = std::max(out.iterations, solved.result.iterations);
-      out.residual = std::max(out.residual, solved.result.residual);
-      for (std::size_t row = 0; row < rows; ++row)
-        std::copy_n(&result[row * kBlockColumns], width, at(row, 1 + channel) + begin);
-      context.progress.add(width);
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
@@ -157,7 +121,10 @@ bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, co
   out.rays += scattering->samplesTraced() * few.size();
   out.rays_kept += (samples - scattering->samplesTraced()) * few.size();
   out.row_bytes = scattering->bytes();
-  return scatterOutputs(*scattering, settings, out, context);
+  const auto system = [&](double albedo, const BakeContext& block) {
+    return PhasedSystem(*scattering, albedo, block);
+  };
+  return scatterLight(system, settings, out, context);
 }
 
 void dropPhasedParts(const BakeContext& context, std::size_t samples) {

@@ -7,6 +7,7 @@
 #include "baker/effects/volume/fit_within_voxels.hpp"
 #include "baker/effects/volume/gmres.hpp"
 #include "baker/effects/volume/phased_transfer.hpp"
+#include "baker/effects/volume/scatter_light.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
 #include "baker/jobs/kept_value.hpp"
@@ -112,38 +113,6 @@ class Scattering {
   std::vector<double> scale_;
 };
 
-bool scatterColumns(const ScatterRows& rows, const FirstLights& light, const VolumeSettings& settings,
-                    VolumeTransfer& out, const BakeContext& context) {
-  context.progress.begin("scattered light", out.columns() * out.full_channels, "columns");
-  const std::size_t columns = out.columns(), samples = out.grid.samples();
-  std::vector<float> first(samples * kBlockColumns), result(first.size());
-  for (std::size_t block = 0; block < columns; block += kBlockColumns) {
-    const std::size_t width = std::min(kBlockColumns, columns - block);
-    std::fill(first.begin(), first.end(), 0.0f);
-    for (std::size_t p = 0; p < samples; ++p)
-      std::copy_n(&light.transfer[p * columns + block], width, &first[p * kBlockColumns]);
-    for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
-      const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
-      const BakeContext block_context = context.part("block", block, channel);
-      Scattering scattering(rows, out.grid, light, albedo, block_context);
-      SolvedBlock solved{{}, result};
-      const auto found = findOrMake(block_context.part("solved"), solved, [&] {
-        solved.result = settings.scatterings < 0 ? scattering.solve(first, result)
-                                                 : scattering.repeat(first, result, settings.scatterings);
-        return !solved.result.stopped;
-      });
-      if (!found) return false;
-      out.iterations = std::max(out.iterations, solved.result.iterations);
-      out.residual = std::max(out.residual, solved.result.residual);
-      for (std::size_t p = 0; p < samples; ++p)
-        std::copy_n(&result[p * kBlockColumns], width,
-                    &out.vectors[p * out.vectorSize() + (1 + channel) * columns + block]);
-      context.progress.add(width);
-    }
-  }
-  return true;
-}
-
 // Removes the checkpoints, once all parts are complete.
 void dropParts(const BakeContext& context, const VolumeTransfer& transfer) {
   if (!context.keeps()) return;
@@ -188,7 +157,10 @@ bool bakeTransfer(const Medium& medium, const VolumeSettings& settings, const Oc
   out.rays += rows->samplesTraced() * few.size();
   out.rays_kept += (samples - rows->samplesTraced()) * few.size();
   out.row_bytes = rows->bytes();
-  return scatterColumns(*rows, *light, settings, out, context) && fit(&*rows);
+  const auto system = [&](double albedo, const BakeContext& block) {
+    return Scattering(*rows, out.grid, *light, albedo, block);
+  };
+  return scatterLight(system, settings, out, context) && fit(&*rows);
 }
 
 }  // namespace
