@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# run_web.sh PROGRAMS ASSETS: bakes two small scenes, and runs the tests of web/ with it in Node.js and in Chromium.
+# run_web.sh PROGRAMS ASSETS: bakes three small scenes and Sponza, and runs the tests of web/ with them in Node.js and in
+# Chromium. Sponza comes from ../shared/data beside the checkout, or from LAMBENT_SHARED_DATA; without it, it is left out.
 # Exit status: 0 passed, 77 skipped, since Node.js, Chromium or web/node_modules is not there; LAMBENT_REQUIRE=web makes
 # that a failure. Nothing is fetched from the network.
 set -euo pipefail
@@ -20,10 +21,22 @@ trap 'rm -rf "$folder"' EXIT
 "$programs/lambent" bake "$assets/hello.glb" -o "$folder/hello.lmb.glb" --quality draft --cache off >/dev/null
 node "$web/test/mapped_scene.js" "$folder/mapped.gltf"
 "$programs/lambent" bake "$folder/mapped.gltf" -o "$folder/mapped.lmb.glb" --quality draft --rays 128 --cache off >/dev/null
+node "$web/test/reflecting_scene.js" "$folder/reflecting.gltf"
+"$programs/lambent" bake "$folder/reflecting.gltf" -o "$folder/reflecting.lmb.glb" --quality draft --rays 128 --bounces 1 \
+  --cache off >/dev/null
+bundles=$folder/hello.lmb.glb,$folder/mapped.lmb.glb,$folder/reflecting.lmb.glb
+sponza=${LAMBENT_SHARED_DATA:-$here/../../../shared/data}/architecture/dabrovic-sponza/dabrovic-sponza.glb
+if [[ -f $sponza ]]; then
+  "$programs/lambent" bake "$sponza" -o "$folder/sponza.lmb.glb" --quality draft --cache off >/dev/null
+  bundles=$bundles,$folder/sponza.lmb.glb
+else
+  [[ ,${LAMBENT_REQUIRE:-}, != *,data,* ]] || { echo "$sponza is not here"; exit 1; }
+  echo "without Sponza: $sponza is not here; set LAMBENT_SHARED_DATA to the folder with architecture/"
+fi
 "$programs/lambent" export "$folder/hello.lmb.glb" -o "$folder/arrays" \
   --light constant:1,1,1 --light sun:30,40,20,5 --order 5 >/dev/null
 export LAMBENT_BIN=$programs LAMBENT_TEST_BUNDLE=$folder/hello.lmb.glb
-export LAMBENT_TEST_BUNDLES=$folder/hello.lmb.glb,$folder/mapped.lmb.glb
+export LAMBENT_TEST_BUNDLES=$bundles
 export LAMBENT_TEST_ARRAYS=$folder/arrays LAMBENT_TEST_WORK=$folder/work LAMBENT_TEST_MAP=$assets/sky.hdr
 export CHROMIUM=$chromium
 cd "$web" && node --test --test-concurrency=1 test/*.test.js test/browser/*.test.js

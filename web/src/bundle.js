@@ -2,6 +2,7 @@
 // memory or arrive piece by piece.
 import { decompress } from 'fzstd';
 import { shapeOf, decodeCodebook, decodeClusterIds, decodeWeightPlane } from './codebook.js';
+import { decodeBrdfTable } from './brdf_table.js';
 import { decodeRows } from './rows.js';
 
 export const EXTENSION = 'LAMBENT_radiance_transfer';
@@ -60,6 +61,10 @@ export class Bundle {
       codebook: decodeCodebook(bytes, shapeOf(transfer), transfer.clusters),
       clusterOf: decodeClusterIds(ids, transfer.clusters, samples),
     };
+  }
+
+  async brdfTable(entry) {
+    return decodeBrdfTable(await this.payload(entry.payload, 'brdfTable'));
   }
 
   async plane(plane) {

@@ -28,8 +28,8 @@ function halfToFloat(half) {
   return exponent === 31 ? (fraction ? NaN : sign * Infinity) : sign * 2 ** (exponent - 25) * (1024 + fraction);
 }
 
-// Multiplies out a codebook whose vectors are coordinates in a shared basis.
-function expand(front, axisCounts, axes, size) {
+// Reads a codebook whose vectors are coordinates in a basis that the clusters share.
+function sharedVectors(front, axisCounts, axes, size) {
   const clusters = axisCounts.length;
   const [rank] = front.values(Uint32Array, 1);
   if (rank > size) throw new Error(`${front.subject} is damaged: its basis is larger than a vector`);
@@ -37,21 +37,14 @@ function expand(front, axisCounts, axes, size) {
   const [meanScale] = front.values(Float32Array, 1);
   const integers = front.integers(rank * size);
   const means = front.integers(rank * clusters), directions = front.integers(rank * axes);
-  const basis = new Float64Array(rank * size);
+  const basis = new Float32Array(rank * size);
   for (let r = 0; r < rank; ++r)
     for (let i = 0; i < size; ++i) basis[r * size + i] = valueScales[i] * basisScales[r] * integers[r * size + i];
 
-  const vectors = new Float32Array((clusters + axes) * size), sum = new Float64Array(size);
+  const coordinates = new Float32Array((clusters + axes) * rank);
   let next = 0;
-  const put = (coordinates, first, stride, scale) => {
-    sum.fill(0);
-    for (let r = 0; r < rank; ++r) {
-      const weight = scale * coordinates[first + r * stride];
-      if (weight === 0) continue;
-      for (let i = 0, b = r * size; i < size; ++i, ++b) sum[i] += weight * basis[b];
-    }
-    vectors.set(sum, next);
-    next += size;
+  const put = (source, first, stride, scale) => {
+    for (let r = 0; r < rank; ++r) coordinates[next++] = scale * source[first + r * stride];
   };
   const sharing = []; // number of clusters that have an axis j, for each j
   for (const count of axisCounts) for (let j = 0; j < count; ++j) sharing[j] = (sharing[j] ?? 0) + 1;
@@ -62,12 +55,20 @@ function expand(front, axisCounts, axes, size) {
       first += rank * sharing[j];
     }
   }
-  return vectors;
+  return { rank, basis, coordinates };
+}
+
+// Reads a codebook of plain vectors: coordinates in the basis of the values themselves.
+function plainVectors(front, count, size) {
+  const basis = new Float32Array(size * size);
+  for (let i = 0; i < size; ++i) basis[i * size + i] = 1;
+  return { rank: size, basis, coordinates: Float32Array.from(front.split(count * size), halfToFloat) };
 }
 
 /**
  * Decodes a codebook: `axisCounts` of each cluster, `firstAxis` (one more entry than clusters), `offsets` and `scales`
- * of the weights of each axis, and `vectors`: of each cluster the mean, then its axes.
+ * of the weights of each axis, and vectors: of each cluster the mean, then its axes, each as `rank` `coordinates` in a
+ * `basis` of `rank` x `shape.size` numbers.
  */
 export function decodeCodebook(bytes, shape, clusters, subject = 'a codebook') {
   const front = new Front(bytes, subject);
@@ -82,11 +83,28 @@ export function decodeCodebook(bytes, shape, clusters, subject = 'a codebook') {
   const axes = firstAxis[clusters];
   const offsets = front.values(Float32Array, axes), scales = front.values(Float32Array, axes);
   const vectors = form === 0
-    ? Float32Array.from(front.split((clusters + axes) * shape.size), halfToFloat)
-    : expand(front, axisCounts, axes, shape.size);
+    ? plainVectors(front, clusters + axes, shape.size) : sharedVectors(front, axisCounts, axes, shape.size);
   front.finish();
-  if (!vectors.every(Number.isFinite)) throw new Error(`${subject} is damaged: a value is not finite`);
-  return { axisCounts, firstAxis, offsets, scales, vectors };
+  const finite = (values) => values.every(Number.isFinite);
+  if (!finite(vectors.basis) || !finite(vectors.coordinates) || !finite(offsets) || !finite(scales))
+    throw new Error(`${subject} is damaged: a value is not finite`);
+  return { axisCounts, firstAxis, offsets, scales, ...vectors };
+}
+
+/** Returns values `first` to `last` of all vectors of a codebook. */
+export function expandVectors({ firstAxis, rank, basis, coordinates }, size, first = 0, last = size) {
+  const count = firstAxis.length - 1 + firstAxis.at(-1), width = last - first;
+  const out = new Float32Array(count * width), sum = new Float64Array(width);
+  for (let v = 0; v < count; ++v) {
+    sum.fill(0);
+    for (let r = 0; r < rank; ++r) {
+      const weight = coordinates[v * rank + r];
+      if (weight === 0) continue;
+      for (let i = 0, b = r * size + first; i < width; ++i, ++b) sum[i] += weight * basis[b];
+    }
+    out.set(sum, v * width);
+  }
+  return out;
 }
 
 /** Returns the cluster of each sample of a cell. Cells of one cluster have no payload. */
@@ -120,21 +138,23 @@ export function decodeWeightPlane(bytes, bits, count, subject = 'a weight plane'
   return codes;
 }
 
-/** Returns the whole transfer vectors of a cell. Only tests need them; shading multiplies the codebook instead. */
-export function decodeTransfer(shape, codebook, clusterOf, planes) {
-  const out = new Float32Array(clusterOf.length * shape.size);
+/**
+ * Returns values `first` to `last` of the transfer vectors of a cell, decoded on the CPU. Shading decodes in shaders;
+ * this serves what is needed once, and tests.
+ */
+export function decodeTransfer(shape, codebook, clusterOf, planes, first = 0, last = shape.size) {
+  const width = last - first, out = new Float32Array(clusterOf.length * width);
+  const vectors = expandVectors(codebook, shape.size, first, last);
   const { sampleAt } = positionsOf(clusterOf, codebook.axisCounts.length);
+  const value = new Float64Array(width);
   sampleAt.forEach((sample, position) => {
-    const cluster = clusterOf[sample], first = codebook.firstAxis[cluster];
-    const mean = (first + cluster) * shape.size;
-    for (let i = 0; i < shape.size; ++i) {
-      let value = codebook.vectors[mean + i];
-      for (let j = 0; j < Math.min(codebook.axisCounts[cluster], planes.length); ++j) {
-        const weight = codebook.offsets[first + j] + codebook.scales[first + j] * planes[j][position];
-        value += weight * codebook.vectors[mean + (1 + j) * shape.size + i];
-      }
-      out[sample * shape.size + i] = value;
+    const cluster = clusterOf[sample], axis = codebook.firstAxis[cluster], mean = (axis + cluster) * width;
+    for (let i = 0; i < width; ++i) value[i] = vectors[mean + i];
+    for (let j = 0; j < Math.min(codebook.axisCounts[cluster], planes.length); ++j) {
+      const weight = codebook.offsets[axis + j] + codebook.scales[axis + j] * planes[j][position];
+      for (let i = 0, v = mean + (1 + j) * width; i < width; ++i, ++v) value[i] += weight * vectors[v];
     }
+    out.set(value, sample * width);
   });
   return out;
 }

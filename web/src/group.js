@@ -1,27 +1,30 @@
 // A rigid group: its cells' transfer, and light at its samples.
-import { CodedTransfer, shadedOutputs } from './coded_transfer.js';
+import { CodedTransfer } from './coded_transfer.js';
+import { LIST_WIDTH, listTarget, rowsFor } from './gpu_textures.js';
 
 export class Group {
   constructor(json) {
     this.json = json;
-    // Samples with as many outputs lie in a row, because cells come by rising outputs.
-    this.samples = new Map(); // outputs -> {first, count, lit, seen}
+    // Samples with as many outputs lie in a row, because cells come by rising outputs. Their light is a list of
+    // `outputs` entries each, in which every cell begins a row of the target.
+    this.runs = new Map(); // outputs -> {first, count, outputs, rows, target}
     this.cells = [];
     for (const cell of json.cells) {
       if (cell.kind !== 'surface') continue; // volumes and neighborhoods are not shown
       const { outputs } = cell.transfers[0];
-      const run = this.samples.get(outputs) ?? { first: cell.firstSample, count: 0 };
+      const run = this.runs.get(outputs) ?? { first: cell.firstSample, count: 0, outputs, rows: 0, target: null };
       run.count = cell.firstSample + cell.sampleCount - run.first;
-      this.samples.set(outputs, run);
+      this.runs.set(outputs, run);
+      const rows = rowsFor(cell.sampleCount * outputs);
       const transfers = cell.transfers.map((t) => new CodedTransfer(t, cell.sampleCount));
-      this.cells.push({ json: cell, outputs, transfers });
+      this.cells.push({ json: cell, run, firstRow: run.rows, rows, transfers });
+      run.rows += rows;
     }
   }
 
   /** Loads codebooks and cluster ids. Surfaces can be shaded by the means of the clusters from then on. */
   async load(bundle) {
     await Promise.all(this.cells.flatMap((cell) => cell.transfers.map((t) => t.load(bundle))));
-    for (const [outputs, run] of this.samples) run.lit = new Float32Array(run.count * shadedOutputs(outputs) * 3);
   }
 
   /** Returns all planes that can be loaded, in the order in which they are wanted. */
@@ -34,41 +37,37 @@ export class Group {
     return list.sort((a, b) => priority(a) - priority(b));
   }
 
-  /** Computes the light at all samples; `light` is in the group's frame (see LambentScene.update). */
-  shade(light) {
-    for (const run of this.samples.values()) run.lit.fill(0);
-    for (const cell of this.cells) {
-      const run = this.samples.get(cell.outputs);
-      for (const transfer of cell.transfers) transfer.shade(light, run.lit, cell.json.firstSample - run.first);
+  /** Returns a function from samples to the entries of their light. */
+  entriesOf(run) {
+    const cells = this.cells.filter((cell) => cell.run === run);
+    const firstEntry = new Uint32Array(run.count);
+    for (const { json, firstRow } of cells)
+      for (let s = 0; s < json.sampleCount; ++s)
+        firstEntry[json.firstSample - run.first + s] = firstRow * LIST_WIDTH + s * run.outputs;
+    return (sample) => firstEntry[sample - run.first];
+  }
+
+  /** Takes light in the group's frame (see LambentScene). */
+  setLight(light) {
+    for (const cell of this.cells) for (const transfer of cell.transfers) transfer.setLight(light);
+  }
+
+  /** Makes the targets of the light at samples; their textures are what surfaces read. */
+  makeTargets(renderer) {
+    for (const run of this.runs.values()) run.target ??= listTarget(renderer, run.rows);
+  }
+
+  /** Computes the light at all samples on the GPU. */
+  shade(renderer, passes) {
+    for (const { json, run, firstRow, rows, transfers } of this.cells) {
+      for (const transfer of transfers) transfer.multiply(renderer, passes);
+      passes.samples(renderer, run.target, firstRow, rows, transfers.map((t) => t.textures),
+        { sampleCount: json.sampleCount, outputs: run.outputs });
     }
   }
 
-  /** Returns bands 0..2 of the visibility at glossy samples, nine numbers each, or null where there is none. */
-  seen(outputs) {
-    const run = this.samples.get(outputs);
-    const cells = this.cells.filter((c) => c.outputs === outputs && c.transfers[0].isVisibility);
-    if (cells.length === 0) return null;
-    const out = new Float32Array(run.count * 9);
-    for (const cell of cells) {
-      const transfer = cell.transfers[0], { vectors } = transfer.codebook, { size } = transfer.shape;
-      const low = new Float32Array((vectors.length / size) * 9);
-      for (let v = 0; v < low.length / 9; ++v) low.set(vectors.subarray(v * size, v * size + 9), v * 9);
-      transfer.combine(low, 9, out, cell.json.firstSample - run.first);
-    }
-    return out;
-  }
-}
-
-/** Writes Σ weight x sample of rows `first` to `last`, `width` numbers each, at a stride. Empty rows are left alone. */
-export function gatherRows(rows, first, last, lit, firstSample, width, out, stride = width) {
-  const { offsets, samples, weights } = rows;
-  for (let row = first; row < last; ++row) {
-    const begin = offsets[row], end = offsets[row + 1], to = (row - first) * stride;
-    if (begin === end) continue;
-    for (let k = 0; k < width; ++k) {
-      let sum = 0;
-      for (let e = begin; e < end; ++e) sum += (weights ? weights[e] : 1) * lit[(samples[e] - firstSample) * width + k];
-      out[to + k] = sum;
-    }
+  dispose() {
+    for (const cell of this.cells) for (const transfer of cell.transfers) transfer.dispose();
+    for (const run of this.runs.values()) run.target?.dispose();
   }
 }

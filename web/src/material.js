@@ -1,7 +1,7 @@
 // Makes materials that take their indirect light from transfer. Colours, textures, highlights and shadows of lights
 // remain three's own.
 import { MeshLambertMaterial } from 'three';
-import { VERTEX_DECLARATIONS, VERTEX_BODY, FRAGMENT_DECLARATIONS, FRAGMENT_LIGHT } from './shader_text.js';
+import { fitToDevice, fragmentDeclarations, fragmentLight, vertexBody, vertexDeclarations } from './shader_text.js';
 
 const SHARED = [
   'name', 'map', 'emissiveMap', 'emissiveIntensity', 'normalMap', 'normalMapType', 'alphaTest', 'transparent',
@@ -36,22 +36,26 @@ function includeAfter(text, chunk, added) {
   return includeBefore(text, chunk, '').replace(`#include <${chunk}>`, `#include <${chunk}>\n${added}`);
 }
 
-/** Returns a copy of a material that is lit by transfer. `uniforms` holds groupFromWorld and, with texels, texels. */
-export function litMaterial(source, { matte, mapped, texels, normalWeight, side, uniforms }) {
-  const material = matte ? lambertOf(source) : source.clone();
+/**
+ * Returns a copy of a material that is lit by transfer. `kind` says how: `outputs` of its transfer, `glossy` by matrices,
+ * `layered` as a smooth dielectric, the `table` that these two look up, `texels`,
+ * `normalWeight`, and whether it is `framed`, which gives it a tangent.
+ */
+export function litMaterial(source, kind, side, uniforms) {
+  const material = kind.table ? source.clone() : lambertOf(source);
   material.side = side;
   material.shadowSide = null;
-  material.defines = { ...material.defines };
-  if (mapped) material.defines.LAMBENT_MAPPED = '';
-  if (texels) material.defines.LAMBENT_TEXELS = '';
-  if (normalWeight) material.defines.LAMBENT_NORMAL_WEIGHT = '';
-  material.onBeforeCompile = (shader) => {
+  material.onBeforeCompile = (shader, renderer) => {
+    const fitted = fitToDevice(kind, renderer);
+    material.lambentUniforms = shader.uniforms;
     Object.assign(shader.uniforms, uniforms);
-    shader.vertexShader = includeBefore(shader.vertexShader, 'common', VERTEX_DECLARATIONS);
-    shader.vertexShader = includeAfter(shader.vertexShader, 'project_vertex', VERTEX_BODY);
-    shader.fragmentShader = includeAfter(shader.fragmentShader, 'common', FRAGMENT_DECLARATIONS);
-    shader.fragmentShader = includeAfter(shader.fragmentShader, 'lights_fragment_maps', FRAGMENT_LIGHT);
+    shader.vertexShader = includeBefore(shader.vertexShader, 'common', vertexDeclarations(fitted));
+    shader.vertexShader = includeAfter(shader.vertexShader, 'project_vertex', vertexBody(fitted));
+    shader.fragmentShader = includeAfter(shader.fragmentShader, 'common', fragmentDeclarations(fitted));
+    shader.fragmentShader = includeAfter(shader.fragmentShader, 'lights_fragment_maps', fragmentLight(fitted));
   };
-  material.customProgramCacheKey = () => 'lambent';
+  const { table, ...rest } = kind;
+  const looked = table && [table.order, table.lobes, table.isotropic];
+  material.customProgramCacheKey = () => `lambent ${JSON.stringify({ ...rest, looked })}`;
   return material;
 }

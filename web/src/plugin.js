@@ -1,7 +1,7 @@
 // The plugin of three's GLTFLoader. Register it, load a bundle, and find a LambentScene in gltf.userData.lambent.
 import { Matrix4, Mesh } from 'three';
 import { Bundle, EXTENSION } from './bundle.js';
-import { LambentScene, newGroupMatrices } from './scene.js';
+import { LambentScene } from './scene.js';
 
 const warned = new Set();
 
@@ -51,7 +51,6 @@ function attach(scene, gltf, parser) {
     if (primitive.material === undefined) object.userData.lambentDefaultMaterial = true;
   });
   scene.nodes = nodes;
-  scene.groupFromWorld = newGroupMatrices(scene.groups);
   scene.restInverses = nodes.map((node) => node.matrixWorld.clone().invert());
 
   const groupFromWorld = scene.groups.map((_, g) => scene.worldFromGroup(g).invert());
@@ -61,7 +60,7 @@ function attach(scene, gltf, parser) {
     if (mesh.geometry.getAttribute('position').count !== surface.vertexCount)
       throw new Error(`mesh ${draw.node} was decoded to another number of vertices than transfer was baked for`);
     const groupFromMesh = new Matrix4().multiplyMatrices(groupFromWorld[draw.group], mesh.matrixWorld);
-    surface.attach(mesh, groupFromMesh, scene.groupFromWorld[draw.group]);
+    surface.attach(mesh, groupFromMesh, scene.uniforms[draw.group], scene.tableOf(draw));
     surface.mesh = mesh;
     return true;
   });
@@ -80,6 +79,7 @@ function attach(scene, gltf, parser) {
     mesh.add(side);
     surface.mesh = side;
   }
+  for (const { draw, mesh } of parts) mesh.onBeforeRender = (renderer) => scene.prepare(renderer, draw.group);
   hideLamps(scene);
 }
 

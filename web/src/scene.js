@@ -1,19 +1,26 @@
 // What a bundle adds to three's scene: groups with transfer, the light that they stand in, and the surfaces that show
-// it. Light is set once and turned into the frame of each group; shading happens when light, transfer or a group's
-// rotation changed.
+// it. Light is set once and turned into the frame of each group. Samples are shaded on the GPU, when light, transfer or a
+// group's rotation changed, before the first surface of the group is drawn.
 import { Matrix3, Matrix4, Quaternion, Vector3 } from 'three';
+import { BrdfTexture, tableFor } from './brdf_table.js';
 import { Group } from './group.js';
 import { Surface } from './surface.js';
 import { LightVector } from './light_vector.js';
+import { Passes } from './passes.js';
 
+const MOST_COEFFICIENTS = 64; // of eight bands
+const KNOWN_COEFFICIENTS = 36; // of the six bands that mirrors know
 const TRANSFERS = ['full', 'shadowed', 'unshadowed'];
 
 export class LambentScene {
   /** Loads what surfaces need before their planes come. `root` is the glTF scene in three. */
   static async create(bundle, root) {
     const scene = new LambentScene(bundle, root);
+    const looked = new Set(bundle.draws.map((draw) => scene.tableIndex(draw)));
+    scene.tables = await Promise.all(bundle.extension.brdfTables.map(async (entry, index) =>
+      (looked.has(index) ? new BrdfTexture(await bundle.brdfTable(entry)) : null)));
     await Promise.all(scene.groups.map((group) => group.load(bundle)));
-    const wanted = bundle.draws.filter((draw) => scene.groups[draw.group].samples.has(draw.outputs));
+    const wanted = bundle.draws.filter((draw) => scene.groups[draw.group].runs.has(draw.outputs));
     scene.surfaces = await Promise.all(wanted.map(async (draw) =>
       new Surface(draw, scene.groups[draw.group], await bundle.rows(draw), bundle.vertexCount(draw))));
     return scene;
@@ -31,6 +38,16 @@ export class LambentScene {
     this._order = 8;
     this._changed = true;
     this._turns = this.groups.map(() => null);
+    this._unshaded = this.groups.map(() => true);
+    this._planesLeft = this.planes().length;
+    this._seenChanged = true;
+    this._passes = new Passes();
+    this.uniforms = this.groups.map(() => ({
+      lambentGroupFromWorld: { value: new Matrix3() },
+      lambentOpen: { value: false },
+      lambentSky: { value: new Float32Array(3 * MOST_COEFFICIENTS) },
+      lambentKnown: { value: new Float32Array(3 * KNOWN_COEFFICIENTS) },
+    }));
     this.disposed = false;
   }
 
@@ -81,8 +98,9 @@ export class LambentScene {
 
   /** Adds a weight plane that has arrived; planes of a transfer come in order. */
   addPlane({ transfer, index }, codes) {
-    transfer.planes[index] = codes;
-    this._changed = this._openChanged = true;
+    transfer.setPlane(index, codes);
+    this._changed = true;
+    if (--this._planesLeft === 0) this._seenChanged = true;
   }
 
   /** Returns the planes in the order in which they are wanted. */
@@ -105,61 +123,89 @@ export class LambentScene {
     return rest.premultiply(this.restInverses[json.node]).premultiply(node.matrixWorld);
   }
 
-  /** Shades what changed. Call it before rendering; world matrices must be up to date. Returns whether it shaded. */
+  /**
+   * Brings light to the groups in which something changed; world matrices must be up to date. Returns whether there was
+   * one. It happens by itself before a surface is drawn.
+   */
   update() {
-    if (this._openChanged) this.findOpenShares();
-    let shaded = false;
-    this.groups.forEach((group, index) => {
-      const turn = new Matrix4().extractRotation(this.worldFromGroup(index)).invert();
-      const before = this._turns[index];
-      if (!this._changed && before && turn.elements.every((e, i) => Math.abs(e - before.elements[i]) < 1e-5)) return;
-      this._turns[index] = turn;
-      this.groupFromWorld[index].setFromMatrix4(turn);
-      this.shadeGroup(group, index, turn);
-      shaded = true;
-    });
+    if (this._seenChanged) this.findSeen();
+    let changed = false;
+    this.groups.forEach((group, index) => (changed = this.updateGroup(group, index) || changed));
     this._changed = false;
-    return shaded;
+    return changed;
   }
 
-  shadeGroup(group, index, turn) {
+  updateGroup(group, index) {
+    const turn = new Matrix4().extractRotation(this.worldFromGroup(index)).invert(), before = this._turns[index];
+    if (!this._changed && before && turn.elements.every((e, i) => Math.abs(e - before.elements[i]) < 1e-5)) return false;
+    this._turns[index] = turn;
+    this.uniforms[index].lambentGroupFromWorld.value.setFromMatrix4(turn);
+    this.setLight(group, index, turn);
+    return (this._unshaded[index] = true);
+  }
+
+  /** Shades the samples of a group on the GPU if they need it. Surfaces call it before they are drawn. */
+  prepare(renderer, index) {
+    if (this.disposed) return;
+    this.update();
+    if (!this._unshaded[index]) return;
+    this._unshaded[index] = false;
+    const group = this.groups[index];
+    this._passes.during(renderer, () => {
+      group.makeTargets(renderer);
+      if (!this.uniforms[index].lambentOpen.value) group.shade(renderer, this._passes);
+      for (const surface of this.surfaces) if (surface.group === group) surface.shade(renderer, this._passes);
+    });
+  }
+
+  setLight(group, index, turn) {
     const inGroup = (light) => light && light.truncate(this._order).rotate(turn).rgb;
     const light = this._light.truncate(this._order);
     const all = this._key ? light.add(this._key) : light;
-    const unshadowed = this._transfer === 'unshadowed', full = this._transfer === 'full';
-    const rest = inGroup(light);
-    if (!unshadowed) {
-      // With key lights k and the rest r the light is f r + (f - s) k: their direct part comes by shadow maps.
-      const lamps = new Float64Array(this.lamps[index].flat());
-      group.shade({
-        full: full ? inGroup(all) : null,
-        shadowed: full ? this._key && inGroup(this._key.multiplyScalar(-1)) : rest,
-        sum: rest,
-        lamps: full ? { full: lamps } : { shadowed: lamps },
-      });
-    }
-    for (const surface of this.surfaces)
-      if (surface.group === group) surface.shade(rest, unshadowed);
+    const full = this._transfer === 'full', rest = inGroup(light), whole = this._key ? inGroup(all) : rest;
+    const { lambentOpen, lambentSky, lambentKnown } = this.uniforms[index];
+    const fill = (to, from) => to.fill(0).set(Float32Array.from(from.subarray(0, to.length)));
+    fill(lambentSky.value, rest);
+    fill(lambentKnown.value, whole);
+    lambentOpen.value = this._transfer === 'unshadowed';
+    if (lambentOpen.value) return;
+    // With key lights k and the rest r the light is f r + (f - s) k: their direct part comes by shadow maps.
+    const lamps = new Float64Array(this.lamps[index].flat());
+    group.setLight({
+      full: full ? whole : null,
+      shadowed: full ? this._key && inGroup(this._key.multiplyScalar(-1)) : rest,
+      sum: rest,
+      lamps: full ? { full: lamps } : { shadowed: lamps },
+    });
   }
 
-  // Shades once with light of radiance 1 from everywhere, without bounces, to learn what is open.
-  findOpenShares() {
-    const white = LightVector.constant(1, 1, 1, 1).rgb;
-    for (const group of this.groups) {
-      group.shade({ full: null, shadowed: white, sum: white, lamps: {} });
-      for (const surface of this.surfaces) if (surface.group === group) surface.keepOpenShare();
-    }
-    this._openChanged = false;
+  // What mirrors see of the sky follows from transfer without bounces, once all planes are there.
+  findSeen() {
+    for (const surface of this.surfaces) surface.findSeen();
+    this._seenChanged = false;
   }
 
-  /** Frees what surfaces have on the GPU, and shades no more. */
+  // Returns the place of the table that a draw looks up, or null.
+  tableIndex(draw) {
+    const { json } = this.bundle, primitive = json.meshes[json.nodes[draw.node].mesh].primitives[draw.primitive];
+    const families = this.bundle.extension.brdfTables.map((table) => table.family);
+    if (primitive.material === undefined) return null;
+    return tableFor(json.materials[primitive.material], families, draw.outputs <= 9);
+  }
+
+  /** Returns the table that a draw looks up, or null. */
+  tableOf(draw) {
+    const index = this.tableIndex(draw), table = index === null ? null : this.tables[index];
+    if (draw.outputs > 9 && table?.order ** 2 !== draw.outputs)
+      throw new Error('a glossy surface has no table of its bands');
+    return table;
+  }
+
+  /** Frees what the scene has on the GPU, and shades no more. */
   dispose() {
     this.disposed = true;
-    for (const surface of this.surfaces) surface.dispose();
+    for (const one of [...this.surfaces, ...this.groups, ...this.tables, this._passes]) one?.dispose();
     this.surfaces = [];
     this.groups = [];
   }
 }
-
-/** Matrices of the groups that materials read as uniforms. */
-export const newGroupMatrices = (groups) => groups.map(() => new Matrix3());

@@ -1,5 +1,7 @@
-// Text that is put into three's own shaders. It hands on what transfer gives at vertices, and replaces the indirect
-// irradiance of three (ambient light, probes, diffuse environment) by E times the surface's own colour.
+// Text that is put into three's own shaders. Vertices take the light of their samples (passes.js) and hand it on; the
+// pixel replaces the indirect light of three (ambient light, probes, environment) by what transfer brings.
+import { PLACE_TEXT } from './gpu_textures.js';
+import { EVEN_BANDS_TEXT, REFLECTION_TEXT } from './reflection_text.js';
 
 // E/π at a normal from light of bands 0..2: Σ A_l/π y_j(n) l'_j, with the constants of docs/conventions.md.
 const DIFFUSE_LIGHT = /* glsl */ `
@@ -9,17 +11,51 @@ vec3 lambentDiffuse(vec3 l[9], vec3 n) {
          0.078848 * (3.0 * n.z * n.z - 1.0) * l[6] + 0.136569 * (n.x * n.x - n.y * n.y) * l[8];
 }`;
 
-const vectors = (word) => Array.from({ length: 7 }, (_, i) => `${word} vec4 lambentLight${i};`).join('\n');
-const varyings = vectors('varying').replaceAll('lambentLight', 'vLambentLight');
+// Reads lists in textures, and the rows of vertices (rows_texture.js).
+const VERTEX_LISTS = /* glsl */ `
+uniform highp sampler2D lambentSamples;
+uniform highp usampler2D lambentEntries;
+uniform highp vec3 lambentSky[64];  // the light where nothing is in the way, group frame
+uniform bool lambentOpen;           // nothing is in the way of any vertex
+uniform mat3 lambentGroupFromNormal;
+attribute uvec2 lambentRow;
+${PLACE_TEXT}
+vec4 lambentSample(int i) { return texelFetch(lambentSamples, lambentPlace(i), 0); }
+uvec4 lambentEntry(int i) { return texelFetch(lambentEntries, lambentPlace(i), 0); }
+`;
 
-export const VERTEX_DECLARATIONS = /* glsl */ `
-#ifdef LAMBENT_MAPPED
-${vectors('attribute')}
-${varyings}
-#else
-attribute vec4 lambentLight;
-varying vec4 vLambentLight;
-#endif
+const components = 'xyzw';
+const slot = (i) => `vLambent${i >> 2}.${components[i & 3]}`;
+const declare = (count) => Array.from({ length: Math.ceil(count / 4) }, (_, i) => `varying vec4 vLambent${i};`).join('\n');
+
+/** Numbers that a vertex hands on: light of `bands` bands (1: E/π), of reflecting surfaces with what sees the sky. */
+const lightNumbers = ({ kept, glossy }) => 3 * kept + (glossy ? 9 : 0);
+const SEEN_NUMBERS = 25;
+const varyingNumbers = (kind) => lightNumbers(kind) + (kind.layered ? SEEN_NUMBERS : 0);
+
+// three's own varyings, with room for a few maps and shadows.
+const OTHER_VARYINGS = 8;
+
+/**
+ * Completes what a surface is with `kept`, the outputs that vertices hand on. A device with few varyings gets fewer
+ * bands of glossy light.
+ */
+export function fitToDevice(kind, renderer) {
+  const gl = renderer.getContext(), most = gl.getParameter(gl.MAX_VARYING_VECTORS) - OTHER_VARYINGS;
+  const fits = (kept) => Math.ceil(varyingNumbers({ ...kind, kept }) / 4) <= most;
+  let kept = kind.outputs;
+  if (kind.glossy) while (kept > 9 && !fits(kept)) kept = (Math.sqrt(kept) - 1) ** 2;
+  return { ...kind, kept };
+}
+
+const defines = ({ texels, normalWeight }) =>
+  (texels ? '#define LAMBENT_TEXELS\n' : '') + (normalWeight ? '#define LAMBENT_NORMAL_WEIGHT\n' : '');
+
+export const vertexDeclarations = (kind) => /* glsl */ `
+${defines(kind)}${VERTEX_LISTS}${kind.outputs === 1 ? EVEN_BANDS_TEXT : ''}
+${kind.layered ? `uniform highp sampler2D lambentSeen;
+vec4 lambentSeenAt(int i) { return texelFetch(lambentSeen, lambentPlace(i), 0); }` : ''}
+${declare(varyingNumbers(kind))}
 #ifdef LAMBENT_TEXELS
 attribute vec2 lambentUv;
 varying vec2 vLambentUv;
@@ -29,12 +65,40 @@ attribute float _normal_weight;
 #endif
 `;
 
-export const VERTEX_BODY = /* glsl */ `
-#ifdef LAMBENT_MAPPED
-${Array.from({ length: 7 }, (_, i) => `vLambentLight${i} = lambentLight${i};`).join('\n')}
-#else
-vLambentLight = lambentLight;
-#endif
+// Sets l[o] for each output.
+function vertexLight({ outputs, kept }) {
+  const openLight = outputs === 1
+    ? 'l[0] = vec4(lambentUnshadowed(normalize(lambentGroupFromNormal * normal)), 1.0);'
+    : `for (int o = 0; o < ${kept}; ++o) l[o] = vec4(lambentSky[o], o == 0 ? 3.5449077 : 0.0);`;
+  return /* glsl */ `
+  vec4 l[${kept}];
+  if (lambentOpen || lambentRow.y == 0u) {
+    ${openLight}
+  } else if (lambentRow.y == 1u) {
+    for (int o = 0; o < ${kept}; ++o) l[o] = lambentSample(int(lambentRow.x) + o);
+  } else {
+    for (int o = 0; o < ${kept}; ++o) l[o] = vec4(0.0);
+    for (uint e = 0u; e < lambentRow.y; ++e) {
+      uvec4 one = lambentEntry(int(lambentRow.x + e));
+      float weight = uintBitsToFloat(one.y);
+      for (int o = 0; o < ${kept}; ++o) l[o] += weight * lambentSample(int(one.x) + o);
+    }
+  }`;
+}
+
+export function vertexBody(kind) {
+  const { kept, glossy, layered } = kind, set = [];
+  for (let o = 0; o < kept; ++o) for (let c = 0; c < 3; ++c) set.push(`${slot(3 * o + c)} = l[${o}].${'rgb'[c]};`);
+  if (glossy) for (let o = 0; o < 9; ++o) set.push(`${slot(3 * kept + o)} = l[${o}].w;`);
+  if (layered) {
+    const first = lightNumbers(kind);
+    for (let i = 0; i < 7; ++i) set.push(`vec4 seen${i} = lambentSeenAt(7 * gl_VertexID + ${i});`);
+    for (let k = 0; k < SEEN_NUMBERS; ++k) set.push(`${slot(first + k)} = seen${k >> 2}.${components[k & 3]};`);
+  }
+  return /* glsl */ `
+{${vertexLight(kind)}
+  ${set.join('\n  ')}
+}
 #ifdef LAMBENT_TEXELS
 vLambentUv = lambentUv;
 #endif
@@ -42,50 +106,122 @@ vLambentUv = lambentUv;
 vNormal *= _normal_weight;
 #endif
 `;
+}
 
-export const FRAGMENT_DECLARATIONS = /* glsl */ `
-#ifdef LAMBENT_MAPPED
-${varyings}
+export const fragmentDeclarations = (kind) => /* glsl */ `
+${defines(kind)}${declare(varyingNumbers(kind))}
 uniform mat3 lambentGroupFromWorld;
-${DIFFUSE_LIGHT}
-#else
-varying vec4 vLambentLight;
-#endif
+vec3 lambentToGroup(vec3 view) { return normalize(lambentGroupFromWorld * (vec4(view, 0.0) * viewMatrix).xyz); }
+vec3 lambentToView(vec3 group) { return normalize((viewMatrix * vec4(group * lambentGroupFromWorld, 0.0)).xyz); }
+${kind.outputs === 9 ? DIFFUSE_LIGHT : ''}
+${kind.table ? REFLECTION_TEXT(kind) : ''}
 #ifdef LAMBENT_TEXELS
 varying vec2 vLambentUv;
 uniform sampler2D lambentTexels;
+uniform bool lambentOpen;
 #endif
 `;
 
-const components = 'xyzw';
-const component = (i) => `vLambentLight${i >> 2}.${components[i & 3]}`;
-const unpacked = Array.from(
-  { length: 9 },
-  (_, j) => `vec3(${component(3 * j)}, ${component(3 * j + 1)}, ${component(3 * j + 2)})`,
-).join(',\n    ');
+const vec3At = (o) => `vec3(${slot(3 * o)}, ${slot(3 * o + 1)}, ${slot(3 * o + 2)})`;
+const listOf = (count, text) => Array.from({ length: count }, (_, i) => text(i)).join(',\n    ');
 
-// Goes behind three's own collection of indirect light. In mirrors the environment is seen as far as the sky is open
-// at the vertex; elsewhere there is light like that around the surface.
-export const FRAGMENT_LIGHT = /* glsl */ `
-#ifdef LAMBENT_MAPPED
+// E/π at the pixel.
+function received({ outputs }) {
+  if (outputs === 9) return /* glsl */ `
   vec3 lambentBands[9] = vec3[9](
-    ${unpacked});
-  vec3 lambentNormal = normalize(lambentGroupFromWorld * inverseTransformDirection(normal, viewMatrix));
-  vec4 lambentReceived = vec4(lambentDiffuse(lambentBands, lambentNormal), vLambentLight6.w);
-#elif defined(LAMBENT_TEXELS)
-  vec4 lambentTexel = texture2D(lambentTexels, vLambentUv);
-  vec4 lambentReceived = vec4(mix(vLambentLight.rgb, lambentTexel.rgb, lambentTexel.a), vLambentLight.a);
-#else
-  vec4 lambentReceived = vLambentLight;
-#endif
+    ${listOf(9, vec3At)});
+  vec3 lambentReceived = lambentDiffuse(lambentBands, lambentToGroup(normal));`;
+  return /* glsl */ `
+  vec3 lambentReceived = ${vec3At(0)};
+  #ifdef LAMBENT_TEXELS
+    vec4 lambentTexel = texture2D(lambentTexels, vLambentUv);
+    lambentReceived = mix(lambentReceived, lambentTexel.rgb, lambentOpen ? 0.0 : lambentTexel.a);
+  #endif`;
+}
+
+// Brushed metal reflects a fan of round lobes about the view mirrored in normals that lean along the tangent, by equal
+// shares of GGX's slopes (docs/decisions/glossy.md, "Prefiltered environment").
+const FAN = /* glsl */ `
+    float lambentNarrow = pow2(lambentRoughness), lambentWide = mix(lambentNarrow, 1.0, pow2(lambentStrength));
+    float lambentFan = sqrt(max(pow2(lambentWide) - pow2(lambentNarrow), 0.0));
+    if (lambentFan >= 0.05) {
+      float roughness = sqrt(sqrt(pow2(lambentNarrow) + pow2(lambentFan / 12.0))), weights = 0.0;
+      vec3 sum = vec3(0.0);
+      for (int i = 0; i < 12; ++i) {
+        float u = (2.0 * float(i) + 1.0) / 12.0 - 1.0;
+        vec3 leaning = normalize(lambentNormal + lambentFan * u * inversesqrt(1.0 - u * u) * lambentTangent);
+        vec3 mirrored = reflect(-lambentEye, leaning), view = lambentToView(mirrored);
+        float weight = max(dot(leaning, lambentEye), 0.0) * step(0.0, dot(mirrored, lambentNormal));
+        sum += weight * (getIBLRadiance(view, view, roughness) - lambentKnownAlong(mirrored, roughness));
+        weights += weight;
+      }
+      lambentMore = weights > 0.0 ? sum / weights : vec3(0.0);
+    }`;
+
+// Matte surfaces leave their colour to three; those that reflect are shaded by the table of their BRDF.
+function shaded(kind) {
+  if (!kind.glossy && !kind.layered) return `${received(kind)}
   irradiance = vec3(0.0);
-  iblIrradiance = PI * lambentReceived.rgb;
-#ifdef RE_IndirectSpecular
-  float lambentOpen = clamp(lambentReceived.a, 0.0, 1.0);
-  #ifdef USE_ENVMAP
-    radiance = mix(max(lambentReceived.rgb, vec3(0.0)), radiance, lambentOpen);
-  #else
-    radiance = max(lambentReceived.rgb, vec3(0.0));
+  iblIrradiance = PI * lambentReceived;`;
+  const mirror = /* glsl */ `
+  vec3 lambentNormal = lambentToGroup(normal), lambentEye = lambentToGroup(geometryViewDir);
+  vec3 lambentMirrored = reflect(-lambentEye, lambentNormal), lambentMirroredView = reflect(-geometryViewDir, normal);
+  float lambentRoughness = clamp(roughnessFactor, 0.0, 1.0);
+  vec3 lambentDielectric = vec3(0.04);
+  float lambentSpecular = 1.0;
+  #ifdef IOR
+    lambentDielectric = vec3(pow2((ior - 1.0) / (ior + 1.0)));
+    #ifdef USE_SPECULAR
+      lambentSpecular = specularIntensity;
+      lambentDielectric *= specularColor;
+      #ifdef USE_SPECULAR_COLORMAP
+        lambentDielectric *= texture2D(specularColorMap, vSpecularColorMapUv).rgb;
+      #endif
+      #ifdef USE_SPECULAR_INTENSITYMAP
+        lambentSpecular *= texture2D(specularIntensityMap, vSpecularIntensityMapUv).a;
+      #endif
+    #endif
   #endif
-#endif
-`;
+  vec3 lambentF0 = mix(min(lambentDielectric, vec3(1.0)) * lambentSpecular, diffuseColor.rgb, metalnessFactor);
+  float lambentF90 = mix(lambentSpecular, 1.0, metalnessFactor);
+  vec3 lambentTangent = lambentAcross(lambentNormal);
+  float lambentStrength = 0.0;
+  #ifdef USE_ANISOTROPY
+    lambentStrength = material.anisotropy;
+    ${kind.framed ? `vec3 lambentAlong = material.anisotropyT - dot(material.anisotropyT, normal) * normal;
+    if (dot(lambentAlong, lambentAlong) > 1e-12) lambentTangent = lambentToGroup(lambentAlong);`
+    : `vec2 lambentDirection = normalize(anisotropyVector);
+    lambentTangent = lambentDirection.x * lambentTangent + lambentDirection.y * cross(lambentNormal, lambentTangent);`}
+  #endif
+  irradiance = iblIrradiance = radiance = vec3(0.0);`;
+  // Where there is an environment, mirrors show it; bands alone know the sky otherwise.
+  const sky = /* glsl */ `
+  vec3 lambentKnownSky = lambentKnownAlong(lambentMirrored, lambentRoughness);
+  vec3 lambentMore = vec3(0.0); // what the bands leave out
+  #ifdef USE_ENVMAP
+    lambentMore = getIBLRadiance(lambentMirroredView, lambentMirroredView, lambentRoughness) - lambentKnownSky;
+    ${kind.glossy && !kind.table.isotropic ? FAN : ''}
+  #endif`;
+  if (kind.layered) return `${received(kind)}${mirror}${sky}
+  float lambentSeenNumbers[25] = float[25](
+    ${listOf(SEEN_NUMBERS, (k) => slot(lightNumbers(kind) + k))});
+  vec2 lambentAlbedo = lambentAlbedoOf(dot(lambentNormal, lambentEye), lambentRoughness);
+  vec3 lambentRho = lambentF0 * lambentAlbedo.x + lambentF90 * lambentAlbedo.y;
+  vec3 lambentSide = lambentKnownAlong(normalize(vec3(lambentSeenNumbers[3], lambentSeenNumbers[1], lambentSeenNumbers[2])), 1.0);
+  float lambentOpenShare = clamp(3.5449077 * lambentSeenNumbers[0], 0.0, 1.0);
+  vec3 lambentHidden = max(lambentReceived - lambentOpenShare * lambentSide, 0.1 * lambentReceived) / max(1.0 - lambentOpenShare, 0.05);
+  float lambentShare = lambentSeenShare(lambentSeenNumbers, lambentMirrored, lambentToGroup(nonPerturbedNormal), lambentRoughness);
+  reflectedLight.indirectSpecular += lambentRho * mix(max(lambentHidden, vec3(0.0)), lambentKnownSky + lambentMore, lambentShare);
+  reflectedLight.indirectDiffuse += lambentBase(diffuseColor.rgb, metalnessFactor, lambentRho) * lambentReceived;`;
+  const bands = kind.kept, all = kind.table.order ** 2;
+  return `${mirror}${sky}
+  vec4 lambentLight[${all}] = vec4[${all}](
+    ${listOf(all, (o) => (o < bands ? `vec4(${vec3At(o)}, ${o < 9 ? slot(3 * bands + o) : '0.0'})` : 'vec4(0.0)'))});
+  lambentReflect(lambentNormal, lambentTangent, lambentEye, lambentRoughness, lambentStrength, lambentLight,
+    diffuseColor.rgb, metalnessFactor, lambentF0, lambentF90, lambentMore, reflectedLight.indirectDiffuse,
+    reflectedLight.indirectSpecular);`;
+}
+
+/** Goes behind three's own collection of indirect light. */
+export const fragmentLight = (kind) => `{${shaded(kind)}
+}`;

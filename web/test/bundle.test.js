@@ -6,8 +6,7 @@ import { join } from 'node:path';
 import test from 'node:test';
 import { openBundle } from './bundle_file.js';
 import { readNpy } from './npy.js';
-import { decodeTransfer } from '../src/codebook.js';
-import { Group, gatherRows } from '../src/group.js';
+import { decodeTransfer, shapeOf } from '../src/codebook.js';
 import { LightVector } from '../src/light_vector.js';
 import { Vector3 } from 'three';
 
@@ -25,15 +24,6 @@ const relative = (a, b) => {
   return Math.sqrt(error / sum);
 };
 
-async function loadedGroups(bundle) {
-  return Promise.all(bundle.groups.map(async (json) => {
-    const group = new Group(json);
-    await group.load(bundle);
-    for (const { transfer, plane, index } of group.planes(bundle)) transfer.planes[index] = await bundle.plane(plane);
-    return group;
-  }));
-}
-
 test('decoded transfer is that of the C++ reader', { skip }, async (t) => {
   const bundle = openBundle(path), info = listing();
   for (const [g, json] of bundle.groups.entries()) {
@@ -42,7 +32,6 @@ test('decoded transfer is that of the C++ reader', { skip }, async (t) => {
       for (const transfer of cell.transfers) {
         const { codebook, clusterOf } = await bundle.codebook(transfer, cell.sampleCount);
         const planes = await Promise.all(transfer.planes.map((plane) => bundle.plane(plane)));
-        const { shapeOf } = await import('../src/codebook.js');
         const ours = decodeTransfer(shapeOf(transfer), codebook, clusterOf, planes);
         const theirs = array(info.groups[g].transfer[block++].values).data;
         assert.equal(ours.length, theirs.length);
@@ -61,37 +50,6 @@ test('rows are those of the C++ reader', { skip }, async () => {
     assert.deepEqual(rows.samples.slice(0, entries.length), entries);
     const weights = array(surface.rowWeights).data;
     if (rows.weights) weights.forEach((w, i) => assert.ok(Math.abs(w - rows.weights[i]) < 1e-6));
-  }
-});
-
-test('E/π at vertices is transfer times light', { skip }, async (t) => {
-  const bundle = openBundle(path), info = listing(), light = array(info.light.coefficients).data;
-  const rgb = Float64Array.from(light), groups = await loadedGroups(bundle);
-  for (const [g, group] of groups.entries()) {
-    group.shade({ full: rgb, shadowed: null, sum: rgb, lamps: {} });
-    for (const [d, draw] of bundle.draws.entries()) {
-      if (draw.group !== g || draw.outputs !== 1) continue;
-      const rows = await bundle.rows(draw), run = group.samples.get(1), count = bundle.vertexCount(draw);
-      const ours = new Float32Array(3 * count), lit = new Float32Array(run.lit.length);
-      gatherRows(rows, 0, count, run.lit, run.first, 3, ours);
-      for (const [b, block] of info.groups[g].transfer.entries()) {
-        if (block.form !== 'vector' || block.place !== 'surface' || block.order === 0) continue;
-        const values = array(info.groups[g].transfer[b].values).data, { columns } = block;
-        const channels = block.shadowedChannels + block.fullChannels, full = block.fullChannels;
-        for (let s = 0; s < block.samples; ++s)
-          for (let c = 0; c < 3; ++c) {
-            const channel = full ? block.shadowedChannels + (full === 3 ? c : 0) : block.shadowedChannels === 3 ? c : 0;
-            let sum = 0;
-            for (let i = 0; i < columns; ++i) sum += values[(s * channels + channel) * columns + i] * rgb[3 * i + c];
-            lit[3 * (block.firstSample + s - run.first) + c] += sum;
-          }
-      }
-      const theirs = new Float32Array(3 * count);
-      gatherRows(rows, 0, count, lit, run.first, 3, theirs);
-      const error = relative(ours, theirs);
-      t.diagnostic(`surface ${d}: relative RMS ${error.toExponential(1)}`);
-      assert.ok(error < 1e-3);
-    }
   }
 });
 

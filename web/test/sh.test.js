@@ -2,7 +2,10 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Matrix4, Quaternion, Vector3 } from 'three';
 import { evaluateBasis, projectEquirect, unoccludedTransfer } from '../src/sh.js';
+import { gauntTable } from '../src/gaunt.js';
+import { lobeBands } from '../src/lobe.js';
 import { LightVector } from '../src/light_vector.js';
+import { ZonalFactors } from '../src/zonal_factors.js';
 
 const directions = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.48, -0.6, 0.64], [-0.36, 0.48, -0.8]];
 
@@ -67,4 +70,61 @@ test('light of radiance 1 from everywhere gives E/π = 1 in the open', () => {
     const sum = t.reduce((s, value, i) => s + value * rgb[3 * i + c], 0);
     assert.ok(Math.abs(sum - (c + 1)) < 1e-9);
   }
+});
+
+test('light that meets nothing arrives as it is', () => {
+  const { j, k, m, value } = gauntTable(5, 9, 5);
+  const light = Float64Array.from({ length: 25 }, (_, i) => Math.cos(5 * i)), arrived = new Float64Array(25);
+  for (let t = 0; t < value.length; ++t) // V = 1 has √(4π) in its first band alone
+    if (k[t] === 0) arrived[j[t]] += value[t] * Math.sqrt(4 * Math.PI) * light[m[t]];
+  arrived.forEach((value, i) => assert.ok(Math.abs(value - light[i]) < 1e-9));
+});
+
+test('products of light and visibility are those of the functions', () => {
+  const { j, k, m, value } = gauntTable(3, 3, 2); // bands 0..2 hold the whole product of bands 0..1
+  const visibility = [0.7, 0.2, -0.4, 0.3], light = [1, -0.6, 0.1, 0.5], product = new Float64Array(9);
+  for (let t = 0; t < value.length; ++t) product[j[t]] += value[t] * (visibility[k[t]] ?? 0) * light[m[t]];
+  const at = (c, y) => c.reduce((sum, value, i) => sum + value * y[i], 0);
+  for (const d of directions) {
+    const y = evaluateBasis(3, ...d, []);
+    assert.ok(Math.abs(at(product, y) - at(visibility, y) * at(light, y)) < 1e-9);
+  }
+});
+
+test('zonal factors add up to the function that they factor', () => {
+  for (const isotropic of [true, false]) {
+    const factors = new ZonalFactors(5, isotropic), coefficients = [], whole = [];
+    for (let l = 0; l < 5; ++l)
+      for (let n = -l; n <= l; ++n) {
+        const value = isotropic && n < 0 ? 0 : Math.sin(7 * l + 3 * n + 1);
+        if (!isotropic || n >= 0) coefficients.push(value);
+        whole.push(value);
+      }
+    const weights = factors.factor(coefficients), sum = new Float64Array(25);
+    factors.axes.forEach((axis, i) => {
+      const y = evaluateBasis(5, ...axis, []);
+      for (let l = 0; l < 5; ++l) {
+        if (i >= (isotropic ? l + 1 : 2 * l + 1)) continue;
+        const weight = weights[(isotropic ? (l * (l + 1)) / 2 : l * l) + i];
+        for (let q = l * l; q < (l + 1) ** 2; ++q) sum[q] += weight * y[q];
+      }
+    });
+    whole.forEach((value, q) => assert.ok(Math.abs(value - sum[q]) < 1e-9));
+  }
+});
+
+test('the lobe of a mirror keeps all bands, and wider ones less', () => {
+  assert.ok(lobeBands(0).every((value) => value === 1));
+  let before = lobeBands(0);
+  for (const roughness of [0.1, 0.3, 0.6, 1]) {
+    const bands = lobeBands(roughness);
+    assert.ok(Math.abs(bands[0] - 1) < 1e-12);
+    for (let l = 1; l < 4; ++l) assert.ok(bands[l] < before[l] && bands[l] <= bands[l - 1]);
+    before = bands;
+  }
+});
+
+test('the lobe of roughness 1 is the clamped cosine', () => {
+  // D is even there, so K = max(cos, 0)/π, whose bands are A_l/π.
+  [1, 2 / 3, 1 / 4, 0, -1 / 24].forEach((value, l) => assert.ok(Math.abs(lobeBands(1)[l] - value) < 1e-4));
 });

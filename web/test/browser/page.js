@@ -33,6 +33,36 @@ async function lightOf(word) {
   return lambent.LightVector.fromEquirect(texture);
 }
 
+// Paints the lights of lightOf as an environment for three's mirrors.
+async function environmentOf(words) {
+  const map = words.find((word) => !/^(constant|sun):/.test(word));
+  if (map) return new HDRLoader().setDataType(THREE.FloatType).loadAsync(map);
+  const width = 1024, height = 512, data = new Float32Array(4 * width * height), direction = new THREE.Vector3();
+  const suns = words.map((word) => [word.split(':')[0], word.split(':')[1].split(',').map(Number)]);
+  for (let i = 0; i < width * height; ++i) {
+    const phi = (((i % width) + 0.5) / width - 0.5) * 2 * Math.PI, theta = Math.PI * (1 - (Math.floor(i / width) + 0.5) / height);
+    direction.set(Math.sin(theta) * Math.cos(phi), Math.cos(theta), Math.sin(theta) * Math.sin(phi));
+    for (const [kind, n] of suns) {
+      if (kind === 'sun' && direction.dot(toward(n[0], n[1])) < Math.cos(n[2] * DEGREE)) continue;
+      const rgb = kind === 'sun' ? n.slice(3) : n;
+      for (let c = 0; c < 3; ++c) data[4 * i + c] += rgb[c] ?? rgb[0];
+    }
+  }
+  const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, THREE.FloatType);
+  Object.assign(texture, { magFilter: THREE.LinearFilter, minFilter: THREE.LinearFilter, needsUpdate: true });
+  return texture;
+}
+
+// The file's own camera by its name or index, or an orbit.
+function cameraOf(gltf, words, aspect) {
+  if (words.startsWith('orbit:')) return orbitCamera(gltf.userData.lambent.bundle, words, aspect);
+  const camera = gltf.cameras.find((one, i) => String(i) === words || one.name === words);
+  if (!camera) throw new Error(`there is no camera ${words}`);
+  camera.aspect = aspect;
+  camera.updateProjectionMatrix();
+  return camera;
+}
+
 function orbitCamera(bundle, words, aspect) {
   const [azimuth, elevation, distance, fov] = words.split(':')[1].split(',').map(Number);
   const box = new THREE.Box3(), corner = new THREE.Vector3();
@@ -138,13 +168,17 @@ function showDifference(ours, theirs, width, height) {
   context.putImageData(image, 0, 0);
 }
 
-async function render({ bundle, lights, camera: words, size, transfer = 'full', picture, time, factor = 1 }) {
+async function render({ bundle, lights, camera: words, size, transfer = 'full', picture, time, environment, factor = 1 }) {
   const [width, height] = size;
   const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
   if (!baked) throw new Error('the bundle was shown as plain glTF');
   scene.add(gltf.scene);
   baked.light = (await Promise.all(lights.map(lightOf))).reduce((a, b) => a.add(b));
   baked.transfer = transfer;
+  if (environment) {
+    scene.environment = await environmentOf(lights);
+    scene.environment.mapping = THREE.EquirectangularReflectionMapping;
+  }
   finestTexels(gltf.scene);
   if (time !== undefined) {
     const mixer = new THREE.AnimationMixer(gltf.scene);
@@ -152,14 +186,11 @@ async function render({ bundle, lights, camera: words, size, transfer = 'full', 
     mixer.setTime(time);
   }
   scene.updateMatrixWorld();
-  const start = performance.now();
-  baked.update();
-  const update_ms = performance.now() - start;
-  const camera = orbitCamera(baked.bundle, words, width / height);
+  const camera = cameraOf(gltf, words, width / height);
   const pixels = readFloats(scene, camera, factor * width, factor * height);
   renderer.setSize(width, height);
   renderer.render(scene, camera); // for the eye
-  const result = { update_ms };
+  const result = {};
   if (picture) {
     const theirs = await new EXRLoader().setDataType(THREE.FloatType).loadAsync(picture);
     const average = (picture) => averaged(picture, pixels, factor * width, factor * height, factor);
@@ -169,11 +200,60 @@ async function render({ bundle, lights, camera: words, size, transfer = 'full', 
   }
   const before = { ...renderer.info.memory };
   scene.remove(gltf.scene);
+  scene.environment?.dispose();
   baked.dispose();
   gltf.scene.traverse((object) => {
     for (const value of Object.values(object.material ?? {})) if (value?.isTexture) value.dispose();
   });
   result.memory = { before, after: { ...renderer.info.memory } };
+  return result;
+}
+
+// Returns the light that the GPU finds at the samples of one number of outputs, RGBA each, group by group.
+async function samples(bundle, rgb, outputs) {
+  const gltf = await loader().loadAsync(bundle), baked = gltf.userData.lambent, scene = new THREE.Scene();
+  scene.add(gltf.scene);
+  baked.light = new lambent.LightVector(Math.sqrt(rgb.length / 3), Float64Array.from(rgb));
+  scene.updateMatrixWorld();
+  const all = baked.groups.map((group, index) => {
+    baked.prepare(renderer, index);
+    const run = group.runs.get(outputs), { width, height } = run.target;
+    const pixels = new Float32Array(4 * width * height), entryOf = group.entriesOf(run);
+    renderer.readRenderTargetPixels(run.target, 0, 0, width, height, pixels);
+    return Array.from({ length: 4 * run.count }, (_, i) => pixels[4 * entryOf(run.first + (i >> 2)) + (i & 3)]);
+  });
+  baked.dispose();
+  return all;
+}
+
+// Turns the light and returns milliseconds per change: of JavaScript for light and for the picture's commands, and until
+// the GPU has drawn it; and the same of a picture whose light stays.
+async function lightCost({ bundle, lights, camera: words, size, changes = 20 }) {
+  const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
+  scene.add(gltf.scene);
+  const light = (await Promise.all(lights.map(lightOf))).reduce((a, b) => a.add(b));
+  const camera = cameraOf(gltf, words, size[0] / size[1]), gl = renderer.getContext();
+  renderer.setSize(...size);
+  const run = (turns) => {
+    const sums = { light: 0, commands: 0, drawn: 0 };
+    for (let i = 0; i < changes; ++i) {
+      if (turns) baked.light = light.rotateY(0.1 * i);
+      scene.updateMatrixWorld();
+      const start = performance.now();
+      baked.update();
+      const lit = performance.now();
+      renderer.render(scene, camera);
+      const sent = performance.now();
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+      sums.light += lit - start;
+      sums.commands += sent - lit;
+      sums.drawn += performance.now() - start;
+    }
+    return Object.fromEntries(Object.entries(sums).map(([key, value]) => [key, value / changes]));
+  };
+  run(true); // compiles
+  const result = { turning: run(true), still: run(false) };
+  baked.dispose();
   return result;
 }
 
@@ -199,7 +279,7 @@ async function progressive(bundle, camera, size) {
     new GLTFLoader().setDRACOLoader(draco), bundle, { onPlane: (done, all) => steps.push([done, all]) });
   const baked = gltf.userData.lambent, scene = new THREE.Scene();
   scene.add(gltf.scene);
-  const view = orbitCamera(baked.bundle, camera, size[0] / size[1]);
+  const view = cameraOf(gltf, camera, size[0] / size[1]);
   const shot = () => {
     scene.updateMatrixWorld();
     baked.update();
@@ -248,7 +328,7 @@ async function sunny({ bundle, map, camera, size, keys, picture }) {
   finestTexels(gltf.scene);
   scene.updateMatrixWorld();
   baked.update();
-  const view = orbitCamera(baked.bundle, camera, size[0] / size[1]), pixels = readFloats(scene, view, ...size);
+  const view = cameraOf(gltf, camera, size[0] / size[1]), pixels = readFloats(scene, view, ...size);
   renderer.setSize(...size);
   renderer.render(scene, view);
   const theirs = await new EXRLoader().setDataType(THREE.FloatType).loadAsync(picture);
@@ -258,4 +338,4 @@ async function sunny({ bundle, map, camera, size, keys, picture }) {
   return { suns: suns.length, ...compare(pixels, theirs.image.data, ...size) };
 }
 
-window.lambentTest = { render, projections, progressive, sunny, newerFormat, ready: true };
+window.lambentTest = { render, samples, lightCost, projections, progressive, sunny, newerFormat, ready: true };

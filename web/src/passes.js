@@ -1,0 +1,145 @@
+// Passes that multiply transfer with light on the GPU, as lambent-demo's compute kernels do. They run when light or
+// transfer changed, in three steps:
+//   products: each mean and axis of a codebook, X, times the light, Y: Σ_r X_v,r Y_r,o for every output o
+//   samples:  mean + Σ code x axis of each sample
+//   texels:   Σ weight x sample, for draws that keep their light in a texture
+// Vertices take their samples themselves (shader_text.js).
+import { BufferAttribute, BufferGeometry, Camera, GLSL3, Mesh, NoBlending, RawShaderMaterial, Scene } from 'three';
+import { PLACE_TEXT } from './gpu_textures.js';
+
+const HEAD = /* glsl */ `
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp usampler2D;
+out vec4 result;
+${PLACE_TEXT}
+vec4 entry(sampler2D list, int i) { return texelFetch(list, lambentPlace(i), 0); }
+uvec4 words(usampler2D list, int i) { return texelFetch(list, lambentPlace(i), 0); }
+uniform int width, firstRow; // of the rows of the target that are written
+int written() { return (int(gl_FragCoord.y) - firstRow) * width + int(gl_FragCoord.x); }
+`;
+
+const PRODUCTS = /* glsl */ `${HEAD}
+uniform sampler2D vectors; // four coordinates in each entry
+uniform sampler2D lights;  // of each coordinate, the outputs
+uniform int vectorCount, vectorEntries, outputs;
+void main() {
+  int v = written() / outputs, o = written() % outputs;
+  result = vec4(0.0);
+  if (v >= vectorCount) return;
+  for (int r = 0; r < vectorEntries; ++r) {
+    vec4 x = entry(vectors, v * vectorEntries + r);
+    for (int k = 0; k < 4; ++k) result += x[k] * entry(lights, (4 * r + k) * outputs + o);
+  }
+}`;
+
+const samplesText = (transfers) => /* glsl */ `${HEAD}
+${Array.from({ length: transfers }, (_, t) => `
+uniform sampler2D products${t};
+uniform usampler2D codes${t};   // four codes in each entry
+uniform usampler2D places${t};  // of each sample: its cluster's first product, entries of codes, the first of them`).join('')}
+uniform int sampleCount, outputs;
+void main() {
+  int s = written() / outputs, o = written() % outputs;
+  result = vec4(0.0);
+  if (s >= sampleCount) return;
+  ${Array.from({ length: transfers }, (_, t) => `{
+    uvec4 place = words(places${t}, s);
+    int p = int(place.x) * outputs + o;
+    result += entry(products${t}, p);
+    for (uint e = 0u; e < place.y; ++e) {
+      vec4 code = vec4(words(codes${t}, int(place.z + e)));
+      for (int k = 0; k < 4; ++k) result += code[k] * entry(products${t}, p += outputs);
+    }
+  }`).join('\n  ')}
+}`;
+
+const TEXELS = /* glsl */ `${HEAD}
+uniform sampler2D samples;
+uniform usampler2D rows, entries;
+void main() {
+  uvec4 row = words(rows, written());
+  result = vec4(0.0);
+  if (row.y == 0u) return;
+  if (row.y == 1u) result = entry(samples, int(row.x));
+  for (uint e = 0u; row.y > 1u && e < row.y; ++e) {
+    uvec4 one = words(entries, int(row.x + e));
+    result += uintBitsToFloat(one.y) * entry(samples, int(one.x));
+  }
+  result.a = 1.0;
+}`;
+
+const VERTICES = 'in vec3 position; void main() { gl_Position = vec4(position, 1.0); }';
+
+export class Passes {
+  constructor() {
+    this.materials = new Map();
+    this.camera = new Camera();
+    this.scene = new Scene();
+    this.scene.matrixWorldAutoUpdate = false;
+    const triangle = new BufferGeometry();
+    triangle.setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+    this.mesh = new Mesh(triangle);
+    this.mesh.frustumCulled = false;
+    this.scene.add(this.mesh);
+  }
+
+  material(name, text) {
+    if (!this.materials.has(name))
+      this.materials.set(name, new RawShaderMaterial({
+        glslVersion: GLSL3, vertexShader: VERTICES, fragmentShader: text(), blending: NoBlending, depthTest: false,
+        depthWrite: false, uniforms: { width: { value: 0 }, firstRow: { value: 0 } },
+      }));
+    return this.materials.get(name);
+  }
+
+  /** Runs `work`, which draws, and leaves the renderer as it was, also in the middle of a picture. */
+  during(renderer, work) {
+    const { xr, shadowMap, autoClear } = renderer;
+    const before = [renderer.getRenderTarget(), renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel()];
+    const xrEnabled = xr.enabled, { autoUpdate } = shadowMap;
+    xr.enabled = shadowMap.autoUpdate = renderer.autoClear = false;
+    try {
+      work();
+    } finally {
+      renderer.setRenderTarget(...before);
+      Object.assign(renderer, { autoClear });
+      xr.enabled = xrEnabled;
+      shadowMap.autoUpdate = autoUpdate;
+    }
+  }
+
+  // Draws rows of a target.
+  draw(renderer, material, target, firstRow, rows, uniforms) {
+    for (const [name, value] of Object.entries({ ...uniforms, width: target.width, firstRow }))
+      (material.uniforms[name] ??= { value: null }).value = value;
+    material.uniformsNeedUpdate = true;
+    target.viewport.set(0, firstRow, target.width, rows);
+    target.scissor.copy(target.viewport);
+    this.mesh.material = material;
+    renderer.setRenderTarget(target);
+    renderer.render(this.scene, this.camera);
+  }
+
+  products(renderer, target, uniforms) {
+    this.draw(renderer, this.material('products', () => PRODUCTS), target, 0, target.height, uniforms);
+  }
+
+  samples(renderer, target, firstRow, rows, transfers, uniforms) {
+    const all = { ...uniforms };
+    transfers.forEach(({ products, codes, places }, t) =>
+      Object.assign(all, { [`products${t}`]: products, [`codes${t}`]: codes, [`places${t}`]: places }));
+    const material = this.material(`samples${transfers.length}`, () => samplesText(transfers.length));
+    this.draw(renderer, material, target, firstRow, rows, all);
+  }
+
+  texels(renderer, target, uniforms) {
+    this.draw(renderer, this.material('texels', () => TEXELS), target, 0, target.height, uniforms);
+  }
+
+  dispose() {
+    for (const material of this.materials.values()) material.dispose();
+    this.mesh.geometry.dispose();
+  }
+}
