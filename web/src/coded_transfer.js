@@ -75,7 +75,7 @@ export class CodedTransfer {
 
   /** Multiplies all vectors with the light on the GPU. */
   multiply(renderer, passes) {
-    this.target ??= listTarget(renderer, rowsFor(this.vectorCount * this.shape.outputs));
+    this.target ??= listTarget(rowsFor(this.vectorCount * this.shape.outputs));
     const { vectors, lights, vectorCount, vectorEntries } = this;
     passes.products(renderer, this.target,
       { vectors, lights, vectorCount, vectorEntries, outputs: this.shape.outputs });

@@ -28,11 +28,13 @@ export const shortList = (count) => listTexture(count, Uint16Array, 4, RGBAInteg
 export const integerList = (count, channels) => listTexture(
   count, Uint32Array, channels, channels === 2 ? RGIntegerFormat : RGBAIntegerFormat, UnsignedIntType);
 
-/** A target that a pass writes lists of four floats to; half floats where a device cannot write whole ones. */
-export function listTarget(renderer, rows) {
-  const type = renderer.extensions.has('EXT_color_buffer_float') ? FloatType : HalfFloatType;
+/** Tells whether a device can write lists of floats. Hardly any with WebGL 2 cannot. */
+export const canWriteLists = (renderer) => renderer.extensions.has('EXT_color_buffer_float');
+
+/** A target that a pass writes a list of four floats to. */
+export function listTarget(rows) {
   return new WebGLRenderTarget(LIST_WIDTH, rows, {
-    type, format: RGBAFormat, magFilter: NearestFilter, minFilter: NearestFilter, depthBuffer: false,
+    type: FloatType, format: RGBAFormat, magFilter: NearestFilter, minFilter: NearestFilter, depthBuffer: false,
   });
 }
 

@@ -53,8 +53,8 @@ export class Group {
   }
 
   /** Makes the targets of the light at samples; their textures are what surfaces read. */
-  makeTargets(renderer) {
-    for (const run of this.runs.values()) run.target ??= listTarget(renderer, run.rows);
+  makeTargets() {
+    for (const run of this.runs.values()) run.target ??= listTarget(run.rows);
   }
 
   /** Computes the light at all samples on the GPU. */

@@ -40,7 +40,10 @@ export class LambentScene {
   readonly disposed: boolean;
   /** Sets colour times strength of a lamp that was baked into a group. */
   setLamp(group: number, index: number, color: { r: number; g: number; b: number }): void;
-  /** Shades what changed; call it before rendering, with world matrices up to date. Returns whether it shaded. */
+  /**
+   * Brings light to the groups in which something changed, with world matrices up to date, and returns whether there was
+   * one. It happens by itself before a surface is drawn.
+   */
   update(): boolean;
   dispose(): void;
 }
@@ -66,11 +69,14 @@ export interface Sun {
   irradiance: Color;
 }
 
-/** Divides an environment map into its suns and the rest; the radius of a sun is in radians. */
+/**
+ * Divides an environment map into its suns and the rest; the radius of a sun is in radians. `environment` is the map
+ * without suns, for scene.environment.
+ */
 export function splitKeyLights(
   texture: Texture,
   options?: { order?: number; most?: number; radius?: number },
-): { rest: LightVector; key: LightVector; suns: Sun[] };
+): { rest: LightVector; key: LightVector; suns: Sun[]; environment: Texture };
 
 /** Directional lights with shadow maps for suns. */
 export class KeyLights extends Group {

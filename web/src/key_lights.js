@@ -1,6 +1,8 @@
 // Suns of an environment map. Few bands blur them, so their direct light comes by three's shadow maps, and transfer
 // brings what they bounce.
-import { Color, DirectionalLight, DoubleSide, Group, Sphere, Vector3 } from 'three';
+import {
+  Color, DataTexture, DirectionalLight, DoubleSide, FloatType, Group, LinearFilter, RGBAFormat, Sphere, Vector3,
+} from 'three';
 import { LightVector, equirectTexels } from './light_vector.js';
 import { projectEquirect } from './sh.js';
 
@@ -8,8 +10,9 @@ const luminance = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 
 /**
  * Divides an environment map into its suns and the rest: at most `most` discs of `radius` (radians) that are 30 times
- * as bright as the mean, and bring at least 4 % of the light. Returns `rest` and `key` as light vectors, and `suns`
- * with a direction and the irradiance that falls straight on.
+ * as bright as the mean, and bring at least 4 % of the light. Returns `rest` and `key` as light vectors, `suns` with a
+ * direction and the irradiance that falls straight on, and `environment`, the map without them for three's mirrors, in
+ * which lights of KeyLights make highlights of their own.
  */
 export function splitKeyLights(texture, { order = 5, most = 2, radius = 0.14 } = {}) {
   const { width, height, texel } = equirectTexels(texture), texels = [];
@@ -49,7 +52,17 @@ export function splitKeyLights(texture, { order = 5, most = 2, radius = 0.14 } =
   const part = (key) => (x, y) => (inSun.has(y * width + x) === key ? texel(x, y) : none);
   const rest = new LightVector(order, projectEquirect(order, width, height, part(false)));
   const key = new LightVector(order, suns.length ? projectEquirect(order, width, height, part(true)) : undefined);
-  return { rest, key, suns };
+  return { rest, key, suns, environment: suns.length ? withoutTexels(texture, width, height, part(false)) : texture };
+}
+
+// Returns a map of the same layout with the radiance of `texel`.
+function withoutTexels(texture, width, height, texel) {
+  const data = new Float32Array(4 * width * height);
+  for (let y = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x) data.set([...texel(x, height - 1 - y), 1], 4 * (y * width + x));
+  const map = new DataTexture(data, width, height, RGBAFormat, FloatType);
+  const { mapping, wrapS, wrapT } = texture;
+  return Object.assign(map, { mapping, wrapS, wrapT, magFilter: LinearFilter, minFilter: LinearFilter, needsUpdate: true });
 }
 
 /** Directional lights for the suns that splitKeyLights found. Turn this group as the light turns. */

@@ -3,6 +3,7 @@
 // group's rotation changed, before the first surface of the group is drawn.
 import { Matrix3, Matrix4, Quaternion, Vector3 } from 'three';
 import { BrdfTexture, tableFor } from './brdf_table.js';
+import { canWriteLists } from './gpu_textures.js';
 import { Group } from './group.js';
 import { Surface } from './surface.js';
 import { LightVector } from './light_vector.js';
@@ -147,12 +148,16 @@ export class LambentScene {
   /** Shades the samples of a group on the GPU if they need it. Surfaces call it before they are drawn. */
   prepare(renderer, index) {
     if (this.disposed) return;
+    if (!canWriteLists(renderer) && this._transfer !== 'unshadowed') {
+      console.warn('lambent-three: this device cannot render to floats; light is shown without shadows');
+      this.transfer = 'unshadowed';
+    }
     this.update();
     if (!this._unshaded[index]) return;
     this._unshaded[index] = false;
     const group = this.groups[index];
     this._passes.during(renderer, () => {
-      group.makeTargets(renderer);
+      group.makeTargets();
       if (!this.uniforms[index].lambentOpen.value) group.shade(renderer, this._passes);
       for (const surface of this.surfaces) if (surface.group === group) surface.shade(renderer, this._passes);
     });
@@ -162,17 +167,17 @@ export class LambentScene {
     const inGroup = (light) => light && light.truncate(this._order).rotate(turn).rgb;
     const light = this._light.truncate(this._order);
     const all = this._key ? light.add(this._key) : light;
-    const full = this._transfer === 'full', rest = inGroup(light), whole = this._key ? inGroup(all) : rest;
+    const full = this._transfer === 'full', rest = inGroup(light);
     const { lambentOpen, lambentSky, lambentKnown } = this.uniforms[index];
     const fill = (to, from) => to.fill(0).set(Float32Array.from(from.subarray(0, to.length)));
     fill(lambentSky.value, rest);
-    fill(lambentKnown.value, whole);
+    fill(lambentKnown.value, rest);
     lambentOpen.value = this._transfer === 'unshadowed';
     if (lambentOpen.value) return;
     // With key lights k and the rest r the light is f r + (f - s) k: their direct part comes by shadow maps.
     const lamps = new Float64Array(this.lamps[index].flat());
     group.setLight({
-      full: full ? whole : null,
+      full: full ? inGroup(all) : null,
       shadowed: full ? this._key && inGroup(this._key.multiplyScalar(-1)) : rest,
       sum: rest,
       lamps: full ? { full: lamps } : { shadowed: lamps },

@@ -158,11 +158,11 @@ const FAN = /* glsl */ `
       lambentMore = weights > 0.0 ? sum / weights : vec3(0.0);
     }`;
 
-// Matte surfaces leave their colour to three; those that reflect are shaded by the table of their BRDF.
+// Matte surfaces have one albedo; those that reflect are shaded by the table of their BRDF.
 function shaded(kind) {
   if (!kind.glossy && !kind.layered) return `${received(kind)}
-  irradiance = vec3(0.0);
-  iblIrradiance = PI * lambentReceived;`;
+  irradiance = iblIrradiance = vec3(0.0);
+  reflectedLight.indirectDiffuse += diffuseColor.rgb * lambentReceived;`;
   const mirror = /* glsl */ `
   vec3 lambentNormal = lambentToGroup(normal), lambentEye = lambentToGroup(geometryViewDir);
   vec3 lambentMirrored = reflect(-lambentEye, lambentNormal), lambentMirroredView = reflect(-geometryViewDir, normal);

@@ -316,7 +316,9 @@ async function sunny({ bundle, map, camera, size, keys, picture }) {
   const texture = await new HDRLoader().setDataType(THREE.FloatType).loadAsync(map), scene = new THREE.Scene();
   const gltf = await loader().loadAsync(bundle), baked = gltf.userData.lambent;
   scene.add(gltf.scene);
-  const { rest, key, suns } = lambent.splitKeyLights(texture);
+  texture.mapping = THREE.EquirectangularReflectionMapping;
+  const { rest, key, suns, environment } = lambent.splitKeyLights(texture);
+  scene.environment = keys ? environment : texture;
   baked.light = keys ? rest : rest.add(key);
   let lights = null;
   if (keys) {
@@ -333,8 +335,7 @@ async function sunny({ bundle, map, camera, size, keys, picture }) {
   renderer.render(scene, view);
   const theirs = await new EXRLoader().setDataType(THREE.FloatType).loadAsync(picture);
   showDifference(pixels, theirs.image.data, ...size);
-  lights?.dispose();
-  baked.dispose();
+  for (const one of [lights, environment, texture, baked]) one?.dispose();
   return { suns: suns.length, ...compare(pixels, theirs.image.data, ...size) };
 }
 

@@ -9,7 +9,7 @@ const map = process.env.LAMBENT_TEST_MAP;
 
 test('the viewer shows a bundle', { skip: skip || (map ? false : 'LAMBENT_TEST_MAP is not set'), timeout: 600000 }, async (t) => {
   mkdirSync(work, { recursive: true });
-  const browser = await launch(t), file = resolve(list.split(',').at(-1));
+  const browser = await launch(t), file = resolve(list.split(',')[1]);
   const path = `/web/viewer/index.html?bundle=/bundle/${basename(file)}&light=/map/${basename(map)}`;
   for (const [name, size] of [['desk', [800, 450]], ['phone', [360, 640]]]) {
     const { page, messages } = await open(t, browser,
