@@ -27,7 +27,8 @@ node "$web/test/reflecting_scene.js" "$folder/reflecting.gltf"
 bundles=$folder/hello.lmb.glb,$folder/mapped.lmb.glb,$folder/reflecting.lmb.glb
 sponza=${LAMBENT_SHARED_DATA:-$here/../../../shared/data}/architecture/dabrovic-sponza/dabrovic-sponza.glb
 if [[ -f $sponza ]]; then
-  "$programs/lambent" bake "$sponza" -o "$folder/sponza.lmb.glb" --quality draft --cache off >/dev/null
+  "$programs/lambent" bake "$sponza" -o "$folder/sponza.lmb.glb" --quality draft --rays 128 --bounces 1 --refine off \
+    --cache off >/dev/null
   bundles=$bundles,$folder/sponza.lmb.glb
 else
   [[ ,${LAMBENT_REQUIRE:-}, != *,data,* ]] || { echo "$sponza is not here"; exit 1; }

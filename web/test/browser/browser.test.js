@@ -11,7 +11,7 @@ import { bin, launch, list, open, skip, work } from './browser.js';
 const SIZE = [320, 180]; // each pixel is the mean of FACTOR x FACTOR
 const ORBIT = { camera: 'orbit:30,30,2.2,40', factor: 4 };
 // Sponza's own camera sees many edges, at which two rasterizers differ, so it takes more of them.
-const SPONZA = { camera: '0', factor: 8, cases: [['soft', 'full'], ['soft', 'shadowed']] };
+const SPONZA = { camera: '0', factor: 8, cases: [['constant', 'full'], ['soft', 'full']] };
 const CASES = [['constant', 'full'], ['soft', 'full'], ['soft', 'shadowed'], ['soft', 'unshadowed']];
 const LIGHTS = {
   constant: ['constant:1,0.9,0.8'],
