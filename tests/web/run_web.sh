@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run_web.sh PROGRAMS ASSETS: bakes three small scenes and Sponza, and runs the tests of web/ with them in Node.js and in
+# run_web.sh PROGRAMS ASSETS: bakes four small scenes and Sponza, and runs the tests of web/ with them in Node.js and in
 # Chromium. Sponza comes from ../shared/data beside the checkout, or from LAMBENT_SHARED_DATA; without it, it is left out.
 # Exit status: 0 passed, 77 skipped, since Node.js, Chromium or web/node_modules is not there; LAMBENT_REQUIRE=web makes
 # that a failure. Nothing is fetched from the network.
@@ -21,10 +21,12 @@ trap 'rm -rf "$folder"' EXIT
 "$programs/lambent" bake "$assets/hello.glb" -o "$folder/hello.lmb.glb" --quality draft --cache off >/dev/null
 node "$web/test/mapped_scene.js" "$folder/mapped.gltf"
 "$programs/lambent" bake "$folder/mapped.gltf" -o "$folder/mapped.lmb.glb" --quality draft --rays 128 --cache off >/dev/null
-node "$web/test/reflecting_scene.js" "$folder/reflecting.gltf"
-"$programs/lambent" bake "$folder/reflecting.gltf" -o "$folder/reflecting.lmb.glb" --quality draft --rays 128 --bounces 1 \
-  --cache off >/dev/null
-bundles=$folder/hello.lmb.glb,$folder/mapped.lmb.glb,$folder/reflecting.lmb.glb
+for scene in reflecting moving; do
+  node "$web/test/${scene}_scene.js" "$folder/$scene.gltf"
+  "$programs/lambent" bake "$folder/$scene.gltf" -o "$folder/$scene.lmb.glb" --quality draft --rays 128 --bounces 1 \
+    --cache off >/dev/null
+done
+bundles=$folder/hello.lmb.glb,$folder/mapped.lmb.glb,$folder/reflecting.lmb.glb,$folder/moving.lmb.glb
 sponza=${LAMBENT_SHARED_DATA:-$here/../../../shared/data}/architecture/dabrovic-sponza/dabrovic-sponza.glb
 if [[ -f $sponza ]]; then
   "$programs/lambent" bake "$sponza" -o "$folder/sponza.lmb.glb" --quality draft --rays 128 --bounces 1 --refine off \

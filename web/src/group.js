@@ -1,5 +1,6 @@
 // A rigid group: its cells' transfer, and light at its samples.
 import { CodedTransfer } from './coded_transfer.js';
+import { Grid } from './grid.js';
 import { LIST_WIDTH, listTarget, rowsFor } from './gpu_textures.js';
 
 export class Group {
@@ -7,19 +8,22 @@ export class Group {
     this.json = json;
     // Samples with as many outputs lie in a row, because cells come by rising outputs. Their light is a list of
     // `outputs` entries each, in which every cell begins a row of the target.
-    this.runs = new Map(); // outputs -> {first, count, outputs, rows, target}
+    this.runs = new Map(); // outputs, or 'neighborhood' -> {first, count, outputs, rows, target}
     this.cells = [];
     for (const cell of json.cells) {
-      if (cell.kind !== 'surface') continue; // volumes and neighborhoods are not shown
-      const { outputs } = cell.transfers[0];
-      const run = this.runs.get(outputs) ?? { first: cell.firstSample, count: 0, outputs, rows: 0, target: null };
+      if (cell.kind === 'volume') continue; // they are not shown
+      const { outputs } = cell.transfers[0], key = cell.kind === 'surface' ? outputs : cell.kind;
+      const run = this.runs.get(key) ?? { first: cell.firstSample, count: 0, outputs, rows: 0, target: null };
       run.count = cell.firstSample + cell.sampleCount - run.first;
-      this.runs.set(outputs, run);
+      this.runs.set(key, run);
       const rows = rowsFor(cell.sampleCount * outputs);
       const transfers = cell.transfers.map((t) => new CodedTransfer(t, cell.sampleCount));
       this.cells.push({ json: cell, run, firstRow: run.rows, rows, transfers });
       run.rows += rows;
     }
+    // Cells of a grid are as long as whole rows, but for the last, so its points follow each other.
+    const around = this.runs.get('neighborhood');
+    this.grid = around ? new Grid(json.neighborhood, around) : null;
   }
 
   /** Loads codebooks and cluster ids. Surfaces can be shaded by the means of the clusters from then on. */
@@ -64,10 +68,12 @@ export class Group {
       passes.samples(renderer, run.target, firstRow, rows, transfers.map((t) => t.textures),
         { sampleCount: json.sampleCount, outputs: run.outputs });
     }
+    this.grid?.draw(renderer, passes);
   }
 
   dispose() {
     for (const cell of this.cells) for (const transfer of cell.transfers) transfer.dispose();
     for (const run of this.runs.values()) run.target?.dispose();
+    this.grid?.dispose();
   }
 }

@@ -1,8 +1,9 @@
 // Passes that multiply transfer with light on the GPU, as lambent-demo's compute kernels do. They run when light or
-// transfer changed, in three steps:
+// transfer changed, in steps:
 //   products: each mean and axis of a codebook, X, times the light, Y: Σ_r X_v,r Y_r,o for every output o
 //   samples:  mean + Σ code x axis of each sample
 //   texels:   Σ weight x sample, for draws that keep their light in a texture
+//   grid:     the change of light around a body as a picture
 // Vertices take their samples themselves (shader_text.js).
 import { BufferAttribute, BufferGeometry, Camera, GLSL3, Mesh, NoBlending, RawShaderMaterial, Scene } from 'three';
 import { PLACE_TEXT } from './gpu_textures.js';
@@ -68,6 +69,18 @@ void main() {
     result += uintBitsToFloat(one.y) * entry(samples, int(one.x));
   }
   result.a = 1.0;
+}`;
+
+// The outputs of points side by side, slices of z one above the other (grid.js).
+const GRID = /* glsl */ `${HEAD}
+uniform sampler2D samples;
+uniform vec3 size;
+uniform int outputs;
+void main() {
+  ivec3 counts = ivec3(size);
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  int point = at.y * counts.x + at.x % counts.x; // slices of z follow each other, as points do
+  result = entry(samples, point * outputs + at.x / counts.x);
 }`;
 
 const VERTICES = 'in vec3 position; void main() { gl_Position = vec4(position, 1.0); }';
@@ -136,6 +149,10 @@ export class Passes {
 
   texels(renderer, target, uniforms) {
     this.draw(renderer, this.material('texels', () => TEXELS), target, 0, target.height, uniforms);
+  }
+
+  grid(renderer, target, uniforms) {
+    this.draw(renderer, this.material('grid', () => GRID), target, 0, target.height, uniforms);
   }
 
   dispose() {

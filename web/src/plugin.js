@@ -60,7 +60,7 @@ function attach(scene, gltf, parser) {
     if (mesh.geometry.getAttribute('position').count !== surface.vertexCount)
       throw new Error(`mesh ${draw.node} was decoded to another number of vertices than transfer was baked for`);
     const groupFromMesh = new Matrix4().multiplyMatrices(groupFromWorld[draw.group], mesh.matrixWorld);
-    surface.attach(mesh, groupFromMesh, scene.uniforms[draw.group], scene.tableOf(draw));
+    surface.attach(mesh, groupFromMesh, scene.uniforms[draw.group], scene.tableOf(draw), scene.gridsAround(draw.group));
     surface.mesh = mesh;
     return true;
   });
@@ -79,7 +79,7 @@ function attach(scene, gltf, parser) {
     mesh.add(side);
     surface.mesh = side;
   }
-  for (const { draw, mesh } of parts) mesh.onBeforeRender = (renderer) => scene.prepare(renderer, draw.group);
+  for (const { mesh } of parts) mesh.onBeforeRender = (renderer) => scene.prepare(renderer);
   hideLamps(scene);
 }
 

@@ -11,6 +11,7 @@ import { Passes } from './passes.js';
 
 const MOST_COEFFICIENTS = 64; // of eight bands
 const KNOWN_COEFFICIENTS = 36; // of the six bands that mirrors know
+const MOST_GRIDS = 8; // that a surface receives from
 const TRANSFERS = ['full', 'shadowed', 'unshadowed'];
 
 export class LambentScene {
@@ -137,7 +138,9 @@ export class LambentScene {
   }
 
   updateGroup(group, index) {
-    const turn = new Matrix4().extractRotation(this.worldFromGroup(index)).invert(), before = this._turns[index];
+    const place = this.worldFromGroup(index), before = this._turns[index];
+    const turn = new Matrix4().extractRotation(place).invert();
+    group.grid?.place(place);
     if (!this._changed && before && turn.elements.every((e, i) => Math.abs(e - before.elements[i]) < 1e-5)) return false;
     this._turns[index] = turn;
     this.uniforms[index].lambentGroupFromWorld.value.setFromMatrix4(turn);
@@ -145,22 +148,27 @@ export class LambentScene {
     return (this._unshaded[index] = true);
   }
 
-  /** Shades the samples of a group on the GPU if they need it. Surfaces call it before they are drawn. */
-  prepare(renderer, index) {
+  /** Shades the samples of groups on the GPU that need it. Surfaces call it before they are drawn. */
+  prepare(renderer) {
     if (this.disposed) return;
     if (!canWriteLists(renderer) && this._transfer !== 'unshadowed') {
       console.warn('lambent-three: this device cannot render to floats; light is shown without shadows');
       this.transfer = 'unshadowed';
     }
     this.update();
-    if (!this._unshaded[index]) return;
-    this._unshaded[index] = false;
-    const group = this.groups[index];
-    this._passes.during(renderer, () => {
+    if (!this._unshaded.includes(true)) return;
+    this._passes.during(renderer, () => this.groups.forEach((group, index) => {
+      if (!this._unshaded[index]) return;
       group.makeTargets();
       if (!this.uniforms[index].lambentOpen.value) group.shade(renderer, this._passes);
       for (const surface of this.surfaces) if (surface.group === group) surface.shade(renderer, this._passes);
-    });
+    }));
+    this._unshaded.fill(false);
+  }
+
+  /** Returns the grids of bodies other than a group, the first of them if there are many. */
+  gridsAround(index) {
+    return this.groups.filter((group, i) => i !== index && group.grid).map((group) => group.grid).slice(0, MOST_GRIDS);
   }
 
   setLight(group, index, turn) {

@@ -1,6 +1,7 @@
 // Text that is put into three's own shaders. Vertices take the light of their samples (passes.js) and hand it on; the
 // pixel replaces the indirect light of three (ambient light, probes, environment) by what transfer brings.
 import { PLACE_TEXT } from './gpu_textures.js';
+import { gridsText } from './grid.js';
 import { EVEN_BANDS_TEXT, REFLECTION_TEXT } from './reflection_text.js';
 
 // E/π at a normal from light of bands 0..2: Σ A_l/π y_j(n) l'_j, with the constants of docs/conventions.md.
@@ -111,22 +112,26 @@ vNormal *= _normal_weight;
 export const fragmentDeclarations = (kind) => /* glsl */ `
 ${defines(kind)}${declare(varyingNumbers(kind))}
 uniform mat3 lambentGroupFromWorld;
+uniform bool lambentOpen;
 vec3 lambentToGroup(vec3 view) { return normalize(lambentGroupFromWorld * (vec4(view, 0.0) * viewMatrix).xyz); }
 vec3 lambentToView(vec3 group) { return normalize((viewMatrix * vec4(group * lambentGroupFromWorld, 0.0)).xyz); }
-${kind.outputs === 9 ? DIFFUSE_LIGHT : ''}
+${kind.outputs === 9 || kind.grids > 0 ? DIFFUSE_LIGHT : ''}
+${kind.grids > 0 ? gridsText(kind.grids) : ''}
 ${kind.table ? REFLECTION_TEXT(kind) : ''}
 #ifdef LAMBENT_TEXELS
 varying vec2 vLambentUv;
 uniform sampler2D lambentTexels;
-uniform bool lambentOpen;
 #endif
 `;
 
 const vec3At = (o) => `vec3(${slot(3 * o)}, ${slot(3 * o + 1)}, ${slot(3 * o + 2)})`;
 const listOf = (count, text) => Array.from({ length: count }, (_, i) => text(i)).join(',\n    ');
 
-// E/π at the pixel.
-function received({ outputs }) {
+// E/π at the pixel, with what bodies nearby change.
+const received = (kind) => `${transferred(kind)}
+  ${kind.grids > 0 ? 'if (!lambentOpen) lambentReceived = lambentChanged(lambentReceived, -vViewPosition, normal);' : ''}`;
+
+function transferred({ outputs }) {
   if (outputs === 9) return /* glsl */ `
   vec3 lambentBands[9] = vec3[9](
     ${listOf(9, vec3At)});

@@ -1,6 +1,7 @@
 // A draw of the bundle: one side of a primitive at a node, with a mesh of its own in three's scene.
 import { BackSide, BufferAttribute, BufferGeometry, FrontSide, Matrix3, Vector2, Vector3 } from 'three';
 import { pictureTarget, integerList } from './gpu_textures.js';
+import { gridUniforms } from './grid.js';
 import { lobeTexture } from './lobe.js';
 import { isMatte, litMaterial } from './material.js';
 import { packRows } from './rows_texture.js';
@@ -16,9 +17,10 @@ export class Surface {
 
   /**
    * Puts the surface into the scene: `mesh` is three's mesh of the primitive, `groupFromMesh` is at rest. `shared` are
-   * the uniforms of the group, `table` is what the material looks up if it is no diffuse one, or null.
+   * the uniforms of the group, `table` is what the material looks up if it is no diffuse one, or null, and
+   * `grids` are those of other bodies.
    */
-  attach(mesh, groupFromMesh, shared, table) {
+  attach(mesh, groupFromMesh, shared, table, grids) {
     const back = this.draw.side === 'back', glossy = this.draw.outputs > 9;
     const diffuse = isMatte(mesh.material, mesh.userData.lambentDefaultMaterial === true);
     const layered = !glossy && !diffuse && table !== null && table.lobes === 2;
@@ -34,13 +36,13 @@ export class Surface {
     this.textures.push(entries);
     this.uniforms = {
       ...shared, lambentSamples: uniform(null), lambentEntries: uniform(entries),
-      lambentGroupFromNormal: uniform(normalMatrix),
+      lambentGroupFromNormal: uniform(normalMatrix), ...gridUniforms(grids),
     };
     if (this.draw.texels) this.attachTexels(mesh, geometry, entryOf);
     const kind = {
       outputs: this.draw.outputs, glossy, layered, table: glossy || layered ? table : null,
       texels: Boolean(this.draw.texels), normalWeight: Boolean(geometry.getAttribute('_normal_weight')),
-      framed: Boolean(geometry.getAttribute('tangent') ?? geometry.getAttribute('uv')),
+      grids: glossy ? 0 : grids.length, framed: Boolean(geometry.getAttribute('tangent') ?? geometry.getAttribute('uv')),
     };
     if (kind.table) {
       this.textures.push(lobeTexture());

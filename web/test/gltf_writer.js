@@ -9,15 +9,15 @@ export function view(bytes) {
   return views.push({ buffer: 0, byteOffset: length, byteLength: bytes.length }) - 1;
 }
 
-function accessor(array, type) {
-  const width = { SCALAR: 1, VEC2: 2, VEC3: 3 }[type], entry = {
+export function accessor(array, type) {
+  const width = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 }[type], entry = {
     bufferView: view(Buffer.from(array.buffer)), type, count: array.length / width,
     componentType: array instanceof Uint32Array ? 5125 : 5126,
   };
-  if (type === 'VEC3') {
-    const axis = (k) => [...array].filter((_, i) => i % 3 === k);
-    entry.min = [0, 1, 2].map((k) => Math.min(...axis(k)));
-    entry.max = [0, 1, 2].map((k) => Math.max(...axis(k)));
+  if (type === 'VEC3' || type === 'SCALAR') {
+    const axes = Array.from({ length: width }, (_, k) => [...array].filter((_, i) => i % width === k));
+    entry.min = axes.map((axis) => Math.min(...axis));
+    entry.max = axes.map((axis) => Math.max(...axis));
   }
   return accessors.push(entry) - 1;
 }
@@ -83,9 +83,9 @@ export function sphere(centre, radius, n) {
   return { positions, normals, uvs, indices };
 }
 
-/** Writes a scene whose nodes are one mesh of one primitive each, and `more` nodes. */
-export function writeScene(path, meshes, materials, { nodes = [], ...rest } = {}) {
-  const all = [...meshes.map((_, mesh) => ({ mesh })), ...nodes], bytes = Buffer.concat(buffers);
+/** Writes a scene whose nodes are one mesh of one primitive each, with the properties of `placed`, and other `nodes`. */
+export function writeScene(path, meshes, materials, { placed = [], nodes = [], ...rest } = {}) {
+  const all = [...meshes.map((_, mesh) => ({ mesh, ...placed[mesh] })), ...nodes], bytes = Buffer.concat(buffers);
   writeFileSync(path, JSON.stringify({
     asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: all.map((_, i) => i) }], nodes: all,
     meshes: meshes.map((one) => ({ primitives: [one] })), materials, ...rest, bufferViews: views, accessors,

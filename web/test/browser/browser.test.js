@@ -12,6 +12,7 @@ const SIZE = [320, 180]; // each pixel is the mean of FACTOR x FACTOR
 const ORBIT = { camera: 'orbit:30,30,2.2,40', factor: 4 };
 // Sponza's own camera sees many edges, at which two rasterizers differ, so it takes more of them.
 const SPONZA = { camera: '0', factor: 8, cases: [['constant', 'full'], ['soft', 'full']] };
+const MOVED = { ...ORBIT, time: 1.3 };
 const CASES = [['constant', 'full'], ['soft', 'full'], ['soft', 'shadowed'], ['soft', 'unshadowed']];
 const LIGHTS = {
   constant: ['constant:1,0.9,0.8'],
@@ -20,13 +21,14 @@ const LIGHTS = {
 };
 const BOUND = 0.005;
 
-function picture(bundle, { camera, factor }, name, transfer) {
+function picture(bundle, { camera, factor, time }, name, transfer) {
   mkdirSync(work, { recursive: true });
   const path = join(work, `${basename(bundle, '.lmb.glb')}-${name}-${transfer}.exr`);
   execFileSync(join(bin, 'lambent-demo'), [
     bundle, '--camera', camera, '--size', SIZE.map((n) => n * factor).join('x'), '--keys', 'off', '--transfer', transfer,
     '--local-shadows', 'off', '--patch-bounces', 'off', // lamps shine by their columns
-    '--captures', 'off', '--neighborhoods', 'off', '--reflection-probes', '0', // bodies do not see each other
+    '--captures', 'off', '--reflection-probes', '0', // bodies change each other's light by neighborhoods alone
+    ...(time === undefined ? [] : ['--time', String(time)]),
     ...LIGHTS[name].flatMap((light) => ['--light', light]), '--headless', path,
   ]);
   return path;
@@ -37,14 +39,14 @@ test('pictures are those of lambent-demo', { skip, timeout: 900000 }, async (t) 
   for (const bundle of list.split(',')) {
     const { page, messages } = await open(t, browser, { '/work/': work, '/bundle/': dirname(resolve(bundle)) });
     await page.waitForFunction('window.lambentTest?.ready');
-    const view = basename(bundle).startsWith('sponza') ? SPONZA : ORBIT;
+    const view = { sponza: SPONZA, moving: MOVED }[basename(bundle, '.lmb.glb')] ?? ORBIT;
     const own = { bundle: `/bundle/${basename(bundle)}`, camera: view.camera, size: SIZE };
     // Mirrors show more of the soft light than few bands hold, by three's environment.
     const reflects = basename(bundle).startsWith('reflecting');
     for (const [name, transfer] of view.cases ?? CASES) {
       const exr = picture(bundle, view, name, transfer), environment = reflects && name === 'soft';
       const result = await page.evaluate((options) => window.lambentTest.render(options), {
-        ...own, lights: LIGHTS[name], factor: view.factor, transfer, environment, picture: `/work/${basename(exr)}`,
+        ...own, lights: LIGHTS[name], factor: view.factor, time: view.time, transfer, environment, picture: `/work/${basename(exr)}`,
       });
       await page.screenshot({ path: exr.replace('.exr', '.png') });
       const percent = (x) => `${(100 * x).toFixed(3)} %`;

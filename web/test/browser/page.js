@@ -215,8 +215,8 @@ async function samples(bundle, rgb, outputs) {
   scene.add(gltf.scene);
   baked.light = new lambent.LightVector(Math.sqrt(rgb.length / 3), Float64Array.from(rgb));
   scene.updateMatrixWorld();
-  const all = baked.groups.map((group, index) => {
-    baked.prepare(renderer, index);
+  baked.prepare(renderer);
+  const all = baked.groups.map((group) => {
     const run = group.runs.get(outputs), { width, height } = run.target;
     const pixels = new Float32Array(4 * width * height), entryOf = group.entriesOf(run);
     renderer.readRenderTargetPixels(run.target, 0, 0, width, height, pixels);
