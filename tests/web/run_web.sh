@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # run_web.sh PROGRAMS ASSETS: bakes four small scenes and Sponza, and runs the tests of web/ with them in Node.js and in
-# Chromium. Sponza comes from ../shared/data beside the checkout, or from LAMBENT_SHARED_DATA; without it, it is left out.
+# Chromium. Sponza comes from ../shared/data beside the checkout, or from LAMBENT_SHARED_DATA; without the data it is left
+# out.
 # Exit status: 0 passed, 77 skipped, since Node.js, Chromium or web/node_modules is not there; LAMBENT_REQUIRE=web makes
 # that a failure. Nothing is fetched from the network.
 set -euo pipefail
@@ -19,9 +20,7 @@ chromium=$(command -v chromium) || lacks "Chromium is not here (Debian: apt-get 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$programs/lambent" bake "$assets/hello.glb" -o "$folder/hello.lmb.glb" --quality draft --cache off >/dev/null
-node "$web/test/mapped_scene.js" "$folder/mapped.gltf"
-"$programs/lambent" bake "$folder/mapped.gltf" -o "$folder/mapped.lmb.glb" --quality draft --rays 128 --cache off >/dev/null
-for scene in reflecting moving; do
+for scene in mapped reflecting moving; do
   node "$web/test/${scene}_scene.js" "$folder/$scene.gltf"
   "$programs/lambent" bake "$folder/$scene.gltf" -o "$folder/$scene.lmb.glb" --quality draft --rays 128 --bounces 1 \
     --cache off >/dev/null

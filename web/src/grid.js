@@ -32,7 +32,8 @@ export class Grid {
 
   /** Draws the picture from the light at the points. */
   draw(renderer, passes) {
-    passes.grid(renderer, this.target, { samples: this.run.target.texture, size: this.size, outputs: this.run.outputs });
+    const { size, run } = this;
+    passes.grid(renderer, this.target, { samples: run.target.texture, size, outputs: run.outputs });
   }
 
   dispose() {

@@ -62,7 +62,8 @@ function withoutTexels(texture, width, height, texel) {
     for (let x = 0; x < width; ++x) data.set([...texel(x, height - 1 - y), 1], 4 * (y * width + x));
   const map = new DataTexture(data, width, height, RGBAFormat, FloatType);
   const { mapping, wrapS, wrapT } = texture;
-  return Object.assign(map, { mapping, wrapS, wrapT, magFilter: LinearFilter, minFilter: LinearFilter, needsUpdate: true });
+  map.magFilter = map.minFilter = LinearFilter;
+  return Object.assign(map, { mapping, wrapS, wrapT, needsUpdate: true });
 }
 
 /** Directional lights for the suns that splitKeyLights found. Turn this group as the light turns. */

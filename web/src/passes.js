@@ -39,7 +39,7 @@ const samplesText = (transfers) => /* glsl */ `${HEAD}
 ${Array.from({ length: transfers }, (_, t) => `
 uniform sampler2D products${t};
 uniform usampler2D codes${t};   // four codes in each entry
-uniform usampler2D places${t};  // of each sample: its cluster's first product, entries of codes, the first of them`).join('')}
+uniform usampler2D places${t};  // of each sample: its cluster's first product, count of entries, the first`).join('')}
 uniform int sampleCount, outputs;
 void main() {
   int s = written() / outputs, o = written() % outputs;

@@ -5,36 +5,6 @@ import { SEEN_AXES } from './seen_sky.js';
 
 const vec3 = (v) => `vec3(${v.map((x) => x.toFixed(9)).join(', ')})`;
 
-/** E/π of an open surface in the light of all bands that a clamped cosine has: 0, 1, 2, 4 and 6. */
-export const EVEN_BANDS_TEXT = /* glsl */ `
-vec3 lambentUnshadowed(vec3 n) {
-  const float weights[8] = float[8](1.0, 2.0 / 3.0, 0.25, 0.0, -1.0 / 24.0, 0.0, 1.0 / 64.0, 0.0);
-  vec3 sum = vec3(0.0);
-  float c = 1.0, s = 0.0, sectoral = 0.28209479177387814;
-  for (int m = 0; m < 7; ++m) {
-    if (m > 0) {
-      float next = n.x * c - n.y * s;
-      s = n.x * s + n.y * c;
-      c = next;
-      sectoral *= m == 1 ? sqrt(3.0) : sqrt(float(2 * m + 1) / float(2 * m));
-    }
-    float p = sectoral, before = 0.0;
-    for (int l = m; l < 7; ++l) {
-      if (l > m) {
-        float factor = sqrt(float(4 * l * l - 1) / float(l * l - m * m));
-        float back = l == m + 1 ? 0.0 : factor * sqrt(float((l - 1) * (l - 1) - m * m) / float(4 * (l - 1) * (l - 1) - 1));
-        float next = factor * n.z * p - back * before;
-        before = p;
-        p = next;
-      }
-      int centre = l * (l + 1);
-      sum += weights[l] * p * (m == 0 ? lambentSky[centre] : c * lambentSky[centre + m] + s * lambentSky[centre - m]);
-    }
-  }
-  return sum;
-}
-`;
-
 // The light's bands along a direction, by the polynomials of the basis.
 const bandsText = (type, name, bands) => /* glsl */ `
 void ${name}(vec3 d, ${type} light[${bands * bands}], out ${type} bands[${bands}]) {
@@ -97,8 +67,9 @@ vec3 lambentKnownAlong(vec3 d, float roughness) {
   lambentKnownBands(d, light, bands);
   float level = ${(LOBE_LEVELS - 1).toFixed(1)} * pow(roughness, 2.0 / 3.0);
   int low = int(min(level, ${(LOBE_LEVELS - 2).toFixed(1)}));
-  vec4 first = mix(texelFetch(lambentLobes, ivec2(0, low), 0), texelFetch(lambentLobes, ivec2(0, low + 1), 0), level - float(low));
-  vec4 second = mix(texelFetch(lambentLobes, ivec2(1, low), 0), texelFetch(lambentLobes, ivec2(1, low + 1), 0), level - float(low));
+  float part = level - float(low);
+  vec4 first = mix(texelFetch(lambentLobes, ivec2(0, low), 0), texelFetch(lambentLobes, ivec2(0, low + 1), 0), part);
+  vec4 second = mix(texelFetch(lambentLobes, ivec2(1, low), 0), texelFetch(lambentLobes, ivec2(1, low + 1), 0), part);
   vec3 sum = first.x * bands[0] + first.y * bands[1] + first.z * bands[2] + first.w * bands[3];
   ${bands > 4 ? 'sum += second.x * bands[4];' : ''}
   ${bands > 5 ? 'sum += second.y * bands[5];' : ''}
@@ -110,32 +81,36 @@ function kernel({ order, lobes, isotropic, axes, perNode }) {
   const measured = lobes === 3, firstWeight = (l) => (isotropic ? (l * (l + 1)) / 2 : l * l);
   const uses = (i, l) => i < (isotropic ? l + 1 : 2 * l + 1);
   const terms = axes.map((axis, i) => {
-    const lines = [`lambentLightBands(${axis.map((x) => x.toFixed(9)).map((x, k) => `${x} * ${['tangent', 'bitangent', 'normal'][k]}`).join(' + ')}, light, bands);`];
+    const turned = axis.map((x, k) => `${x.toFixed(9)} * ${['tangent', 'bitangent', 'normal'][k]}`).join(' + ');
+    const lines = [`lambentLightBands(${turned}, light, bands);`];
     for (let l = 0; l < order; ++l) {
       if (!uses(i, l)) continue;
-      const p = firstWeight(l) + i;
-      if (measured) lines.push(`lobe += vec4(weights[${p}].xyz, dot(weights[${p}].xyz, vec3(1.0 / 3.0))) * bands[${l}];`);
+      const p = firstWeight(l) + i, rgb = `weights[${p}].xyz`;
+      if (measured) lines.push(`lobe += vec4(${rgb}, dot(${rgb}, vec3(1.0 / 3.0))) * bands[${l}];`);
       else {
         const [a, b] = p % 2 === 0 ? 'xy' : 'zw';
-        lines.push(`f0Light += weights[${p >> 1}].${a} * bands[${l}]; f90Light += weights[${p >> 1}].${b} * bands[${l}];`);
+        lines.push(`f0Light += weights[${p >> 1}].${a} * bands[${l}];`, `f90Light += weights[${p >> 1}].${b} * bands[${l}];`);
       }
     }
     // The first axis is the normal, so the bands weighed by A_l/π give E/π.
-    if (i === 0) lines.push(`vec4 received = bands[0] + 2.0 / 3.0 * bands[1] + 0.25 * bands[2]${order > 4 ? ' - bands[4] / 24.0' : ''};`);
+    const fourth = order > 4 ? ' - bands[4] / 24.0' : '';
+    if (i === 0) lines.push(`vec4 received = bands[0] + 2.0 / 3.0 * bands[1] + 0.25 * bands[2]${fourth};`);
     return lines.join('\n  ');
   });
   const lookUp = isotropic ? /* glsl */ `
   for (int t = 0; t < ${perNode}; ++t) weights[t] = lambentBrdfTexel(vec2(place, roughness), t);` : /* glsl */ `
   vec2 turned = vec2(dot(tangent, along), dot(tangent, cross(normal, along)));
   if (turned.x * turned.y < 0.0) bitangent = -bitangent;
+  float azimuth = atan(abs(turned.y), abs(turned.x)) / 1.5707963;
   vec2 nodes = vec2(lambentBrdfNodes - 1), at = vec2(roughness, clamp(strength, 0.0, 1.0)) * nodes;
   vec2 low = min(floor(at), max(nodes - 1.0, 0.0)), part = at - low, high = min(low + 1.0, nodes);
   for (int t = 0; t < ${perNode}; ++t) weights[t] = vec4(0.0);
   for (int corner = 0; corner < 4; ++corner) {
-    vec2 side = vec2(float(corner & 1), float(corner >> 1)), share = mix(1.0 - part, part, side), node = mix(low, high, side);
+    vec2 side = vec2(float(corner & 1), float(corner >> 1));
+    vec2 share = mix(1.0 - part, part, side), node = mix(low, high, side);
     int layer = int(node.y * float(lambentBrdfNodes.x) + node.x + 0.5) * ${perNode};
     for (int t = 0; t < ${perNode}; ++t)
-      weights[t] += share.x * share.y * lambentBrdfTexel(vec2(place, atan(abs(turned.y), abs(turned.x)) / 1.5707963), layer + t);
+      weights[t] += share.x * share.y * lambentBrdfTexel(vec2(place, azimuth), layer + t);
   }`;
   const sums = measured ? /* glsl */ `
   vec3 rho = weights[0].xyz;
@@ -171,7 +146,8 @@ vec2 lambentAlbedoOf(float cosine, float roughness) {
   float at = roughness * float(lambentBrdfNodes.x - 1); // without strength, the azimuth does not count
   int low = int(min(at, float(max(lambentBrdfNodes.x - 2, 0))));
   return mix(lambentBrdfTexel(vec2(place, 0.0), low * ${perNode}).xy,
-             lambentBrdfTexel(vec2(place, 0.0), min(low + 1, lambentBrdfNodes.x - 1) * ${perNode}).xy, at - float(low));`}
+             lambentBrdfTexel(vec2(place, 0.0), min(low + 1, lambentBrdfNodes.x - 1) * ${perNode}).xy,
+             at - float(low));`}
 }
 void lambentSeenBands(vec3 d, float c[25], out float bands[5]) {
   float x = d.x, y = d.y, z = d.z, z2 = z * z, c2 = x * x - y * y, s2 = 2.0 * x * y;

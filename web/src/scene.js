@@ -141,7 +141,8 @@ export class LambentScene {
     const place = this.worldFromGroup(index), before = this._turns[index];
     const turn = new Matrix4().extractRotation(place).invert();
     group.grid?.place(place);
-    if (!this._changed && before && turn.elements.every((e, i) => Math.abs(e - before.elements[i]) < 1e-5)) return false;
+    const stays = before && turn.elements.every((e, i) => Math.abs(e - before.elements[i]) < 1e-5);
+    if (stays && !this._changed) return false;
     this._turns[index] = turn;
     this.uniforms[index].lambentGroupFromWorld.value.setFromMatrix4(turn);
     this.setLight(group, index, turn);

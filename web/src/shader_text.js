@@ -2,7 +2,7 @@
 // pixel replaces the indirect light of three (ambient light, probes, environment) by what transfer brings.
 import { PLACE_TEXT } from './gpu_textures.js';
 import { gridsText } from './grid.js';
-import { EVEN_BANDS_TEXT, REFLECTION_TEXT } from './reflection_text.js';
+import { REFLECTION_TEXT } from './reflection_text.js';
 
 // E/π at a normal from light of bands 0..2: Σ A_l/π y_j(n) l'_j, with the constants of docs/conventions.md.
 const DIFFUSE_LIGHT = /* glsl */ `
@@ -11,6 +11,37 @@ vec3 lambentDiffuse(vec3 l[9], vec3 n) {
          0.273137 * (n.x * n.y * l[4] + n.y * n.z * l[5] + n.x * n.z * l[7]) +
          0.078848 * (3.0 * n.z * n.z - 1.0) * l[6] + 0.136569 * (n.x * n.x - n.y * n.y) * l[8];
 }`;
+
+// E/π of an open surface: Σ A_l/π y_i(n) l_i in the bands that a clamped cosine has.
+const UNSHADOWED = /* glsl */ `
+vec3 lambentUnshadowed(vec3 n) {
+  const float weights[8] = float[8](1.0, 2.0 / 3.0, 0.25, 0.0, -1.0 / 24.0, 0.0, 1.0 / 64.0, 0.0);
+  vec3 sum = vec3(0.0);
+  float c = 1.0, s = 0.0, sectoral = 0.28209479177387814;
+  for (int m = 0; m < 7; ++m) {
+    if (m > 0) {
+      float next = n.x * c - n.y * s;
+      s = n.x * s + n.y * c;
+      c = next;
+      sectoral *= m == 1 ? sqrt(3.0) : sqrt(float(2 * m + 1) / float(2 * m));
+    }
+    float p = sectoral, before = 0.0;
+    for (int l = m; l < 7; ++l) {
+      if (l > m) {
+        float factor = sqrt(float(4 * l * l - 1) / float(l * l - m * m));
+        int k = l - 1;
+        float back = k == m ? 0.0 : factor * sqrt(float(k * k - m * m) / float(4 * k * k - 1));
+        float next = factor * n.z * p - back * before;
+        before = p;
+        p = next;
+      }
+      int centre = l * (l + 1);
+      sum += weights[l] * p * (m == 0 ? lambentSky[centre] : c * lambentSky[centre + m] + s * lambentSky[centre - m]);
+    }
+  }
+  return sum;
+}
+`;
 
 // Reads lists in textures, and the rows of vertices (rows_texture.js).
 const VERTEX_LISTS = /* glsl */ `
@@ -27,7 +58,8 @@ uvec4 lambentEntry(int i) { return texelFetch(lambentEntries, lambentPlace(i), 0
 
 const components = 'xyzw';
 const slot = (i) => `vLambent${i >> 2}.${components[i & 3]}`;
-const declare = (count) => Array.from({ length: Math.ceil(count / 4) }, (_, i) => `varying vec4 vLambent${i};`).join('\n');
+const declare = (count) =>
+  Array.from({ length: Math.ceil(count / 4) }, (_, i) => `varying vec4 vLambent${i};`).join('\n');
 
 /** Numbers that a vertex hands on: light of `bands` bands (1: E/π), of reflecting surfaces with what sees the sky. */
 const lightNumbers = ({ kept, glossy }) => 3 * kept + (glossy ? 9 : 0);
@@ -53,7 +85,7 @@ const defines = ({ texels, normalWeight }) =>
   (texels ? '#define LAMBENT_TEXELS\n' : '') + (normalWeight ? '#define LAMBENT_NORMAL_WEIGHT\n' : '');
 
 export const vertexDeclarations = (kind) => /* glsl */ `
-${defines(kind)}${VERTEX_LISTS}${kind.outputs === 1 ? EVEN_BANDS_TEXT : ''}
+${defines(kind)}${VERTEX_LISTS}${kind.outputs === 1 ? UNSHADOWED : ''}
 ${kind.layered ? `uniform highp sampler2D lambentSeen;
 vec4 lambentSeenAt(int i) { return texelFetch(lambentSeen, lambentPlace(i), 0); }` : ''}
 ${declare(varyingNumbers(kind))}
@@ -129,7 +161,8 @@ const listOf = (count, text) => Array.from({ length: count }, (_, i) => text(i))
 
 // E/π at the pixel, with what bodies nearby change.
 const received = (kind) => `${transferred(kind)}
-  ${kind.grids > 0 ? 'if (!lambentOpen) lambentReceived = lambentChanged(lambentReceived, -vViewPosition, normal);' : ''}`;
+  ${kind.grids > 0
+    ? 'if (!lambentOpen) lambentReceived = lambentChanged(lambentReceived, -vViewPosition, normal);' : ''}`;
 
 function transferred({ outputs }) {
   if (outputs === 9) return /* glsl */ `
@@ -212,11 +245,15 @@ function shaded(kind) {
     ${listOf(SEEN_NUMBERS, (k) => slot(lightNumbers(kind) + k))});
   vec2 lambentAlbedo = lambentAlbedoOf(dot(lambentNormal, lambentEye), lambentRoughness);
   vec3 lambentRho = lambentF0 * lambentAlbedo.x + lambentF90 * lambentAlbedo.y;
-  vec3 lambentSide = lambentKnownAlong(normalize(vec3(lambentSeenNumbers[3], lambentSeenNumbers[1], lambentSeenNumbers[2])), 1.0);
+  // What hides the sky has the mean radiance of E/π without what the sky sends, over the share that is hidden.
+  vec3 lambentSide = normalize(vec3(lambentSeenNumbers[3], lambentSeenNumbers[1], lambentSeenNumbers[2]));
   float lambentOpenShare = clamp(3.5449077 * lambentSeenNumbers[0], 0.0, 1.0);
-  vec3 lambentHidden = max(lambentReceived - lambentOpenShare * lambentSide, 0.1 * lambentReceived) / max(1.0 - lambentOpenShare, 0.05);
-  float lambentShare = lambentSeenShare(lambentSeenNumbers, lambentMirrored, lambentToGroup(nonPerturbedNormal), lambentRoughness);
-  reflectedLight.indirectSpecular += lambentRho * mix(max(lambentHidden, vec3(0.0)), lambentKnownSky + lambentMore, lambentShare);
+  vec3 lambentFromSky = lambentOpenShare * lambentKnownAlong(lambentSide, 1.0);
+  vec3 lambentHidden = max(lambentReceived - lambentFromSky, 0.1 * lambentReceived) / max(1.0 - lambentOpenShare, 0.05);
+  float lambentShare = lambentSeenShare(
+    lambentSeenNumbers, lambentMirrored, lambentToGroup(nonPerturbedNormal), lambentRoughness);
+  reflectedLight.indirectSpecular +=
+    lambentRho * mix(max(lambentHidden, vec3(0.0)), lambentKnownSky + lambentMore, lambentShare);
   reflectedLight.indirectDiffuse += lambentBase(diffuseColor.rgb, metalnessFactor, lambentRho) * lambentReceived;`;
   const bands = kind.kept, all = kind.table.order ** 2;
   return `${mirror}${sky}

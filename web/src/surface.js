@@ -42,7 +42,8 @@ export class Surface {
     const kind = {
       outputs: this.draw.outputs, glossy, layered, table: glossy || layered ? table : null,
       texels: Boolean(this.draw.texels), normalWeight: Boolean(geometry.getAttribute('_normal_weight')),
-      grids: glossy ? 0 : grids.length, framed: Boolean(geometry.getAttribute('tangent') ?? geometry.getAttribute('uv')),
+      grids: glossy ? 0 : grids.length,
+      framed: Boolean(geometry.getAttribute('tangent') ?? geometry.getAttribute('uv')),
     };
     if (kind.table) {
       this.textures.push(lobeTexture());

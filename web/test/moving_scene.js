@@ -2,7 +2,8 @@
 // node moving_scene.js OUT.gltf
 import { accessor, box, primitive, sheet, sphere, writeScene } from './gltf_writer.js';
 
-const matte = (color) => ({ pbrMetallicRoughness: { baseColorFactor: [...color, 1], metallicFactor: 0, roughnessFactor: 1 } });
+const matte = (color) => (
+  { pbrMetallicRoughness: { baseColorFactor: [...color, 1], metallicFactor: 0, roughnessFactor: 1 } });
 const meshes = [
   primitive([sheet([0, 0, 0], [0, 0, 1], [1, 0, 0], 16), sheet([0, 0.5, -1], [1, 0, 0], [0, 0.5, 0], 16)], 0),
   primitive([sphere([0, 0, 0], 0.25, 12)], 1),

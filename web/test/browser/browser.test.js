@@ -46,7 +46,8 @@ test('pictures are those of lambent-demo', { skip, timeout: 900000 }, async (t) 
     for (const [name, transfer] of view.cases ?? CASES) {
       const exr = picture(bundle, view, name, transfer), environment = reflects && name === 'soft';
       const result = await page.evaluate((options) => window.lambentTest.render(options), {
-        ...own, lights: LIGHTS[name], factor: view.factor, time: view.time, transfer, environment, picture: `/work/${basename(exr)}`,
+        ...own, lights: LIGHTS[name], factor: view.factor, time: view.time, transfer, environment,
+        picture: `/work/${basename(exr)}`,
       });
       await page.screenshot({ path: exr.replace('.exr', '.png') });
       const percent = (x) => `${(100 * x).toFixed(3)} %`;
@@ -57,7 +58,8 @@ test('pictures are those of lambent-demo', { skip, timeout: 900000 }, async (t) 
       assert.ok(before.geometries > 0 && before.textures > 0);
       assert.deepEqual(after, { geometries: ofEnvironment, textures: ofEnvironment }, 'memory is freed on dispose');
     }
-    const cost = await page.evaluate((options) => window.lambentTest.lightCost(options), { ...own, lights: LIGHTS.soft });
+    const turns = { ...own, lights: LIGHTS.soft };
+    const cost = await page.evaluate((options) => window.lambentTest.lightCost(options), turns);
     const ms = ({ light, commands, drawn }) =>
       `${light.toFixed(1)} ms for light and ${commands.toFixed(1)} ms for commands, drawn after ${drawn.toFixed(0)} ms`;
     t.diagnostic(`JavaScript takes ${ms(cost.turning)} while light turns; ${ms(cost.still)} while it stays`);

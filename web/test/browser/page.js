@@ -40,7 +40,8 @@ async function environmentOf(words) {
   const width = 1024, height = 512, data = new Float32Array(4 * width * height), direction = new THREE.Vector3();
   const suns = words.map((word) => [word.split(':')[0], word.split(':')[1].split(',').map(Number)]);
   for (let i = 0; i < width * height; ++i) {
-    const phi = (((i % width) + 0.5) / width - 0.5) * 2 * Math.PI, theta = Math.PI * (1 - (Math.floor(i / width) + 0.5) / height);
+    const phi = (((i % width) + 0.5) / width - 0.5) * 2 * Math.PI;
+    const theta = Math.PI * (1 - (Math.floor(i / width) + 0.5) / height);
     direction.set(Math.sin(theta) * Math.cos(phi), Math.cos(theta), Math.sin(theta) * Math.sin(phi));
     for (const [kind, n] of suns) {
       if (kind === 'sun' && direction.dot(toward(n[0], n[1])) < Math.cos(n[2] * DEGREE)) continue;
@@ -168,7 +169,8 @@ function showDifference(ours, theirs, width, height) {
   context.putImageData(image, 0, 0);
 }
 
-async function render({ bundle, lights, camera: words, size, transfer = 'full', picture, time, environment, factor = 1 }) {
+async function render(options) {
+  const { bundle, lights, camera: words, size, transfer = 'full', picture, time, environment, factor = 1 } = options;
   const [width, height] = size;
   const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
   if (!baked) throw new Error('the bundle was shown as plain glTF');

@@ -10,11 +10,14 @@ import { launch, open, skip } from './browser.js';
 const { LAMBENT_TEST_BUNDLE: path, LAMBENT_TEST_ARRAYS: folder } = process.env;
 const array = (name) => readNpy(join(folder, name)).data;
 
-test('E/π at samples is transfer times light', { skip: skip || (folder ? false : 'LAMBENT_TEST_ARRAYS is not set') }, async (t) => {
+const missing = skip || (folder ? false : 'LAMBENT_TEST_ARRAYS is not set');
+
+test('E/π at samples is transfer times light', { skip: missing }, async (t) => {
   const info = JSON.parse(readFileSync(join(folder, 'bundle.json'))), rgb = array(info.light.coefficients);
   const { page, messages } = await open(t, await launch(t), { '/bundle/': dirname(resolve(path)) });
   await page.waitForFunction('window.lambentTest?.ready');
-  const groups = await page.evaluate((...a) => window.lambentTest.samples(...a), `/bundle/${basename(path)}`, [...rgb], 1);
+  const shown = `/bundle/${basename(path)}`;
+  const groups = await page.evaluate((...a) => window.lambentTest.samples(...a), shown, [...rgb], 1);
   assert.deepEqual(messages, []);
   for (const [g, shaded] of groups.entries()) {
     const sums = new Float64Array(shaded.length);
