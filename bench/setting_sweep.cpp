@@ -47,15 +47,11 @@ int main(int argc, char** argv) {
   if (argc < 3)
     return failed({.subject = "usage", .problem = "too few words", .hint = "knobs BUNDLE KNOB [LIGHT...]"});
   const std::string wanted = argv[2];
-  std::vector<spec::Light> lights;
-  for (int i = 3; i < argc; ++i) {
-    Result<spec::Light> light = spec::parseLight(argv[i]);
-    if (!light) return failed(light.error());
-    lights.push_back(std::move(*light));
-  }
-  if (lights.empty())
-    for (const auto* word : spec::kDefaultLights) lights.push_back(*spec::parseLight(word));
-  const Result<lighting::Environment> environment = lighting::Environment::create(lights);
+  std::vector<std::string> words(argv + 3, argv + argc);
+  if (words.empty()) words.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
+  const Result<std::vector<spec::Light>> lights = spec::parseLights(words);
+  if (!lights) return failed(lights.error());
+  const Result<lighting::Environment> environment = lighting::Environment::create(*lights);
   if (!environment) return failed(environment.error());
   const Result<gpu::Context> context = gpu::Context::createHeadless();
   if (!context) return failed(context.error());

@@ -84,7 +84,7 @@ int main(int count, char** words) {
     auto renderer = lambent::Renderer::create();
     if (!renderer) return fail(renderer.failure());
     if (const auto loaded = picture ? scene->finishLoading() : lambent::Expected<void>(); !loaded) return fail(loaded.failure());
-    const Vec3 low = scene->boundsMin(), high = scene->boundsMax();
+    const auto [low, high] = scene->bounds();
     const Vec3 center = {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
     const float radius = std::sqrt(dot(high - low, high - low)) / 2;
     const auto lamp = scene->addLight(

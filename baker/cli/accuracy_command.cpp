@@ -47,8 +47,7 @@ std::string knobNames() {
 }
 
 Result<void> checkWords(const SweepRequest& request) {
-  for (const std::string& word : request.lights)
-    if (const auto light = spec::parseLight(word); !light) return failAgain(light.error());
+  if (const auto lights = spec::parseLights(request.lights); !lights) return failAgain(lights.error());
   if (!request.camera.empty())
     if (const auto camera = spec::parseCamera(request.camera); !camera) return failAgain(camera.error());
   if (!request.size.empty())
@@ -151,7 +150,7 @@ int runAccuracy(AccuracyArguments a) {
   if (!programs) return reportError(programs.error());
   a.request.programs = *programs;
   if (a.request.scene.empty()) {
-    auto scene = findSampleScene(*programs);
+    auto scene = findSampleScene();
     if (!scene) return reportError(scene.error());
     a.request.scene = *scene;
   }

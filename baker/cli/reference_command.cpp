@@ -29,21 +29,11 @@ struct ReferenceArguments {
 };
 
 Result<void> understandLights(const ReferenceArguments& a, reference::Request& request) {
-  std::optional<sh::ImageLayout> layout;
-  if (!a.light_layout.empty()) {
-    const auto parsed = spec::parseLightLayout(a.light_layout);
-    if (!parsed) return failAgain(parsed.error());
-    layout = *parsed;
-  }
   std::vector<std::string> words = a.lights;
   if (words.empty()) words.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
-  for (const std::string& word : words) {
-    auto light = spec::parseLight(word);
-    if (!light) return failAgain(light.error());
-    if (auto* environment_map = std::get_if<spec::EnvironmentMapLight>(&*light))
-      environment_map->layout = layout;
-    request.lights.push_back(std::move(*light));
-  }
+  auto lights = spec::parseLights(words, a.light_layout);
+  if (!lights) return failAgain(lights.error());
+  request.lights = std::move(*lights);
   return {};
 }
 

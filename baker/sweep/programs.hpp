@@ -17,6 +17,6 @@ Result<Programs> findPrograms();
 
 // Returns the sample scene that a sweep measures if none is named. Fails if it is not where a build or a
 // package has it.
-Result<std::filesystem::path> findSampleScene(const Programs& programs);
+Result<std::filesystem::path> findSampleScene();
 
 }  // namespace lambent::baker

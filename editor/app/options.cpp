@@ -77,8 +77,7 @@ Result<Options> understand(const OptionWords& words) {
   Options options;
   options.session.files.assign(words.files.begin(), words.files.end());
   options.session.light_words = words.lights;
-  for (const std::string& word : words.lights)
-    if (const auto light = spec::parseLight(word); !light) return failAgain(light.error());
+  if (const auto lights = spec::parseLights(words.lights); !lights) return failAgain(lights.error());
   if (!words.size.empty()) {
     const auto size = spec::parseSize(words.size);
     if (!size) return failAgain(size.error());

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "editor/session/assets.hpp"
-#include "editor/session/samples.hpp"
 #include "runtime/base/change_gate.hpp"
+#include "runtime/base/own_program.hpp"
 
 namespace lambent::editor {
 

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <tuple>
 
-#include "editor/session/samples.hpp"
 #include "editor/session/session.hpp"
+#include "runtime/base/own_program.hpp"
 
 namespace lambent::editor {
 

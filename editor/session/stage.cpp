@@ -8,20 +8,6 @@
 
 namespace lambent::editor {
 
-namespace {
-
-Result<std::vector<spec::Light>> parseLights(const std::vector<std::string>& words) {
-  std::vector<spec::Light> lights;
-  for (const std::string& word : words) {
-    auto light = spec::parseLight(word);
-    if (!light) return failAgain(light.error());
-    lights.push_back(std::move(*light));
-  }
-  return lights;
-}
-
-}  // namespace
-
 Stage::Stage(frame::World world, lighting::Environment environment)
     : world_(std::move(world)), environment_(std::move(environment)) {
   environment_entity_ = scene::addEnvironment(world_.registry());
@@ -37,9 +23,9 @@ Result<void> Stage::followLights(const WorldState& state) {
   if (state.lights == words_ && state.fade_lights == fade_words_) return {};
   // The words are stored even if they fail, so that they are not loaded again in every frame.
   words_ = state.lights, fade_words_ = state.fade_lights;
-  auto lights = parseLights(state.lights);
+  auto lights = spec::parseLights(state.lights);
   if (!lights) return failAgain(lights.error());
-  auto fade_lights = parseLights(state.fade_lights);
+  auto fade_lights = spec::parseLights(state.fade_lights);
   if (!fade_lights) return failAgain(fade_lights.error());
   if (auto done = environment_.setLights(*lights, *fade_lights); !done) return done;
   lights_ = std::move(*lights), fade_lights_ = std::move(*fade_lights);

@@ -163,30 +163,17 @@ void describe(CLI::App& app) {
 }
 
 Result<void> understandLights(const Words& words, Options& options) {
-  std::optional<sh::ImageLayout> layout;
-  if (!words.light_layout.empty()) {
-    const Result<sh::ImageLayout> parsed = spec::parseLightLayout(words.light_layout);
-    if (!parsed) return failAgain(parsed.error());
-    layout = *parsed;
-  }
-  const auto understandAll = [&](const std::vector<std::string>& list,
-                                 std::vector<spec::Light>& lights) -> Result<void> {
-    for (const std::string& word : list) {
-      Result<spec::Light> light = spec::parseLight(word);
-      if (!light) return failAgain(light.error());
-      if (auto* environment_map = std::get_if<spec::EnvironmentMapLight>(&*light))
-        environment_map->layout = layout;
-      lights.push_back(std::move(*light));
-    }
-    return {};
-  };
   options.default_light = words.lights.empty();
   options.light_words = words.lights;
   if (options.default_light)
     options.light_words.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
-  if (Result<void> done = understandAll(options.light_words, options.lights); !done) return done;
+  auto lights = spec::parseLights(options.light_words, words.light_layout);
+  if (!lights) return failAgain(lights.error());
+  options.lights = std::move(*lights);
   options.fade_words = words.fade_lights;
-  if (Result<void> done = understandAll(words.fade_lights, options.fade_lights); !done) return done;
+  auto fade_lights = spec::parseLights(options.fade_words, words.light_layout);
+  if (!fade_lights) return failAgain(fade_lights.error());
+  options.fade_lights = std::move(*fade_lights);
   if (!spec::localLights(options.fade_lights).empty())
     return fail("--fade-to", "takes lights from infinity only", "give spheres and discs with --light");
   for (const std::string& word : words.key_edits) {

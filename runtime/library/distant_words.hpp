@@ -14,14 +14,10 @@ namespace lambent::library {
 // Fails if a word is wrong, or names a light that stands in the scene, which `refused` then says.
 inline Expected<std::vector<spec::Light>> distantLights(const std::vector<std::string>& words,
                                                         const Failure& refused) {
-  std::vector<spec::Light> lights;
-  for (const std::string& word : words) {
-    Result<spec::Light> light = spec::parseLight(word);
-    if (!light) return failureOf(light.error());
-    lights.push_back(std::move(*light));
-  }
-  if (!spec::localLights(lights).empty()) return refused;
-  return lights;
+  Result<std::vector<spec::Light>> lights = spec::parseLights(words);
+  if (!lights) return failureOf(lights.error());
+  if (!spec::localLights(*lights).empty()) return refused;
+  return std::move(*lights);
 }
 
 }  // namespace lambent::library

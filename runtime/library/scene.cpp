@@ -207,19 +207,10 @@ void Scene::setAnimationTime(float seconds) {
   state_->world.setAnimationTime(seconds);
 }
 
-namespace {
-scene::Box boundsOf(frame::World& world) {
-  world.updateTransforms();
-  const scene::Box box = scene::worldBounds(world.registry());
-  return box.empty() ? scene::Box{glm::vec3(0.0f), glm::vec3(0.0f)} : box;
-}
-}  // namespace
-
-Vec3 Scene::boundsMin() const {
-  return fromGlm(boundsOf(state_->world).min);
-}
-Vec3 Scene::boundsMax() const {
-  return fromGlm(boundsOf(state_->world).max);
+Box Scene::bounds() const {
+  state_->world.updateTransforms();
+  const scene::Box box = scene::worldBounds(state_->world.registry());
+  return box.empty() ? Box{} : Box{fromGlm(box.min), fromGlm(box.max)};
 }
 
 }  // namespace lambent

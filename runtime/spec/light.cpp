@@ -107,6 +107,23 @@ Result<Light> parseLight(std::string_view word) {
   return EnvironmentMapLight{file, std::nullopt};
 }
 
+Result<std::vector<Light>> parseLights(std::span<const std::string> words, std::string_view layout_word) {
+  std::optional<sh::ImageLayout> layout;
+  if (!layout_word.empty()) {
+    const Result<sh::ImageLayout> parsed = parseLightLayout(layout_word);
+    if (!parsed) return failAgain(parsed.error());
+    layout = *parsed;
+  }
+  std::vector<Light> lights;
+  for (const std::string& word : words) {
+    Result<Light> light = parseLight(word);
+    if (!light) return failAgain(std::move(light.error()));
+    if (auto* environment_map = std::get_if<EnvironmentMapLight>(&*light)) environment_map->layout = layout;
+    lights.push_back(std::move(*light));
+  }
+  return lights;
+}
+
 std::vector<LocalLight> localLights(std::span<const Light> lights) {
   std::vector<LocalLight> out;
   for (const Light& light : lights) {

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -75,6 +76,9 @@ inline constexpr std::array<const char*, 2> kDefaultLights = {"constant:0.35,0.4
                                                               "sun:35,45,6,100,92,80"};
 
 Result<Light> parseLight(std::string_view word);
+// Parses the words of several --light options, and gives their environment maps the layout that
+// --light-layout names; if that is empty, the pictures' shapes decide.
+Result<std::vector<Light>> parseLights(std::span<const std::string> words, std::string_view layout_word = {});
 
 // Returns the local lights in their order. loadDistantLights() handles the others.
 std::vector<LocalLight> localLights(std::span<const Light> lights);

@@ -5,6 +5,7 @@
 #include <link.h>
 
 #include "baker/import/openimageio/module.hpp"
+#include "runtime/base/own_program.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -18,7 +19,7 @@ std::filesystem::path ownFile() {
   if (::dladdr1(code, &unused, reinterpret_cast<void**>(&file), RTLD_DL_LINKMAP) != 0 && file &&
       file->l_name[0] != '\0')
     return std::filesystem::canonical(file->l_name, ignored);
-  return std::filesystem::read_symlink("/proc/self/exe", ignored);
+  return ownProgram().value_or(std::filesystem::path());
 }
 
 Result<const OpenImageIo*> load() {

@@ -80,11 +80,7 @@ struct DrawnByFrame {
     EXPECT_TRUE(made && made->render(world, environment, view));
     if (made) frame.emplace(std::move(*made));
   }
-  static std::vector<spec::Light> lights() {
-    std::vector<spec::Light> lights;
-    for (const std::string& word : kLight) lights.push_back(*spec::parseLight(word));
-    return lights;
-  }
+  static std::vector<spec::Light> lights() { return *spec::parseLights(kLight); }
 };
 
 class LibraryRenderer : public testing::GpuTest {
@@ -275,7 +271,7 @@ TEST_F(LibraryRenderer, MovesBodiesAndLights) {
   Matrix4 place = kIdentity;
   place[12] = 5.0f;
   ASSERT_TRUE(scene.place(body, place));
-  EXPECT_NEAR(scene.boundsMin().x, 4.0f, 1e-3f);
+  EXPECT_NEAR(scene.bounds().min.x, 4.0f, 1e-3f);
   EXPECT_NEAR(scene.bodies()[0].world_from_body[12], 5.0f, 1e-5f);
   place[3] = 1.0f;
   EXPECT_FALSE(scene.place(body, place));

@@ -10,6 +10,11 @@ struct Vec3 {
   float x = 0.0f, y = 0.0f, z = 0.0f;
 };
 
+// Describes a box with sides parallel to the axes.
+struct Box {
+  Vec3 min{}, max{};
+};
+
 // Holds a matrix column by column, as OpenGL does: entry [4 c + r] stands in row r of column c, and entries
 // 12 to 14 are a translation.
 using Matrix4 = std::array<float, 16>;

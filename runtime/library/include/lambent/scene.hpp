@@ -87,9 +87,9 @@ class LAMBENT_API Scene {
   void play(float seconds);
   void setAnimationTime(float seconds);
 
-  // Return the bounds of all bodies as they stand now, in world space; equal corners at 0 if there are none.
-  Vec3 boundsMin() const;
-  Vec3 boundsMax() const;
+  // Returns the bounds of all bodies as they stand now, in world space; equal corners at 0 if there are none.
+  // Asks every surface of the scene: keep what it returns.
+  Box bounds() const;
 
  private:
   friend class Renderer;
