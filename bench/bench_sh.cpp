@@ -169,10 +169,15 @@ BENCHMARK(projectCube)->Arg(5)->Arg(6);
 // The limit of a projection without mirror symmetry is the plain table's multiply-adds at the full vector
 // rate, from registers, without loading anything. 12 sums in flight cover the units' latency.
 void projectCube_plainTableLimit(benchmark::State& state) {
-  using Lanes = float __attribute__((vector_size(32)));
+#ifdef __AVX__
+  constexpr int kLanes = 8;
+#else
+  constexpr int kLanes = 4;
+#endif
+  using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
   const int steps =
-      coefficientCount(static_cast<int>(state.range(0))) * 3 * 6 * kCubeSize * kCubeSize / 8 / 12;
-  Lanes a = {1, 2, 3, 4, 5, 6, 7, 8}, b = a;
+      coefficientCount(static_cast<int>(state.range(0))) * 3 * 6 * kCubeSize * kCubeSize / kLanes / 12;
+  Lanes a = Lanes{} + 1.5f, b = a;
   for (auto _ : state) {
     benchmark::DoNotOptimize(a);
     benchmark::DoNotOptimize(b);

@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   if (const Result<std::uint32_t> opened = world.open(argv[1]); !opened) return failed(opened.error());
   gpu::Counters counters;
   if (const Result<void> loaded = world.uploadAll(counters); !loaded) return failed(loaded.error());
-  scene::addLights(world.registry(), lights);
+  scene::addLights(world.registry(), *lights);
   world.updateTransforms();
   const scene::Box bounds = scene::worldBounds(world.registry());
   const spec::View view = spec::orbitView({}, bounds.min, bounds.max, kSize.aspect());

@@ -4,8 +4,9 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# Rises when a program that was linked against an older library would not run with this one.
-set(LAMBENT_ABI 0)
+# The number rises when a program that was linked against an older library would not run with this one.
+file(STRINGS "${PROJECT_SOURCE_DIR}/runtime/library/include/lambent/version.hpp" LAMBENT_ABI REGEX "^#define LAMBENT_ABI [0-9]+$")
+string(REPLACE "#define LAMBENT_ABI " "" LAMBENT_ABI "${LAMBENT_ABI}")
 
 # lambent_library(COMPONENT DESCRIPTION text SOURCES file... LINK_PRIVATE target... [NEEDS component...])
 function(lambent_library component)
@@ -20,7 +21,7 @@ function(lambent_library component)
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   set_target_properties(${target} PROPERTIES
     OUTPUT_NAME lambent-${component} EXPORT_NAME ${component} VERSION ${PROJECT_VERSION} SOVERSION ${LAMBENT_ABI}
-    LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib" INSTALL_RPATH "$ORIGIN"
+    LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib" INSTALL_RPATH "$ORIGIN" BUILD_WITH_INSTALL_RPATH ON
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   # The rooms are archives, whose symbols would show.
   target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
@@ -35,6 +36,8 @@ function(lambent_library component)
   install(DIRECTORY include/lambent DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
   list(TRANSFORM LIBRARY_NEEDS PREPEND lambent- OUTPUT_VARIABLE LIBRARY_REQUIRES)
   string(JOIN " " LIBRARY_REQUIRES ${LIBRARY_REQUIRES})
+  # The folder may be another than the one that was configured (--prefix), and may be moved.
+  file(RELATIVE_PATH LIBRARY_PREFIX "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
   configure_file("${PROJECT_SOURCE_DIR}/cmake/library/lambent.pc.in" "${CMAKE_BINARY_DIR}/library/lambent-${component}.pc" @ONLY)
   install(FILES "${CMAKE_BINARY_DIR}/library/lambent-${component}.pc" DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT library)
 endfunction()

@@ -105,10 +105,7 @@ set(CPACK_ARCHIVE_TOOLS_FILE_NAME "lambent-tools-${platform}")
 set(CPACK_PACKAGE_CONTACT "The Lambent authors")
 
 # `cpack -G DEB` makes packages for Debian of the same components.
-set(LAMBENT_DEB_COMPONENTS runtime tools)
-if(LAMBENT_LIBRARY AND LAMBENT_BAKER)
-  list(APPEND LAMBENT_DEB_COMPONENTS library development)
-endif()
+set(LAMBENT_DEB_COMPONENTS runtime tools library development)
 if(TARGET lambent_python)
   list(APPEND LAMBENT_DEB_COMPONENTS python)
 endif()

@@ -150,7 +150,10 @@ Result<Context> Context::createHeadless(const ContextOptions& options) {
 }
 
 Result<Context> Context::attachToCurrent(const ContextOptions& options) {
-  if (epoxy_gl_version() < 45)
+  const int version = epoxy_gl_version();
+  if (version == 0)
+    return fail("OpenGL", "no context is current on this thread", "make one of OpenGL 4.5 current");
+  if (version < 45)
     return fail("OpenGL",
                 fmt::format("{} offers OpenGL {}, 4.5 is needed", glText(GL_RENDERER), glText(GL_VERSION)),
                 "update the driver");

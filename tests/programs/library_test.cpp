@@ -82,16 +82,34 @@ TEST_F(Library, InstalledServesTheExamplesOfAnotherCompiler) {
   EXPECT_NE(failed.err.find("nothing.glb: no such file"), std::string::npos) << failed.err;
 }
 
-TEST_F(Library, ForPkgConfigNamesWhatAProgramNeeds) {
-  const Outcome asked = shell("cmake --install '" LAMBENT_BINARY_DIR
-                              "' --component library --prefix \"$0/sdk\" > /dev/null; "
-                              "PKG_CONFIG_PATH=$(dirname \"$(find \"$0/sdk\" -name lambent-baker.pc)\") "
-                              "pkg-config --libs --cflags lambent-baker");
+TEST_F(Library, ForPkgConfigNamesWhatAProgramNeedsWhereverItIsMoved) {
+  const Outcome installed = shell("cmake --install '" LAMBENT_BINARY_DIR
+                                  "' --component library --prefix \"$0/sdk\" > \"$0/log\"; "
+                                  "mv \"$0/sdk\" \"$0/moved\"; find \"$0/moved\" -name lambent-baker.pc");
+  ASSERT_EQ(installed.exit_code, 0) << installed.err;
+  const fs::path packages = fs::path(installed.out).parent_path();
+  ::setenv("PKG_CONFIG_PATH", packages.c_str(), 1);
+  const Outcome asked = shell("pkg-config --libs --cflags lambent-baker");
   ASSERT_EQ(asked.exit_code, 0) << asked.err;
   for (const char* word : {"-llambent-baker", "-llambent-sh", "-std=c++20"})
     EXPECT_NE(asked.out.find(word), std::string::npos) << asked.out;
   for (const char* word : {"-march", "-Werror", "-lembree"})
     EXPECT_EQ(asked.out.find(word), std::string::npos) << asked.out;
+
+  testing::writeBytes(folder / "bands.cpp",
+                      "#include <cstdio>\n#include <lambent/bake.hpp>\n#include <lambent/sh.hpp>\n"
+                      "int main() {\n"
+                      "  lambent::Baker baker;\n"
+                      "  float bands[4];\n"
+                      "  if (!baker.set(\"rays\", \"64\")) return 1;\n"
+                      "  if (!lambent::evaluateHarmonics(2, {0, 1, 0}, bands)) return 2;\n"
+                      "  std::printf(\"%.4f %.4f\", bands[0], bands[1]);\n"
+                      "}\n");
+  const Outcome built = shell("cd \"$0\"; " + otherCompiler() +
+                              " bands.cpp -o bands $(pkg-config --cflags --libs lambent-baker) -Wl,-rpath," +
+                              packages.parent_path().string() + "; ./bands");
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  EXPECT_EQ(built.out, "0.2821 0.4886");  // y_00 and y_1,-1 towards +Y: sqrt(1 / 4 pi) and sqrt(3 / 4 pi)
 }
 
 // Arrays that `lambent export` wrote give, in NumPy, what the library gives, which the GPU gives

@@ -83,6 +83,14 @@ struct DrawnByFrame {
   static std::vector<spec::Light> lights() { return *spec::parseLights(kLight); }
 };
 
+TEST(LibraryRendererWithoutContext, SaysSo) {
+  const Expected<Renderer> renderer = Renderer::create();
+  ASSERT_FALSE(renderer);
+  EXPECT_NE(renderer.failure().line().find("no context is current"), std::string::npos)
+      << renderer.failure().line();
+  EXPECT_FALSE(Scene::create());
+}
+
 class LibraryRenderer : public testing::GpuTest {
  protected:
   void SetUp() override {
