@@ -101,7 +101,7 @@ TEST_F(Library, ForPkgConfigNamesWhatAProgramNeedsWhereverItIsMoved) {
                       "int main() {\n"
                       "  lambent::Baker baker;\n"
                       "  float bands[4];\n"
-                      "  if (!baker.set(\"rays\", \"64\")) return 1;\n"
+                      "  if (!baker.set(\"rays\", \"256\")) return 1;\n"
                       "  if (!lambent::evaluateHarmonics(2, {0, 1, 0}, bands)) return 2;\n"
                       "  std::printf(\"%.4f %.4f\", bands[0], bands[1]);\n"
                       "}\n");
