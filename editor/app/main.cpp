@@ -3,6 +3,7 @@
 
 #include "editor/app/options.hpp"
 #include "editor/app/run.hpp"
+#include "runtime/gpu/out_of_memory.hpp"
 
 int main(int argc, char** argv) {
   using namespace lambent;
@@ -12,6 +13,8 @@ int main(int argc, char** argv) {
     const Result<void> done = editor::run(std::get<editor::Options>(parsed));
     if (done) return 0;
     editor::printError(done.error());
+  } catch (const gpu::OutOfMemory& failure) {
+    editor::printError(failure.error());
   } catch (const std::exception& error) {  // out of memory, mostly
     editor::printError({.subject = "stopped", .problem = error.what(), .hint = {}});
   }

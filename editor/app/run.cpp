@@ -17,6 +17,7 @@
 #include "editor/script/script.hpp"
 #include "editor/session/status.hpp"
 #include "runtime/base/atomic_file.hpp"
+#include "runtime/gpu/context.hpp"
 
 namespace lambent::editor {
 
@@ -41,6 +42,16 @@ Result<std::optional<Script>> loadScript(const Options& options) {
     fmt::print("{}\n", answer);
     std::fflush(stdout);
   });
+}
+
+// Saves what is not saved, and returns the error with where it lies.
+Result<void> afterLoss(Session& session, Error lost) {
+  const Result<std::filesystem::path> rescued = session.files.rescue();
+  if (!rescued)
+    lost.problem += fmt::format("; what was not saved is lost: {}", rescued.error().line());
+  else if (!rescued->empty())
+    lost.hint = fmt::format("what was not saved lies in {}", rescued->string());
+  return failAgain(std::move(lost));
 }
 
 }  // namespace
@@ -110,6 +121,7 @@ Result<void> run(const Options& options) {
     moving = s.moving();
     ui.end();
     ++s.window.frames;
+    if (auto drawn = gpu::checkContext(); !drawn) return afterLoss(s, drawn.error());
     if (titleOf(s) != title) window->setTitle(title = titleOf(s));
   }
   std::uint32_t width = 0, height = 0;

@@ -105,6 +105,14 @@ Result<void> Files::save(const std::filesystem::path& path) {
   return {};
 }
 
+Result<std::filesystem::path> Files::rescue() {
+  if (!modified()) return std::filesystem::path();
+  std::filesystem::path rescued = world_.empty() ? "world.json" : world_;
+  rescued.replace_extension(".rescued.json");
+  if (auto saved = save(rescued); !saved) return failAgain(saved.error());
+  return rescued;
+}
+
 void Files::closeAll() {
   Document& document = session_.document;
   const ecs::Entity environment = session_.stage.environmentEntity();

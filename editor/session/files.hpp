@@ -29,6 +29,9 @@ class Files {
   void openLogged(const std::vector<std::filesystem::path>& paths);
   // Saves the world to this file, which becomes the world's file.
   Result<void> save(const std::filesystem::path& path);
+  // Saves what closing would lose under a name of its own, beside the world's file or, if it has none, in the
+  // working folder. Returns where it lies, or an empty path if nothing would be lost.
+  Result<std::filesystem::path> rescue();
   // Closes everything and begins an empty world, without asking.
   void closeAll();
 

@@ -34,8 +34,12 @@ double processorMilliseconds() {
 
 Result<void> writePicture(const frame::Frame& frame, const Options& options, std::uint32_t number) {
   const std::filesystem::path path = numberedPath(*options.headless, number);
-  Result<void> written =
-      options.linear ? spec::writeExr(path, frame.readLinear()) : spec::writePng(path, frame.readDisplay());
+  const auto write = [&](const auto& picture, const auto& writer) {
+    const Result<void> kept = gpu::checkContext();  // what is read from a lost one is no picture
+    return kept ? writer(path, picture) : kept;
+  };
+  const Result<void> written =
+      options.linear ? write(frame.readLinear(), spec::writeExr) : write(frame.readDisplay(), spec::writePng);
   if (written && !options.json) fmt::print("{}\n", path.string());
   return written;
 }

@@ -7,6 +7,7 @@
 #include "runtime/base/standard_output.hpp"
 #include "runtime/demo/options.hpp"
 #include "runtime/demo/run.hpp"
+#include "runtime/gpu/out_of_memory.hpp"
 
 int main(int argc, char** argv) {
   using namespace lambent;
@@ -26,6 +27,8 @@ int main(int argc, char** argv) {
     if (done) done = flushStandardOutput();
     if (done) return 0;
     demo::printError(done.error());
+  } catch (const gpu::OutOfMemory& failure) {
+    demo::printError(failure.error());
   } catch (const std::exception& error) {  // mostly out of memory
     demo::printError({.subject = "stopped", .problem = error.what(), .hint = {}});
   }

@@ -4,6 +4,8 @@
 #include <cassert>
 
 #include "runtime/debug/data_view.hpp"
+#include "runtime/gpu/context.hpp"
+#include "runtime/gpu/out_of_memory.hpp"
 #include "runtime/surface/surfaces.hpp"
 #include "runtime/tone_map/tone_mapper.hpp"
 
@@ -20,10 +22,12 @@ Frame::Frame(const FrameOptions& options, PassList passes, Blackboard board)
 }
 
 Result<Frame> Frame::create(const FrameOptions& options, const lighting::Environment& environment) {
-  Blackboard board;
-  Result<PassList> passes = makePassList(options, environment, board);
-  if (!passes) return failAgain(passes.error());
-  return Frame(options, std::move(*passes), std::move(board));
+  return gpu::orOutOfMemory([&]() -> Result<Frame> {
+    Blackboard board;
+    Result<PassList> passes = makePassList(options, environment, board);
+    if (!passes) return failAgain(passes.error());
+    return Frame(options, std::move(*passes), std::move(board));
+  });
 }
 
 Result<void> Frame::setSettings(const FrameSettings& settings) {
@@ -101,7 +105,8 @@ Result<void> Frame::render(World& world, const lighting::Environment& environmen
   FrameContext context = contextOf(world, environment, &view);
   if (Result<void> done = step(context); !done) return done;
   log_.noticeView(view, options_.size);
-  return walk(passes_.picture, context);
+  if (Result<void> done = walk(passes_.picture, context); !done) return done;
+  return gpu::checkContext();
 }
 
 Result<std::uint32_t> Frame::rest(World& world, const lighting::Environment& environment) {
@@ -136,7 +141,7 @@ Result<void> Frame::walk(std::span<const std::unique_ptr<FramePass>> passes, Fra
     if (!pass->due(context)) continue;
     gpu::PassTimers::Scope scope(timers_, pass->info().name);
     context.scope = &scope;
-    if (Result<void> done = pass->update(context); !done) return done;
+    if (Result<void> done = gpu::orOutOfMemory([&] { return pass->update(context); }); !done) return done;
   }
   return {};
 }

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/gpu/out_of_memory.hpp"
+
 namespace lambent::gpu {
 
 namespace {
@@ -85,6 +87,7 @@ std::uint32_t Arena::makePage(std::uint64_t byte_count) {
   auto page = std::ranges::find_if(pages_, [](const Page& one) { return !one.buffer; });
   if (page == pages_.end()) page = pages_.insert(page, Page{});
   const auto index = static_cast<std::uint32_t>(page - pages_.begin());
+  // Where this throws OutOfMemory, the page stays an empty handle.
   *page = {Buffer(fmt::format("{} page {}", label_, index), byte_count, WrittenBy::Gpu),
            FreeList(byte_count)};
   return index;
@@ -97,7 +100,9 @@ Result<Allocation> Arena::allocate(std::uint64_t byte_count) {
                 "split the mesh or the group");
   for (std::uint32_t i = 0; i < pages_.size(); ++i)
     if (const auto found = allocateIn(i, byte_count)) return *found;
-  return *allocateIn(makePage(std::max(page_bytes_, aligned)), byte_count);
+  return orOutOfMemory([&]() -> Result<Allocation> {
+    return *allocateIn(makePage(std::max(page_bytes_, aligned)), byte_count);
+  });
 }
 
 Result<Allocation> Arena::allocateWithRoom(std::uint64_t byte_count, std::uint64_t room) {
@@ -107,7 +112,9 @@ Result<Allocation> Arena::allocateWithRoom(std::uint64_t byte_count, std::uint64
                 "split the mesh or the group");
   for (std::uint32_t i = 0; i < pages_.size(); ++i)
     if (pages_[i].list.largestFree() >= wanted) return *allocateIn(i, byte_count);
-  return *allocateIn(makePage(std::max(page_bytes_, wanted)), byte_count);
+  return orOutOfMemory([&]() -> Result<Allocation> {
+    return *allocateIn(makePage(std::max(page_bytes_, wanted)), byte_count);
+  });
 }
 
 void Arena::release(const Allocation& allocation) {

@@ -2,10 +2,13 @@
 
 #include <array>
 #include <string_view>
+#include <vector>
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
+
+#include "runtime/gpu/arena.hpp"
 
 namespace lambent::gpu {
 
@@ -57,6 +60,23 @@ std::vector<DisplayChoice> displayChoices() {
   return choices;
 }
 
+// A vertex shader reads at most so many storage blocks (runtime/debug/data_view.vert).
+constexpr std::uint32_t kVertexStorageBlocks = 5;
+
+// OpenGL 4.5 leaves storage blocks of vertex shaders optional, and some drivers have none.
+Result<void> checkLimits(const DeviceInfo& info) {
+  const auto lacks = [&](std::string what) {
+    return fail("OpenGL", fmt::format("{} {}", info.renderer, what), "use another GPU or driver");
+  };
+  if (info.max_vertex_storage_blocks < kVertexStorageBlocks)
+    return lacks(fmt::format("has {} storage blocks in vertex shaders, {} are needed",
+                             info.max_vertex_storage_blocks, kVertexStorageBlocks));
+  if (info.max_storage_bytes < Arena::kMaxPageBytes)
+    return lacks(fmt::format("has storage blocks of {} bytes, {} are needed", info.max_storage_bytes,
+                             Arena::kMaxPageBytes));
+  return {};
+}
+
 // Makes an OpenGL 4.5 core context without a surface on the display and makes it current.
 Result<EGLContext> makeCurrent(EGLDisplay display, bool debug) {
   const auto no = [](std::string why) { return fail("OpenGL", std::move(why)); };
@@ -73,16 +93,23 @@ Result<EGLContext> makeCurrent(EGLDisplay display, bool debug) {
     if (!hasExtension(extensions, "EGL_KHR_no_config_context")) return no("has no OpenGL configuration");
     config = nullptr;
   }
-  const std::array<EGLint, 9> attributes = {EGL_CONTEXT_MAJOR_VERSION,
-                                            4,
-                                            EGL_CONTEXT_MINOR_VERSION,
-                                            5,
-                                            EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                            EGL_CONTEXT_OPENGL_DEBUG,
-                                            debug ? EGL_TRUE : EGL_FALSE,
-                                            EGL_NONE};
-  const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                    4,
+                                    EGL_CONTEXT_MINOR_VERSION,
+                                    5,
+                                    EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                    EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                    EGL_CONTEXT_OPENGL_DEBUG,
+                                    debug ? EGL_TRUE : EGL_FALSE,
+                                    EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                    EGL_LOSE_CONTEXT_ON_RESET,
+                                    EGL_NONE};
+  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  if (context == EGL_NO_CONTEXT) {  // some drivers cannot tell of a reset, or are older than EGL 1.5
+    attributes.resize(attributes.size() - 3);
+    attributes.push_back(EGL_NONE);
+    context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  }
   if (context == EGL_NO_CONTEXT) return no("gives no 4.5 core context");
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
     eglDestroyContext(display, context);
@@ -126,6 +153,17 @@ struct Context::State {
   }
 };
 
+Result<void> checkContext() {
+  const GLenum reset = glGetGraphicsResetStatus();
+  if (reset == GL_NO_ERROR) return {};
+  return fail("GPU",
+              fmt::format("has lost all that was drawn: its driver reset it{}",
+                          reset == GL_GUILTY_CONTEXT_RESET     ? " because of this program"
+                          : reset == GL_INNOCENT_CONTEXT_RESET ? " because of another program"
+                                                               : ""),
+              "start the program again");
+}
+
 Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Context::Context(Context&&) noexcept = default;
 Context& Context::operator=(Context&&) noexcept = default;
@@ -140,7 +178,12 @@ Result<Context> Context::createHeadless(const ContextOptions& options) {
       continue;
     }
     Result<Context> attached = attachToCurrent(options);
-    if (!attached) return attached;
+    if (!attached) {
+      eglMakeCurrent(choice.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+      eglDestroyContext(choice.display, *context);
+      tried += fmt::format("{}{}: {}", tried.empty() ? "" : ", ", choice.platform, attached.error().problem);
+      continue;
+    }
     attached->state_->display = choice.display;
     attached->state_->context = *context;
     return attached;
@@ -170,6 +213,7 @@ Result<Context> Context::attachToCurrent(const ContextOptions& options) {
   state->info.max_vertex_storage_blocks = static_cast<std::uint32_t>(blocks);
   state->info.max_samples = static_cast<std::uint32_t>(samples);
   state->info.max_texture_side = static_cast<std::uint32_t>(side);
+  if (auto enough = checkLimits(state->info); !enough) return failAgain(enough.error());
   if (options.debug) {
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);

@@ -36,9 +36,14 @@ struct DeviceInfo {
   std::uint32_t max_texture_side = 0;
 };
 
+// Fails if the current context is lost, as after a reset of its GPU: nothing is drawn any more, and what was
+// read back since is nothing. A context tells it if it was made to: all do that this room makes, where the
+// driver can.
+Result<void> checkContext();
+
 class Context {
  public:
-  // Fails if there is no EGL, or no device with OpenGL 4.5 core.
+  // Fails if there is no EGL, or no device with OpenGL 4.5 core whose limits suffice.
   static Result<Context> createHeadless(const ContextOptions& options = {});
   // Refers to the context that is current on this thread, without owning it.
   static Result<Context> attachToCurrent(const ContextOptions& options);

@@ -5,6 +5,10 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "runtime/gpu/out_of_memory.hpp"
+
 namespace lambent::gpu {
 
 namespace {
@@ -27,6 +31,10 @@ Buffer::Buffer(std::string_view label, std::size_t byte_count, WrittenBy writer)
   assert(byte_count > 0);
   glNamedBufferStorage(id(), static_cast<GLsizeiptr>(byte_count), nullptr,
                        writer == WrittenBy::Cpu ? GL_DYNAMIC_STORAGE_BIT : 0);
+  // The size tells it without glGetError, whose queue may belong to a program that uses the library.
+  GLint64 stored = 0;
+  glGetNamedBufferParameteri64v(id(), GL_BUFFER_SIZE, &stored);
+  if (stored == 0) throw OutOfMemory(fmt::format("{}, {} bytes", label, byte_count));
   setLabel(GL_BUFFER, id(), label);
 }
 
@@ -79,6 +87,10 @@ Texture::Texture(std::string_view label, const TextureDesc& desc)
                        static_cast<GLsizei>(desc.cube ? 6 * desc.layers : desc.layers));
   else
     glTextureStorage2D(id(), static_cast<GLsizei>(desc.levels), desc.format, width, height);
+  GLint stored = GL_FALSE;
+  glGetTextureParameteriv(id(), GL_TEXTURE_IMMUTABLE_FORMAT, &stored);
+  if (stored == GL_FALSE)
+    throw OutOfMemory(fmt::format("{}, {} x {} texels", label, desc.width, desc.height));
   setLabel(GL_TEXTURE, id(), label);
 }
 

@@ -1,6 +1,6 @@
 // Owns GL objects as move-only values with labels for debuggers. They use direct state access. Sizes are in
-// bytes and texels. An object must not outlive its context. Creation fails only by a bug or for lack of
-// memory, which debug output reports.
+// bytes and texels. An object must not outlive its context. Creation fails only by a bug, which debug output
+// reports, or for lack of memory, for which buffers and textures throw OutOfMemory (out_of_memory.hpp).
 #pragma once
 
 #include <cstddef>

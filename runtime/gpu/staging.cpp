@@ -6,6 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "runtime/gpu/out_of_memory.hpp"
+
 namespace lambent::gpu {
 
 Staging::~Staging() {
@@ -21,6 +25,10 @@ void Staging::make() {
   constexpr GLbitfield kAccess = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
   glNamedBufferStorage(id, byte_count, nullptr, kAccess | GL_CLIENT_STORAGE_BIT);
   mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(id, 0, byte_count, kAccess));
+  if (mapped_ == nullptr) {
+    ring_ = {};
+    throw OutOfMemory(fmt::format("staging, {} bytes", byte_count));
+  }
 }
 
 // Moves on to the next part of the ring, and waits until its earlier copies are done.

@@ -75,8 +75,16 @@ Result<Window> Window::create(const std::string& title, std::uint32_t width, std
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, options.debug ? GLFW_TRUE : GLFW_FALSE);
-  state->window =
-      glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title.c_str(), nullptr, nullptr);
+  const auto open = [&] {
+    return glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title.c_str(), nullptr,
+                            nullptr);
+  };
+  glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);  // checkContext() tells of a reset
+  state->window = open();
+  if (state->window == nullptr) {
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_NO_ROBUSTNESS);
+    state->window = open();
+  }
   if (state->window == nullptr) return fail("window", "cannot be opened with OpenGL 4.5: " + reason(), kHint);
   glfwMakeContextCurrent(state->window);
   glfwSwapInterval(1);

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <thread>
 
+#include "runtime/gpu/out_of_memory.hpp"
 #include "runtime/scene/exchange.hpp"
 #include "runtime/scene/transforms.hpp"
 #include "runtime/world/world.hpp"
@@ -133,7 +134,8 @@ void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::
   };
   // Large items are uploaded over several frames.
   const auto proceed = [&] {
-    const Result<std::uint64_t> bytes = residency_.proceedStaged(next.staged, budget_bytes);
+    const Result<std::uint64_t> bytes =
+        gpu::orOutOfMemory([&] { return residency_.proceedStaged(next.staged, budget_bytes); });
     if (bytes)
       spend(*bytes);
     else
@@ -151,8 +153,10 @@ void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::
     const bool in_pieces =
         bytes > budget_bytes && items.size() == 1 && streaming::Residency::comesInPieces(item);
     if (!in_pieces) spend(bytes);
-    const Result<void> done = in_pieces ? residency_.beginStaged(next.staged, std::move(item))
-                                        : residency_.uploadStaged(next.staged, std::move(item));
+    const Result<void> done = gpu::orOutOfMemory([&] {
+      return in_pieces ? residency_.beginStaged(next.staged, std::move(item))
+                       : residency_.uploadStaged(next.staged, std::move(item));
+    });
     if (!done) {
       bundle.replacement_error = inBundle(*next.reader, done.error());
       break;

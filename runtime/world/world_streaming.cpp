@@ -3,6 +3,7 @@
 #include <thread>
 #include <tuple>
 
+#include "runtime/gpu/out_of_memory.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/streaming/interest.hpp"
 #include "runtime/streaming/sizes.hpp"
@@ -289,7 +290,8 @@ void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Count
   // Large items are uploaded over several frames.
   const auto comes = [&] {
     if (!residency_.comes(slot)) return false;
-    const Result<std::uint64_t> bytes = residency_.proceed(slot, budget_bytes);
+    const Result<std::uint64_t> bytes =
+        gpu::orOutOfMemory([&] { return residency_.proceed(slot, budget_bytes); });
     if (!bytes) {
       bundle.error = inBundle(*bundle.reader, bytes.error());
       return false;
@@ -308,8 +310,8 @@ void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Count
     const bool in_pieces =
         bytes > budget_bytes && items.size() == 1 && streaming::Residency::comesInPieces(item);
     if (!in_pieces) spend(bytes);
-    const Result<void> done =
-        in_pieces ? residency_.begin(slot, std::move(item)) : accept(slot, std::move(item));
+    const Result<void> done = gpu::orOutOfMemory(
+        [&] { return in_pieces ? residency_.begin(slot, std::move(item)) : accept(slot, std::move(item)); });
     if (!done) {
       bundle.error = inBundle(*bundle.reader, done.error());
       break;

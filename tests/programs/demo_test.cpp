@@ -34,9 +34,11 @@ class DemoProgram : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
 
-  Outcome run(const std::string& arguments) const {
+  // `before` stands before it in the shell.
+  Outcome run(const std::string& arguments, const std::string& before = {}) const {
     const std::filesystem::path err = folder / "stderr.txt";
-    const std::string command = fmt::format("{} {} 2>{}", quoted(LAMBENT_DEMO), arguments, quoted(err));
+    const std::string command =
+        fmt::format("{}{} {} 2>{}", before, quoted(LAMBENT_DEMO), arguments, quoted(err));
     Outcome outcome;
     FILE* pipe = popen(command.c_str(), "r");
     std::array<char, 4096> buffer{};
@@ -71,6 +73,33 @@ void expectOneLine(const std::string& text) {
 }
 
 }  // namespace
+
+TEST_F(DemoProgram, SaysThatADeviceIsTooOldInOneLine) {
+  LAMBENT_NEEDS_DEVICE();
+  if (gpu::Context::createHeadless()->info().version.find("Mesa") == std::string::npos)
+    GTEST_SKIP() << "only Mesa's drivers can be told to offer less";
+  const std::filesystem::path picture = folder / "a.png";
+  ::setenv("MESA_GL_VERSION_OVERRIDE", "4.3", /*overwrite=*/1);
+  const Outcome outcome = run(bundle() + " --light constant:1,1,1 --headless " + quoted(picture));
+  ::unsetenv("MESA_GL_VERSION_OVERRIDE");
+  EXPECT_EQ(outcome.exit_code, 1);
+  expectOneLine(outcome.err);
+  EXPECT_NE(outcome.err.find("OpenGL: no device gives OpenGL 4.5 core"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(picture));
+}
+
+TEST_F(DemoProgram, LeavesNoHalfPictureWhereTheDiskIsFull) {
+  LAMBENT_NEEDS_DEVICE();
+  const std::filesystem::path picture = folder / "a.exr";
+  const Outcome outcome =
+      run(bundle() + " --light sun:35,45,6,5 --size 128x128 --linear --headless " + quoted(picture),
+          "ulimit -f 8; ");
+  EXPECT_EQ(outcome.exit_code, 1);
+  expectOneLine(outcome.err);
+  EXPECT_NE(outcome.err.find("a.exr: cannot be written: File too large"), std::string::npos) << outcome.err;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    EXPECT_EQ(entry.path().filename().string().find("a.exr"), std::string::npos) << entry.path();
+}
 
 TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
   for (const char* arguments : {"",

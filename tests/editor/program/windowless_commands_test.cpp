@@ -353,6 +353,23 @@ TEST_F(WindowlessCommands, KeepWhatAWorldFileSaysOfItsBundles) {
   EXPECT_EQ(session->scenes.entries()[0].instance, 3u);
 }
 
+TEST_F(WindowlessCommands, WhatIsNotSavedIsRescuedBesideTheWorld) {
+  openHello();
+  const std::filesystem::path file = folder.path() / "room.json",
+                              rescued = folder.path() / "room.rescued.json";
+  answer("save", {file.string()});
+  const auto nothing = session->files.rescue();
+  ASSERT_TRUE(nothing);
+  EXPECT_TRUE(nothing->empty()) << "all is saved";
+  const json saved = json::parse(std::ifstream(file));
+  answer("add-light", {"sun:35,45,0.5,20000"});
+  const auto lies_in = session->files.rescue();
+  ASSERT_TRUE(lies_in) << lies_in.error().line();
+  EXPECT_EQ(*lies_in, rescued);
+  EXPECT_EQ(json::parse(std::ifstream(file)), saved) << "the world's file stays as it was";
+  EXPECT_NE(json::parse(std::ifstream(rescued)), saved);
+}
+
 TEST_F(WindowlessCommands, SaveLayoutsUnderNames) {
   answer("move-panel", {"Log", "right"});
   answer("save-layout", {"mine"});

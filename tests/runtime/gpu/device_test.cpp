@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "runtime/gpu/arena.hpp"
+#include "runtime/gpu/out_of_memory.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/gpu/plain_text.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/gpu/work_list.hpp"
+#include "tests/support/gl_seam.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::gpu {
@@ -31,12 +33,72 @@ constexpr FindText kTables[] = {&findText};
 }  // namespace
 
 using Device = testing::GpuTest;
+using testing::FullGpu;
 
 TEST_F(Device, SaysWhatItIs) {
   EXPECT_FALSE(context->info().renderer.empty());
-  EXPECT_GE(context->info().max_storage_bytes, Arena::kMaxPageBytes);
-  // Vertices are pulled from storage buffers, which OpenGL 4.5 leaves optional in vertex shaders.
-  EXPECT_GE(context->info().max_vertex_storage_blocks, 4u);
+  EXPECT_TRUE(checkContext()) << "it is not lost";
+}
+
+TEST_F(Device, IsRefusedWithoutTheFeaturesThatAreNeeded) {
+  const testing::FewFeatures few;
+  const Result<Context> refused = Context::createHeadless();
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().problem.find("has 0 storage blocks in vertex shaders, 5 are needed"),
+            std::string::npos)
+      << refused.error().problem;
+  context.reset();  // the other one has taken its place
+}
+
+// Asks for more than any GPU has.
+TEST_F(Device, ThrowsWhereItHasNoMemory) {
+  EXPECT_THROW(Buffer("large", std::size_t{1} << 46), OutOfMemory);
+  const TextureDesc large{.format = GL_RGBA32F, .width = 16384, .height = 16384, .layers = 2048};
+  EXPECT_THROW(Texture("large", large), OutOfMemory);
+  const Buffer small("small", 16);
+  EXPECT_EQ(small.byteCount(), 16u);
+  context.reset();  // both errors were meant
+}
+
+TEST_F(Device, AnArenaWithoutMemoryFailsAndGoesOnOnceThereIsSome) {
+  Arena arena("test", FullGpu::kRefusedBytes);
+  {
+    const FullGpu full;
+    const auto refused = arena.allocate(3000);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().subject, "GPU");
+    EXPECT_EQ(refused.error().problem, "has no memory for test page 0, 1048576 bytes");
+    EXPECT_FALSE(arena.allocateWithRoom(3000, 6000));
+    EXPECT_EQ(arena.bytesReserved(), 0u);
+    EXPECT_EQ(arena.bytesUsed(), 0u);
+  }
+  const auto allocated = arena.allocate(3000);
+  ASSERT_TRUE(allocated);
+  EXPECT_EQ(allocated->page, 0u);
+}
+
+TEST_F(Device, BytesThatCannotBeStagedThrowAndStagingGoesOnOnceTheyCan) {
+  Staging staging;
+  const Buffer buffer("test", 4096, WrittenBy::Gpu);
+  const std::vector<std::uint32_t> ones(1024, 1);
+  {
+    const FullGpu full;
+    EXPECT_THROW(staging.write(buffer, 0, std::as_bytes(std::span(ones))), OutOfMemory);
+  }
+  context->errors();  // of mapping what has no memory
+  staging.write(buffer, 0, std::as_bytes(std::span(ones)));
+  std::vector<std::uint32_t> back(ones.size());
+  buffer.read(0, std::span(back));
+  EXPECT_EQ(back, ones);
+  context.reset();
+}
+
+TEST_F(Device, SaysThatItsContextIsLost) {
+  const testing::LostContext lost;
+  const Result<void> kept = checkContext();
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(kept.error().problem,
+            "has lost all that was drawn: its driver reset it because of another program");
 }
 
 TEST_F(Device, DrawsPlainTextOnADarkGroundInTheTopLeftCorner) {

@@ -15,6 +15,7 @@
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/frame/neighborhood_scene.hpp"
 #include "tests/support/frame/world_stage.hpp"
+#include "tests/support/gl_seam.hpp"
 
 namespace lambent::frame {
 
@@ -107,6 +108,37 @@ TEST_F(WorldTest, ADamagedReplacementLeavesTheOldBundleAndIsReported) {
   stage.picture();
   EXPECT_TRUE(stage.world.errors().empty());
   EXPECT_EQ(stage.world.status(ball).path, ballFile(0.4f));
+}
+
+TEST_F(WorldTest, ABundleWithoutGpuMemoryIsReportedAndTheOthersAreShown) {
+  WorldStage stage(lights);
+  stage.open(floorFile());
+  const spec::RgbaImage before = stage.picture();
+  std::uint32_t ball = 0;
+  {
+    const testing::FullGpu full;
+    ball = stage.open(ballFile(0.0f));
+    for (int i = 0; i < 1000 && !stage.world.loaded(); ++i) stage.render();
+  }
+  ASSERT_EQ(stage.world.errors().size(), 1u);
+  EXPECT_EQ(stage.world.errors()[0].bundle, ball);
+  EXPECT_NE(stage.world.errors()[0].error.problem.find("GPU: has no memory for "), std::string::npos)
+      << stage.world.errors()[0].error.line();
+  stage.world.close(ball);
+  EXPECT_EQ(worst(stage.picture(), before), 0.0);
+  stage.open(ballFile(0.0f));
+  expectSame(stage.picture(), fresh({floorFile(), ballFile(0.0f)}), stage);
+}
+
+TEST_F(WorldTest, APictureOfALostContextFails) {
+  WorldStage stage(lights);
+  stage.open(floorFile());
+  stage.picture();
+  const testing::LostContext lost;
+  const spec::View view{.view_from_world = glm::mat4(1.0f), .clip_from_view = glm::mat4(1.0f), .eye_ws = {}};
+  const Result<void> drawn = stage.frame->render(stage.world, stage.environment, view);
+  ASSERT_FALSE(drawn);
+  EXPECT_EQ(drawn.error().subject, "GPU");
 }
 
 TEST_F(WorldTest, ADamagedBundleIsReportedAndTheOthersAreShown) {
