@@ -337,9 +337,10 @@ Result<std::size_t> GroupRefiner::markWorst(std::size_t group, const GroupGeomet
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t a = corners[c], b = corners[(c + 1) % 3];
       if (glm::distance(geometry.positions[a], geometry.positions[b]) < kSplitShare * longest) continue;
-      if (!edges.mark(group, a, b)) continue;
+      const auto added = edges.mark(group, a, b);
+      if (!added) continue;
       marked.push_back({a, b, t});
-      --room;
+      room -= std::min(room, *added);
     }
   }
   // Longer edges are halved: light changes on both sides of a cut, too.
@@ -389,9 +390,11 @@ Result<std::optional<std::size_t>> GroupRefiner::markLeaks(std::size_t group, co
   if (!cuts) return failAgain(cuts.error());
   std::size_t marked = 0;
   for (std::size_t i = 0; i < between.size() && room > 0; ++i) {
-    if ((*cuts)[i] == 0.0f || !edges.mark(group, between[i].a, between[i].b)) continue;
+    if ((*cuts)[i] == 0.0f) continue;
+    const auto added = edges.mark(group, between[i].a, between[i].b);
+    if (!added) continue;
     edges.splitAt(group, between[i].a, between[i].b, (*cuts)[i]);
-    ++marked, --room;
+    ++marked, room -= std::min(room, *added);
   }
   return marked;
 }

@@ -49,17 +49,34 @@ void forEdges(const bundle::MeshData& mesh, const Visit& visit) {
 
 MarkedEdges::MarkedEdges(const std::vector<RigidGroup>& groups, const std::vector<GroupGeometry>& geometries,
                          const std::vector<std::vector<bundle::MeshData>>& meshes)
-    : groups_(groups), geometries_(geometries), meshes_(meshes), in_group_(groups.size()) {
+    : groups_(groups),
+      geometries_(geometries),
+      meshes_(meshes),
+      in_group_(groups.size()),
+      copies_(copiesOf(groups, meshes)) {
   for (const GroupGeometry& geometry : geometries) place_.push_back(placesIn(geometry));
-  for (const auto& primitives : meshes) in_mesh_.emplace_back(primitives.size());
+  for (const auto& primitives : meshes)
+    in_mesh_.emplace_back(primitives.size()), counted_.emplace_back(primitives.size());
+}
+
+// Counts an edge once in all copies of its mesh.
+std::size_t MarkedEdges::added(std::size_t group, std::uint32_t a, std::uint32_t b) {
+  const auto& draws = geometries_[group].draws;
+  const auto after = std::ranges::upper_bound(draws, a, {}, &DrawGeometry::first_vertex);
+  const auto index = static_cast<std::size_t>(after - draws.begin()) - 1;
+  const PlannedDraw& draw = groups_[group].draws[index];
+  const std::uint32_t first = draws[index].first_vertex;
+  const bool counted = !counted_[draw.mesh][draw.primitive].insert(pairOf(a - first, b - first)).second;
+  return counted ? 0 : copies_[draw.mesh][draw.primitive];
 }
 
 std::uint64_t MarkedEdges::placesOf(std::size_t group, std::uint32_t a, std::uint32_t b) const {
   return pairOf(place_[group][a], place_[group][b]);
 }
 
-bool MarkedEdges::mark(std::size_t group, std::uint32_t a, std::uint32_t b) {
-  return in_group_[group].try_emplace(placesOf(group, a, b), 0.5f).second;
+std::optional<std::size_t> MarkedEdges::mark(std::size_t group, std::uint32_t a, std::uint32_t b) {
+  if (!in_group_[group].try_emplace(placesOf(group, a, b), 0.5f).second) return std::nullopt;
+  return added(group, a, b);
 }
 
 void MarkedEdges::splitAt(std::size_t group, std::uint32_t a, std::uint32_t b, float share) {

@@ -4,12 +4,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include "baker/import/scene.hpp"
 #include "baker/plan/rigid_groups.hpp"
+#include "baker/refine/copies.hpp"
 #include "baker/transport/group_geometry.hpp"
 
 namespace lambent::baker {
@@ -20,9 +23,10 @@ class MarkedEdges {
   MarkedEdges(const std::vector<RigidGroup>& groups, const std::vector<GroupGeometry>& geometries,
               const std::vector<std::vector<bundle::MeshData>>& meshes);
 
-  // Marks the edge between two vertices of a group's geometry, to be split in half. Returns true if it was
-  // not marked before.
-  bool mark(std::size_t group, std::uint32_t a, std::uint32_t b);
+  // Marks the edge between two vertices of a group's geometry, to be split in half. Returns about how many
+  // vertices that adds to what is drawn, none if the same edge is marked where the mesh is drawn elsewhere;
+  // or nothing if it was marked before.
+  std::optional<std::size_t> mark(std::size_t group, std::uint32_t a, std::uint32_t b);
   // Has a marked edge split at this share of the way from `a` to `b`, which is rounded.
   void splitAt(std::size_t group, std::uint32_t a, std::uint32_t b, float share);
 
@@ -33,6 +37,7 @@ class MarkedEdges {
   // Shares are those of the way from the lower place or vertex of a pair.
   using Shares = std::unordered_map<std::uint64_t, float>;
 
+  std::size_t added(std::size_t group, std::uint32_t a, std::uint32_t b);
   std::uint64_t placesOf(std::size_t group, std::uint32_t a, std::uint32_t b) const;
   bool spread();
 
@@ -42,6 +47,8 @@ class MarkedEdges {
   std::vector<std::vector<std::uint32_t>> place_;  // place number of each vertex of each group
   std::vector<Shares> in_group_;                   // by pairs of places
   std::vector<std::vector<Shares>> in_mesh_;       // [mesh][primitive] by pairs of vertices
+  CopiesOfMeshes copies_;
+  std::vector<std::vector<std::unordered_set<std::uint64_t>>> counted_;  // [mesh][primitive], pairs likewise
 };
 
 }  // namespace lambent::baker

@@ -6,6 +6,7 @@
 
 #include "baker/jobs/kept_value.hpp"
 #include "baker/refine/add_wedges.hpp"
+#include "baker/refine/copies.hpp"
 #include "baker/refine/group_refiner.hpp"
 #include "baker/refine/marked_edges.hpp"
 #include "baker/refine/shadow_probe.hpp"
@@ -115,6 +116,7 @@ class Rounds {
       : from_(from),
         options_(options),
         most_(most),
+        copies_(copiesOf(from.groups, meshes)),
         meshes_(meshes),
         context_(context),
         report_(report),
@@ -157,7 +159,7 @@ class Rounds {
   bool any(std::size_t group) const {
     return !from_.groups[group].draws.empty() && from_.transport[group].shadows;
   }
-  std::size_t room() const { return most_ - std::min(most_, countVertices(meshes_)); }
+  std::size_t room() const { return most_ - std::min(most_, countDrawn(copies_, meshes_)); }
 
   // Tells the progress what the rounds up to the bound are expected to probe, each as much as the last one.
   void expectRounds(int most, double left_by_round, std::uint64_t of_a_round) const {
@@ -216,7 +218,8 @@ class Rounds {
 
   const RefineScene& from_;
   const RefineOptions& options_;
-  std::size_t most_;
+  std::size_t most_;  // vertices of all that is drawn
+  CopiesOfMeshes copies_;
   std::vector<std::vector<bundle::MeshData>>& meshes_;
   const BakeContext& context_;
   RefineReport& report_;
@@ -230,8 +233,8 @@ class Rounds {
 Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& options,
                                   std::vector<std::vector<bundle::MeshData>>& meshes,
                                   const BakeContext& context) {
-  const auto expected =
-      static_cast<std::uint64_t>(kExpectedProbes * static_cast<double>(countVertices(meshes)));
+  const auto expected = static_cast<std::uint64_t>(
+      kExpectedProbes * static_cast<double>(countDrawn(copiesOf(from.groups, meshes), meshes)));
   context.progress.begin("refinement", expected, "probes");
   std::vector<GroupGeometry> geometries = geometriesOf(from, meshes);
   const BakeContext outcome_context =
@@ -240,11 +243,11 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
   Outcome outcome{report, meshes};
   if (findKept(outcome_context, outcome)) return report;
   report.vertices_before = countVertices(meshes);
+  const std::size_t drawn = countDrawn(copiesOf(from.groups, meshes), meshes);
   const auto grown =
-      static_cast<std::size_t>(options.most_growth * static_cast<double>(report.vertices_before)) +
-      options.most_added;
+      static_cast<std::size_t>(options.most_growth * static_cast<double>(drawn)) + options.most_added;
   const std::size_t most = std::min(grown, options.most_vertices);
-  if (report.vertices_before >= most) {  // probing is not worth its rays if nothing may be split
+  if (drawn >= most) {  // probing is not worth its rays if nothing may be split
     report.vertices_after = report.vertices_before;
     report.at_limit = true;
     return report;

@@ -25,8 +25,8 @@ struct RefineOptions {
   std::size_t rays = 512, many_rays = 2048;
   int rounds = 24;     // at most this many
   bool glossy = true;  // false: surfaces with glossy samples are left as they are
-  // The scene gets at most most_growth times as many vertices as it had and most_added more, and never more
-  // than most_vertices in all.
+  // What is drawn gets at most most_growth times as many vertices as it had and most_added more, and never
+  // more than most_vertices in all. A mesh that is drawn several times counts as often, as its samples do.
   double most_growth = 1.5;
   std::size_t most_added = 20'000;
   std::size_t most_vertices = std::size_t{1} << 31;

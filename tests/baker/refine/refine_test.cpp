@@ -195,6 +195,24 @@ TEST(Refinement, EndsWithTheVerticesThatItMayAdd) {
   EXPECT_LE(result.report.vertices_after, result.report.vertices_before + 600);
 }
 
+// Copies have samples of their own, and cost as much as meshes of their own.
+TEST(Refinement, CountsAMeshAsOftenAsItIsDrawn) {
+  constexpr std::size_t kCopies = 16;
+  Scene scene = floorUnderSlab();
+  for (std::size_t i = 1; i < kCopies; ++i) {
+    for (std::size_t n = 0; n < 2; ++n) {
+      scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+      scene.nodes.push_back(scene.nodes[n]);
+      scene.nodes.back().parent_from_node =
+          glm::translate(glm::mat4(1.0f), glm::vec3(5.0f * static_cast<float>(i), 0.0f, 0.0f));
+    }
+  }
+  const Refined result = refined(scene, {.bound = 1e-4f, .most_growth = 1.0, .most_added = 1600});
+  const std::size_t added = result.report.vertices_after - result.report.vertices_before;
+  EXPECT_GT(kCopies * added, 800u);
+  EXPECT_LE(kCopies * added, 2000u);
+}
+
 TEST(Refinement, IsTheSameForAnyNumberOfThreads) {
   Refined one, many;
   withThreads(1, [&] { one = refined(floorUnderSlab(), {.bound = 0.02f}); });
