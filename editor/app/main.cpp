@@ -1,4 +1,5 @@
 // lambent-editor: opens, bakes and lights scenes. Exit codes: 0 done, 1 failed, 2 wrong usage.
+#include <csignal>
 #include <exception>
 
 #include "editor/app/options.hpp"
@@ -7,6 +8,7 @@
 
 int main(int argc, char** argv) {
   using namespace lambent;
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows past the user's limit is an error of that file
   try {
     const auto parsed = editor::parseOptions(argc, argv);
     if (const int* exit_code = std::get_if<int>(&parsed)) return *exit_code;

@@ -1,3 +1,4 @@
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -11,6 +12,7 @@
 
 int main(int argc, char** argv) {
   using namespace lambent;
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows past the user's limit is an error of that file
   try {
     const auto parsed = demo::parseOptions(argc, argv);
     if (const int* exit_code = std::get_if<int>(&parsed)) return *exit_code;

@@ -92,7 +92,7 @@ TEST_F(DemoProgram, LeavesNoHalfPictureWhereTheDiskIsFull) {
   LAMBENT_NEEDS_DEVICE();
   const std::filesystem::path picture = folder / "a.exr";
   const Outcome outcome =
-      run(bundle() + " --light sun:35,45,6,5 --size 128x128 --linear --headless " + quoted(picture),
+      run(bundle() + " --light sun:35,45,6,5 --size 128x128 --headless " + quoted(picture),
           "ulimit -f 8; ");
   EXPECT_EQ(outcome.exit_code, 1);
   expectOneLine(outcome.err);
