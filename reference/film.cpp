@@ -46,7 +46,7 @@ Film::Film(const spec::Size& size, std::uint64_t digest)
       done_(size.height, 0),
       rays_(size.height, 0),
       pixels_(std::size_t{size.width} * size.height) {
-  static_assert(sizeof(Pixel) == 8 * sizeof(double));
+  static_assert(sizeof(Pixel) == kBytesOfPixel);
 }
 
 void Film::addRow(std::uint32_t y, std::uint32_t count, std::span<const PixelSum> pixels) {
@@ -65,9 +65,15 @@ std::uint64_t Film::rays() const {
   return std::accumulate(rays_.begin(), rays_.end(), std::uint64_t{0});
 }
 
+std::size_t Film::bytesOfFile() const {
+  return sizeof(Header) + done_.size() * sizeof(done_[0]) + rays_.size() * sizeof(rays_[0]) +
+         pixels_.size() * sizeof(Pixel) + sizeof(std::uint64_t);
+}
+
 Result<void> Film::save(const std::filesystem::path& path) const {
   const Header header{.digest = digest_, .width = size_.width, .height = size_.height, .seconds = seconds};
   std::vector<std::byte> bytes;
+  bytes.reserve(bytesOfFile());  // growing would take three times as much
   put(bytes, std::span(&header, 1));
   put(bytes, std::span<const std::uint32_t>(done_));
   put(bytes, std::span<const std::uint64_t>(rays_));
@@ -83,10 +89,7 @@ Result<void> Film::save(const std::filesystem::path& path) const {
 bool Film::restore(const std::filesystem::path& path) {
   const auto text = readTextFile(path);
   if (!text) return false;
-  const std::size_t wanted = sizeof(Header) + done_.size() * sizeof(done_[0]) +
-                             rays_.size() * sizeof(rays_[0]) + pixels_.size() * sizeof(Pixel) +
-                             sizeof(std::uint64_t);
-  if (text->size() != wanted) return false;
+  if (text->size() != bytesOfFile()) return false;
   std::span<const std::byte> bytes = std::as_bytes(std::span(*text));
   std::uint64_t checksum = 0;
   std::memcpy(&checksum, bytes.data() + bytes.size() - sizeof(checksum), sizeof(checksum));

@@ -19,6 +19,8 @@ namespace lambent::baker::reference {
 
 class Film {
  public:
+  static constexpr std::size_t kBytesOfPixel = 8 * sizeof(double);
+
   Film(const spec::Size& size, std::uint64_t digest);
 
   const spec::Size& size() const { return size_; }
@@ -54,6 +56,7 @@ class Film {
     double alpha = 0.0, depth = 0.0;
   };
   glm::dvec3 mean(std::size_t pixel) const;
+  std::size_t bytesOfFile() const;
 
   spec::Size size_;
   std::uint64_t digest_ = 0;

@@ -1,5 +1,5 @@
 // Declares the options of a reference picture, apart from scene, lights and camera. All but the number of
-// threads affect the picture's bytes.
+// threads and the memory affect the picture's bytes.
 #pragma once
 
 #include <cstdint>
@@ -36,6 +36,9 @@ struct Options {
   std::optional<std::uint32_t> bounces = {};
   float rotate_light_deg = 0.0f;
   unsigned threads = 0;  // 0: as many as the machine has
+  // What the whole program may take; 0: what the machine has. A picture cannot do with less than it needs, so
+  // what needs more is refused (memory_need.hpp).
+  std::uint64_t memory_bytes = 0;
 };
 
 inline constexpr std::uint32_t kMaxSpp = 1u << 24;

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <chrono>
 
+#include <fmt/format.h>
+
 #include "baker/jobs/parallel.hpp"
 #include "reference/camera.hpp"
 #include "reference/digest.hpp"
 #include "reference/film.hpp"
+#include "reference/memory_need.hpp"
 #include "reference/passes.hpp"
 #include "reference/request_lights.hpp"
 #include "reference/traced_scene.hpp"
@@ -86,6 +89,10 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   if (auto checked = checkOptions(options); !checked) return failAgain(std::move(checked.error()));
   if (auto checked = checkOutput(output); !checked) return failAgain(std::move(checked.error()));
   Report report;
+  const std::uint64_t of_picture = bytesOfPicture(options.size);
+  const std::string picture = fmt::format("a picture of {} x {}", options.size.width, options.size.height);
+  if (auto fits = checkMemory(options, of_picture + bytesOfTracing(scene), picture); !fits)
+    return failAgain(std::move(fits.error()));
   // Load the light, and build the scene in world space.
   progress.begin("scene");
   const auto loaded = loadEach(request.lights);
@@ -97,6 +104,8 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   const auto traced = TracedScene::build(scene);
   if (!traced) return failAgain(traced.error());
   report.notices.insert(report.notices.end(), (*traced)->notices().begin(), (*traced)->notices().end());
+  if (auto fits = checkMemory(options, of_picture, picture); !fits)  // textures and light are there now
+    return failAgain(std::move(fits.error()));
   const auto view = viewOf(scene, (*traced)->surfaces(), request);
   if (!view) return failAgain(view.error());
   Film film(options.size, digestOf(scene, lights, shapes, *view, options));

@@ -6,10 +6,10 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "baker/bake/option_rows.hpp"
 #include "baker/bake/picture_budget.hpp"
+#include "runtime/base/memory.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal_factors.hpp"
 
@@ -128,10 +128,8 @@ double BakeOptions::refineWedges() const {
 
 std::uint64_t BakeOptions::effectiveMemory() const {
   if (memory_bytes != 0) return memory_bytes;
-  const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
   constexpr std::uint64_t kUnknown = std::uint64_t{1} << 31;
-  if (pages <= 0 || page_bytes <= 0) return kUnknown;
-  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes) / 2;
+  return machineBytes() == 0 ? kUnknown : machineBytes() / 2;
 }
 
 std::uint64_t BakeOptions::memoryLeft(std::uint64_t used, std::size_t diffuse, std::size_t glossy) const {

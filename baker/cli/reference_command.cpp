@@ -10,6 +10,7 @@
 #include "baker/import/gltf.hpp"
 #include "reference/reference.hpp"
 #include "runtime/base/atomic_file.hpp"
+#include "runtime/base/memory.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/spec/display.hpp"
 #include "runtime/spec/numbers.hpp"
@@ -91,6 +92,7 @@ void printReference(const ReferenceArguments& a, const reference::Request& reque
                            {"rays", r.rays},
                            {"seconds", r.seconds},
                            {"raysPerSecond", rate},
+                           {"peakBytes", peakBytes()},
                            {"standardError", nullptr}};
     if (r.standard_error) json["standardError"] = *r.standard_error;
     fmt::print("{}\n", json.dump(2));
@@ -200,6 +202,12 @@ void addReferenceCommand(CLI::App& app, Command& run) {
   command
       ->add_option("--threads", a->options.threads, "Threads; default all. The result does not depend on it")
       ->type_name("N");
+  command
+      ->add_option("--max-memory", a->options.memory_bytes,
+                   "The memory that the picture may take, in bytes or like 4GB; what needs\nmore is refused. "
+                   "Default: what the machine has")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false))
+      ->type_name("BYTES");
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--force", a->force, "Begin anew even if OUT.exr.partial could be gone on with");
@@ -208,7 +216,8 @@ void addReferenceCommand(CLI::App& app, Command& run) {
   addProgress(*command, a->say);
   command_line::group(*command, "Light", {"--light", "--light-layout", "--rotate-light"});
   command_line::group(*command, "Picture", {"--camera", "--size", "--time", "--png"});
-  command_line::group(*command, "Paths", {"--spp", "--seed", "--band-limit", "--bounces", "--threads"});
+  command_line::group(*command, "Paths", {"--spp", "--seed", "--band-limit", "--bounces"});
+  command_line::group(*command, "Machine", {"--threads", "--max-memory"});
   command_line::group(*command, "Files and runs", {"--output", "--force", "--allow-outside"});
   command_line::group(*command, "Output", {"--json", "--quiet", "--progress"});
   command_line::addExamples(

@@ -1,11 +1,11 @@
 #include "runtime/base/atomic_file.hpp"
 
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include <fcntl.h>
@@ -144,7 +144,13 @@ Result<std::string> readTextFile(const fs::path& path) {
   if (auto checked = checkRegularFile(path, "a file"); !checked) return failAgain(checked.error());
   std::ifstream in(path, std::ios::binary);
   if (!in) return fail(path.string(), "cannot be read", "check its permissions");
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+  // Its size at once, since growing would take three times as much.
+  std::error_code unknown;
+  std::string text;
+  if (const auto bytes = fs::file_size(path, unknown); !unknown) text.reserve(bytes);
+  std::array<char, 1 << 16> part;
+  while (in.read(part.data(), part.size()), in.gcount() > 0)
+    text.append(part.data(), static_cast<std::size_t>(in.gcount()));
   if (in.bad()) return fail(path.string(), "cannot be read", "check the disk");
   return text;
 }

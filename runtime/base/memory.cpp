@@ -41,4 +41,9 @@ std::uint64_t peakBytes() {
   return std::uint64_t{1024} * static_cast<std::uint64_t>(usage.ru_maxrss);
 }
 
+std::uint64_t machineBytes() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES);
+  return pages > 0 ? bytesOf(static_cast<std::uint64_t>(pages)) : 0;
+}
+
 }  // namespace lambent

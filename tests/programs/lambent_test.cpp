@@ -51,7 +51,7 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
         "--json"}},
       {"reference",
        {"SCENE", "--light", "--camera", "--output", "--spp", "--seed", "--band-limit", "--bounces", "--time",
-        "--json"}},
+        "--max-memory", "--json"}},
       {"plan", {"SCENE", "--effects", "--light-probes", "--json"}},
       {"info", {"BUNDLE", "--json"}},
       {"accuracy",
@@ -165,13 +165,82 @@ TEST_F(LambentProgram, DoesNotWaitForPipesInPlaceOfFiles) {
   }
 }
 
-TEST_F(LambentProgram, ReportsAFileThatGrowsPastItsLimit) {
-  const Outcome outcome = run("/bin/sh", {"-c", "ulimit -f 8; exec " LAMBENT_PROGRAM " bake " + kHello +
-                                                    " --quality draft -o " + path("a.lmb.glb")});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.err.find("a.lmb.glb: cannot be written: File too large"), std::string::npos)
-      << outcome.err;
+// A limit on the size of files fails writes as a full disk does, in the middle.
+TEST_F(LambentProgram, LeavesNothingHalfWrittenWhereTheDiskIsFull) {
+  for (const std::string& command :
+       {"bake " + kHello + " --quality draft --progress off -o " + path("a.lmb.glb"),
+        "reference " + kHello + " --size 64x64 --spp 2 --progress off --light constant:1,1,1 -o " +
+            path("a.exr")}) {
+    const Outcome outcome = run("/bin/sh", {"-c", "ulimit -f 8; exec " LAMBENT_PROGRAM " " + command});
+    EXPECT_EQ(outcome.exit_code, 1) << command;
+    expectOneLine(outcome, "lambent", command);
+    EXPECT_NE(outcome.err.find(": cannot be written: File too large"), std::string::npos) << outcome.err;
+    EXPECT_EQ(fileCount(), 0) << command;
+  }
+}
+
+// Whoever runs the tests may do everything, often enough; so another user runs lambent here.
+TEST_F(LambentProgram, SaysWhatItMayNotReadOrWrite) {
+  const auto lambentOfAnother = [&](const std::vector<std::string>& arguments) {
+    if (::geteuid() != 0) return lambent(arguments);
+    std::vector<std::string> words = {"--reuid=65534", "--regid=65534", "--clear-groups", LAMBENT_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return run("/usr/bin/setpriv", words);
+  };
+  if (::geteuid() == 0 && !std::filesystem::exists("/usr/bin/setpriv")) GTEST_SKIP() << "no setpriv here";
+  if (lambentOfAnother({"--version"}).exit_code != 0)
+    GTEST_SKIP() << "another user cannot reach " LAMBENT_PROGRAM;
+  ASSERT_EQ(bakeHello("secret.lmb.glb").exit_code, 0);
+  std::filesystem::copy(kHello, folder / "secret.glb");
+  const std::filesystem::path locked = folder / "locked";
+  std::filesystem::create_directory(locked);
+  using std::filesystem::perms;
+  for (const char* name : {"secret.glb", "secret.lmb.glb"})
+    std::filesystem::permissions(folder / name, perms::none);
+  std::filesystem::permissions(
+      locked, perms::owner_read | perms::owner_exec | perms::others_read | perms::others_exec);
+  std::filesystem::copy(kHello, folder / "scene.glb");
+  const std::string scene = path("scene.glb");
+  struct Case {
+    std::string said;
+    std::vector<std::string> arguments;
+  };
+  const std::vector<Case> cases = {
+      {"secret.glb: cannot be opened; check its permissions", {"plan", path("secret.glb")}},
+      {"secret.lmb.glb: cannot be read", {"info", path("secret.lmb.glb")}},
+      {"a.lmb.glb: cannot be written: Permission denied", {"bake", scene, "-o", path("locked/a.lmb.glb")}},
+      {"a.exr: cannot be written: Permission denied", {"reference", scene, "-o", path("locked/a.exr")}}};
+  for (const Case& denied : cases) {
+    const Outcome outcome = lambentOfAnother(denied.arguments);
+    EXPECT_EQ(outcome.exit_code, 1) << denied.said;
+    expectOneLine(outcome, "lambent", denied.said);
+    EXPECT_NE(outcome.err.find(denied.said), std::string::npos) << outcome.err;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(locked));
+}
+
+TEST_F(LambentProgram, RefusesAReferenceThatTakesTooMuchMemoryAndSaysHowMuchItTakes) {
+  const auto referenceIn = [&](const std::string& memory, const std::string& size) {
+    return lambent({"reference", kHello, "-o", path("a.exr"), "--spp", "1", "--size", size, "--max-memory",
+                    memory, "--light", "constant:1,1,1", "--progress", "off", "--json"});
+  };
+  const Outcome refused = referenceIn("1GB", "16384x16384");
+  EXPECT_EQ(refused.exit_code, 1);
+  expectOneLine(refused, "lambent", "16384x16384");
+  EXPECT_NE(refused.err.find("--max-memory: a picture of 16384 x 16384 takes about 34"), std::string::npos)
+      << refused.err;
   EXPECT_EQ(fileCount(), 0);
+  // What is said to be needed is enough, and not far too much.
+  const Outcome needs = referenceIn("1MB", "1024x1024");
+  EXPECT_EQ(needs.exit_code, 1);
+  const std::size_t at = needs.err.find("takes about ");
+  ASSERT_NE(at, std::string::npos) << needs.err;
+  const double megabytes = std::stod(needs.err.substr(at + 12)) + 1.0;
+  const Outcome enough = referenceIn(fmt::format("{:.0f}", 1e6 * megabytes), "1024x1024");
+  ASSERT_EQ(enough.exit_code, 0) << enough.err;
+  const double took = 1e-6 * json::parse(enough.out)["peakBytes"].get<double>();
+  EXPECT_LT(took, 1.1 * megabytes);
+  EXPECT_GT(took, 0.5 * megabytes);
 }
 
 TEST_F(LambentProgram, WritesAReferenceForAScreenToo) {

@@ -1,10 +1,12 @@
 #include "runtime/base/atomic_file.hpp"
 
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <utility>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -59,6 +61,30 @@ TEST_F(AtomicFileTest, SaysWhyItCannotBeWritten) {
   const auto no_files_there = AtomicFile::open("/proc/lambent-file");
   ASSERT_FALSE(no_files_there);
   EXPECT_NE(no_files_there.error().problem.find("cannot be written"), std::string::npos);
+}
+
+// A limit on the size of files fails writes as a full disk does, in the middle.
+TEST_F(AtomicFileTest, KeepsTheOldFileWhereTheDiskIsFull) {
+  ::rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  ::rlimit full = before;
+  full.rlim_cur = 4096;
+  auto* const handled = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+  Result<void> written;
+  {
+    auto file = AtomicFile::open(folder_ / "file");
+    ASSERT_TRUE(file);
+    written = file->write(std::string(65536, 'x'));
+  }
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handled);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().line(), (folder_ / "file").string() +
+                                        ": cannot be written: File too large; free some space or choose "
+                                        "another place");
+  EXPECT_EQ(*readTextFile(folder_ / "file"), "old");
+  EXPECT_EQ(files(), 1);
 }
 
 TEST_F(AtomicFileTest, RemovesWhatKilledProgramsLeftAndNothingElse) {

@@ -256,6 +256,33 @@ TEST_F(BundleFile, AnyFlippedByteIsRefused) {
   }
 }
 
+// Bakers and copies write while a world reads.
+TEST_F(BundleFile, ReplacedWhileItIsReadGivesTheOldBytesOrAnError) {
+  const Sample sample = sampleOfEveryList();
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  const auto bytes = std::filesystem::file_size(path_);
+  const auto reader = Reader::open(path_);
+  ASSERT_TRUE(reader);
+  ASSERT_TRUE(reader->checkAll());
+  // A bake renames its bundle into place, and the reader keeps what it has opened.
+  std::ofstream(folder_ / "other") << "another bundle";
+  fs::rename(folder_ / "other", path_);
+  EXPECT_TRUE(reader->checkAll());
+  // A copy writes into the file itself.
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  const auto copied_over = Reader::open(path_);
+  ASSERT_TRUE(copied_over);
+  std::fstream(path_, std::ios::in | std::ios::out | std::ios::binary) << std::string(bytes, 'x');
+  const auto damaged = copied_over->checkAll();
+  ASSERT_FALSE(damaged);
+  EXPECT_NE(damaged.error().problem.find("is damaged: byte range 0"), std::string::npos)
+      << damaged.error().problem;
+  std::filesystem::resize_file(path_, bytes / 8);
+  const auto cut = copied_over->checkAll();
+  ASSERT_FALSE(cut);
+  EXPECT_EQ(cut.error().problem, "is truncated");
+}
+
 TEST_F(BundleFile, TooNewIsCalledTooNew) {
   Sample sample = sampleOfEveryList();
   sample.description.version = kVersionCurrent + 1;
