@@ -5,6 +5,7 @@
 
 #include "baker/cli/bake_report.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/pipeline/long_bake.hpp"
 #include "baker/pipeline/progress_record.hpp"
 #include "runtime/base/atomic_file.hpp"
 
@@ -45,6 +46,10 @@ Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cach
   }
   BakeOutcome outcome;
   outcome.estimate = cache ? findEstimate(*scene, a.options, *cache) : std::nullopt;
+  if (!outcome.estimate && !a.say.quiet)
+    if (const auto plan = planFor(*scene, a.options))
+      if (const auto notice = longBakeNotice(guessProcessorSeconds(*scene, *plan, a.options)))
+        reportNotice(a.scene, *notice);
   if (cache) cache->setReading(!a.force);
   const Key progress_key = progressKey(*scene, a.options);
   Result<BakeReport> report = [&] {

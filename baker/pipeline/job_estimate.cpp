@@ -92,9 +92,11 @@ bool isBounce(std::string_view stage) {
 
 StageSeconds guessSeconds(const Scene& scene, const BakeOptions& options) {
   double vertices = 0.0;
-  for (const SceneMesh& mesh : scene.meshes)
-    for (const ScenePrimitive& primitive : mesh.primitives)
+  for (const gltf::Node& node : scene.nodes) {
+    if (node.mesh < 0) continue;
+    for (const ScenePrimitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives)
       vertices += static_cast<double>(primitive.mesh.positions.size());
+  }
   const double rays = static_cast<double>(options.effectiveRays()) + kRaysOfASample;
   StageSeconds seconds;
   if (options.effectiveRefineBound() > 0.0f) {

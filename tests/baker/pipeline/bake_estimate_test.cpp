@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/bake/option_rows.hpp"
+#include "baker/pipeline/long_bake.hpp"
 #include "baker/pipeline/time_budget.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -15,6 +16,33 @@ namespace {
 Scene boxAboveFloor() {
   return testing::sceneOf({testing::grid({0.0f, 0.0f, 0.0f}, 4.0f, 12),
                            testing::box({0.13f, 0.6f, -0.21f}, {0.7f, 0.8f, 0.7f}, 4)});
+}
+
+// The seconds of a guess are no test's business, but what they grow with is.
+TEST(LongBake, IsGuessedFromWhatIsDrawnAndItsRays) {
+  Scene scene = boxAboveFloor();
+  const auto guess = [&](const BakeOptions& options) {
+    const auto plan = planFor(scene, options);
+    EXPECT_TRUE(plan);
+    return plan ? guessProcessorSeconds(scene, *plan, options) : 0.0;
+  };
+  const BakeOptions draft{.quality = Quality::Draft};
+  const double once = guess(draft);
+  EXPECT_GT(once, 0.0);
+  EXPECT_FALSE(longBakeNotice(once));
+  EXPECT_GT(guess({.quality = Quality::Draft, .rays = 65536}), 50.0 * once);
+  constexpr std::size_t kCopies = 400;
+  for (std::size_t i = 1; i < kCopies; ++i)
+    for (std::size_t n = 0; n < 2; ++n) {
+      scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+      scene.nodes.push_back(scene.nodes[n]);
+      scene.nodes.back().parent_from_node[3] += glm::vec4(5.0f * static_cast<float>(i), 0.0f, 0.0f, 0.0f);
+    }
+  const double often = guess(draft);
+  EXPECT_GT(often, 0.4 * static_cast<double>(kCopies) * once);
+  const auto notice = longBakeNotice(often);
+  ASSERT_TRUE(notice) << often << " s";
+  EXPECT_TRUE(notice->starts_with("takes about ")) << *notice;
 }
 
 // Seconds depend on what else the machine does, so they are not held against each other here.
