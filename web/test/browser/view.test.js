@@ -40,7 +40,8 @@ test('lambent view shows a bundle under a map', options, async (t) => {
   page.on('console', (m) => ['error', 'warn'].includes(m.type()) && messages.push(m.text()));
   page.on('pageerror', (error) => messages.push(String(error)));
   page.on('request', (request) => {
-    if (!/^(blob|data):/.test(request.url()) && !request.url().startsWith(viewing.address)) elsewhere.push(request.url());
+    const url = request.url();
+    if (!/^(blob|data):/.test(url) && !url.startsWith(viewing.address)) elsewhere.push(url);
   });
   page.on('requestfailed', (request) => messages.push(`${request.url()}: ${request.failure().errorText}`));
   await page.setViewport({ width: 640, height: 360 });
@@ -59,7 +60,8 @@ test('lambent view shows a bundle under a map', options, async (t) => {
 test('lambent view opens the browser that xdg-open knows', options, async (t) => {
   const folder = join(work, 'programs'), asked = join(folder, 'asked');
   mkdirSync(folder, { recursive: true });
-  writeFileSync(join(folder, 'xdg-open'), `#!/bin/sh\nprintf %s "$*" > '${asked}.part' && mv '${asked}.part' '${asked}'\n`);
+  const script = `printf %s "$*" > '${asked}.part' && mv '${asked}.part' '${asked}'`;
+  writeFileSync(join(folder, 'xdg-open'), `#!/bin/sh\n${script}\n`);
   chmodSync(join(folder, 'xdg-open'), 0o755);
   const viewing = await view(t, [], { PATH: `${folder}:${process.env.PATH}`, DISPLAY: ':9' });
   while (!existsSync(asked)) await sleep(10); // the test's own limit ends this
