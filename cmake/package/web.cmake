@@ -1,5 +1,6 @@
-# While installing: copies what WEB/viewer/files.txt lists to share/lambent/web, where `lambent view` finds it, and adds what is
-# not of this repository to the bill of materials. Without `npm ci` in WEB there is no three.js, and no viewer is installed.
+# While installing: copies what WEB/viewer/files.txt lists to share/lambent/web, where `lambent view` finds it, and adds
+# what is not of this repository to the bill of materials. Without `npm ci` in WEB there is no three.js, and no viewer is
+# installed.
 cmake_policy(VERSION 3.25)  # install scripts begin with none
 set(prefix "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
 set(files "")
@@ -7,7 +8,7 @@ file(STRINGS "${WEB}/viewer/files.txt" patterns REGEX "^[^#]")
 foreach(pattern ${patterns})
   file(GLOB found RELATIVE "${WEB}" "${WEB}/${pattern}")
   if(NOT found)
-    message(WARNING "lambent: web/${pattern} is missing, so lambent view will not run from here; run npm ci in web/ first")
+    message(WARNING "lambent: web/${pattern} is missing, so lambent view will not run there; run npm ci in web/ first")
     return()
   endif()
   list(APPEND files ${found})

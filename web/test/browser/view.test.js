@@ -1,21 +1,22 @@
 // Runs lambent view as a user does: the page that it serves shows the bundle, nothing comes from elsewhere, an
 // interrupt ends it, and what is wrong is said in one line.
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
+import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
-import { chmodSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { chmodSync, copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import test from 'node:test';
-import { bin, launch, list, skip, work } from './browser.js';
+import { listedFiles } from '../../site/listed_files.js';
+import { bin, launch, list, skip, web, work } from './browser.js';
 
 const map = process.env.LAMBENT_TEST_MAP;
 const options = { skip: skip || (map ? false : 'LAMBENT_TEST_MAP is not set'), timeout: 600000 };
 const lambent = () => join(bin, 'lambent'), bundle = () => resolve(list.split(',')[0]);
 
 // Starts it and returns the process and the address that it prints.
-async function view(t, words, environment = {}) {
-  const process_ = spawn(lambent(), ['view', bundle(), ...words], {
+async function view(t, words, environment = {}, program = lambent()) {
+  const process_ = spawn(program, ['view', bundle(), ...words], {
     stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, DISPLAY: '', WAYLAND_DISPLAY: '', ...environment },
   });
   t.after(() => process_.kill('SIGKILL'));
@@ -72,6 +73,24 @@ test('lambent view opens the browser that xdg-open knows', options, async (t) =>
   const without = await view(t, []);
   await interrupt(without);
   assert.match(without.said(), /^lambent: no browser can be opened here;[^\n]*\n$/);
+});
+
+test('lambent view runs where it is installed, and says in one line that its files are not', options, async (t) => {
+  const prefix = join(work, 'installed'), script = resolve(web, '../cmake/package/web.cmake');
+  mkdirSync(join(prefix, 'bin'), { recursive: true });
+  copyFileSync(lambent(), join(prefix, 'bin/lambent'));
+  const program = join(prefix, 'bin/lambent');
+  const lost = spawnSync(program, ['view', bundle(), '--no-browser'], { encoding: 'utf8' });
+  assert.equal(lost.status, 1, lost.stderr);
+  assert.match(lost.stderr, /^lambent: [^\n]*share\/lambent\/web[^\n]*npm ci[^\n]*\n$/);
+
+  execFileSync('cmake', [`-DCMAKE_INSTALL_PREFIX=${prefix}`, `-DWEB=${web}`, '-P', script], { stdio: 'ignore' });
+  const { address } = await view(t, ['--no-browser'], {}, program);
+  for (const file of listedFiles(web)) {
+    const answer = await fetch(new URL(file, address));
+    assert.equal(answer.status, 200, file);
+    assert.ok(Buffer.from(await answer.arrayBuffer()).equals(readFileSync(join(web, file))), file);
+  }
 });
 
 test('lambent view says in one line what is wrong', options, async (t) => {
