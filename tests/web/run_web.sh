@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# run_web.sh PROGRAMS ASSETS: bakes small scenes, makes the site with two of them, and runs the tests of web/ in Node.js
-# and in Chromium.
+# run_web.sh PROGRAMS ASSETS: bakes two small scenes, and runs the tests of web/ with it in Node.js and in Chromium.
 # Exit status: 0 passed, 77 skipped, since Node.js, Chromium or web/node_modules is not there; LAMBENT_REQUIRE=web makes
 # that a failure. Nothing is fetched from the network.
 set -euo pipefail
@@ -26,7 +25,7 @@ node "$web/test/mapped_scene.js" "$folder/mapped.gltf"
 export LAMBENT_BIN=$programs LAMBENT_TEST_BUNDLE=$folder/hello.lmb.glb
 export LAMBENT_TEST_BUNDLES=$folder/hello.lmb.glb,$folder/mapped.lmb.glb
 export LAMBENT_TEST_ARRAYS=$folder/arrays LAMBENT_TEST_WORK=$folder/work LAMBENT_TEST_MAP=$assets/sky.hdr
-# Coarse bakes: the pictures of the site are to be live here, not right.
+# The site, with coarse bakes: its pictures are to be live here, not right.
 node "$web/site/make.js" --programs "$programs" --assets "$assets" --output "$folder/site" --scenes hello,gallery \
   --bake '--quality draft --rays 128 --bounces 1 --refine off --cache off'
 export LAMBENT_TEST_SITE=$folder/site CHROMIUM=$chromium
