@@ -1,7 +1,7 @@
 #!/usr/bin/env node
 // Makes the site: static pages out of docs, bundles of the sample scenes, the viewer and three.js.
 //     node web/site/make.js --programs build/release/bin --assets build/release/assets --output site
-// --scenes names those to bake (default all), --bake how. A scene whose bundle is up to date is not baked again. The
+// --scenes names those to bake (default all), --bake=OPTIONS how. A scene whose bundle is up to date is not baked again. The
 // result is for any file server, such as python3 -m http.server -d site; browsers open no modules without one.
 import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';

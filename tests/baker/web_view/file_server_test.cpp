@@ -140,7 +140,7 @@ TEST_F(Server, AnswersToItsOwnNamesOnly) {
   EXPECT_EQ(as("127.0.0.1:" + port), 200);
   EXPECT_EQ(as("localhost:" + port), 200);
   for (const std::string& host : {"evil.example:" + port, std::string("evil.example"),
-                                 std::string("127.0.0.1:1"), "127.0.0.1.evil.example:" + port})
+                                  std::string("127.0.0.1:1"), "127.0.0.1.evil.example:" + port})
     EXPECT_EQ(as(host), 403) << host;
   const auto answer = client().Get("/viewer/viewer.js");
   ASSERT_TRUE(answer);
