@@ -1,8 +1,8 @@
 #!/usr/bin/env node
 // Makes the site: static pages out of docs, bundles of the sample scenes, the viewer and three.js.
 //     node web/site/make.js --programs build/release/bin --assets build/release/assets --output site
-// --scenes names those to bake (default all), --bake=OPTIONS how. A scene whose bundle is up to date is not baked again. The
-// result is for any file server, such as python3 -m http.server -d site; browsers open no modules without one.
+// --scenes names those to bake (default all), --bake=OPTIONS how. A scene whose bundle is up to date is not baked again.
+// The result is for any file server, such as python3 -m http.server -d site; browsers open no modules without one.
 import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, normalize, relative, resolve } from 'node:path';
@@ -10,6 +10,11 @@ import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { Marked } from 'marked';
 import { listedFiles } from './listed_files.js';
+
+process.on('uncaughtException', (error) => {
+  console.error(`make.js: ${error.message}`);
+  process.exit(1);
+});
 
 const here = dirname(fileURLToPath(import.meta.url)), web = join(here, '..'), docs = join(web, '../docs');
 const SCENES = ['hello', 'knot', 'gallery', 'playroom', 'metals', 'ring', 'flight', 'field'];
