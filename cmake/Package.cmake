@@ -80,13 +80,18 @@ install(DIRECTORY "${CMAKE_BINARY_DIR}/assets/" DESTINATION share/lambent/scenes
 install(FILES "${CMAKE_BINARY_DIR}/assets/sky.hdr" "${CMAKE_BINARY_DIR}/assets/studio.hdr"
   DESTINATION share/lambent/probes COMPONENT tools)
 
-
 # The add-on for Blender. It is packed here, since a build of the programs alone makes no other targets.
 set(addon "${CMAKE_BINARY_DIR}/package/lambent-blender.zip")
 install(CODE "
   set(ZIP [[${addon}]])
   include([[${PROJECT_SOURCE_DIR}/cmake/package/blender.cmake]])" COMPONENT tools)
 install(FILES "${addon}" DESTINATION share/lambent/blender COMPONENT tools)
+
+# The viewer of `lambent view`.
+install(CODE "
+  set(WEB [[${PROJECT_SOURCE_DIR}/web]])
+  set(COMPONENT_NAME lambent-tools)
+  include([[${PROJECT_SOURCE_DIR}/cmake/package/web.cmake]])" COMPONENT tools)
 
 set(CPACK_GENERATOR TGZ)
 set(CPACK_THREADS 0)

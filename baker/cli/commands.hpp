@@ -26,6 +26,7 @@ void addReferenceCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
 void addAccuracyCommand(CLI::App& app, Command& run);
 void addExportCommand(CLI::App& app, Command& run);
+void addViewCommand(CLI::App& app, Command& run);
 
 // Adds the options of a bake from their table (baker/bake/option_rows.hpp).
 void addBakeOptions(CLI::App& command, BakeOptions& options);

@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
   baker::addBakeCommand(app, run);
   baker::addPlanCommand(app, run);
   baker::addInfoCommand(app, run);
+  baker::addViewCommand(app, run);
   baker::addReferenceCommand(app, run);
   baker::addCompareCommand(app, run);
   baker::addAccuracyCommand(app, run);

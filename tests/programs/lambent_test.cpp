@@ -54,6 +54,7 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
         "--max-memory", "--json"}},
       {"plan", {"SCENE", "--effects", "--light-probes", "--json"}},
       {"info", {"BUNDLE", "--json"}},
+      {"view", {"BUNDLE", "--light", "--port", "--no-browser"}},
       {"accuracy",
        {"SCENE", "--output", "--quality", "--knob", "--light", "--camera", "--size", "--spp", "--force",
         "--json"}},
@@ -109,6 +110,9 @@ TEST_F(LambentProgram, WrongUsageIsExitCode2AndOneLine) {
       {"plan"},
       {"info"},
       {"info", "a", "b"},
+      {"view"},
+      {"view", "a", "--port", "0"},
+      {"view", "a", "--port", "65536"},
       {"compare", "a.exr"}};
   for (const auto& arguments : wrong) {
     const Outcome outcome = lambent(arguments);
@@ -299,7 +303,9 @@ TEST_F(LambentProgram, BadInputIsExitCode1OneLineAndLeavesNoFile) {
                                    {"lost.glb", {"info", path("lost.glb")}},
                                    {"a-folder", {"info", path("a-folder")}},
                                    {"words.glb", {"info", path("words.glb")}},
-                                   {"hello.glb", {"info", kHello}}};
+                                   {"hello.glb", {"info", kHello}},
+                                   {"lost.glb", {"view", path("lost.glb")}},
+                                   {"hello.glb", {"view", kHello}}};
   for (const Case& wrong : cases) {
     const Outcome outcome = lambent(wrong.arguments);
     const std::string words = fmt::format("{}", fmt::join(wrong.arguments, " "));

@@ -40,5 +40,8 @@ fi
 export LAMBENT_BIN=$programs LAMBENT_TEST_BUNDLE=$folder/hello.lmb.glb
 export LAMBENT_TEST_BUNDLES=$bundles
 export LAMBENT_TEST_ARRAYS=$folder/arrays LAMBENT_TEST_WORK=$folder/work LAMBENT_TEST_MAP=$assets/sky.hdr
-export CHROMIUM=$chromium
+# The site, with coarse bakes: its pictures are to be live here, not right.
+node "$web/site/make.js" --programs "$programs" --assets "$assets" --output "$folder/site" --scenes hello,gallery \
+  --bake='--quality draft --rays 128 --bounces 1 --refine off --cache off'
+export LAMBENT_TEST_SITE=$folder/site CHROMIUM=$chromium
 cd "$web" && node --test --test-concurrency=1 test/*.test.js test/browser/*.test.js

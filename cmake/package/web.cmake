@@ -1,0 +1,35 @@
+# While installing: copies what WEB/viewer/files.txt lists to share/lambent/web, where `lambent view` finds it, and adds
+# what is not of this repository to the bill of materials. Without `npm ci` in WEB there is no three.js, and no viewer is
+# installed.
+cmake_policy(VERSION 3.25)  # install scripts begin with none
+set(prefix "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
+set(files "")
+file(STRINGS "${WEB}/viewer/files.txt" patterns REGEX "^[^#]")
+foreach(pattern ${patterns})
+  file(GLOB found RELATIVE "${WEB}" "${WEB}/${pattern}")
+  if(NOT found)
+    message(WARNING "lambent: web/${pattern} is missing, so lambent view will not run there; run npm ci in web/ first")
+    return()
+  endif()
+  list(APPEND files ${found})
+endforeach()
+foreach(file viewer/files.txt ${files})
+  get_filename_component(folder "${prefix}/share/lambent/web/${file}" DIRECTORY)
+  file(MAKE_DIRECTORY "${folder}")
+  file(COPY_FILE "${WEB}/${file}" "${prefix}/share/lambent/web/${file}" ONLY_IF_DIFFERENT)
+  list(APPEND CMAKE_INSTALL_MANIFEST_FILES "${prefix}/share/lambent/web/${file}")
+endforeach()
+message(STATUS "Installing: ${prefix}/share/lambent/web")
+
+set(materials "${prefix}/share/doc/lambent/${COMPONENT_NAME}.cdx.json")
+if(EXISTS "${materials}")
+  file(READ "${materials}" sbom)
+  foreach(module three fzstd)
+    file(READ "${WEB}/node_modules/${module}/package.json" about)
+    string(JSON version GET "${about}" version)
+    string(JSON count LENGTH "${sbom}" components)
+    string(JSON sbom SET "${sbom}" components ${count} "{\"type\": \"library\", \"name\": \"${module}\",
+      \"version\": \"${version}\", \"purl\": \"pkg:npm/${module}@${version}\"}")
+  endforeach()
+  file(WRITE "${materials}" "${sbom}\n")
+endif()
