@@ -44,8 +44,9 @@ function show(gltf) {
 
 async function showMap(texture) {
   light.texture?.dispose();
+  light.split?.environment.dispose();
   texture.mapping = THREE.EquirectangularReflectionMapping;
-  scene.background = scene.environment = texture;
+  scene.background = texture;
   const order = 8;
   light = { texture, all: LightVector.fromEquirect(texture, order), split: splitKeyLights(texture, { order }) };
   applyLight();
@@ -56,6 +57,7 @@ function applyLight() {
   const turn = THREE.MathUtils.degToRad(element('turn').valueAsNumber), baked = shown?.userData.lambent;
   scene.backgroundRotation.y = scene.environmentRotation.y = turn;
   renderer.toneMappingExposure = 2 ** element('exposure').valueAsNumber;
+  scene.environment = light.texture;
   if (!baked) return;
   const byMaps = element('suns').checked && light.split?.suns.length > 0 && transfer() !== 'unshadowed';
   if (keys && (!byMaps || keys.userData.for !== shown || keys.userData.map !== light.texture)) {
@@ -69,6 +71,7 @@ function applyLight() {
     scene.add(keys);
   }
   if (keys) keys.rotation.y = turn;
+  if (byMaps) scene.environment = light.split.environment; // suns have highlights of their own
   baked.order = element('order').valueAsNumber;
   baked.transfer = transfer();
   baked.light = (byMaps ? light.split.rest : light.all).rotateY(turn);
