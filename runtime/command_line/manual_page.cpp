@@ -1,8 +1,11 @@
 #include "runtime/command_line/manual_page.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <ctime>
 #include <sstream>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 namespace lambent::command_line {
@@ -99,6 +102,13 @@ std::string footerSections(const std::string& footer) {
   return text + (verbatim ? ".fi\n" : "");
 }
 
+std::string dateOfPage() {
+  const char* const given = std::getenv("SOURCE_DATE_EPOCH");
+  const std::time_t seconds = given ? std::strtoll(given, nullptr, 10) : std::time(nullptr);
+  std::tm date{};
+  return ::gmtime_r(&seconds, &date) ? fmt::format("{:%Y-%m-%d}", date) : std::string();
+}
+
 }  // namespace
 
 std::string manualPage(const CommandEntry& table, const std::string& version) {
@@ -106,9 +116,10 @@ std::string manualPage(const CommandEntry& table, const std::string& version) {
   std::string help = table.help;  // the line of NAME has no full stop
   if (help.ends_with('.')) help.pop_back();
   std::string text = fmt::format(
-      ".\\\" Written by `{} --help-as man`.\n.TH \"{}\" \"1\" \"\" \"{}\" \"Lambent\"\n"
+      ".\\\" Written by `{} --help-as man`.\n.TH \"{}\" \"1\" \"{}\" \"{}\" \"Lambent\"\n"
       ".SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{}\n",
-      table.program, upperCase(roff(name)), roff(version), roff(name), roff(help), synopsis(table));
+      table.program, upperCase(roff(name)), dateOfPage(), roff(version), roff(name), roff(help),
+      synopsis(table));
   if (!table.commands.empty()) {
     text += ".SH COMMANDS\nEach has a page of its own.\n";
     for (const CommandEntry& command : table.commands)

@@ -1,5 +1,6 @@
 // Tests what is made from the tables of options: help in groups, manual pages, and completion in shells.
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
@@ -107,14 +108,16 @@ TEST_F(CommandLine, ManualPageHasEveryOptionThatHelpHas) {
   EXPECT_TRUE(has(printed({"--help-as", "man"}).first, ".TP\n\\fBtool\\-bake\\fR(1)\nBake a scene\n"));
 }
 
-TEST_F(CommandLine, ManualPageEscapesWhatRoffTakesForCommands) {
+TEST_F(CommandLine, ManualPageBearsADateAndEscapesWhatRoffTakesForCommands) {
   const CommandEntry table{.name = "tool",
                            .program = "tool",
                            .help = "Reads C:\\a",
                            .footer = "",
                            .options = {{.names = {"--a"}, .help = ".gltf or 'words'"}},
                            .commands = {}};
+  ::setenv("SOURCE_DATE_EPOCH", "86400", /*overwrite=*/1);
   const std::string page = manualPage(table, "tool 1.2");
+  EXPECT_TRUE(has(page, ".TH \"TOOL\" \"1\" \"1970-01-02\" \"tool 1.2\"")) << page;
   EXPECT_TRUE(has(page, "\n\\&.gltf or 'words'\n")) << page;
   EXPECT_TRUE(has(page, "C:\\ea")) << page;
 }
