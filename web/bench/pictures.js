@@ -27,11 +27,6 @@ try {
     const { page: viewer } = await open(t, browser, { '/': site }, address, size);
     await viewer.waitForFunction('window.lambentViewer');
     await viewer.evaluate(() => window.lambentViewer.opened);
-    await viewer.evaluate(() => {
-      const exposure = document.getElementById('exposure');
-      exposure.value = -1;
-      exposure.dispatchEvent(new Event('input', { bubbles: true }));
-    });
     await viewer.waitForFunction(() => /light [0-9.]+ ms/.test(document.getElementById('status').value));
     await viewer.screenshot({ ...jpeg, path: join(output, `viewer-${name}.jpg`) });
     await viewer.close();

@@ -49,6 +49,10 @@ async function showMap(texture) {
   scene.background = texture;
   const order = 8;
   light = { texture, all: LightVector.fromEquirect(texture, order), split: splitKeyLights(texture, { order }) };
+  // The exposure begins where white that is open to all of this light is half as bright as the screen can be.
+  const [r, g, b] = light.all.rgb.slice(0, 3).map((value) => value / Math.sqrt(4 * Math.PI));
+  const mean = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  if (mean > 0) element('exposure').valueAsNumber = Math.log2(0.5 / mean);
   applyLight();
 }
 
