@@ -91,8 +91,6 @@ void Ui::begin(const ScriptedInput* scripted) {
   ImGui_ImplGlfw_NewFrame();
   ImGuiIO& io = ImGui::GetIO();
   if (scripted) {
-    // Gestures of a script last a number of frames; slow frames must not pull a double-click apart.
-    io.DeltaTime = std::min(io.DeltaTime, 1.0f / 60.0f);
     apply(*scripted);
   } else if (state_->scripted_before) {
     apply({});
