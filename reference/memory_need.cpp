@@ -11,7 +11,8 @@ namespace {
 
 // A checkpoint is put together before it is written; the picture and its coded bytes take less, 20 + 20.
 constexpr std::uint64_t kBytesOfResult = Film::kBytesOfPixel;
-// Of a triangle, Embree's hierarchy included, measured on scans of 90 and 270 thousand triangles.
+// A triangle takes so much with Embree's hierarchy. It was measured on scans of 90 and 270 thousand
+// triangles.
 constexpr std::uint64_t kBytesOfTriangle = 130;
 constexpr std::uint64_t kBytesOfAnyScene = 6'000'000;  // Embree itself, threads and constant light
 

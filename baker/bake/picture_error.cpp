@@ -27,7 +27,7 @@ void addWeighted(const TransferField& field, std::size_t sample, float weight, s
   }
 }
 
-// What codes hold of the samples that are asked for.
+// Holds what codes say of the samples that are asked for.
 using Decoded = std::unordered_map<std::uint32_t, std::vector<float>>;
 
 // Calls take(sample, its vector) for the samples of a cell that `decoded` names.
@@ -195,19 +195,17 @@ class GlossyPoints {
   }
   // Computes the radiance that leaves by kernel_ where `transfer` is visibility and bounced light.
   void exit(std::span<const float> transfer, std::span<float> out) {
-    const std::size_t visibility = baked_.glossy->visibilitySize(), size = matrix_.size();
+    const auto visibility = transfer.first(baked_.glossy->visibilitySize());
+    const auto bounced = transfer.subspan(visibility.size());
+    std::fill(matrix_.begin(), matrix_.end(), 0.0f);
+    sh::addVisibilityMatrix(traced_.exact_glossy->pass().gaunt(), visibility, matrix_);
     std::fill(out.begin(), out.end(), 0.0f);
     for (std::size_t c = 0; c < 3; ++c) {
-      std::fill(matrix_.begin(), matrix_.end(), 0.0f);
-      sh::addVisibilityMatrix(traced_.exact_glossy->pass().gaunt(), transfer.first(visibility), matrix_);
-      if (bouncedSize() > 0) {
-        const auto bounced =
-            transfer.subspan(visibility + (baked_.glossy->channels == 3 ? c * size : 0), size);
-        for (std::size_t i = 0; i < size; ++i) matrix_[i] += bounced[i];
-      }
-      for (std::size_t k = 0; k < outputs_; ++k)
-        for (std::size_t i = 0; i < columns_; ++i)
-          out[c * columns_ + i] += kernel_[c * outputs_ + k] * matrix_[k * columns_ + i];
+      const std::size_t first = baked_.glossy->channels == 3 ? c * matrix_.size() : 0;
+      for (std::size_t k = 0, at = 0; k < outputs_; ++k)
+        for (std::size_t i = 0; i < columns_; ++i, ++at)
+          out[c * columns_ + i] +=
+              kernel_[c * outputs_ + k] * (bounced.empty() ? matrix_[at] : matrix_[at] + bounced[first + at]);
     }
   }
   void decode() {

@@ -65,19 +65,17 @@ nlohmann::json estimatedAndMeasured(const FinishedBake& bake) {
   return json;
 }
 
-// Return the bounds on codes of diffuse and of glossy surfaces: the widest, where they were chosen for each
-// group.
-double codesBoundOf(const FinishedBake& bake) {
+// Returns the widest bound on codes that was chosen for a group, or what the options say.
+double boundOf(const FinishedBake& bake, float BakeReport::Group::*chosen, float asked) {
   double bound = 0.0;
-  for (const BakeReport::Group& group : bake.report.groups)
-    bound = std::max(bound, double{group.codes_bound});
-  return bound > 0.0 ? bound : double{bake.options.effectiveErrorBound()};
+  for (const BakeReport::Group& group : bake.report.groups) bound = std::max(bound, double{group.*chosen});
+  return bound > 0.0 ? bound : double{asked};
+}
+double codesBoundOf(const FinishedBake& bake) {
+  return boundOf(bake, &BakeReport::Group::codes_bound, bake.options.effectiveErrorBound());
 }
 double glossyCodesBoundOf(const FinishedBake& bake) {
-  double bound = 0.0;
-  for (const BakeReport::Group& group : bake.report.groups)
-    bound = std::max(bound, double{group.glossy_codes_bound});
-  return bound > 0.0 ? bound : double{bake.options.effectiveGlossyErrorBound()};
+  return boundOf(bake, &BakeReport::Group::glossy_codes_bound, bake.options.effectiveGlossyErrorBound());
 }
 
 // Says why pictures of a group are further off than was asked for.
