@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "baker/bake/bounce_memory.hpp"
 #include "baker/bake/fit_vertices.hpp"
 #include "baker/effects/diffuse/inside_faces.hpp"
 #include "baker/effects/glossy/glossy_bounces.hpp"
@@ -69,6 +70,7 @@ bool traceGlossy(const GlossyPass& pass, const GroupScene& group, const BakeCont
 bool bounce(const DirectPass& pass, const GlossyPass* glossy_pass, const GroupScene& group,
             const BakeContext& context, SurfaceTransport& light) {
   const BakeOptions& options = group.bake.options;
+  makeRoomForBounces(options, light);
   ExitKernels kernels;
   std::optional<GlossyBounces> partner;
   if (glossy_pass) {
@@ -108,7 +110,7 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
   const DirectPass pass(group.view(), {.order = options.order,
                                        .rays = options.effectiveRays(),
                                        .keep_hits = bounces,
-                                       .hit_memory = room / (brdfs ? 4 : 2),
+                                       .hit_memory = room / (brdfs ? 2 : 1),
                                        .colored_kernels = brdfs && !brdfs->grey()});
   std::optional<SurfaceTransport> light(std::in_place);
   if (!traceDiffuse(pass, group, context, *light)) return std::nullopt;

@@ -87,7 +87,7 @@ std::string whyMissed(const FinishedBake& bake, const bundle::PictureError& erro
   return bake.options.rays != 0 ? "--rays is fixed" : "rays ended at their limit";
 }
 
-// Says which bounds are missed; empty if all are kept.
+// Says which bounds and limits are missed; empty if all are kept.
 std::string missedText(const FinishedBake& bake) {
   const double bound = codesBoundOf(bake), glossy_bound = glossyCodesBoundOf(bake);
   std::string text;
@@ -104,6 +104,13 @@ std::string missedText(const FinishedBake& bake) {
     text += fmt::format("{}: {:.2f} instead of {:.2f} %; --codes keeps more, at a price in bytes and time",
                         text.empty() ? "the error bound of glossy surfaces" : ", of glossy surfaces",
                         100.0 * bake.report.worst_glossy_error, 100.0 * glossy_bound);
+  // Past a tenth, the limit was not kept: the rest is what the bake cannot do without.
+  constexpr double kKept = 1.1;
+  if (const double limit = static_cast<double>(bake.options.memory_bytes),
+      took = static_cast<double>(peakBytes());
+      limit > 0.0 && took > kKept * limit)
+    text += fmt::format("{}--max-memory: {} instead of {}, which this bake takes even if it keeps no hits",
+                        text.empty() ? "" : ", ", bytesText(took), bytesText(limit));
   return text;
 }
 
@@ -192,6 +199,7 @@ nlohmann::json reportJson(const FinishedBake& bake) {
           {"rays", r.rays},
           {"raysKept", r.rays_kept},
           {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
+          {"peakBytes", peakBytes()},
           {"lights", r.lights},
           {"groups", groups},
           {"neighborhoods", neighborhoods},

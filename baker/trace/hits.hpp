@@ -149,6 +149,13 @@ class HitStore {
     ranges_[range].mirrored.shrink_to_fit();
     ranges_[range].kept = true;
   }
+  // Gives hits up, range by range from the end, until at most so many bytes are kept.
+  void keepAtMost(std::size_t bytes) {
+    for (auto range = ranges_.rbegin(); range != ranges_.rend() && held_ > bytes; ++range) {
+      held_ -= range->bytes();
+      *range = RangeHits();
+    }
+  }
   const RangeHits& range(std::size_t index) const { return ranges_[index]; }
   std::size_t bytes() const { return held_; }
   std::size_t bytesLeft() const { return limit_bytes_ - held_; }

@@ -183,7 +183,8 @@ Result<Script::Progress> Script::run(const ScriptLine& line, Session& session, U
     } else if (word == "click" || word == "double-click" || word == "right-click") {
       input.left = word != "right-click", input.right = !input.left;
       tap(input);
-      if (word == "double-click") tap(input);
+      input.again = word == "double-click";
+      if (input.again) tap(input);
     } else if (word == "key") {
       const auto keys = parseShortcut(line.words[1]);
       if (!keys) return failAgain(keys.error());

@@ -22,25 +22,25 @@ double solidAngleOfSpot(const scene::LocalLightComponent& light) {
 }  // namespace
 
 std::vector<LightUnit> unitsOf(const scene::LocalLightComponent& light) {
-  using Kind = scene::LocalLightComponent::Kind;
+  using LightKind = scene::LocalLightComponent::Kind;
   const double area = std::numbers::pi * double{light.radius_m} * double{light.radius_m};
   switch (light.kind) {
-    case Kind::Point:
+    case LightKind::Point:
       return {{"cd", kIntensity, 1.0}, {"lm", kFlux, 4.0 * std::numbers::pi}};
-    case Kind::Spot: {
+    case LightKind::Spot: {
       std::vector<LightUnit> units = {{"cd", kIntensity, 1.0}};
       if (const double angle = solidAngleOfSpot(light); angle > 0.0) units.push_back({"lm", kFlux, angle});
       return units;
     }
-    case Kind::Directional:
+    case LightKind::Directional:
       return {{"lx", "light on a surface that faces it, lux", 1.0}};
-    case Kind::Sphere:
-    case Kind::Disc: {
+    case LightKind::Sphere:
+    case LightKind::Disc: {
       std::vector<LightUnit> units = {{"cd/m²", "light of the lamp's surface into a direction", 1.0}};
       if (!(area > 0.0)) return units;
       units.push_back({"cd", kIntensity, area});
       // A Lambertian surface sends pi times its radiance from each side that shines.
-      units.push_back({"lm", kFlux, std::numbers::pi * (light.kind == Kind::Sphere ? 4.0 * area : area)});
+      units.push_back({"lm", kFlux, std::numbers::pi * (light.kind == LightKind::Sphere ? 4.0 * area : area)});
       return units;
     }
   }

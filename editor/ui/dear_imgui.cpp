@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #define GLFW_INCLUDE_NONE
@@ -10,6 +11,16 @@
 #include "editor/ui/ui.hpp"
 
 namespace lambent::editor {
+
+namespace {
+
+// A script says which press ends a double-click; on a slow machine its frames are further apart than presses
+// of a hand, and drags one after another are no double-clicks.
+void tellDoubleClick(const ScriptedInput& input) {
+  ImGui::GetIO().MouseDoubleClickTime = input.again ? std::numeric_limits<float>::max() : 0.0f;
+}
+
+}  // namespace
 
 #if IMGUI_VERSION_NUM >= 18700
 
@@ -69,6 +80,7 @@ bool anyKeyHeld() {
 
 void apply(const ScriptedInput& input) {
   ImGuiIO& io = ImGui::GetIO();
+  tellDoubleClick(input);
   // A script says what happens in which frame, so events are not spread over several.
   io.ConfigInputTrickleEventQueue = false;
   if (input.pointer) io.AddMousePosEvent(input.pointer->x, input.pointer->y);
@@ -100,6 +112,7 @@ bool anyKeyHeld() {
 
 void apply(const ScriptedInput& input) {
   ImGuiIO& io = ImGui::GetIO();
+  tellDoubleClick(input);
   if (input.pointer) io.MousePos = ImVec2(input.pointer->x, input.pointer->y);
   io.MouseDown[0] = input.left;
   io.MouseDown[1] = input.right;

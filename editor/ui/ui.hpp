@@ -21,6 +21,7 @@ namespace lambent::editor {
 struct ScriptedInput {
   std::optional<glm::vec2> pointer;  // in window pixels
   bool left = false, right = false, middle = false;
+  bool again = false;  // the second press of a double-click, however slowly frames follow each other
   bool ctrl = false, shift = false, alt = false;
   int key = -1;      // a GLFW key code, pressed in this frame
   std::string text;  // typed in this frame

@@ -2,6 +2,9 @@
 
 #include <fstream>
 
+#if __has_include(<malloc.h>)
+#include <malloc.h>
+#endif
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -39,6 +42,12 @@ std::uint64_t peakBytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return std::uint64_t{1024} * static_cast<std::uint64_t>(usage.ru_maxrss);
+}
+
+void returnFreedMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 std::uint64_t machineBytes() {

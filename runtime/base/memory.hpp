@@ -8,6 +8,7 @@ namespace lambent {
 std::uint64_t addressSpaceBytes();  // what is reserved now
 std::uint64_t residentBytes();      // what is in physical memory now
 std::uint64_t peakBytes();          // the most that has been in physical memory so far
-std::uint64_t machineBytes();       // the physical memory of the machine, whoever uses it
+void returnFreedMemory();      // gives memory that the program has freed back to the system, where it can
+std::uint64_t machineBytes();  // the physical memory of the machine, whoever uses it
 
 }  // namespace lambent

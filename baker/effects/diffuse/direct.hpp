@@ -46,7 +46,7 @@ struct DirectResult {
   HitStore hits;                // of all samples but glossy ones
   std::uint64_t rays_kept = 0;  // rays that results in the cache saved
   // Points inside faces, to which bounces are fitted as direct light was; null if nothing is fitted.
-  std::shared_ptr<const DiffuseInsideFaces> inside = {};
+  std::shared_ptr<DiffuseInsideFaces> inside = {};
   // Points at which bounces are gathered too, and fitted to nothing (BounceResult::at_watched).
   std::vector<std::shared_ptr<const TracedPoints>> watched = {};
 };

@@ -32,6 +32,7 @@ class DiffuseInsideFaces {
   bool look(const BakeContext& context);
 
   const TracedPoints& points() const { return points_; }
+  TracedPoints& points() { return points_; }
 
   // Corrects diffuse transfer of all samples, or that of normal-mapped ones for any normal, by how far
   // interpolation is off at the points. A fit may overshoot, so a sample is corrected only as far as it stays

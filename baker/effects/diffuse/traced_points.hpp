@@ -24,6 +24,7 @@ class TracedPoints {
   const TracedScene& scene() const { return scene_; }  // its samples are the points, starting at 0
   const DirectPass& pass() const { return pass_; }
   const DirectResult& direct() const { return direct_; }
+  DirectResult& direct() { return direct_; }
 
  private:
   FacePoints points_;

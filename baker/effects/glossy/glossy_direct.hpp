@@ -58,7 +58,7 @@ struct GlossyDirect {
   std::uint64_t rays_kept = 0;  // rays that results in the cache saved
   std::uint32_t filled_samples = 0;
   // If direct light was fitted to points inside faces, these are the points; bounces are gathered there too.
-  std::shared_ptr<const GlossyInsideFaces> inside = {};
+  std::shared_ptr<GlossyInsideFaces> inside = {};
   // Points at which bounces are gathered too, and fitted to nothing. Passes add to `bounced` of their fields.
   std::vector<std::shared_ptr<TracedGlossyPoints>> watched = {};
 };

@@ -25,6 +25,7 @@ class GlossyInsideFaces {
   std::optional<GlossyField> look(std::size_t hit_memory, const BakeContext& context);
 
   const TracedGlossyPoints& points() const { return points_; }
+  TracedGlossyPoints& points() { return points_; }
 
   // Corrects values at vertices by how far interpolation between them is off at the points. Both have the
   // same number of values for each sample, possibly none. Returns false if stopped.

@@ -40,6 +40,29 @@ TEST(KeepEvery, KeepsAllHitsOfASampleThatHasFew) {
   EXPECT_EQ(kept.size(), kHitsToThin);
 }
 
+TEST(HitStore, GivesUpWholeRangesUntilFewEnoughBytesAreKept) {
+  constexpr std::size_t kHits = 1000;
+  HitStore store(4 * kSamplesPerRange, 3 * kHits * sizeof(GatherHit));
+  for (std::size_t range = 0; range < 4; ++range) {
+    RangeHits hits;
+    hits.hits = hitsOf(kHits);
+    store.offer(range, std::move(hits));
+  }
+  const std::size_t each = kHits * sizeof(GatherHit);
+  EXPECT_EQ(store.bytes(), 3 * each) << "there is no room for the fourth";
+  store.keepAtMost(3 * each);
+  EXPECT_EQ(store.bytes(), 3 * each);
+  store.keepAtMost(2 * each - 1);
+  EXPECT_EQ(store.bytes(), each);
+  EXPECT_TRUE(store.range(0).kept);
+  for (std::size_t range = 1; range < 4; ++range) {
+    EXPECT_FALSE(store.range(range).kept);
+    EXPECT_TRUE(store.range(range).hits.empty());
+  }
+  store.keepAtMost(0);
+  EXPECT_EQ(store.bytes(), 0u);
+}
+
 TEST(HitBytes, BringBackHitsAndTheirScales) {
   RangeHits hits;
   hits.next();
