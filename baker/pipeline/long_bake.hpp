@@ -1,6 +1,6 @@
 // Says before a bake begins that it will take long, so that nobody waits for minutes unwarned. What it says
 // is a guess, from the plan and the numbers of vertices alone, which costs nothing and may be wrong by a
-// factor of two; `lambent plan` rehearses the bake and knows better.
+// factor of two, of open shapes by four; `lambent plan` rehearses the bake and knows better.
 #pragma once
 
 #include <optional>
