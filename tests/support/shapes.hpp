@@ -1,6 +1,7 @@
 // Makes small meshes and scenes with known answers. Triangles wind counter-clockwise seen from outside.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>

@@ -67,7 +67,7 @@ TEST(NeighborhoodPlans, AreForBodiesOnGroupsOfMoreThanTwiceTheirSize) {
 }
 
 TEST(NeighborhoodPlans, KnowWhereReceiversStandInTheGroupsFrame) {
-  const PlannedNeighborhood& ball = planBodies(rolling(ballsOver(1, 0.5f))).of("ball 0");
+  const PlannedNeighborhood ball = planBodies(rolling(ballsOver(1, 0.5f))).of("ball 0");
   EXPECT_NEAR(ball.receivers_min.y, -0.5f, 1e-4f);
   EXPECT_NEAR(ball.receivers_max.y, -0.5f, 1e-4f);
   EXPECT_NEAR(ball.receivers_min.x, -1.0f, 1e-4f);  // the floor ends there
@@ -76,8 +76,8 @@ TEST(NeighborhoodPlans, KnowWhereReceiversStandInTheGroupsFrame) {
 }
 
 TEST(NeighborhoodPlans, CutLargeTrianglesToTheReach) {
-  const PlannedNeighborhood &coarse = planBodies(rolling(ballsOver(1, 0.5f, 1))).of("ball 0"),
-                            &fine = planBodies(rolling(ballsOver(1, 0.5f, 40))).of("ball 0");
+  const PlannedNeighborhood coarse = planBodies(rolling(ballsOver(1, 0.5f, 1))).of("ball 0"),
+                            fine = planBodies(rolling(ballsOver(1, 0.5f, 40))).of("ball 0");
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(coarse.receivers_min[axis], fine.receivers_min[axis], 1e-3f);
     EXPECT_NEAR(coarse.receivers_max[axis], fine.receivers_max[axis], 1e-3f);
@@ -113,7 +113,7 @@ TEST(NeighborhoodPlans, FollowTheAnimation) {
                          .path = gltf::AnimationChannel::Path::Translation,
                          .times_s = {0.0f, 2.0f},
                          .values = {0, 3, 0, 0, 0.5f, 0}}}}};
-  const PlannedNeighborhood& ball = planBodies(scene).of("ball 0");
+  const PlannedNeighborhood ball = planBodies(scene).of("ball 0");
   EXPECT_TRUE(ball.baked);
   EXPECT_NEAR(ball.receivers_min.y, -3.0f, 1e-3f);
   EXPECT_NEAR(ball.receivers_max.y, -0.5f, 1e-3f);
@@ -161,7 +161,7 @@ TEST(NeighborhoodPlans, AreNotForBodiesThatGiveOffLight) {
 TEST(NeighborhoodPlans, TakeWhatTheSceneAsksFor) {
   Scene scene = ballsOver(9, 2.0f);
   scene.neighborhoods = {{.node = 2, .size = {16, 16, 4}, .extent = {8, 8, 2}}};
-  const PlannedNeighborhood& ball = planBodies(scene).of("ball 1");
+  const PlannedNeighborhood ball = planBodies(scene).of("ball 1");
   EXPECT_TRUE(ball.baked);
   EXPECT_TRUE(ball.asked);
   EXPECT_EQ(ball.size, glm::uvec3(16, 16, 4));
