@@ -47,7 +47,7 @@ class Truth {
     }
     for (std::uint32_t i = 0; i <= points.size(); ++i) points.origin_offsets.push_back(i);
     const bool glossy = t.samples.glossy.begin == 0;
-    (glossy ? points.glossy : points.diffuse) = {0, points.size()};
+    (glossy ? points.glossy : points.diffuse) = SampleStretch{0, points.size()};
     if (!glossy) points.normal_mapped = points.glossy = {points.size(), points.size()};
   }
 
