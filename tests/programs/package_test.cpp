@@ -113,7 +113,6 @@ TEST_F(Package, OfTheRuntimeRunsWhereItIsPutWithItsOwnLibraries) {
   const fs::path notices = root / "share/doc/lambent";
   EXPECT_TRUE(fs::exists(notices / "LICENSE"));
   if (fs::exists("/usr/bin/dpkg-query")) {  // their licences: of a library, and of what is compiled in
-    EXPECT_TRUE(fs::exists(notices / "runtime/libdraco7.txt"));
     EXPECT_TRUE(fs::exists(notices / "runtime/libglm-dev.txt"));
     std::ifstream file(notices / "lambent-runtime.cdx.json");
     const auto materials = nlohmann::json::parse(file, nullptr, false);
@@ -123,8 +122,12 @@ TEST_F(Package, OfTheRuntimeRunsWhereItIsPutWithItsOwnLibraries) {
       EXPECT_FALSE(component["version"].get<std::string>().empty()) << component;
       names.push_back(component["name"]);
     }
-    for (const char* name : {"libdraco7", "libzstd1", "libglm-dev"})
+    for (const char* name : {"libzstd1", "libglm-dev"})
       EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+    const auto draco = std::ranges::find_if(  // its number is the system's
+        names, [](const std::string& name) { return std::regex_match(name, std::regex("libdraco[0-9]+")); });
+    ASSERT_NE(draco, names.end());
+    EXPECT_TRUE(fs::exists(notices / "runtime" / (*draco + ".txt")));
   }
   EXPECT_EQ(run("/bin/sh", {"-c", "cd \"$0\" && sha256sum -c \"$1\".sha256", archive.parent_path().string(),
                             archive.filename().string()})
