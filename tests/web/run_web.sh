@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run_web.sh PROGRAMS ASSETS: bakes four small scenes and Sponza, and runs the tests of web/ with them in Node.js and in
+# run_web.sh PROGRAMS ASSETS: bakes six small scenes and Sponza, and runs the tests of web/ with them in Node.js and in
 # Chromium. Sponza comes from ../shared/data beside the checkout, or from LAMBENT_SHARED_DATA; without the data it is left
 # out.
 # Exit status: 0 passed, 77 skipped, since Node.js, Chromium or web/node_modules is not there; LAMBENT_REQUIRE=web makes
@@ -20,12 +20,13 @@ chromium=$(command -v chromium) || lacks "Chromium is not here (Debian: apt-get 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$programs/lambent" bake "$assets/hello.glb" -o "$folder/hello.lmb.glb" --quality draft --cache off >/dev/null
-for scene in mapped reflecting moving; do
+bundles=$folder/hello.lmb.glb
+for scene in mapped reflecting moving lamps volume; do
   node "$web/test/${scene}_scene.js" "$folder/$scene.gltf"
   "$programs/lambent" bake "$folder/$scene.gltf" -o "$folder/$scene.lmb.glb" --quality draft --rays 128 --bounces 1 \
-    --cache off >/dev/null
+    --volume-grid 12 --cache off >/dev/null
+  bundles=$bundles,$folder/$scene.lmb.glb
 done
-bundles=$folder/hello.lmb.glb,$folder/mapped.lmb.glb,$folder/reflecting.lmb.glb,$folder/moving.lmb.glb
 sponza=${LAMBENT_SHARED_DATA:-$here/../../../shared/data}/architecture/dabrovic-sponza/dabrovic-sponza.glb
 if [[ -f $sponza ]]; then
   "$programs/lambent" bake "$sponza" -o "$folder/sponza.lmb.glb" --quality draft --rays 128 --bounces 1 --refine off \

@@ -4,6 +4,7 @@ import { decompress } from 'fzstd';
 import { shapeOf, decodeCodebook, decodeClusterIds, decodeWeightPlane } from './codebook.js';
 import { decodeBrdfTable } from './brdf_table.js';
 import { decodeRows } from './rows.js';
+import { decodeDensity, decodeVoxels } from './volume_grid.js';
 
 export const EXTENSION = 'LAMBENT_radiance_transfer';
 const OLDEST_VERSION = 5, NEWEST_VERSION = 8;
@@ -65,6 +66,13 @@ export class Bundle {
 
   async brdfTable(entry) {
     return decodeBrdfTable(await this.payload(entry.payload, 'brdfTable'));
+  }
+
+  /** Returns the density codes of a volume, and the voxels of its transfer grid at which its samples lie. */
+  async volumeGrid(volume, samples) {
+    const [density, voxels] = await Promise.all(
+      [this.payload(volume.density, 'density'), this.payload(volume.voxels, 'voxels')]);
+    return { codes: decodeDensity(density, volume), voxels: decodeVoxels(voxels, volume.transferSize, samples) };
   }
 
   async plane(plane) {

@@ -7,9 +7,11 @@ export const GRID_OUTPUTS = 9;
 const uniform = (value) => ({ value });
 
 export class Grid {
-  constructor(json, run) {
+  /** A grid that is `whole` has the change of all light, also of that which shines by shadow maps. */
+  constructor(json, run, whole) {
     const [x, y, z] = json.size;
     this.run = run;
+    this.whole = whole;
     this.size = new Vector3(x, y, z);
     // Slices of z lie one above the other, and the outputs side by side.
     this.target = pictureTarget(GRID_OUTPUTS * x, y * z);
@@ -65,14 +67,25 @@ vec3 lambentGrid${g}(vec3 world, vec3 normal) {
 }
 `;
 
-/** Declarations for so many grids; lambentChanged adds the change to E/π, and takes no more light than there is. */
-export const gridsText = (count) => /* glsl */ `
-${Array.from({ length: count }, (_, g) => one(g)).join('')}
-vec3 lambentChanged(vec3 light, vec3 view, vec3 normal) {
+/**
+ * Declarations for grids, of which `wholes` says whether they are whole. lambentChanged adds the change to E/π, and takes
+ * no more light than there is. Beside light by shadow maps, the change by whole grids is set apart.
+ */
+export const gridsText = (wholes) => /* glsl */ `
+uniform bool lambentKeyed;    // there is light by shadow maps
+uniform vec3 lambentKey[9];   // bands of it, group frame
+${wholes.map((_, g) => one(g)).join('')}
+vec3 lambentChanged(vec3 light, vec3 view, vec3 normal, out vec3 whole) {
   vec3 world = (vec4(view - viewMatrix[3].xyz, 0.0) * viewMatrix).xyz, n = (vec4(normal, 0.0) * viewMatrix).xyz;
   vec3 change = vec3(0.0);
-  ${Array.from({ length: count }, (_, g) => `change += lambentGrid${g}(world, n);`).join('\n  ')}
+  whole = vec3(0.0);
+  ${wholes.map((whole, g) => `${whole ? 'whole' : 'change'} += lambentGrid${g}(world, n);`).join('\n  ')}
+  if (!lambentKeyed) change += whole;
   return max(light + change, min(light, vec3(0.0)));
+}
+// The share of light that whole grids leave of all that arrives, of which "rest" is without light by shadow maps.
+vec3 lambentLeft(vec3 rest, vec3 whole, vec3 normal) {
+  return lambentKeyed ? max(1.0 + whole / max(rest + lambentDiffuse(lambentKey, normal), vec3(1e-6)), 0.0) : vec3(1.0);
 }
 `;
 

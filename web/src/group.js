@@ -2,16 +2,16 @@
 import { CodedTransfer } from './coded_transfer.js';
 import { Grid } from './grid.js';
 import { LIST_WIDTH, listTarget, rowsFor } from './gpu_textures.js';
+import { Volume } from './volume.js';
 
 export class Group {
   constructor(json) {
     this.json = json;
     // Samples with as many outputs lie in a row, because cells come by rising outputs. Their light is a list of
     // `outputs` entries each, in which every cell begins a row of the target.
-    this.runs = new Map(); // outputs, or 'neighborhood' -> {first, count, outputs, rows, target}
+    this.runs = new Map(); // outputs, 'volume' or 'neighborhood' -> {first, count, outputs, rows, target}
     this.cells = [];
     for (const cell of json.cells) {
-      if (cell.kind === 'volume') continue; // they are not shown
       const { outputs } = cell.transfers[0], key = cell.kind === 'surface' ? outputs : cell.kind;
       const run = this.runs.get(key) ?? { first: cell.firstSample, count: 0, outputs, rows: 0, target: null };
       run.count = cell.firstSample + cell.sampleCount - run.first;
@@ -23,12 +23,14 @@ export class Group {
     }
     // Cells of a grid are as long as whole rows, but for the last, so its points follow each other.
     const around = this.runs.get('neighborhood');
-    this.grid = around ? new Grid(json.neighborhood, around) : null;
+    this.grid = around ? new Grid(json.neighborhood, around, Boolean(json.volume)) : null;
+    this.volume = json.volume ? new Volume(json.volume, this, this.runs.get('volume')) : null;
   }
 
   /** Loads codebooks and cluster ids. Surfaces can be shaded by the means of the clusters from then on. */
   async load(bundle) {
-    await Promise.all(this.cells.flatMap((cell) => cell.transfers.map((t) => t.load(bundle))));
+    await Promise.all([
+      this.volume?.load(bundle), ...this.cells.flatMap((cell) => cell.transfers.map((t) => t.load(bundle)))]);
   }
 
   /** Returns all planes that can be loaded, in the order in which they are wanted. */
@@ -51,9 +53,10 @@ export class Group {
     return (sample) => firstEntry[sample - run.first];
   }
 
-  /** Takes light in the group's frame (see LambentScene). */
-  setLight(light) {
-    for (const cell of this.cells) for (const transfer of cell.transfers) transfer.setLight(light);
+  /** Takes light in the group's frame for surfaces, and for what has no shadow maps and cubes (see LambentScene). */
+  setLight(surface, other) {
+    for (const { json, transfers } of this.cells)
+      for (const transfer of transfers) transfer.setLight(json.kind === 'surface' ? surface : other);
   }
 
   /** Makes the targets of the light at samples; their textures are what surfaces read. */
@@ -75,5 +78,6 @@ export class Group {
     for (const cell of this.cells) for (const transfer of cell.transfers) transfer.dispose();
     for (const run of this.runs.values()) run.target?.dispose();
     this.grid?.dispose();
+    this.volume?.dispose();
   }
 }

@@ -94,7 +94,7 @@ export class KeyLights extends Group {
       light.shadow.normalBias = (3 * radius) / light.shadow.mapSize.x;
     }
     root?.traverse((object) => {
-      if (!object.isMesh) return;
+      if (!object.isMesh || object.material.transparent) return; // neither volumes nor what is blended
       object.castShadow = object.receiveShadow = true;
       object.material.shadowSide = DoubleSide; // rooms have walls without a back
     });

@@ -4,8 +4,11 @@
 //   samples:  mean + Σ code x axis of each sample
 //   texels:   Σ weight x sample, for draws that keep their light in a texture
 //   grid:     the change of light around a body as a picture
+//   volume:   the light in a volume as a 3D texture
 // Vertices take their samples themselves (shader_text.js).
-import { BufferAttribute, BufferGeometry, Camera, GLSL3, Mesh, NoBlending, RawShaderMaterial, Scene } from 'three';
+import {
+  BufferAttribute, BufferGeometry, Camera, Color, GLSL3, Mesh, NoBlending, RawShaderMaterial, Scene,
+} from 'three';
 import { PLACE_TEXT } from './gpu_textures.js';
 
 const HEAD = /* glsl */ `
@@ -83,6 +86,28 @@ void main() {
   result = entry(samples, point * outputs + at.x / counts.x);
 }`;
 
+// Output j of a voxel goes to slab j of the texture, times g^l of its band: the convolution with the phase function.
+// Alpha 1 marks voxels with light.
+const VOLUME = /* glsl */ `${HEAD}
+uniform sampler2D samples;
+uniform usampler2D entries;
+uniform vec3 size, open[64];
+uniform float g;
+uniform int slabsZ, outputs, layer;
+uniform bool isOpen;
+void main() {
+  ivec3 counts = ivec3(size), at = ivec3(gl_FragCoord.xy, layer);
+  int j = at.x / counts.x * slabsZ + at.z / counts.z;
+  at -= ivec3(at.x / counts.x, 0, at.z / counts.z) * counts;
+  uint place = words(entries, at.x + counts.x * (at.y + counts.y * at.z)).r;
+  result = vec4(0.0);
+  if (place == 0u || j >= outputs) return;
+  vec3 light = isOpen ? (outputs == 1 ? 0.282094792 : 1.0) * open[j] : entry(samples, int(place) - 1 + j).rgb;
+  float factor = 1.0;
+  for (int band = 1; band * band <= j; ++band) factor *= g;
+  result = vec4(clamp(factor * light, -65504.0, 65504.0), 1.0);
+}`;
+
 const VERTICES = 'in vec3 position; void main() { gl_Position = vec4(position, 1.0); }';
 
 export class Passes {
@@ -112,26 +137,28 @@ export class Passes {
     const { xr, shadowMap, autoClear } = renderer;
     const before = [renderer.getRenderTarget(), renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel()];
     const xrEnabled = xr.enabled, { autoUpdate } = shadowMap;
+    const clear = renderer.getClearColor(new Color()), clearAlpha = renderer.getClearAlpha();
     xr.enabled = shadowMap.autoUpdate = renderer.autoClear = false;
     try {
       work();
     } finally {
       renderer.setRenderTarget(...before);
+      renderer.setClearColor(clear, clearAlpha);
       Object.assign(renderer, { autoClear });
       xr.enabled = xrEnabled;
       shadowMap.autoUpdate = autoUpdate;
     }
   }
 
-  // Draws rows of a target.
-  draw(renderer, material, target, firstRow, rows, uniforms) {
+  // Draws rows of a target, or of a layer of it.
+  draw(renderer, material, target, firstRow, rows, uniforms, layer = 0) {
     for (const [name, value] of Object.entries({ ...uniforms, width: target.width, firstRow }))
       (material.uniforms[name] ??= { value: null }).value = value;
     material.uniformsNeedUpdate = true;
     target.viewport.set(0, firstRow, target.width, rows);
     target.scissor.copy(target.viewport);
     this.mesh.material = material;
-    renderer.setRenderTarget(target);
+    renderer.setRenderTarget(target, layer);
     renderer.render(this.scene, this.camera);
   }
 
@@ -153,6 +180,12 @@ export class Passes {
 
   grid(renderer, target, uniforms) {
     this.draw(renderer, this.material('grid', () => GRID), target, 0, target.height, uniforms);
+  }
+
+  volume(renderer, target, uniforms) {
+    const material = this.material('volume', () => VOLUME);
+    for (let layer = 0; layer < target.depth; ++layer)
+      this.draw(renderer, material, target, 0, target.height, { ...uniforms, layer }, layer);
   }
 
   dispose() {

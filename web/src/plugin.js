@@ -1,6 +1,7 @@
 // The plugin of three's GLTFLoader. Register it, load a bundle, and find a LambentScene in gltf.userData.lambent.
 import { Matrix4, Mesh } from 'three';
 import { Bundle, EXTENSION } from './bundle.js';
+import { Lamp } from './local_lights.js';
 import { LambentScene } from './scene.js';
 
 const warned = new Set();
@@ -53,6 +54,7 @@ function attach(scene, gltf, parser) {
   scene.nodes = nodes;
   scene.restInverses = nodes.map((node) => node.matrixWorld.clone().invert());
 
+  const lamps = lampsOf(scene, gltf.scene, parser);
   const groupFromWorld = scene.groups.map((_, g) => scene.worldFromGroup(g).invert());
   const parts = scene.surfaces.filter((surface) => {
     const { draw } = surface, mesh = meshes.get(`${draw.node}/${draw.primitive}`);
@@ -60,7 +62,8 @@ function attach(scene, gltf, parser) {
     if (mesh.geometry.getAttribute('position').count !== surface.vertexCount)
       throw new Error(`mesh ${draw.node} was decoded to another number of vertices than transfer was baked for`);
     const groupFromMesh = new Matrix4().multiplyMatrices(groupFromWorld[draw.group], mesh.matrixWorld);
-    surface.attach(mesh, groupFromMesh, scene.uniforms[draw.group], scene.tableOf(draw), scene.gridsAround(draw.group));
+    surface.attach(mesh, groupFromMesh, scene.uniforms[draw.group],
+      { table: scene.tableOf(draw), grids: scene.gridsAround(draw.group), lamps: lamps.length > 0 });
     surface.mesh = mesh;
     return true;
   });
@@ -80,20 +83,29 @@ function attach(scene, gltf, parser) {
     surface.mesh = side;
   }
   for (const { mesh } of parts) mesh.onBeforeRender = (renderer) => scene.prepare(renderer);
-  hideLamps(scene);
+  scene.setLamps(lamps, [...meshes.values()]);
+  scene.groups.forEach(({ json, volume }, index) => {
+    if (!volume) return;
+    const parent = nodes[json.node] ?? gltf.scene, groupFromBox = volume.makeMesh(scene, index);
+    volume.mesh.matrix.copy(parent.matrixWorld).invert().multiply(scene.worldFromGroup(index)).multiply(groupFromBox);
+    parent.add(volume.mesh);
+  });
 }
 
-// Lamps whose light is baked into a group would count twice with three's own lights.
-function hideLamps(scene) {
-  scene.hiddenLamps = [];
-  for (const group of scene.groups)
-    for (const lamp of group.json.lights) {
-      if (lamp.kind !== 'node') continue;
-      scene.nodes[lamp.node]?.traverse((object) => {
-        if (object.isLight) {
-          object.visible = false;
-          scene.hiddenLamps.push(object);
-        }
-      });
-    }
+// Takes over three's lights for lamps, in the order of their nodes.
+function lampsOf(scene, root, parser) {
+  const found = [];
+  root.traverse((light) => {
+    if (!light.isLight) return;
+    let owner = light;
+    while (owner && parser.associations.get(owner)?.nodes === undefined) owner = owner.parent;
+    const node = parser.associations.get(owner)?.nodes;
+    let column = null;
+    scene.groups.forEach(({ json }, group) => json.lights.forEach((lamp, index) => {
+      if (lamp.kind === 'node' && lamp.node === node) column = { group, index };
+    }));
+    if (light.isPointLight || light.isSpotLight) found.push([node, new Lamp(light, column)]);
+    else if (column) light.layers.disableAll(); // it shines by its column
+  });
+  return found.sort(([a], [b]) => a - b).map(([, lamp]) => lamp);
 }

@@ -114,20 +114,20 @@ function kernel({ order, lobes, isotropic, axes, perNode }) {
   }`;
   const sums = measured ? /* glsl */ `
   vec3 rho = weights[0].xyz;
-  float open = dot(rho, vec3(1.0 / 3.0)), seen = lobe.w;
-  vec3 mirrored = lobe.rgb;` : /* glsl */ `
+  vec3 mirrored = lobe.rgb + rho * local;` : /* glsl */ `
   vec3 rho = f0 * weights[0].x + f90 * weights[0].y;
   float mean = dot(f0, vec3(1.0 / 3.0));
   float open = mean * weights[0].x + f90 * weights[0].y, seen = mean * f0Light.w + f90 * f90Light.w;
   vec3 mirrored = f0 * f0Light.rgb + f90 * f90Light.rgb;
-  diffuse += lambentBase(color, metallic, rho) * received.rgb;
+  diffuse += lambentBase(color, metallic, rho) * (received.rgb + local);
   mirrored += clamp(seen / max(open, 1e-6), 0.0, 1.0) * rho * more;`;
   return /* glsl */ `
 ${bandsText('vec4', 'lambentLightBands', order)}
 // Adds what the surface reflects of the light that arrives. In each w, the visibility is treated as light is. "more" is
-// what the bands leave out of the sky.
+// what the bands leave out of the sky, and "local" E/π of lamps.
 void lambentReflect(vec3 normal, vec3 along, vec3 eye, float roughness, float strength, vec4 light[${order * order}],
-                    vec3 color, float metallic, vec3 f0, float f90, vec3 more, inout vec3 diffuse, inout vec3 specular) {
+                    vec3 color, float metallic, vec3 f0, float f90, vec3 more, vec3 local, inout vec3 diffuse,
+                    inout vec3 specular) {
   vec3 tangent = lambentLeaning(normal, eye, along), bitangent = cross(normal, tangent);
   float place = lambentAngleAxis(dot(normal, eye));
   vec4 weights[${perNode}], bands[${order}];${lookUp}

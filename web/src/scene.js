@@ -1,18 +1,29 @@
 // What a bundle adds to three's scene: groups with transfer, the light that they stand in, and the surfaces that show
 // it. Light is set once and turned into the frame of each group. Samples are shaded on the GPU, when light, transfer or a
 // group's rotation changed, before the first surface of the group is drawn.
-import { Matrix3, Matrix4, Quaternion, Vector3 } from 'three';
+import { Matrix3, Matrix4, Quaternion, Vector3, Vector4 } from 'three';
 import { BrdfTexture, tableFor } from './brdf_table.js';
 import { canWriteLists } from './gpu_textures.js';
 import { Group } from './group.js';
+import { MOST_CUBES, divideLamps } from './local_lights.js';
 import { Surface } from './surface.js';
 import { LightVector } from './light_vector.js';
 import { Passes } from './passes.js';
+import { SceneDepth } from './scene_depth.js';
+import { ShadowCubes } from './shadow_cubes.js';
 
 const MOST_COEFFICIENTS = 64; // of eight bands
 const KNOWN_COEFFICIENTS = 36; // of the six bands that mirrors know
 const MOST_GRIDS = 8; // that a surface receives from
 const TRANSFERS = ['full', 'shadowed', 'unshadowed'];
+const listOf = (length, make) => Array.from({ length }, make);
+
+// Tells whether two divisions of lamps give the same light.
+function sameLamps(a, b) {
+  const equal = (x, y) => x === y || (x && y && x.length === y.length && x.every((value, i) => value === y[i]));
+  return equal(a.powers, b.powers) && equal(a.apart, b.apart) && equal(a.rest?.rgb, b.rest?.rgb) &&
+    equal(a.beside?.rgb, b.beside?.rgb);
+}
 
 export class LambentScene {
   /** Loads what surfaces need before their planes come. `root` is the glTF scene in three. */
@@ -44,7 +55,23 @@ export class LambentScene {
     this._planesLeft = this.planes().length;
     this._seenChanged = true;
     this._passes = new Passes();
+    this._depth = new SceneDepth();
+    this._gpu = null; // where the light lies that has been shaded
+    this._frame = -1;
+    this._punctual = [];
+    this._divided = null;
+    this._cubes = null;
+    this._lampUniforms = {
+      lambentCubes: { value: null },
+      lambentLampPlaces: { value: listOf(MOST_CUBES, () => new Vector4()) },
+      lambentLampAims: { value: listOf(MOST_CUBES, () => new Vector4()) },
+      lambentLampCones: { value: new Float32Array(MOST_CUBES) },
+    };
     this.uniforms = this.groups.map(() => ({
+      ...this._lampUniforms,
+      lambentLampPowers: { value: new Float32Array(3 * MOST_CUBES) },
+      lambentKeyed: { value: false },
+      lambentKey: { value: new Float32Array(27) },
       lambentGroupFromWorld: { value: new Matrix3() },
       lambentOpen: { value: false },
       lambentSky: { value: new Float32Array(3 * MOST_COEFFICIENTS) },
@@ -125,43 +152,87 @@ export class LambentScene {
     return rest.premultiply(this.restInverses[json.node]).premultiply(node.matrixWorld);
   }
 
+  /** Takes the lamps, and the meshes that cast shadows in their light. */
+  setLamps(lamps, meshes) {
+    this._punctual = lamps;
+    if (lamps.length > 0) this._cubes = new ShadowCubes(meshes, this._lampUniforms.lambentCubes);
+  }
+
   /**
    * Brings light to the groups in which something changed; world matrices must be up to date. Returns whether there was
    * one. It happens by itself before a surface is drawn.
    */
   update() {
     if (this._seenChanged) this.findSeen();
+    const places = this.groups.map((_, index) => this.worldFromGroup(index)), before = this._divided;
+    this.divideLamps(places);
     let changed = false;
-    this.groups.forEach((group, index) => (changed = this.updateGroup(group, index) || changed));
+    this.groups.forEach((group, index) => {
+      const same = before && sameLamps(before.ofGroup[index], this._divided.ofGroup[index]);
+      changed = this.updateGroup(group, index, places[index], same) || changed;
+    });
     this._changed = false;
     return changed;
   }
 
-  updateGroup(group, index) {
-    const place = this.worldFromGroup(index), before = this._turns[index];
-    const turn = new Matrix4().extractRotation(place).invert();
+  updateGroup(group, index, place, sameLamps) {
+    const before = this._turns[index], turn = new Matrix4().extractRotation(place).invert();
     group.grid?.place(place);
     const stays = before && turn.elements.every((e, i) => Math.abs(e - before.elements[i]) < 1e-5);
-    if (stays && !this._changed) return false;
+    if (stays && sameLamps && !this._changed) return false;
     this._turns[index] = turn;
     this.uniforms[index].lambentGroupFromWorld.value.setFromMatrix4(turn);
     this.setLight(group, index, turn);
     return (this._unshaded[index] = true);
   }
 
-  /** Shades the samples of groups on the GPU that need it. Surfaces call it before they are drawn. */
+  // Finds which lamps shine by cubes, and hands them to the pixels.
+  divideLamps(places) {
+    for (const lamp of this._punctual) lamp.follow(this.lamps);
+    const groups = this.groups.map(({ json, volume }, index) => ({ json, place: places[index], isVolume: volume !== null }));
+    this._divided = divideLamps(this._punctual, groups, this._transfer === 'unshadowed');
+    const { lambentLampPlaces, lambentLampAims, lambentLampCones } = this._lampUniforms;
+    this._divided.cubes.forEach(({ position, direction, range, coneScale, outerCosine }, k) => {
+      lambentLampPlaces.value[k].set(...position, range);
+      lambentLampAims.value[k].set(...direction, coneScale);
+      lambentLampCones.value[k] = outerCosine;
+    });
+    this._divided.ofGroup.forEach(({ powers }, g) => this.uniforms[g].lambentLampPowers.value.set(powers));
+  }
+
+  /**
+   * Shades the samples of groups on the GPU that need it, and draws shadow cubes. Surfaces call it before they are drawn;
+   * all but the first of a picture find nothing to do. Returns false once the scene has been disposed of.
+   */
   prepare(renderer) {
-    if (this.disposed) return;
+    if (this.disposed) return false;
+    if (this._gpu !== renderer.properties) { // another renderer, or one whose context was lost and has come back
+      this._gpu = renderer.properties;
+      this._unshaded.fill(true);
+      this._cubes?.forget();
+    } else if (!this._changed && renderer.info.render.frame === this._frame) {
+      return true;
+    }
+    this.shadeChanged(renderer);
+    this._frame = renderer.info.render.frame;
+    return true;
+  }
+
+  shadeChanged(renderer) {
     if (!canWriteLists(renderer) && this._transfer !== 'unshadowed') {
-      console.warn('lambent-three: this device cannot render to floats; light is shown without shadows');
+      console.warn('lambent-three: this device cannot render to floats; light is shown without shadows, and no volumes');
       this.transfer = 'unshadowed';
+      for (const { volume } of this.groups) if (volume) volume.mesh.visible = false;
     }
     this.update();
+    this._cubes?.update(renderer, this._passes, this._divided.cubes);
     if (!this._unshaded.includes(true)) return;
     this._passes.during(renderer, () => this.groups.forEach((group, index) => {
       if (!this._unshaded[index]) return;
       group.makeTargets();
-      if (!this.uniforms[index].lambentOpen.value) group.shade(renderer, this._passes);
+      const { lambentOpen, lambentSky } = this.uniforms[index];
+      if (!lambentOpen.value) group.shade(renderer, this._passes);
+      group.volume?.shade(renderer, this._passes, lambentOpen.value ? lambentSky.value : null);
       for (const surface of this.surfaces) if (surface.group === group) surface.shade(renderer, this._passes);
     }));
     this._unshaded.fill(false);
@@ -174,23 +245,34 @@ export class LambentScene {
 
   setLight(group, index, turn) {
     const inGroup = (light) => light && light.truncate(this._order).rotate(turn).rgb;
-    const light = this._light.truncate(this._order);
-    const all = this._key ? light.add(this._key) : light;
-    const full = this._transfer === 'full', rest = inGroup(light);
-    const { lambentOpen, lambentSky, lambentKnown } = this.uniforms[index];
+    const both = (a, b) => (a && b ? a.add(b) : a ?? b), { rest, beside, apart } = this._divided.ofGroup[index];
+    const light = both(this._light.truncate(this._order), rest), key = both(this._key, beside);
+    const full = this._transfer === 'full', shown = inGroup(light), all = inGroup(both(light, key));
+    const { lambentOpen, lambentSky, lambentKnown, lambentKeyed, lambentKey } = this.uniforms[index];
     const fill = (to, from) => to.fill(0).set(Float32Array.from(from.subarray(0, to.length)));
-    fill(lambentSky.value, rest);
-    fill(lambentKnown.value, rest);
+    fill(lambentSky.value, shown);
+    fill(lambentKnown.value, inGroup(this._light));
+    fill(lambentKey.value, this._key ? inGroup(this._key) : new Float64Array(0));
+    lambentKeyed.value = this._key !== null;
     lambentOpen.value = this._transfer === 'unshadowed';
     if (lambentOpen.value) return;
-    // With key lights k and the rest r the light is f r + (f - s) k: their direct part comes by shadow maps.
-    const lamps = new Float64Array(this.lamps[index].flat());
-    group.setLight({
-      full: full ? inGroup(all) : null,
-      shadowed: full ? this._key && inGroup(this._key.multiplyScalar(-1)) : rest,
-      sum: rest,
-      lamps: full ? { full: lamps } : { shadowed: lamps },
-    });
+    // With light k that shines by shadow maps or cubes, and the rest r, transfer brings f r + (f - s) k; columns alike.
+    const columns = new Float64Array(this.lamps[index].flat()), straight = columns.map((c, i) => c * apart[Math.floor(i / 3)]);
+    const lamps = full ? { full: columns } : { shadowed: columns };
+    const surface = {
+      full: full ? all : null,
+      shadowed: full ? key && inGroup(key.multiplyScalar(-1)) : shown,
+      sum: shown,
+      lamps: { ...lamps, shadowed: full ? straight.map((c) => -c) : columns.map((c, i) => c - straight[i]) },
+    };
+    // Volumes, and what they change around them, have no shadow maps: all light comes by bands.
+    const other = group.volume ? { full: full ? all : null, shadowed: full ? null : all, sum: all, lamps } : { ...surface, lamps };
+    group.setLight(surface, other);
+  }
+
+  /** Returns the depth of a picture without what is blended; the viewport begins at `corner`. */
+  depthOf(renderer, root, camera, corner) {
+    return this._depth.draw(renderer, this._passes, root, camera, corner);
   }
 
   // What mirrors see of the sky follows from transfer without bounces, once all planes are there.
@@ -218,7 +300,8 @@ export class LambentScene {
   /** Frees what the scene has on the GPU, and shades no more. */
   dispose() {
     this.disposed = true;
-    for (const one of [...this.surfaces, ...this.groups, ...this.tables, this._passes]) one?.dispose();
+    for (const one of [...this.surfaces, ...this.groups, ...this.tables, this._cubes, this._depth, this._passes])
+      one?.dispose();
     this.surfaces = [];
     this.groups = [];
   }

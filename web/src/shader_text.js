@@ -2,6 +2,7 @@
 // pixel replaces the indirect light of three (ambient light, probes, environment) by what transfer brings.
 import { PLACE_TEXT } from './gpu_textures.js';
 import { gridsText } from './grid.js';
+import { LAMP_LOBE_TEXT, LOCAL_TEXT, lampsBody } from './local_text.js';
 import { REFLECTION_TEXT } from './reflection_text.js';
 
 // E/π at a normal from light of bands 0..2: Σ A_l/π y_j(n) l'_j, with the constants of docs/conventions.md.
@@ -147,9 +148,10 @@ uniform mat3 lambentGroupFromWorld;
 uniform bool lambentOpen;
 vec3 lambentToGroup(vec3 view) { return normalize(lambentGroupFromWorld * (vec4(view, 0.0) * viewMatrix).xyz); }
 vec3 lambentToView(vec3 group) { return normalize((viewMatrix * vec4(group * lambentGroupFromWorld, 0.0)).xyz); }
-${kind.outputs === 9 || kind.grids > 0 ? DIFFUSE_LIGHT : ''}
-${kind.grids > 0 ? gridsText(kind.grids) : ''}
+${kind.outputs === 9 || kind.grids.length > 0 ? DIFFUSE_LIGHT : ''}
+${kind.grids.length > 0 ? gridsText(kind.grids) : ''}
 ${kind.table ? REFLECTION_TEXT(kind) : ''}
+${kind.lamps ? LOCAL_TEXT + (hasLobe(kind) ? LAMP_LOBE_TEXT : '') : ''}
 #ifdef LAMBENT_TEXELS
 varying vec2 vLambentUv;
 uniform sampler2D lambentTexels;
@@ -159,10 +161,21 @@ uniform sampler2D lambentTexels;
 const vec3At = (o) => `vec3(${slot(3 * o)}, ${slot(3 * o + 1)}, ${slot(3 * o + 2)})`;
 const listOf = (count, text) => Array.from({ length: count }, (_, i) => text(i)).join(',\n    ');
 
+// Tables of measured BRDFs have no lobe for the highlights of lamps.
+const hasLobe = ({ table }) => table?.lobes === 2;
+const lamps = (kind) => (kind.lamps ? lampsBody(hasLobe(kind)) : 'vec3 lambentLocal = vec3(0.0);');
+
 // E/π at the pixel, with what bodies nearby change.
 const received = (kind) => `${transferred(kind)}
-  ${kind.grids > 0
-    ? 'if (!lambentOpen) lambentReceived = lambentChanged(lambentReceived, -vViewPosition, normal);' : ''}`;
+  ${kind.grids.length > 0 ? `vec3 lambentWhole = vec3(0.0);
+  if (!lambentOpen) lambentReceived = lambentChanged(lambentReceived, -vViewPosition, normal, lambentWhole);` : ''}`;
+
+// What volumes leave of all light, also of three's suns.
+const shaded = ({ grids }) => (grids.includes(true) ? `
+  vec3 lambentShade = lambentLeft(lambentReceived + lambentLocal, lambentWhole, lambentToGroup(normal));
+  lambentReceived *= lambentShade;
+  lambentLocal *= lambentShade;
+  reflectedLight.directDiffuse *= lambentShade;` : '');
 
 function transferred({ outputs }) {
   if (outputs === 9) return /* glsl */ `
@@ -197,10 +210,11 @@ const FAN = /* glsl */ `
     }`;
 
 // Matte surfaces have one albedo; those that reflect are shaded by the table of their BRDF.
-function shaded(kind) {
+function reflected(kind) {
   if (!kind.glossy && !kind.layered) return `${received(kind)}
+  ${lamps(kind)}${shaded(kind)}
   irradiance = iblIrradiance = vec3(0.0);
-  reflectedLight.indirectDiffuse += diffuseColor.rgb * lambentReceived;`;
+  reflectedLight.indirectDiffuse += diffuseColor.rgb * (lambentReceived + lambentLocal);`;
   const mirror = /* glsl */ `
   vec3 lambentNormal = lambentToGroup(normal), lambentEye = lambentToGroup(geometryViewDir);
   vec3 lambentMirrored = reflect(-lambentEye, lambentNormal), lambentMirroredView = reflect(-geometryViewDir, normal);
@@ -231,7 +245,9 @@ function shaded(kind) {
     : `vec2 lambentDirection = normalize(anisotropyVector);
     lambentTangent = lambentDirection.x * lambentTangent + lambentDirection.y * cross(lambentNormal, lambentTangent);`}
   #endif
-  irradiance = iblIrradiance = radiance = vec3(0.0);`;
+  irradiance = iblIrradiance = radiance = vec3(0.0);
+  ${lamps(kind)}
+  ${kind.lamps && hasLobe(kind) ? 'reflectedLight.indirectSpecular += lambentHighlights;' : ''}`;
   // Where there is an environment, mirrors show it; bands alone know the sky otherwise.
   const sky = /* glsl */ `
   vec3 lambentKnownSky = lambentKnownAlong(lambentMirrored, lambentRoughness);
@@ -240,7 +256,7 @@ function shaded(kind) {
     lambentMore = getIBLRadiance(lambentMirroredView, lambentMirroredView, lambentRoughness) - lambentKnownSky;
     ${kind.glossy && !kind.table.isotropic ? FAN : ''}
   #endif`;
-  if (kind.layered) return `${received(kind)}${mirror}${sky}
+  if (kind.layered) return `${received(kind)}${mirror}${shaded(kind)}${sky}
   float lambentSeenNumbers[25] = float[25](
     ${listOf(SEEN_NUMBERS, (k) => slot(lightNumbers(kind) + k))});
   vec2 lambentAlbedo = lambentAlbedoOf(dot(lambentNormal, lambentEye), lambentRoughness);
@@ -254,16 +270,17 @@ function shaded(kind) {
     lambentSeenNumbers, lambentMirrored, lambentToGroup(nonPerturbedNormal), lambentRoughness);
   reflectedLight.indirectSpecular +=
     lambentRho * mix(max(lambentHidden, vec3(0.0)), lambentKnownSky + lambentMore, lambentShare);
-  reflectedLight.indirectDiffuse += lambentBase(diffuseColor.rgb, metalnessFactor, lambentRho) * lambentReceived;`;
+  reflectedLight.indirectDiffuse += lambentBase(diffuseColor.rgb, metalnessFactor, lambentRho) *
+    (lambentReceived + lambentLocal);`;
   const bands = kind.kept, all = kind.table.order ** 2;
   return `${mirror}${sky}
   vec4 lambentLight[${all}] = vec4[${all}](
     ${listOf(all, (o) => (o < bands ? `vec4(${vec3At(o)}, ${o < 9 ? slot(3 * bands + o) : '0.0'})` : 'vec4(0.0)'))});
   lambentReflect(lambentNormal, lambentTangent, lambentEye, lambentRoughness, lambentStrength, lambentLight,
-    diffuseColor.rgb, metalnessFactor, lambentF0, lambentF90, lambentMore, reflectedLight.indirectDiffuse,
+    diffuseColor.rgb, metalnessFactor, lambentF0, lambentF90, lambentMore, lambentLocal, reflectedLight.indirectDiffuse,
     reflectedLight.indirectSpecular);`;
 }
 
 /** Goes behind three's own collection of indirect light. */
-export const fragmentLight = (kind) => `{${shaded(kind)}
+export const fragmentLight = (kind) => `{${reflected(kind)}
 }`;

@@ -18,9 +18,9 @@ export class Surface {
   /**
    * Puts the surface into the scene: `mesh` is three's mesh of the primitive, `groupFromMesh` is at rest. `shared` are
    * the uniforms of the group, `table` is what the material looks up if it is no diffuse one, or null, and
-   * `grids` are those of other bodies.
+   * `grids` are those of other bodies; `lamps` says whether there are lamps with shadow cubes.
    */
-  attach(mesh, groupFromMesh, shared, table, grids) {
+  attach(mesh, groupFromMesh, shared, { table, grids, lamps }) {
     const back = this.draw.side === 'back', glossy = this.draw.outputs > 9;
     const diffuse = isMatte(mesh.material, mesh.userData.lambentDefaultMaterial === true);
     const layered = !glossy && !diffuse && table !== null && table.lobes === 2;
@@ -42,7 +42,7 @@ export class Surface {
     const kind = {
       outputs: this.draw.outputs, glossy, layered, table: glossy || layered ? table : null,
       texels: Boolean(this.draw.texels), normalWeight: Boolean(geometry.getAttribute('_normal_weight')),
-      grids: glossy ? 0 : grids.length,
+      grids: glossy ? [] : grids.map((grid) => grid.whole), lamps,
       framed: Boolean(geometry.getAttribute('tangent') ?? geometry.getAttribute('uv')),
     };
     if (kind.table) {

@@ -170,7 +170,7 @@ function showDifference(ours, theirs, width, height) {
 }
 
 async function render(options) {
-  const { bundle, lights, camera: words, size, transfer = 'full', picture, time, environment, factor = 1 } = options;
+  const { bundle, lights, camera: words, size, transfer = 'full', picture, time, environment, sky, factor = 1 } = options;
   const [width, height] = size;
   const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
   if (!baked) throw new Error('the bundle was shown as plain glTF');
@@ -189,13 +189,18 @@ async function render(options) {
   }
   scene.updateMatrixWorld();
   const camera = cameraOf(gltf, words, width / height);
-  const pixels = readFloats(scene, camera, factor * width, factor * height);
+  const pixels = readFloats(scene, camera, factor * width, factor * height), mask = pixels.slice();
+  if (sky) { // shines through volumes
+    scene.background = await environmentOf(lights);
+    scene.background.mapping = THREE.EquirectangularReflectionMapping;
+    pixels.set(readFloats(scene, camera, factor * width, factor * height));
+  }
   renderer.setSize(width, height);
   renderer.render(scene, camera); // for the eye
   const result = {};
   if (picture) {
     const theirs = await new EXRLoader().setDataType(THREE.FloatType).loadAsync(picture);
-    const average = (picture) => averaged(picture, pixels, factor * width, factor * height, factor);
+    const average = (picture) => averaged(picture, mask, factor * width, factor * height, factor);
     const [a, b] = [average(pixels), average(theirs.image.data)];
     Object.assign(result, compare(a, b, width, height));
     showDifference(a, b, width, height);
@@ -203,6 +208,7 @@ async function render(options) {
   const before = { ...renderer.info.memory };
   scene.remove(gltf.scene);
   scene.environment?.dispose();
+  scene.background?.dispose();
   baked.dispose();
   gltf.scene.traverse((object) => {
     for (const value of Object.values(object.material ?? {})) if (value?.isTexture) value.dispose();
@@ -341,4 +347,33 @@ async function sunny({ bundle, map, camera, size, keys, picture }) {
   return { suns: suns.length, ...compare(pixels, theirs.image.data, ...size) };
 }
 
-window.lambentTest = { render, samples, lightCost, projections, progressive, sunny, newerFormat, ready: true };
+// Loses the context of WebGL and gets it back. Returns how the pictures before and after differ, and what memory is left.
+async function loseContext({ bundle, lights, camera: words, size, time }) {
+  const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
+  scene.add(gltf.scene);
+  baked.light = (await Promise.all(lights.map(lightOf))).reduce((a, b) => a.add(b));
+  const mixer = new THREE.AnimationMixer(gltf.scene);
+  for (const clip of gltf.animations) mixer.clipAction(clip).play();
+  mixer.setTime(time);
+  scene.updateMatrixWorld();
+  const camera = cameraOf(gltf, words, size[0] / size[1]), canvas = renderer.domElement;
+  const before = readFloats(scene, camera, ...size), loss = renderer.getContext().getExtension('WEBGL_lose_context');
+  const happens = (event) => new Promise((resolve) => canvas.addEventListener(event, resolve, { once: true }));
+  const lost = happens('webglcontextlost'), restored = happens('webglcontextrestored');
+  loss.loseContext();
+  await lost;
+  renderer.render(scene, camera); // shows nothing, and does no harm
+  await new Promise((resolve) => setTimeout(resolve));
+  loss.restoreContext();
+  await restored;
+  const after = readFloats(scene, camera, ...size), lit = after.some((value, i) => i % 4 < 3 && value > 0);
+  const error = renderer.getContext().getError();
+  scene.remove(gltf.scene);
+  baked.dispose();
+  gltf.scene.traverse((object) => {
+    for (const value of Object.values(object.material ?? {})) if (value?.isTexture) value.dispose();
+  });
+  return { lit, error, memory: { ...renderer.info.memory }, ...compare(after, before, ...size) };
+}
+
+window.lambentTest = { loseContext, render, samples, lightCost, projections, progressive, sunny, newerFormat, ready: true };

@@ -1,0 +1,128 @@
+// Lamps of the glTF scene, as lambent-demo shines them (docs/light-paths.md): by shadow cubes per pixel on the groups
+// within or beside which they stand, and by harmonics, as light from infinity, on others. A lamp that is a column of a
+// group has its direct light there from the cube, and what bounces from the column.
+import { Matrix4, Vector3 } from 'three';
+import { LightVector, MAX_ORDER } from './light_vector.js';
+import { evaluateBasis } from './sh.js';
+
+export const MOST_CUBES = 4;
+const RADII = 6, FADE_PART = 1 / 6; // of a group's radius, about which a lamp stands beside it
+const LEAST_DISTANCE = 0.01; // keeps light values finite
+const luminance = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
+const shines = (rgb) => rgb.every(Number.isFinite) && rgb.some((c) => c !== 0);
+
+/** A point or spot light of three, which may be column `index` of `group`. three itself does not shine by it. */
+export class Lamp {
+  constructor(light, column) {
+    Object.assign(this, { light, column, position: new Vector3(), direction: new Vector3(0, 0, -1) });
+    light.layers.disableAll();
+  }
+
+  /** Takes where it stands and how it shines; `lamps` are the strengths of columns, by group. */
+  follow(lamps) {
+    const { light, column } = this;
+    this.position.setFromMatrixPosition(light.matrixWorld);
+    if (light.isSpotLight) {
+      this.direction.setFromMatrixPosition(light.target.matrixWorld).sub(this.position);
+      if (this.direction.lengthSq() > 0) this.direction.normalize();
+    }
+    this.power = column ? lamps[column.group][column.index]
+      : light.visible ? light.color.toArray().map((c) => c * light.intensity) : [0, 0, 0];
+    this.range = light.distance;
+    this.outerCosine = light.isSpotLight ? Math.cos(light.angle) : -1;
+    this.coneScale = light.isSpotLight
+      ? 1 / Math.max(0.001, Math.cos(light.angle * (1 - light.penumbra)) - this.outerCosine) : 0;
+  }
+
+  isColumnOf(group) {
+    return this.column?.group === group;
+  }
+
+  /** The harmonics of its light at a point, where nothing is in the way. */
+  lightAt(point) {
+    const out = new LightVector(MAX_ORDER), toLight = this.position.clone().sub(point), distance = toLight.length();
+    const from = Math.max(distance, LEAST_DISTANCE);
+    let share = 1 / (from * from);
+    if (this.range > 0) share *= Math.min(Math.max(1 - (from / this.range) ** 4, 0), 1);
+    const { x, y, z } = distance > 0 ? toLight.divideScalar(distance) : toLight.set(0, 0, 1);
+    if (this.coneScale > 0) {
+      const along = distance > 0 ? -this.direction.dot(toLight) : 1;
+      share *= Math.min(Math.max((along - this.outerCosine) * this.coneScale, 0), 1) ** 2;
+    }
+    const basis = evaluateBasis(MAX_ORDER, x, y, z, new Float64Array(MAX_ORDER * MAX_ORDER));
+    for (let l = 0; l < MAX_ORDER; ++l)
+      for (let i = l * l; i < (l + 1) ** 2; ++i)
+        for (let c = 0; c < 3; ++c) out.rgb[3 * i + c] = share * basis[i] * (distance / from) ** l * this.power[c];
+    return out;
+  }
+}
+
+/** Returns how far a lamp is from the middle of a group, in its radii; 0 within its bounds. */
+function radiiFrom({ boundsMin, boundsMax }, place, lamp) {
+  const inGroup = lamp.position.clone().applyMatrix4(new Matrix4().copy(place).invert()).toArray();
+  if (inGroup.every((x, k) => x > boundsMin[k] && x < boundsMax[k])) return 0;
+  const low = new Vector3(...boundsMin), high = new Vector3(...boundsMax);
+  const radius = 0.5 * high.distanceTo(low) * place.getMaxScaleOnAxis();
+  const radii = low.add(high).multiplyScalar(0.5).applyMatrix4(place).distanceTo(lamp.position) / radius;
+  return Number.isFinite(radii) ? Math.max(radii, Number.MIN_VALUE) : Infinity;
+}
+
+// Returns the share of each lamp's light that shines per pixel, by its distances in radii. If there are more lamps than
+// cubes, the first one without a cube sets the distance.
+function sharesOf(distances, radii) {
+  const near = distances.filter((d) => d === 0 || d < radii).sort((a, b) => a - b), limit = near[MOST_CUBES] ?? radii;
+  let count = 0;
+  return distances.map((d) => {
+    const share = d === 0 ? 1 : d < limit ? Math.min((limit - d) / (FADE_PART * limit), 1) : 0;
+    return share > 0 && count++ < MOST_CUBES ? share : 0;
+  });
+}
+
+/**
+ * Divides the light of lamps among the carriers. `groups` are {json, place, isVolume}; where `open`, light knows no
+ * transfer. Returns the lamps with `cubes`, and for each group the `powers` of these on its pixels, the light `rest` and
+ * `beside` at its light probes (null if there is none), of which transfer brings all or the bounces, and the columns that
+ * are `apart`, which shine by a cube.
+ */
+export function divideLamps(lamps, groups, open) {
+  const shining = lamps.filter((lamp) => shines(lamp.power));
+  const radii = shining.map((lamp) => groups.map(({ json, place }) => radiiFrom(json, place, lamp)));
+  const nearest = shining.map((lamp, k) => Math.min(Infinity,
+    ...groups.map(({ isVolume }, g) => (isVolume || lamp.isColumnOf(g) ? Infinity : radii[k][g]))));
+  const shares = sharesOf(nearest, open ? 0 : RADII), cubes = shining.filter((_, k) => shares[k] > 0);
+  const apart = open ? [] : shining.filter((lamp) => lamp.column && hasItsSize(groups[lamp.column.group].place));
+  apart.sort((a, b) => luminance(b.power) - luminance(a.power));
+  for (const lamp of apart) if (!cubes.includes(lamp) && cubes.length < MOST_CUBES) cubes.push(lamp);
+  return { cubes, ofGroup: groups.map((group, g) => lightOf(group, g)) };
+
+  function lightOf({ json, place, isVolume }, g) {
+    const powers = new Float32Array(3 * MOST_CUBES), columns = json.lights.map(() => 0);
+    const probes = json.lightSamples.map((p) => new Vector3(...p).applyMatrix4(place));
+    let rest = null, beside = null;
+    shining.forEach((lamp, k) => {
+      const cube = cubes.indexOf(lamp), put = (share) => powers.set(lamp.power.map((c) => share * c), 3 * cube);
+      if (lamp.isColumnOf(g)) {
+        if (cube < 0 || !apart.includes(lamp)) return;
+        put(1);
+        columns[lamp.column.index] = 1;
+        return;
+      }
+      const within = !isVolume && radii[k][g] === 0, straight = isVolume || open && !within ? 0 : shares[k];
+      if (straight > 0) put(straight);
+      if (within && straight > 0) return; // what bounces of it is left out
+      // All samples take the light of the middle of the probes' light.
+      const light = probes.map((p) => lamp.lightAt(p)).reduce((a, b) => a.add(b)).multiplyScalar(1 / probes.length);
+      const add = (sum, share) => (share > 0 ? (sum ?? new LightVector(MAX_ORDER)).add(light.multiplyScalar(share)) : sum);
+      rest = add(rest, 1 - straight);
+      beside = add(beside, straight);
+    });
+    return { powers, rest, beside, apart: columns };
+  }
+}
+
+// Tells whether a group has the size that it was baked with; columns know of no other.
+function hasItsSize(place) {
+  const axes = [new Vector3(), new Vector3(), new Vector3()];
+  place.extractBasis(...axes);
+  return axes.every((a, i) => axes.every((b, j) => Math.abs(a.dot(b) - (i === j ? 1 : 0)) < 1e-3));
+}
