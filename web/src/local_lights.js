@@ -34,6 +34,12 @@ export class Lamp {
       ? 1 / Math.max(0.001, Math.cos(light.angle * (1 - light.penumbra)) - this.outerCosine) : 0;
   }
 
+  /** What follow() found, as numbers. */
+  get state() {
+    const { position, direction, power, range, outerCosine, coneScale } = this;
+    return [...position, ...direction, ...power, range, outerCosine, coneScale];
+  }
+
   isColumnOf(group) {
     return this.column?.group === group;
   }

@@ -18,9 +18,10 @@ const MOST_GRIDS = 8; // that a surface receives from
 const TRANSFERS = ['full', 'shadowed', 'unshadowed'];
 const listOf = (length, make) => Array.from({ length }, make);
 
+const equal = (a, b) => a === b || (a && b && a.length === b.length && a.every((value, i) => value === b[i]));
+
 // Tells whether two divisions of lamps give the same light.
 function sameLamps(a, b) {
-  const equal = (x, y) => x === y || (x && y && x.length === y.length && x.every((value, i) => value === y[i]));
   return equal(a.powers, b.powers) && equal(a.apart, b.apart) && equal(a.rest?.rgb, b.rest?.rgb) &&
     equal(a.beside?.rgb, b.beside?.rgb);
 }
@@ -189,8 +190,13 @@ export class LambentScene {
   // Finds which lamps shine by cubes, and hands them to the pixels.
   divideLamps(places) {
     for (const lamp of this._punctual) lamp.follow(this.lamps);
+    const open = this._transfer === 'unshadowed';
+    const seen = [Number(open), ...this._punctual.flatMap(({ state }) => state)];
+    if (this._punctual.length > 0) seen.push(...places.flatMap(({ elements }) => elements));
+    if (this._divided && equal(seen, this._lampsSeen)) return;
+    this._lampsSeen = seen;
     const groups = this.groups.map(({ json, volume }, index) => ({ json, place: places[index], isVolume: volume !== null }));
-    this._divided = divideLamps(this._punctual, groups, this._transfer === 'unshadowed');
+    this._divided = divideLamps(this._punctual, groups, open);
     const { lambentLampPlaces, lambentLampAims, lambentLampCones } = this._lampUniforms;
     this._divided.cubes.forEach(({ position, direction, range, coneScale, outerCosine }, k) => {
       lambentLampPlaces.value[k].set(...position, range);

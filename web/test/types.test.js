@@ -72,7 +72,7 @@ test('a program in TypeScript compiles, and wrong ones do not',
     const right = write('right.ts', PROGRAM);
     const wrong = WRONG.map(([line], i) => write(`wrong${i}.ts`, PROGRAM.replace(spot, `  ${line}\n${spot}`)));
     const program = ts.createProgram([right, ...wrong], {
-      strict: true, noEmit: true, skipLibCheck: true, target: ts.ScriptTarget.ES2022, module: ts.ModuleKind.ESNext,
+      strict: true, noEmit: true, target: ts.ScriptTarget.ES2022, module: ts.ModuleKind.ESNext,
       moduleResolution: ts.ModuleResolutionKind.Bundler, lib: ['lib.es2022.d.ts', 'lib.dom.d.ts'], types: [],
       preserveSymlinks: true, baseUrl: folder, paths: { 'lambent-three': [join(web, 'src/index.d.ts')] },
     });
