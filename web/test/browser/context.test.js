@@ -18,7 +18,9 @@ test('light comes back with a lost context', { skip, timeout: 300000 }, async (t
     assert.equal(result.error, 0);
     assert.ok(result.all < 1e-6, `${basename(bundle)}: it is ${result.all} off`);
     assert.deepEqual(result.memory, { geometries: 0, textures: 0 }, 'memory is freed on dispose');
-    assert.deepEqual(messages, [], 'the console has neither errors nor warnings');
+    // Where something is disposed of, three also deletes what it had in the lost context, and Chromium warns of that.
+    const own = messages.filter((message) => !/^WebGL: INVALID_OPERATION: delete\w*: object does not belong/.test(message));
+    assert.deepEqual(own, [], 'the console has no other warnings');
     await page.close();
   }
 });
