@@ -68,8 +68,8 @@ vec3 lambentGrid${g}(vec3 world, vec3 normal) {
 `;
 
 /**
- * Declarations for grids, of which `wholes` says whether they are whole. lambentChanged adds the change to E/π, and takes
- * no more light than there is. Beside light by shadow maps, the change by whole grids is set apart.
+ * Declarations for grids, of which `wholes` says whether they are whole. lambentChanged adds the change to E/π, and
+ * takes no more light than there is. Beside light by shadow maps, the change by whole grids is set apart.
  */
 export const gridsText = (wholes) => /* glsl */ `
 uniform bool lambentKeyed;    // there is light by shadow maps

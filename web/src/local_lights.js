@@ -86,9 +86,9 @@ function sharesOf(distances, radii) {
 
 /**
  * Divides the light of lamps among the carriers. `groups` are {json, place, isVolume}; where `open`, light knows no
- * transfer. Returns the lamps with `cubes`, and for each group the `powers` of these on its pixels, the light `rest` and
- * `beside` at its light probes (null if there is none), of which transfer brings all or the bounces, and the columns that
- * are `apart`, which shine by a cube.
+ * transfer. Returns the lamps with `cubes`, and for each group the `powers` of these on its pixels, the light `rest`
+ * and `beside` at its light probes (null if there is none), of which transfer brings all or the bounces, and for each
+ * column 1 if it is `apart`, so that a cube shines in its place.
  */
 export function divideLamps(lamps, groups, open) {
   const shining = lamps.filter((lamp) => shines(lamp.power));
@@ -118,7 +118,8 @@ export function divideLamps(lamps, groups, open) {
       if (within && straight > 0) return; // what bounces of it is left out
       // All samples take the light of the middle of the probes' light.
       const light = probes.map((p) => lamp.lightAt(p)).reduce((a, b) => a.add(b)).multiplyScalar(1 / probes.length);
-      const add = (sum, share) => (share > 0 ? (sum ?? new LightVector(MAX_ORDER)).add(light.multiplyScalar(share)) : sum);
+      const none = new LightVector(MAX_ORDER);
+      const add = (sum, share) => (share > 0 ? (sum ?? none).add(light.multiplyScalar(share)) : sum);
       rest = add(rest, 1 - straight);
       beside = add(beside, straight);
     });

@@ -1,5 +1,5 @@
-// Light of lamps by their shadow cubes, per pixel: the text of runtime/shadows/shadowed_light.glsl and local_shadow.glsl
-// for lights without an extent. World axes, metres.
+// Light of lamps by their shadow cubes, per pixel: the text of runtime/shadows/shadowed_light.glsl and
+// local_shadow.glsl for lights without an extent. World axes, metres.
 import { CUBE_SIZE } from './shadow_cubes.js';
 import { MOST_CUBES } from './local_lights.js';
 
@@ -64,7 +64,7 @@ float lambentLampShare(int lamp, vec3 toLight) {
   return share / 3.14159265;
 }
 
-// Returns E/π of a lamp. "plane" is the normal of the triangle, "horizon" that of the vertices and "normal" the pixel's.
+// Returns E/π of a lamp. "plane" is the normal of the triangle, "horizon" that of the vertices, "normal" the pixel's.
 vec3 lambentLamp(int lamp, vec3 toLight, vec3 plane, vec3 horizon, vec3 normal) {
   vec3 light = max(dot(normal, lambentUnit(toLight)), 0.0) * lambentLampShare(lamp, toLight) * lambentLampPowers[lamp];
   return light == vec3(0.0) ? light : lambentLampVisible(lamp, -toLight, plane, horizon) * light;

@@ -195,7 +195,8 @@ export class LambentScene {
     if (this._punctual.length > 0) seen.push(...places.flatMap(({ elements }) => elements));
     if (this._divided && equal(seen, this._lampsSeen)) return;
     this._lampsSeen = seen;
-    const groups = this.groups.map(({ json, volume }, index) => ({ json, place: places[index], isVolume: volume !== null }));
+    const groups = this.groups.map(
+      ({ json, volume }, index) => ({ json, place: places[index], isVolume: volume !== null }));
     this._divided = divideLamps(this._punctual, groups, open);
     const { lambentLampPlaces, lambentLampAims, lambentLampCones } = this._lampUniforms;
     this._divided.cubes.forEach(({ position, direction, range, coneScale, outerCosine }, k) => {
@@ -207,8 +208,8 @@ export class LambentScene {
   }
 
   /**
-   * Shades the samples of groups on the GPU that need it, and draws shadow cubes. Surfaces call it before they are drawn;
-   * all but the first of a picture find nothing to do. Returns false once the scene has been disposed of.
+   * Shades the samples of groups on the GPU that need it, and draws shadow cubes. Surfaces call it before they are
+   * drawn; all but the first of a picture find nothing to do. Returns false once the scene has been disposed of.
    */
   prepare(renderer) {
     if (this.disposed) return false;
@@ -226,7 +227,8 @@ export class LambentScene {
 
   shadeChanged(renderer) {
     if (!canWriteLists(renderer) && this._transfer !== 'unshadowed') {
-      console.warn('lambent-three: this device cannot render to floats; light is shown without shadows, and no volumes');
+      console.warn(
+        'lambent-three: this device cannot render to floats; light is shown without shadows, and volumes are not shown');
       this.transfer = 'unshadowed';
       for (const { volume } of this.groups) if (volume) volume.mesh.visible = false;
     }
@@ -263,7 +265,8 @@ export class LambentScene {
     lambentOpen.value = this._transfer === 'unshadowed';
     if (lambentOpen.value) return;
     // With light k that shines by shadow maps or cubes, and the rest r, transfer brings f r + (f - s) k; columns alike.
-    const columns = new Float64Array(this.lamps[index].flat()), straight = columns.map((c, i) => c * apart[Math.floor(i / 3)]);
+    const columns = new Float64Array(this.lamps[index].flat());
+    const straight = columns.map((c, i) => c * apart[Math.floor(i / 3)]);
     const lamps = full ? { full: columns } : { shadowed: columns };
     const surface = {
       full: full ? all : null,
@@ -272,7 +275,8 @@ export class LambentScene {
       lamps: { ...lamps, shadowed: full ? straight.map((c) => -c) : columns.map((c, i) => c - straight[i]) },
     };
     // Volumes, and what they change around them, have no shadow maps: all light comes by bands.
-    const other = group.volume ? { full: full ? all : null, shadowed: full ? null : all, sum: all, lamps } : { ...surface, lamps };
+    const other = group.volume
+      ? { full: full ? all : null, shadowed: full ? null : all, sum: all, lamps } : { ...surface, lamps };
     group.setLight(surface, other);
   }
 

@@ -1,5 +1,5 @@
-// Shadow cubes of lamps: distances from the lamp as six tiles in a row of one texture, a row for each lamp. 0 means that
-// nothing is there. A row is drawn anew when its lamp or something that casts shadows has moved.
+// Shadow cubes of lamps: distances from the lamp as six tiles in a row of one texture, a row for each lamp. 0 means
+// that nothing is there. A row is drawn anew when its lamp or something that casts shadows has moved.
 import {
   DoubleSide, FloatType, Matrix3, Matrix4, Mesh, NearestFilter, NoBlending, PerspectiveCamera, RedFormat, Scene,
   ShaderMaterial, Vector3, WebGLRenderTarget,

@@ -1,5 +1,5 @@
-// A volume (docs/format.md, "volume"): its density and the light in it as 3D textures, and the box in three's scene whose
-// pixels march through them.
+// A volume (docs/format.md, "volume"): its density and the light in it as 3D textures, and the box in three's scene
+// whose pixels march through them.
 import {
   AddEquation, BackSide, BoxGeometry, CustomBlending, Data3DTexture, DataUtils, HalfFloatType, LinearFilter, Matrix3,
   Matrix4, Mesh, NearestFilter, OneFactor, OneMinusSrcAlphaFactor, RGBAFormat, RedFormat, ShaderMaterial,
@@ -42,7 +42,8 @@ function filledBlocks(codes, size) {
 // A device with small textures keeps fewer bands.
 function slabsOf([x, y, z], outputs, most) {
   for (let bands = Math.sqrt(outputs); ; --bands) {
-    const along = Math.max(1, Math.min(Math.floor(most / z), bands * bands)), beside = Math.ceil((bands * bands) / along);
+    const along = Math.max(1, Math.min(Math.floor(most / z), bands * bands));
+    const beside = Math.ceil((bands * bands) / along);
     if (x * beside <= most || bands === 1) return { bands, along, size: [x * beside, y, z * along] };
   }
 }
@@ -54,8 +55,8 @@ export class Volume {
 
   async load(bundle) {
     const { codes, voxels } = await bundle.volumeGrid(this.json, this.run.count), largest = 2 ** this.json.bits - 1;
-    this.density = texture3D(
-      Uint16Array.from(codes, (code) => DataUtils.toHalfFloat(code / largest)), this.json.size, HalfFloatType, LinearFilter);
+    const halves = Uint16Array.from(codes, (code) => DataUtils.toHalfFloat(code / largest));
+    this.density = texture3D(halves, this.json.size, HalfFloatType, LinearFilter);
     this.filled = filledBlocks(codes, this.json.size);
     // Of each voxel the entry of its light, plus 1; 0 where there is no sample.
     const [x, y, z] = this.json.transferSize, entryOf = this.group.entriesOf(this.run);
@@ -117,12 +118,12 @@ export class Volume {
     this.material.needsUpdate = true;
   }
 
-  /** Takes light from the samples, which have been shaded; `open` is the light itself where there is no transfer, or null. */
+  /** Takes light from the samples, which have been shaded, or where there is no transfer the light itself, `open`. */
   shade(renderer, passes, open) {
     this.makeTarget(renderer);
     passes.volume(renderer, this.target, {
-      samples: this.run.target.texture, entries: this.entries, size: this.uniforms.transferSize.value, slabsZ: this.slabsZ,
-      outputs: this.outputs, isOpen: open !== null, open: open ?? new Float32Array(192), g: this.json.g,
+      samples: this.run.target.texture, entries: this.entries, size: this.uniforms.transferSize.value,
+      slabsZ: this.slabsZ, outputs: this.outputs, isOpen: open !== null, open: open ?? new Float32Array(192), g: this.json.g,
     });
   }
 

@@ -71,7 +71,8 @@ vec3 scatteredAt(vec3 place, vec3 towards) {
 }
 
 float viewZ(float depth) {
-  return isOrthographic ? (depth - projection[3][2]) / projection[2][2] : -projection[3][2] / (depth + projection[2][2]);
+  vec2 p = vec2(projection[2][2], projection[3][2]);
+  return isOrthographic ? (depth - p.y) / p.x : -p.y / (depth + p.x);
 }
 
 void main() {
@@ -103,7 +104,8 @@ void main() {
   for (int crossed = 0; crossed < MOST_BLOCKS && t < last && depthSum <= DEEP; ++crossed) {
     float end = min(last, min(exits.x, min(exits.y, exits.z)));
     if (end > t && texelFetch(filled, block, 0).r > 0.0) {
-      float steps = clamp(ceil((end - t) / (stepVoxels * voxel) - 1e-3), 1.0, float(MOST_STEPS)), width = (end - t) / steps;
+      float steps = clamp(ceil((end - t) / (stepVoxels * voxel) - 1e-3), 1.0, float(MOST_STEPS));
+      float width = (end - t) / steps;
       for (float k = 0.0; k <= steps && depthSum <= DEEP; k += 1.0) {
         float a = max(t, t + (k - 1.0 + jitter) * width), b = min(end, t + (k + jitter) * width);
         if (b <= a) continue;

@@ -25,7 +25,8 @@ function picture(bundle, { camera, factor, time }, name, transfer) {
   mkdirSync(work, { recursive: true });
   const path = join(work, `${basename(bundle, '.lmb.glb')}-${name}-${transfer}.exr`);
   execFileSync(join(bin, 'lambent-demo'), [
-    bundle, '--camera', camera, '--size', SIZE.map((n) => n * factor).join('x'), '--keys', 'off', '--transfer', transfer,
+    bundle, '--camera', camera, '--size', SIZE.map((n) => n * factor).join('x'), '--keys', 'off',
+    '--transfer', transfer,
     // Bodies change each other's light by neighborhoods alone, and what bounces of lamps among them is left out.
     '--captures', 'off', '--reflection-probes', '0', '--patch-bounces', 'off',
     ...(time === undefined ? [] : ['--time', String(time)]),

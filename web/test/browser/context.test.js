@@ -19,7 +19,7 @@ test('light comes back with a lost context', { skip, timeout: 300000 }, async (t
     assert.ok(result.all < 1e-6, `${basename(bundle)}: it is ${result.all} off`);
     assert.deepEqual(result.memory, { geometries: 0, textures: 0 }, 'memory is freed on dispose');
     // Where something is disposed of, three also deletes what it had in the lost context, and Chromium warns of that.
-    const own = messages.filter((message) => !/^WebGL: INVALID_OPERATION: delete\w*: object does not belong/.test(message));
+    const own = messages.filter((one) => !/^WebGL: INVALID_OPERATION: delete\w*: object does not belong/.test(one));
     assert.deepEqual(own, [], 'the console has no other warnings');
     await page.close();
   }

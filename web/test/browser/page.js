@@ -170,7 +170,8 @@ function showDifference(ours, theirs, width, height) {
 }
 
 async function render(options) {
-  const { bundle, lights, camera: words, size, transfer = 'full', picture, time, environment, sky, factor = 1 } = options;
+  const { bundle, lights, camera: words, size, transfer = 'full', picture,
+    time, environment, sky, factor = 1 } = options;
   const [width, height] = size;
   const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
   if (!baked) throw new Error('the bundle was shown as plain glTF');
@@ -347,7 +348,8 @@ async function sunny({ bundle, map, camera, size, keys, picture }) {
   return { suns: suns.length, ...compare(pixels, theirs.image.data, ...size) };
 }
 
-// Loses the context of WebGL and gets it back. Returns how the pictures before and after differ, and what memory is left.
+// Loses the context of WebGL and gets it back. Returns how the pictures before and after differ, and what memory is
+// left.
 async function loseContext({ bundle, lights, camera: words, size, time }) {
   const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
   scene.add(gltf.scene);
@@ -376,4 +378,6 @@ async function loseContext({ bundle, lights, camera: words, size, time }) {
   return { lit, error, memory: { ...renderer.info.memory }, ...compare(after, before, ...size) };
 }
 
-window.lambentTest = { loseContext, render, samples, lightCost, projections, progressive, sunny, newerFormat, ready: true };
+window.lambentTest = {
+  loseContext, render, samples, lightCost, projections, progressive, sunny, newerFormat, ready: true,
+};
