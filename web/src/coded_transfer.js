@@ -5,7 +5,9 @@ import { floatList, integerList, listTarget, rowsFor, shortList } from './gpu_te
 import { basisTimesLight } from './light_map.js';
 
 export class CodedTransfer {
-  constructor(json, samples) {
+  /** Of the outputs, the first `outputs` are shaded. */
+  constructor(json, samples, outputs) {
+    this.outputs = outputs;
     this.json = json;
     this.shape = shapeOf(json);
     this.samples = samples;
@@ -30,7 +32,7 @@ export class CodedTransfer {
     // The last codes of a sample fill up an entry with zeros, so the shader may read three vectors past the end.
     this.vectorCount = count + 3;
     this.vectors = floatList(this.vectorCount * this.vectorEntries);
-    this.lights = floatList(4 * this.vectorEntries * this.shape.outputs);
+    this.lights = floatList(4 * this.vectorEntries * this.outputs);
     for (let c = 0; c < clusters; ++c) this.addVector(firstAxis[c] + c, firstAxis[c] + c, 1);
     this.places = integerList(this.samples, 4);
     let entries = 0;
@@ -69,16 +71,16 @@ export class CodedTransfer {
 
   /** Multiplies with light on the CPU; `light` is as in basisTimesLight. */
   setLight(light) {
-    basisTimesLight(this.shape, this.codebook, light, this.lights.image.data);
+    basisTimesLight(this.shape, this.codebook, light, this.outputs, this.lights.image.data);
     this.lights.needsUpdate = true;
   }
 
   /** Multiplies all vectors with the light on the GPU. */
   multiply(renderer, passes) {
-    this.target ??= listTarget(rowsFor(this.vectorCount * this.shape.outputs));
+    this.target ??= listTarget(rowsFor(this.vectorCount * this.outputs));
     const { vectors, lights, vectorCount, vectorEntries } = this;
     passes.products(renderer, this.target,
-      { vectors, lights, vectorCount, vectorEntries, outputs: this.shape.outputs });
+      { vectors, lights, vectorCount, vectorEntries, outputs: this.outputs });
   }
 
   /** What the pass over samples reads. */

@@ -1,6 +1,6 @@
 // A rigid group: its cells' transfer, and light at its samples.
 import { CodedTransfer } from './coded_transfer.js';
-import { Grid } from './grid.js';
+import { GRID_OUTPUTS, Grid } from './grid.js';
 import { LIST_WIDTH, listTarget, rowsFor } from './gpu_textures.js';
 import { Volume } from './volume.js';
 
@@ -12,12 +12,14 @@ export class Group {
     this.runs = new Map(); // outputs, 'volume' or 'neighborhood' -> {first, count, outputs, rows, target}
     this.cells = [];
     for (const cell of json.cells) {
-      const { outputs } = cell.transfers[0], key = cell.kind === 'surface' ? outputs : cell.kind;
+      const isGrid = cell.kind === 'neighborhood', stored = cell.transfers[0].outputs;
+      const outputs = isGrid ? Math.min(stored, GRID_OUTPUTS) : stored; // receivers have a normal
+      const key = cell.kind === 'surface' ? outputs : cell.kind;
       const run = this.runs.get(key) ?? { first: cell.firstSample, count: 0, outputs, rows: 0, target: null };
       run.count = cell.firstSample + cell.sampleCount - run.first;
       this.runs.set(key, run);
       const rows = rowsFor(cell.sampleCount * outputs);
-      const transfers = cell.transfers.map((t) => new CodedTransfer(t, cell.sampleCount));
+      const transfers = cell.transfers.map((t) => new CodedTransfer(t, cell.sampleCount, outputs));
       this.cells.push({ json: cell, run, firstRow: run.rows, rows, transfers });
       run.rows += rows;
     }

@@ -3,13 +3,14 @@
 import { gauntTable } from './gaunt.js';
 
 /**
- * Writes rank x shape.outputs x 4 numbers. `light.full` (n² x RGB) counts with bounces, `light.shadowed` without, and
- * the results add up; `light.sum` is the light of visibilities; `light.lamps` has the same for the group's lamps.
+ * Writes rank x outputs x 4 numbers, for the first `outputs` of the shape. `light.full` (n² x RGB) counts with bounces,
+ * `light.shadowed` without, and the results add up; `light.sum` is the light of visibilities; `light.lamps` has the same
+ * for the group's lamps.
  */
-export function basisTimesLight(shape, { rank, basis }, light, out) {
+export function basisTimesLight(shape, { rank, basis }, light, outputs, out) {
   out.fill(0);
-  if (shape.visibilityBands > 0) visibilityTimesLight(shape, rank, basis, light.sum, out);
-  else for (const part of partsOf(shape, light)) vectorsTimesLight(shape, rank, basis, part, out);
+  if (shape.visibilityBands > 0) visibilityTimesLight(shape, rank, basis, light.sum, outputs, out);
+  else for (const part of partsOf(shape, light)) vectorsTimesLight(shape, rank, basis, part, outputs, out);
 }
 
 // Returns the channels of the vectors that count for each part of the light.
@@ -23,10 +24,10 @@ function partsOf(shape, light) {
   return parts;
 }
 
-function vectorsTimesLight(shape, rank, basis, { rgb, channels, first }, out) {
+function vectorsTimesLight(shape, rank, basis, { rgb, channels, first }, outputs, out) {
   const columns = Math.min(shape.columns, rgb.length / 3), stride = shape.outputs * shape.columns;
   for (let r = 0, to = 0; r < rank; ++r)
-    for (let o = 0; o < shape.outputs; ++o, to += 4)
+    for (let o = 0; o < outputs; ++o, to += 4)
       for (let c = 0; c < 3; ++c) {
         const at = r * shape.size + (first + (channels === 1 ? 0 : c)) * stride + o * shape.columns;
         let sum = 0;
@@ -35,8 +36,8 @@ function vectorsTimesLight(shape, rank, basis, { rgb, channels, first }, out) {
       }
 }
 
-function visibilityTimesLight(shape, rank, basis, rgb, out) {
-  const { size, outputs } = shape;
+function visibilityTimesLight(shape, rank, basis, rgb, outputs, out) {
+  const { size } = shape;
   const { j, k, m, value } = gauntTable(Math.sqrt(outputs), shape.visibilityBands, shape.order);
   const matrix = new Float64Array(3 * outputs * size); // [output][channel][k] = ∫ y_o y_k L
   for (let t = 0; t < value.length; ++t)

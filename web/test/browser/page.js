@@ -237,7 +237,7 @@ async function samples(bundle, rgb, outputs) {
 
 // Turns the light and returns milliseconds per change: of JavaScript for light and for the picture's commands, and until
 // the GPU has drawn it; and the same of a picture whose light stays.
-async function lightCost({ bundle, lights, camera: words, size, changes = 20 }) {
+async function lightCost({ bundle, lights, camera: words, size, changes = 8 }) {
   const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
   scene.add(gltf.scene);
   const light = (await Promise.all(lights.map(lightOf))).reduce((a, b) => a.add(b));
