@@ -1,0 +1,74 @@
+// Holds the light of lamps, and how it is divided among carriers, against closed forms.
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { Matrix4, PointLight, SpotLight, Vector3 } from 'three';
+import { Lamp, MOST_CUBES, divideLamps } from '../src/local_lights.js';
+import { unoccludedTransfer } from '../src/sh.js';
+
+function lampAt(x, y, z, light = new PointLight(0xffffff, 3)) {
+  light.position.set(x, y, z);
+  light.updateMatrixWorld(true);
+  const lamp = new Lamp(light, null);
+  lamp.follow([]);
+  return lamp;
+}
+
+// A body of half a metre about the origin, at a place.
+const body = (x) => ({
+  place: new Matrix4().makeTranslation(x, 0, 0), isVolume: false,
+  json: { boundsMin: [-0.5, -0.5, -0.5], boundsMax: [0.5, 0.5, 0.5], lights: [], lightSamples: [[0, 0, 0]] },
+});
+
+test('harmonics of a lamp give its irradiance', () => {
+  const transfer = unoccludedTransfer(8, 0, 1, 0, new Float64Array(64));
+  const received = (lamp) => lamp.lightAt(new Vector3()).rgb
+    .reduce((sum, value, i) => sum + (i % 3 === 0 ? value * transfer[Math.floor(i / 3)] : 0), 0);
+  const open = 3 / (Math.PI * 4);
+  // Eight bands of a clamped cosine err by 2 %.
+  const near = (value, wanted) => assert.ok(Math.abs(value - wanted) < 0.025 * open, `${value} is not ${wanted}`);
+  near(received(lampAt(0, 2, 0)), open); // I cos / (π d²)
+  near(received(lampAt(0, Math.sqrt(2), Math.sqrt(2))), open * Math.SQRT1_2);
+  near(received(lampAt(0, 2, 0, new PointLight(0xffffff, 3, 4))), open * (1 - 0.5 ** 4));
+  const spot = new SpotLight(0xffffff, 3, 0, 0.6, 0.5);
+  spot.add(spot.target);
+  spot.target.position.set(0, -1, 0);
+  near(received(lampAt(0, 2, 0, spot)), open);
+  spot.target.position.set(Math.sin(0.45), -Math.cos(0.45), 0); // between the cones
+  const inside = (Math.cos(0.45) - Math.cos(0.6)) / (Math.cos(0.3) - Math.cos(0.6));
+  near(received(lampAt(0, 2, 0, spot)), open * inside * inside);
+});
+
+test('three does not shine by lamps', () => {
+  const { light } = lampAt(0, 1, 0);
+  assert.equal(light.layers.mask, 0);
+  assert.equal(light.visible, true, 'what hangs from it is drawn');
+});
+
+test('a lamp within a body shines by a cube alone, one beside it also by bounces, one afar by harmonics', () => {
+  const [room, beside] = divideLamps([lampAt(0, 0.2, 0)], [body(0), body(2)], false).ofGroup;
+  assert.deepEqual([room.powers[0], room.rest, room.beside], [3, null, null]);
+  assert.equal(beside.powers[0], 3);
+  assert.ok(beside.rest === null && beside.beside.rgb[0] > 0);
+  const far = divideLamps([lampAt(0, 100, 0)], [body(0)], false);
+  assert.equal(far.cubes.length, 0);
+  assert.ok(far.ofGroup[0].rest.rgb[0] > 0 && far.ofGroup[0].beside === null);
+});
+
+test('no light is lost and none jumps as a lamp moves away', () => {
+  const lamps = [1, 1.5, 2, 2.5].map((y) => lampAt(0, y, 0));
+  for (const others of [[], lamps]) {
+    let before = null;
+    for (let y = 0.55; y < 8; y += 0.01) {
+      const moving = lampAt(0, y, 0), divided = divideLamps([...others, moving], [body(0)], false);
+      const { cubes, ofGroup: [{ powers, rest }] } = divided;
+      assert.ok(cubes.length <= MOST_CUBES);
+      const at = cubes.indexOf(moving), share = at < 0 ? 0 : powers[3 * at] / 3;
+      // What is not by the cube is by harmonics, here of this lamp and of any other that gave up its cube.
+      const mean = 3 * Math.sqrt(1 / (4 * Math.PI)) / y ** 2, byHarmonics = (rest?.rgb[0] ?? 0) / mean;
+      assert.ok(share + byHarmonics > 1 - 1e-6, `${share} + ${byHarmonics} at ${y}`);
+      assert.ok(before === null || Math.abs(share - before) < 0.1, `from ${before} to ${share} at ${y}`);
+      before = share;
+    }
+    assert.equal(before, 0);
+  }
+});
