@@ -23,6 +23,7 @@ const LIGHTS = {
   soft: ['constant:0.3,0.35,0.5', 'sun:60,35,60,2,1.8,1.5'],
 };
 const BOUND = 0.005;
+const percent = (x) => `${(100 * x).toFixed(3)} %`;
 
 function picture(bundle, { camera, factor, time, words = [] }, name, transfer) {
   mkdirSync(work, { recursive: true });
@@ -55,7 +56,6 @@ test('pictures are those of lambent-demo', { skip, timeout: 900000 }, async (t) 
         picture: `/work/${basename(exr)}`,
       });
       await page.screenshot({ path: exr.replace('.exr', '.png') });
-      const percent = (x) => `${(100 * x).toFixed(3)} %`;
       t.diagnostic(`${basename(exr)}: ${percent(result.all)}, beside no edges ${percent(result.inside)}, ` +
         `median of pixels ${percent(result.median)}`);
       assert.ok(result.all < BOUND, `${basename(exr)} differs by ${percent(result.all)}`);
@@ -64,6 +64,12 @@ test('pictures are those of lambent-demo', { skip, timeout: 900000 }, async (t) 
       const kept = { geometries: environment || view.sky ? 1 : 0, textures: environment ? 1 : 0 };
       assert.ok(before.geometries > 0 && before.textures > 0);
       assert.deepEqual(after, kept, 'memory is freed on dispose');
+    }
+    if (view.sky) {
+      const seen = { ...own, lights: LIGHTS.soft };
+      const { inside } = await page.evaluate((options) => window.lambentTest.fromAfar(options), seen);
+      t.diagnostic(`an orthographic camera shows what one far away does, to ${percent(inside)} beside no edges`);
+      assert.ok(inside < BOUND);
     }
     const turns = { ...own, lights: LIGHTS.soft };
     const cost = await page.evaluate((options) => window.lambentTest.lightCost(options), turns);

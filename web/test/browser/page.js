@@ -348,6 +348,26 @@ async function sunny({ bundle, map, camera, size, keys, picture }) {
   return { suns: suns.length, ...compare(pixels, theirs.image.data, ...size) };
 }
 
+// Shows a bundle by a narrow camera far away and by an orthographic one, and returns how these differ.
+async function fromAfar({ bundle, lights, size }) {
+  const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
+  scene.add(gltf.scene);
+  baked.light = (await Promise.all(lights.map(lightOf))).reduce((a, b) => a.add(b));
+  const half = 1, far = 500, aspect = size[0] / size[1], angle = 2 * Math.atan(half / far) / DEGREE;
+  const cameras = [
+    new THREE.PerspectiveCamera(angle, aspect, far - 4, far + 4),
+    new THREE.OrthographicCamera(-half * aspect, half * aspect, half, -half, far - 4, far + 4),
+  ];
+  scene.updateMatrixWorld();
+  const [near, straight] = cameras.map((camera) => {
+    camera.position.copy(toward(30, 30)).multiplyScalar(far);
+    camera.lookAt(0, 0, 0);
+    return readFloats(scene, camera, ...size);
+  });
+  baked.dispose();
+  return compare(straight, near, ...size);
+}
+
 // Loses the context of WebGL and gets it back. Returns how the pictures before and after differ, and what memory is
 // left.
 async function loseContext({ bundle, lights, camera: words, size, time }) {
@@ -379,5 +399,5 @@ async function loseContext({ bundle, lights, camera: words, size, time }) {
 }
 
 window.lambentTest = {
-  loseContext, render, samples, lightCost, projections, progressive, sunny, newerFormat, ready: true,
+  fromAfar, loseContext, render, samples, lightCost, projections, progressive, sunny, newerFormat, ready: true,
 };
