@@ -129,7 +129,9 @@ renderer.setAnimationLoop((now) => {
   const { clientWidth: width, clientHeight: height } = renderer.domElement;
   renderer.setSize(width, height, false);
   camera.aspect = width / height;
-  camera.updateProjectionMatrix();
+  // A panel along the bottom, as on a phone, leaves the upper part of the picture.
+  const panel = element('panel'), covered = panel.offsetWidth > 0.9 * width ? panel.offsetHeight : 0;
+  camera.setViewOffset(width, height, 0, covered / 2, width, height);
   controls.update();
   if (element('spin').checked) {
     element('turn').valueAsNumber = ((element('turn').valueAsNumber + 180 + 30 * seconds) % 360) - 180;
