@@ -226,21 +226,22 @@ export class LambentScene {
   }
 
   shadeChanged(renderer) {
-    if (!canWriteLists(renderer) && this._transfer !== 'unshadowed') {
+    const writes = canWriteLists(renderer);
+    if (!writes && this._transfer !== 'unshadowed') {
       console.warn(
         'lambent-three: this device cannot render to floats; light is shown without shadows, and volumes are not shown');
       this.transfer = 'unshadowed';
-      for (const { volume } of this.groups) if (volume) volume.mesh.visible = false;
     }
     this.update();
-    this._cubes?.update(renderer, this._passes, this._divided.cubes);
+    if (writes) this._cubes?.update(renderer, this._passes, this._divided.cubes);
     if (!this._unshaded.includes(true)) return;
     this._passes.during(renderer, () => this.groups.forEach((group, index) => {
       if (!this._unshaded[index]) return;
       group.makeTargets();
       const { lambentOpen, lambentSky } = this.uniforms[index];
       if (!lambentOpen.value) group.shade(renderer, this._passes);
-      group.volume?.shade(renderer, this._passes, lambentOpen.value ? lambentSky.value : null);
+      if (writes) group.volume?.shade(renderer, this._passes, lambentOpen.value ? lambentSky.value : null);
+      else if (group.volume) group.volume.mesh.visible = false;
       for (const surface of this.surfaces) if (surface.group === group) surface.shade(renderer, this._passes);
     }));
     this._unshaded.fill(false);
