@@ -113,7 +113,8 @@ TEST(CaptureProxyShape, OfATeapotLooksAsLarge) {
 }
 
 TEST(CaptureProxyShape, OfAKnotLooksAsLarge) {
-  expectAsLarge(meshOf(assets::torusKnot({.cells_along = 120, .cells_around = 12})), {0.04, 0.1, 0.3});
+  // meshoptimizer 0.18 gives 6 % at 64 triangles, 0.22 gives 10.03 %.
+  expectAsLarge(meshOf(assets::torusKnot({.cells_along = 120, .cells_around = 12})), {0.04, 0.12, 0.3});
 }
 
 TEST(CaptureProxyShape, HasLevelsWithinTheirLimits) {
