@@ -43,7 +43,8 @@ TEST_F(SunThroughAWindow, BouncesOffTheFloorAsInTheReference) {
   Show show(room(), lights);
   show.environment.setMostKeys(4);
   const glm::vec3 eye(0, -0.5f, 0.1f);
-  double found = 0.0, expected = 0.0;
+  double found = 0.0, expected = 0.0, squares = 0.0;
+  int places = 0;
   const auto compareAt = [&](const glm::vec3& target) {
     baker::reference::Request request;
     request.lights = lights;
@@ -58,7 +59,9 @@ TEST_F(SunThroughAWindow, BouncesOffTheFloorAsInTheReference) {
     double sum = 0.0;
     for (const glm::vec4& texel : report->image.texels) sum += double{texel.g} / 64.0;
     const double seen = double{show.patch(eye, target).g};
-    EXPECT_NEAR(seen / sum, 1.0, 0.35) << target.x << " " << target.y << " " << target.z;
+    EXPECT_NEAR(seen / sum, 1.0, 0.6) << target.x << " " << target.y << " " << target.z;
+    squares += (seen / sum - 1.0) * (seen / sum - 1.0);
+    ++places;
     found += seen;
     expected += sum;
   };
@@ -69,7 +72,9 @@ TEST_F(SunThroughAWindow, BouncesOffTheFloorAsInTheReference) {
       compareAt({u, v, -1});
     }
   // 64 links see a spot of this size to about 12 % each and to 6 % in the mean
-  // (docs/decisions/local-lights.md, "Patches").
+  // (docs/decisions/local-lights.md, "Patches"). Which they are depends on the compiler and Embree: 10 % with
+  // those of Debian 12, 14 with 13's.
+  EXPECT_LT(std::sqrt(squares / places), 0.18);
   EXPECT_NEAR(found / expected, 1.0, 0.08);
 }
 
