@@ -3,6 +3,7 @@
 import { decompress } from 'fzstd';
 import { shapeOf, decodeCodebook, decodeClusterIds, decodeWeightPlane } from './codebook.js';
 import { decodeBrdfTable } from './brdf_table.js';
+import { decodeCaptureProxy, decodeLightWeights } from './capture_proxy.js';
 import { decodeRows } from './rows.js';
 import { decodeDensity, decodeVoxels } from './volume_grid.js';
 
@@ -62,6 +63,18 @@ export class Bundle {
       codebook: decodeCodebook(bytes, shapeOf(transfer), transfer.clusters),
       clusterOf: decodeClusterIds(ids, transfer.clusters, samples),
     };
+  }
+
+  /** Returns how others see a group, or null. */
+  async captureProxy({ proxy, sampleCount, lights }) {
+    if (proxy === undefined) return null;
+    return decodeCaptureProxy(await this.payload(proxy, 'captureProxy'), sampleCount, lights.length);
+  }
+
+  /** Returns the light probes of each sample of a cell, or null if all have the same. */
+  async lightWeights({ lightWeights, lightSamples, sampleCount }) {
+    if (lightWeights === undefined) return null;
+    return decodeLightWeights(await this.payload(lightWeights, 'lightWeights'), sampleCount, lightSamples.length);
   }
 
   async brdfTable(entry) {

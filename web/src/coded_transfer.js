@@ -15,7 +15,9 @@ export class CodedTransfer {
     this.codebook = null;
   }
 
-  async load(bundle) {
+  /** `blend` has the light probes of each sample, or is null (decodeLightWeights). */
+  async load(bundle, blend) {
+    this.blend = blend;
     const { codebook, clusterOf } = await bundle.codebook(this.json, this.samples);
     Object.assign(this, { codebook, clusterOf, ...positionsOf(clusterOf, codebook.axisCounts.length) });
     this.makeTextures();
@@ -32,18 +34,46 @@ export class CodedTransfer {
     // The last codes of a sample fill up an entry with zeros, so the shader may read three vectors past the end.
     this.vectorCount = count + 3;
     this.vectors = floatList(this.vectorCount * this.vectorEntries);
-    this.lights = floatList(4 * this.vectorEntries * this.outputs);
+    this.makeLights(1);
     for (let c = 0; c < clusters; ++c) this.addVector(firstAxis[c] + c, firstAxis[c] + c, 1);
     this.places = integerList(this.samples, 4);
     let entries = 0;
     this.firstCode = new Uint32Array(this.samples);
     for (let s = 0; s < this.samples; ++s) {
       const cluster = clusterOf[s], own = Math.ceil(axisCounts[cluster] / 4);
-      this.places.image.data.set([firstAxis[cluster] + cluster, own, entries, 0], 4 * s);
+      this.places.image.data.set(
+        [firstAxis[cluster] + cluster, own | (this.lightsOf(s) << 8), entries, this.weightsOf(s)], 4 * s);
       this.firstCode[s] = 4 * entries;
       entries += own;
     }
     this.codes = shortList(Math.max(1, entries));
+  }
+
+  makeLights(count) {
+    this.lightCount = count;
+    this.lights?.dispose();
+    this.target?.dispose();
+    this.target = null;
+    this.lights = floatList(count * 4 * this.vectorEntries * this.outputs);
+  }
+
+  // The four light probes of a sample in six bits each, and their weights in eight.
+  lightsOf(sample) {
+    return this.blend ? [0, 1, 2, 3].reduce((word, k) => word | (this.blend.lights[4 * sample + k] << (6 * k)), 0) : 0;
+  }
+  weightsOf(sample) {
+    return this.blend ? [0, 1, 2, 3].reduce((word, k) => word | (this.blend.weights[4 * sample + k] << (8 * k)), 0) : 255;
+  }
+
+  /** Returns the coordinates of a sample's transfer in the basis, as far as planes have come. */
+  coordinatesOf(sample) {
+    const { rank } = this.codebook, { data } = this.vectors.image, width = 4 * this.vectorEntries;
+    const mean = this.places.image.data[4 * sample], out = new Float64Array(data.subarray(mean * width, mean * width + rank));
+    for (let j = 0; j < this.planes.length && j < this.codebook.axisCounts[this.clusterOf[sample]]; ++j) {
+      const code = this.codes.image.data[this.firstCode[sample] + j], first = (mean + 1 + j) * width;
+      for (let r = 0; r < rank; ++r) out[r] += code * data[first + r];
+    }
+    return out;
   }
 
   // Adds `factor` times a vector of the codebook to one on the GPU.
@@ -69,15 +99,18 @@ export class CodedTransfer {
     this.vectors.needsUpdate = this.codes.needsUpdate = true;
   }
 
-  /** Multiplies with light on the CPU; `light` is as in basisTimesLight. */
-  setLight(light) {
-    basisTimesLight(this.shape, this.codebook, light, this.outputs, this.lights.image.data);
+  /** Multiplies with the light at each light probe of the cell, or one for all, on the CPU; see basisTimesLight. */
+  setLight(lights) {
+    if (lights.length !== this.lightCount) this.makeLights(lights.length);
+    const { data } = this.lights.image, size = 16 * this.vectorEntries * this.outputs;
+    lights.forEach((light, k) =>
+      basisTimesLight(this.shape, this.codebook, light, this.outputs, data.subarray(k * size, (k + 1) * size)));
     this.lights.needsUpdate = true;
   }
 
   /** Multiplies all vectors with the light on the GPU. */
   multiply(renderer, passes) {
-    this.target ??= listTarget(rowsFor(this.vectorCount * this.outputs));
+    this.target ??= listTarget(rowsFor(this.lightCount * this.vectorCount * this.outputs));
     const { vectors, lights, vectorCount, vectorEntries } = this;
     passes.products(renderer, this.target,
       { vectors, lights, vectorCount, vectorEntries, outputs: this.outputs });
@@ -85,7 +118,8 @@ export class CodedTransfer {
 
   /** What the pass over samples reads. */
   get textures() {
-    return { products: this.target.texture, codes: this.codes, places: this.places };
+    const { target, codes, places, vectorCount, lightCount } = this;
+    return { products: target.texture, codes, places, counts: [vectorCount, lightCount] };
   }
 
   /** Decodes values of all samples on the CPU, from the planes that are there. */

@@ -31,8 +31,10 @@ export class Group {
 
   /** Loads codebooks and cluster ids. Surfaces can be shaded by the means of the clusters from then on. */
   async load(bundle) {
-    await Promise.all([
-      this.volume?.load(bundle), ...this.cells.flatMap((cell) => cell.transfers.map((t) => t.load(bundle)))]);
+    await Promise.all([this.volume?.load(bundle), ...this.cells.map(async (cell) => {
+      cell.blend = await bundle.lightWeights(cell.json);
+      await Promise.all(cell.transfers.map((t) => t.load(bundle, cell.blend)));
+    })]);
   }
 
   /** Returns all planes that can be loaded, in the order in which they are wanted. */
@@ -55,10 +57,16 @@ export class Group {
     return (sample) => firstEntry[sample - run.first];
   }
 
-  /** Takes light in the group's frame for surfaces, and for what has no shadow maps and cubes (see LambentScene). */
-  setLight(surface, other) {
-    for (const { json, transfers } of this.cells)
-      for (const transfer of transfers) transfer.setLight(json.kind === 'surface' ? surface : other);
+  /**
+   * Takes light in the group's frame, of each light probe or one for all, for surfaces and for what has no shadow maps and
+   * cubes (see LambentScene).
+   */
+  setLight(lights) {
+    for (const { json, transfers } of this.cells) {
+      const all = lights.map(({ surface, other }) => (json.kind === 'surface' ? surface : other));
+      const own = all.length > 1 ? json.lightSamples.map((probe) => all[probe]) : all;
+      for (const transfer of transfers) transfer.setLight(transfer.shape.order > 0 ? own : own.slice(0, 1)); // or lamps'
+    }
   }
 
   /** Makes the targets of the light at samples; their textures are what surfaces read. */

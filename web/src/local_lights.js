@@ -86,9 +86,9 @@ function sharesOf(distances, radii) {
 
 /**
  * Divides the light of lamps among the carriers. `groups` are {json, place, isVolume}; where `open`, light knows no
- * transfer. Returns the lamps with `cubes`, and for each group the `powers` of these on its pixels, the light `rest`
- * and `beside` at its light probes (null if there is none), of which transfer brings all or the bounces, and for each
- * column 1 if it is `apart`, so that a cube shines in its place.
+ * transfer. Returns the lamps with `cubes`, and for each group the `powers` of these on its pixels, the lamps that reach
+ * its light `probes` with the shares of them that shine `beside` it per pixel, and for each column 1 if it is `apart`, so
+ * that a cube shines in its place. `state` changes with the light at the probes.
  */
 export function divideLamps(lamps, groups, open) {
   const shining = lamps.filter((lamp) => shines(lamp.power));
@@ -103,8 +103,7 @@ export function divideLamps(lamps, groups, open) {
 
   function lightOf({ json, place, isVolume }, g) {
     const powers = new Float32Array(3 * MOST_CUBES), columns = json.lights.map(() => 0);
-    const probes = json.lightSamples.map((p) => new Vector3(...p).applyMatrix4(place));
-    let rest = null, beside = null;
+    const probes = [];
     shining.forEach((lamp, k) => {
       const cube = cubes.indexOf(lamp), put = (share) => powers.set(lamp.power.map((c) => share * c), 3 * cube);
       if (lamp.isColumnOf(g)) {
@@ -116,15 +115,26 @@ export function divideLamps(lamps, groups, open) {
       const within = !isVolume && radii[k][g] === 0, straight = isVolume || open && !within ? 0 : shares[k];
       if (straight > 0) put(straight);
       if (within && straight > 0) return; // what bounces of it is left out
-      // All samples take the light of the middle of the probes' light.
-      const light = probes.map((p) => lamp.lightAt(p)).reduce((a, b) => a.add(b)).multiplyScalar(1 / probes.length);
-      const none = new LightVector(MAX_ORDER);
-      const add = (sum, share) => (share > 0 ? (sum ?? none).add(light.multiplyScalar(share)) : sum);
-      rest = add(rest, 1 - straight);
-      beside = add(beside, straight);
+      probes.push({ lamp, beside: straight });
     });
-    return { powers, rest, beside, apart: columns };
+    const state = probes.flatMap(({ lamp, beside }) => [beside, ...lamp.state]);
+    if (probes.length > 0) state.push(...place.elements);
+    return { powers, probes, apart: columns, state };
   }
+}
+
+/**
+ * Returns the light of lamps at a light probe: the `rest`, of which transfer brings all, and what shines `beside` the group
+ * per pixel, of which it brings the bounces; null if there is none. `hidden` tells which of both does not arrive.
+ */
+export function lampsAt(lamps, point, hidden = () => ({})) {
+  const sums = { rest: null, beside: null };
+  for (const { lamp, beside } of lamps) {
+    const dark = hidden(lamp, beside), light = lamp.lightAt(point);
+    for (const [name, share] of [['rest', 1 - beside], ['beside', beside]])
+      if (share > 0 && !dark[name]) sums[name] = (sums[name] ?? new LightVector(MAX_ORDER)).add(light.multiplyScalar(share));
+  }
+  return sums;
 }
 
 // Tells whether a group has the size that it was baked with; columns know of no other.

@@ -1,7 +1,7 @@
 // Passes that multiply transfer with light on the GPU, as lambent-demo's compute kernels do. They run when light or
 // transfer changed, in steps:
-//   products: each mean and axis of a codebook, X, times the light, Y: Σ_r X_v,r Y_r,o for every output o
-//   samples:  mean + Σ code x axis of each sample
+//   products: each mean and axis of a codebook, X, times the light, Y, of a light probe: Σ_r X_v,r Y_r,o for every output o
+//   samples:  mean + Σ code x axis of each sample, blended over its light probes
 //   texels:   Σ weight x sample, for draws that keep their light in a texture
 //   grid:     the change of light around a body as a picture
 //   volume:   the light in a volume as a 3D texture
@@ -26,15 +26,15 @@ int written() { return (int(gl_FragCoord.y) - firstRow) * width + int(gl_FragCoo
 
 const PRODUCTS = /* glsl */ `${HEAD}
 uniform sampler2D vectors; // four coordinates in each entry
-uniform sampler2D lights;  // of each coordinate, the outputs
+uniform sampler2D lights;  // of each light probe and coordinate, the outputs
 uniform int vectorCount, vectorEntries, outputs;
 void main() {
-  int v = written() / outputs, o = written() % outputs;
+  int all = written() / outputs, v = all % vectorCount, o = written() % outputs;
+  int light = all / vectorCount * vectorEntries * 4 * outputs + o;
   result = vec4(0.0);
-  if (v >= vectorCount) return;
   for (int r = 0; r < vectorEntries; ++r) {
     vec4 x = entry(vectors, v * vectorEntries + r);
-    for (int k = 0; k < 4; ++k) result += x[k] * entry(lights, (4 * r + k) * outputs + o);
+    for (int k = 0; k < 4; ++k) result += x[k] * entry(lights, light + (4 * r + k) * outputs);
   }
 }`;
 
@@ -42,7 +42,9 @@ const samplesText = (transfers) => /* glsl */ `${HEAD}
 ${Array.from({ length: transfers }, (_, t) => `
 uniform sampler2D products${t};
 uniform usampler2D codes${t};   // four codes in each entry
-uniform usampler2D places${t};  // of each sample: its cluster's first product, count of entries, the first`).join('')}
+uniform usampler2D places${t};  // of each sample: its cluster's first product, count of entries and light probes, the
+                                // first entry, weights of light probes
+uniform ivec2 counts${t};       // of vectors, and of light probes`).join('')}
 uniform int sampleCount, outputs;
 void main() {
   int s = written() / outputs, o = written() % outputs;
@@ -50,11 +52,19 @@ void main() {
   if (s >= sampleCount) return;
   ${Array.from({ length: transfers }, (_, t) => `{
     uvec4 place = words(places${t}, s);
-    int p = int(place.x) * outputs + o;
-    result += entry(products${t}, p);
-    for (uint e = 0u; e < place.y; ++e) {
-      vec4 code = vec4(words(codes${t}, int(place.z + e)));
-      for (int k = 0; k < 4; ++k) result += code[k] * entry(products${t}, p += outputs);
+    for (int l = 0; l < 4; ++l) {
+      bool shared = counts${t}.y == 1;
+      float weight = shared ? 1.0 : float((place.w >> (8 * l)) & 255u) / 255.0;
+      if (weight == 0.0) continue;
+      int light = shared ? 0 : int((place.y >> (8 + 6 * l)) & 63u);
+      int p = (light * counts${t}.x + int(place.x)) * outputs + o;
+      vec4 sum = entry(products${t}, p);
+      for (uint e = 0u; e < (place.y & 255u); ++e) {
+        vec4 code = vec4(words(codes${t}, int(place.z + e)));
+        for (int k = 0; k < 4; ++k) sum += code[k] * entry(products${t}, p += outputs);
+      }
+      result += weight * sum;
+      if (shared) break;
     }
   }`).join('\n  ')}
 }`;
@@ -168,8 +178,9 @@ export class Passes {
 
   samples(renderer, target, firstRow, rows, transfers, uniforms) {
     const all = { ...uniforms };
-    transfers.forEach(({ products, codes, places }, t) =>
-      Object.assign(all, { [`products${t}`]: products, [`codes${t}`]: codes, [`places${t}`]: places }));
+    transfers.forEach((textures, t) => {
+      for (const [name, value] of Object.entries(textures)) all[`${name}${t}`] = value;
+    });
     const material = this.material(`samples${transfers.length}`, () => samplesText(transfers.length));
     this.draw(renderer, material, target, firstRow, rows, all);
   }

@@ -3,9 +3,10 @@
 // group's rotation changed, before the first surface of the group is drawn.
 import { Matrix3, Matrix4, Quaternion, Vector3, Vector4 } from 'three';
 import { BrdfTexture, tableFor } from './brdf_table.js';
+import { Captures } from './captures.js';
 import { canWriteLists } from './gpu_textures.js';
 import { Group } from './group.js';
-import { MOST_CUBES, divideLamps } from './local_lights.js';
+import { MOST_CUBES, divideLamps, lampsAt } from './local_lights.js';
 import { Surface } from './surface.js';
 import { LightVector } from './light_vector.js';
 import { Passes } from './passes.js';
@@ -18,12 +19,12 @@ const MOST_GRIDS = 8; // that a surface receives from
 const TRANSFERS = ['full', 'shadowed', 'unshadowed'];
 const listOf = (length, make) => Array.from({ length }, make);
 
+const both = (a, b) => (a && b ? a.add(b) : a ?? b ?? null);
 const equal = (a, b) => a === b || (a && b && a.length === b.length && a.every((value, i) => value === b[i]));
 
 // Tells whether two divisions of lamps give the same light.
 function sameLamps(a, b) {
-  return equal(a.powers, b.powers) && equal(a.apart, b.apart) && equal(a.rest?.rgb, b.rest?.rgb) &&
-    equal(a.beside?.rgb, b.beside?.rgb);
+  return equal(a.powers, b.powers) && equal(a.apart, b.apart) && equal(a.state, b.state);
 }
 
 export class LambentScene {
@@ -34,6 +35,10 @@ export class LambentScene {
     scene.tables = await Promise.all(bundle.extension.brdfTables.map(async (entry, index) =>
       (looked.has(index) ? new BrdfTexture(await bundle.brdfTable(entry)) : null)));
     await Promise.all(scene.groups.map((group) => group.load(bundle)));
+    if (scene.groups.length > 1) {
+      const proxies = await Promise.all(bundle.groups.map((json) => bundle.captureProxy(json)));
+      if (proxies.some((proxy) => proxy !== null)) scene._captures = new Captures(scene.groups, proxies);
+    }
     const wanted = bundle.draws.filter((draw) => scene.groups[draw.group].runs.has(draw.outputs));
     scene.surfaces = await Promise.all(wanted.map(async (draw) =>
       new Surface(draw, scene.groups[draw.group], await bundle.rows(draw), bundle.vertexCount(draw))));
@@ -62,6 +67,8 @@ export class LambentScene {
     this._punctual = [];
     this._divided = null;
     this._cubes = null;
+    this._captures = null; // where there are several groups
+    this._open = null; // the light of each group where there are no captures
     this._lampUniforms = {
       lambentCubes: { value: null },
       lambentLampPlaces: { value: listOf(MOST_CUBES, () => new Vector4()) },
@@ -166,21 +173,40 @@ export class LambentScene {
   update() {
     if (this._seenChanged) this.findSeen();
     const places = this.groups.map((_, index) => this.worldFromGroup(index)), before = this._divided;
+    const turns = places.map((place) => new Matrix4().extractRotation(place).invert());
     this.divideLamps(places);
+    const same = this._divided.ofGroup.map((divided, index) => before && sameLamps(before.ofGroup[index], divided));
+    const risen = this.gatherLight(places, turns, same.includes(false) || before === null);
     let changed = false;
     this.groups.forEach((group, index) => {
-      const same = before && sameLamps(before.ofGroup[index], this._divided.ofGroup[index]);
-      changed = this.updateGroup(group, index, places[index], same) || changed;
+      changed = this.updateGroup(group, index, places[index], turns[index], same[index] && !risen.has(index)) || changed;
     });
     this._changed = false;
     return changed;
   }
 
-  updateGroup(group, index, place, sameLamps) {
-    const before = this._turns[index], turn = new Matrix4().extractRotation(place).invert();
+  // Finds the light at the light probes of all groups, and returns the groups for which it changed.
+  gatherLight(places, turns, lampsChanged) {
+    const { _light: light, _key: key, _divided: { ofGroup } } = this, mode = this._transfer === 'shadowed' ? 'shadowed' : 'full';
+    if (this._captures)
+      return this._captures.update({
+        places, turns, light, key, ofGroup, lamps: this.lamps, mode, changed: this._changed || lampsChanged,
+      });
+    this._open = this.groups.map(({ json }, g) => {
+      const { probes } = ofGroup[g], points = json.lightSamples.map((p) => new Vector3(...p).applyMatrix4(places[g]));
+      return (probes.length > 0 ? points : [null]).map((point) => {
+        const { rest, beside } = lampsAt(probes, point);
+        return { light: both(light, rest), key: both(key, beside) };
+      });
+    });
+    return new Set();
+  }
+
+  updateGroup(group, index, place, turn, sameLight) {
+    const before = this._turns[index];
     group.grid?.place(place);
     const stays = before && turn.elements.every((e, i) => Math.abs(e - before.elements[i]) < 1e-5);
-    if (stays && sameLamps && !this._changed) return false;
+    if (stays && sameLight && !this._changed) return false;
     this._turns[index] = turn;
     this.uniforms[index].lambentGroupFromWorld.value.setFromMatrix4(turn);
     this.setLight(group, index, turn);
@@ -253,13 +279,13 @@ export class LambentScene {
   }
 
   setLight(group, index, turn) {
-    const inGroup = (light) => light && light.truncate(this._order).rotate(turn).rgb;
-    const both = (a, b) => (a && b ? a.add(b) : a ?? b), { rest, beside, apart } = this._divided.ofGroup[index];
-    const light = both(this._light.truncate(this._order), rest), key = both(this._key, beside);
-    const full = this._transfer === 'full', shown = inGroup(light), all = inGroup(both(light, key));
+    const inGroup = (light) => light && light.truncate(this._order).rotate(turn).rgb, { apart } = this._divided.ofGroup[index];
+    const incident = this._captures?.incident[index] ?? this._open[index], full = this._transfer === 'full';
     const { lambentOpen, lambentSky, lambentKnown, lambentKeyed, lambentKey } = this.uniforms[index];
     const fill = (to, from) => to.fill(0).set(Float32Array.from(from.subarray(0, to.length)));
-    fill(lambentSky.value, shown);
+    // Where nothing is in the way, all samples take the mean of the light at the light probes.
+    const mean = incident.map(({ light }) => light).reduce((a, b) => a.add(b)).multiplyScalar(1 / incident.length);
+    fill(lambentSky.value, inGroup(mean));
     fill(lambentKnown.value, inGroup(this._light));
     fill(lambentKey.value, this._key ? inGroup(this._key) : new Float64Array(0));
     lambentKeyed.value = this._key !== null;
@@ -269,16 +295,17 @@ export class LambentScene {
     const columns = new Float64Array(this.lamps[index].flat());
     const straight = columns.map((c, i) => c * apart[Math.floor(i / 3)]);
     const lamps = full ? { full: columns } : { shadowed: columns };
-    const surface = {
-      full: full ? all : null,
-      shadowed: full ? key && inGroup(key.multiplyScalar(-1)) : shown,
-      sum: shown,
-      lamps: { ...lamps, shadowed: full ? straight.map((c) => -c) : columns.map((c, i) => c - straight[i]) },
-    };
-    // Volumes, and what they change around them, have no shadow maps: all light comes by bands.
-    const other = group.volume
-      ? { full: full ? all : null, shadowed: full ? null : all, sum: all, lamps } : { ...surface, lamps };
-    group.setLight(surface, other);
+    const ofSurface = { ...lamps, shadowed: full ? straight.map((c) => -c) : columns.map((c, i) => c - straight[i]) };
+    group.setLight(incident.map(({ light, key }) => {
+      const shown = inGroup(light), all = inGroup(both(light, key));
+      const surface = {
+        full: full ? all : null, shadowed: full ? key && inGroup(key.multiplyScalar(-1)) : shown, sum: shown, lamps: ofSurface,
+      };
+      // Volumes, and what they change around them, have no shadow maps: all light comes by bands.
+      const other = group.volume
+        ? { full: full ? all : null, shadowed: full ? null : all, sum: all, lamps } : { ...surface, lamps };
+      return { surface, other };
+    }));
   }
 
   /** Returns the depth of a picture without what is blended; the viewport begins at `corner`. */
@@ -289,6 +316,7 @@ export class LambentScene {
   // What mirrors see of the sky follows from transfer without bounces, once all planes are there.
   findSeen() {
     for (const surface of this.surfaces) surface.findSeen();
+    this._captures?.forgetTransfer();
     this._seenChanged = false;
   }
 
