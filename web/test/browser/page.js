@@ -21,14 +21,15 @@ function loader(options) {
   return new GLTFLoader().setDRACOLoader(draco).register((parser) => new lambent.LambentPlugin(parser, options));
 }
 
-// Makes a light from words of lambent-demo: constant:R,G,B, sun:AZ,EL,ANGLE,R,G,B or an environment map.
+// Makes a light from words of lambent-demo: constant:R,G,B, sun:AZ,EL,ANGLE,R,G,B or an environment map. What bodies hide
+// of a sun has its outline, so it has all bands that there are.
 async function lightOf(word) {
   const [kind, rest] = word.split(':');
   const n = rest?.split(',').map(Number);
   if (kind === 'constant') return lambent.LightVector.constant(n[0], n[1], n[2]);
   if (kind === 'sun')
     return lambent.LightVector.disc(
-      toward(n[0], n[1]), n[2] * DEGREE, { r: n[3], g: n[4] ?? n[3], b: n[5] ?? n[3] });
+      toward(n[0], n[1]), n[2] * DEGREE, { r: n[3], g: n[4] ?? n[3], b: n[5] ?? n[3] }, lambent.MAX_ORDER);
   const texture = await new HDRLoader().setDataType(THREE.FloatType).loadAsync(word);
   return lambent.LightVector.fromEquirect(texture);
 }
