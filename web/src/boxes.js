@@ -1,9 +1,10 @@
-// Tells whether two boxes placed anywhere overlap, by separating axes of parallelepipeds (Gottschalk, Lin and Manocha 1996).
+// Tells whether two boxes placed anywhere overlap, by separating axes of parallelepipeds (Gottschalk, Lin and Manocha
+// 1996).
 import { Vector3 } from 'three';
 
 function place(low, high, matrix) {
-  const corners = Array.from({ length: 8 }, (_, i) => new Vector3(...[0, 1, 2].map((k) => (i & (1 << k) ? high : low)[k]))
-    .applyMatrix4(matrix));
+  const corner = (i) => new Vector3(...[0, 1, 2].map((k) => (i & (1 << k) ? high : low)[k])).applyMatrix4(matrix);
+  const corners = Array.from({ length: 8 }, (_, i) => corner(i));
   return { corners, edges: [1, 2, 4].map((i) => corners[i].clone().sub(corners[0])) };
 }
 

@@ -10,14 +10,14 @@ export const TEXELS = 6 * SIZE * SIZE;
 const DARK_SIDE = -1, DARK_DEPTH = 1 - 1e-4; // dark sides lose against others in the same place
 const COUNT = MAX_ORDER * MAX_ORDER;
 
-// Faces in OpenGL's order: directions from (s, t, w), and (s, t, w) of a direction.
+// Faces in OpenGL's order: directions from (s, t, 1), and the axes of a direction, with signs, that are s, t and w of it.
 const FACES = [
-  { to: (s, t) => [1, -t, -s], from: (x, y, z) => [-z, -y, x] },
-  { to: (s, t) => [-1, -t, s], from: (x, y, z) => [z, -y, -x] },
-  { to: (s, t) => [s, 1, t], from: (x, y, z) => [x, z, y] },
-  { to: (s, t) => [s, -1, -t], from: (x, y, z) => [x, -z, -y] },
-  { to: (s, t) => [s, -t, 1], from: (x, y, z) => [x, -y, z] },
-  { to: (s, t) => [-s, -t, -1], from: (x, y, z) => [-x, -y, -z] },
+  { to: (s, t) => [1, -t, -s], axes: [2, 1, 0], signs: [-1, -1, 1] },
+  { to: (s, t) => [-1, -t, s], axes: [2, 1, 0], signs: [1, -1, -1] },
+  { to: (s, t) => [s, 1, t], axes: [0, 2, 1], signs: [1, 1, 1] },
+  { to: (s, t) => [s, -1, -t], axes: [0, 2, 1], signs: [1, -1, -1] },
+  { to: (s, t) => [s, -t, 1], axes: [0, 1, 2], signs: [1, -1, 1] },
+  { to: (s, t) => [-s, -t, -1], axes: [0, 1, 2], signs: [-1, -1, -1] },
 ];
 
 const cornerAngle = (u, v) => Math.atan2(u * v, Math.sqrt(u * u + v * v + 1));
@@ -37,11 +37,13 @@ function makeTables() {
     const at = k * COUNT;
     let sum = 0;
     for (let i = 0; i < fine * fine; ++i) {
-      const share = evaluate(face, s + (((i % fine) + 0.5) / fine) * edge, t + ((Math.floor(i / fine) + 0.5) / fine) * edge);
+      const across = (i % fine) + 0.5, down = Math.floor(i / fine) + 0.5;
+      const share = evaluate(face, s + (across / fine) * edge, t + (down / fine) * edge);
       sum += share;
       for (let c = 0; c < COUNT; ++c) means[at + c] += share * y[c];
     }
-    solidAngles[k] = cornerAngle(s + edge, t + edge) - cornerAngle(s, t + edge) - cornerAngle(s + edge, t) + cornerAngle(s, t);
+    solidAngles[k] = cornerAngle(s + edge, t + edge) - cornerAngle(s, t + edge) -
+      cornerAngle(s + edge, t) + cornerAngle(s, t);
     evaluate(face, s + edge / 2, t + edge / 2);
     for (let c = 0; c < COUNT; ++c) {
       means[at + c] /= sum;
@@ -62,10 +64,11 @@ const shared = () => (tables ??= makeTables());
 const depths = new Float64Array(PIXELS * PIXELS), owners = new Int32Array(PIXELS * PIXELS);
 const local = new Float64Array(9), edges = new Float64Array(9);
 
-// Draws a triangle whose corners in `local` are (s w, t w, w), by homogeneous edge functions (Olano and Greer 1997), which
-// need no clipping. Returns whether it may have covered a pixel.
+// Draws a triangle whose corners in `local` are (s w, t w, w), by homogeneous edge functions (Olano and Greer 1997),
+// which need no clipping. Returns whether it may have covered a pixel.
 function rasterize(owner, frontOnly) {
-  const p = local, [ax, ay, aw, bx, by, bw, cx, cy, cw] = p;
+  const ax = local[0], ay = local[1], aw = local[2], bx = local[3], by = local[4], bw = local[5];
+  const cx = local[6], cy = local[7], cw = local[8];
   if (aw <= 0 && bw <= 0 && cw <= 0) return false;
   if (ax > aw && bx > bw && cx > cw || -ax > aw && -bx > bw && -cx > cw) return false;
   if (ay > aw && by > bw && cy > cw || -ay > aw && -by > bw && -cy > cw) return false;
@@ -104,45 +107,46 @@ function rasterize(owner, frontOnly) {
 }
 
 /**
- * Looks around among triangles, whose corners are relative to the probe, nine numbers each, in world axes. Returns of each
- * triangle that is seen its index and `count` weights, by which its radiance comes into the harmonics, and of each texel
- * the share of it that is `hidden`.
+ * Looks around among triangles, whose corners are relative to the probe, nine numbers each, in world axes. Returns of
+ * each triangle that is seen its index and `count` weights, by which its radiance comes into the harmonics, and of each
+ * texel the share of it that is `hidden`.
  */
 export function lookAround(corners, frontOnly, count) {
   const { weights } = shared(), triangles = frontOnly.length, sums = new Float64Array(triangles * count);
   const seen = new Uint8Array(triangles), hidden = new Float32Array(TEXELS), part = 1 / SUBSAMPLES ** 2;
+  const add = (owner, run, texel) => {
+    if (owner <= 0 || run === 0) return;
+    seen[owner - 1] = 1;
+    for (let i = 0, from = texel * COUNT, to = (owner - 1) * count; i < count; ++i)
+      sums[to + i] += run * part * weights[from + i];
+  };
   for (let face = 0; face < 6; ++face) {
     depths.fill(0);
     owners.fill(0);
     let drawn = false;
+    const { axes, signs } = FACES[face];
     for (let t = 0; t < triangles; ++t) {
-      for (let k = 0; k < 9; k += 3) {
-        const at = 9 * t + k, [s, u, w] = FACES[face].from(corners[at], corners[at + 1], corners[at + 2]);
-        local[k] = s, local[k + 1] = u, local[k + 2] = w;
-      }
+      for (let k = 0; k < 9; k += 3)
+        for (let i = 0; i < 3; ++i) local[k + i] = signs[i] * corners[9 * t + k + axes[i]];
       drawn = rasterize(t + 1, frontOnly[t]) || drawn;
     }
     if (!drawn) continue;
     for (let texel = 0; texel < SIZE * SIZE; ++texel) {
       const first = Math.floor(texel / SIZE) * SUBSAMPLES * PIXELS + (texel % SIZE) * SUBSAMPLES;
-      const k = face * SIZE * SIZE + texel, from = k * COUNT;
+      const k = face * SIZE * SIZE + texel;
       let owner = 0, run = 0, covered = 0;
-      const add = () => {
-        if (owner !== 0) covered += run;
-        if (owner <= 0 || run === 0) return;
-        seen[owner - 1] = 1;
-        for (let i = 0, to = (owner - 1) * count; i < count; ++i) sums[to + i] += run * part * weights[from + i];
-      };
-      for (let p = 0; p < SUBSAMPLES * SUBSAMPLES; ++p) { // neighbours mostly see the same triangle
-        const here = owners[first + Math.floor(p / SUBSAMPLES) * PIXELS + (p % SUBSAMPLES)];
-        if (here !== owner) {
-          add();
-          owner = here;
-          run = 0;
+      for (let y = 0; y < SUBSAMPLES; ++y)
+        for (let x = 0; x < SUBSAMPLES; ++x) { // neighbours mostly see the same triangle
+          const here = owners[first + y * PIXELS + x];
+          if (here !== 0) ++covered;
+          if (here !== owner) {
+            add(owner, run, k);
+            owner = here;
+            run = 0;
+          }
+          ++run;
         }
-        ++run;
-      }
-      add();
+      add(owner, run, k);
       hidden[k] = covered * part;
     }
   }

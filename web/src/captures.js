@@ -1,6 +1,6 @@
-// Light between groups (docs/decisions/captures.md): each light probe of a group sees the capture proxies of others, which
-// hide the sky and send out light, unless a group's grid brings that. What is seen is found anew when something moved,
-// for a few probes at a time; light then goes to and fro until it is at rest.
+// Light between groups (docs/decisions/captures.md): each light probe of a group sees the capture proxies of others,
+// which hide the sky and send out light, unless a group's grid brings that. What is seen is found anew when something
+// moved, for a few probes at a time; light then goes to and fro until it is at rest.
 import { Matrix4, Vector3 } from 'three';
 import { boxesMeet } from './boxes.js';
 import { TEXELS, hiddenShare, lookAround, projectTexels, texelsOf } from './capture_cube.js';
@@ -23,7 +23,8 @@ function boundsOf({ positions, triangles }) {
     high.max(point);
   }
   const centre = low.add(high).multiplyScalar(0.5);
-  return { centre, radius: Math.max(...corners.map((corner) => point.fromArray(positions, 3 * corner).distanceTo(centre))) };
+  const distances = corners.map((corner) => point.fromArray(positions, 3 * corner).distanceTo(centre));
+  return { centre, radius: Math.max(...distances) };
 }
 
 const hasSurfaces = ({ json }) => !json.volume && json.cells.some((cell) => cell.kind === 'surface');
@@ -55,9 +56,12 @@ export class Captures {
     });
     this.order = Math.max(...groups.flatMap(({ json }) => json.cells.flatMap(
       (cell) => cell.transfers.map((transfer) => transfer.order))));
-    this.probes = groups.map(({ json }) => json.lightSamples.map((place) => (
-      { place: new Vector3(...place), world: new Vector3(), around: null, view: null, seen: [], asked: 0, sky: null })));
+    this.probes = groups.map(({ json }) => json.lightSamples.map((place) => ({
+      place: new Vector3(...place), world: new Vector3(),
+      around: null, view: null, seen: [], asked: 0, sky: null, lamps: null,
+    })));
     this.incident = groups.map(() => null);
+    this.seen = new Set(); // the groups that probes of others see
     this.updates = 0;
   }
 
@@ -66,8 +70,8 @@ export class Captures {
     for (const body of this.bodies) body?.light.forgetTransfer();
   }
 
-  // Returns of each group the other bodies that its probes do not see: those of which grids bring the light, and what the
-  // transfer of a volume knows already.
+  // Returns of each group the other bodies that its probes do not see: those of which grids bring the light, and what
+  // the transfer of a volume knows already.
   findLeftOut(places) {
     const box = ({ json: { boundsMin, boundsMax } }) => [boundsMin, boundsMax];
     return this.groups.map((receiver, b) => new Set(this.groups.map((_, g) => g).filter((g) => {
@@ -102,8 +106,9 @@ export class Captures {
     const all = Math.max(...[0, 1, 2].map((c) => 0.28209479 * sky.rgb[c]), 0);
     const spheres = this.bodies.map((body, g) => {
       if (!body) return null;
-      const scale = places[g].getMaxScaleOnAxis(), peak = Math.max(0, ...body.proxy.triangles.map(({ lamp, emission }) => (
-        lamp < 0 ? 0 : Math.max(...emission.map((value, c) => value * lamps[g][lamp][c])))));
+      const emitted = ({ lamp, emission }) => (
+        lamp < 0 ? 0 : Math.max(...emission.map((value, c) => value * lamps[g][lamp][c])));
+      const scale = places[g].getMaxScaleOnAxis(), peak = Math.max(0, ...body.proxy.triangles.map(emitted));
       const brightness = Math.min(Math.max(all > 0 ? peak / all : MOST_BRIGHTNESS * peak, 1), MOST_BRIGHTNESS);
       return { centre: body.centre.clone().applyMatrix4(places[g]), radius: scale * body.radius, scale, brightness };
     });
@@ -131,7 +136,8 @@ export class Captures {
       const { positions, levels, triangles } = this.bodies[g].proxy, { first, count } = levels[level];
       fromPoint.makeTranslation(-point.x, -point.y, -point.z).multiply(places[g]);
       for (let t = first; t < first + count; ++t) {
-        for (const corner of triangles[t].corners) corners.push(...at.fromArray(positions, 3 * corner).applyMatrix4(fromPoint));
+        for (const corner of triangles[t].corners)
+          corners.push(...at.fromArray(positions, 3 * corner).applyMatrix4(fromPoint));
         frontOnly.push(triangles[t].frontOnly);
         owners.push([g, t]);
       }
@@ -141,9 +147,9 @@ export class Captures {
   }
 
   /**
-   * Brings light to rest. `light` and `key` come from infinity (`key` may be null), `ofGroup` is of divideLamps and `lamps`
-   * are the strengths of columns; `turns` are rotations from the world, and `changed` says whether any light or transfer is
-   * new. Returns the groups at whose probes the light changed.
+   * Brings light to rest. `light` and `key` come from infinity (`key` may be null), `ofGroup` is of divideLamps and
+   * `lamps` are the strengths of columns; `turns` are rotations from the world, and `changed` says whether any light or
+   * transfer is new. Returns the groups at whose probes the light changed.
    */
   update({ places, turns, light, key, ofGroup, lamps, mode, changed }) {
     ++this.updates;
@@ -152,10 +158,10 @@ export class Captures {
     const looked = this.look(places, light, lamps, this.leftOut);
     if (moved || changed) this.shineLamps(places, ofGroup);
     this.places = places;
-    const stale = new Set([...this.bodies.keys()].filter((g) => changed || !this.bodies[g]?.turn?.equals(turns[g])));
-    if (!moved && !looked && stale.size === 0) return risen;
+    if (!moved && !looked && !changed) return risen;
     if (changed) this.sky = this.skyOf(light, key);
-    const seen = new Set(this.probes.flat().flatMap(({ view }) => view?.owners.map(([g]) => g) ?? []));
+    if (looked) this.seen = new Set(this.probes.flat().flatMap(({ view }) => view?.owners.map(([g]) => g) ?? []));
+    const stale = new Set([...this.seen].filter((g) => changed || !this.bodies[g].turn?.equals(turns[g])));
     for (let step = 0; step < MOST_STEPS; ++step) {
       this.groups.forEach((_, g) => {
         const now = this.gather(g, light, key), old = this.incident[g];
@@ -164,7 +170,7 @@ export class Captures {
         risen.add(g);
         stale.add(g);
       });
-      const shining = [...stale].filter((g) => seen.has(g));
+      const shining = [...stale].filter((g) => this.seen.has(g));
       stale.clear();
       for (const g of shining) {
         const inGroup = this.incident[g].map((one) => both(one.light, one.key).rotate(turns[g]));
@@ -185,11 +191,14 @@ export class Captures {
   // shines beside a group per pixel, where they stand in the lamp's cube.
   shineLamps(places, ofGroup) {
     ofGroup.forEach(({ probes: lamps }, g) => this.probes[g].forEach((probe) => {
-      const hides = ([body, level], lamp) => this.bodies[body] && hidesLamp(
-        this.bodies[body], Math.min(level, this.bodies[body].proxy.levels.length - 1), places[body], probe.world, lamp.position);
+      const hides = (g, level, lamp) => {
+        const body = this.bodies[g], most = (body?.proxy.levels.length ?? 0) - 1;
+        return body && hidesLamp(body, Math.min(level, most), places[g], probe.world, lamp.position);
+      };
       const hidden = (lamp, beside) => {
-        const rest = probe.seen.some((one) => hides(one, lamp));
-        return { rest, beside: rest || (beside > 0 && [...this.leftOut[g]].some((body) => hides([body, LAMP_LEVEL], lamp))) };
+        const rest = probe.seen.some(([body, level]) => hides(body, level, lamp));
+        const inCube = () => beside > 0 && [...this.leftOut[g]].some((body) => hides(body, LAMP_LEVEL, lamp));
+        return { rest, beside: rest || inCube() };
       };
       probe.lamps = lamps.length > 0 ? lampsAt(lamps, probe.world, hidden) : null;
     }));

@@ -59,16 +59,19 @@ export class CodedTransfer {
 
   // The four light probes of a sample in six bits each, and their weights in eight.
   lightsOf(sample) {
-    return this.blend ? [0, 1, 2, 3].reduce((word, k) => word | (this.blend.lights[4 * sample + k] << (6 * k)), 0) : 0;
+    const light = (k) => this.blend.lights[4 * sample + k] << (6 * k);
+    return this.blend ? [0, 1, 2, 3].reduce((word, k) => word | light(k), 0) : 0;
   }
   weightsOf(sample) {
-    return this.blend ? [0, 1, 2, 3].reduce((word, k) => word | (this.blend.weights[4 * sample + k] << (8 * k)), 0) : 255;
+    const weight = (k) => this.blend.weights[4 * sample + k] << (8 * k);
+    return this.blend ? [0, 1, 2, 3].reduce((word, k) => word | weight(k), 0) : 255;
   }
 
   /** Returns the coordinates of a sample's transfer in the basis, as far as planes have come. */
   coordinatesOf(sample) {
     const { rank } = this.codebook, { data } = this.vectors.image, width = 4 * this.vectorEntries;
-    const mean = this.places.image.data[4 * sample], out = new Float64Array(data.subarray(mean * width, mean * width + rank));
+    const mean = this.places.image.data[4 * sample];
+    const out = new Float64Array(data.subarray(mean * width, mean * width + rank));
     for (let j = 0; j < this.planes.length && j < this.codebook.axisCounts[this.clusterOf[sample]]; ++j) {
       const code = this.codes.image.data[this.firstCode[sample] + j], first = (mean + 1 + j) * width;
       for (let r = 0; r < rank; ++r) out[r] += code * data[first + r];

@@ -58,14 +58,14 @@ export class Group {
   }
 
   /**
-   * Takes light in the group's frame, of each light probe or one for all, for surfaces and for what has no shadow maps and
-   * cubes (see LambentScene).
+   * Takes light in the group's frame, of each light probe or one for all, for surfaces and for what has no shadow maps
+   * and cubes (see LambentScene).
    */
   setLight(lights) {
     for (const { json, transfers } of this.cells) {
       const all = lights.map(({ surface, other }) => (json.kind === 'surface' ? surface : other));
       const own = all.length > 1 ? json.lightSamples.map((probe) => all[probe]) : all;
-      for (const transfer of transfers) transfer.setLight(transfer.shape.order > 0 ? own : own.slice(0, 1)); // or lamps'
+      for (const transfer of transfers) transfer.setLight(transfer.shape.order > 0 ? own : own.slice(0, 1)); // lamps'
     }
   }
 

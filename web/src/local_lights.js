@@ -86,9 +86,9 @@ function sharesOf(distances, radii) {
 
 /**
  * Divides the light of lamps among the carriers. `groups` are {json, place, isVolume}; where `open`, light knows no
- * transfer. Returns the lamps with `cubes`, and for each group the `powers` of these on its pixels, the lamps that reach
- * its light `probes` with the shares of them that shine `beside` it per pixel, and for each column 1 if it is `apart`, so
- * that a cube shines in its place. `state` changes with the light at the probes.
+ * transfer. Returns the lamps with `cubes`, and for each group the `powers` of these on its pixels, the lamps that
+ * reach its light `probes` with the shares of them that shine `beside` it per pixel, and for each column 1 if it is
+ * `apart`, so that a cube shines in its place. `state` changes with the light at the probes.
  */
 export function divideLamps(lamps, groups, open) {
   const shining = lamps.filter((lamp) => shines(lamp.power));
@@ -124,15 +124,16 @@ export function divideLamps(lamps, groups, open) {
 }
 
 /**
- * Returns the light of lamps at a light probe: the `rest`, of which transfer brings all, and what shines `beside` the group
- * per pixel, of which it brings the bounces; null if there is none. `hidden` tells which of both does not arrive.
+ * Returns the light of lamps at a light probe: the `rest`, of which transfer brings all, and what shines `beside` the
+ * group per pixel, of which it brings the bounces; null if there is none. `hidden` tells which of both does not arrive.
  */
 export function lampsAt(lamps, point, hidden = () => ({})) {
   const sums = { rest: null, beside: null };
   for (const { lamp, beside } of lamps) {
     const dark = hidden(lamp, beside), light = lamp.lightAt(point);
     for (const [name, share] of [['rest', 1 - beside], ['beside', beside]])
-      if (share > 0 && !dark[name]) sums[name] = (sums[name] ?? new LightVector(MAX_ORDER)).add(light.multiplyScalar(share));
+      if (share > 0 && !dark[name])
+        sums[name] = (sums[name] ?? new LightVector(MAX_ORDER)).add(light.multiplyScalar(share));
   }
   return sums;
 }

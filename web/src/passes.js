@@ -1,6 +1,7 @@
 // Passes that multiply transfer with light on the GPU, as lambent-demo's compute kernels do. They run when light or
 // transfer changed, in steps:
-//   products: each mean and axis of a codebook, X, times the light, Y, of a light probe: Σ_r X_v,r Y_r,o for every output o
+//   products: each mean and axis of a codebook, X, times the light at each light probe, Y: Σ_r X_v,r Y_r,o for every
+//             output o
 //   samples:  mean + Σ code x axis of each sample, blended over its light probes
 //   texels:   Σ weight x sample, for draws that keep their light in a texture
 //   grid:     the change of light around a body as a picture

@@ -1,6 +1,6 @@
-// The light that the triangles of a capture proxy send out, which is linear in the light at the group's light probes: each
-// triangle reflects E/π of a few samples, and emits the light of a lamp. The product of reflectances and transfer is taken
-// once, so a change of light costs one product for each triangle and probe.
+// The light that the triangles of a capture proxy send out, which is linear in the light at the group's light probes:
+// each triangle reflects E/π of a few samples, and emits the light of a lamp. The product of reflectances and transfer
+// is taken once, so a change of light costs one product for each triangle and probe.
 import { Vector3 } from 'three';
 import { gauntTable } from './gaunt.js';
 import { unoccludedTransfer } from './sh.js';
@@ -29,7 +29,8 @@ function addVectors(transfer, coordinates, outputs, firstChannel, channels, out)
       if (factor === 0) continue;
       const at = r * shape.size + (firstChannel + (channels === 1 ? 0 : c)) * stride;
       for (let o = 0; o < outputs.length; ++o)
-        for (let i = 0; i < shape.columns; ++i) out[3 * i + c] += factor * outputs[o] * basis[at + o * shape.columns + i];
+        for (let i = 0, from = at + o * shape.columns; i < shape.columns; ++i)
+          out[3 * i + c] += factor * outputs[o] * basis[from + i];
     }
 }
 
@@ -67,8 +68,8 @@ export class ProxyLight {
       sample < json.firstSample + json.sampleCount);
     if (!cell) return null;
     const { json, blend } = cell, own = sample - json.firstSample;
-    const probes = blend ? [0, 1, 2, 3].map((k) => [json.lightSamples[blend.lights[4 * own + k]], blend.weights[4 * own + k] / 255])
-      : [[json.lightSamples[0], 1]];
+    const blended = (k) => [json.lightSamples[blend.lights[4 * own + k]], blend.weights[4 * own + k] / 255];
+    const probes = blend ? [0, 1, 2, 3].map(blended) : [[json.lightSamples[0], 1]];
     return { cell, own, probes: probes.filter(([, weight]) => weight > 0) };
   }
 
@@ -102,7 +103,8 @@ export class ProxyLight {
         if (!byProbe.has(probe)) byProbe.set(probe, { probe, full: [], shadowed: [] });
         const to = byProbe.get(probe);
         for (const name of ['full', 'shadowed'])
-          if (to[name].length < 3 * columns) to[name] = Float64Array.from({ length: 3 * columns }, (_, i) => to[name][i] ?? 0);
+          if (to[name].length < 3 * columns)
+            to[name] = Float64Array.from({ length: 3 * columns }, (_, i) => to[name][i] ?? 0);
         addTransfer(transfer, sum, outputWeights(this.proxy, triangle, cell.run.outputs), to.full, to.shadowed);
       }
       return [...byProbe.values()];

@@ -179,7 +179,8 @@ export class LambentScene {
     const risen = this.gatherLight(places, turns, same.includes(false) || before === null);
     let changed = false;
     this.groups.forEach((group, index) => {
-      changed = this.updateGroup(group, index, places[index], turns[index], same[index] && !risen.has(index)) || changed;
+      const sameLight = same[index] && !risen.has(index);
+      changed = this.updateGroup(group, index, places[index], turns[index], sameLight) || changed;
     });
     this._changed = false;
     return changed;
@@ -187,7 +188,8 @@ export class LambentScene {
 
   // Finds the light at the light probes of all groups, and returns the groups for which it changed.
   gatherLight(places, turns, lampsChanged) {
-    const { _light: light, _key: key, _divided: { ofGroup } } = this, mode = this._transfer === 'shadowed' ? 'shadowed' : 'full';
+    const { _light: light, _key: key, _divided: { ofGroup } } = this;
+    const mode = this._transfer === 'shadowed' ? 'shadowed' : 'full';
     if (this._captures)
       return this._captures.update({
         places, turns, light, key, ofGroup, lamps: this.lamps, mode, changed: this._changed || lampsChanged,
@@ -279,8 +281,9 @@ export class LambentScene {
   }
 
   setLight(group, index, turn) {
-    const inGroup = (light) => light && light.truncate(this._order).rotate(turn).rgb, { apart } = this._divided.ofGroup[index];
-    const incident = this._captures?.incident[index] ?? this._open[index], full = this._transfer === 'full';
+    const inGroup = (light) => light && light.truncate(this._order).rotate(turn).rgb;
+    const { apart } = this._divided.ofGroup[index], incident = this._captures?.incident[index] ?? this._open[index];
+    const full = this._transfer === 'full';
     const { lambentOpen, lambentSky, lambentKnown, lambentKeyed, lambentKey } = this.uniforms[index];
     const fill = (to, from) => to.fill(0).set(Float32Array.from(from.subarray(0, to.length)));
     // Where nothing is in the way, all samples take the mean of the light at the light probes.
@@ -299,7 +302,8 @@ export class LambentScene {
     group.setLight(incident.map(({ light, key }) => {
       const shown = inGroup(light), all = inGroup(both(light, key));
       const surface = {
-        full: full ? all : null, shadowed: full ? key && inGroup(key.multiplyScalar(-1)) : shown, sum: shown, lamps: ofSurface,
+        full: full ? all : null, shadowed: full ? key && inGroup(key.multiplyScalar(-1)) : shown, sum: shown,
+        lamps: ofSurface,
       };
       // Volumes, and what they change around them, have no shadow maps: all light comes by bands.
       const other = group.volume

@@ -59,7 +59,8 @@ test('what is nearer hides what is behind it', () => {
 
 test('texels bring light back as it was', () => {
   const light = LightVector.constant(1, 2, 3).add(LightVector.disc(new Vector3(1, 2, -1), 1, { r: 3, g: 2, b: 1 }));
-  const through = projectTexels(texelsOf(light), COUNT), whole = projectTexels(texelsOf(light), COUNT, new Float32Array(TEXELS).fill(1));
+  const all = new Float32Array(TEXELS).fill(1), texels = texelsOf(light);
+  const through = projectTexels(texels, COUNT), whole = projectTexels(texels, COUNT, all);
   const norm = (values) => Math.hypot(...values);
   assert.ok(norm(light.rgb.map((value, i) => through[i] - value)) < 2e-3 * norm(light.rgb));
   assert.deepEqual(whole, through);
@@ -73,30 +74,34 @@ test('boxes meet where they overlap', () => {
 });
 
 test('a body hides a lamp behind it, and none before it', () => {
-  const proxy = { positions: [0, -1, -1, 0, 1, -1, 0, 0, 1], triangles: [{ corners: [0, 1, 2] }], levels: [{ first: 0, count: 1 }] };
+  const positions = [0, -1, -1, 0, 1, -1, 0, 0, 1];
+  const proxy = { positions, triangles: [{ corners: [0, 1, 2] }], levels: [{ first: 0, count: 1 }] };
   const body = { proxy, centre: new Vector3(), radius: 1.5 }, place = new Matrix4().makeTranslation(2, 0, 0);
   const hides = (x, y) => hidesLamp(body, 0, place, new Vector3(), new Vector3(x, y, 0));
   assert.deepEqual([hides(4, 0), hides(1, 0), hides(4, 4), hides(-4, 0)], [true, false, false, false]);
 });
 
 test('proxies send out what the transfer of their samples brings', { skip }, async () => {
-  const bundle = openBundle(path), json = bundle.groups[0], group = new Group(json), proxy = await bundle.captureProxy(json);
+  const bundle = openBundle(path), json = bundle.groups[0], group = new Group(json);
+  const proxy = await bundle.captureProxy(json);
   await group.load(bundle);
   for (const { transfer, plane, index } of group.planes(bundle)) transfer.setPlane(index, await bundle.plane(plane));
   const sky = LightVector.constant(1, 0.8, 0.6).add(LightVector.disc(new Vector3(1, 2, 1), 0.8, { r: 3, g: 2, b: 1 }));
   const sender = new ProxyLight(proxy, group);
   sender.shade([sky], json.lights.map(({ color }) => color), 'full');
   const cells = group.cells.filter((cell) => cell.json.kind === 'surface');
-  assert.ok(cells.every((cell) => cell.run.outputs === 1 && cell.transfers.length === 1), 'the scene is diffuse, without lamps');
+  assert.ok(cells.every((cell) => cell.run.outputs === 1 && cell.transfers.length === 1), 'diffuse, without lamps');
+  const decode = ({ shape, codebook, clusterOf, planes }) => decodeTransfer(shape, codebook, clusterOf, planes);
+  const decoded = new Map(cells.map(({ transfers: [transfer] }) => [transfer, decode(transfer)]));
   let lit = 0;
-  const decoded = new Map(cells.map(({ transfers: [t] }) => [t, decodeTransfer(t.shape, t.codebook, t.clusterOf, t.planes)]));
   proxy.triangles.forEach(({ entries }, t) => [0, 1, 2].forEach((c) => {
     let sum = 0;
     for (const { sample, reflectance } of entries) {
       const { json: { firstSample }, transfers: [{ shape }], transfers: [transfer] } = cells.find(
         (cell) => sample >= cell.json.firstSample && sample < cell.json.firstSample + cell.json.sampleCount);
       const { columns, size, shadowedChannels, fullChannels } = shape, values = decoded.get(transfer);
-      const channel = fullChannels > 0 ? shadowedChannels + (fullChannels === 3 ? c : 0) : shadowedChannels === 3 ? c : 0;
+      const [first, channels] = fullChannels > 0 ? [shadowedChannels, fullChannels] : [0, shadowedChannels];
+      const channel = first + (channels === 3 ? c : 0);
       for (let i = 0; i < columns; ++i)
         sum += reflectance[c] * values[(sample - firstSample) * size + channel * columns + i] * sky.rgb[3 * i + c];
     }

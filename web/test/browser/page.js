@@ -21,8 +21,8 @@ function loader(options) {
   return new GLTFLoader().setDRACOLoader(draco).register((parser) => new lambent.LambentPlugin(parser, options));
 }
 
-// Makes a light from words of lambent-demo: constant:R,G,B, sun:AZ,EL,ANGLE,R,G,B or an environment map. What bodies hide
-// of a sun has its outline, so it has all bands that there are.
+// Makes a light from words of lambent-demo: constant:R,G,B, sun:AZ,EL,ANGLE,R,G,B or an environment map. What
+// bodies hide of a sun has its outline, so it has all bands that there are.
 async function lightOf(word) {
   const [kind, rest] = word.split(':');
   const n = rest?.split(',').map(Number);
