@@ -185,14 +185,18 @@ export function projectTexels(texels, count, shares = null) {
   return out;
 }
 
-/** Returns the share of the light that is hidden, where it is positive; `texels` are of the light. */
-export function hiddenShare(texels, hidden) {
-  const { solidAngles } = shared();
-  let all = 0, lost = 0;
-  for (let k = 0; k < TEXELS; ++k) {
-    const bright = solidAngles[k] * Math.max(0, texels[3 * k] + texels[3 * k + 1] + texels[3 * k + 2]);
-    all += bright;
-    lost += hidden[k] * bright;
+/**
+ * Returns the share of the texels at the peak of a light that is hidden. The bands of a small sun reach far around it, so
+ * texels count by a high power of their radiance, `texels`.
+ */
+export function hiddenPeak(texels, hidden) {
+  const { solidAngles } = shared(), bright = (k) => Math.max(0, texels[3 * k] + texels[3 * k + 1] + texels[3 * k + 2]);
+  let most = 0, all = 0, lost = 0;
+  for (let k = 0; k < TEXELS; ++k) most = Math.max(most, bright(k));
+  for (let k = 0; k < TEXELS && most > 0; ++k) {
+    const weight = solidAngles[k] * (bright(k) / most) ** 16;
+    all += weight;
+    lost += hidden[k] * weight;
   }
   return all > 0 ? lost / all : 0;
 }

@@ -3,7 +3,7 @@
 // moved, for a few probes at a time; light then goes to and fro until it is at rest.
 import { Matrix4, Vector3 } from 'three';
 import { boxesMeet } from './boxes.js';
-import { TEXELS, hiddenShare, lookAround, projectTexels, texelsOf } from './capture_cube.js';
+import { TEXELS, hiddenPeak, lookAround, projectTexels, texelsOf } from './capture_cube.js';
 import { hidesLamp } from './lamp_shadows.js';
 import { LightVector } from './light_vector.js';
 import { lampsAt } from './local_lights.js';
@@ -223,7 +223,7 @@ export class Captures {
     const { texels, through, keyTexels } = this.sky, rgb = projectTexels(texels, this.order ** 2, hidden);
     const visible = [0, 1, 2].map((c) => (through[c] > 0 ? Math.min(Math.max(1 - rgb[c] / through[c], 0), 1) : 1));
     rgb.forEach((lost, i) => (rgb[i] = through[i] - lost + visible[i % 3] * ((light.rgb[i] ?? 0) - through[i])));
-    return { rgb, keyShare: key ? 1 - hiddenShare(keyTexels, hidden) : 0 };
+    return { rgb, keyShare: key ? 1 - hiddenPeak(keyTexels, hidden) : 0 };
   }
 
   addBodies({ owners, rows }, rgb) {

@@ -4,7 +4,7 @@ import test from 'node:test';
 import { Matrix4, Vector3 } from 'three';
 import { openBundle } from './bundle_file.js';
 import { boxesMeet } from '../src/boxes.js';
-import { TEXELS, lookAround, projectTexels, texelsOf } from '../src/capture_cube.js';
+import { TEXELS, hiddenPeak, lookAround, projectTexels, texelsOf } from '../src/capture_cube.js';
 import { decodeTransfer } from '../src/codebook.js';
 import { Group } from '../src/group.js';
 import { hidesLamp } from '../src/lamp_shadows.js';
@@ -64,6 +64,15 @@ test('texels bring light back as it was', () => {
   const norm = (values) => Math.hypot(...values);
   assert.ok(norm(light.rgb.map((value, i) => through[i] - value)) < 2e-3 * norm(light.rgb));
   assert.deepEqual(whole, through);
+});
+
+test('a sun is hidden by what stands before it, and by nothing else', () => {
+  const sun = texelsOf(LightVector.disc(new Vector3(1, 0.4, 0.2), 0.01, { r: 1e4, g: 1e4, b: 1e4 }));
+  const before = (x) => look([[[x, -1, -1], [x, 2, -1], [x, 0.5, 2]], [[x, -1, -1], [x, 0.5, 2], [x, 2, -1]]], true).hidden;
+  const floor = look([[[-99, -0.01, -99], [0, -0.01, 99], [99, -0.01, -99]]], true).hidden;
+  assert.ok(hiddenPeak(sun, before(1)) > 0.95);
+  assert.ok(hiddenPeak(sun, before(-1)) < 1e-3);
+  assert.ok(floor.some((share) => share > 0) && hiddenPeak(sun, floor) < 0.02);
 });
 
 test('boxes meet where they overlap', () => {
