@@ -5,7 +5,7 @@ import { Matrix4, Vector3 } from 'three';
 import { boxesMeet } from './boxes.js';
 import { TEXELS, hiddenPeak, lookAround, projectTexels, texelsOf } from './capture_cube.js';
 import { hidesLamp } from './lamp_shadows.js';
-import { LightVector } from './light_vector.js';
+import { LightVector, Rotation } from './light_vector.js';
 import { lampsAt } from './local_lights.js';
 import { ProxyLight } from './proxy_light.js';
 
@@ -173,8 +173,8 @@ export class Captures {
       const shining = [...stale].filter((g) => this.seen.has(g));
       stale.clear();
       for (const g of shining) {
-        const inGroup = this.incident[g].map((one) => both(one.light, one.key).rotate(turns[g]));
-        this.bodies[g].light.shade(inGroup, lamps[g], mode);
+        const rotation = new Rotation(turns[g]), all = this.incident[g].map((one) => both(one.light, one.key));
+        this.bodies[g].light.shade(all.map((one) => one.rotate(rotation)), lamps[g], mode);
         this.bodies[g].turn = turns[g].clone();
       }
       if (shining.length === 0) break;

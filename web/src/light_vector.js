@@ -2,7 +2,7 @@ import {
   CubeCamera, DataUtils, Euler, FloatType, HalfFloatType, Matrix3, Matrix4, WebGLCubeRenderTarget,
 } from 'three';
 import {
-  MAX_ORDER, discZonal, evaluateBasis, projectCube, projectEquirect, rotateCoefficients,
+  MAX_ORDER, discZonal, evaluateBasis, projectCube, projectEquirect, rotateCoefficients, rotationBands,
 } from './sh.js';
 
 const toMatrix3 = (turn) => {
@@ -13,6 +13,13 @@ const toMatrix3 = (turn) => {
   else matrix.makeRotationFromQuaternion(turn);
   return new Matrix3().setFromMatrix4(matrix);
 };
+
+/** A rotation of many lights, of which the harmonics' part is done once; see LightVector.rotate. */
+export class Rotation {
+  constructor(turn) {
+    this.bands = rotationBands(MAX_ORDER, toMatrix3(turn).elements);
+  }
+}
 
 /** Returns the size of an equirectangular texture, and its radiance at a column and a row from the top. */
 export function equirectTexels(texture) {
@@ -88,10 +95,11 @@ export class LightVector {
     return new LightVector(this.order, this.rgb.slice());
   }
 
-  /** Returns the light turned by a Quaternion, Euler or matrix. */
+  /** Returns the light turned by a Quaternion, Euler, matrix or Rotation. */
   rotate(turn) {
     const out = new LightVector(this.order);
-    rotateCoefficients(this.order, toMatrix3(turn).elements, this.rgb, out.rgb);
+    const bands = turn instanceof Rotation ? turn.bands : rotationBands(this.order, toMatrix3(turn).elements);
+    rotateCoefficients(this.order, bands, this.rgb, out.rgb);
     return out;
   }
 

@@ -8,7 +8,7 @@ import { canWriteLists } from './gpu_textures.js';
 import { Group } from './group.js';
 import { MOST_CUBES, divideLamps, lampsAt } from './local_lights.js';
 import { Surface } from './surface.js';
-import { LightVector } from './light_vector.js';
+import { LightVector, Rotation } from './light_vector.js';
 import { Passes } from './passes.js';
 import { SceneDepth } from './scene_depth.js';
 import { ShadowCubes } from './shadow_cubes.js';
@@ -281,7 +281,8 @@ export class LambentScene {
   }
 
   setLight(group, index, turn) {
-    const inGroup = (light) => light && light.truncate(this._order).rotate(turn).rgb;
+    const rotation = new Rotation(turn);
+    const inGroup = (light) => light && light.truncate(this._order).rotate(rotation).rgb;
     const { apart } = this._divided.ofGroup[index], incident = this._captures?.incident[index] ?? this._open[index];
     const full = this._transfer === 'full';
     const { lambentOpen, lambentSky, lambentKnown, lambentKeyed, lambentKey } = this.uniforms[index];

@@ -85,23 +85,25 @@ function nextBand(l, first, before) {
 }
 
 /**
- * Writes the coefficients of f(R^-1 s), where `rgb` holds those of f as n² x 3 numbers. `matrix` is the rotation R
- * as nine numbers, column by column, like the elements of three's Matrix3.
+ * Returns the bands of D(R^-1) for rotateCoefficients. `matrix` is the rotation R as nine numbers, column by column, like
+ * the elements of three's Matrix3.
  */
-export function rotateCoefficients(order, matrix, rgb, out) {
+export function rotationBands(order, matrix) {
   const axis = [1, 2, 0]; // band 1 has the order y, z, x
-  const first = axis.map((a) => axis.map((b) => matrix[3 * a + b]));
-  let band = [[1]];
-  for (let l = 0; l < order; ++l) {
-    if (l === 1) band = first;
-    if (l > 1) band = nextBand(l, first, band);
+  const first = axis.map((a) => axis.map((b) => matrix[3 * a + b])), bands = [[[1]], first];
+  for (let l = 2; l < order; ++l) bands.push(nextBand(l, first, bands[l - 1]));
+  return bands;
+}
+
+/** Writes the coefficients of f(R^-1 s), where `rgb` holds those of f as n² x 3 numbers. */
+export function rotateCoefficients(order, bands, rgb, out) {
+  for (let l = 0; l < order; ++l)
     for (let n = 0; n < 2 * l + 1; ++n)
       for (let channel = 0; channel < 3; ++channel) {
         let sum = 0;
-        for (let m = 0; m < 2 * l + 1; ++m) sum += band[m][n] * rgb[3 * (l * l + m) + channel];
+        for (let m = 0; m < 2 * l + 1; ++m) sum += bands[l][m][n] * rgb[3 * (l * l + m) + channel];
         out[3 * (l * l + n) + channel] = sum;
       }
-  }
   return out;
 }
 

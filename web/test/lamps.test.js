@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Matrix4, PointLight, SpotLight, Vector3 } from 'three';
-import { Lamp, MOST_CUBES, divideLamps } from '../src/local_lights.js';
+import { Lamp, MOST_CUBES, divideLamps, lampsAt } from '../src/local_lights.js';
 import { unoccludedTransfer } from '../src/sh.js';
 
 function lampAt(x, y, z, light = new PointLight(0xffffff, 3)) {
@@ -18,6 +18,8 @@ const body = (x) => ({
   place: new Matrix4().makeTranslation(x, 0, 0), isVolume: false,
   json: { boundsMin: [-0.5, -0.5, -0.5], boundsMax: [0.5, 0.5, 0.5], lights: [], lightSamples: [[0, 0, 0]] },
 });
+
+const harmonicsAt = ({ probes }, x = 0) => lampsAt(probes, new Vector3(x, 0, 0));
 
 test('harmonics of a lamp give its irradiance', () => {
   const transfer = unoccludedTransfer(8, 0, 1, 0, new Float64Array(64));
@@ -46,12 +48,15 @@ test('three does not shine by lamps', () => {
 
 test('a lamp within a body shines by a cube alone, one beside it also by bounces, one afar by harmonics', () => {
   const [room, beside] = divideLamps([lampAt(0, 0.2, 0)], [body(0), body(2)], false).ofGroup;
-  assert.deepEqual([room.powers[0], room.rest, room.beside], [3, null, null]);
+  assert.deepEqual([room.powers[0], harmonicsAt(room)], [3, { rest: null, beside: null }]);
   assert.equal(beside.powers[0], 3);
-  assert.ok(beside.rest === null && beside.beside.rgb[0] > 0);
+  const bounced = harmonicsAt(beside, 2);
+  assert.ok(bounced.rest === null && bounced.beside.rgb[0] > 0);
   const far = divideLamps([lampAt(0, 100, 0)], [body(0)], false);
   assert.equal(far.cubes.length, 0);
-  assert.ok(far.ofGroup[0].rest.rgb[0] > 0 && far.ofGroup[0].beside === null);
+  const afar = harmonicsAt(far.ofGroup[0]);
+  assert.ok(afar.rest.rgb[0] > 0 && afar.beside === null);
+  assert.deepEqual(lampsAt(far.ofGroup[0].probes, new Vector3(), () => ({ rest: true })), { rest: null, beside: null });
 });
 
 test('no light is lost and none jumps as a lamp moves away', () => {
@@ -60,7 +65,7 @@ test('no light is lost and none jumps as a lamp moves away', () => {
     let before = null;
     for (let y = 0.55; y < 8; y += 0.01) {
       const moving = lampAt(0, y, 0), divided = divideLamps([...others, moving], [body(0)], false);
-      const { cubes, ofGroup: [{ powers, rest }] } = divided;
+      const { cubes, ofGroup: [{ powers }] } = divided, { rest } = harmonicsAt(divided.ofGroup[0]);
       assert.ok(cubes.length <= MOST_CUBES);
       const at = cubes.indexOf(moving), share = at < 0 ? 0 : powers[3 * at] / 3;
       // What is not by the cube is by harmonics, here of this lamp and of any other that gave up its cube.
