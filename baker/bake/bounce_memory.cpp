@@ -7,16 +7,18 @@
 #include "baker/effects/glossy/inside_faces.hpp"
 #include "baker/trace/patches.hpp"
 #include "runtime/base/memory.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-std::size_t squared(int order) {
-  return static_cast<std::size_t>(order) * static_cast<std::size_t>(order);
+std::size_t coefficients(int order) {
+  return static_cast<std::size_t>(sh::coefficientCount(order));
 }
 
-// The sum of all passes, the last two of them, and two copies while one is fitted to points inside faces.
+// Bounces hold the sum of all passes, the last two of them, and two copies while one is fitted to points
+// inside faces.
 std::size_t floatsOfDiffuse(const DirectResult& direct) {
   constexpr std::size_t kFields = 5;
   std::size_t floats = kFields * direct.field.vectors.size() + direct.mapped.vectors.size();
@@ -38,15 +40,14 @@ std::size_t floatsOfPatches(const DirectResult& direct, std::size_t glossy) {
 // those that ship.
 std::size_t floatsOfGlossy(const GlossyDirect& glossy, const BakeOptions& options) {
   const GlossyField& field = glossy.field;
-  const std::size_t columns = field.channels * squared(field.order_in) + field.channels * field.light_columns;
-  const std::size_t exits = squared(field.order_out) * columns;
-  std::size_t floats = field.size() * (2 * exits + squared(options.glossy_order) * columns);
+  const std::size_t columns = field.channels * (coefficients(field.order_in) + field.light_columns);
+  const std::size_t exits = coefficients(field.order_out) * columns;
+  std::size_t floats = field.size() * (2 * exits + coefficients(options.glossy_order) * columns);
   if (glossy.inside) floats += glossy.inside->points().size() * exits;
   return floats;
 }
 
-}  // namespace
-
+// Returns how many bytes the results of bounces take at most, beyond what direct light holds.
 std::uint64_t bytesOfBounces(const SurfaceTransport& light, const BakeOptions& options) {
   std::size_t floats = floatsOfDiffuse(light.direct);
   if (options.bounces != 1)
@@ -54,6 +55,8 @@ std::uint64_t bytesOfBounces(const SurfaceTransport& light, const BakeOptions& o
   if (light.glossy) floats += floatsOfGlossy(*light.glossy, options);
   return floats * sizeof(float);
 }
+
+}  // namespace
 
 void makeRoomForBounces(const BakeOptions& options, SurfaceTransport& light) {
   std::vector<HitStore*> stores = {&light.direct.hits};

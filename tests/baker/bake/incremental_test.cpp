@@ -279,7 +279,8 @@ TEST_F(BakeAgain, EndsInTheSameBundleFromAnyRemainsOfACache) {
 TEST_F(BakeAgain, TracesAgainWhatHadNoRoomInMemory) {
   BakeOptions small = draft();
   const std::string whole = bakeWith(nullptr, stage()).bytes;
-  // With so little more than what is there, hits are kept at first and given up when the bounces begin.
+  // The limit is so little above what is taken now that hits are kept at first, and given up when the bounces
+  // begin.
   small.memory_bytes = residentBytes() + 3'000'000;
   EXPECT_TRUE(bakeWith(nullptr, stage(), small).bytes == whole);
   small.memory_bytes = 100'000;
