@@ -1,7 +1,7 @@
 // What a light probe sees: triangles around it in a small cube map, projected to spherical harmonics. Triangles are
 // rasterized on the CPU, since a view must come back there anyway, and once: light that changes is multiplied with the
 // weights of the triangles.
-import { MAX_ORDER, evaluateBasis } from './sh.js';
+import { CUBE_FACES, MAX_ORDER, evaluateBasis } from './sh.js';
 
 const SIZE = 16; // texels along an edge of a face
 const SUBSAMPLES = 8; // along an edge of a texel
@@ -10,14 +10,14 @@ export const TEXELS = 6 * SIZE * SIZE;
 const DARK_SIDE = -1, DARK_DEPTH = 1 - 1e-4; // dark sides lose against others in the same place
 const COUNT = MAX_ORDER * MAX_ORDER;
 
-// Faces in OpenGL's order: directions from (s, t, 1), and the axes of a direction, with signs, that are s, t and w of it.
-const FACES = [
-  { to: (s, t) => [1, -t, -s], axes: [2, 1, 0], signs: [-1, -1, 1] },
-  { to: (s, t) => [-1, -t, s], axes: [2, 1, 0], signs: [1, -1, -1] },
-  { to: (s, t) => [s, 1, t], axes: [0, 2, 1], signs: [1, 1, 1] },
-  { to: (s, t) => [s, -1, -t], axes: [0, 2, 1], signs: [1, -1, -1] },
-  { to: (s, t) => [s, -t, 1], axes: [0, 1, 2], signs: [1, -1, 1] },
-  { to: (s, t) => [-s, -t, -1], axes: [0, 1, 2], signs: [-1, -1, -1] },
+// The axes of a direction, with signs, that are s, t and w in each of CUBE_FACES.
+const FACE_AXES = [
+  { axes: [2, 1, 0], signs: [-1, -1, 1] },
+  { axes: [2, 1, 0], signs: [1, -1, -1] },
+  { axes: [0, 2, 1], signs: [1, 1, 1] },
+  { axes: [0, 2, 1], signs: [1, -1, -1] },
+  { axes: [0, 1, 2], signs: [1, -1, 1] },
+  { axes: [0, 1, 2], signs: [-1, -1, -1] },
 ];
 
 const cornerAngle = (u, v) => Math.atan2(u * v, Math.sqrt(u * u + v * v + 1));
@@ -28,7 +28,7 @@ function makeTables() {
   const means = new Float64Array(TEXELS * COUNT), weights = new Float64Array(TEXELS * COUNT);
   const solidAngles = new Float64Array(TEXELS), y = new Float64Array(COUNT), edge = 2 / SIZE, fine = 4;
   const evaluate = (face, s, t) => {
-    const d = FACES[face].to(s, t), length = Math.hypot(...d);
+    const d = CUBE_FACES[face](s, t), length = Math.hypot(...d);
     evaluateBasis(MAX_ORDER, d[0] / length, d[1] / length, d[2] / length, y);
     return length ** -3;
   };
@@ -124,7 +124,7 @@ export function lookAround(corners, frontOnly, count) {
     depths.fill(0);
     owners.fill(0);
     let drawn = false;
-    const { axes, signs } = FACES[face];
+    const { axes, signs } = FACE_AXES[face];
     for (let t = 0; t < triangles; ++t) {
       for (let k = 0; k < 9; k += 3)
         for (let i = 0; i < 3; ++i) local[k + i] = signs[i] * corners[9 * t + k + axes[i]];

@@ -133,8 +133,8 @@ export function projectEquirect(order, width, height, texel) {
   return out;
 }
 
-// Directions of the faces of a cube map in OpenGL's order, of texture coordinates s and t from -1 to 1.
-const CUBE_FACES = [
+/** Directions of the faces of a cube map in OpenGL's order, of texture coordinates s and t from -1 to 1. */
+export const CUBE_FACES = [
   (s, t) => [1, -t, -s], (s, t) => [-1, -t, s], (s, t) => [s, 1, t], (s, t) => [s, -1, -t], (s, t) => [s, -t, 1],
   (s, t) => [-s, -t, -1],
 ];
