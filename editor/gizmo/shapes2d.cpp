@@ -43,7 +43,7 @@ double distanceToPolygon(const std::vector<glm::dvec2>& points, const glm::dvec2
 
 std::vector<glm::dvec2> samplesOf(const std::vector<glm::dvec2>& points, bool filled) {
   std::vector<glm::dvec2> samples;
-  if (points.size() < 2) return points;
+  if (points.size() < 2) return samples;
   if (filled) {
     glm::dvec2 center(0.0);
     for (const glm::dvec2& point : points) center += point / static_cast<double>(points.size());
