@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run_web.sh PROGRAMS ASSETS: bakes six small scenes and Sponza, and runs the tests of web/ with them in Node.js and in
+# run_web.sh PROGRAMS ASSETS: bakes seven small scenes and Sponza, and runs the tests of web/ with them in Node.js and in
 # Chromium. Sponza comes from ../shared/data beside the checkout, or from LAMBENT_SHARED_DATA; without the data it is left
 # out.
 # Exit status: 0 passed, 77 skipped, since Node.js, Chromium or web/node_modules is not there; LAMBENT_REQUIRE=web makes
@@ -21,7 +21,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$programs/lambent" bake "$assets/hello.glb" -o "$folder/hello.lmb.glb" --quality draft --cache off >/dev/null
 bundles=$folder/hello.lmb.glb
-for scene in mapped reflecting moving lamps volume; do
+for scene in mapped reflecting moving lamps bulbs volume; do
   node "$web/test/${scene}_scene.js" "$folder/$scene.gltf"
   "$programs/lambent" bake "$folder/$scene.gltf" -o "$folder/$scene.lmb.glb" --quality draft --rays 128 --bounces 1 \
     --volume-grid 12 --cache off >/dev/null

@@ -6,7 +6,7 @@ import { boxesMeet } from './boxes.js';
 import { TEXELS, hiddenPeak, lookAround, projectTexels, texelsOf } from './capture_cube.js';
 import { hidesLamp } from './lamp_shadows.js';
 import { LightVector, Rotation } from './light_vector.js';
-import { lampsAt } from './local_lights.js';
+import { lampsAt, shadowsDiffer } from './local_lights.js';
 import { ProxyLight } from './proxy_light.js';
 
 const TEXEL_ANGLE = Math.PI / 32, LEAST_SHARE = 0.25, LEVEL_ERROR = 0.5; // of a texel
@@ -61,6 +61,7 @@ export class Captures {
       around: null, view: null, seen: [], asked: 0, sky: null, lamps: null,
     })));
     this.incident = groups.map(() => null);
+    this.byGrids = groups.map(() => new Set()); // the bodies of which grids bring the light to a group
     this.seen = new Set(); // the groups that probes of others see
     this.updates = 0;
   }
@@ -70,18 +71,19 @@ export class Captures {
     for (const body of this.bodies) body?.light.forgetTransfer();
   }
 
-  // Returns of each group the other bodies that its probes do not see: those of which grids bring the light, and what
-  // the transfer of a volume knows already.
-  findLeftOut(places) {
+  // Finds of each group the other bodies of which grids bring the light. Its probes do not see them, nor what the transfer
+  // of a volume knows already.
+  findLeftOut(places, divided) {
     const box = ({ json: { boundsMin, boundsMax } }) => [boundsMin, boundsMax];
-    return this.groups.map((receiver, b) => new Set(this.groups.map((_, g) => g).filter((g) => {
+    this.byGrids = this.groups.map((receiver, b) => new Set(this.groups.map((_, g) => g).filter((g) => {
       const body = this.groups[g];
-      if (g === b) return false;
-      if (receiver.json.within === g) return true;
-      if (!body.grid || !hasSurfaces(receiver) || !carriesLamps(body)) return false;
+      if (g === b || !body.grid || !hasSurfaces(receiver) || !carriesLamps(body)) return false;
       const { boundsMin, boundsMax } = body.json.neighborhood;
-      return boxesMeet(boundsMin, boundsMax, places[g], ...box(receiver), places[b]);
+      return boxesMeet(boundsMin, boundsMax, places[g], ...box(receiver), places[b])
+        && (body.json.volume || !shadowsDiffer(divided, g, b));
     })));
+    this.leftOut = this.groups.map(({ json: { within } }, b) =>
+      new Set([...this.byGrids[b], ...(within === undefined ? [] : [within])]));
   }
 
   // Returns the groups that a point sees, each with the coarsest level of detail that is fine enough.
@@ -147,16 +149,16 @@ export class Captures {
   }
 
   /**
-   * Brings light to rest. `light` and `key` come from infinity (`key` may be null), `ofGroup` is of divideLamps and
+   * Brings light to rest. `light` and `key` come from infinity (`key` may be null), `divided` is of divideLamps and
    * `lamps` are the strengths of columns; `turns` are rotations from the world, and `changed` says whether any light or
    * transfer is new. Returns the groups at whose probes the light changed.
    */
-  update({ places, turns, light, key, ofGroup, lamps, mode, changed }) {
+  update({ places, turns, light, key, divided, lamps, mode, changed }) {
     ++this.updates;
     const moved = !places.every((place, g) => this.places?.[g].equals(place)), risen = new Set();
-    if (moved) this.leftOut = this.findLeftOut(places);
+    if (moved || changed) this.findLeftOut(places, divided);
     const looked = this.look(places, light, lamps, this.leftOut);
-    if (moved || changed) this.shineLamps(places, ofGroup);
+    if (moved || changed) this.shineLamps(places, divided.ofGroup);
     this.places = places;
     if (!moved && !looked && !changed) return risen;
     if (changed) this.sky = this.skyOf(light, key);

@@ -74,12 +74,13 @@ vec3 lambentGrid${g}(vec3 world, vec3 normal) {
 export const gridsText = (wholes) => /* glsl */ `
 uniform bool lambentKeyed;    // there is light by shadow maps
 uniform vec3 lambentKey[9];   // bands of it, group frame
+uniform bool lambentGridKept[${wholes.length}]; // captures do not bring the light of the body
 ${wholes.map((_, g) => one(g)).join('')}
 vec3 lambentChanged(vec3 light, vec3 view, vec3 normal, out vec3 whole) {
   vec3 world = (vec4(view - viewMatrix[3].xyz, 0.0) * viewMatrix).xyz, n = (vec4(normal, 0.0) * viewMatrix).xyz;
   vec3 change = vec3(0.0);
   whole = vec3(0.0);
-  ${wholes.map((whole, g) => `${whole ? 'whole' : 'change'} += lambentGrid${g}(world, n);`).join('\n  ')}
+  ${wholes.map((whole, g) => `if (lambentGridKept[${g}]) ${whole ? 'whole' : 'change'} += lambentGrid${g}(world, n);`).join('\n  ')}
   if (!lambentKeyed) change += whole;
   return max(light + change, min(light, vec3(0.0)));
 }

@@ -1,6 +1,7 @@
 // Lamps of the glTF scene, as lambent-demo shines them (docs/light-paths.md): by shadow cubes per pixel on the groups
 // within or beside which they stand, and by harmonics, as light from infinity, on others. A lamp that is a column of a
-// group has its direct light there from the cube, and what bounces from the column.
+// group has its direct light there from the cube, and what bounces from the column. Emissive materials that shine as
+// spheres (sphere_lamps.js) do so, too.
 import { Matrix4, Vector3 } from 'three';
 import { LightVector, MAX_ORDER } from './light_vector.js';
 import { evaluateBasis } from './sh.js';
@@ -15,6 +16,7 @@ const shines = (rgb) => rgb.every(Number.isFinite) && rgb.some((c) => c !== 0);
 export class Lamp {
   constructor(light, column) {
     Object.assign(this, { light, column, position: new Vector3(), direction: new Vector3(0, 0, -1) });
+    Object.assign(this, { isNode: true, lamp: this, shapes: [this], radius: 0, hole: 0, area: 1 });
     light.layers.disableAll();
   }
 
@@ -86,34 +88,35 @@ function sharesOf(distances, radii) {
 
 /**
  * Divides the light of lamps among the carriers. `groups` are {json, place, isVolume}; where `open`, light knows no
- * transfer. Returns the lamps with `cubes`, and for each group the `powers` of these on its pixels, the lamps that
+ * transfer. Returns the shapes of lamps with `cubes`, and for each group the `powers` of these on its pixels, the lamps that
  * reach its light `probes` with the shares of them that shine `beside` it per pixel, and for each column 1 if it is
  * `apart`, so that a cube shines in its place. `state` changes with the light at the probes.
  */
 export function divideLamps(lamps, groups, open) {
-  const shining = lamps.filter((lamp) => shines(lamp.power));
-  const radii = shining.map((lamp) => groups.map(({ json, place }) => radiiFrom(json, place, lamp)));
-  const nearest = shining.map((lamp, k) => Math.min(Infinity,
+  const shining = lamps.filter((lamp) => shines(lamp.power)), nodes = shining.filter(({ isNode }) => isNode);
+  const radii = nodes.map((lamp) => groups.map(({ json, place }) => radiiFrom(json, place, lamp)));
+  const nearest = nodes.map((lamp, k) => Math.min(Infinity,
     ...groups.map(({ isVolume }, g) => (isVolume || lamp.isColumnOf(g) ? Infinity : radii[k][g]))));
-  const shares = sharesOf(nearest, open ? 0 : RADII), cubes = shining.filter((_, k) => shares[k] > 0);
+  const shares = sharesOf(nearest, open ? 0 : RADII), cubes = nodes.filter((_, k) => shares[k] > 0);
   const apart = open ? [] : shining.filter((lamp) => lamp.column && hasItsSize(groups[lamp.column.group].place));
-  apart.sort((a, b) => luminance(b.power) - luminance(a.power));
-  for (const lamp of apart) if (!cubes.includes(lamp) && cubes.length < MOST_CUBES) cubes.push(lamp);
+  const intensity = ({ power, area }) => luminance(power) * area;
+  apart.sort((a, b) => intensity(b) - intensity(a));
+  for (const { shapes } of apart)
+    if (!cubes.includes(shapes[0]) && cubes.length + shapes.length <= MOST_CUBES) cubes.push(...shapes);
   return { cubes, ofGroup: groups.map((group, g) => lightOf(group, g)) };
 
   function lightOf({ json, place, isVolume }, g) {
-    const powers = new Float32Array(3 * MOST_CUBES), columns = json.lights.map(() => 0);
-    const probes = [];
-    shining.forEach((lamp, k) => {
-      const cube = cubes.indexOf(lamp), put = (share) => powers.set(lamp.power.map((c) => share * c), 3 * cube);
-      if (lamp.isColumnOf(g)) {
-        if (cube < 0 || !apart.includes(lamp)) return;
-        put(1);
-        columns[lamp.column.index] = 1;
-        return;
-      }
+    const powers = new Float32Array(3 * MOST_CUBES), columns = json.lights.map(() => 0), probes = [];
+    const put = (shape, share) => powers.set(shape.lamp.power.map((c) => share * c), 3 * cubes.indexOf(shape));
+    for (const lamp of apart) {
+      if (!lamp.isColumnOf(g) || !cubes.includes(lamp.shapes[0])) continue;
+      for (const shape of lamp.shapes) put(shape, 1);
+      columns[lamp.column.index] = 1;
+    }
+    nodes.forEach((lamp, k) => {
+      if (lamp.isColumnOf(g)) return;
       const within = !isVolume && radii[k][g] === 0, straight = isVolume || open && !within ? 0 : shares[k];
-      if (straight > 0) put(straight);
+      if (straight > 0) put(lamp, straight);
       if (within && straight > 0) return; // what bounces of it is left out
       probes.push({ lamp, beside: straight });
     });
@@ -121,6 +124,24 @@ export function divideLamps(lamps, groups, open) {
     if (probes.length > 0) state.push(...place.elements);
     return { powers, probes, apart: columns, state };
   }
+}
+
+/**
+ * Tells whether a body's shadow in the light of lamps would reach a receiver twice, by the grid around the body and by a
+ * cube, or not at all; `divided` is of divideLamps. Then the receiver takes the body's light by captures.
+ */
+export function shadowsDiffer({ cubes, ofGroup }, body, receiver) {
+  // The share of a lamp that a group has by harmonics, or null if that is in its column.
+  const byHarmonics = (lamp, g) => {
+    const one = ofGroup[g].probes.find((probe) => probe.lamp === lamp);
+    return one ? 1 - one.beside : lamp.isColumnOf(g) ? null : 0;
+  };
+  return cubes.some(({ lamp }) => {
+    const sent = byHarmonics(lamp, body), had = byHarmonics(lamp, receiver);
+    if (had !== null) return sent !== null && sent !== had;
+    // The body takes a lamp that is a material as light of another body, so its grid always has it.
+    return ofGroup[receiver].apart[lamp.column.index] > 0 && (!lamp.isNode || sent > 0);
+  });
 }
 
 /**

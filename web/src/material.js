@@ -39,8 +39,8 @@ function includeAfter(text, chunk, added) {
 /**
  * Returns a copy of a material that is lit by transfer. `kind` says how: `outputs` of its transfer, `glossy` by matrices,
  * `layered` as a smooth dielectric, the `table` that these two look up, `texels`,
- * `normalWeight`, whether `grids` around it are whole, whether there are `lamps` with cubes, and whether it is
- * `framed`, which gives it a tangent.
+ * `normalWeight`, whether `grids` around it are whole, whether there are `lamps` with cubes and `spheres` among them,
+ * and whether it is `framed`, which gives it a tangent.
  */
 export function litMaterial(source, kind, side, uniforms) {
   const material = kind.table ? source.clone() : lambertOf(source);

@@ -62,8 +62,11 @@ function attach(scene, gltf, parser) {
     if (mesh.geometry.getAttribute('position').count !== surface.vertexCount)
       throw new Error(`mesh ${draw.node} was decoded to another number of vertices than transfer was baked for`);
     const groupFromMesh = new Matrix4().multiplyMatrices(groupFromWorld[draw.group], mesh.matrixWorld);
-    surface.attach(mesh, groupFromMesh, scene.uniforms[draw.group],
-      { table: scene.tableOf(draw), grids: scene.gridsAround(draw.group), lamps: lamps.length > 0 });
+    const spheres = scene.hasSpheres(draw.group);
+    surface.attach(mesh, groupFromMesh, scene.uniforms[draw.group], {
+      table: scene.tableOf(draw), grids: scene.gridsAround(draw.group), lamps: lamps.length > 0 || spheres, spheres,
+      ownLamp: scene.sphereLampOf(draw),
+    });
     surface.mesh = mesh;
     return true;
   });

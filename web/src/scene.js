@@ -12,6 +12,7 @@ import { LightVector, Rotation } from './light_vector.js';
 import { Passes } from './passes.js';
 import { SceneDepth } from './scene_depth.js';
 import { ShadowCubes } from './shadow_cubes.js';
+import { findSphereLamps } from './sphere_lamps.js';
 
 const MOST_COEFFICIENTS = 64; // of eight bands
 const KNOWN_COEFFICIENTS = 36; // of the six bands that mirrors know
@@ -64,7 +65,8 @@ export class LambentScene {
     this._depth = new SceneDepth();
     this._gpu = null; // where the light lies that has been shaded
     this._frame = -1;
-    this._punctual = [];
+    this._sphereLamps = findSphereLamps(bundle.groups);
+    this._shining = []; // these and the lamps at nodes
     this._divided = null;
     this._cubes = null;
     this._captures = null; // where there are several groups
@@ -74,9 +76,11 @@ export class LambentScene {
       lambentLampPlaces: { value: listOf(MOST_CUBES, () => new Vector4()) },
       lambentLampAims: { value: listOf(MOST_CUBES, () => new Vector4()) },
       lambentLampCones: { value: new Float32Array(MOST_CUBES) },
+      lambentLampRadii: { value: new Float32Array(MOST_CUBES) },
     };
-    this.uniforms = this.groups.map(() => ({
+    this.uniforms = this.groups.map((_, g) => ({
       ...this._lampUniforms,
+      lambentGridKept: { value: this.bodiesAround(g).map(() => 1) },
       lambentLampPowers: { value: new Float32Array(3 * MOST_CUBES) },
       lambentKeyed: { value: false },
       lambentKey: { value: new Float32Array(27) },
@@ -160,10 +164,22 @@ export class LambentScene {
     return rest.premultiply(this.restInverses[json.node]).premultiply(node.matrixWorld);
   }
 
-  /** Takes the lamps, and the meshes that cast shadows in their light. */
+  /** Takes the lamps at nodes, and the meshes that cast shadows in the light of all lamps. */
   setLamps(lamps, meshes) {
-    this._punctual = lamps;
-    if (lamps.length > 0) this._cubes = new ShadowCubes(meshes, this._lampUniforms.lambentCubes);
+    this._shining = [...lamps, ...this._sphereLamps];
+    if (this._shining.length > 0) this._cubes = new ShadowCubes(meshes, this._lampUniforms.lambentCubes);
+  }
+
+  /** Tells whether a group has lamps that shine as spheres. */
+  hasSpheres(group) {
+    return this._sphereLamps.some((lamp) => lamp.isColumnOf(group));
+  }
+
+  /** Returns the lamp of spheres that a draw is, or undefined. */
+  sphereLampOf({ group, node, primitive }) {
+    const { json } = this.bundle, { material } = json.meshes[json.nodes[node].mesh].primitives[primitive];
+    return this._sphereLamps.find((lamp) => lamp.isColumnOf(group)
+      && this.groups[group].json.lights[lamp.column.index].material === material);
   }
 
   /**
@@ -188,12 +204,17 @@ export class LambentScene {
 
   // Finds the light at the light probes of all groups, and returns the groups for which it changed.
   gatherLight(places, turns, lampsChanged) {
-    const { _light: light, _key: key, _divided: { ofGroup } } = this;
+    const { _light: light, _key: key, _divided: divided, _divided: { ofGroup } } = this;
     const mode = this._transfer === 'shadowed' ? 'shadowed' : 'full';
-    if (this._captures)
-      return this._captures.update({
-        places, turns, light, key, ofGroup, lamps: this.lamps, mode, changed: this._changed || lampsChanged,
+    if (this._captures) {
+      const risen = this._captures.update({
+        places, turns, light, key, divided, lamps: this.lamps, mode, changed: this._changed || lampsChanged,
       });
+      this.groups.forEach((_, g) => this.uniforms[g].lambentGridKept.value.forEach((_, i, kept) => {
+        kept[i] = Number(this._captures.byGrids[g].has(this.bodiesAround(g)[i]));
+      }));
+      return risen;
+    }
     this._open = this.groups.map(({ json }, g) => {
       const { probes } = ofGroup[g], points = json.lightSamples.map((p) => new Vector3(...p).applyMatrix4(places[g]));
       return (probes.length > 0 ? points : [null]).map((point) => {
@@ -217,22 +238,30 @@ export class LambentScene {
 
   // Finds which lamps shine by cubes, and hands them to the pixels.
   divideLamps(places) {
-    for (const lamp of this._punctual) lamp.follow(this.lamps);
+    for (const lamp of this._shining) lamp.follow(this.lamps, places);
     const open = this._transfer === 'unshadowed';
-    const seen = [Number(open), ...this._punctual.flatMap(({ state }) => state)];
-    if (this._punctual.length > 0) seen.push(...places.flatMap(({ elements }) => elements));
+    const seen = [Number(open), ...this._shining.flatMap(({ state }) => state)];
+    if (this._shining.length > 0) seen.push(...places.flatMap(({ elements }) => elements));
     if (this._divided && equal(seen, this._lampsSeen)) return;
     this._lampsSeen = seen;
     const groups = this.groups.map(
       ({ json, volume }, index) => ({ json, place: places[index], isVolume: volume !== null }));
-    this._divided = divideLamps(this._punctual, groups, open);
-    const { lambentLampPlaces, lambentLampAims, lambentLampCones } = this._lampUniforms;
-    this._divided.cubes.forEach(({ position, direction, range, coneScale, outerCosine }, k) => {
+    const { cubes, ofGroup } = this._divided = divideLamps(this._shining, groups, open);
+    const { lambentLampPlaces, lambentLampAims, lambentLampCones, lambentLampRadii } = this._lampUniforms;
+    cubes.forEach(({ position, direction, range, coneScale, outerCosine, radius }, k) => {
       lambentLampPlaces.value[k].set(...position, range);
       lambentLampAims.value[k].set(...direction, coneScale);
       lambentLampCones.value[k] = outerCosine;
+      lambentLampRadii.value[k] = radius;
     });
-    this._divided.ofGroup.forEach(({ powers }, g) => this.uniforms[g].lambentLampPowers.value.set(powers));
+    ofGroup.forEach(({ powers }, g) => this.uniforms[g].lambentLampPowers.value.set(powers));
+    for (const { ownLamp, draw, uniforms } of this.surfaces) {
+      if (!ownLamp) continue;
+      // No lamp lights its own surface.
+      const powers = ofGroup[draw.group].powers.slice();
+      cubes.forEach(({ lamp }, k) => lamp === ownLamp && powers.fill(0, 3 * k, 3 * k + 3));
+      uniforms.lambentLampPowers.value.set(powers);
+    }
   }
 
   /**
@@ -275,9 +304,14 @@ export class LambentScene {
     this._unshaded.fill(false);
   }
 
-  /** Returns the grids of bodies other than a group, the first of them if there are many. */
+  // Returns the bodies other than a group that have grids, the first of them if there are many.
+  bodiesAround(index) {
+    return this.groups.map((_, i) => i).filter((i) => i !== index && this.groups[i].grid).slice(0, MOST_GRIDS);
+  }
+
+  /** Returns the grids around bodies that may change the light of a group. */
   gridsAround(index) {
-    return this.groups.filter((group, i) => i !== index && group.grid).map((group) => group.grid).slice(0, MOST_GRIDS);
+    return this.bodiesAround(index).map((i) => this.groups[i].grid);
   }
 
   setLight(group, index, turn) {

@@ -2,7 +2,7 @@
 // pixel replaces the indirect light of three (ambient light, probes, environment) by what transfer brings.
 import { PLACE_TEXT } from './gpu_textures.js';
 import { gridsText } from './grid.js';
-import { LAMP_LOBE_TEXT, LOCAL_TEXT, lampsBody } from './local_text.js';
+import { lampsBody, lampsText } from './local_text.js';
 import { REFLECTION_TEXT } from './reflection_text.js';
 
 // E/π at a normal from light of bands 0..2: Σ A_l/π y_j(n) l'_j, with the constants of docs/conventions.md.
@@ -151,7 +151,7 @@ vec3 lambentToView(vec3 group) { return normalize((viewMatrix * vec4(group * lam
 ${kind.outputs === 9 || kind.grids.length > 0 ? DIFFUSE_LIGHT : ''}
 ${kind.grids.length > 0 ? gridsText(kind.grids) : ''}
 ${kind.table ? REFLECTION_TEXT(kind) : ''}
-${kind.lamps ? LOCAL_TEXT + (hasLobe(kind) ? LAMP_LOBE_TEXT : '') : ''}
+${kind.lamps ? lampsText(hasLobe(kind), kind.spheres) : ''}
 #ifdef LAMBENT_TEXELS
 varying vec2 vLambentUv;
 uniform sampler2D lambentTexels;
@@ -163,7 +163,7 @@ const listOf = (count, text) => Array.from({ length: count }, (_, i) => text(i))
 
 // Tables of measured BRDFs have no lobe for the highlights of lamps.
 const hasLobe = ({ table }) => table?.lobes === 2;
-const lamps = (kind) => (kind.lamps ? lampsBody(hasLobe(kind)) : 'vec3 lambentLocal = vec3(0.0);');
+const lamps = (kind) => (kind.lamps ? lampsBody(hasLobe(kind), kind.spheres) : 'vec3 lambentLocal = vec3(0.0);');
 
 // E/π at the pixel, with what bodies nearby change.
 const received = (kind) => `${transferred(kind)}

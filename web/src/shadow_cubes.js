@@ -1,5 +1,6 @@
-// Shadow cubes of lamps: distances from the lamp as six tiles in a row of one texture, a row for each lamp. 0 means
-// that nothing is there. A row is drawn anew when its lamp or something that casts shadows has moved.
+// Shadow cubes of lamps: distances from the lamp as six tiles in a row of one texture, a row for each lamp, or for each
+// sphere of one. 0 means that nothing is there. A row is drawn anew when its lamp or something that casts shadows has
+// moved.
 import {
   DoubleSide, FloatType, Matrix3, Matrix4, Mesh, NearestFilter, NoBlending, PerspectiveCamera, RedFormat, Scene,
   ShaderMaterial, Vector3, WebGLRenderTarget,
@@ -28,6 +29,7 @@ void main() {
 const FRAGMENT = /* glsl */ `
 uniform sampler2D mask;
 uniform float coverage, cutoff;
+uniform float hole; // the lamp's own body, which is nearer to its centre, casts no shadow
 varying vec3 fromLight;
 varying vec2 vMaskUv;
 void main() {
@@ -35,11 +37,12 @@ void main() {
     if (coverage * texture2D(mask, vMaskUv).a < cutoff) discard;
   #endif
   float metres = length(fromLight);
+  if (metres < hole) discard;
   gl_FragDepth = metres / (1.0 + metres);
   gl_FragColor = vec4(metres, 0.0, 0.0, 1.0);
 }`;
 
-function casterMaterial({ map, opacity, alphaTest }) {
+function casterMaterial({ map, opacity, alphaTest }, hole) {
   const masked = map && alphaTest > 0;
   if (masked) map.updateMatrix();
   return new ShaderMaterial({
@@ -47,7 +50,7 @@ function casterMaterial({ map, opacity, alphaTest }) {
     defines: masked ? { MASK_UV: map.channel === 0 ? 'uv' : `uv${map.channel}` } : {},
     uniforms: {
       mask: { value: masked ? map : null }, maskTransform: { value: masked ? map.matrix : new Matrix3() },
-      coverage: { value: opacity }, cutoff: { value: alphaTest },
+      coverage: { value: opacity }, cutoff: { value: alphaTest }, hole,
     },
   });
 }
@@ -56,10 +59,11 @@ export class ShadowCubes {
   /** `meshes` cast shadows, both sides of each, unless they are blended. `texture` is the uniform of the texture. */
   constructor(meshes, texture) {
     this.texture = texture;
+    this.hole = { value: 0 };
     this.scene = new Scene();
     this.scene.matrixWorldAutoUpdate = false;
     this.casters = meshes.filter(({ material }) => !material.transparent).map((source) => {
-      const caster = new Mesh(source.geometry, casterMaterial(source.material));
+      const caster = new Mesh(source.geometry, casterMaterial(source.material, this.hole));
       caster.matrixAutoUpdate = false;
       this.scene.add(caster);
       return { source, caster };
@@ -71,7 +75,7 @@ export class ShadowCubes {
       camera.userData.turn = new Matrix4().makeBasis(ahead.clone().cross(up), up, ahead.negate());
       return camera;
     });
-    this.drawn = []; // where the lamps of the rows stood
+    this.drawn = []; // the lamps of the rows, where they stood
   }
 
   /** Draws what has changed around lamps; `passes` keep the renderer as it was. */
@@ -84,9 +88,11 @@ export class ShadowCubes {
     }
     if (moved) this.forget();
     if (lamps.length > this.rows) this.makeRoom(lamps.length);
-    const changed = lamps.map((_, row) => row).filter((row) => !this.drawn[row]?.equals(lamps[row].position));
+    const drawn = ({ position, hole }, row) =>
+      this.drawn[row]?.position.equals(position) && this.drawn[row].hole === hole;
+    const changed = lamps.map((_, row) => row).filter((row) => !drawn(lamps[row], row));
     if (changed.length > 0)
-      passes.during(renderer, () => changed.forEach((row) => this.draw(renderer, row, lamps[row].position)));
+      passes.during(renderer, () => changed.forEach((row) => this.draw(renderer, row, lamps[row])));
   }
 
   get rows() {
@@ -103,19 +109,23 @@ export class ShadowCubes {
     this.forget();
   }
 
-  draw(renderer, row, position) {
-    const { target, scene } = this;
+  draw(renderer, row, { position, hole }) {
+    this.hole.value = hole;
     this.cameras.forEach((camera, face) => {
       camera.matrixWorld.copy(camera.userData.turn).setPosition(position);
       camera.matrixWorldInverse.copy(camera.matrixWorld).invert();
-      target.viewport.set(face * CUBE_SIZE, row * CUBE_SIZE, CUBE_SIZE, CUBE_SIZE);
-      target.scissor.copy(target.viewport);
-      renderer.setRenderTarget(target);
-      renderer.setClearColor(0x000000, 0);
-      renderer.clear();
-      renderer.render(scene, camera);
+      this.target.viewport.set(face * CUBE_SIZE, row * CUBE_SIZE, CUBE_SIZE, CUBE_SIZE);
+      this.target.scissor.copy(this.target.viewport);
+      this.drawFace(renderer, this.target, camera);
     });
-    this.drawn[row] = position.clone();
+    this.drawn[row] = { position: position.clone(), hole };
+  }
+
+  drawFace(renderer, target, camera) {
+    renderer.setRenderTarget(target);
+    renderer.setClearColor(0x000000, 0);
+    renderer.clear();
+    renderer.render(this.scene, camera);
   }
 
   /** Makes the next update draw all rows. */

@@ -18,9 +18,10 @@ export class Surface {
   /**
    * Puts the surface into the scene: `mesh` is three's mesh of the primitive, `groupFromMesh` is at rest. `shared` are
    * the uniforms of the group, `table` is what the material looks up if it is no diffuse one, or null, and
-   * `grids` are those of other bodies; `lamps` says whether there are lamps with shadow cubes.
+   * `grids` are those of other bodies; `lamps` says whether there are lamps with shadow cubes, `spheres` whether some of
+   * these have a radius, and `ownLamp` is the lamp that the surface is, if any.
    */
-  attach(mesh, groupFromMesh, shared, { table, grids, lamps }) {
+  attach(mesh, groupFromMesh, shared, { table, grids, lamps, spheres, ownLamp }) {
     const back = this.draw.side === 'back', glossy = this.draw.outputs > 9;
     const diffuse = isMatte(mesh.material, mesh.userData.lambentDefaultMaterial === true);
     const layered = !glossy && !diffuse && table !== null && table.lobes === 2;
@@ -38,11 +39,13 @@ export class Surface {
       ...shared, lambentSamples: uniform(null), lambentEntries: uniform(entries),
       lambentGroupFromNormal: uniform(normalMatrix), ...gridUniforms(grids),
     };
+    this.ownLamp = ownLamp;
+    if (ownLamp) this.uniforms.lambentLampPowers = uniform(shared.lambentLampPowers.value.slice());
     if (this.draw.texels) this.attachTexels(mesh, geometry, entryOf);
     const kind = {
       outputs: this.draw.outputs, glossy, layered, table: glossy || layered ? table : null,
       texels: Boolean(this.draw.texels), normalWeight: Boolean(geometry.getAttribute('_normal_weight')),
-      grids: glossy ? [] : grids.map((grid) => grid.whole), lamps,
+      grids: glossy ? [] : grids.map((grid) => grid.whole), lamps, spheres,
       framed: Boolean(geometry.getAttribute('tangent') ?? geometry.getAttribute('uv')),
     };
     if (kind.table) {

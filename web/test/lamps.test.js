@@ -2,8 +2,9 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Matrix4, PointLight, SpotLight, Vector3 } from 'three';
-import { Lamp, MOST_CUBES, divideLamps, lampsAt } from '../src/local_lights.js';
+import { Lamp, MOST_CUBES, divideLamps, lampsAt, shadowsDiffer } from '../src/local_lights.js';
 import { unoccludedTransfer } from '../src/sh.js';
+import { findSphereLamps } from '../src/sphere_lamps.js';
 
 function lampAt(x, y, z, light = new PointLight(0xffffff, 3)) {
   light.position.set(x, y, z);
@@ -76,4 +77,45 @@ test('no light is lost and none jumps as a lamp moves away', () => {
     }
     assert.equal(before, 0);
   }
+});
+
+// A room with materials that shine as so many spheres each, and their lamps under such strengths.
+function bulbs(counts, strengths, scale = 1) {
+  const spheres = (count) => Array.from({ length: count }, (_, i) => (
+    { center: [0.1 * i, 0.3, 0], radius: 0.05, bodyRadius: 0.06 }));
+  const lights = counts.map((count, material) => ({ kind: 'material', material, spheres: spheres(count) }));
+  const room = { ...body(1), json: { ...body(1).json, lights } }, lamps = findSphereLamps([room.json]);
+  room.place.scale(new Vector3(scale, scale, scale));
+  for (const lamp of lamps) lamp.follow([strengths.map((c) => [c, c, c])], [room.place]);
+  return { room, lamps };
+}
+
+test('materials shine as spheres where there are cubes for all of them, the brightest first', () => {
+  const { room, lamps } = bulbs([1, 3, 2, 0], [2, 3, 10, 50]);
+  assert.equal(lamps.length, 3, 'a material without spheres shines by its column');
+  const { cubes, ofGroup } = divideLamps(lamps, [room, body(0)], false), [own, other] = ofGroup;
+  assert.deepEqual(own.apart, [1, 0, 1, 0], 'the second one is brighter than the first and has too many spheres');
+  assert.deepEqual(cubes.map(({ lamp }) => lamps.indexOf(lamp)), [2, 2, 0]);
+  assert.deepEqual([0, 3, 6, 9].map((i) => own.powers[i]), [10, 10, 2, 0]);
+  assert.ok(cubes[1].position.distanceTo(new Vector3(1.1, 0.3, 0)) < 1e-6 && cubes[1].hole > 0.06);
+  assert.ok(other.powers.every((power) => power === 0) && other.probes.length === 0, 'others see a body that shines');
+});
+
+test('spheres leave cubes to lamps among surfaces, and shine by columns in a group of another size', () => {
+  const points = [0, 0.1, 0.2].map((x) => lampAt(x, 0.2, 0)), { room, lamps } = bulbs([2], [1e4]);
+  const apart = (all, group, open = false) => divideLamps(all, [group], open).ofGroup[0].apart;
+  const here = { ...room, place: new Matrix4() };
+  assert.deepEqual(apart([...points, ...lamps], here), [0]);
+  assert.deepEqual(apart([...points.slice(1), ...lamps], here), [1]);
+  assert.deepEqual(apart(lamps, room, true), [0]);
+  const large = bulbs([2], [1e4], 1.1), dark = bulbs([2], [0]);
+  assert.deepEqual([apart(large.lamps, large.room), apart(dark.lamps, dark.room)], [[0], [0]]);
+});
+
+test('a body in the cube of a bulb shades by captures', () => {
+  const { room, lamps } = bulbs([1], [1]), between = lampAt(0, 0.2, 0);
+  const differ = (all) => shadowsDiffer(divideLamps(all, [body(0), room], false), 0, 1);
+  assert.equal(differ(lamps), true);
+  assert.equal(differ([]), false);
+  assert.equal(differ([between]), false, 'both take it by its cube');
 });

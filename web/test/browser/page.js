@@ -5,6 +5,7 @@ import { DRACOLoader } from 'three/addons/loaders/DRACOLoader.js';
 import { EXRLoader } from 'three/addons/loaders/EXRLoader.js';
 import { HDRLoader } from 'three/addons/loaders/HDRLoader.js';
 import * as lambent from 'lambent-three';
+import { drawCubesFinely } from './fine_cubes.js';
 
 const DEGREE = Math.PI / 180;
 const renderer = new THREE.WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
@@ -172,8 +173,8 @@ function showDifference(ours, theirs, width, height) {
 
 async function render(options) {
   const { bundle, lights, camera: words, size, transfer = 'full', picture,
-    time, environment, sky, factor = 1 } = options;
-  const [width, height] = size;
+    time, environment, sky, fineCubes, factor = 1 } = options;
+  const [width, height] = size, endFineCubes = fineCubes ? drawCubesFinely() : () => {};
   const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
   if (!baked) throw new Error('the bundle was shown as plain glTF');
   scene.add(gltf.scene);
@@ -208,6 +209,7 @@ async function render(options) {
     showDifference(a, b, width, height);
   }
   const before = { ...renderer.info.memory };
+  endFineCubes();
   scene.remove(gltf.scene);
   scene.environment?.dispose();
   scene.background?.dispose();
