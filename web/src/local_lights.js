@@ -103,7 +103,7 @@ export function divideLamps(lamps, groups, open) {
   apart.sort((a, b) => intensity(b) - intensity(a));
   for (const { shapes } of apart)
     if (!cubes.includes(shapes[0]) && cubes.length + shapes.length <= MOST_CUBES) cubes.push(...shapes);
-  return { cubes, ofGroup: groups.map((group, g) => lightOf(group, g)) };
+  return { open, cubes, ofGroup: groups.map((group, g) => lightOf(group, g)) };
 
   function lightOf({ json, place, isVolume }, g) {
     const powers = new Float32Array(3 * MOST_CUBES), columns = json.lights.map(() => 0), probes = [];
@@ -128,9 +128,11 @@ export function divideLamps(lamps, groups, open) {
 
 /**
  * Tells whether a body's shadow in the light of lamps would reach a receiver twice, by the grid around the body and by a
- * cube, or not at all; `divided` is of divideLamps. Then the receiver takes the body's light by captures.
+ * cube, or not at all; `divided` is of divideLamps. Then the receiver takes the body's light by captures. Where all is
+ * open, no grid shows, and samples take the mean of the light at probes, which the few beside a body must not darken.
  */
-export function shadowsDiffer({ cubes, ofGroup }, body, receiver) {
+export function shadowsDiffer({ open, cubes, ofGroup }, body, receiver) {
+  if (open) return false;
   // The share of a lamp that a group has by harmonics, or null if that is in its column.
   const byHarmonics = (lamp, g) => {
     const one = ofGroup[g].probes.find((probe) => probe.lamp === lamp);

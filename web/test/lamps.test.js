@@ -114,7 +114,7 @@ test('spheres leave cubes to lamps among surfaces, and shine by columns in a gro
 
 test('a body in the cube of a bulb shades by captures', () => {
   const { room, lamps } = bulbs([1], [1]), between = lampAt(0, 0.2, 0);
-  const differ = (all) => shadowsDiffer(divideLamps(all, [body(0), room], false), 0, 1);
+  const differ = (all) => shadowsDiffer(divideLamps(all, [room, body(0)], false), 1, 0);
   assert.equal(differ(lamps), true);
   assert.equal(differ([]), false);
   assert.equal(differ([between]), false, 'both take it by its cube');

@@ -6,16 +6,13 @@ import { EXRLoader } from 'three/addons/loaders/EXRLoader.js';
 import { HDRLoader } from 'three/addons/loaders/HDRLoader.js';
 import * as lambent from 'lambent-three';
 import { drawCubesFinely } from './fine_cubes.js';
+import { paintSky, toward } from './painted_sky.js';
 
 const DEGREE = Math.PI / 180;
 const renderer = new THREE.WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
 renderer.toneMapping = THREE.NeutralToneMapping; // of what is shown for the eye; linear pictures have none
 renderer.toneMappingExposure = 0.25;
 document.body.append(renderer.domElement);
-
-export const toward = (azimuth, elevation) => new THREE.Vector3(
-  Math.sin(azimuth * DEGREE) * Math.cos(elevation * DEGREE), Math.sin(elevation * DEGREE),
-  Math.cos(azimuth * DEGREE) * Math.cos(elevation * DEGREE));
 
 function loader(options) {
   const draco = new DRACOLoader().setDecoderPath('/web/node_modules/three/examples/jsm/libs/draco/gltf/');
@@ -39,19 +36,8 @@ async function lightOf(word) {
 async function environmentOf(words) {
   const map = words.find((word) => !/^(constant|sun):/.test(word));
   if (map) return new HDRLoader().setDataType(THREE.FloatType).loadAsync(map);
-  const width = 1024, height = 512, data = new Float32Array(4 * width * height), direction = new THREE.Vector3();
-  const suns = words.map((word) => [word.split(':')[0], word.split(':')[1].split(',').map(Number)]);
-  for (let i = 0; i < width * height; ++i) {
-    const phi = (((i % width) + 0.5) / width - 0.5) * 2 * Math.PI;
-    const theta = Math.PI * (1 - (Math.floor(i / width) + 0.5) / height);
-    direction.set(Math.sin(theta) * Math.cos(phi), Math.cos(theta), Math.sin(theta) * Math.sin(phi));
-    for (const [kind, n] of suns) {
-      if (kind === 'sun' && direction.dot(toward(n[0], n[1])) < Math.cos(n[2] * DEGREE)) continue;
-      const rgb = kind === 'sun' ? n.slice(3) : n;
-      for (let c = 0; c < 3; ++c) data[4 * i + c] += rgb[c] ?? rgb[0];
-    }
-  }
-  const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, THREE.FloatType);
+  const { data, width, height } = paintSky(words), texture = new THREE.DataTexture(
+    data, width, height, THREE.RGBAFormat, THREE.FloatType);
   Object.assign(texture, { magFilter: THREE.LinearFilter, minFilter: THREE.LinearFilter, needsUpdate: true });
   return texture;
 }
