@@ -80,7 +80,8 @@ vec3 lambentChanged(vec3 light, vec3 view, vec3 normal, out vec3 whole) {
   vec3 world = (vec4(view - viewMatrix[3].xyz, 0.0) * viewMatrix).xyz, n = (vec4(normal, 0.0) * viewMatrix).xyz;
   vec3 change = vec3(0.0);
   whole = vec3(0.0);
-  ${wholes.map((whole, g) => `if (lambentGridKept[${g}]) ${whole ? 'whole' : 'change'} += lambentGrid${g}(world, n);`).join('\n  ')}
+  ${wholes.map((whole, g) => `if (lambentGridKept[${g}])
+    ${whole ? 'whole' : 'change'} += lambentGrid${g}(world, n);`).join('\n  ')}
   if (!lambentKeyed) change += whole;
   return max(light + change, min(light, vec3(0.0)));
 }

@@ -38,7 +38,7 @@ export class LambentScene {
   /** Bands of the light that count, at most. */
   order: number;
   readonly disposed: boolean;
-  /** Sets colour times strength of a lamp that was baked into a group. */
+  /** Sets colour times strength of a lamp that was baked into a group: candela, or of a material the radiance. */
   setLamp(group: number, index: number, color: { r: number; g: number; b: number }): void;
   /**
    * Brings light to the groups in which something changed, with world matrices up to date, and returns whether there was

@@ -16,6 +16,7 @@ const shines = (rgb) => rgb.every(Number.isFinite) && rgb.some((c) => c !== 0);
 export class Lamp {
   constructor(light, column) {
     Object.assign(this, { light, column, position: new Vector3(), direction: new Vector3(0, 0, -1) });
+    // It is its own and only shape, and its intensity is its power.
     Object.assign(this, { isNode: true, lamp: this, shapes: [this], radius: 0, hole: 0, area: 1 });
     light.layers.disableAll();
   }
@@ -88,8 +89,8 @@ function sharesOf(distances, radii) {
 
 /**
  * Divides the light of lamps among the carriers. `groups` are {json, place, isVolume}; where `open`, light knows no
- * transfer. Returns the shapes of lamps with `cubes`, and for each group the `powers` of these on its pixels, the lamps that
- * reach its light `probes` with the shares of them that shine `beside` it per pixel, and for each column 1 if it is
+ * transfer. Returns the shapes of lamps with `cubes`, and for each group the `powers` of these on its pixels, the lamps
+ * that reach its light `probes` with the shares of them that shine `beside` it per pixel, and for each column 1 if it is
  * `apart`, so that a cube shines in its place. `state` changes with the light at the probes.
  */
 export function divideLamps(lamps, groups, open) {
