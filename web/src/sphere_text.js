@@ -1,5 +1,7 @@
 // Light of spheres by their shadow cubes, per pixel, with penumbrae: the text of runtime/shadows/shadowed_light.glsl and
 // local_shadow.glsl for them, which explain it. It goes behind POINT_TEXT of local_text.js.
+import { MOST_CUBES } from './local_lights.js';
+
 const POINTS = 16; // sample points on a sphere's disc
 const GOLDEN_ANGLE = 2.39996323;
 
@@ -15,7 +17,7 @@ const list = (name, at) => `const float ${name}[${POINTS}] = float[${POINTS}](${
   Array.from({ length: POINTS }, (_, i) => at(i).toFixed(8)).join(', ')});`;
 
 export const SPHERE_TEXT = /* glsl */ `
-uniform float lambentLampRadii[4]; // 0: a light without an extent
+uniform float lambentLampRadii[${MOST_CUBES}]; // 0: a light without an extent
 
 // E/(π L) of a sphere whose centre is h radii away at an angle of this cosine to the normal [Snyder 1996].
 float lambentSphereShare(float cosine, float h) {

@@ -3,7 +3,7 @@
 // LAMBENT_TEST_WORK a folder for pictures, CHROMIUM the browser (/usr/bin/chromium).
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
+import { mkdirSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
 import test from 'node:test';
 import { DataTexture, FloatType, RGBAFormat } from 'three';
@@ -29,10 +29,9 @@ const LIGHTS = {
 const BOUND = 0.005;
 const percent = (x) => `${(100 * x).toFixed(3)} %`;
 
-// Writes lights as an environment map, unless it is there.
+// Writes lights as an environment map.
 async function paint(name) {
   const path = join(work, `${name}.exr`), { data, width, height } = paintSky(LIGHTS[name]);
-  if (existsSync(path)) return path;
   const texture = new DataTexture(data, width, height, RGBAFormat, FloatType);
   writeFileSync(path, await new EXRExporter().parse(texture, { type: FloatType }));
   return path;
