@@ -131,10 +131,19 @@ export class LambentScene {
     this._changed = true;
   }
 
-  /** Sets the light of a lamp that was baked into a group: colour times strength. */
-  setLamp(group, index, color) {
-    this.lamps[group][index] = [color.r, color.g, color.b];
+  /**
+   * Sets the light of a lamp that was baked into a group: colour times strength. The surfaces of a material glow by it.
+   */
+  setLamp(group, index, { r, g, b }) {
+    this.lamps[group][index] = [r, g, b];
     this._changed = true;
+    const { kind, material } = this.groups[group].json.lights[index];
+    if (kind !== 'material') return;
+    for (const { draw, material: shown } of this.surfaces) {
+      if (draw.group !== group || this.materialOf(draw) !== material) continue;
+      shown.emissive.setRGB(r, g, b);
+      shown.emissiveIntensity = 1;
+    }
   }
 
   /** Adds a weight plane that has arrived; planes of a transfer come in order. */
@@ -176,10 +185,16 @@ export class LambentScene {
   }
 
   /** Returns the lamp of spheres that a draw is, or undefined. */
-  sphereLampOf({ group, node, primitive }) {
-    const { json } = this.bundle, { material } = json.meshes[json.nodes[node].mesh].primitives[primitive];
-    return this._sphereLamps.find((lamp) => lamp.isColumnOf(group)
-      && this.groups[group].json.lights[lamp.column.index].material === material);
+  sphereLampOf(draw) {
+    const { lights } = this.groups[draw.group].json, material = this.materialOf(draw);
+    return this._sphereLamps.find(({ column: { group, index } }) =>
+      group === draw.group && lights[index].material === material);
+  }
+
+  // Returns the index of a draw's material, or undefined.
+  materialOf({ node, primitive }) {
+    const { json } = this.bundle;
+    return json.meshes[json.nodes[node].mesh].primitives[primitive].material;
   }
 
   /**
@@ -361,10 +376,9 @@ export class LambentScene {
 
   // Returns the place of the table that a draw looks up, or null.
   tableIndex(draw) {
-    const { json } = this.bundle, primitive = json.meshes[json.nodes[draw.node].mesh].primitives[draw.primitive];
-    const families = this.bundle.extension.brdfTables.map((table) => table.family);
-    if (primitive.material === undefined) return null;
-    return tableFor(json.materials[primitive.material], families, draw.outputs <= 9);
+    const material = this.materialOf(draw), families = this.bundle.extension.brdfTables.map((table) => table.family);
+    if (material === undefined) return null;
+    return tableFor(this.bundle.json.materials[material], families, draw.outputs <= 9);
   }
 
   /** Returns the table that a draw looks up, or null. */

@@ -86,6 +86,10 @@ test('pictures are those of lambent-demo', { skip, timeout: 900000 }, async (t) 
       t.diagnostic(`an orthographic camera shows what one far away does, to ${percent(inside)} beside no edges`);
       assert.ok(inside < BOUND);
     }
+    if (/^bulbs/.test(basename(bundle))) {
+      const { lamps, all } = await page.evaluate((options) => window.lambentTest.lampsHalved(options), own);
+      assert.ok(lamps === 1 && all < 1e-3, `${lamps} lamps of half the strength give ${percent(all)} else than half`);
+    }
     const turns = { ...own, lights: LIGHTS.soft };
     const cost = await page.evaluate((options) => window.lambentTest.lightCost(options), turns);
     const ms = ({ light, commands, drawn }) =>

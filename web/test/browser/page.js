@@ -207,6 +207,24 @@ async function render(options) {
   return result;
 }
 
+// Sets all lamps of a bundle to half their strength, where they shine alone. Returns their number, and how far the picture
+// is from half of what it was.
+async function lampsHalved({ bundle, camera: words, size: [width, height] }) {
+  const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
+  scene.add(gltf.scene);
+  baked.light = lambent.LightVector.constant(0, 0, 0);
+  scene.updateMatrixWorld();
+  const camera = cameraOf(gltf, words, width / height), all = readFloats(scene, camera, width, height);
+  let lamps = 0;
+  baked.groups.forEach(({ json }, group) => json.lights.forEach(({ color: [r, g, b] }, index) => {
+    baked.setLamp(group, index, new THREE.Color(r / 2, g / 2, b / 2));
+    ++lamps;
+  }));
+  const half = readFloats(scene, camera, width, height).map((c, i) => (i % 4 === 3 ? c : 2 * c));
+  baked.dispose();
+  return { lamps, ...compare(half, all, width, height) };
+}
+
 // Returns the light that the GPU finds at the samples of one number of outputs, RGBA each, group by group.
 async function samples(bundle, rgb, outputs) {
   const gltf = await loader().loadAsync(bundle), baked = gltf.userData.lambent, scene = new THREE.Scene();
@@ -388,5 +406,5 @@ async function loseContext({ bundle, lights, camera: words, size, time }) {
 }
 
 window.lambentTest = {
-  fromAfar, loseContext, render, samples, lightCost, projections, progressive, sunny, newerFormat, ready: true,
+  fromAfar, lampsHalved, loseContext, render, samples, lightCost, projections, progressive, sunny, newerFormat, ready: true,
 };
