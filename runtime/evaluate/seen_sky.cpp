@@ -36,10 +36,7 @@ gpu::Texture kernelTexture() {
                                            .layers = lighting::kSeenLayers});
   glTextureSubImage3D(texture.id(), 0, 0, 0, 0, lighting::kSeenCosines, lighting::kSeenRoughnesses,
                       lighting::kSeenLayers, GL_RGBA, GL_FLOAT, kernel.texels.data());
-  glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  texture.interpolate();
   return texture;
 }
 

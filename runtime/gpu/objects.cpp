@@ -94,6 +94,14 @@ Texture::Texture(std::string_view label, const TextureDesc& desc)
   setLabel(GL_TEXTURE, id(), label);
 }
 
+void Texture::interpolate(GLint min_filter) const {
+  glTextureParameteri(id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(id(), GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(id(), GL_TEXTURE_MIN_FILTER, min_filter);
+  glTextureParameteri(id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
 Result<Texture> Texture::sharing(std::string_view label, GLuint other) {
   const auto no = [&](std::string why) {
     return fail(std::string(label), std::move(why),

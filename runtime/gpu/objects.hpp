@@ -117,6 +117,8 @@ class Texture : public Handle<TextureTraits> {
   static Result<Texture> sharing(std::string_view label, GLuint other);
   const TextureDesc& desc() const { return desc_; }
   void bind(GLuint unit) const { glBindTextureUnit(unit, id()); }
+  // Makes samplers interpolate between texels and repeat the last ones beyond the edges.
+  void interpolate(GLint min_filter = GL_LINEAR) const;
 
  private:
   Texture(GLuint id, const TextureDesc& desc) : Handle(id), desc_(desc) {}

@@ -46,17 +46,20 @@ KeyReceiver keyReceiver(KeyRecord key, vec3 position, vec3 normal) {
   return receiver;
 }
 
+// Returns the texel within bounds that is nearest to a place. Places may lie farther away than integers reach.
+ivec2 nearestTexel(vec2 place, vec2 least, vec2 most) { return ivec2(clamp(floor(place), least, most)); }
+
 // Returns the least and greatest depth, in metres, of all that lies within `reach` texels of a place, or
 // slightly more.
 vec2 blockerBounds(KeyRecord key, vec2 place, vec2 reach) {
   float widest = max(reach.x, reach.y) * 2.0 / float(kBlockerTexels);
   float tile = key.tile.z - key.tile.x + 1.0;
   int last = int(log2(tile / float(kBlockerTexels)) + 0.5);
-  int level = clamp(int(ceil(log2(max(widest, 1.0)))), 0, last);
+  int level = clamp(int(ceil(log2(clamp(widest, 1.0, tile)))), 0, last);
   float texels = float(kBlockerTexels << level);
-  ivec2 least = ivec2(key.tile.xy / texels), most = ivec2(key.tile.zw / texels);
-  ivec2 from = clamp(ivec2(floor((place - reach) / texels)), least, most);
-  ivec2 to = clamp(ivec2(floor((place + reach) / texels)), from, most);
+  vec2 least = floor(key.tile.xy / texels), most = floor(key.tile.zw / texels);
+  ivec2 from = nearestTexel((place - reach) / texels, least, most);
+  ivec2 to = nearestTexel((place + reach) / texels, vec2(from), most);
   vec2 bounds = keyBlockers(from, level);
   for (int i = 1; i < 4; ++i) {
     ivec2 texel = ivec2((i & 1) == 1 ? to.x : from.x, i >> 1 == 1 ? to.y : from.y);
@@ -67,9 +70,9 @@ vec2 blockerBounds(KeyRecord key, vec2 place, vec2 reach) {
   return key.scale.z * bounds;
 }
 
-// Returns how high above the receiver, along the light, the surface in a texel is; 0 if it does not block.
-float blockerHeight(KeyRecord key, KeyReceiver receiver, ivec2 texel) {
-  texel = clamp(texel, ivec2(key.tile.xy), ivec2(key.tile.zw));
+// Returns how high above the receiver, along the light, the surface at a place is; 0 if it does not block.
+float blockerHeight(KeyRecord key, KeyReceiver receiver, vec2 place) {
+  ivec2 texel = nearestTexel(place, key.tile.xy, key.tile.zw);
   float depth = key.scale.z * keyDepth(texel);
   float falls = dot(receiver.slope, vec2(texel) + 0.5 - receiver.place);
   // A surface lower than the receiver is no blocker, even where the receiver's plane falls steeply: it may be
@@ -86,7 +89,7 @@ vec2 texelShares(KeyRecord key, KeyReceiver receiver, vec2 place) {
   for (int i = 0; i < 4; ++i) {
     vec2 side = vec2(float(i & 1), float(i >> 1));
     vec2 share = side * part + (1.0 - side) * (1.0 - part);
-    bool visible = blockerHeight(key, receiver, ivec2(corner + side)) == 0.0;
+    bool visible = blockerHeight(key, receiver, corner + side) == 0.0;
     shares[visible ? 0 : 1] += share.x * share.y;
   }
   return shares;
@@ -113,7 +116,7 @@ KeyLayers keyLayers(KeyRecord key, KeyReceiver receiver, float reach, int count)
     // Points are denser towards the receiver's own ray, where low blockers are.
     vec2 at = keyPoint(i, count);
     at *= i == 0 ? 0.0 : length(at) * length(at);
-    float height = blockerHeight(key, receiver, ivec2(floor(receiver.place + reach * key.scale.w * key.scale.xy * at)));
+    float height = blockerHeight(key, receiver, receiver.place + reach * key.scale.w * key.scale.xy * at);
     // A blocker counts if it is within the cone at its own height, or at most a texel's width beside it.
     if (height == 0.0 || reach * length(at) * key.scale.w > height * key.scale.w + receiver.bias) continue;
     float relative = height / reach;
@@ -140,7 +143,7 @@ int rayFromBelow(KeyRecord key, KeyReceiver receiver, float height, vec2 per_met
   int fate = kRayFree;
   for (int i = 0; i < kKeyBetween; ++i) {
     float below = height * (kLowestBetween + (kHighestBetween - kLowestBetween) * float(i) / float(kKeyBetween - 1));
-    float found = blockerHeight(key, receiver, ivec2(floor(receiver.place + below * per_metre)));
+    float found = blockerHeight(key, receiver, receiver.place + below * per_metre);
     if (found <= below) continue;
     if (found < kKeySolid * below) return kRayBlocked;
     fate = kRayUnsure;
@@ -153,7 +156,7 @@ int rayFromBelow(KeyRecord key, KeyReceiver receiver, float height, vec2 per_met
 int rayFate(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
   vec2 per_metre = key.scale.w * key.scale.xy * at;
   for (int i = 0; i < kKeySteps; ++i) {
-    float found = blockerHeight(key, receiver, ivec2(floor(receiver.place + height * per_metre)));
+    float found = blockerHeight(key, receiver, receiver.place + height * per_metre);
     if (found == 0.0) return rayFromBelow(key, receiver, height, per_metre);
     if (abs(found - height) < kOneHeight * height) return kRayBlocked;
     height = found;

@@ -53,16 +53,23 @@ inline KeyReceiver keyReceiver(const KeyRecord& key, glm::vec3 position, glm::ve
   return receiver;
 }
 
+// Takes the least texel for a place that is no number.
+inline glm::ivec2 nearestTexel(glm::vec2 place, glm::vec2 least, glm::vec2 most) {
+  return glm::ivec2(glm::min(glm::max(least, glm::floor(place)), most));
+}
+
 template <typename Map>
 glm::vec2 blockerBounds(const Map& map, const KeyRecord& key, glm::vec2 place, glm::vec2 reach) {
   const float widest = std::max(reach.x, reach.y) * 2.0f / static_cast<float>(kBlockerTexels);
   const float tile = key.tile.z - key.tile.x + 1.0f;
   const int last = static_cast<int>(std::log2(tile / static_cast<float>(kBlockerTexels)) + 0.5f);
-  const int level = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(widest, 1.0f)))), 0, last);
+  const int level =
+      std::clamp(static_cast<int>(std::ceil(std::log2(std::clamp(widest, 1.0f, tile)))), 0, last);
   const auto texels = static_cast<float>(kBlockerTexels << level);
-  const glm::ivec2 least(glm::vec2(key.tile) / texels), most(glm::vec2(key.tile.z, key.tile.w) / texels);
-  const glm::ivec2 from = glm::clamp(glm::ivec2(glm::floor((place - reach) / texels)), least, most);
-  const glm::ivec2 to = glm::clamp(glm::ivec2(glm::floor((place + reach) / texels)), from, most);
+  const glm::vec2 least = glm::floor(glm::vec2(key.tile) / texels),
+                  most = glm::floor(glm::vec2(key.tile.z, key.tile.w) / texels);
+  const glm::ivec2 from = nearestTexel((place - reach) / texels, least, most);
+  const glm::ivec2 to = nearestTexel((place + reach) / texels, glm::vec2(from), most);
   glm::vec2 bounds = map.keyBlockers(from, level);
   for (int i = 1; i < 4; ++i) {
     const glm::ivec2 texel((i & 1) == 1 ? to.x : from.x, i >> 1 == 1 ? to.y : from.y);
@@ -74,8 +81,8 @@ glm::vec2 blockerBounds(const Map& map, const KeyRecord& key, glm::vec2 place, g
 }
 
 template <typename Map>
-float blockerHeight(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, glm::ivec2 texel) {
-  texel = glm::clamp(texel, glm::ivec2(glm::vec2(key.tile)), glm::ivec2(glm::vec2(key.tile.z, key.tile.w)));
+float blockerHeight(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, glm::vec2 place) {
+  const glm::ivec2 texel = nearestTexel(place, glm::vec2(key.tile), glm::vec2(key.tile.z, key.tile.w));
   const float depth = key.scale.z * map.keyDepth(texel);
   const float falls = glm::dot(receiver.slope, glm::vec2(texel) + 0.5f - receiver.place);
   const float limit = receiver.depth + std::min(falls, 0.0f) - receiver.bias;
@@ -89,7 +96,7 @@ glm::vec2 texelShares(const Map& map, const KeyRecord& key, const KeyReceiver& r
   for (int i = 0; i < 4; ++i) {
     const glm::vec2 side(static_cast<float>(i & 1), static_cast<float>(i >> 1));
     const glm::vec2 share = side * part + (1.0f - side) * (1.0f - part);
-    const bool visible = blockerHeight(map, key, receiver, glm::ivec2(corner + side)) == 0.0f;
+    const bool visible = blockerHeight(map, key, receiver, corner + side) == 0.0f;
     shares[visible ? 0 : 1] += share.x * share.y;
   }
   return shares;
@@ -113,9 +120,8 @@ KeyLayers keyLayers(const Map& map, const KeyRecord& key, const KeyReceiver& rec
   for (int i = 0; i < count; ++i) {
     glm::vec2 at = keyPoint(i, count);
     at *= i == 0 ? 0.0f : glm::length(at) * glm::length(at);
-    const float height = blockerHeight(
-        map, key, receiver,
-        glm::ivec2(glm::floor(receiver.place + reach * key.scale.w * glm::vec2(key.scale) * at)));
+    const float height =
+        blockerHeight(map, key, receiver, receiver.place + reach * key.scale.w * glm::vec2(key.scale) * at);
     if (height == 0.0f || reach * glm::length(at) * key.scale.w > height * key.scale.w + receiver.bias)
       continue;
     const float relative = height / reach;
@@ -144,8 +150,7 @@ int rayFromBelow(const Map& map, const KeyRecord& key, const KeyReceiver& receiv
     const float below =
         height * (kLowestBetween + (kHighestBetween - kLowestBetween) * static_cast<float>(i) /
                                        static_cast<float>(kKeyBetween - 1));
-    const float found =
-        blockerHeight(map, key, receiver, glm::ivec2(glm::floor(receiver.place + below * per_metre)));
+    const float found = blockerHeight(map, key, receiver, receiver.place + below * per_metre);
     if (found <= below) continue;
     if (found < kKeySolid * below) return kRayBlocked;
     fate = kRayUnsure;
@@ -157,8 +162,7 @@ template <typename Map>
 int rayFate(const Map& map, const KeyRecord& key, const KeyReceiver& receiver, float height, glm::vec2 at) {
   const glm::vec2 per_metre = key.scale.w * glm::vec2(key.scale) * at;
   for (int i = 0; i < kKeySteps; ++i) {
-    const float found =
-        blockerHeight(map, key, receiver, glm::ivec2(glm::floor(receiver.place + height * per_metre)));
+    const float found = blockerHeight(map, key, receiver, receiver.place + height * per_metre);
     if (found == 0.0f) return rayFromBelow(map, key, receiver, height, per_metre);
     if (std::abs(found - height) < kOneHeight * height) return kRayBlocked;
     height = found;

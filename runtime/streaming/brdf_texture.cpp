@@ -58,13 +58,10 @@ Result<BrdfTexture> makeBrdfTexture(const bundle::BrdfTable& table, const BrdfTe
       .azimuths = table.azimuths,
       .roughnesses = table.roughnesses,
       .strengths = table.strengths};
-  const GLuint id = made.texture.id();
-  glTextureSubImage3D(id, 0, 0, 0, 0, static_cast<GLsizei>(texels.width), static_cast<GLsizei>(texels.height),
-                      static_cast<GLsizei>(texels.layers), GL_RGBA, GL_FLOAT, texels.values.data());
-  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glTextureSubImage3D(made.texture.id(), 0, 0, 0, 0, static_cast<GLsizei>(texels.width),
+                      static_cast<GLsizei>(texels.height), static_cast<GLsizei>(texels.layers), GL_RGBA,
+                      GL_FLOAT, texels.values.data());
+  made.texture.interpolate();
   return made;
 }
 

@@ -64,10 +64,7 @@ gpu::Texture makeDensityTexture(const bundle::VolumeGrid& grid, const std::vecto
   glTextureSubImage3D(texture.id(), 0, 0, 0, 0, static_cast<GLsizei>(grid.size.x),
                       static_cast<GLsizei>(grid.size.y), static_cast<GLsizei>(grid.size.z), GL_RED,
                       GL_UNSIGNED_SHORT, words.data());
-  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-    glTextureParameteri(texture.id(), axis, GL_CLAMP_TO_EDGE);
-  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    glTextureParameteri(texture.id(), filter, GL_LINEAR);
+  texture.interpolate();
   return texture;
 }
 

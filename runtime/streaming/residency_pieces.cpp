@@ -39,9 +39,7 @@ gpu::Texture makeIrradiance(std::uint32_t side) {
   gpu::Texture texture("irradiance", {.format = GL_RGBA16F, .width = side, .height = side, .levels = levels});
   for (std::uint32_t level = 0; level < levels; ++level)
     glClearTexImage(texture.id(), static_cast<GLint>(level), GL_RGBA, GL_FLOAT, nullptr);
-  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-    glTextureParameteri(texture.id(), axis, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  texture.interpolate(GL_LINEAR_MIPMAP_LINEAR);
   glTextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   return texture;
 }

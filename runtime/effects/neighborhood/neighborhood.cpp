@@ -14,20 +14,12 @@ static_assert(kWriteGroupsX == gpu::WorkList::kMaxGroupsX);
 
 namespace {
 
-gpu::Handle<gpu::TextureTraits> makeAtlas(const glm::uvec3& size) {
-  GLuint id = 0;
-  glCreateTextures(GL_TEXTURE_3D, 1, &id);
-  gpu::Handle<gpu::TextureTraits> texture(id);
-  glTextureStorage3D(id, 1, GL_RGBA16F, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y),
-                     static_cast<GLsizei>(size.z));
-  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-    glTextureParameteri(id, wrap, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+gpu::Texture makeAtlas(const glm::uvec3& size) {
+  gpu::Texture texture("neighborhoods",
+                       {.format = GL_RGBA16F, .width = size.x, .height = size.y, .depth = size.z});
+  texture.interpolate();
   constexpr float kNothing[] = {0.0f, 0.0f, 0.0f, 0.0f};
-  glClearTexImage(id, 0, GL_RGBA, GL_FLOAT, kNothing);
-  constexpr std::string_view kLabel = "neighborhoods";
-  glObjectLabel(GL_TEXTURE, id, static_cast<GLsizei>(kLabel.size()), kLabel.data());
+  glClearTexImage(texture.id(), 0, GL_RGBA, GL_FLOAT, kNothing);
   return texture;
 }
 
@@ -97,7 +89,7 @@ void Neighborhood::setGrids(std::vector<Grid> grids, const streaming::Residency&
     }
   }
   atlas_size_ = layout.size;
-  atlas_ = layout.size.x > 0 ? makeAtlas(layout.size) : gpu::Handle<gpu::TextureTraits>();
+  atlas_ = layout.size.x > 0 ? makeAtlas(layout.size) : gpu::Texture();
 }
 
 std::uint64_t Neighborhood::bytes() const {

@@ -50,7 +50,7 @@ class Neighborhood {
   std::uint64_t writtenVersion(std::size_t grid) const { return written_versions_[grid]; }
   std::uint32_t gridsWrittenLast() const { return written_; }
   std::uint64_t bytes() const;  // size of the texture
-  void bind() const { glBindTextureUnit(kUnitAtlas, atlas_.id()); }
+  void bind() const { atlas_.bind(kUnitAtlas); }
   GLuint texture() const { return atlas_.id(); }
   glm::uvec3 atlasSize() const { return atlas_size_; }
 
@@ -60,7 +60,7 @@ class Neighborhood {
   std::vector<Grid> grids_;
   std::vector<std::uint64_t> written_versions_;  // per grid, that of its points when written; 0: none
   std::optional<gpu::Program> program_;
-  gpu::Handle<gpu::TextureTraits> atlas_;
+  gpu::Texture atlas_;
   glm::uvec3 atlas_size_{0};
   gpu::Table writes_;
   gpu::WorkList work_;

@@ -40,10 +40,7 @@ gpu::Texture Volume::makeTexture(const streaming::ResidentVolume& volume) const 
                                              .depth = size.z});
   constexpr float kNothing[] = {0.0f, 0.0f, 0.0f, 0.0f};
   glClearTexImage(texture.id(), 0, GL_RGBA, GL_FLOAT, kNothing);
-  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-    glTextureParameteri(texture.id(), axis, GL_CLAMP_TO_EDGE);
-  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    glTextureParameteri(texture.id(), filter, GL_LINEAR);
+  texture.interpolate();
   return texture;
 }
 

@@ -207,29 +207,30 @@ TEST_F(LibraryRenderer, LeavesTheStateOfTheProgramAsItWas) {
   glActiveTexture(GL_TEXTURE5);
   const auto state = [] {
     std::vector<GLint> values;
-    for (const GLenum name : {GL_VERTEX_ARRAY_BINDING,
-                              GL_DRAW_FRAMEBUFFER_BINDING,
-                              GL_PIXEL_UNPACK_BUFFER_BINDING,
-                              GL_SCISSOR_TEST,
-                              GL_CULL_FACE,
-                              GL_CULL_FACE_MODE,
-                              GL_FRONT_FACE,
-                              GL_BLEND,
-                              GL_BLEND_SRC_RGB,
-                              GL_BLEND_DST_ALPHA,
-                              GL_BLEND_EQUATION_RGB,
-                              GL_DEPTH_FUNC,
-                              GL_DEPTH_WRITEMASK,
-                              GL_CLIP_ORIGIN,
-                              GL_CLIP_DEPTH_MODE,
-                              GL_UNPACK_ROW_LENGTH,
-                              GL_ACTIVE_TEXTURE,
-                              GL_CURRENT_PROGRAM,
-                              GL_DEPTH_TEST,
-                              GL_TEXTURE_CUBE_MAP_SEAMLESS})
-      glGetIntegerv(name, &values.emplace_back());
+    constexpr GLenum kNumbers[] = {GL_VERTEX_ARRAY_BINDING,
+                                   GL_DRAW_FRAMEBUFFER_BINDING,
+                                   GL_PIXEL_UNPACK_BUFFER_BINDING,
+                                   GL_SCISSOR_TEST,
+                                   GL_CULL_FACE,
+                                   GL_CULL_FACE_MODE,
+                                   GL_FRONT_FACE,
+                                   GL_BLEND,
+                                   GL_BLEND_SRC_RGB,
+                                   GL_BLEND_DST_ALPHA,
+                                   GL_BLEND_EQUATION_RGB,
+                                   GL_DEPTH_FUNC,
+                                   GL_DEPTH_WRITEMASK,
+                                   GL_CLIP_ORIGIN,
+                                   GL_CLIP_DEPTH_MODE,
+                                   GL_UNPACK_ROW_LENGTH,
+                                   GL_ACTIVE_TEXTURE,
+                                   GL_CURRENT_PROGRAM,
+                                   GL_DEPTH_TEST,
+                                   GL_TEXTURE_CUBE_MAP_SEAMLESS};
+    for (const GLenum name : kNumbers) glGetIntegerv(name, &values.emplace_back());
     std::array<GLint, 4> four{};
-    for (const GLenum name : {GL_VIEWPORT, GL_SCISSOR_BOX, GL_COLOR_WRITEMASK}) {
+    constexpr GLenum kFours[] = {GL_VIEWPORT, GL_SCISSOR_BOX, GL_COLOR_WRITEMASK};
+    for (const GLenum name : kFours) {
       glGetIntegerv(name, four.data());
       values.insert(values.end(), four.begin(), four.end());
     }

@@ -55,7 +55,7 @@ class KeyEdits : public ::testing::Test {
     return light;
   }
   spec::KeyEdit editOf(std::size_t key) const {
-    const Disc& found = environment_->foundKeys()[key].found;
+    const Disc found = environment_->foundKeys()[key].found;
     return {.found = found.direction, .towards = found.direction};
   }
 

@@ -182,12 +182,9 @@ TEST_F(SurfaceShader, TakesIrradianceFromTexelsAndTheRestFromVertices) {
   }
   textures[kUnitIrradiance] =
       gpu::Texture("irradiance", {.format = GL_RGBA16F, .width = kSide, .height = kSide});
-  const GLuint id = textures[kUnitIrradiance].id();
-  glTextureSubImage2D(id, 0, 0, 0, kSide, kSide, GL_RGBA, GL_FLOAT, texels.data());
-  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-    glTextureParameteri(id, axis, GL_CLAMP_TO_EDGE);
-  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    glTextureParameteri(id, filter, GL_LINEAR);
+  glTextureSubImage2D(textures[kUnitIrradiance].id(), 0, 0, 0, kSide, kSide, GL_RGBA, GL_FLOAT,
+                      texels.data());
+  textures[kUnitIrradiance].interpolate();
   SurfaceDraw record = diffuseRecord();
   record.irradiance_set = 0;
   const glm::vec3 at_vertices(0.5f, 1.5f, 3.0f);
