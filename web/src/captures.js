@@ -149,14 +149,15 @@ export class Captures {
   }
 
   /**
-   * Brings light to rest. `light` and `key` come from infinity (`key` may be null), `divided` is of divideLamps and
-   * `lamps` are the strengths of columns; `turns` are rotations from the world, and `changed` says whether any light or
-   * transfer is new. Returns the groups at whose probes the light changed.
+   * Brings light to rest. `light` and `key` come from infinity (`key` may be null), `divided` is of divideLamps (another
+   * object whenever it differs) and `lamps` are the strengths of columns; `turns` are rotations from the world, and
+   * `changed` says whether any light or transfer is new. Returns the groups at whose probes the light changed.
    */
   update({ places, turns, light, key, divided, lamps, mode, changed }) {
     ++this.updates;
     const moved = !places.every((place, g) => this.places?.[g].equals(place)), risen = new Set();
-    if (moved || changed) this.findLeftOut(places, divided);
+    if (moved || divided !== this.divided) this.findLeftOut(places, divided);
+    this.divided = divided;
     const looked = this.look(places, light, lamps, this.leftOut);
     if (moved || changed) this.shineLamps(places, divided.ofGroup);
     this.places = places;

@@ -65,6 +65,9 @@ export class LambentScene {
     this._depth = new SceneDepth();
     this._gpu = null; // where the light lies that has been shaded
     this._frame = -1;
+    // For each group the other bodies that have grids, the first of them if there are many.
+    this._bodiesAround = this.groups.map((_, g) =>
+      this.groups.map((_, i) => i).filter((i) => i !== g && this.groups[i].grid).slice(0, MOST_GRIDS));
     this._sphereLamps = findSphereLamps(bundle.groups);
     this._shining = []; // these and the lamps at nodes
     this._divided = null;
@@ -80,7 +83,7 @@ export class LambentScene {
     };
     this.uniforms = this.groups.map((_, g) => ({
       ...this._lampUniforms,
-      lambentGridKept: { value: this.bodiesAround(g).map(() => 1) },
+      lambentGridKept: { value: this._bodiesAround[g].map(() => 1) },
       lambentLampPowers: { value: new Float32Array(3 * MOST_CUBES) },
       lambentKeyed: { value: false },
       lambentKey: { value: new Float32Array(27) },
@@ -226,7 +229,7 @@ export class LambentScene {
         places, turns, light, key, divided, lamps: this.lamps, mode, changed: this._changed || lampsChanged,
       });
       this.groups.forEach((_, g) => this.uniforms[g].lambentGridKept.value.forEach((_, i, kept) => {
-        kept[i] = Number(this._captures.byGrids[g].has(this.bodiesAround(g)[i]));
+        kept[i] = Number(this._captures.byGrids[g].has(this._bodiesAround[g][i]));
       }));
       return risen;
     }
@@ -319,14 +322,9 @@ export class LambentScene {
     this._unshaded.fill(false);
   }
 
-  // Returns the bodies other than a group that have grids, the first of them if there are many.
-  bodiesAround(index) {
-    return this.groups.map((_, i) => i).filter((i) => i !== index && this.groups[i].grid).slice(0, MOST_GRIDS);
-  }
-
   /** Returns the grids around bodies that may change the light of a group. */
   gridsAround(index) {
-    return this.bodiesAround(index).map((i) => this.groups[i].grid);
+    return this._bodiesAround[index].map((i) => this.groups[i].grid);
   }
 
   setLight(group, index, turn) {

@@ -1,14 +1,9 @@
 // Writes a glTF scene of a room that two bulbs of one material light. In it are lacquer, gold, brushed steel, and a ball
 // that moves. Usage: node bulbs_scene.js OUT.gltf
-import { accessor, box, primitive, sheet, sphere, writeScene } from './gltf_writer.js';
+import { accessor, box, material, primitive, room, sphere, writeScene } from './gltf_writer.js';
 
-const material = (color, metallicFactor, roughnessFactor, rest = {}) => (
-  { pbrMetallicRoughness: { baseColorFactor: [...color, 1], metallicFactor, roughnessFactor }, ...rest });
 const meshes = [
-  primitive([
-    sheet([0, 0, 0], [0, 0, 1], [1, 0, 0], 24), sheet([0, 0.5, -1], [1, 0, 0], [0, 0.5, 0], 20),
-    sheet([-1, 0.5, 0], [0, 0, -1], [0, 0.5, 0], 20),
-  ], 0),
+  primitive(room(), 0),
   primitive(box([-0.5, 0.2, -0.4], 0.2), 1),
   primitive([sphere([0.45, 0.22, -0.45], 0.22, 12)], 2),
   primitive([sphere([-0.3, 0.16, 0.4], 0.16, 12)], 3),

@@ -41,6 +41,15 @@ export function sheet(centre, u, v, n) {
   return { positions, normals, uvs, indices };
 }
 
+// A floor and two walls behind it.
+export const room = () => [
+  sheet([0, 0, 0], [0, 0, 1], [1, 0, 0], 24), sheet([0, 0.5, -1], [1, 0, 0], [0, 0.5, 0], 20),
+  sheet([-1, 0.5, 0], [0, 0, -1], [0, 0.5, 0], 20),
+];
+
+export const material = (color, metallicFactor, roughnessFactor, rest = {}) => (
+  { pbrMetallicRoughness: { baseColorFactor: [...color, 1], metallicFactor, roughnessFactor }, ...rest });
+
 export function primitive(parts, material) {
   const all = { positions: [], normals: [], uvs: [], indices: [] };
   for (const part of parts) {

@@ -1,15 +1,10 @@
 // Writes a glTF scene of a room with two lamps: a point that stands still, and a spot in a shade that moves. In it are
 // lacquer, gold, and a ball that moves. Usage: node lamps_scene.js OUT.gltf
-import { accessor, box, primitive, sheet, sphere, writeScene } from './gltf_writer.js';
+import { accessor, box, material, primitive, room, sphere, writeScene } from './gltf_writer.js';
 
-const material = (color, metallicFactor, roughnessFactor) => (
-  { pbrMetallicRoughness: { baseColorFactor: [...color, 1], metallicFactor, roughnessFactor } });
 const lamp = (light) => ({ extensions: { KHR_lights_punctual: { light } } });
 const meshes = [
-  primitive([
-    sheet([0, 0, 0], [0, 0, 1], [1, 0, 0], 24), sheet([0, 0.5, -1], [1, 0, 0], [0, 0.5, 0], 20),
-    sheet([-1, 0.5, 0], [0, 0, -1], [0, 0.5, 0], 20),
-  ], 0),
+  primitive(room(), 0),
   primitive(box([-0.5, 0.2, -0.4], 0.2), 1),
   primitive([sphere([0.45, 0.22, -0.45], 0.22, 12)], 2),
   primitive([sphere([0, 0, 0], 0.12, 10)], 3),

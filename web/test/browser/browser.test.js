@@ -37,9 +37,7 @@ async function paint(name) {
   return path;
 }
 
-async function picture(bundle, { camera, factor, time, painted }, name, transfer) {
-  mkdirSync(work, { recursive: true });
-  const lights = painted && name === 'soft' ? [await paint(name)] : LIGHTS[name];
+function picture(bundle, { camera, factor, time }, lights, name, transfer) {
   const path = join(work, `${basename(bundle, '.lmb.glb')}-${name}-${transfer}.exr`);
   execFileSync(join(bin, 'lambent-demo'), [
     bundle, '--camera', camera, '--size', SIZE.map((n) => n * factor).join('x'), '--keys', 'off',
@@ -53,7 +51,8 @@ async function picture(bundle, { camera, factor, time, painted }, name, transfer
 }
 
 test('pictures are those of lambent-demo', { skip, timeout: 900000 }, async (t) => {
-  const browser = await launch(t);
+  mkdirSync(work, { recursive: true });
+  const browser = await launch(t), soft = await paint('soft');
   for (const bundle of list.split(',')) {
     const { page, messages } = await open(t, browser, { '/work/': work, '/bundle/': dirname(resolve(bundle)) });
     await page.waitForFunction('window.lambentTest?.ready');
@@ -64,7 +63,8 @@ test('pictures are those of lambent-demo', { skip, timeout: 900000 }, async (t) 
     // Mirrors show more of the soft light than few bands hold, by three's environment.
     const reflects = /^(reflecting|lamps|bulbs)/.test(basename(bundle));
     for (const [name, transfer] of view.cases ?? CASES) {
-      const exr = await picture(bundle, view, name, transfer), environment = reflects && name === 'soft';
+      const lights = view.painted && name === 'soft' ? [soft] : LIGHTS[name];
+      const exr = picture(bundle, view, lights, name, transfer), environment = reflects && name === 'soft';
       const result = await page.evaluate((options) => window.lambentTest.render(options), {
         ...own, lights: LIGHTS[name], factor: view.factor, time: view.time, transfer, environment, sky: view.sky,
         fineCubes: view.fineCubes, picture: `/work/${basename(exr)}`,
