@@ -31,6 +31,7 @@ constexpr double kBesideLeftOut = 1.3;  // allowed square error relative to what
 constexpr std::size_t kRun = 64;
 constexpr std::size_t kLeastSearched = 4096, kSearchedPerCluster = 96;
 constexpr int kSearchRounds = 4, kFinalRounds = 3, kMostAttempts = 8;
+constexpr int kMostCuts = 8;  // each halves a range of weights, and floats hold 256 times what codes do
 // Bits that a weight counts for at least in the choice of axes. A weight of a glossy sample costs 25
 // multiply-adds of four numbers whenever light changes, so axes that are nearly all noise are not worth their
 // time.
@@ -200,6 +201,8 @@ class Coder {
   std::optional<Clustering> search();
   // Assigns all samples to clusters that were found from some of them. Returns false if stopped.
   bool searchAndAssign();
+  // Quantizes at the step of this attempt.
+  CodedTransfer coded(const Clustering& found) const;
   // Leaves the best codes in state_.coded. Returns false if the memory for means and axes ran out before the
   // bound was reached, and nothing if stopped.
   std::optional<bool> fitToBound(Clustering& found);
@@ -313,6 +316,28 @@ bool Coder::searchAndAssign() {
   return !stopped();
 }
 
+// A sample next to a lamp may share a cluster with dark ones, of which it is a ten-thousandth in number and
+// ten thousand times as bright. Codes of 16 bits do not span the weights of both, so such a cluster is cut in
+// two, as often as it takes. Only the codes know of it: `found` stays as it is, since a later run goes on
+// from it.
+CodedTransfer Coder::coded(const Clustering& found) const {
+  const auto quantized = [&](const ClusterIds& ids, const std::vector<Cluster>& clusters) {
+    return quantize(points_, ids, clusters, state_.basis, shape_, state_.quantum);
+  };
+  Quantized all = quantized(found.ids, found.clusters);
+  const bool fixed = settings_.clusters > 0 || settings_.axes >= 0;
+  if (fixed || all.wide.empty()) return std::move(all.transfer);
+  Clustering cut = found;
+  for (int i = 0; i < kMostCuts && !all.wide.empty(); ++i) {
+    for (const WideAxis& wide : all.wide) splitAlong(points_, cut.ids, cut.clusters, wide.cluster, wide.axis);
+    cut.clusters = fitClusters(points_, cut.ids, /*held_out=*/false, importance_, least_bits_);
+    keepAxes(cut.clusters, state_.quantum);
+    if (!fits(cut)) break;
+    all = quantized(cut.ids, cut.clusters);
+  }
+  return std::move(all.transfer);
+}
+
 // Steps were planned from expected errors and bits. This measures the errors and makes the step as large as
 // the bound allows.
 std::optional<bool> Coder::fitToBound(Clustering& found) {
@@ -321,13 +346,13 @@ std::optional<bool> Coder::fitToBound(Clustering& found) {
   while (state_.attempt < kMostAttempts) {
     if (settings_.axes < 0) keepAxes(found.clusters, state_.quantum);
     if (state_.attempt > 0 && !fits(found)) return double{best.error} <= bound;
-    CodedTransfer coded = quantize(points_, found.ids, found.clusters, state_.basis, shape_, state_.quantum);
-    coded.error = static_cast<float>(errorOf(coded));
-    const float error = coded.error;
+    CodedTransfer tried = coded(found);
+    tried.error = static_cast<float>(errorOf(tried));
+    const float error = tried.error;
     const bool met = double{error} <= bound, met_before = double{best.error} <= bound;
     // Among codes that keep the bound, the larger error is the smaller code.
-    if (state_.attempt == 0 || (met ? !met_before || coded.error > best.error : coded.error < best.error))
-      best = std::move(coded);
+    if (state_.attempt == 0 || (met ? !met_before || error > best.error : error < best.error))
+      best = std::move(tried);
     if (settings_.axes >= 0) break;  // no step makes up for axes that were left out
     if (met && double{best.error} > 0.98 * bound) break;
     if (best.planes.empty() && met) break;  // nothing left to save

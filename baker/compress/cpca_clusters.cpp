@@ -217,6 +217,22 @@ double stepFor(std::vector<Cluster>& clusters, double budget) {
   return low;
 }
 
+void splitAlong(const Points& points, ClusterIds& ids, const std::vector<Cluster>& clusters,
+                std::uint32_t cluster, Eigen::Index axis) {
+  const Eigen::VectorXf along = clusters[cluster].axes.col(axis);
+  const auto weight = [&](std::size_t s) { return along.dot(points.col(static_cast<Eigen::Index>(s))); };
+  float low = std::numeric_limits<float>::infinity(), high = -low;
+  for (std::size_t s = 0; s < ids.size(); ++s) {
+    if (ids[s] != cluster) continue;
+    low = std::min(low, weight(s));
+    high = std::max(high, weight(s));
+  }
+  const std::uint32_t free = *std::max_element(ids.begin(), ids.end()) + 1;
+  const float middle = low + 0.5f * (high - low);
+  for (std::size_t s = 0; s < ids.size(); ++s)
+    if (ids[s] == cluster && weight(s) > middle) ids[s] = free;
+}
+
 ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clusters, double step,
                           std::span<const std::uint32_t> before, Importance importance) {
   struct Prepared {

@@ -57,6 +57,11 @@ void keepSoMany(std::vector<Cluster>& clusters, int axes);
 // it.
 double stepFor(std::vector<Cluster>& clusters, double budget);
 
+// Cuts a cluster in the middle of the range that its weights along an axis span. The samples of the upper
+// half move to a cluster whose id is the next one free. The cluster must have been fitted to its samples.
+void splitAlong(const Points& points, ClusterIds& ids, const std::vector<Cluster>& clusters,
+                std::uint32_t cluster, Eigen::Index axis);
+
 // Moves every sample to the cluster where it costs least. `before` holds the current ids, or is empty.
 ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clusters, double step,
                           std::span<const std::uint32_t> before, Importance importance);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include <Eigen/Cholesky>
 
@@ -28,6 +29,7 @@ struct CodedCluster {
   std::vector<std::int32_t> mean, directions;  // [coordinate], [axis][coordinate]
   std::vector<transfer::AxisCode> axes;
   std::vector<std::vector<std::uint32_t>> codes;  // [axis][member]
+  std::optional<Eigen::Index> wide;               // WideAxis::axis
 };
 
 CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> members, const Cluster& cluster,
@@ -60,8 +62,13 @@ CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> me
       weights.col(static_cast<Eigen::Index>(m)).noalias() =
           solve * (points.col(members[m]).cast<double>() - mean);
   }
+  double widest = 1.0;
   for (Eigen::Index j = 0; j < cluster.kept; ++j) {
     const double low = weights.row(j).minCoeff(), high = weights.row(j).maxCoeff();
+    if (const double spans = (high - low) / (kMaxCode * scales(j)); spans > widest) {
+      widest = spans;
+      coded.wide = j;
+    }
     const auto scale = static_cast<float>(std::max(scales(j), (high - low) / kMaxCode));
     const double first = std::floor(low / double{scale} + 0.5);
     const auto offset = static_cast<float>(first * double{scale});
@@ -96,16 +103,16 @@ transfer::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::
   return basis;
 }
 
-CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters,
-                       const transfer::SharedCodebook& basis, const transfer::TransferShape& shape,
-                       double step) {
+Quantized quantize(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters,
+                   const transfer::SharedCodebook& basis, const transfer::TransferShape& shape, double step) {
   // Clusters are ordered by falling number of axes.
   std::vector<std::uint32_t> order(clusters.size()), place(clusters.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return clusters[a].kept > clusters[b].kept; });
   for (std::uint32_t c = 0; c < order.size(); ++c) place[order[c]] = c;
-  CodedTransfer coded;
+  Quantized quantized;
+  CodedTransfer& coded = quantized.transfer;
   coded.shape = shape;
   coded.codebook = basis;
   std::vector<std::vector<std::uint32_t>> members(clusters.size());
@@ -129,6 +136,8 @@ CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::v
   parallelRanges(parts.size(), 1, {}, [&](std::size_t c, std::size_t) {
     parts[c] = codeCluster(points, members[c], clusters[order[c]], mean_grid, step);
   });
+  for (std::size_t c = 0; c < parts.size(); ++c)
+    if (parts[c].wide) quantized.wide.push_back({order[c], *parts[c].wide});
   transfer::SharedCodebook& book = coded.codebook;
   book.mean_scale = static_cast<float>(mean_grid);
   for (const CodedCluster& part : parts) {
@@ -155,7 +164,7 @@ CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::v
     plane.bits = *std::max_element(plane.codes.begin(), plane.codes.end()) < 256 ? 8 : 16;
     plane.variance = static_cast<float>(own / variance);
   }
-  return coded;
+  return quantized;
 }
 
 }  // namespace lambent::baker

@@ -16,9 +16,20 @@ namespace lambent::baker {
 transfer::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::VectorXd& energies,
                                       const std::vector<double>& roots, double step);
 
-// `points` are coordinates over the rounded basis. Fills in everything but `error`.
-CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters,
-                       const transfer::SharedCodebook& basis, const transfer::TransferShape& shape,
-                       double step);
+// An axis of a cluster whose weights span more steps than a code of 16 bits has values. The weights were
+// coded with longer steps there, so the bound may be missed however small the step is.
+struct WideAxis {
+  std::uint32_t cluster = 0;  // index into the clusters given
+  Eigen::Index axis = 0;
+};
+
+struct Quantized {
+  CodedTransfer transfer;      // all but `error`
+  std::vector<WideAxis> wide;  // at most one of each cluster, its widest
+};
+
+// `points` are coordinates over the rounded basis.
+Quantized quantize(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters,
+                   const transfer::SharedCodebook& basis, const transfer::TransferShape& shape, double step);
 
 }  // namespace lambent::baker

@@ -142,7 +142,7 @@ class Watching {
  public:
   Watching(const Baker::Watcher& watcher, const baker::Progress& progress, baker::WholeProgress whole,
            std::stop_source stop)
-      : thread_([this, &watcher, &progress, whole = std::move(whole), stop](std::stop_token over) mutable {
+      : thread_([&watcher, &progress, whole = std::move(whole), stop](std::stop_token over) mutable {
           constexpr auto kEvery = std::chrono::milliseconds(100);
           std::mutex lock;
           std::unique_lock held(lock);

@@ -166,20 +166,24 @@ TEST(ClusteredCoding, OfLightsAloneWorksWithoutAnEnvironment) {
   EXPECT_LE(coded.error, 0.01f);
 }
 
+// One sample of 7,001 is ten thousand times as bright as the others. Which cluster it lands in is up to
+// chance, and codes of 16 bits do not span it and the dark samples together.
 TEST(ClusteredCoding, OfLampsKnowsTheFewSamplesNextToThem) {
   const auto shape = shapeOf(0, 1, 0, 25, 1);
   const std::size_t count = 60'000;
   std::vector<float> vectors(count * shape.size());
-  std::mt19937 random(21);
-  std::normal_distribution<float> normal;
-  for (std::size_t s = 0; s < count; ++s)
-    for (std::size_t i = 0; i < shape.size(); ++i)
-      vectors[s * shape.size() + i] = s % 7'001 == 5'000 ? normal(random)
-                                      : i == s % 3       ? 1e-4f * normal(random)
-                                                         : 0.0f;
-  const CodedTransfer coded = code(vectors, shape, 0.003f);
-  expectSound(coded, count);
-  EXPECT_LE(coded.error, 0.003f);
+  for (const unsigned seed : {21u, 26u, 27u, 33u}) {
+    std::mt19937 random(seed);
+    std::normal_distribution<float> normal;
+    for (std::size_t s = 0; s < count; ++s)
+      for (std::size_t i = 0; i < shape.size(); ++i)
+        vectors[s * shape.size() + i] = s % 7'001 == 5'000 ? normal(random)
+                                        : i == s % 3       ? 1e-4f * normal(random)
+                                                           : 0.0f;
+    const CodedTransfer coded = code(vectors, shape, 0.003f);
+    expectSound(coded, count);
+    EXPECT_LE(coded.error, 0.003f) << "random numbers from " << seed;
+  }
 }
 
 TEST(ClusteredCoding, OfADarkRoomWithABrightSillKnowsTheRoom) {

@@ -145,12 +145,10 @@ expect /1/edited true
   EXPECT_EQ(played.answer("state")["undo"], "Undo turn of key light");
   EXPECT_EQ(keys[3], keys[1]) << "one step for the whole drag";
   // The factors of the channels are 1/2, 1/4 and 1.
-  for (int channel = 0; channel < 3; ++channel)
-    EXPECT_NEAR(keys[4][0]["radiance"][channel].get<double>(),
-                keys[0][0]["radiance"][channel].get<double>() * (channel == 0   ? 0.5
-                                                                 : channel == 1 ? 0.25
-                                                                                : 1.0),
-                1e-3 * keys[0][0]["radiance"][channel].get<double>());
+  for (std::size_t channel = 0; const double factor : {0.5, 0.25, 1.0}) {
+    const auto before = keys[0][0]["radiance"][channel].get<double>();
+    EXPECT_NEAR(keys[4][0]["radiance"][channel++].get<double>(), factor * before, 1e-3 * before);
+  }
   EXPECT_EQ(keys[5], keys[0]) << "as found";
   EXPECT_EQ(keys[6], keys[4]);
   std::size_t failed = 0;

@@ -96,7 +96,7 @@ TEST_F(TextureStreaming, BytesFallWithTheBudgetAndThePictureStaysNear) {
   EXPECT_EQ(ample.world.residency().bytesResident(), all_bytes);
 
   double before = 0.0;
-  for (const std::uint64_t share : {2, 4, 10}) {
+  for (const std::uint64_t share : {2u, 4u, 10u}) {
     const std::uint64_t budget = all_bytes / share;
     WorldStage stage(lights, {.max_resident_bytes = budget});
     for (std::uint32_t i = 0; i < kSheets; ++i) stage.open(sheet(i));
