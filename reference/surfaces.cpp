@@ -6,9 +6,10 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/matrix.hpp>
 
 #include "reference/warp.hpp"
+#include "runtime/base/normal_matrix.hpp"
 
 namespace lambent::baker::reference {
 
@@ -43,12 +44,8 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     if (scene.nodes[n].mesh < 0) continue;
     const glm::dmat4 matrix(world[n]);
-    const double determinant = glm::determinant(glm::dmat3(matrix));
-    const bool mirrored = determinant < 0.0;
-    // The cofactor matrix equals the inverse transpose up to scale, and also exists for singular matrices.
-    const glm::dmat3 linear(matrix);
-    const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                               glm::cross(linear[0], linear[1]));
+    const glm::dmat3 linear(matrix), normal_matrix = normalMatrix(linear);
+    const bool mirrored = glm::determinant(linear) < 0.0;
     for (const ScenePrimitive& primitive :
          scene.meshes[static_cast<std::size_t>(scene.nodes[n].mesh)].primitives) {
       const bundle::MeshData& mesh = primitive.mesh;
@@ -67,9 +64,9 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
       surface.handedness = mirrored ? -1.0f : 1.0f;
       for (std::size_t v = 0; v < count; ++v) {
         out.positions_.emplace_back(matrix * glm::dvec4(mesh.positions[v], 1.0));
-        const glm::dvec3 normal = cofactors * glm::dvec3(mesh.normals[v]);
+        const glm::dvec3 normal = normal_matrix * glm::dvec3(mesh.normals[v]);
         const float weight = mesh.normal_weights.size() == count ? mesh.normal_weights[v] : 1.0f;
-        out.normals_.push_back(weight * unitOr(mirrored ? -normal : normal, glm::dvec3(0.0, 1.0, 0.0)));
+        out.normals_.push_back(weight * unitOr(normal, glm::dvec3(0.0, 1.0, 0.0)));
         const bool has_tangent = mesh.tangents.size() == count;
         out.tangents_.push_back(
             has_tangent ? glm::vec4(unitOr(linear * glm::dvec3(mesh.tangents[v]), {}), mesh.tangents[v].w)

@@ -10,16 +10,10 @@
 #include "baker/import/accessor.hpp"
 #include "baker/import/hints.hpp"
 #include "baker/import/tinygltf.hpp"
+#include "runtime/base/normal_matrix.hpp"
 
 namespace lambent::baker {
 namespace {
-
-// Returns the inverse transpose times the absolute determinant: it rotates normals and needs no division by
-// zero.
-glm::dmat3 normalMatrix(const glm::dmat3& m) {
-  const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-  return glm::determinant(m) < 0.0 ? -cofactors : cofactors;
-}
 
 template <typename Vector>
 Result<void> addDisplacements(const Document& document, int accessor, float weight, const char* semantic,

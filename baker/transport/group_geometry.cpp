@@ -5,9 +5,10 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/matrix.hpp>
 
 #include "baker/plan/smooth_dielectrics.hpp"
+#include "runtime/base/normal_matrix.hpp"
 
 namespace lambent::baker {
 
@@ -77,7 +78,7 @@ void appendDraw(const PlannedDraw& draw, const ScenePrimitive& primitive, const 
                    .layered = with_glossy && material && isSmoothDielectric(*material)};
   const glm::dmat4 group_from_mesh(draw.group_from_mesh);
   const glm::mat3 linear(draw.group_from_mesh);
-  const glm::mat3 normal_matrix = glm::inverseTranspose(linear);
+  const glm::mat3 normal_matrix(normalMatrix(glm::dmat3(linear)));
   const float side = draw.back ? -1.0f : 1.0f;
   const gltf::TextureRef base = material ? material->base_color_texture : gltf::TextureRef{};
   const gltf::TextureRef emissive = material ? material->emissive_texture : gltf::TextureRef{};

@@ -239,6 +239,11 @@ struct Group {
       if (cell.domain == transfer::Domain::Vertex && cell.form() == form) count += cell.sample_count;
     return count;
   }
+  std::uint32_t samplesOf(transfer::Domain domain) const {
+    std::uint32_t count = 0;
+    for (const Cell& cell : cells) count += cell.domain == domain ? cell.sample_count : 0;
+    return count;
+  }
 };
 
 // Describes a draw, the unit of drawing: one side of a primitive at a node, with transfer of its own. A

@@ -65,12 +65,6 @@ NeighborhoodGrid readNeighborhood(const Field& field) {
   return grid;
 }
 
-std::uint32_t samplesOf(const Group& group, transfer::Domain domain) {
-  std::uint32_t count = 0;
-  for (const Cell& cell : group.cells) count += cell.domain == domain ? cell.sample_count : 0;
-  return count;
-}
-
 }  // namespace
 
 Json volumeJson(const VolumeGrid& volume) {
@@ -95,7 +89,7 @@ Json neighborhoodJson(const NeighborhoodGrid& grid) {
 }
 
 void readGrids(const Field& field, const Description& d, Group& group) {
-  const std::uint32_t in_volume = samplesOf(group, transfer::Domain::Voxel);
+  const std::uint32_t in_volume = group.samplesOf(transfer::Domain::Voxel);
   if (field.has("volume"))
     group.volume = readVolume(field["volume"], d, in_volume);
   else if (in_volume > 0)
@@ -104,7 +98,7 @@ void readGrids(const Field& field, const Description& d, Group& group) {
     if (!group.volume) field["within"].fault("is there without a volume");
     group.within = static_cast<std::int32_t>(field["within"].index(d.groups.size()));
   }
-  const std::uint32_t around = samplesOf(group, transfer::Domain::GridPoint);
+  const std::uint32_t around = group.samplesOf(transfer::Domain::GridPoint);
   if (field.has("neighborhood")) group.neighborhood = readNeighborhood(field["neighborhood"]);
   if (around != (group.neighborhood ? countOf(group.neighborhood->size) : 0))
     field["cells"].fault("do not hold the points of the neighborhood");

@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "runtime/base/normal_matrix.hpp"
 #include "runtime/demo/zoom.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/components.hpp"
@@ -44,11 +45,8 @@ glm::vec3 openSide(const frame::World& world) {
     const float side = draw.back ? -1.0f : 1.0f;  // double-sided surfaces cancel
     const auto* place = world.registry().tryGet<scene::WorldTransform>(draw.node);
     if (!place) continue;
-    const glm::mat3 world_from_mesh(place->world_from_node);
-    const float volume = glm::determinant(world_from_mesh);
-    // The cofactor matrix transforms areas; the absolute value undoes a mirror's change of winding.
-    if (volume != 0.0f)
-      sum += side * std::abs(volume) * glm::inverseTranspose(world_from_mesh) * primitive.vector_area;
+    sum +=
+        side * glm::mat3(areaMatrix(glm::dmat3(glm::mat3(place->world_from_node)))) * primitive.vector_area;
   }
   return {sum.x, 0.0f, sum.z};
 }

@@ -1,9 +1,5 @@
 #include "runtime/draws/surface_record.hpp"
 
-#include <cmath>
-
-#include <glm/matrix.hpp>
-
 namespace lambent::frame {
 
 namespace {
@@ -12,14 +8,6 @@ namespace {
 glm::mat3x2 transformOf(const gltf::TextureRef& texture) {
   const glm::vec2 origin = texture.apply({0.0f, 0.0f});
   return {texture.apply({1.0f, 0.0f}) - origin, texture.apply({0.0f, 1.0f}) - origin, origin};
-}
-
-// Undoes how the normal matrix was made, so that moving a group changes no normal. A flattened mesh has no
-// inverse, and its normals were transformed by the matrix itself.
-glm::mat3 directionMatrix(const glm::mat3& front_normal) {
-  const float determinant = glm::determinant(front_normal);
-  if (determinant == 0.0f || !std::isfinite(1.0f / determinant)) return front_normal;
-  return glm::transpose(glm::inverse(front_normal));
 }
 
 }  // namespace
@@ -54,12 +42,11 @@ SurfaceDraw describe(const World& world, std::size_t draw) {
   const gltf::Material& material = materialOf(world, draw);
   const float facing = resident.back ? -1.0f : 1.0f;
   const glm::quat turn = world.rotationOf(resident.group);
-  const glm::mat3 front_normal = facing * resident.group_from_mesh_normal;
   // Unlit surfaces emit nothing but their base colour (KHR_materials_unlit).
   const glm::vec3 emission = material.unlit ? glm::vec3(0.0f) : emissionOf(world, draw);
   return {.world_from_mesh = world.worldFromMesh(draw),
-          .group_from_mesh = glm::mat3x4(directionMatrix(front_normal)),
-          .group_from_mesh_normal = glm::mat3x4(front_normal),
+          .group_from_mesh = glm::mat3x4(resident.group_from_mesh),
+          .group_from_mesh_normal = glm::mat3x4(facing * resident.group_from_mesh_normal),
           .world_from_group = {turn.x, turn.y, turn.z, turn.w},
           .base_color = material.base_color,
           .emission = glm::vec4(emission, 0.0f),

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <iterator>
 
 #include <glm/gtc/quaternion.hpp>
-#include <glm/matrix.hpp>
 
+#include "runtime/base/normal_matrix.hpp"
 #include "runtime/bundle/gltf_types.hpp"
 #include "runtime/streaming/sizes.hpp"
 
@@ -24,15 +23,6 @@ ResidentTransfer describe(const bundle::CellTransfer& transfer) {
     resident.planes.push_back(
         {.block = {}, .bits = plane.bits, .count = plane.count, .variance = plane.variance});
   return resident;
-}
-
-// Returns the matrix for normals, which is the inverse transpose; the group's frame has no scale. A flattened
-// mesh has no inverse, so its normals use the matrix itself, which keeps them finite.
-glm::mat3 normalMatrix(const bundle::Group& group, const glm::mat4& world_from_mesh) {
-  const glm::mat3 linear = glm::mat3_cast(glm::conjugate(group.rest_rotation)) * glm::mat3(world_from_mesh);
-  const float determinant = glm::determinant(linear);
-  if (determinant == 0.0f || !std::isfinite(1.0f / determinant)) return linear;
-  return glm::transpose(glm::inverse(linear));
 }
 
 ResidentCell describe(const bundle::Cell& cell, std::uint32_t first_output) {
@@ -69,7 +59,7 @@ ResidentVolume describeVolume(const bundle::Group& group) {
   ResidentVolume volume;
   volume.grid = *group.volume;
   volume.outputs = group.cells.empty() ? 1 : group.cells.front().outputs();
-  volume.sample_count = group.sample_count;
+  volume.sample_count = group.samplesOf(transfer::Domain::Voxel);  // a neighborhood has its own
   return volume;
 }
 
@@ -201,8 +191,10 @@ ResidentTables tablesOf(const bundle::Description& description, std::uint64_t ve
     made.texels = draw.texels;
     made.texel_set = draw.texel_set;
     made.layered = bundle::isLayered(description, draw);
+    const glm::quat group_from_world = glm::conjugate(description.groups[draw.group].rest_rotation);
+    made.group_from_mesh = glm::mat3_cast(group_from_world) * glm::mat3(world_from_node[draw.node]);
     made.group_from_mesh_normal =
-        (draw.back ? -1.0f : 1.0f) * normalMatrix(description.groups[draw.group], world_from_node[draw.node]);
+        (draw.back ? -1.0f : 1.0f) * glm::mat3(normalMatrix(glm::dmat3(made.group_from_mesh)));
     made.version = version;
   }
   bundle.count = sizesOf(tables);

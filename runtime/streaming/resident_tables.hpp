@@ -155,7 +155,8 @@ struct ResidentDraw {
   bool back = false;                    // true for the back of a double-sided surface
   std::uint32_t outputs = 1;            // 9 if normal-mapped, more if glossy
   bool layered = false;                 // has a specular layer over diffuse transfer, see bundle::isLayered()
-  glm::mat3 group_from_mesh_normal{1.0f};  // negated for a back
+  glm::mat3 group_from_mesh{1.0f};      // without the translation
+  glm::mat3 group_from_mesh_normal{1.0f};  // of any length, negated for a back
   // vertex_count + 1 offsets, row_entries samples and row_entries unorm16 weights; empty until loaded.
   gpu::Allocation rows;
   std::uint32_t row_entries = 0;

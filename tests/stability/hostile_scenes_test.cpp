@@ -160,6 +160,15 @@ TEST_F(HostileScene, OfALongThinTerrainKeepsItsSlopes) {
   EXPECT_NEAR(meanRadiance(bakeAndDecode(sceneOf({strip}))), 1.0f, 0.02f);  // valleys are shallow
 }
 
+// The normals of such a mesh have no inverse transpose, in floats or at all.
+TEST_F(HostileScene, OfAFloorThatItsNodeFlattensIsAsLightAsAnother) {
+  for (const float height : {1.0f, 0.0f, 1e-20f, 1e-40f}) {
+    baker::Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 4)});
+    scene.nodes[0].parent_from_node = glm::scale(glm::mat4(1.0f), {1.0f, height, 1.0f});
+    EXPECT_NEAR(meanRadiance(bakeAndDecode(scene)), 1.0f, 1e-3f) << height;
+  }
+}
+
 TEST_F(HostileScene, OfTwoHundredMovableGroupsBakesThemAll) {
   baker::Scene scene = sceneOf({icosphere({0, 0, 0}, 0.5f, 1)});
   for (int i = 0; i < 200; ++i) {

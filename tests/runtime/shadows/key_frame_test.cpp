@@ -195,6 +195,18 @@ TEST_F(KeyFrame, AnOpenFloorHasTheSunsIrradianceWithKeysAndWithout) {
     }
 }
 
+TEST_F(KeyFrame, AFloorThatItsNodeFlattensHasTheSunsIrradiance) {
+  for (const float height : {0.0f, 1e-20f, 1e-40f}) {
+    BuiltMesh floor = square({0, 0, 0}, {0, 1, 0}, {3, 3});
+    floor.world_from_mesh[2] *= height;
+    BundleBuilder builder(kOrder);
+    builder.add(floor);
+    KeyStage stage(builder, {sun(30, 50, 2)});
+    for (const glm::vec4& texel : stage.picture(above(1.0f)).texels)
+      ASSERT_NEAR(texel.r, std::sin(glm::radians(50.0f)), 1e-3f) << height;
+  }
+}
+
 TEST_F(KeyFrame, WhereThereAreNoKeyLightsNothingIsDrawnAndNothingChanges) {
   const std::vector<spec::Light> smooth = {spec::ConstantLight{.radiance = {1.0f, 0.8f, 0.5f}}};
   for (const bool bounces : {false, true}) {

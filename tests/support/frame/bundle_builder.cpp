@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/compress/draco_encode.hpp"
+#include "runtime/base/normal_matrix.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/transfer/vertex_rows.hpp"
@@ -123,7 +124,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
     description.nodes.push_back(node);
     description.roots.push_back(static_cast<std::int32_t>(i));
     const glm::mat3 group_from_mesh = glm::mat3_cast(glm::conjugate(rest_rotation_)) *
-                                      glm::transpose(glm::inverse(glm::mat3(mesh.world_from_mesh)));
+                                      glm::mat3(normalMatrix(glm::dmat3(glm::mat3(mesh.world_from_mesh))));
     for (const bool back : {false, true}) {
       if (back && !mesh.material.double_sided) continue;
       transfer::VertexWeights rows;
@@ -168,6 +169,8 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
         {.family = family_,
          .name = family_ == bundle::BrdfFamily::Measured ? "measured.brdf" : "",
          .payload = store.payload(bundle::PayloadType::BrdfTable, bundle::encodeBrdfTable(table_))});
+  for (std::vector<float>& vector : vectors)
+    for (std::size_t i = 0; vector.size() < shape.size(); ++i) vector.push_back(vector[i]);
   cell.transfers.push_back(storeTransfer(store, shape, vectors));
   cell.transfers.back().error_bound = 0.02f;
   cell.transfers.back().error = 0.0125f;  // what views say of it
