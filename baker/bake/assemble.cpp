@@ -163,10 +163,12 @@ class Assembler {
     return static_cast<std::uint32_t>(blobs_.size() - 1);
   }
 
-  // Compresses the payload if that makes it smaller.
+  // Compresses the payload if that makes it smaller. A payload of nothing is compressed, too, since glTF has
+  // no empty bufferViews.
   std::uint32_t addPayload(bundle::PayloadType type, bundle::Blob raw, std::uint32_t priority) {
     bundle::Payload payload{type, bundle::PayloadCodec::Raw, 0, raw.size(), priority};
-    if (bundle::Blob packed = bundle::compressZstd(raw, options_.zstdLevel()); packed.size() < raw.size()) {
+    bundle::Blob packed = bundle::compressZstd(raw, options_.zstdLevel());
+    if (raw.empty() || packed.size() < raw.size()) {
       payload.codec = bundle::PayloadCodec::Zstd;
       raw = std::move(packed);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/bundle/description.hpp"
+#include "runtime/bundle/entropy_coder.hpp"
 #include "runtime/bundle/writer.hpp"
 #include "runtime/transfer/codebook.hpp"
 
@@ -24,11 +25,13 @@ struct Store {
   std::uint32_t payload(bundle::PayloadType type, bundle::Blob bytes) {
     const auto priority = static_cast<std::uint32_t>(description.payloads.size());
     const std::uint64_t length = bytes.size();
-    description.payloads.push_back({.type = type,
-                                    .codec = bundle::PayloadCodec::Raw,
-                                    .view = blob(std::move(bytes)),
-                                    .raw_length = length,
-                                    .priority = priority});
+    if (length == 0) bytes = bundle::compressZstd(bytes, 1);  // since glTF has no empty bufferViews
+    description.payloads.push_back(
+        {.type = type,
+         .codec = length > 0 ? bundle::PayloadCodec::Raw : bundle::PayloadCodec::Zstd,
+         .view = blob(std::move(bytes)),
+         .raw_length = length,
+         .priority = priority});
     return priority;
   }
 };
