@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -17,22 +16,6 @@ namespace {
 // differences.
 constexpr std::uint32_t kSingleRows = 2, kSparseRows = 3;
 constexpr std::uint32_t kWeightOne = 65535;
-
-template <typename T>
-void append(std::vector<std::byte>& out, std::span<const T> values) {
-  const std::size_t first = out.size();
-  out.resize(first + values.size_bytes());
-  if (!values.empty()) std::memcpy(out.data() + first, values.data(), values.size_bytes());
-}
-
-// Takes `count` values off the front of `bytes`; the caller has checked the length.
-template <typename T>
-std::vector<T> takeFront(std::span<const std::byte>& bytes, std::size_t count) {
-  std::vector<T> values(count);
-  std::memcpy(values.data(), bytes.data(), count * sizeof(T));
-  bytes = bytes.subspan(count * sizeof(T));
-  return values;
-}
 
 // Returns differences of successive samples. If a mesh uses its samples in order, these are 0 and 1, which
 // compress to almost nothing.
@@ -68,15 +51,15 @@ std::vector<std::byte> encodeRows(const VertexWeights& rows) {
   std::vector<std::byte> out;
   const std::uint32_t head[] = {single ? kSingleRows : kSparseRows,
                                 static_cast<std::uint32_t>(rows.samples.size())};
-  append<std::uint32_t>(out, head);
-  if (!single) append<std::uint32_t>(out, rows.offsets);
-  append<std::uint32_t>(out, differences(rows.samples));
+  appendValues<std::uint32_t>(out, head);
+  if (!single) appendValues<std::uint32_t>(out, rows.offsets);
+  appendValues<std::uint32_t>(out, differences(rows.samples));
   if (!single) {
     std::vector<std::uint16_t> weights;
     for (std::size_t v = 0; v < vertex_count; ++v)
       quantizeRow(std::span(rows.weights).subspan(rows.offsets[v], rows.offsets[v + 1] - rows.offsets[v]),
                   weights);
-    append<std::uint16_t>(out, weights);
+    appendValues<std::uint16_t>(out, weights);
   }
   return out;
 }
@@ -87,31 +70,32 @@ Result<VertexWeights> decodeRows(std::span<const std::byte> bytes, std::uint32_t
     return fail(subject, fmt::format("has damaged vertex rows: {}", why), kCopyAgain);
   };
   if (bytes.size() < 8) return damaged("too short");
-  const auto head = takeFront<std::uint32_t>(bytes, 2);
+  Front front(bytes);
+  const auto head = front.values<std::uint32_t>(2);
   const std::size_t entries = head[1];
   const bool single = head[0] == kSingleRows;
   if (!single && head[0] != kSparseRows) return damaged("of an unknown kind");
   const std::size_t vertices = vertex_count;
   const std::size_t expected = single ? entries * 4 : (vertices + 1) * 4 + entries * 6;
-  if (bytes.size() != expected || (single && entries != vertices)) return damaged("sizes do not add up");
+  if (front.left() != expected || (single && entries != vertices)) return damaged("sizes do not add up");
 
   VertexWeights rows;
   if (single) {
     rows.offsets.resize(vertices + 1);
     for (std::uint32_t v = 0; v <= vertex_count; ++v) rows.offsets[v] = v;
   } else {
-    rows.offsets = takeFront<std::uint32_t>(bytes, vertices + 1);
+    rows.offsets = front.values<std::uint32_t>(vertices + 1);
     if (rows.offsets.front() != 0 || rows.offsets.back() != entries ||
         !std::is_sorted(rows.offsets.begin(), rows.offsets.end()))
       return damaged("offsets do not rise from 0 to the number of entries");
   }
-  rows.samples = takeFront<std::uint32_t>(bytes, entries);
+  rows.samples = front.values<std::uint32_t>(entries);
   std::partial_sum(rows.samples.begin(), rows.samples.end(), rows.samples.begin());
   for (const std::uint32_t sample : rows.samples)
     if (sample >= sample_count) return damaged("a sample that the group does not have");
   rows.weights.assign(entries, 1.0f);
   if (!single) {
-    const auto weights = takeFront<std::uint16_t>(bytes, entries);
+    const auto weights = front.values<std::uint16_t>(entries);
     for (std::size_t e = 0; e < entries; ++e)
       rows.weights[e] = static_cast<float>(weights[e]) / float{kWeightOne};
   }
