@@ -1,5 +1,7 @@
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -50,10 +52,12 @@ void drawSettingRow(Session& session, Marks& marks, const frame::SettingRow& row
       ImGui::EndCombo();
     }
   } else if (row.kind == Kind::Whole) {
-    int whole = static_cast<int>(value);
-    changed = ImGui::SliderInt("##value", &whole, static_cast<int>(row.least), static_cast<int>(row.greatest),
+    // A word such as "auto", which stands for no number, lies left of the least number.
+    const int least = static_cast<int>(row.least), word = row.not_a_number.empty() ? least : least - 1;
+    int whole = std::isnan(value) ? word : static_cast<int>(value);
+    changed = ImGui::SliderInt("##value", &whole, word, static_cast<int>(row.greatest),
                                frame::settingWord(row, settings).c_str(), ImGuiSliderFlags_AlwaysClamp);
-    to = whole;
+    to = whole < least ? std::numeric_limits<double>::quiet_NaN() : whole;
   } else {
     float real = static_cast<float>(value);
     changed = ImGui::SliderFloat("##value", &real, static_cast<float>(row.least),
