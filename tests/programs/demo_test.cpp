@@ -92,8 +92,7 @@ TEST_F(DemoProgram, LeavesNoHalfPictureWhereTheDiskIsFull) {
   LAMBENT_NEEDS_DEVICE();
   const std::filesystem::path picture = folder / "a.exr";
   const Outcome outcome =
-      run(bundle() + " --light sun:35,45,6,5 --size 128x128 --headless " + quoted(picture),
-          "ulimit -f 8; ");
+      run(bundle() + " --light sun:35,45,6,5 --size 128x128 --headless " + quoted(picture), "ulimit -f 8; ");
   EXPECT_EQ(outcome.exit_code, 1);
   expectOneLine(outcome.err);
   EXPECT_NE(outcome.err.find("a.exr: cannot be written: File too large"), std::string::npos) << outcome.err;
@@ -265,10 +264,9 @@ TEST_F(DemoProgram, MovesAndDimsAKeyLightOfAProbe) {
   EXPECT_NEAR(edited["azimuth_deg"].get<double>(), 10.0, 1e-3);
   EXPECT_NEAR(edited["elevation_deg"].get<double>(), 20.0, 1e-3);
   EXPECT_EQ(edited["radius_deg"], found["radius_deg"]);
-  for (int channel = 0; channel < 3; ++channel) {
-    const double factor = channel == 0 ? 0.5 : channel == 1 ? 0.25 : 1.0;
+  for (std::size_t channel = 0; const double factor : {0.5, 0.25, 1.0}) {
     const double was = found["radiance"][channel];
-    EXPECT_NEAR(edited["radiance"][channel].get<double>(), factor * was, 1e-3 * was);
+    EXPECT_NEAR(edited["radiance"][channel++].get<double>(), factor * was, 1e-3 * was);
   }
   // An edit of no existing key light is reported, and changes nothing.
   const Outcome told =

@@ -38,8 +38,15 @@ int pixels(const std::string& ppm, const Is& is) {
 
 class Library : public testing::ProgramTest {
  protected:
+#ifdef LAMBENT_SANITIZED
+  void SetUp() override {
+    GTEST_SKIP() << "programs of others do not link libraries that have sanitizers";
+  }
+#endif
   // Runs words in a shell, whose $0 is the test's folder.
-  Outcome shell(const std::string& words) const { return run("/bin/sh", {"-ec", words, folder.string()}); }
+  Outcome shell(const std::string& words) const {
+    return run("/bin/sh", {"-ec", words, folder.string()});
+  }
   Outcome python(const std::string& script, const std::vector<std::string>& arguments) const {
     ::setenv("PYTHONPATH", LAMBENT_BINARY_DIR "/python", 1);
     std::vector<std::string> words = {script};

