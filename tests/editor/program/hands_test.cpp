@@ -133,6 +133,24 @@ state
   EXPECT_EQ(played.answer("state")["lights"][0], "sun:-165,15,1,5");
 }
 
+TEST_F(EditorProgram, SlidesTheNumberOfKeyLightsAwayFromAutoAndBack) {
+  const Played played = playInHello(R"(
+panel Settings
+wait frames 3
+click setting.keys@0.5,0.5
+wait frames 3
+state
+click setting.keys@0.005,0.5
+wait frames 3
+state
+)");
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::vector<json> states = played.all("state");
+  ASSERT_EQ(states.size(), 2u);
+  EXPECT_NEAR(std::stod(states[0]["settings"]["keys"].get<std::string>()), 16.0, 4.0) << "the middle of 32";
+  EXPECT_EQ(states[1]["settings"]["keys"], "auto");
+}
+
 TEST_F(EditorProgram, KeepsTheToolsOfTheViewBetweenStarts) {
   const Played first = play(R"(
 create-empty
