@@ -78,7 +78,7 @@ void appendDraw(const PlannedDraw& draw, const ScenePrimitive& primitive, const 
                    .layered = with_glossy && material && isSmoothDielectric(*material)};
   const glm::dmat4 group_from_mesh(draw.group_from_mesh);
   const glm::mat3 linear(draw.group_from_mesh);
-  const glm::mat3 normal_matrix(normalMatrix(glm::dmat3(linear)));
+  const glm::mat3 normal_matrix = normalMatrix(linear);
   const float side = draw.back ? -1.0f : 1.0f;
   const gltf::TextureRef base = material ? material->base_color_texture : gltf::TextureRef{};
   const gltf::TextureRef emissive = material ? material->emissive_texture : gltf::TextureRef{};

@@ -25,5 +25,8 @@ inline glm::dmat3 normalMatrix(const glm::dmat3& m) {
     for (int row = 0; row < 3; ++row) largest = std::max(largest, glm::abs(areas[column][row]));
   return largest > 0.0 ? areas / largest : areas;
 }
+inline glm::mat3 normalMatrix(const glm::mat3& m) {
+  return glm::mat3(normalMatrix(glm::dmat3(m)));
+}
 
 }  // namespace lambent

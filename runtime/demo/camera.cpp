@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 
 #include "runtime/base/normal_matrix.hpp"

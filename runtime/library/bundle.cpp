@@ -176,8 +176,7 @@ Expected<SurfaceData> Bundle::surface(std::uint32_t index) const {
 
   const auto& place = file_->registry.get<scene::WorldTransform>(file_->instance.nodes[draw.node]);
   const glm::mat4 group_from_mesh = glm::inverse(file_->worldFromGroup(draw.group)) * place.world_from_node;
-  const glm::mat3 for_normals =
-      (draw.back ? -1.0f : 1.0f) * glm::mat3(normalMatrix(glm::dmat3(glm::mat3(group_from_mesh))));
+  const glm::mat3 for_normals = (draw.back ? -1.0f : 1.0f) * normalMatrix(glm::mat3(group_from_mesh));
   SurfaceData data;
   for (const glm::vec3& position : mesh->positions)
     data.positions.push_back(fromGlm(glm::vec3(group_from_mesh * glm::vec4(position, 1.0f))));

@@ -193,8 +193,7 @@ ResidentTables tablesOf(const bundle::Description& description, std::uint64_t ve
     made.layered = bundle::isLayered(description, draw);
     const glm::quat group_from_world = glm::conjugate(description.groups[draw.group].rest_rotation);
     made.group_from_mesh = glm::mat3_cast(group_from_world) * glm::mat3(world_from_node[draw.node]);
-    made.group_from_mesh_normal =
-        (draw.back ? -1.0f : 1.0f) * glm::mat3(normalMatrix(glm::dmat3(made.group_from_mesh)));
+    made.group_from_mesh_normal = (draw.back ? -1.0f : 1.0f) * normalMatrix(made.group_from_mesh);
     made.version = version;
   }
   bundle.count = sizesOf(tables);

@@ -18,6 +18,7 @@
 #include "runtime/bundle/writer.hpp"
 #include "runtime/streaming/loader.hpp"
 #include "runtime/streaming/volume_blocks.hpp"
+#include "tests/support/frame/bundle_store.hpp"
 
 namespace lambent::testing {
 
@@ -96,17 +97,7 @@ struct BuiltVolume {
 // Appends the volume's group and returns its index. Blob i becomes view i.
 inline std::uint32_t addVolume(bundle::Description& description, std::vector<bundle::Blob>& blobs,
                                const BuiltVolume& volume) {
-  const auto payload = [&](bundle::PayloadType type, std::vector<std::byte> bytes) {
-    const std::uint64_t length = bytes.size();
-    blobs.push_back(std::move(bytes));
-    const auto index = static_cast<std::uint32_t>(description.payloads.size());
-    description.payloads.push_back({.type = type,
-                                    .codec = bundle::PayloadCodec::Raw,
-                                    .view = static_cast<std::uint32_t>(blobs.size() - 1),
-                                    .raw_length = length,
-                                    .priority = index});
-    return index;
-  };
+  Store store{description, blobs};
   const std::vector<std::uint32_t> voxels = volume.voxels();
   const auto samples = static_cast<std::uint32_t>(voxels.size());
   bundle::Group group;
@@ -128,13 +119,13 @@ inline std::uint32_t addVolume(bundle::Description& description, std::vector<bun
   group.volume =
       bundle::VolumeGrid{.size = volume.size,
                          .group_from_grid = volume.group_from_grid,
-                         .density = payload(bundle::PayloadType::Density, volume.codes()),
+                         .density = store.payload(bundle::PayloadType::Density, volume.codes()),
                          .bits = volume.bits,
                          .density_max = volume.density_max,
                          .albedo = volume.albedo,
                          .g = volume.g,
                          .transfer_size = volume.transfer_size,
-                         .voxels = payload(bundle::PayloadType::Voxels, bundle::encodeVoxels(voxels))};
+                         .voxels = store.payload(bundle::PayloadType::Voxels, bundle::encodeVoxels(voxels))};
   const BuiltVolume::Clusters clusters = volume.clusters();
   bundle::Cell cell;
   cell.domain = transfer::Domain::Voxel;
@@ -144,9 +135,10 @@ inline std::uint32_t addVolume(bundle::Description& description, std::vector<bun
   bundle::CellTransfer transfer;
   transfer.shape = volume.shape;
   transfer.clusters = static_cast<std::uint32_t>(clusters.codebook.clusters());
-  transfer.codebook = payload(bundle::PayloadType::Codebook, transfer::encodeCodebook(clusters.codebook));
+  transfer.codebook =
+      store.payload(bundle::PayloadType::Codebook, transfer::encodeCodebook(clusters.codebook));
   if (transfer.clusters > 1)
-    transfer.cluster_ids = static_cast<std::int32_t>(payload(
+    transfer.cluster_ids = static_cast<std::int32_t>(store.payload(
         bundle::PayloadType::ClusterIds, transfer::encodeClusterIds(clusters.of_sample, transfer.clusters)));
   cell.transfers.push_back(std::move(transfer));
   group.cells.push_back(std::move(cell));

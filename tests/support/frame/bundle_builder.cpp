@@ -123,8 +123,8 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
     node.mesh = static_cast<std::int32_t>(i);
     description.nodes.push_back(node);
     description.roots.push_back(static_cast<std::int32_t>(i));
-    const glm::mat3 group_from_mesh = glm::mat3_cast(glm::conjugate(rest_rotation_)) *
-                                      glm::mat3(normalMatrix(glm::dmat3(glm::mat3(mesh.world_from_mesh))));
+    const glm::mat3 group_from_mesh =
+        glm::mat3_cast(glm::conjugate(rest_rotation_)) * normalMatrix(glm::mat3(mesh.world_from_mesh));
     for (const bool back : {false, true}) {
       if (back && !mesh.material.double_sided) continue;
       transfer::VertexWeights rows;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/compress/draco_encode.hpp"
+#include "runtime/base/normal_matrix.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/volume_grid.hpp"
 #include "runtime/scene/bounds.hpp"
@@ -104,7 +105,7 @@ void addReceiver(bundle::Description& description, Store& store, const BuiltRece
   description.nodes[static_cast<std::size_t>(group.node)].children.push_back(
       static_cast<std::int32_t>(mesh_node));
   description.nodes.push_back(node);
-  const glm::mat3 normals = glm::transpose(glm::inverse(glm::mat3(receiver.group_from_mesh)));
+  const glm::mat3 normals = normalMatrix(glm::mat3(receiver.group_from_mesh));
   transfer::VertexWeights rows;
   rows.offsets.push_back(0);
   std::vector<std::vector<float>> vectors;
