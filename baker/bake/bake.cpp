@@ -82,6 +82,7 @@ struct Tried {
 
 Result<Tried> bakeAll(const SceneBake& whole, PictureTry* trying, const AlphaMaps& alpha_maps,
                       DecodedImages& images, const BakeContext& context) {
+  context.progress.beginPart();
   auto meshes = meshesOf(whole, alpha_maps, context);
   if (!meshes) return failAgain(meshes.error());
   if (trying) {
@@ -90,15 +91,12 @@ Result<Tried> bakeAll(const SceneBake& whole, PictureTry* trying, const AlphaMap
   }
   Tried tried{std::move(*meshes), {}, {}};
   for (std::size_t g = 0; g < whole.plan.groups.size() && !tried.next; ++g) {
-    context.progress.end();
-    const std::size_t first_stage = context.progress.finished().size();
+    context.progress.beginPart();
     auto group = whole.plan.groups[g].volume >= 0
                      ? bakeVolume(whole, alpha_maps, g, tried.groups, context)
                      : bakeGroup(whole, {tried.meshes, alpha_maps, images}, g, context);
     if (!group) return failAgain(group.error());
-    context.progress.end();
-    whole.report.groups.back().first_stage = first_stage;
-    whole.report.groups.back().stage_count = context.progress.finished().size() - first_stage;
+    whole.report.groups.back().part = context.progress.now().part;
     tried.next = group->next_try;
     tried.groups.push_back(std::move(*group));
   }
@@ -147,6 +145,7 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   const SceneBake whole{scene, options, *plan, *tables, report};
   ShippedMeshes& meshes = tried->meshes;
   const std::vector<BakedGroup>& baked = tried->groups;
+  context.progress.beginPart();
   context.progress.begin("writing");
   AssembledBundle bundle = assemble(whole, std::move(meshes), baked);
   // What cannot be opened must not take the place of a bundle that can.

@@ -57,8 +57,8 @@ struct BakeReport {
     std::optional<bundle::PictureError> picture_error = {};
     float codes_bound = 0.0f, glossy_codes_bound = 0.0f;
     std::uint64_t samples = 0, transfer_bytes = 0;
-    std::uint64_t hit_bytes = 0;                   // memory of the hits kept for the bounces
-    std::size_t first_stage = 0, stage_count = 0;  // in `stages`
+    std::uint64_t hit_bytes = 0;  // memory of the hits kept for the bounces
+    std::size_t part = 0;         // of `stages`
   };
   std::vector<Group> groups;
   struct Neighborhood {

@@ -5,6 +5,7 @@
 
 #include "baker/cli/bake_report.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/long_bake.hpp"
 #include "baker/pipeline/progress_record.hpp"
 #include "runtime/base/atomic_file.hpp"
@@ -46,15 +47,18 @@ Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cach
   }
   BakeOutcome outcome;
   outcome.estimate = cache ? findEstimate(*scene, a.options, *cache) : std::nullopt;
-  if (!outcome.estimate && !a.say.quiet)
-    if (const auto plan = planFor(*scene, a.options))
-      if (const auto notice = longBakeNotice(guessProcessorSeconds(*scene, *plan, a.options)))
-        reportNotice(a.scene, *notice);
+  PartSeconds expected;
+  if (outcome.estimate) {
+    expected = outcome.estimate->parts;
+  } else if (const auto plan = planFor(*scene, a.options)) {
+    PartSeconds guess = guessProcessorSeconds(*scene, *plan, a.options);
+    if (const auto notice = longBakeNotice(sumSeconds(guess)); notice && !a.say.quiet)
+      reportNotice(a.scene, *notice);
+    expected = onThreads(std::move(guess), a.options.threads);
+  }
   if (cache) cache->setReading(!a.force);
   const Key progress_key = progressKey(*scene, a.options);
   Result<BakeReport> report = [&] {
-    const StageSeconds expected =
-        outcome.estimate ? outcome.estimate->stages : guessSeconds(*scene, a.options);
     const ProgressRecord begun = cache ? findProgress(progress_key, *cache) : ProgressRecord{};
     std::optional<ProgressKeeper> keeper;
     if (cache) keeper.emplace(progress, expected, begun, *cache, progress_key);

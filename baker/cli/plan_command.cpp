@@ -55,7 +55,7 @@ nlohmann::json estimateJson(const BakeEstimate& estimate) {
   };
   nlohmann::json json = figures(estimate);
   json["processorSeconds"] = estimate.processor_seconds;
-  json["stages"] = estimate.stages;
+  json["stages"] = stageSeconds(estimate.parts);
   json["groups"] = nlohmann::json::array();
   for (const BakeEstimate::Group& group : estimate.groups) {
     json["groups"].push_back(figures(group));

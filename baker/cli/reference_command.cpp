@@ -73,10 +73,10 @@ Result<std::optional<float>> understandTime(const std::string& word) {
 }
 
 // Expects the paths of a usual scene; the stage's own rate replaces that as soon as there is one.
-StageSeconds expectedSeconds(const reference::Options& options) {
+PartSeconds expectedSeconds(const reference::Options& options) {
   constexpr double kGuessedPathsPerSecond = 3e5;
   const double paths = double(options.size.width) * double(options.size.height) * double(options.spp);
-  return {{"paths", paths / kGuessedPathsPerSecond}};
+  return {{{"paths", paths / kGuessedPathsPerSecond}}};
 }
 
 void printReference(const ReferenceArguments& a, const reference::Request& request,

@@ -24,7 +24,8 @@ std::size_t shadowedSize(const transfer::TransferShape& shape) {
   return std::size_t{shape.shadowed_channels} * shape.outputs * shape.columns();
 }
 
-// Returns, for each value, the sum over samples of value(sample, i)², added in a fixed order.
+// Returns, for each of a sample's values, the sum over samples of value(sample, at)², added in a fixed order.
+// `at` is where the value lies among those of all samples.
 template <typename Value>
 std::vector<double> energies(std::size_t size, std::size_t count, const Value& value) {
   std::vector<std::vector<double>> partial((count + kSamplesPerSum - 1) / kSamplesPerSum);
@@ -33,7 +34,7 @@ std::vector<double> energies(std::size_t size, std::size_t count, const Value& v
     sums.assign(size, 0.0);
     for (std::size_t s = begin; s < end; ++s)
       for (std::size_t i = 0; i < size; ++i) {
-        const double v = value(s * size + i);
+        const double v = value(s, s * size + i);
         sums[i] += v * v;
       }
   });
@@ -115,7 +116,7 @@ std::vector<double> normalisedRoots(std::span<const float> vectors, const transf
   const std::size_t size = shape.size(), columns = shape.columns(),
                     environment = std::size_t{shape.order} * shape.order;
   const auto energy =
-      energies(size, vectors.size() / size, [&](std::size_t at) { return double{vectors[at]}; });
+      energies(size, vectors.size() / size, [&](std::size_t, std::size_t at) { return double{vectors[at]}; });
   for (const Block& block : blocksOf(shape)) {
     std::vector<double> of_column(columns, 0.0);
     for (std::size_t i = block.first; i < block.last; ++i)
@@ -138,7 +139,7 @@ double transferEnergy(std::span<const float> vectors, const transfer::TransferSh
                       const BandPower& kernel_power) {
   const std::vector<double> roots = bandRoots(shape, kernel_power);
   const auto energy = energies(shape.size(), vectors.size() / shape.size(),
-                               [&](std::size_t at) { return double{vectors[at]}; });
+                               [&](std::size_t, std::size_t at) { return double{vectors[at]}; });
   double sum = 0.0;
   for (std::size_t i = 0; i < roots.size(); ++i) sum += roots[i] * roots[i] * energy[i];
   return channelWeight(shape) * sum;
@@ -190,8 +191,8 @@ double radianceError(std::span<const float> truth, std::span<const float> coded,
   const std::vector<double> roots = normalisedRoots(truth, shape, shown_energy, kernel_power);
   std::vector<float> importance = sampleImportance(truth, shape, shown_energy, kernel_power);
   for (float& one : importance) one = std::sqrt(one);
-  const auto off = energies(size, truth.size() / size, [&](std::size_t at) {
-    return double{importance[at / size]} * (double{coded[at]} - double{truth[at]});
+  const auto off = energies(size, truth.size() / size, [&](std::size_t sample, std::size_t at) {
+    return double{importance[sample]} * (double{coded[at]} - double{truth[at]});
   });
   double worst = 0.0;
   for (const Block& block : blocksOf(shape)) {

@@ -17,7 +17,9 @@ bool findKept(const BakeContext& context, T&& value) {
   const auto bytes = context.cache->find(context.key);
   if (!bytes) return false;
   ByteReader in(*bytes);
-  return read(in, value) && in.atEnd();
+  if (!read(in, value) || !in.atEnd()) return false;
+  context.progress.found();
+  return true;
 }
 
 template <typename T>

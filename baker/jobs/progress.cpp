@@ -24,10 +24,16 @@ Progress::Stage Progress::current() const {
   return stage;
 }
 
+void Progress::beginPart() {
+  end();
+  const std::lock_guard hold(lock_);
+  running_.part = ++part_;
+}
+
 void Progress::begin(std::string name, std::uint64_t total, std::string unit) {
   end();
   const std::lock_guard hold(lock_);
-  running_ = {std::move(name), std::move(unit), total, 0, 0.0, 0.0};
+  running_ = {.name = std::move(name), .unit = std::move(unit), .total = total, .part = part_};
   done_ = 0;
   began_ = Clock::now();
   processor_began_ = processorSeconds();
@@ -38,16 +44,21 @@ void Progress::expect(std::uint64_t total) {
   running_.total = std::max(total, done_.load(std::memory_order_relaxed));
 }
 
+void Progress::found() {
+  const std::lock_guard hold(lock_);
+  running_.found = true;
+}
+
 void Progress::end() {
   const std::lock_guard hold(lock_);
   if (running_.name.empty()) return;
   finished_.push_back(current());
-  running_ = {};
+  running_ = {.part = part_};
 }
 
 Progress::Stage Progress::now() const {
   const std::lock_guard hold(lock_);
-  return running_.name.empty() ? Stage{} : current();
+  return running_.name.empty() ? running_ : current();
 }
 
 std::vector<Progress::Stage> Progress::finished() const {

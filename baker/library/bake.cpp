@@ -17,6 +17,7 @@
 #include "baker/bake/option_rows.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/whole_progress.hpp"
 #include "runtime/library/convert.hpp"
 #include "runtime/spec/light.hpp"
@@ -172,9 +173,13 @@ Expected<BakeResult> Baker::run(const BakeScene& scene, const std::string& outpu
   const auto start = std::chrono::steady_clock::now();
   const Result<baker::BakeReport> report = [&] {
     std::optional<Watching> watching;
-    if (watcher)
-      watching.emplace(watcher, progress, baker::WholeProgress(baker::guessSeconds(baked, state_->options)),
-                       stop);
+    if (watcher) {
+      baker::PartSeconds expected;
+      if (const auto plan = baker::planFor(baked, state_->options))
+        expected = baker::onThreads(baker::guessProcessorSeconds(baked, *plan, state_->options),
+                                    state_->options.threads);
+      watching.emplace(watcher, progress, baker::WholeProgress(std::move(expected)), stop);
+    }
     return baker::bake(baked, state_->options, output,
                        {progress, stop.get_token(), state_->cache ? &*state_->cache : nullptr});
   }();

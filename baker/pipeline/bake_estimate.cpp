@@ -73,13 +73,21 @@ std::vector<Progress::Stage> ofProcessors(std::span<const Progress::Stage> stage
   return out;
 }
 
+// A bake with several tries plans once, and writes after the last.
+void addParts(const PartSeconds& of_try, PartSeconds& parts) {
+  if (!parts.empty()) parts.pop_back();
+  parts.insert(parts.end(), of_try.begin() + (parts.empty() ? 0 : 1), of_try.end());
+}
+
 // Adds to an estimate what a try takes, all of its groups included.
 void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions& options,
             BakeEstimate& estimate) {
   const double times = static_cast<double>(options.effectiveRays()) / static_cast<double>(few.rays);
-  for (const auto& [stage, seconds] : scaleSeconds(report.stages, few, options))
-    estimate.stages[stage] += seconds, estimate.seconds += seconds;
-  for (const auto& [stage, seconds] : scaleSeconds(ofProcessors(report.stages), few, options))
+  const PartSeconds parts = scaleSeconds(report.stages, few, options);
+  const PartSeconds of_processors = scaleSeconds(ofProcessors(report.stages), few, options);
+  addParts(parts, estimate.parts);
+  estimate.seconds += sumSeconds(parts);
+  for (const auto& [stage, seconds] : stageSeconds(of_processors))
     estimate.processor_stages[stage] += seconds, estimate.processor_seconds += seconds;
   const double of_codes = std::pow(times, few.error_bound > 0.0f ? kBytesPower : 0.0);
   estimate.samples = static_cast<double>(report.samples);
@@ -95,9 +103,8 @@ void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions&
     double rays = 0.0;
     for (const auto& effect : group.effects) rays += static_cast<double>(effect.rays);
     of.rays = rays * times;
-    const auto stages = std::span(report.stages).subspan(group.first_stage, group.stage_count);
-    for (const auto& [stage, seconds] : scaleSeconds(stages, few, options)) of.seconds += seconds;
-    of.processor_stages = scaleSeconds(ofProcessors(stages), few, options);
+    of.seconds = sumSeconds({parts[group.part]});
+    of.processor_stages = of_processors[group.part];
     const double hits = std::min(static_cast<double>(group.hit_bytes) * times,
                                  0.5 * static_cast<double>(options.effectiveMemory()));
     const double of_view = group.picture_error && rays > 0.0
@@ -128,13 +135,13 @@ Key keyOf(const Scene& scene, const BakeOptions& options) {
 void write(const BakeEstimate& estimate, ByteWriter& out) {
   out.add(estimate.samples), out.add(estimate.rays), out.add(estimate.seconds);
   out.add(estimate.memory_bytes), out.add(estimate.bytes);
-  writeSeconds(estimate.stages, out);
+  writeSeconds(estimate.parts, out);
 }
 
 // The whole is kept, not its groups.
 bool read(ByteReader& in, BakeEstimate& estimate) {
   return in.read(estimate.samples) && in.read(estimate.rays) && in.read(estimate.seconds) &&
-         in.read(estimate.memory_bytes) && in.read(estimate.bytes) && readSeconds(in, estimate.stages);
+         in.read(estimate.memory_bytes) && in.read(estimate.bytes) && readSeconds(in, estimate.parts);
 }
 
 Result<BakeEstimate> estimateBake(const Scene& scene, const BakeOptions& options,

@@ -25,7 +25,7 @@ struct BakeEstimate {
   std::vector<Group> groups;
   // Of the whole: with refinement, meshes and images, and of the whole program.
   double samples = 0.0, rays = 0.0, seconds = 0.0, memory_bytes = 0.0, bytes = 0.0;
-  StageSeconds stages;
+  PartSeconds parts;
   double processor_seconds = 0.0;  // of all threads
   StageSeconds processor_stages;
 };

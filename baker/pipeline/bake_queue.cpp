@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "baker/import/gltf.hpp"
+#include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/job_estimate.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/progress_record.hpp"
@@ -41,10 +42,10 @@ struct Job {
   bool begun = false;
   Journal::Entry record;
   std::optional<std::string> unrecorded;     // says that the journal could not be written
-  StageSeconds expected;                     // for the final bake
-  StageSeconds expected_coarse;              // for the coarse preview
+  PartSeconds expected;                      // for the final bake
+  PartSeconds expected_coarse;               // for the coarse preview
   double coarse_seconds = 0.0;               // what the coarse preview took, once it is done
-  StageSeconds before;                       // what earlier runs of the final bake spent on it
+  PartSeconds before;                        // what earlier runs of the final bake spent on it
   std::shared_ptr<const Progress> progress;  // of the step that runs
 
   // Steps that show something sooner come first.
@@ -85,6 +86,19 @@ void removeOldPreviews(const fs::path& folder) {
     std::error_code gone;
     if (fs::last_write_time(at->path(), gone) < old && !gone) fs::remove(at->path(), gone);
   }
+}
+
+struct Guess {
+  PartSeconds of_final, of_coarse;
+};
+Guess guessOf(const Scene& scene, const BakeOptions& options) {
+  const auto plan = planFor(scene, options);
+  if (!plan) return {};
+  const auto guess = [&](PreviewLevel level) {
+    return onThreads(guessProcessorSeconds(scene, *plan, previewLevelOptions(level, options)),
+                     options.threads);
+  };
+  return {guess(PreviewLevel::Final), guess(PreviewLevel::Coarse)};
 }
 
 double total(std::span<const Progress::Stage> stages) {
@@ -209,7 +223,7 @@ JobState BakeQueue::Impl::snapshot(Job& job) const {
   // The coarse preview and the final bake count; the unshadowed preview is short.
   const bool at_final = job.progress && state.preview_level == PreviewLevel::Final;
   const bool at_coarse = job.progress && state.preview_level == PreviewLevel::Coarse;
-  const StageSeconds before = at_final ? job.before : StageSeconds{};
+  const PartSeconds before = at_final ? job.before : PartSeconds{};
   if (const double took = secondsOf(state.stage, before, finished); took > 0.0)
     state.units_per_s = static_cast<double>(state.stage.done) / took;
   double spent = sumSeconds(job.before) + job.coarse_seconds, left = 0.0;
@@ -264,7 +278,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       unrecorded = entry.error()->line() + "; if this bake is cut short, no later session goes on with it";
   }
   bool up_to_date = false;
-  StageSeconds expected;
+  PartSeconds expected;
   Key progress_key = {};
   std::vector<std::string> warnings;
   const Result<BakeReport> result = [&]() -> Result<BakeReport> {
@@ -280,22 +294,21 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
         progress_key = progressKey(**scene, request.options);
         begun = findProgress(progress_key, *settings.cache);
       }
+      if (record && isUpToDate(**scene, request.options, request.output)) {
+        up_to_date = true;
+        return BakeReport{};
+      }
+      const Guess guess = guessOf(**scene, request.options);
       {
         const std::lock_guard again(lock);
         if (job->asked == asked_then) {
           job->state.phase = JobPhase::Baking;
-          if (job->expected.empty()) job->expected = guessSeconds(**scene, request.options);
-          if (step == Step::Coarse)
-            job->expected_coarse =
-                guessSeconds(**scene, previewLevelOptions(PreviewLevel::Coarse, request.options));
+          if (job->expected.empty()) job->expected = guess.of_final;
+          job->expected_coarse = guess.of_coarse;
           expected = job->expected;
           job->before = begun.spent;
           job->state.fraction = std::max(job->state.fraction, begun.share);
         }
-      }
-      if (record && isUpToDate(**scene, request.options, request.output)) {
-        up_to_date = true;
-        return BakeReport{};
       }
       std::optional<ProgressKeeper> keeper;
       if (settings.cache != nullptr && preview_level == PreviewLevel::Final)
@@ -309,7 +322,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
     }
   }();
   progress->end();
-  StageSeconds before;
+  PartSeconds before;
   if (progress_key != Key{} && preview_level == PreviewLevel::Final) {
     if (result) settings.cache->drop(progress_key);
     before = findProgress(progress_key, *settings.cache).spent;
@@ -354,7 +367,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
   state.warnings.insert(state.warnings.end(), result->notices.begin(), result->notices.end());
   tell(BakeEvent::Kind::Bundle, *job, *state.reached, state.bundle);
   if (state.reached >= request.last) {
-    if (!up_to_date) job->expected = sumSeconds(stages);  // for the next time
+    if (!up_to_date) job->expected = partSeconds(stages);  // for the next time
     state.phase = JobPhase::Done;
     job->record.done();
     return;

@@ -47,7 +47,7 @@ ProgressRecord findProgress(const Key& key, const Cache& cache) {
   return record;
 }
 
-ProgressKeeper::ProgressKeeper(const Progress& progress, StageSeconds expected, ProgressRecord begun,
+ProgressKeeper::ProgressKeeper(const Progress& progress, PartSeconds expected, ProgressRecord begun,
                                Cache& cache, const Key& key) {
   thread_ = std::jthread([&progress, &cache, key, begun,
                           whole = WholeProgress(std::move(expected), begun)](std::stop_token stop) mutable {
@@ -56,8 +56,8 @@ ProgressKeeper::ProgressKeeper(const Progress& progress, StageSeconds expected, 
     const auto look = [&]() -> Looked {
       const WholeProgress::Seen seen = whole.look(progress);
       ProgressRecord record{.share = seen.share, .spent = begun.spent};
-      for (const Progress::Stage& stage : progress.finished()) record.spent[stage.name] += stage.seconds;
-      if (!seen.stage.name.empty()) record.spent[seen.stage.name] += seen.stage.seconds;
+      for (const Progress::Stage& stage : progress.finished()) addSeconds(record.spent, stage, stage.seconds);
+      if (!seen.stage.name.empty()) addSeconds(record.spent, seen.stage, seen.stage.seconds);
       return {std::chrono::steady_clock::now(), std::move(record)};
     };
     std::deque<Looked> fresh;  // what may not be kept yet

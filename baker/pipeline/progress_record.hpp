@@ -16,7 +16,7 @@ namespace lambent::baker {
 
 struct ProgressRecord {
   double share = 0.0;  // that was shown, 0..1
-  StageSeconds spent;  // by all runs together, on what was kept
+  PartSeconds spent;   // by all runs together, on what was kept
 };
 
 Key progressKey(const Scene& scene, const BakeOptions& options);
@@ -26,7 +26,7 @@ ProgressRecord findProgress(const Key& key, const Cache& cache);
 // Keeps the record while it lives. Cache and progress must outlive it.
 class ProgressKeeper {
  public:
-  ProgressKeeper(const Progress& progress, StageSeconds expected, ProgressRecord begun, Cache& cache,
+  ProgressKeeper(const Progress& progress, PartSeconds expected, ProgressRecord begun, Cache& cache,
                  const Key& key);
   ProgressKeeper(const ProgressKeeper&) = delete;
   ProgressKeeper& operator=(const ProgressKeeper&) = delete;

@@ -17,7 +17,7 @@ inline constexpr double kMostBeforeTheEnd = 0.99;
 class WholeProgress {
  public:
   // `begun` is what earlier runs of the same job recorded.
-  explicit WholeProgress(StageSeconds expected, ProgressRecord begun = {})
+  explicit WholeProgress(PartSeconds expected, ProgressRecord begun = {})
       : expected_(std::move(expected)), before_(std::move(begun.spent)), share_(begun.share) {}
 
   struct Seen {
@@ -29,7 +29,7 @@ class WholeProgress {
   Seen look(const Progress& progress);
 
  private:
-  StageSeconds expected_, before_;
+  PartSeconds expected_, before_;
   double share_ = 0.0;
 };
 

@@ -16,6 +16,7 @@ namespace lambent::baker {
 namespace {
 
 constexpr int kSide = 128;  // pixels
+constexpr float kEnd = kSide;
 
 float cross2(glm::vec2 a, glm::vec2 b) {
   return a.x * b.y - a.y * b.x;
@@ -24,7 +25,7 @@ float cross2(glm::vec2 a, glm::vec2 b) {
 // Marks pixels whose centre the triangle covers, whichever way it winds.
 void fill(glm::vec2 a, glm::vec2 b, glm::vec2 c, std::vector<std::uint8_t>& pixels) {
   if (cross2(b - a, c - a) < 0.0f) std::swap(b, c);
-  const auto first = [](float v) { return std::clamp(static_cast<int>(std::ceil(v - 0.5f)), 0, kSide); };
+  const auto first = [](float v) { return static_cast<int>(std::clamp(std::ceil(v - 0.5f), 0.0f, kEnd)); };
   const int x0 = first(std::min({a.x, b.x, c.x})), x1 = first(std::max({a.x, b.x, c.x}) + 1.0f);
   const int y0 = first(std::min({a.y, b.y, c.y})), y1 = first(std::max({a.y, b.y, c.y}) + 1.0f);
   for (int y = y0; y < y1; ++y)
@@ -39,7 +40,7 @@ void fill(glm::vec2 a, glm::vec2 b, glm::vec2 c, std::vector<std::uint8_t>& pixe
 
 double Silhouette::pixelsOf(std::span<const SimpleMesh> meshes, const View& view) {
   std::vector<std::uint8_t> pixels(std::size_t{kSide} * kSide, 0);
-  const glm::vec2 scale = float{kSide} / (view.high - view.low);
+  const glm::vec2 scale = kEnd / (view.high - view.low);
   for (const SimpleMesh& mesh : meshes) {
     std::vector<glm::vec2> flat;
     for (const glm::vec3& p : mesh.positions)
@@ -68,7 +69,9 @@ Silhouette::Silhouette(std::span<const SimpleMesh> original) {
       }
     const glm::vec2 size = view.high - view.low;
     const double pixel = double{size.x} * double{size.y} / (kSide * kSide);
-    if (!(size.x > 0.0f) || !(pixel > 0.0) || !std::isfinite(pixel)) continue;
+    // A width that floats can hold may have an inverse that they cannot.
+    const glm::vec2 scale = kEnd / size;
+    if (!(pixel > 0.0) || !std::isfinite(pixel) || !std::isfinite(scale.x + scale.y)) continue;
     view.pixel = pixel;
     view.covered = pixelsOf(original, view);
   }

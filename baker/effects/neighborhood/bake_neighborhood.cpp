@@ -85,9 +85,8 @@ std::optional<BakedAround> bakeNeighborhood(const Body& body, const Neighborhood
   const GridPlacement& grid = *changed->grid;
   context.progress.begin("coding the neighborhood", grid.count(), "points");
   CachedCoding coding(context);
-  auto coded = codeChange(*changed->change, grid, settings.origin, settings.coding, coding);
+  auto coded = codeChange(*changed->change, grid, settings.origin, settings.coding, coding, context.progress);
   if (!coded) return std::nullopt;
-  context.progress.add(grid.count());
   out.figures = {.size = grid.size,
                  .bounds_min = settings.origin + grid.box.low,
                  .bounds_max = settings.origin + grid.box.high,

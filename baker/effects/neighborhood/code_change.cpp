@@ -20,12 +20,6 @@ constexpr int kMostAttempts = 4;
 constexpr double kFiner = 0.6, kLooser = 2.0;  // least factors from one attempt to the next
 constexpr int kQuickLevel = 3;                 // of zstd; the bundle's payloads are compressed better
 
-std::vector<float> decode(const CodedTransfer& coded) {
-  std::vector<std::vector<std::uint32_t>> codes;
-  for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
-  return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
-}
-
 double bytesOf(const std::vector<CodedTransfer>& coded) {
   std::size_t bytes = 0;
   const auto add = [&](const std::vector<std::byte>& raw) {
@@ -78,10 +72,10 @@ class CellCoder {
   // Returns the error relative to the change that this share of the points with more change than `where` stay
   // below, or 0 if there are no such points.
   double changeError(const std::vector<CodedTransfer>& coded, double where, double share) const {
-    std::vector<float> wrong_visibility = decode(coded[0]), wrong_bounced;
+    std::vector<float> wrong_visibility = decodeTransfer(coded[0]), wrong_bounced;
     for (std::size_t i = 0; i < wrong_visibility.size(); ++i) wrong_visibility[i] -= visibility_[i];
     if (sends_) {
-      wrong_bounced = decode(coded[1]);
+      wrong_bounced = decodeTransfer(coded[1]);
       for (std::size_t i = 0; i < wrong_bounced.size(); ++i) wrong_bounced[i] -= bounced_[i];
     }
     std::vector<double> ratios(count_, -1.0);
@@ -117,7 +111,7 @@ class CellCoder {
 
 std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacement& grid,
                                       const glm::vec3& origin, const ChangeCoding& settings,
-                                      CachedCoding& coding) {
+                                      CachedCoding& coding, Progress& progress) {
   const ChangeMeter meter(change.shape);
   CodedChange out;
   for (std::size_t first = 0; first < grid.count(); first += kMaxCellSamples) {
@@ -151,6 +145,7 @@ std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacem
     out.error = std::max(out.error, std::sqrt(square));
     out.change_error = std::max(out.change_error, change_error);
     out.cells.push_back(std::move(cell));
+    progress.add(count);
   }
   return out;
 }

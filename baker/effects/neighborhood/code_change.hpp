@@ -28,9 +28,10 @@ struct CodedChange {
   double change_error = 0.0;  // as `of_change`, of the worst cell
 };
 
-// `origin` is added to the points for the cells' bounds. Returns nothing if stopped.
+// `origin` is added to the points for the cells' bounds, and coded points to the running stage. Returns
+// nothing if stopped.
 std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacement& grid,
                                       const glm::vec3& origin, const ChangeCoding& settings,
-                                      CachedCoding& coding);
+                                      CachedCoding& coding, Progress& progress);
 
 }  // namespace lambent::baker

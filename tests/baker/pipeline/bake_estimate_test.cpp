@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/bake/option_rows.hpp"
+#include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/long_bake.hpp"
 #include "baker/pipeline/time_budget.hpp"
 #include "tests/support/shapes.hpp"
@@ -24,7 +25,7 @@ TEST(LongBake, IsGuessedFromWhatIsDrawnAndItsRays) {
   const auto guess = [&](const BakeOptions& options) {
     const auto plan = planFor(scene, options);
     EXPECT_TRUE(plan);
-    return plan ? guessProcessorSeconds(scene, *plan, options) : 0.0;
+    return plan ? sumSeconds(guessProcessorSeconds(scene, *plan, options)) : 0.0;
   };
   const BakeOptions draft{.quality = Quality::Draft};
   const double once = guess(draft);
@@ -75,13 +76,13 @@ TEST(BakeEstimate, IsFoundForTheSameSceneAndOptionsOnly) {
   const Scene scene = boxAboveFloor();
   const BakeOptions options{.quality = Quality::Draft};
   BakeEstimate estimate;
-  estimate.seconds = 12.5, estimate.bytes = 77.0, estimate.stages = {{"coding", 2.0}};
+  estimate.seconds = 12.5, estimate.bytes = 77.0, estimate.parts = {{{"import", 1.0}}, {{"coding", 2.0}}};
   keepEstimate(scene, options, estimate, *cache);
   const auto found = findEstimate(scene, options, *cache);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->seconds, 12.5);
   EXPECT_EQ(found->bytes, 77.0);
-  EXPECT_EQ(found->stages, estimate.stages);
+  EXPECT_EQ(found->parts, estimate.parts);
   EXPECT_FALSE(findEstimate(scene, {.quality = Quality::High}, *cache));
 }
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,7 @@ void work() {
 
 TEST(WholeProgress, GoesOverAllStagesAndNeverBack) {
   // The second stage takes far longer than expected, and the third was not expected at all.
-  WholeProgress whole({{"direct light", 0.06}, {"coding", 0.001}});
+  WholeProgress whole({{{"direct light", 0.06}, {"coding", 0.001}}});
   Progress progress;
   double before = 0.0;
   for (const char* stage : {"direct light", "coding", "proxy"}) {
@@ -34,7 +35,7 @@ TEST(WholeProgress, GoesOverAllStagesAndNeverBack) {
 }
 
 TEST(WholeProgress, KnowsThatMuchIsLeftWhileAStageOfMoreBegins) {
-  WholeProgress whole({{"direct light", 0.03}, {"bounces", 10.0}});
+  WholeProgress whole({{{"direct light", 0.03}, {"bounces", 10.0}}});
   Progress progress;
   progress.begin("direct light", 2, "samples");
   work();
@@ -44,7 +45,7 @@ TEST(WholeProgress, KnowsThatMuchIsLeftWhileAStageOfMoreBegins) {
 }
 
 TEST(TimeLeft, FollowsRefinementFromItsBeginToItsEnd) {
-  const StageSeconds expected = {{"refinement", 10.0}, {"direct light", 20.0}};
+  const PartSeconds expected = {{{"refinement", 10.0}}, {{"direct light", 20.0}}};
   const auto left = [&](std::uint64_t total, std::uint64_t done, double seconds) {
     return secondsLeft(expected, {}, {}, {"refinement", "probes", total, done, seconds, seconds});
   };
@@ -57,17 +58,43 @@ TEST(TimeLeft, FollowsRefinementFromItsBeginToItsEnd) {
 }
 
 TEST(TimeLeft, ExpectsOfLaterStagesWhatSamplesTookSoFar) {
-  const StageSeconds expected = {{"direct light", 10.0}, {"bounce 1", 3.0}, {"coding", 2.0}, {"proxy", 1.0}};
+  const PartSeconds expected = {{{"direct light", 10.0}, {"bounce 1", 3.0}, {"coding", 2.0}, {"proxy", 1.0}}};
   const auto left = [&](double seconds_of_half) {
     return secondsLeft(expected, {}, {}, {"direct light", "samples", 100, 50, seconds_of_half, 0.0});
   };
   EXPECT_NEAR(left(5.0), 5.0 + 3.0 + 2.0 + 1.0, 1e-9);
-  EXPECT_NEAR(left(20.0), 20.0 + 4.0 * (3.0 + 2.0) + 1.0, 1e-9) << "there are four times as many samples";
-  EXPECT_NEAR(left(1.0), 1.0 + 8.0 + 3.0 + 2.0 + 1.0, 1e-9) << "another group may follow";
+  EXPECT_NEAR(left(20.0), 20.0 + 4.0 * (3.0 + 2.0) + 1.0, 2.0) << "there are four times as many samples";
+  EXPECT_NEAR(left(1.0), 1.0 + 0.2 * 3.0 + 2.0 + 1.0, 0.7)
+      << "rays are five times as fast, which codes are not";
+}
+
+TEST(TimeLeft, IsThatOfPartsToComeAndOfNoneThatAreOver) {
+  const StageSeconds group = {{"direct light", 10.0}, {"coding", 10.0}};
+  const PartSeconds expected = {{{"refinement", 10.0}}, group, group, {{"writing", 1.0}}};
+  const auto stage = [](const char* name, double seconds, std::size_t part, std::uint64_t done) {
+    return Progress::Stage{name, "samples", 100, done, seconds, 0.0, part};
+  };
+  std::vector<Progress::Stage> finished = {stage("refinement", 10.0, 0, 100),
+                                           stage("direct light", 10.0, 1, 100)};
+  EXPECT_NEAR(secondsLeft(expected, {}, finished, stage("coding", 5.0, 1, 50)), 5.0 + 20.0 + 1.0, 1e-9);
+  // The first group turns out not to be coded at all.
+  EXPECT_NEAR(secondsLeft(expected, {}, finished, stage("direct light", 5.0, 2, 50)), 5.0 + 10.0 + 1.0, 1e-9);
+  finished.push_back(stage("direct light", 10.0, 2, 100));
+  finished.push_back(stage("coding", 3.0, 2, 100));
+  EXPECT_NEAR(secondsLeft(expected, {}, finished, stage("writing", 0.0, 3, 0)), 1.0, 1e-9);
+}
+
+TEST(TimeLeft, LearnsNothingFromWhatTheCacheHolds) {
+  const PartSeconds expected = {{{"direct light", 10.0}, {"bounce 1", 3.0}}};
+  const Progress::Stage found{"direct light", "samples", 100, 100, 0.01, 0.01, 0, /*found=*/true};
+  const Progress::Stage now{"bounce 1", "samples", 100, 0, 0.0, 0.0};
+  EXPECT_NEAR(secondsLeft(expected, {}, std::vector{found}, now), 3.0, 1e-9);
+  // What was kept by a run that was cut short took as long as that run says.
+  EXPECT_NEAR(secondsLeft(expected, {{{"direct light", 20.0}}}, std::vector{found}, now), 6.0, 0.3);
 }
 
 TEST(WholeProgress, NeverFallsThoughRefinementTurnsOutLonger) {
-  WholeProgress whole({{"refinement", 0.3}, {"direct light", 0.3}});
+  WholeProgress whole({{{"refinement", 0.3}, {"direct light", 0.3}}});
   Progress progress;
   progress.begin("refinement", 10, "probes");
   double before = 0.0;
@@ -86,8 +113,8 @@ TEST(WholeProgress, NeverFallsThoughRefinementTurnsOutLonger) {
 }
 
 TEST(WholeProgress, CountsWhatEarlierRunsKept) {
-  WholeProgress whole({{"direct light", 30.0}, {"bounces", 10.0}},
-                      {.share = 0.6, .spent = {{"direct light", 24.0}}});
+  WholeProgress whole({{{"direct light", 30.0}, {"bounces", 10.0}}},
+                      {.share = 0.6, .spent = {{{"direct light", 24.0}}}});
   Progress progress;
   progress.begin("plan");
   EXPECT_NEAR(whole.look(progress).share, 0.6, 0.01);

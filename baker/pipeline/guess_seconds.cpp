@@ -1,0 +1,159 @@
+#include "baker/pipeline/guess_seconds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <thread>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+#include "baker/plan/smooth_dielectrics.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// Processor time of a sample, bounces and codes included: of its rays, and of what is done whatever they are.
+// In a room nearly all rays of diffuse samples meet something that sends light on, around an open body hardly
+// any. Rounded from bakes of docs/measurements/bakes.md, "Beforehand".
+constexpr double kRoomRay_s = 1.5e-6, kRoomSample_s = 2.4e-4;
+constexpr double kOpenRay_s = 1e-7, kOpenSample_s = 1e-4;
+constexpr double kGlossyRay_s = 2.5e-6, kGlossySample_s = 2.6e-4;
+// Refinement is expected to double the vertices where it may.
+constexpr double kGrowth = 2.0;
+// Stages of a group share that so, roughly. Of diffuse and of glossy samples, codes take these shares of all.
+constexpr double kProbing = 1.0, kDirect = 1.0, kBounce = 0.3;
+constexpr double kDiffuseCoding = 0.05, kGlossyCoding = 0.5;
+// Of each point of a neighborhood's grid, at drafts' 256 rays, and of the codes of a point without matrices
+// and with.
+constexpr double kPoint_s = 1e-4, kPointCoding_s = 2e-4, kMatricesCoding_s = 9e-4;
+constexpr double kFewPoints = 8192.0, kPoints = 32768.0;
+constexpr double kVoxel_s = 1.2e-4;  // of each voxel of a volume's grid, empty ones included
+constexpr double kDraftRays = 256.0;
+
+struct Vertices {
+  double diffuse = 0.0, glossy = 0.0;
+  double room = 0.0;  // 0: an open body; 1: a room
+};
+
+// Returns twice the share of the area that faces the middle of the group, as walls do, and 1 at most.
+double roomOf(const Scene& scene, const RigidGroup& group, const std::vector<glm::mat4>& world) {
+  const auto eachTriangle = [&](const auto& tell) {
+    for (const PlannedDraw& draw : group.draws) {
+      const bundle::MeshData& mesh = scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
+      const glm::mat4& to_world = world[draw.node];
+      const bool flipped = draw.back != (glm::determinant(glm::mat3(to_world)) < 0.0f);
+      const auto corner = [&](std::size_t i) {
+        return glm::vec3(to_world * glm::vec4(mesh.positions[mesh.indices[i]], 1.0f));
+      };
+      for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+        tell(corner(i), corner(i + 1), corner(i + 2), flipped);
+    }
+  };
+  glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
+  eachTriangle([&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, bool) {
+    low = glm::min(low, glm::min(a, glm::min(b, c))), high = glm::max(high, glm::max(a, glm::max(b, c)));
+  });
+  const glm::vec3 middle = 0.5f * low + 0.5f * high;
+  double inward = 0.0, all = 0.0;
+  eachTriangle([&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, bool flipped) {
+    const glm::vec3 normal = glm::cross(b - a, c - a);
+    const double area = double{glm::length(normal)};
+    if (!std::isfinite(area)) return;
+    all += area;
+    if ((glm::dot(normal, middle - a) > 0.0f) != flipped) inward += area;
+  });
+  return all > 0.0 ? std::min(1.0, 2.0 * inward / all) : 0.0;
+}
+
+Vertices verticesOf(const Scene& scene, const RigidGroup& group, bool with_glossy) {
+  Vertices vertices;
+  for (const PlannedDraw& draw : group.draws) {
+    const ScenePrimitive& primitive = scene.meshes[draw.mesh].primitives[draw.primitive];
+    const bool matrices = with_glossy && primitive.material >= 0 &&
+                          hasMatrices(scene.materials[static_cast<std::size_t>(primitive.material)]);
+    (matrices ? vertices.glossy : vertices.diffuse) += static_cast<double>(primitive.mesh.positions.size());
+  }
+  return vertices;
+}
+
+// Returns the shares of what rays take that stages have, refinement included.
+StageSeconds sharesOfRays(const BakeOptions& options) {
+  StageSeconds shares = {{"direct light", kDirect}};
+  if (options.effectiveRefineBound() > 0.0f) shares["refinement"] = kProbing;
+  if (options.fitsDiffuse()) shares["inside faces"] = kDirect;
+  for (int bounce = 1; bounce <= gatheredBounces(options); ++bounce)
+    shares[fmt::format("bounce {}", bounce)] = kBounce;
+  if (gatheredBounces(options) > 1) shares[kBetweenPatches] = kPatchShare * kBounce;
+  double sum = 0.0;
+  for (const auto& [stage, share] : shares) sum += share;
+  for (auto& [stage, share] : shares) share /= sum;
+  return shares;
+}
+
+double cellsOf(const glm::uvec3& grid) {
+  return double(grid.x) * double(grid.y) * double(grid.z);
+}
+
+void addNeighborhood(const PlannedNeighborhood& planned, const BakeOptions& options, StageSeconds& part) {
+  const bool few = !planned.asked && !planned.matrices;
+  double points = few ? kFewPoints : kPoints;
+  for (const glm::uvec3& asked : {options.neighborhood_grid, planned.size})
+    if (asked != glm::uvec3(0u)) points = cellsOf(asked);
+  part["neighborhood"] = points * kPoint_s * static_cast<double>(options.effectiveRays()) / kDraftRays;
+  part["coding the neighborhood"] = points * (planned.matrices ? kMatricesCoding_s : kPointCoding_s);
+}
+
+}  // namespace
+
+PartSeconds guessProcessorSeconds(const Scene& scene, const EffectPlan& plan, const BakeOptions& options) {
+  const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
+  std::vector<Vertices> groups(plan.groups.size());
+  Vertices all;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (!plan.transport[g].shadows) continue;
+    groups[g] = verticesOf(scene, plan.groups[g], plan.bakes("glossy"));
+    groups[g].room = roomOf(scene, plan.groups[g], world);
+    all.diffuse += groups[g].diffuse, all.glossy += groups[g].glossy;
+  }
+  const auto growth = [&](double vertices) {
+    if (vertices == 0.0) return 1.0;
+    return std::min(kGrowth, options.refineGrowth() + static_cast<double>(options.refineAdded()) / vertices);
+  };
+  const bool refines = options.effectiveRefineBound() > 0.0f;
+  const double diffuse_growth = refines ? growth(all.diffuse) : 1.0;
+  const double glossy_growth = refines && options.refinesGlossy() ? growth(all.glossy) : 1.0;
+  const auto rays = static_cast<double>(options.effectiveRays());
+  const StageSeconds shares = sharesOfRays(options);
+  PartSeconds parts(2);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const double sample_s = std::lerp(kOpenSample_s, kRoomSample_s, groups[g].room),
+                 ray_s = std::lerp(kOpenRay_s, kRoomRay_s, groups[g].room);
+    const double diffuse = diffuse_growth * groups[g].diffuse * (sample_s + rays * ray_s);
+    const double glossy = glossy_growth * groups[g].glossy * (kGlossySample_s + rays * kGlossyRay_s);
+    const double coding = kDiffuseCoding * diffuse + kGlossyCoding * glossy;
+    StageSeconds& part = parts.emplace_back();
+    part["coding"] = coding;
+    for (const auto& [stage, share] : shares)
+      (stage == "refinement" ? parts[1] : part)[stage] += share * (diffuse + glossy - coding);
+    if (plan.groups[g].volume >= 0)
+      part["scattering"] = cellsOf(options.volume_grid) * kVoxel_s * rays / kDraftRays;
+    if (plan.neighborhoods[g].baked) addNeighborhood(plan.neighborhoods[g], options, part);
+  }
+  return parts;
+}
+
+PartSeconds onThreads(PartSeconds of_processors, unsigned threads) {
+  const unsigned all = std::max(1u, std::thread::hardware_concurrency());
+  const double used = threads > 0 ? std::min(threads, all) : all;
+  for (StageSeconds& part : of_processors)
+    for (auto& [stage, seconds] : part) seconds /= used;
+  return of_processors;
+}
+
+}  // namespace lambent::baker
