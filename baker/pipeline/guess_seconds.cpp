@@ -31,7 +31,7 @@ constexpr double kProbing = 1.0, kDirect = 1.0, kBounce = 0.3;
 constexpr double kDiffuseCoding = 0.05, kGlossyCoding = 0.5;
 // Of each point of a neighborhood's grid, at drafts' 256 rays, and of the codes of a point without matrices
 // and with.
-constexpr double kPoint_s = 1e-4, kPointCoding_s = 2e-4, kMatricesCoding_s = 9e-4;
+constexpr double kPoint_s = 1e-4, kPointCoding_s = 2e-4, kMatricesCoding_s = 4.5e-4;
 constexpr double kFewPoints = 8192.0, kPoints = 32768.0;
 constexpr double kVoxel_s = 1.2e-4;  // of each voxel of a volume's grid, empty ones included
 constexpr double kDraftRays = 256.0;

@@ -18,7 +18,10 @@ namespace {
 constexpr std::size_t kCodesPerRange = 256;
 constexpr int kMostAttempts = 4;
 constexpr double kFiner = 0.6, kLooser = 2.0;  // least factors from one attempt to the next
-constexpr int kQuickLevel = 3;                 // of zstd; the bundle's payloads are compressed better
+// Where all the components that are looked for do not keep the bound, only one that is more than their error
+// makes codes smaller, and then soon by much.
+constexpr double kBeyondReached = 1.1, kLooserBeyond = 1.2;
+constexpr int kQuickLevel = 3;  // of zstd; the bundle's payloads are compressed better
 
 double bytesOf(const std::vector<CodedTransfer>& coded) {
   std::size_t bytes = 0;
@@ -67,6 +70,11 @@ class CellCoder {
       coded.push_back(coding.code(bounced_, count_, bounced, settings));
     }
     return coded;
+  }
+
+  // Returns what `looser` the error of bounced light would keep.
+  double looserOf(const std::vector<CodedTransfer>& coded, double bound) const {
+    return sends_ ? double{coded[1].error} / (bound * std::sqrt(0.5)) : 0.0;
   }
 
   // Returns the error relative to the change that this share of the points with more change than `where` stay
@@ -124,6 +132,7 @@ std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacem
       cell.bounds_min = glm::min(cell.bounds_min, origin + grid.point(p));
       cell.bounds_max = glm::max(cell.bounds_max, origin + grid.point(p));
     }
+    bool beyond_reached = false;
     double bound = settings.bound, looser = 1.0, change_error = std::numeric_limits<double>::infinity();
     const double most_bytes = settings.most_bytes * static_cast<double>(count);
     for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
@@ -133,12 +142,19 @@ std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacem
       const bool fits = bytes <= most_bytes;
       if (!fits && attempt > 0 && looser == 1.0) break;  // the previous attempt stays
       change_error = coder.changeError(coded, settings.where_changed, settings.points_within);
+      const double reached = coder.looserOf(coded, bound);
       cell.transfers = std::move(coded);
       if (fits && (looser > 1.0 || change_error <= settings.of_change)) break;
-      if (fits)
+      if (fits) {
         bound *= std::min(kFiner, 0.95 * settings.of_change / change_error);
-      else
-        looser *= std::max(kLooser, std::sqrt(bytes / most_bytes));
+      } else if (reached > looser) {
+        looser = kBeyondReached * reached;
+        beyond_reached = true;
+      } else {
+        const bool once_more = attempt + 2 < kMostAttempts;
+        looser *=
+            beyond_reached && once_more ? kLooserBeyond : std::max(kLooser, std::sqrt(bytes / most_bytes));
+      }
     }
     double square = 0.0;
     for (const CodedTransfer& coded : cell.transfers) square += double{coded.error} * double{coded.error};
