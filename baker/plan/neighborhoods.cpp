@@ -26,10 +26,22 @@ constexpr std::size_t kMostClips = 4u << 20;  // most triangles to clip over all
 constexpr std::size_t kLooks = 128;           // triangles and vertices that shadowsItself compares
 
 struct Triangles {
-  std::vector<glm::vec3> corners;  // three per triangle, in the frame of a node
+  const bundle::MeshData* mesh = nullptr;  // in the frame of a node
   std::uint32_t node = 0;
   bool two_sided = false, glossy = false;
+
+  std::size_t count() const { return mesh->indices.size() / 3; }
 };
+
+// Calls tell(corners) with each triangle, moved by the matrix.
+template <typename Tell>
+void eachTriangle(const Triangles& triangles, const glm::mat4& matrix, const Tell& tell) {
+  std::vector<glm::vec3> moved;  // each vertex once, since triangles share them
+  for (const glm::vec3& p : triangles.mesh->positions) moved.emplace_back(matrix * glm::vec4(p, 1.0f));
+  const std::vector<std::uint32_t>& indices = triangles.mesh->indices;
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+    tell(std::array{moved[indices[i]], moved[indices[i + 1]], moved[indices[i + 2]]});
+}
 
 // Within sums up the surfaces in a body's reach.
 struct Within {
@@ -66,8 +78,8 @@ void addWithin(const std::array<glm::vec3, 3>& triangle, const Triangles& of, bo
   Polygon polygon;
   for (const glm::vec3& corner : triangle) polygon.corners[polygon.count++] = corner;
   for (int axis = 0; axis < 3 && polygon.count > 0; ++axis) {
-    clip(polygon, axis, box.high[axis], 1.0f);
-    clip(polygon, axis, box.low[axis], -1.0f);
+    if (high[axis] > box.high[axis]) clip(polygon, axis, box.high[axis], 1.0f);
+    if (low[axis] < box.low[axis]) clip(polygon, axis, box.low[axis], -1.0f);
   }
   glm::vec3 twice(0.0f);
   for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -219,15 +231,14 @@ class Planner {
     const std::vector<PlannedDraw>& draws = groups_[group].draws;
     for (const PlannedDraw& draw : draws) {
       if (draw.back) continue;
-      const bundle::MeshData& mesh = scene_.meshes[draw.mesh].primitives[draw.primitive].mesh;
       Triangles& part = out.emplace_back();
+      part.mesh = &scene_.meshes[draw.mesh].primitives[draw.primitive].mesh;
       part.node = draw.node;
       part.glossy = glossy(draw);
       part.two_sided = std::any_of(draws.begin(), draws.end(), [&](const PlannedDraw& other) {
         return other.back && other.node == draw.node && other.mesh == draw.mesh &&
                other.primitive == draw.primitive;
       });
-      for (const std::uint32_t index : mesh.indices) part.corners.push_back(mesh.positions[index]);
     }
     return out;
   }
@@ -278,7 +289,7 @@ class Planner {
     const RigidGroup& group = groups_[k];
     const std::vector<Triangles> parts = trianglesOf(other);
     std::size_t triangles = 1;
-    for (const Triangles& part : parts) triangles += part.corners.size() / 3;
+    for (const Triangles& part : parts) triangles += part.count();
     const std::size_t stride = 1 + moments_.size() * triangles / kMostClips;
     const glm::mat4 rest_from_group =
         glm::translate(glm::mat4(1.0f), group.rest_translation) * glm::mat4_cast(group.rest_rotation);
@@ -305,13 +316,10 @@ class Planner {
       for (const Triangles& part : parts) {
         const glm::mat4 group_from_node = group_from_world * moment.world[part.node];
         const bool mirrored = glm::determinant(glm::mat3(group_from_node)) < 0.0f;
-        for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
-          std::array<glm::vec3, 3> triangle;
-          for (std::size_t c = 0; c < 3; ++c)
-            triangle[c] = glm::vec3(group_from_node * glm::vec4(part.corners[i + c], 1.0f));
+        eachTriangle(part, group_from_node, [&](const std::array<glm::vec3, 3>& triangle) {
           if (std::isfinite(glm::dot(triangle[0] + triangle[1] + triangle[2], glm::vec3(1.0f))))
             addWithin(triangle, part, mirrored, reach, sum);
-        }
+        });
       }
     }
   }
@@ -324,14 +332,11 @@ class Planner {
     bool any_glossy = false;
     for (const Triangles& part : trianglesOf(other)) {
       any_glossy = any_glossy || part.glossy;
-      const glm::mat4& world = moments_.front().world[part.node];
-      for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
-        auto& triangle = triangles.emplace_back();
-        for (std::size_t c = 0; c < 3; ++c)
-          triangle[c] = glm::vec3(world * glm::vec4(part.corners[i + c], 1.0f));
+      eachTriangle(part, moments_.front().world[part.node], [&](const std::array<glm::vec3, 3>& triangle) {
+        triangles.push_back(triangle);
         for (std::size_t c = 0; c < 3; ++c)
           edges += double{glm::distance(triangle[c], triangle[(c + 1) % 3])};
-      }
+      });
     }
     if (triangles.empty()) return false;
     if (any_glossy) return true;
