@@ -19,14 +19,24 @@ Scene boxAboveFloor() {
                            testing::box({0.13f, 0.6f, -0.21f}, {0.7f, 0.8f, 0.7f}, 4)});
 }
 
+double guessOf(const Scene& scene, const BakeOptions& options) {
+  const auto plan = planFor(scene, options);
+  EXPECT_TRUE(plan);
+  return plan ? sumSeconds(guessProcessorSeconds(scene, *plan, options)) : 0.0;
+}
+
+TEST(GuessedSeconds, OfARoomAreMoreThanOfABodySeenFromOutside) {
+  const auto box = testing::box({0.0f, 1.5f, 0.0f}, {4.0f, 3.0f, 5.0f}, 10);
+  auto room = box;
+  for (std::size_t i = 0; i < room.indices.size(); i += 3) std::swap(room.indices[i], room.indices[i + 1]);
+  for (glm::vec3& normal : room.normals) normal = -normal;
+  EXPECT_GT(guessOf(testing::sceneOf({room}), {}), 5.0 * guessOf(testing::sceneOf({box}), {}));
+}
+
 // The seconds of a guess are no test's business, but what they grow with is.
 TEST(LongBake, IsGuessedFromWhatIsDrawnAndItsRays) {
   Scene scene = boxAboveFloor();
-  const auto guess = [&](const BakeOptions& options) {
-    const auto plan = planFor(scene, options);
-    EXPECT_TRUE(plan);
-    return plan ? sumSeconds(guessProcessorSeconds(scene, *plan, options)) : 0.0;
-  };
+  const auto guess = [&](const BakeOptions& options) { return guessOf(scene, options); };
   const BakeOptions draft{.quality = Quality::Draft};
   const double once = guess(draft);
   EXPECT_GT(once, 0.0);
