@@ -28,7 +28,7 @@ double secondsOf(const BakeEstimate::Group& group, bool (*is)(std::string_view))
 }
 
 double refinementOf(const BakeEstimate& estimate) {
-  const auto found = estimate.processor_stages.find("refinement");
+  const auto found = estimate.processor_stages.find(kRefinement);
   return found == estimate.processor_stages.end() ? 0.0 : found->second;
 }
 

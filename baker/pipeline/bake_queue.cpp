@@ -254,6 +254,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
   const std::uint64_t asked_then = job->asked;
   const BakeRequest request = job->state.request;
   const Step step = job->step;
+  const bool guesses = job->expected.empty() || step == Step::Coarse;
   const PreviewLevel preview_level = previewLevelOf(step);
   const auto progress = std::make_shared<Progress>();
   std::stop_source stop;
@@ -298,7 +299,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
         up_to_date = true;
         return BakeReport{};
       }
-      const Guess guess = guessOf(**scene, request.options);
+      const Guess guess = guesses ? guessOf(**scene, request.options) : Guess{};
       {
         const std::lock_guard again(lock);
         if (job->asked == asked_then) {

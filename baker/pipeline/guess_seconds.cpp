@@ -1,26 +1,27 @@
 #include "baker/pipeline/guess_seconds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <thread>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 
+#include "baker/plan/motion.hpp"
+#include "baker/plan/moved_triangles.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-// Processor time of a sample, bounces and codes included: of its rays, and of what is done whatever they are.
-// In a room nearly all rays of diffuse samples meet something that sends light on, around an open body hardly
-// any. Rounded from bakes of docs/measurements/bakes.md, "Beforehand".
+// A sample takes so much processor time for each ray and for what is done whatever its rays, bounces and
+// codes included. In a room nearly all rays of diffuse samples meet something that sends light on, around an
+// open body hardly any. Figures are rounded from bakes of docs/measurements/bakes.md, "Beforehand".
 constexpr double kRoomRay_s = 1.5e-6, kRoomSample_s = 2.4e-4;
 constexpr double kOpenRay_s = 1e-7, kOpenSample_s = 1e-4;
 constexpr double kGlossyRay_s = 2.5e-6, kGlossySample_s = 2.6e-4;
@@ -29,8 +30,8 @@ constexpr double kGrowth = 2.0;
 // Stages of a group share that so, roughly. Of diffuse and of glossy samples, codes take these shares of all.
 constexpr double kProbing = 1.0, kDirect = 1.0, kBounce = 0.3;
 constexpr double kDiffuseCoding = 0.05, kGlossyCoding = 0.5;
-// Of each point of a neighborhood's grid, at drafts' 256 rays, and of the codes of a point without matrices
-// and with.
+// A point of a neighborhood's grid takes so much with drafts' 256 rays, and its codes without matrices and
+// with.
 constexpr double kPoint_s = 1e-4, kPointCoding_s = 2e-4, kMatricesCoding_s = 4.5e-4;
 constexpr double kFewPoints = 8192.0, kPoints = 32768.0;
 constexpr double kVoxel_s = 1.2e-4;  // of each voxel of a volume's grid, empty ones included
@@ -43,31 +44,26 @@ struct Vertices {
 
 // Returns twice the share of the area that faces the middle of the group, as walls do, and 1 at most.
 double roomOf(const Scene& scene, const RigidGroup& group, const std::vector<glm::mat4>& world) {
-  const auto eachTriangle = [&](const auto& tell) {
-    for (const PlannedDraw& draw : group.draws) {
-      const bundle::MeshData& mesh = scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
-      const glm::mat4& to_world = world[draw.node];
-      const bool flipped = draw.back != (glm::determinant(glm::mat3(to_world)) < 0.0f);
-      const auto corner = [&](std::size_t i) {
-        return glm::vec3(to_world * glm::vec4(mesh.positions[mesh.indices[i]], 1.0f));
-      };
-      for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-        tell(corner(i), corner(i + 1), corner(i + 2), flipped);
-    }
+  using Triangle = std::array<glm::vec3, 3>;
+  const auto meshOf = [&](const PlannedDraw& draw) -> const bundle::MeshData& {
+    return scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
   };
-  glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
-  eachTriangle([&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, bool) {
-    low = glm::min(low, glm::min(a, glm::min(b, c))), high = glm::max(high, glm::max(a, glm::max(b, c)));
-  });
-  const glm::vec3 middle = 0.5f * low + 0.5f * high;
+  Box box;
+  for (const PlannedDraw& draw : group.draws)
+    eachTriangle(meshOf(draw), world[draw.node], [&](const Triangle& triangle) {
+      for (const glm::vec3& corner : triangle) box.add(corner);
+    });
   double inward = 0.0, all = 0.0;
-  eachTriangle([&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, bool flipped) {
-    const glm::vec3 normal = glm::cross(b - a, c - a);
-    const double area = double{glm::length(normal)};
-    if (!std::isfinite(area)) return;
-    all += area;
-    if ((glm::dot(normal, middle - a) > 0.0f) != flipped) inward += area;
-  });
+  for (const PlannedDraw& draw : group.draws) {
+    const bool flipped = draw.back != (glm::determinant(glm::mat3(world[draw.node])) < 0.0f);
+    eachTriangle(meshOf(draw), world[draw.node], [&](const Triangle& t) {
+      const glm::vec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
+      const double area = double{glm::length(normal)};
+      if (!std::isfinite(area)) return;
+      all += area;
+      if ((glm::dot(normal, box.centre() - t[0]) > 0.0f) != flipped) inward += area;
+    });
+  }
   return all > 0.0 ? std::min(1.0, 2.0 * inward / all) : 0.0;
 }
 
@@ -85,7 +81,7 @@ Vertices verticesOf(const Scene& scene, const RigidGroup& group, bool with_gloss
 // Returns the shares of what rays take that stages have, refinement included.
 StageSeconds sharesOfRays(const BakeOptions& options) {
   StageSeconds shares = {{"direct light", kDirect}};
-  if (options.effectiveRefineBound() > 0.0f) shares["refinement"] = kProbing;
+  if (options.effectiveRefineBound() > 0.0f) shares[kRefinement] = kProbing;
   if (options.fitsDiffuse()) shares["inside faces"] = kDirect;
   for (int bounce = 1; bounce <= gatheredBounces(options); ++bounce)
     shares[fmt::format("bounce {}", bounce)] = kBounce;
@@ -94,10 +90,6 @@ StageSeconds sharesOfRays(const BakeOptions& options) {
   for (const auto& [stage, share] : shares) sum += share;
   for (auto& [stage, share] : shares) share /= sum;
   return shares;
-}
-
-double cellsOf(const glm::uvec3& grid) {
-  return double(grid.x) * double(grid.y) * double(grid.z);
 }
 
 void addNeighborhood(const PlannedNeighborhood& planned, const BakeOptions& options, StageSeconds& part) {
@@ -140,7 +132,7 @@ PartSeconds guessProcessorSeconds(const Scene& scene, const EffectPlan& plan, co
     StageSeconds& part = parts.emplace_back();
     part["coding"] = coding;
     for (const auto& [stage, share] : shares)
-      (stage == "refinement" ? parts[1] : part)[stage] += share * (diffuse + glossy - coding);
+      (stage == kRefinement ? parts[1] : part)[stage] += share * (diffuse + glossy - coding);
     if (plan.groups[g].volume >= 0)
       part["scattering"] = cellsOf(options.volume_grid) * kVoxel_s * rays / kDraftRays;
     if (plan.neighborhoods[g].baked) addNeighborhood(plan.neighborhoods[g], options, part);

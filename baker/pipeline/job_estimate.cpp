@@ -18,7 +18,6 @@ constexpr double kMostProbeRays = 512.0;  // of a probe of refinement
 // Measured times count against this share of all that was expected, so that the first short stages say
 // little.
 constexpr double kPaceBegins = 0.05;
-constexpr const char* kRefinement = "refinement";
 
 bool isIn(const PartSeconds& parts, std::size_t part, const std::string& stage) {
   return part < parts.size() && parts[part].contains(stage);
@@ -93,17 +92,13 @@ double paceOf(const std::string& stage, double of_rays) {
   return isCoding(stage) ? std::max(1.0, of_rays) : 1.0;
 }
 
-double cells(const glm::uvec3& grid) {
-  return std::max(1.0, double(grid.x) * double(grid.y) * double(grid.z));
-}
-
 // Returns how much longer a stage takes with other options; these are rough rules that the stage names
 // explain.
 double growth(const std::string& stage, const BakeOptions& of, const BakeOptions& to) {
   const auto before = static_cast<double>(of.effectiveRays()),
              after = static_cast<double>(to.effectiveRays());
   const double rays = (after + kRaysOfASample) / (before + kRaysOfASample);
-  const double voxels = cells(to.volume_grid) / cells(of.volume_grid);
+  const double voxels = cellsOf(to.volume_grid) / cellsOf(of.volume_grid);
   if (stage == "scattering" || stage == "scattered light")
     return voxels * (stage == "scattering" ? rays : voxels);
   if (stage == "light into volumes") return rays * voxels;
@@ -156,6 +151,10 @@ int gatheredBounces(const BakeOptions& options) {
   return options.bounces < 0 ? kMostGathered : std::min(options.bounces, kMostGathered);
 }
 
+double cellsOf(const glm::uvec3& grid) {
+  return std::max(1.0, double(grid.x) * double(grid.y) * double(grid.z));
+}
+
 bool isBounce(std::string_view stage) {
   return stage.starts_with("bounce ");
 }
@@ -199,7 +198,7 @@ StageSeconds stageSeconds(const PartSeconds& parts) {
 
 double secondsOf(const Progress::Stage& now, const PartSeconds& before,
                  std::span<const Progress::Stage> finished) {
-  // What was spent before is taken for that of the first stage of this name.
+  // The first stage of this name goes on from what was spent before.
   return now.seconds + (ranBefore(now, finished) ? 0.0 : secondsIn(before, now.part, now.name));
 }
 

@@ -20,12 +20,15 @@ namespace lambent::baker {
 using StageSeconds = std::map<std::string, double>;
 using PartSeconds = std::vector<StageSeconds>;
 
+inline constexpr const char* kRefinement = "refinement";
 // The stage in which all bounces but the first are passed on (bounces.hpp), and its share of a pass that
 // gathers light.
 inline constexpr const char* kBetweenPatches = "bounce between patches";
 inline constexpr double kPatchShare = 0.3;
 // Returns the number of passes that gather light.
 int gatheredBounces(const BakeOptions& options);
+// Returns the number of cells of a grid, and 1 at least.
+double cellsOf(const glm::uvec3& grid);
 // Returns whether the stage is one of the passes in which light bounces.
 bool isBounce(std::string_view stage);
 

@@ -11,6 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include "baker/plan/motion.hpp"
+#include "baker/plan/moved_triangles.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 
 namespace lambent::baker {
@@ -29,19 +30,7 @@ struct Triangles {
   const bundle::MeshData* mesh = nullptr;  // in the frame of a node
   std::uint32_t node = 0;
   bool two_sided = false, glossy = false;
-
-  std::size_t count() const { return mesh->indices.size() / 3; }
 };
-
-// Calls tell(corners) with each triangle, moved by the matrix.
-template <typename Tell>
-void eachTriangle(const Triangles& triangles, const glm::mat4& matrix, const Tell& tell) {
-  std::vector<glm::vec3> moved;  // each vertex once, since triangles share them
-  for (const glm::vec3& p : triangles.mesh->positions) moved.emplace_back(matrix * glm::vec4(p, 1.0f));
-  const std::vector<std::uint32_t>& indices = triangles.mesh->indices;
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
-    tell(std::array{moved[indices[i]], moved[indices[i + 1]], moved[indices[i + 2]]});
-}
 
 // Within sums up the surfaces in a body's reach.
 struct Within {
@@ -289,7 +278,7 @@ class Planner {
     const RigidGroup& group = groups_[k];
     const std::vector<Triangles> parts = trianglesOf(other);
     std::size_t triangles = 1;
-    for (const Triangles& part : parts) triangles += part.count();
+    for (const Triangles& part : parts) triangles += part.mesh->indices.size() / 3;
     const std::size_t stride = 1 + moments_.size() * triangles / kMostClips;
     const glm::mat4 rest_from_group =
         glm::translate(glm::mat4(1.0f), group.rest_translation) * glm::mat4_cast(group.rest_rotation);
@@ -316,7 +305,7 @@ class Planner {
       for (const Triangles& part : parts) {
         const glm::mat4 group_from_node = group_from_world * moment.world[part.node];
         const bool mirrored = glm::determinant(glm::mat3(group_from_node)) < 0.0f;
-        eachTriangle(part, group_from_node, [&](const std::array<glm::vec3, 3>& triangle) {
+        eachTriangle(*part.mesh, group_from_node, [&](const std::array<glm::vec3, 3>& triangle) {
           if (std::isfinite(glm::dot(triangle[0] + triangle[1] + triangle[2], glm::vec3(1.0f))))
             addWithin(triangle, part, mirrored, reach, sum);
         });
@@ -332,11 +321,12 @@ class Planner {
     bool any_glossy = false;
     for (const Triangles& part : trianglesOf(other)) {
       any_glossy = any_glossy || part.glossy;
-      eachTriangle(part, moments_.front().world[part.node], [&](const std::array<glm::vec3, 3>& triangle) {
-        triangles.push_back(triangle);
-        for (std::size_t c = 0; c < 3; ++c)
-          edges += double{glm::distance(triangle[c], triangle[(c + 1) % 3])};
-      });
+      eachTriangle(*part.mesh, moments_.front().world[part.node],
+                   [&](const std::array<glm::vec3, 3>& triangle) {
+                     triangles.push_back(triangle);
+                     for (std::size_t c = 0; c < 3; ++c)
+                       edges += double{glm::distance(triangle[c], triangle[(c + 1) % 3])};
+                   });
     }
     if (triangles.empty()) return false;
     if (any_glossy) return true;

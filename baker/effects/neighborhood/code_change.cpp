@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t kCodesPerRange = 256;
 constexpr int kMostAttempts = 4;
 constexpr double kFiner = 0.6, kLooser = 2.0;  // least factors from one attempt to the next
-// Where all the components that are looked for do not keep the bound, only one that is more than their error
-// makes codes smaller, and then soon by much.
+// A looser bound changes nothing while all the components that are looked for miss it. One just above their
+// error makes codes smaller, and soon by much.
 constexpr double kBeyondReached = 1.1, kLooserBeyond = 1.2;
 constexpr int kQuickLevel = 3;  // of zstd; the bundle's payloads are compressed better
 
@@ -49,12 +49,12 @@ class CellCoder {
     sends_ = std::any_of(bounced_.begin(), bounced_.end(), [](float value) { return value != 0.0f; });
   }
 
-  // Each part has half of the square error; that of bounced light is `looser` times as large.
+  // Each part has half of the square error; the bound of bounced light is `looser` times as large.
   std::vector<CodedTransfer> code(double bound, double looser, CachedCoding& coding) const {
     const double energy = meter_.lightEnergy() * static_cast<double>(count_);
     const auto order = static_cast<std::uint32_t>(shape_.order),
                outputs = static_cast<std::uint32_t>(shape_.outputs());
-    CodingSettings settings{.bound = static_cast<float>(sends_ ? bound * std::sqrt(0.5) : bound),
+    CodingSettings settings{.bound = static_cast<float>(ofPart(bound)),
                             .shown_energy = energy,
                             .kernel_power = receiverPower(shape_)};
     std::vector<CodedTransfer> coded;
@@ -74,7 +74,7 @@ class CellCoder {
 
   // Returns what `looser` the error of bounced light would keep.
   double looserOf(const std::vector<CodedTransfer>& coded, double bound) const {
-    return sends_ ? double{coded[1].error} / (bound * std::sqrt(0.5)) : 0.0;
+    return sends_ ? double{coded[1].error} / ofPart(bound) : 0.0;
   }
 
   // Returns the error relative to the change that this share of the points with more change than `where` stay
@@ -108,6 +108,8 @@ class CellCoder {
   }
 
  private:
+  double ofPart(double bound) const { return sends_ ? bound * std::sqrt(0.5) : bound; }
+
   ChangeShape shape_;
   const ChangeMeter& meter_;
   std::size_t count_;

@@ -89,7 +89,7 @@ TEST(TimeLeft, LearnsNothingFromWhatTheCacheHolds) {
   const Progress::Stage found{"direct light", "samples", 100, 100, 0.01, 0.01, 0, /*found=*/true};
   const Progress::Stage now{"bounce 1", "samples", 100, 0, 0.0, 0.0};
   EXPECT_NEAR(secondsLeft(expected, {}, std::vector{found}, now), 3.0, 1e-9);
-  // What was kept by a run that was cut short took as long as that run says.
+  // A run that was cut short says how long the kept part took.
   EXPECT_NEAR(secondsLeft(expected, {{{"direct light", 20.0}}}, std::vector{found}, now), 6.0, 0.3);
 }
 

@@ -27,7 +27,7 @@ GridChange noisyChange(const GridPlacement& grid) {
   return change;
 }
 
-// Bytes of a point's codes before compression, of which zstd takes little where they are noise.
+// Returns the bytes of a point's codes before compression, which makes noise little smaller.
 double codeBytes(const CodedChange& change, const GridPlacement& grid) {
   double bytes = 0.0;
   for (const CodedCell& cell : change.cells)
