@@ -68,16 +68,10 @@ class ProgressiveReference::Worker {
     if (scene) scene_ = std::move(scene);
     const std::uint64_t generation = status_.generation + 1;
     wanted_ = Job{scene_, std::move(request), generation, stop_.get_token()};
-    status_ = {.generation = generation, .paused = status_.paused};
+    status_ = {.generation = generation};
     if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& ended) { work(ended); });
     changed_.notify_all();
     return generation;
-  }
-
-  void pause(bool paused) {
-    const std::lock_guard hold(lock_);
-    status_.paused = paused;
-    changed_.notify_all();
   }
 
   std::shared_ptr<const Snapshot> snapshot() const {
@@ -191,20 +185,11 @@ class ProgressiveReference::Worker {
     progress_.begin("paths", std::uint64_t{film.size().width} * height * (samples - film.done(0)), "samples");
     for (std::uint32_t first = 0; first < height; first += kRowsAtOnce) {
       const std::uint32_t last = std::min(first + kRowsAtOnce, height);
-      if (!waitWhilePaused(job)) return false;
+      if (job.stop.stop_requested()) return false;
       if (!addSamples(integrator, film, {first, last}, samples, progress_, job.stop)) return false;
       if (on_rows) on_rows(first, last);
     }
     return true;
-  }
-
-  bool waitWhilePaused(const Job& job) {
-    std::unique_lock hold(lock_);
-    if (!status_.paused) return !job.stop.stop_requested();
-    const Clock::time_point since = Clock::now();
-    const bool goes_on = changed_.wait(hold, job.stop, [&] { return !status_.paused; });
-    begin_ += Clock::now() - since;
-    return goes_on && !job.stop.stop_requested();
   }
 
   void publish(const Job& job, Snapshot snapshot) {
@@ -228,7 +213,7 @@ class ProgressiveReference::Worker {
   LightCache lights_;
   std::shared_ptr<const Scene> traced_scene_;
   std::unique_ptr<const TracedScene> traced_;
-  Clock::time_point begin_;  // start of the job, moved later by pauses
+  Clock::time_point begin_;  // start of the job
 
   Progress progress_;
 
@@ -256,10 +241,6 @@ std::uint64_t ProgressiveReference::restart(Request request) {
 
 std::uint64_t ProgressiveReference::restart(std::shared_ptr<const Scene> scene, Request request) {
   return worker_->restart(std::move(scene), std::move(request));
-}
-
-void ProgressiveReference::pause(bool paused) {
-  worker_->pause(paused);
 }
 
 std::shared_ptr<const Snapshot> ProgressiveReference::snapshot() const {

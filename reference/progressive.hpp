@@ -42,7 +42,6 @@ enum class ProgressivePhase {
 struct ProgressiveStatus {
   std::uint64_t generation = 0;
   ProgressivePhase phase = ProgressivePhase::Preparing;
-  bool paused = false;
   std::optional<Error> error = {};  // what failed: an environment map, a texture, a camera, options, memory
   double share = 0.0;               // fraction done of the current pass or coarse picture
 };
@@ -60,9 +59,6 @@ class ProgressiveReference {
   // lights' words changed.
   std::uint64_t restart(Request request);
   std::uint64_t restart(std::shared_ptr<const Scene> scene, Request request);
-
-  // Pauses or resumes the work; nothing done is lost. A restart does not end a pause.
-  void pause(bool paused);
 
   // Returns the newest snapshot, or null before the first coarse picture. Does not wait.
   std::shared_ptr<const Snapshot> snapshot() const;

@@ -331,10 +331,6 @@ Result<std::string> worldText(const WorldFile& world) {
   return out + "\n";
 }
 
-std::filesystem::path resolvePath(const std::filesystem::path& world_path, std::string_view path) {
-  return (world_path.parent_path() / std::filesystem::path(path)).lexically_normal();
-}
-
 Result<WorldFile> loadWorldFile(const std::filesystem::path& path) {
   const Result<std::string> text = readTextFile(path);
   if (!text) return failAgain(text.error());

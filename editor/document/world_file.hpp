@@ -41,9 +41,6 @@ Result<std::string> worldText(const WorldFile& world);
 Result<WorldFile> loadWorldFile(const std::filesystem::path& path);
 Result<void> saveWorldFile(const std::filesystem::path& path, const WorldFile& world);
 
-// Returns the file on disk that a world file at `world_path` calls so.
-std::filesystem::path resolvePath(const std::filesystem::path& world_path, std::string_view path);
-
 // Captures the document as it is now. `kept` is the file that was loaded; its unknown parts are carried over.
 WorldFile captureWorld(Document& document, const Baseline& baseline, const WorldFile* kept = nullptr);
 // Applies a world file, whose bundles must be in the registry already. It does not use the history; the

@@ -69,12 +69,6 @@ SceneEntry* Scenes::find(const std::filesystem::path& source) {
   return found == entries_.end() ? nullptr : &*found;
 }
 
-std::optional<std::size_t> Scenes::entryOf(std::uint32_t slot) const {
-  for (std::size_t i = 0; i < entries_.size(); ++i)
-    if (entries_[i].slot == slot) return i;
-  return std::nullopt;
-}
-
 std::optional<baker::JobState> Scenes::jobOf(std::size_t entry) const {
   if (!entries_[entry].job) return std::nullopt;
   for (const baker::JobState& state : jobs_)

@@ -88,7 +88,6 @@ class Scenes {
   const std::vector<SceneEntry>& entries() const { return entries_; }
   // Returns the state at the last update() or request, so that all parts of a frame say the same.
   std::optional<baker::JobState> jobOf(std::size_t entry) const;
-  std::optional<std::size_t> entryOf(std::uint32_t slot) const;
   const std::vector<std::filesystem::path>& watched() const { return watched_; }
   // Returns the entries for a world file, with paths relative to `folder`.
   std::vector<BundleEntry> state(const std::filesystem::path& folder) const;

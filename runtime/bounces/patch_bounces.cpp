@@ -369,10 +369,4 @@ Result<void> PatchBounces::gather(World& world, gpu::Counters& counters) {
   return {};
 }
 
-std::uint64_t PatchBounces::bytesResident() const {
-  std::uint64_t bytes = patches_.buffer().byteCount() + bounced_.buffer().byteCount();
-  for (const Draw& draw : draws_) bytes += draw.links.byteCount();
-  return bytes;
-}
-
 }  // namespace lambent::frame

@@ -73,7 +73,6 @@ class PatchBounces {
   double driftOf(std::size_t group) const { return group < rooms_.size() ? rooms_[group].room.drift() : 0.0; }
 
   const PatchBounceCounts& counts() const { return counts_; }
-  std::uint64_t bytesResident() const;
 
  private:
   struct Points {

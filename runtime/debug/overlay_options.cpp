@@ -11,25 +11,21 @@ namespace lambent::frame {
 
 namespace {
 
-constexpr std::array<OverlayRow, 6> kRows = {{
-    {"light-probes", "Light probes",
-     "where light is sampled: what is captured there as a cube, the harmonics as a ball",
-     &OverlayOptions::light_probes, "light-samples"},
-    {"neighborhoods", "Neighborhoods",
-     "grids around bodies, with a slice of how they change light: neighborhoods:AXIS,POSITION",
-     &OverlayOptions::neighborhoods},
-    {"volumes", "Volumes", "boxes of volumes", &OverlayOptions::volumes},
-    {"groups", "Groups", "boxes of rigid groups", &OverlayOptions::groups},
-    {"lights", "Lights", "lights that stand in the scene", &OverlayOptions::lights},
-    {"keys", "Key lights", "key lights at infinity: where they stand, and what their shadow maps show",
-     &OverlayOptions::keys},
-}};
+struct OverlayRow {
+  std::string_view name;
+  bool OverlayOptions::*flag;
+  std::string_view former{};  // its former name, which is still understood; may be empty
+};
+
+constexpr std::array<OverlayRow, 6> kRows = {
+    {{"light-probes", &OverlayOptions::light_probes, "light-samples"},
+     {"neighborhoods", &OverlayOptions::neighborhoods},
+     {"volumes", &OverlayOptions::volumes},
+     {"groups", &OverlayOptions::groups},
+     {"lights", &OverlayOptions::lights},
+     {"keys", &OverlayOptions::keys}}};
 
 }  // namespace
-
-std::span<const OverlayRow> overlayRows() {
-  return kRows;
-}
 
 std::string knownOverlays() {
   std::string known;

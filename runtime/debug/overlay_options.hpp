@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,12 +64,6 @@ struct OverlayOptions {
   bool shows(std::uint32_t group) const;
 };
 
-struct OverlayRow {
-  std::string_view name, label, help;
-  bool OverlayOptions::*flag;
-  std::string_view former{};  // its former name, which is still understood; may be empty
-};
-std::span<const OverlayRow> overlayRows();
 std::string knownOverlays();
 
 // Parses comma-separated names; neighborhoods:AXIS,POSITION places the slice.

@@ -66,11 +66,6 @@ constexpr void forEachField(Component& component, Visitor&& visitor) {
   std::apply([&](const auto&... field) { (visitor(field, field.of(component)), ...); }, component.fields());
 }
 
-template <Described Component>
-constexpr void resetFields(Component& component) {
-  forEachField(component, [](const auto& field, auto& value) { value = field.default_value; });
-}
-
 // Returns whether the value is in the field's range, if it declares one. NaN is outside every range.
 template <class Owner, class T>
 constexpr bool withinRange(const Field<Owner, T>& field, const T& value) {

@@ -17,10 +17,6 @@ TransferValues::TransferValues()
       work_("transfer value work"),
       adding_work_("transfer value adding work") {}
 
-void TransferValues::release() {
-  *this = TransferValues();
-}
-
 Result<void> TransferValues::update(streaming::Residency& residency, const lighting::GroupLights& lights,
                                     const TransferQuestion& question, std::span<const float> of_cells,
                                     gpu::Counters& counters) {

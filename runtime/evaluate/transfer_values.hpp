@@ -2,8 +2,8 @@
 // a band, a number per cell, and always the cluster. It takes the resident codes of all effects that keep
 // them (diffuse, normal-mapped, glossy), and provides a buffer of SampleValue that a raster pass gathers by
 // the rows of vertices. Nothing is held or dispatched until update() is called; update() does nothing if
-// neither the codes nor the question changed, and release() frees everything. transfer_measures.hpp defines
-// the numbers. Render thread only. Fails if a kernel does not compile on this device.
+// neither the codes nor the question changed. transfer_measures.hpp defines the numbers. Render thread only.
+// Fails if a kernel does not compile on this device.
 #pragma once
 
 #include <array>
@@ -40,7 +40,6 @@ class TransferValues {
   Result<void> update(streaming::Residency& residency, const lighting::GroupLights& lights,
                       const TransferQuestion& question, std::span<const float> of_cells,
                       gpu::Counters& counters);
-  void release();
 
   // Returns the index of the value of the group's first sample.
   std::uint32_t firstOf(std::size_t group) const { return first_of_group_[group]; }

@@ -99,10 +99,6 @@ Result<Window> Window::create(const std::string& title, std::uint32_t width, std
   return Window(std::move(state));
 }
 
-const Context& Window::context() const {
-  return *state_->context;
-}
-
 GLFWwindow* Window::handle() const {
   return state_->window;
 }

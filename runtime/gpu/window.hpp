@@ -39,7 +39,6 @@ class Window {
   Window& operator=(Window&&) noexcept;
   ~Window();
 
-  const Context& context() const;
   // Returns GLFW's handle for user interfaces that handle events themselves. It is valid as long as the
   // window.
   GLFWwindow* handle() const;

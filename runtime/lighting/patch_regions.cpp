@@ -72,11 +72,4 @@ std::vector<glm::vec3> PatchRegions::means(std::span<const glm::vec3> by_patch) 
   return all;
 }
 
-std::uint64_t PatchRegions::bytes() const {
-  std::uint64_t bytes = corners_.size() * sizeof(corners_[0]) + members_.size() * sizeof(members_[0]);
-  for (const auto& members : members_) bytes += 4 * members.size();
-  for (const auto& levels : levels_) bytes += levels.size() * sizeof(Level);
-  return bytes;
-}
-
 }  // namespace lambent::lighting

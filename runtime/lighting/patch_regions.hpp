@@ -31,7 +31,6 @@ class PatchRegions {
 
   // Returns a value for each region: the mean of the values of its patches.
   std::vector<glm::vec3> means(std::span<const glm::vec3> by_patch) const;
-  std::uint64_t bytes() const;
 
  private:
   struct Level {

@@ -280,9 +280,4 @@ std::vector<glm::vec3> PatchTransport::byTriangle(std::span<const glm::vec3> giv
   return triangles;
 }
 
-std::uint64_t PatchTransport::bytes() const {
-  return patches_.size() * sizeof(Patch) + 4 * transfer_.size() + shares_.size() * sizeof(Share) +
-         4 * first_share_.size() + nearest_.size() * sizeof(nearest_.front()) + regions_.bytes();
-}
-
 }  // namespace lambent::lighting

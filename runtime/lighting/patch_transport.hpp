@@ -78,8 +78,6 @@ class PatchTransport {
   // Triangles that are not the patches' own take that of the patches near them.
   std::vector<glm::vec3> byTriangle(std::span<const glm::vec3> given_off) const;
 
-  std::uint64_t bytes() const;
-
  private:
   struct Share {
     std::uint32_t patch = 0;

@@ -231,9 +231,4 @@ void LocalShadows::bind(const spec::View& view, const spec::Size& size) {
   shadows_.bind(kUnitLocalShadows);
 }
 
-std::uint64_t LocalShadows::bytesResident() const {
-  return std::uint64_t{4} * kFaces * options_.size * rows_ * options_.size +
-         draws_.size() * sizeof(LocalDraw);
-}
-
 }  // namespace lambent::frame

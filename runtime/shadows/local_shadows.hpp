@@ -59,7 +59,6 @@ class LocalShadows {
   }
   // Returns how many cubes the last update drew.
   std::uint32_t cubesDrawn() const { return cubes_drawn_; }
-  std::uint64_t bytesResident() const;
 
  private:
   struct Cube {  // as last drawn

@@ -207,10 +207,4 @@ void ReflectionProbes::bind(SurfaceReceiver receiver) const {
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
 }
 
-std::uint64_t ReflectionProbes::bytesResident() const {
-  if (!images_) return 0;
-  const std::uint64_t texels = std::uint64_t{6} * kProbeFaceTexels * kProbeFaceTexels;
-  return places_.size() * 2 * texels * 8 * 4 / 3 + texels * 10 * 4 / 3 + texels / 6 * 12;
-}
-
 }  // namespace lambent::frame

@@ -53,7 +53,6 @@ class ReflectionProbes {
                        gpu::Counters& counters);
 
   void bind(SurfaceReceiver receiver) const;
-  std::uint64_t bytesResident() const;
 
  private:
   ReflectionProbes() : block_("reflection probes"), angles_("probe lobe") {}

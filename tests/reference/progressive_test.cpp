@@ -181,19 +181,6 @@ TEST_F(Progressive, StopsInTheMidstOfAPictureWithoutEnd) {
   EXPECT_EQ(watch.use_count(), 1) << "nothing traces on after the end";
 }
 
-TEST_F(Progressive, PausesAndGoesOn) {
-  ProgressiveReference reference(shared(), request);
-  ended(reference);
-  reference.pause(true);
-  const std::uint64_t generation = reference.restart(request);
-  untilTracing(reference);
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  EXPECT_TRUE(reference.status().paused);
-  EXPECT_LT(reference.snapshot()->generation, generation) << "and keeps what there is to see";
-  reference.pause(false);
-  expectTheReference(reference);
-}
-
 TEST_F(Progressive, SaysWhatIsWrongAndTakesTheNextRequest) {
   Request wrong = request;
   wrong.lights = {spec::EnvironmentMapLight{.file = "no/such/probe.hdr", .layout = {}}};

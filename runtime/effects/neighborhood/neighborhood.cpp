@@ -92,10 +92,6 @@ void Neighborhood::setGrids(std::vector<Grid> grids, const streaming::Residency&
   atlas_ = layout.size.x > 0 ? makeAtlas(layout.size) : gpu::Texture();
 }
 
-std::uint64_t Neighborhood::bytes() const {
-  return std::uint64_t{8} * atlas_size_.x * atlas_size_.y * atlas_size_.z;
-}
-
 Result<void> Neighborhood::update(streaming::Residency& residency, const lighting::GroupLights& lights,
                                   const glossy::Glossy& glossy, gpu::Counters& counters) {
   written_ = 0;

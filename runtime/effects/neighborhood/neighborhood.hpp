@@ -49,7 +49,6 @@ class Neighborhood {
   // Rises when the grid is written.
   std::uint64_t writtenVersion(std::size_t grid) const { return written_versions_[grid]; }
   std::uint32_t gridsWrittenLast() const { return written_; }
-  std::uint64_t bytes() const;  // size of the texture
   void bind() const { atlas_.bind(kUnitAtlas); }
   GLuint texture() const { return atlas_.id(); }
   glm::uvec3 atlasSize() const { return atlas_size_; }

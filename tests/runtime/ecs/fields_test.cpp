@@ -55,10 +55,8 @@ TEST(Fields, RoundTripThroughTextByNameAlone) {
   EXPECT_EQ(read.derived, 0) << "what is not declared is not carried";
 }
 
-TEST(Fields, ResetGivesTheDeclaredDefaultsInTheOrderOfDeclaration) {
-  Lamp lamp{.power_cd = 2.5f, .samples = 16, .lit = false, .note = "moved"};
-  resetFields(lamp);
-  EXPECT_EQ(save(lamp), save(Lamp{}));
+TEST(Fields, AreVisitedInTheOrderOfDeclaration) {
+  const Lamp lamp;
   std::vector<std::string> order;
   forEachField(lamp, [&](const auto& field, auto&) { order.emplace_back(field.name); });
   EXPECT_EQ(order, (std::vector<std::string>{"power", "samples", "lit", "note"}));

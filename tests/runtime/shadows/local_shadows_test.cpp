@@ -358,7 +358,6 @@ TEST_F(LocalShadowsTest, ADrawThatNoLightShinesOnCostsNothingAndChangesNoPixel) 
   EXPECT_FALSE(stage.shadowed_lights.any());
   EXPECT_EQ(stage.shadows.draws, 0u);
   EXPECT_EQ(stage.shadows.uploaded_bytes, 0u);
-  EXPECT_EQ(stage.shadowed_lights.bytesResident(), 0u);
   EXPECT_LE(stage.raster.draw_calls, before.draw_calls);
   // A dark light, or one that is not in the mask, has no effect.
   stage.masks = {2u};
