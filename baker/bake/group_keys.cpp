@@ -55,7 +55,7 @@ void addColors(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key)
     if (!material) continue;
     addValues(*material, gltf::MaterialPart::Color, key);
     key.add(draw.layered);
-    if (draw.layered) key.add(meanSpecularAlbedo(*material));
+    if (draw.layered) key.add(meanSpecularAlbedo(*material)).add(material->roughness);
     gltf::forEachMaterialTexture([&](const auto& field) {  // texture coordinates are among the geometry's
       if (field.part == gltf::MaterialPart::Color) addTexture(scene, (material->*field.member).texture, key);
     });

@@ -1,5 +1,7 @@
 #include "baker/bake/group_scene.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace lambent::baker {
@@ -55,6 +57,10 @@ GroupScene::GroupScene(const SceneBake& of, const SurfaceInputs& inputs, std::si
                      {bake.plan.light_probes[index].count, transport().shadows, bounces()}, bake.options);
 }
 
+bool GroupScene::anyLayered() const {
+  return std::ranges::any_of(geometry.draws, [](const DrawGeometry& draw) { return draw.layered; });
+}
+
 Result<void> GroupScene::loadColors() {
   if (colors_) return {};
   auto loaded = SurfaceColors::load(bake.scene, geometry, lights, inputs_.images);
@@ -69,7 +75,7 @@ Result<void> GroupScene::prepareRays(const BakeContext& context) {
   auto rays = RayScene::build(geometry, bake.scene, inputs_.alpha_maps);
   if (!rays) return failAgain(rays.error());
   rays_ = std::move(*rays);
-  if (!anyGlossy()) return {};
+  if (!anyGlossy() && !(bounces() && anyLayered())) return {};
   auto brdfs =
       SurfaceBrdfs::load(bake.scene, geometry, bake.tables, inputs_.images, bake.options.exitOrder());
   if (!brdfs) return failAgain(brdfs.error());

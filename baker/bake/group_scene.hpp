@@ -35,6 +35,8 @@ class GroupScene {
   bool bounces() const { return bake.options.bounces != 0 && transport().bounces; }
   bool anyDiffuse() const { return samples.glossy.begin > 0; }
   bool anyGlossy() const { return !samples.glossy.empty(); }
+  // Returns whether the group has smooth dielectrics, whose layers pass light on.
+  bool anyLayered() const;
 
   // Loads the colours once, since images take long to decode. Errors: images that cannot be decoded.
   Result<void> loadColors();
@@ -49,7 +51,7 @@ class GroupScene {
     return {bake.scene,         geometry, samples, *rays_, *colors_, lights, mirrors_ ? &*mirrors_ : nullptr,
             transport().shadows};
   }
-  const SurfaceBrdfs* brdfs() const { return brdfs_ ? &*brdfs_ : nullptr; }
+  const SurfaceBrdfs* brdfs() const { return anyGlossy() && brdfs_ ? &*brdfs_ : nullptr; }
 
  private:
   SurfaceInputs inputs_;

@@ -71,7 +71,13 @@ class SurfaceBrdfs {
 
   // Returns the perceptual roughness of a glossy point, or 1 if its BRDF is measured or it is diffuse.
   float roughness(std::uint32_t triangle, float u, float v) const;
-  // Describes a glossy point whose BRDF is not measured, seen from `to` as in exitKernel.
+  // Returns whether the triangle is a smooth dielectric: its samples are diffuse, under a specular layer.
+  bool layered(std::uint32_t triangle) const;
+  // Returns the largest channel of the directional albedo of that layer, seen at an angle with this cosine,
+  // as if no texture made it smoother.
+  float layerAlbedo(std::uint32_t triangle, float cosine) const;
+  // Describes a point of a smooth dielectric, or a glossy one whose BRDF is not measured, seen from `to` as
+  // in exitKernel.
   PointReflection reflection(std::uint32_t triangle, float u, float v, const glm::vec3& to) const;
 
  private:

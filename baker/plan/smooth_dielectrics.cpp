@@ -18,15 +18,15 @@ constexpr double kCarried = 0.9;
 // A layer that reflects more than this straight on is as good as a metal.
 constexpr float kMostReflected = 0.1f;
 
-glm::vec3 reflectedStraightOn(const gltf::Material& material) {
-  return material.specular * glm::min(material.reflectance() * material.specular_color, glm::vec3(1.0f));
-}
-
 bool hasTextureOfLayer(const gltf::Material& material) {
   return material.specular_texture.texture >= 0 || material.specular_color_texture.texture >= 0;
 }
 
 }  // namespace
+
+glm::vec3 reflectedStraightOn(const gltf::Material& material) {
+  return material.specular * glm::min(material.reflectance() * material.specular_color, glm::vec3(1.0f));
+}
 
 bool isSmoothDielectric(const gltf::Material& material) {
   if (material.isDiffuse() || material.metallic > 0.0f || material.anisotropy > 0.0f) return false;
@@ -48,6 +48,11 @@ glm::vec3 meanSpecularAlbedo(const gltf::Material& material) {
 
 glm::vec3 albedoUnderLayer(const glm::vec3& base_color, const glm::vec3& layer) {
   return (1.0f - std::max({layer.r, layer.g, layer.b})) * base_color + layer;
+}
+
+glm::vec3 baseUnderLayer(const glm::vec3& albedo, const glm::vec3& layer) {
+  const float rest = 1.0f - std::max({layer.r, layer.g, layer.b});
+  return rest > 0.0f ? glm::clamp((albedo - layer) / rest, 0.0f, 1.0f) : glm::vec3(0.0f);
 }
 
 }  // namespace lambent::baker

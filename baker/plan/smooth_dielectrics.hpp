@@ -17,11 +17,16 @@ bool isSmoothDielectric(const gltf::Material& material);
 // Returns whether surfaces of the material have matrices where the glossy effect is baked.
 bool hasMatrices(const gltf::Material& material);
 
+// Returns F0 of a dielectric, without textures.
+glm::vec3 reflectedStraightOn(const gltf::Material& material);
+
 // Returns the mean share of light from everywhere that the layer of a smooth dielectric reflects, 0..1.
 glm::vec3 meanSpecularAlbedo(const gltf::Material& material);
 
 // Returns the share of light from everywhere that leaves a surface of this base colour, each 0..1, under a
 // layer with this mean albedo. The base gets what the layer lets through in the channel where that is least.
 glm::vec3 albedoUnderLayer(const glm::vec3& base_color, const glm::vec3& layer);
+// Returns the base colour that has this albedo under the layer.
+glm::vec3 baseUnderLayer(const glm::vec3& albedo, const glm::vec3& layer);
 
 }  // namespace lambent::baker

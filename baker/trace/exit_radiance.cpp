@@ -130,6 +130,13 @@ void ExitToSample::addMirrored(const MirroredLight& light, float weight, std::sp
       bounce_.exit.addDiffuse(light.hit, weight, before, scratch);
       factor = glm::vec3(1.0f);  // it is the albedo of the hit
       break;
+    case From::LightsByLayer:
+      begin = bands;
+      [[fallthrough]];
+    case From::Diffuse:
+      bounce_.exit.addDiffuse(light.hit, weight, before, scratch);
+      factor = glm::vec3(1.0f);
+      break;
     case From::LightsByKernel:
       begin = bands;
       [[fallthrough]];

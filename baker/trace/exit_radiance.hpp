@@ -126,7 +126,7 @@ class ExitRadiance {
   void visitMirrored(std::span<const MirroredLight> mirrored, const WeightOf& weight_of,
                      const TakeHit& take) const {
     for (const MirroredLight& light : mirrored) {
-      if (light.from == MirroredLight::From::Base)
+      if (light.from == MirroredLight::From::Base || light.from == MirroredLight::From::Diffuse)
         take(light.hit, weight_of(light.hit.ray), light.throughput());
       else if (light.from == MirroredLight::From::Kernel)
         take(light.hit, weight_of(light.hit.ray), light.throughput() * albedo(light.hit, light.direction));
@@ -191,8 +191,9 @@ class ExitToSample {
                    std::span<float> sum) const;
   // Returns whether this bounce brings such light at all.
   bool brings(const MirroredLight& light) const {
-    return bounce_.number == 1 || light.from == MirroredLight::From::Base ||
-           light.from == MirroredLight::From::Kernel;
+    using From = MirroredLight::From;
+    return bounce_.number == 1 || light.from == From::Base || light.from == From::Kernel ||
+           light.from == From::Diffuse;
   }
 
  private:

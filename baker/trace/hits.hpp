@@ -39,6 +39,9 @@ struct MirroredLight {
     Base,            // what the diffuse base of the mirror at `hit` sends in all directions
     Kernel,          // what the surface at `hit`, which is not diffuse, sends along `direction`
     LightsByKernel,  // that part of it that the group's own lights bring straight to `hit`
+    Diffuse,         // what the diffuse surface at `hit` sends in all directions
+    LightsByLayer,   // light that the group's own lights bring straight to the layer at `hit`, sent in all
+                     // directions
   };
   GatherHit hit;  // where the path is; `albedo` is what it passes on of the light there
   glm::vec3 direction{0.0f};

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "baker/brdf/follow_highlight.hpp"
+#include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
@@ -30,6 +32,15 @@ bool isBlack(const GatherHit& hit) {
   return std::all_of(std::begin(hit.albedo), std::end(hit.albedo), [](std::uint16_t a) { return a == 0; });
 }
 
+// Layers are followed by this many times as many paths as there would be if each passed on all the light of
+// its ray. With more of them there is less noise, and less to code (docs/decisions/glossy.md).
+constexpr float kPathsInLayer = 8.0f;
+
+// Returns numbers from 0 to 1 that are evenly spread for successive numbers: multiples of the golden ratio.
+float evenly(std::uint32_t number) {
+  return static_cast<float>(number * 2654435769u >> 8) * 0x1p-24f;
+}
+
 // Spreads the numbers of samples, so that neighbours do not make the same choices.
 std::uint32_t scattered(std::size_t sample) {
   std::uint32_t hash = static_cast<std::uint32_t>(sample) * 0x9E3779B9u;
@@ -44,19 +55,34 @@ bool MirrorPaths::isSharp(const GatherHit& hit) const {
          brdfs_.roughness(hit.triangle, shareOf(hit.u), shareOf(hit.v)) < kMirrorRoughness;
 }
 
+float MirrorPaths::leaveBase(const glm::vec3& along, GatherHit& hit) const {
+  const float u = shareOf(hit.u), v = shareOf(hit.v);
+  const glm::vec3 normal =
+      interpolatedNormal(geometry_, geometry_.triangles[hit.triangle], {1.0f - u - v, u, v});
+  const float length = glm::length(normal);
+  const float reflected =
+      brdfs_.layerAlbedo(hit.triangle, length > 0.0f ? -glm::dot(along, normal) / length : 0.0f);
+  const glm::vec3 albedo(shareOf(hit.albedo[0]), shareOf(hit.albedo[1]), shareOf(hit.albedo[2]));
+  setAlbedo((1.0f - reflected) * baseUnderLayer(albedo, colors_.layer(hit.triangle)), hit);
+  return reflected;
+}
+
 // Follows all paths of a range at once, a reflection at a time.
 class MirrorPaths::Walk {
  public:
   Walk(const MirrorPaths& mirrors, RangeHits& hits) : mirrors_(mirrors), hits_(hits) {}
 
-  // Starts a path at hit `index`, which sample `sample` sees along a ray of this direction.
-  void start(std::size_t index, std::size_t sample, std::uint32_t number, const glm::vec3& along) {
+  // Starts a path at hit `index`, which sample `sample` sees along a ray of this direction. A path that
+  // begins at a layer stands for `of_layer` such paths, and the hit stays for the base.
+  void start(std::size_t index, std::size_t sample, std::uint32_t number, const glm::vec3& along,
+             std::optional<float> of_layer = {}) {
     paths_.push_back({.hit = hits_.hits[index],
                       .along = along,
-                      .throughput = glm::vec3(1.0f),
+                      .throughput = glm::vec3(of_layer.value_or(1.0f)),
                       .index = index,
                       .sample = static_cast<std::uint32_t>(sample),
-                      .number = number});
+                      .number = number,
+                      .from_layer = of_layer.has_value()});
   }
 
   void follow() {
@@ -110,6 +136,7 @@ class MirrorPaths::Walk {
     glm::vec3 throughput;
     std::size_t index;  // of the hit that it began at
     std::uint32_t sample, number;
+    bool from_layer;  // it began at a hit on a layer, which stays
   };
   struct Found {
     std::uint32_t sample;
@@ -124,8 +151,9 @@ class MirrorPaths::Walk {
 
   // Directs a path into the highlight at its hit. Returns false if it ends there.
   bool reflect(Path& path, std::uint32_t reflection) {
+    const bool in_layer = path.from_layer && reflection == 0;
     // The hit is left to diffuse surfaces that the path may meet.
-    if (reflection == 0) hits_.hits[path.index].triangle = kNowhere;
+    if (reflection == 0 && !in_layer) hits_.hits[path.index].triangle = kNowhere;
     const GatherHit hit = path.hit;
     const float u = shareOf(hit.u), v = shareOf(hit.v);
     const glm::uvec3 t = mirrors_.geometry_.triangles[hit.triangle];
@@ -135,8 +163,14 @@ class MirrorPaths::Walk {
     // Rays of glossy samples may have been mirrored at the sample's horizon.
     const float below = std::min(-glm::dot(path.along, at.geometric), 0.0f);
     const glm::vec3 to = glm::normalize(-path.along - 2.0f * below * at.geometric);
-    if (mirrors_.with_lights_) add(MirroredLight::From::LightsByKernel, path, to, path.throughput);
-    if (at.diffuse != glm::vec3(0.0f)) add(MirroredLight::From::Base, path, to, path.throughput * at.diffuse);
+    using From = MirroredLight::From;
+    if (in_layer) {
+      const float reflected = mirrors_.brdfs_.layerAlbedo(hit.triangle, glm::dot(to, at.normal));
+      if (mirrors_.with_lights_) add(From::LightsByLayer, path, to, path.throughput * reflected);
+    } else {
+      if (mirrors_.with_lights_) add(From::LightsByKernel, path, to, path.throughput);
+      if (at.diffuse != glm::vec3(0.0f)) add(From::Base, path, to, path.throughput * at.diffuse);
+    }
     const HighlightSample next = sampleHighlight(at, to, choices(path.number, reflection));
     path.throughput *= next.weight;
     const glm::vec3 place = (1.0f - u - v) * a + u * b + v * c;
@@ -163,9 +197,13 @@ class MirrorPaths::Walk {
       add(MirroredLight::From::Kernel, path, -path.along, path.throughput);
       return false;
     }
-    setAlbedo(
-        path.throughput * mirrors_.colors_.albedo(met.triangle, shareOf(path.hit.u), shareOf(path.hit.v)),
-        path.hit);
+    const glm::vec3 passed =
+        path.throughput * mirrors_.colors_.albedo(met.triangle, shareOf(path.hit.u), shareOf(path.hit.v));
+    if (path.from_layer) {
+      add(MirroredLight::From::Diffuse, path, -path.along, passed);
+      return false;
+    }
+    setAlbedo(passed, path.hit);
     if (!isBlack(path.hit)) hits_.hits[path.index] = path.hit;
     return false;
   }
@@ -183,10 +221,18 @@ void MirrorPaths::follow(std::size_t first_sample, const RayDirection& direction
   for (std::size_t s = 0; s + 1 < hits.offsets.size(); ++s) {
     const std::uint32_t number = scattered(first_sample + s);
     for (std::uint32_t h = hits.offsets[s]; h < hits.offsets[s + 1]; ++h) {
-      const GatherHit& hit = hits.hits[h];
-      if (!isSharp(hit)) continue;
-      begun[h] = 1, any = true;
-      walk.start(h, s, number + hit.ray, direction(s, hit.ray));
+      GatherHit& hit = hits.hits[h];
+      if (brdfs_.layered(hit.triangle)) {
+        const glm::vec3 along = direction(s, hit.ray);
+        const float reflected = leaveBase(along, hit);
+        const float chance = std::min(kPathsInLayer * reflected, 1.0f);
+        if (!(evenly(number + hit.ray) < chance)) continue;
+        any = true;
+        walk.start(h, s, number + hit.ray, along, 1.0f / chance);
+      } else if (isSharp(hit)) {
+        begun[h] = 1, any = true;
+        walk.start(h, s, number + hit.ray, direction(s, hit.ray));
+      }
     }
   }
   if (!any) return;

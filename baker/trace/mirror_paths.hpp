@@ -2,8 +2,9 @@
 // they meet another surface or leave the group. The hits of a range of samples come in; in place of those on
 // sharp surfaces stand what the paths met: hits on diffuse surfaces, whose albedo holds the colour of the
 // mirrors before them, and MirroredLight for all else. So bands limit the light that a mirror passes on, and
-// not the mirror, and a caustic is as sharp as the light. A path follows from its sample, ray and hit alone,
-// so hits that are traced again are the same. Calls are safe from any thread.
+// not the mirror, and a caustic is as sharp as the light. Hits on smooth dielectrics stay, with the albedo of
+// the base, and some rays are followed by way of the layer over it. A path follows from its sample, ray and
+// hit alone, so hits that are traced again are the same. Calls are safe from any thread.
 #pragma once
 
 #include <cstddef>
@@ -40,6 +41,9 @@ class MirrorPaths {
  private:
   class Walk;
   bool isSharp(const GatherHit& hit) const;
+  // Leaves a hit on a layer, met along this direction, to the base under it. Returns the share of light that
+  // the layer reflects there.
+  float leaveBase(const glm::vec3& along, GatherHit& hit) const;
 
   const GroupGeometry& geometry_;
   const RayScene& rays_;

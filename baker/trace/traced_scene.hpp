@@ -20,7 +20,7 @@ struct TracedScene {
   const RayScene& rays;
   const SurfaceColors& colors;
   std::span<const PlannedLight> lights;
-  const MirrorPaths* mirrors = nullptr;  // null if no surface is glossy
+  const MirrorPaths* mirrors = nullptr;  // null if no surface is glossy or layered
   // False if no part of the group hides light from another (planned_transport.hpp): samples see all that is
   // above the horizons of their faces.
   bool shadows = true;

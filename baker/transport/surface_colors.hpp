@@ -27,6 +27,8 @@ class SurfaceColors {
   // Returns base colour factor x texture x vertex colour, at most 1; 0 for unlit surfaces, which reflect
   // nothing. Of smooth dielectrics it returns what the base and the layer over it reflect together.
   glm::vec3 albedo(std::uint32_t triangle, float u, float v) const;
+  // Returns the mean albedo of a smooth dielectric's layer, which is part of albedo(); 0 for other surfaces.
+  glm::vec3 layer(std::uint32_t triangle) const { return surfaceOf(triangle).layer; }
   // Returns the emission at unit strength: the texture alone, 1 where there is none; 0 in the holes of
   // cut-outs. The triangle must belong to a light.
   glm::vec3 emission(std::uint32_t triangle, float u, float v) const;
