@@ -17,6 +17,8 @@ constexpr float kLift = 2e-4f;
 constexpr float kLeastThickness = 2e-3f;
 constexpr float kOnPlane = 1e-5f;
 
+constexpr float kSameWay = 0.5f;  // least cosine between normals of surfaces that face the same way
+
 // These are the barycentric coordinates of the centres of the four parts of a triangle whose edges are
 // halved.
 constexpr std::array<glm::vec3, kPatchPoints> kPointWeights = {
@@ -101,13 +103,15 @@ std::size_t Patches::patchAt(const RayHit& hit) const {
   return split.first + TrianglePart::at(split.parts, hit.b, hit.c).place(split.parts);
 }
 
-bool Patches::over(std::size_t triangle, const glm::vec3& point) const {
+float Patches::beside(std::size_t triangle, const glm::vec3& point) const {
+  float outside = 0.0f;
   for (std::size_t k = 0; k < 3; ++k) {
     const glm::vec3& corner = tree_[triangle].corners[k];
     const glm::vec3 inwards = glm::cross(normals_[triangle], tree_[triangle].corners[(k + 1) % 3] - corner);
-    if (glm::dot(inwards, point - corner) < -error_ * glm::length(inwards)) return false;
+    const float length = glm::length(inwards);
+    if (length > 0.0f) outside = std::max(outside, -glm::dot(inwards, point - corner) / length);
   }
-  return true;
+  return outside;
 }
 
 glm::vec3 Patches::inFront(glm::vec3 point, const glm::vec3& normal) const {
@@ -115,15 +119,25 @@ glm::vec3 Patches::inFront(glm::vec3 point, const glm::vec3& normal) const {
   point += lift * normal;
   std::vector<std::uint32_t> around;
   tree_.findNear(point, 2.0f * (error_ + lift), around);
+  const auto heightOver = [&](std::uint32_t t) { return glm::dot(normals_[t], point - tree_[t].corners[0]); };
+  // The patches' error is that of their worst place. Here they are as far away as the nearest of them that
+  // faces the same way. If the point lies farther behind another, that is the other side of something thin,
+  // or another body.
+  float here = error_;
+  for (const std::uint32_t t : around)
+    if (glm::dot(normals_[t], normal) > kSameWay)
+      here = std::min(here, std::max(std::abs(heightOver(t)), beside(t, point)));
+  here = std::max(here, kLeastThickness * extent_);
   for (const std::uint32_t t : around) {
-    const float height = glm::dot(normals_[t], point - tree_[t].corners[0]);
-    if (height > 0.5f * lift || height < -error_ || glm::dot(normals_[t], normal) < -0.5f || !over(t, point))
+    const float height = heightOver(t);
+    if (height > 0.5f * lift || height < -here || glm::dot(normals_[t], normal) < -0.5f ||
+        beside(t, point) > here)
       continue;
     // The point must not move through to the other side of something thin that it is in front of.
     const auto inTheWay = [&](std::uint32_t other) {
       if (glm::dot(normals_[other], normals_[t]) > -0.9f) return false;
-      const float above = glm::dot(normals_[other], point - tree_[other].corners[0]);
-      return above >= 0.0f && above <= lift - height && over(other, point);
+      const float above = heightOver(other);
+      return above >= 0.0f && above <= lift - height && beside(other, point) <= here;
     };
     if (std::ranges::none_of(around, inTheWay)) point += (lift - height) * normals_[t];
   }

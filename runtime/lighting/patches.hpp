@@ -71,9 +71,9 @@ class Patches {
     std::size_t first = 0;
     std::uint32_t parts = 1;
   };
-  // Returns whether the point, projected along the triangle's normal, lies on the triangle or nearer to it
-  // than the error.
-  bool over(std::size_t triangle, const glm::vec3& point) const;
+  // Returns how far beyond an edge of the triangle the point lies, seen along the triangle's normal; 0 over
+  // it.
+  float beside(std::size_t triangle, const glm::vec3& point) const;
 
   std::vector<Patch> patches_;
   std::vector<Split> split_;        // one per triangle

@@ -149,6 +149,36 @@ TEST(PatchTransport, NothingGoesThroughAWallToTheBoxBeside) {
   }
 }
 
+TEST(Patches, APointOfAThinBarStaysBesideItHoweverFarPatchesAreFromOtherSurfaces) {
+  // The error is that of the worst place of a group: three times as wide as the bar.
+  constexpr float kHalf = 0.05f;
+  RoomBuilder room;
+  room.wall({-2, -1, 2}, {4, 0, 0}, {0, 0, -4}, glm::vec3(0.5f));
+  const glm::vec3 along(2, 0, 0), up(0, 2.0f * kHalf, 0), deep(0, 0, 2.0f * kHalf), low(-1, -kHalf, -kHalf);
+  room.wall(low + deep, along, up, glm::vec3(0.5f)).wall(low, up, along, glm::vec3(0.5f));
+  room.wall(low, along, deep, glm::vec3(0.5f)).wall(low + up, deep, along, glm::vec3(0.5f));
+  bundle::CaptureProxy proxy = room.proxy();
+  proxy.levels[0].error_m = 6.0f * kHalf;
+  const Patches patches(bundle::patchSurfaceOf(proxy), 64);
+  for (const float x : {-0.8f, 0.0f, 0.7f})
+    for (const float y : {-0.9f, 0.0f, 0.9f}) {
+      const glm::vec3 point(x, y * kHalf, kHalf), normal(0, 0, 1);
+      EXPECT_LT(glm::distance(patches.inFront(point, normal), point), 0.002f * patches.extent())
+          << x << " " << y;
+      EXPECT_GT(patches.inFront(point, normal).z, kHalf);
+    }
+}
+
+TEST(Patches, APointALittleBehindItsPatchComesInFrontOfIt) {
+  RoomBuilder room;
+  room.wall({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, glm::vec3(0.5f));
+  bundle::CaptureProxy proxy = room.proxy();
+  proxy.levels[0].error_m = 0.1f;
+  const Patches patches(bundle::patchSurfaceOf(proxy), 64);
+  EXPECT_GT(patches.inFront({0.3f, -0.09f, 0.2f}, {0, 1, 0}).y, 0.0f);
+  EXPECT_LT(patches.inFront({0.3f, -0.3f, 0.2f}, {0, 1, 0}).y, -0.29f) << "that is another surface";
+}
+
 TEST(PatchTransport, TheSameRoomGivesTheSameBytes) {
   const bundle::CaptureProxy proxy = RoomBuilder().sphere(9, 12, glm::vec3(0.4f, 0.5f, 0.6f)).proxy();
   const PatchTransport one(proxy), other(proxy);
