@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "baker/brdf/layer_albedo.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/with_order.hpp"
@@ -35,16 +36,14 @@ struct Texture {
   gltf::TextureRef ref;
 };
 
-constexpr std::size_t kLayerCosines = 65;  // evenly from 0 to 1
-
 // A Surface is the material of one draw.
 struct Surface {
   gltf::Material material;
   bool glossy = false, colored_vertices = false;
   std::size_t table = 0;  // index in State::tables, if glossy or layered
   bool layered = false;
-  glm::vec3 layer{0.0f};                            // mean albedo of a smooth dielectric's layer
-  std::array<float, kLayerCosines> layer_albedo{};  // largest channel, by the cosine of the view
+  glm::vec3 layer{0.0f};  // mean albedo of a smooth dielectric's layer
+  LayerAlbedo layer_albedo;
   Texture base, metallic_roughness, specular, specular_color, anisotropy;
 };
 
@@ -169,20 +168,6 @@ glm::vec3 diffuseRest(const Parameters& p, std::span<const float> weights, std::
   const glm::vec3 reflected = p.f0 * weights[0] + p.f90 * weights[second];
   const float rest = 1.0f - std::max({reflected.r, reflected.g, reflected.b});
   return p.metal < 1.0f && rest > 0.0f ? (1.0f - p.metal) * rest * p.base : glm::vec3(0.0f);
-}
-
-std::array<float, kLayerCosines> layerAlbedos(const BrdfTable& table, const gltf::Material& material) {
-  std::array<float, kLayerCosines> albedos{};
-  const glm::vec3 f0 = reflectedStraightOn(material);
-  std::array<float, kMaxBrdfLobes * kMaxBrdfCoefficients> weights;
-  for (std::size_t i = 0; i < kLayerCosines; ++i) {
-    const float cosine = static_cast<float>(i) / static_cast<float>(kLayerCosines - 1);
-    lookUpStored(table, {std::max(cosine, kLeastViewCosine), 1.0f, 0.0f},
-                 std::clamp(material.roughness, 0.0f, 1.0f), 0.0f, weights);
-    const glm::vec3 reflected = f0 * weights[0] + material.specular * weights[table.coefficients()];
-    albedos[i] = std::clamp(std::max({reflected.r, reflected.g, reflected.b}), 0.0f, 1.0f);
-  }
-  return albedos;
 }
 
 }  // namespace
@@ -423,7 +408,7 @@ Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry&
     if (surface.layered) {
       surface.table = static_cast<std::size_t>(table);
       surface.layer = meanSpecularAlbedo(material);
-      surface.layer_albedo = layerAlbedos(state->tables[surface.table].table, material);
+      surface.layer_albedo = LayerAlbedo(state->tables[surface.table].table, material);
     }
 
     std::vector<std::pair<Texture*, const gltf::TextureRef*>> wanted = {
@@ -492,10 +477,7 @@ bool SurfaceBrdfs::layered(std::uint32_t triangle) const {
 }
 
 float SurfaceBrdfs::layerAlbedo(std::uint32_t triangle, float cosine) const {
-  const auto& albedos = state_->surfaces[state_->surface_of[triangle]].layer_albedo;
-  const float at = std::clamp(cosine, 0.0f, 1.0f) * static_cast<float>(kLayerCosines - 1);
-  const auto below = std::min(static_cast<std::size_t>(at), kLayerCosines - 2);
-  return glm::mix(albedos[below], albedos[below + 1], at - static_cast<float>(below));
+  return state_->surfaces[state_->surface_of[triangle]].layer_albedo.towards(cosine);
 }
 
 PointReflection SurfaceBrdfs::reflection(std::uint32_t triangle, float u, float v,

@@ -127,15 +127,12 @@ void ExitToSample::addMirrored(const MirroredLight& light, float weight, std::sp
     case From::Base:
       // The kernels bring the light of lamps from the base too.
       if (bounce_.number == 1) end = bands;
+      [[fallthrough]];
+    case From::LightsByLayer:
+    case From::Diffuse:
+      if (light.from == From::LightsByLayer) begin = bands;
       bounce_.exit.addDiffuse(light.hit, weight, before, scratch);
       factor = glm::vec3(1.0f);  // it is the albedo of the hit
-      break;
-    case From::LightsByLayer:
-      begin = bands;
-      [[fallthrough]];
-    case From::Diffuse:
-      bounce_.exit.addDiffuse(light.hit, weight, before, scratch);
-      factor = glm::vec3(1.0f);
       break;
     case From::LightsByKernel:
       begin = bands;
