@@ -49,9 +49,9 @@ Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, 
 
 // Returns the meshes as they ship: edges are split where the options and shadows ask for it, then meshes are
 // coded.
-Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_maps,
+Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_maps, DecodedImages& images,
                                const BakeContext& context) {
-  const auto& [scene, options, plan, tables, report, trying] = bake;
+  const auto& [scene, options, plan, tables, report] = bake;
   auto split = splitMeshes(scene, plan.groups, options.max_edge_m);
   if (!split) return failAgain(split.error());
   const bool with_glossy = !tables.entries.empty();
@@ -65,50 +65,36 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
                          .most_added = options.refineAdded(),
                          .most_wedges = options.refineWedges()};
     if (with_glossy) refine.most_vertices = mostGlossySamples(options.glossy_order);
-    auto refined =
-        refineMeshes({scene, plan.groups, plan.transport, alpha_maps, with_glossy}, refine, *split, context);
+    auto refined = refineMeshes({scene, plan.groups, plan.transport, alpha_maps, with_glossy, images}, refine,
+                                *split, context);
     if (!refined) return failAgain(refined.error());
     report.refinement = *refined;
   }
   return shipMeshes(scene, plan.groups, *split, context);
 }
 
-// A Tried is all that a bundle needs, unless a group asks for another try.
-struct Tried {
+struct BakedScene {
   ShippedMeshes meshes;
   std::vector<BakedGroup> groups;
-  std::optional<PictureSettings> next;
 };
 
-Result<Tried> bakeAll(const SceneBake& whole, PictureTry* trying, const AlphaMaps& alpha_maps,
-                      DecodedImages& images, const BakeContext& context) {
+Result<BakedScene> bakeAll(const SceneBake& whole, const AlphaMaps& alpha_maps, DecodedImages& images,
+                           const BakeContext& context) {
   context.progress.beginPart();
-  auto meshes = meshesOf(whole, alpha_maps, context);
+  auto meshes = meshesOf(whole, alpha_maps, images, context);
   if (!meshes) return failAgain(meshes.error());
-  if (trying) {
-    trying->refined_to = whole.report.refinement.error_after;
-    trying->keeps_refinement |= whole.report.refinement.at_limit;
-  }
-  Tried tried{std::move(*meshes), {}, {}};
-  for (std::size_t g = 0; g < whole.plan.groups.size() && !tried.next; ++g) {
+  BakedScene baked{std::move(*meshes), {}};
+  for (std::size_t g = 0; g < whole.plan.groups.size(); ++g) {
     context.progress.beginPart();
     auto group = whole.plan.groups[g].volume >= 0
-                     ? bakeVolume(whole, alpha_maps, g, tried.groups, context)
-                     : bakeGroup(whole, {tried.meshes, alpha_maps, images}, g, context);
+                     ? bakeVolume(whole, alpha_maps, g, baked.groups, context)
+                     : bakeGroup(whole, {baked.meshes, alpha_maps, images}, g, context);
     if (!group) return failAgain(group.error());
     whole.report.groups.back().part = context.progress.now().part;
-    tried.next = group->next_try;
-    tried.groups.push_back(std::move(*group));
+    baked.groups.push_back(std::move(*group));
   }
   if (context.stopped()) return whole.stopped();
-  return tried;
-}
-
-// Returns what a report says of work that was given up: its rays were traced all the same.
-BakeReport spentOn(const BakeReport& report) {
-  BakeReport spent;
-  spent.rays = report.rays, spent.rays_kept = report.rays_kept, spent.ray_seconds = report.ray_seconds;
-  return spent;
+  return baked;
 }
 
 Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
@@ -124,30 +110,12 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   if (plan->bakes("glossy")) tables = brdfTablesOf(scene, options, context);
   if (!tables) return failAgain(tables.error());
 
-  const bool chooses = options.picture_bound > 0.0f;
-  BakeOptions chosen = options;
-  Result<Tried> tried;
-  for (int tries = 1; tries == 1 || (tried && tried->next); ++tries) {
-    PictureTry trying{
-        .made_with = {static_cast<std::uint32_t>(chosen.effectiveRays()), chosen.effectiveRefineBound()},
-        .shown = {},
-        .keeps_rays = options.rays != 0,
-        .keeps_refinement = options.refine_bound >= 0.0f};
-    report = spentOn(report);
-    if (chooses) report.chosen = trying.made_with, report.tries = tries;
-    PictureTry* const may_ask = chooses && tries < kMostTries ? &trying : nullptr;
-    tried = bakeAll({scene, chosen, *plan, *tables, report, may_ask}, may_ask, *alpha_maps, images, context);
-    if (tried && tried->next)
-      chosen.rays = tried->next->rays, chosen.refine_bound = tried->next->refine_bound;
-  }
-  if (!tried) return failAgain(tried.error());
-
   const SceneBake whole{scene, options, *plan, *tables, report};
-  ShippedMeshes& meshes = tried->meshes;
-  const std::vector<BakedGroup>& baked = tried->groups;
+  auto baked = bakeAll(whole, *alpha_maps, images, context);
+  if (!baked) return failAgain(baked.error());
   context.progress.beginPart();
   context.progress.begin("writing");
-  AssembledBundle bundle = assemble(whole, std::move(meshes), baked);
+  AssembledBundle bundle = assemble(whole, std::move(baked->meshes), baked->groups);
   // What cannot be opened must not take the place of a bundle that can.
   const auto opens = [](const std::filesystem::path& part) -> Result<void> {
     if (const auto reader = bundle::Reader::open(part); !reader) return failAgain(reader.error());

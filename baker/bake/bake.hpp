@@ -12,7 +12,6 @@
 #include <glm/vec3.hpp>
 
 #include "baker/bake/options.hpp"
-#include "baker/bake/picture_budget.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/plan/effect_plan.hpp"
@@ -71,9 +70,6 @@ struct BakeReport {
   };
   std::vector<Neighborhood> neighborhoods;
   RefineReport refinement;
-  // These keep BakeOptions::picture_bound, and were found after so many tries; 0: nothing was to be chosen.
-  PictureSettings chosen;
-  int tries = 0;
   struct Volume {
     std::string name;
     std::uint64_t voxels = 0, samples = 0;

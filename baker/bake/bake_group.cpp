@@ -83,14 +83,6 @@ void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, Ba
   if (group.anyGlossy()) add("glossy", figures.glossy);
 }
 
-// Returns what the next try needs if this one shows too much error without codes, and there may be one.
-std::optional<PictureSettings> nextGroupTry(const SceneBake& bake, const bundle::PictureError& shown) {
-  if (!bake.trying || leavesEnough(shown, bake.options.picture_bound)) return std::nullopt;
-  PictureTry tried = *bake.trying;
-  tried.shown = shown;
-  return nextTry(tried, bake.options.picture_bound);
-}
-
 // Bakes the neighborhood of surfaces whose light is baked. Returns false if stopped.
 bool bakeAroundSurfaces(const Around& around, const GroupScene& group, const SurfaceTransport& light,
                         const BakeContext& context, std::optional<BakedNeighborhood>& out) {
@@ -137,20 +129,9 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
   };
   if (found) take(cells);
   if (found && (!any_around || around_found)) return finished();
-  const BakeContext given_up = cells_context.part("given up");
-  if (bundle::PictureError shown; bake.trying && findKept(given_up, shown))
-    if ((baked.next_try = nextGroupTry(bake, shown))) return finished();
-
   if (auto prepared = group.prepareRays(context); !prepared) return failAgain(prepared.error());
   const auto light = transportLight(group, context);
   if (!light) return bake.stopped();
-  if (const auto shown = bake.trying && !found ? shownBy(group, *light, nullptr) : std::nullopt)
-    if ((baked.next_try = nextGroupTry(bake, *shown))) {
-      bake.report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
-      keepValue(given_up, *shown);
-      dropTransport(group, *light, context);
-      return finished();
-    }
   if (!found) {
     CachedCoding coding(context);
     auto coded = codeSurfaces(group, *light, coding, context.progress);

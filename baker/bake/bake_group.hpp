@@ -23,8 +23,6 @@ struct BakedGroup {
   std::vector<std::vector<CodedTransfer>> cells;  // as in SurfaceCells
   std::optional<bundle::PictureError> picture_error;
   float codes_bound = 0.0f, glossy_codes_bound = 0.0f;
-  // If set, the group was given up for want of better settings, and has no cells.
-  std::optional<PictureSettings> next_try;
   LightProbes light_probes;           // in the frame of SampleSet::positions
   bundle::CaptureProxy proxy;         // group frame
   std::optional<BakedVolume> volume;  // if set, the members above are empty but for light_probes

@@ -332,7 +332,7 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
 
 Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
                               const std::vector<BakedGroup>& baked, const BakeContext& context) {
-  const auto& [scene, options, plan, tables, report, trying] = bake;
+  const auto& [scene, options, plan, tables, report] = bake;
   const RigidGroup& group = plan.groups[index];
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
   context.progress.begin("density");

@@ -2,6 +2,7 @@
 
 #include "baker/brdf/brdf_kinds.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
+#include "baker/trace/emitters.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
@@ -11,32 +12,6 @@ namespace {
 
 const gltf::Material* materialOf(const Scene& scene, const DrawGeometry& draw) {
   return draw.material < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(draw.material)];
-}
-
-// Adds where the lights of the group shine from, at unit strength, and the textures that scale emission.
-void addLights(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
-               KeyMaker& key) {
-  key.addText("lights").add(std::uint64_t{lights.size()});
-  for (const PlannedLight& light : lights) {
-    key.add(light.kind);
-    if (light.kind == PlannedLight::Kind::Node) {
-      const gltf::Node& node = scene.nodes[light.index];
-      const gltf::Light& source = scene.lights[static_cast<std::size_t>(node.light)];
-      key.add(light.group_from_node).add(geometry.origin);
-      key.add(source.type).add(source.range_m).add(source.inner_cone_rad).add(source.outer_cone_rad);
-      continue;
-    }
-    const gltf::Material& material = scene.materials[light.index];
-    addTexture(scene, material.emissive_texture.texture, key);
-    const bool textured = material.emissive_texture.texture >= 0;
-    for (std::uint32_t d = 0; d < geometry.draws.size(); ++d) {
-      const DrawGeometry& draw = geometry.draws[d];
-      if (draw.material != static_cast<std::int32_t>(light.index)) continue;
-      key.add(d);
-      if (textured)
-        key.addList(std::span(geometry.emissive_texcoords).subspan(draw.first_vertex, draw.vertex_count));
-    }
-  }
 }
 
 // The numbers, colours and flags of one part of a material. A measured BRDF counts by its measurements, which
@@ -114,16 +89,18 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
                   .add(planned.bounces)
                   .key();
   keys.glossy_rays = KeyMaker::ofStage("glossy rays").add(keys.rays).add(options.exitOrder()).key();
-  keys.bounces = KeyMaker::ofStage("bounces")
-                     .add(keys.glossy_rays)
+  KeyMaker bounces = KeyMaker::ofStage("bounces");
+  addEyes(planned.cameras, bounces);
+  keys.bounces = bounces.add(keys.glossy_rays)
                      .add(colored)
                      .add(reflecting)
                      .add(options.glossy_order)
                      .add(options.fitsDiffuse())
                      .add(options.fitsGlossy())
                      .key();
-  keys.cells = KeyMaker::ofStage("cells")
-                   .add(keys.bounces)
+  KeyMaker cells = KeyMaker::ofStage("cells");
+  for (const PlannedLight& light : lights) cells.add(light.color);  // errors are those of lamps as they are
+  keys.cells = cells.add(keys.bounces)
                    .add(options.bounces)
                    .add(options.leavesNothingOut())
                    .add(options.effectiveErrorBound())

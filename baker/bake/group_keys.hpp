@@ -8,6 +8,7 @@
 #include "baker/bake/options.hpp"
 #include "baker/cache/key.hpp"
 #include "baker/import/scene.hpp"
+#include "baker/importance/eyes.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/plan/local_light.hpp"
 #include "baker/transport/group_geometry.hpp"
@@ -27,6 +28,7 @@ struct GroupKeys {
 struct PlannedGroup {
   LightProbeCount light_probes{};
   bool shadows = true, bounces = true;
+  std::span<const Eye> cameras{};
 };
 
 GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,

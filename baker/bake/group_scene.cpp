@@ -52,9 +52,11 @@ GroupScene::GroupScene(const SceneBake& of, const SurfaceInputs& inputs, std::si
           bake.scene.meshes[draw.mesh].name, draw.primitive));
   }
   lights = findGroupLights(bake.scene, group);
+  cameras_ = cameraEyes(bake.scene, group, geometry);
   if (context.cache)
     keys = groupKeys(bake.scene, geometry, lights,
-                     {bake.plan.light_probes[index].count, transport().shadows, bounces()}, bake.options);
+                     {bake.plan.light_probes[index].count, transport().shadows, bounces(), cameras_},
+                     bake.options);
 }
 
 bool GroupScene::anyLayered() const {
@@ -75,6 +77,9 @@ Result<void> GroupScene::prepareRays(const BakeContext& context) {
   auto rays = RayScene::build(geometry, bake.scene, inputs_.alpha_maps);
   if (!rays) return failAgain(rays.error());
   rays_ = std::move(*rays);
+  context.progress.begin("importance");
+  importance_ = Importance(geometry, *rays_, cameras_);
+  sample_importance_ = importance_.ofSamples(samples);
   if (!anyGlossy() && !(bounces() && anyLayered())) return {};
   auto brdfs =
       SurfaceBrdfs::load(bake.scene, geometry, bake.tables, inputs_.images, bake.options.exitOrder());

@@ -40,24 +40,35 @@ class GroupScene {
 
   // Loads the colours once, since images take long to decode. Errors: images that cannot be decoded.
   Result<void> loadColors();
-  // Loads the colours and BRDFs, and builds the ray hierarchy. Errors: those of loadColors(), no memory for
-  // the hierarchy.
+  // Loads the colours and BRDFs, builds the ray hierarchy, and finds out what eyes see. Errors: those of
+  // loadColors(), no memory for the hierarchy.
   Result<void> prepareRays(const BakeContext& context);
 
   // May be called after loadColors().
   const SurfaceColors& colors() const { return *colors_; }
   // May be called after prepareRays(). brdfs() returns null if the group has no glossy surfaces.
   TracedScene view() const {
-    return {bake.scene,         geometry, samples, *rays_, *colors_, lights, mirrors_ ? &*mirrors_ : nullptr,
-            transport().shadows};
+    return {bake.scene,
+            geometry,
+            samples,
+            *rays_,
+            *colors_,
+            lights,
+            mirrors_ ? &*mirrors_ : nullptr,
+            transport().shadows,
+            &sample_importance_};
   }
+  const Importance& importance() const { return importance_; }
   const SurfaceBrdfs* brdfs() const { return anyGlossy() && brdfs_ ? &*brdfs_ : nullptr; }
 
  private:
   SurfaceInputs inputs_;
+  std::vector<Eye> cameras_;
   std::optional<SurfaceColors> colors_;
   std::optional<SurfaceBrdfs> brdfs_;
   std::optional<RayScene> rays_;
+  Importance importance_;
+  SampleImportance sample_importance_;
   std::optional<MirrorPaths> mirrors_;  // set with the BRDFs
 };
 

@@ -68,7 +68,7 @@ const char* qualityName(Quality quality) {
 
 std::size_t BakeOptions::effectiveRays() const {
   if (rays != 0) return rays;
-  return picture_bound > 0.0f ? firstRays(picture_bound) : row(quality).rays;
+  return picture_bound > 0.0f ? raysFor(picture_bound) : row(quality).rays;
 }
 
 float BakeOptions::effectiveErrorBound() const {
@@ -95,7 +95,7 @@ int BakeOptions::exitOrder() const {
 
 float BakeOptions::effectiveRefineBound() const {
   if (refine_bound >= 0.0f) return refine_bound;
-  return picture_bound > 0.0f ? firstRefineBound(picture_bound) : row(quality).refine_bound;
+  return picture_bound > 0.0f ? refineBoundFor(picture_bound) : row(quality).refine_bound;
 }
 
 int BakeOptions::zstdLevel() const {

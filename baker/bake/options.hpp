@@ -26,9 +26,8 @@ struct BakeOptions {
   // Bounces between surfaces. -1: as many as the error bound asks for. 0: direct light with shadows, and only
   // single scattering in volumes; any other value computes all scattering there.
   int bounces = -1;
-  // Bounds the error of pictures of diffuse surfaces, relative RMS, by rays, interpolation and codes
-  // together. The bake chooses those of the three that are not given (picture_budget.hpp). 0: they are as the
-  // quality says.
+  // Bounds the error of pictures, relative RMS, by rays, interpolation and codes together. The bake chooses
+  // those of the three that are not given (picture_budget.hpp). 0: they are as the quality says.
   float picture_bound = 0.0f;
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: as picture_bound or the quality says
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: no limit
@@ -50,7 +49,6 @@ struct BakeOptions {
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // limit on what passes keep in memory; 0: half of the machine's
 
-  // The first try begins with these if picture_bound chooses.
   std::size_t effectiveRays() const;
   float effectiveErrorBound() const;
   // Returns the bound for glossy transfer, which takes more bytes: error_bound if it is set, else a share of

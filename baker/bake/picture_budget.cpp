@@ -9,15 +9,10 @@ namespace {
 
 // So much of the bound is aimed at, since what is measured at a thousand points is a few per cent off.
 constexpr double kAim = 0.95;
-// Rays and refinement share what codes leave: so many vertices as interpolation asks for have so many rays
-// each.
-constexpr double kLight = 0.88;  // of the bound, aimed at by rays and refinement together
-constexpr double kEnough = 0.93;
-constexpr double kInterpolation = 0.6, kMostInterpolation = 0.72;  // of the bound
-// A quiet scene has this error with so many rays; refinement's own figure is to pictures' as 1 to this.
+// A quiet scene has this error with so many rays, which may take this share of the bound; refinement's own
+// figure is to that of pictures as 1 to this.
 constexpr double kQuietNoise = 0.008, kQuietRays = 256.0, kNoise = 0.65, kRefinement = 1.2;
 constexpr std::uint32_t kLeastChosenRays = 128, kMostChosenRays = 16'384, kRaysStep = 16;
-constexpr double kLeastShrink = 0.2;  // of refinement's bound in one step
 constexpr double kLeastCodes = 0.25;  // of the bound, even if nothing is left for codes
 constexpr float kMostCodes = 0.25f;   // beyond, codes would show bands of colour whatever the mean error is
 
@@ -27,46 +22,15 @@ std::uint32_t wholePackets(double rays) {
   return std::clamp(packets * kRaysStep, kLeastChosenRays, kMostChosenRays);
 }
 
-double between(const bundle::PictureError& shown) {
-  return std::sqrt(std::max(0.0, double{shown.all} * shown.all - double{shown.samples} * shown.samples -
-                                     double{shown.codes} * shown.codes));
-}
-
 }  // namespace
 
-std::uint32_t firstRays(float picture_bound) {
+std::uint32_t raysFor(float picture_bound) {
   const double ratio = kQuietNoise / (kNoise * double{picture_bound});
   return wholePackets(kQuietRays * ratio * ratio);
 }
 
-float firstRefineBound(float picture_bound) {
+float refineBoundFor(float picture_bound) {
   return std::min(static_cast<float>(kRefinement) * picture_bound, 0.9f);
-}
-
-bool leavesEnough(const bundle::PictureError& shown, float picture_bound) {
-  return double{shown.all} <= kEnough * double{picture_bound};
-}
-
-std::optional<PictureSettings> nextTry(const PictureTry& tried, float picture_bound) {
-  const auto& [made_with, refined_to, shown, keeps_rays, keeps_refinement] = tried;
-  const double bound = double{picture_bound}, light = kLight * bound;
-  PictureSettings next = made_with;
-  double interpolation = between(shown);
-  if (!keeps_refinement && refined_to > 0.0 && interpolation > kMostInterpolation * bound) {
-    const double shrink = std::max(kLeastShrink, kInterpolation * bound / interpolation);
-    next.refine_bound = static_cast<float>(std::min(double{made_with.refine_bound}, refined_to) * shrink);
-    interpolation *= shrink;
-  }
-  if (!keeps_rays) {
-    // More rays take little of the error away if vertices alone miss the bound.
-    const double noise =
-        std::sqrt(std::max(light * light - interpolation * interpolation,
-                           0.25 * std::max(light, interpolation) * std::max(light, interpolation)));
-    const double ratio = double{shown.samples} / noise;
-    next.rays = std::max(made_with.rays, wholePackets(double(made_with.rays) * ratio * ratio));
-  }
-  if (next == made_with) return std::nullopt;
-  return next;
 }
 
 float codesBound(const bundle::PictureError& without_codes, float picture_bound) {

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <unordered_map>
 
 #include "baker/bake/picture_sums.hpp"
+#include "baker/effects/diffuse/incident_basis.hpp"
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/sh/basis.hpp"
+#include "runtime/sh/zonal.hpp"
 
 namespace lambent::baker {
 
@@ -17,15 +20,57 @@ namespace {
 // both is known and taken off.
 constexpr std::size_t kTimesFewRays = 8, kLeastManyRays = 1024, kMostManyRays = 4096, kLeastTimes = 2;
 
-// Adds `weight` times the environment's part of a sample's vector to all channels of `out`.
-void addWeighted(const TransferField& field, std::size_t sample, float weight, std::span<float> out) {
-  const auto from = field.at(sample);
-  const std::size_t size = out.size() / 3;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::size_t row = (field.channels == 3 ? c : 0) * field.columns;
-    for (std::size_t i = 0; i < size; ++i) out[c * size + i] += weight * from[row + i];
+// Adds up what arrives at points: for red, green and blue, the coefficients of the environment and then the
+// light of all lamps together.
+class Arriving {
+ public:
+  Arriving(const TracedScene& scene, int order)
+      : scene_(scene),
+        bands_(static_cast<std::size_t>(sh::coefficientCount(order))),
+        per_pixel_(shadedPerPixel(scene.lights)) {}
+
+  // Which lamps count: those that are shaded per pixel send direct light that is exact, so that of vertices
+  // is not shown.
+  enum class Lamps : std::uint8_t { All, AtVertices, PerPixel };
+
+  std::size_t bands() const { return bands_; }
+  std::size_t columns() const { return bands_ + per_pixel_.size(); }
+  bool perPixel(std::size_t lamp) const { return per_pixel_[lamp]; }
+
+  // Adds `weight` times a sample's vector, which is laid out as in a TransferField. A vector of nine outputs
+  // is evaluated at `normal` (incident_basis.hpp).
+  void add(std::span<const float> vector, std::size_t channels, const glm::vec3& normal, float weight,
+           Lamps lamps, std::span<float> out) const {
+    const std::size_t outputs = vector.size() / (channels * columns());
+    const std::array<float, kIncident> shares = sharesOf(normal);
+    for (std::size_t j = 0; j < outputs; ++j)
+      for (std::size_t c = 0; c < 3; ++c)
+        addRow(vector.subspan((j * channels + (channels == 3 ? c : 0)) * columns(), columns()), c,
+               outputs == 1 ? weight : weight * shares[j], lamps, out);
   }
-}
+
+ private:
+  void addRow(std::span<const float> row, std::size_t c, float weight, Lamps lamps,
+              std::span<float> out) const {
+    const auto to = out.subspan(c * (bands_ + 1), bands_ + 1);
+    for (std::size_t i = 0; lamps != Lamps::PerPixel && i < bands_; ++i) to[i] += weight * row[i];
+    for (std::size_t k = 0; k < per_pixel_.size(); ++k)
+      if (lamps == Lamps::All || per_pixel_[k] == (lamps == Lamps::PerPixel))
+        to[bands_] += weight * row[bands_ + k] * scene_.lights[k].color[static_cast<int>(c)];
+  }
+  static std::array<float, kIncident> sharesOf(const glm::vec3& normal) {
+    std::array<float, kIncident> shares{};
+    sh::evaluate<float>(3, normal.x, normal.y, normal.z, shares);
+    for (int j = 0; j < int{kIncident}; ++j)
+      shares[static_cast<std::size_t>(j)] *=
+          static_cast<float>(sh::clampedCosine(sh::bandOf(j)) / std::numbers::pi);
+    return shares;
+  }
+
+  const TracedScene& scene_;
+  std::size_t bands_;
+  std::vector<bool> per_pixel_;
+};
 
 // Holds what codes say of the samples that are asked for.
 using Decoded = std::unordered_map<std::uint32_t, std::vector<float>>;
@@ -43,11 +88,15 @@ double noiseOfMany(std::size_t few, std::size_t many) {
   return static_cast<double>(few) / static_cast<double>(few + many);
 }
 
-// The points of diffuse surfaces: light that leaves them is albedo times transfer of E/pi.
+// The points of diffuse and normal-mapped surfaces: light that leaves them is albedo times transfer of E/pi.
 class DiffusePoints {
  public:
   DiffusePoints(const TracedView& traced, const TracedScene& scene, const BakedVertices& baked)
-      : points_(traced.view.diffuse), traced_(traced), scene_(scene), baked_(baked) {}
+      : points_(traced.view.diffuse),
+        traced_(traced),
+        scene_(scene),
+        baked_(baked),
+        arriving_(scene, baked.direct.order) {}
 
   void addTo(PictureSums& sums) {
     decode();
@@ -57,24 +106,36 @@ class DiffusePoints {
         noiseOfMany(traced_.noisy->pass().settings().rays, traced_.exact->pass().settings().rays);
     const std::size_t size = 3 * sums.coefficients();
     std::vector<float> many(size), few(size), fields(size), codes(size);
+    using enum Arriving::Lamps;
     for (std::size_t p = 0; p < points_.eyes.size(); ++p) {
       if (!seen(p)) continue;
       for (auto* vector : {&many, &few, &fields, &codes}) std::fill(vector->begin(), vector->end(), 0.0f);
-      addWeighted(noisy.field, p, 1.0f, few);
-      addWeighted(exact.field, p, 1.0f, many);
-      if (!baked_.bounced_at_points.empty()) {
-        addWeighted(baked_.bounced_at_points[0], p, 1.0f, few);
-        addWeighted(baked_.bounced_at_points[1], p, 1.0f, many);
-      }
+      const auto addPoint = [&](const TransferField& field, Arriving::Lamps lamps, std::vector<float>& out) {
+        arriving_.add(field.at(p), field.channels, points_.points.samples.normals[p], 1.0f, lamps, out);
+      };
+      addPoint(noisy.field, All, few), addPoint(exact.field, All, many);
+      addPoint(exact.field, PerPixel, fields), addPoint(exact.field, PerPixel, codes);
+      if (!baked_.bounced_at_points.empty())
+        addPoint(baked_.bounced_at_points[0], All, few), addPoint(baked_.bounced_at_points[1], All, many);
       PictureSums::Point point{
           .eye = points_.eyes[p], .squared_shares = 0.0, .noise_of_exact = noise_of_exact};
       for (const auto& [sample, weight] : shownAt(p)) {
+        if (weight == 0.0f) continue;
         point.squared_shares += double{weight} * double{weight};
-        addWeighted(baked_.direct, sample, weight, fields);
-        if (baked_.bounced) addWeighted(*baked_.bounced, sample, weight, fields);
-        if (!baked_.cells) continue;
-        const std::vector<float>& of_codes = decoded_.at(sample);
-        for (std::size_t i = 0; i < size; ++i) codes[i] += weight * of_codes[i];
+        const auto addShown = [&](std::span<const float> vector, std::size_t channels, Arriving::Lamps lamps,
+                                  std::vector<float>& out) {
+          arriving_.add(vector, channels, points_.points.samples.normals[p], weight, lamps, out);
+        };
+        const SampleStretch& mapped = scene_.samples.normal_mapped;
+        const bool nine = sample >= mapped.begin && sample < mapped.end;
+        const std::size_t row = nine ? sample - mapped.begin : sample;
+        const TransferField& direct = nine ? baked_.mapped : baked_.direct;
+        addShown(direct.at(row), direct.channels, AtVertices, fields);
+        if (baked_.bounced) {
+          const TransferField& bounced = nine ? baked_.bounced->mapped : baked_.bounced->field;
+          addShown(bounced.at(row), bounced.channels, All, fields);
+        }
+        if (baked_.cells) addShown(decoded_.at(sample), 3, All, codes);
       }
       if (!baked_.cells) codes = fields;
       const glm::vec3 albedo =
@@ -98,30 +159,41 @@ class DiffusePoints {
     for (std::size_t p = 0; p < points_.eyes.size(); ++p)
       if (seen(p))
         for (const SampleShare& shown : shownAt(p)) decoded_[shown.sample];
-    for (std::size_t c = 0; c < scene_.samples.cells.size(); ++c) {
-      const SampleCell& cell = scene_.samples.cells[c];
-      if (cell.kind != SampleKind::Diffuse) continue;
-      const CodedTransfer& coded = (*baked_.cells)[c].front();
-      const std::size_t size = coded.shape.columns(), shadowed = coded.shape.shadowed_channels * size;
-      const std::uint32_t full = coded.shape.full_channels;
-      const std::uint32_t channels = full > 0 ? full : coded.shape.shadowed_channels;
-      decodeCell(cell, coded, decoded_, [&](std::span<const float> vector, std::vector<float>& out) {
-        const auto from = vector.subspan(full > 0 ? shadowed : 0);
-        out.resize(3 * size);
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = from[channels == 3 ? i : i % size];
-      });
-    }
+    for (std::size_t c = 0; c < scene_.samples.cells.size(); ++c)
+      if (const SampleCell& cell = scene_.samples.cells[c]; cell.kind != SampleKind::Glossy)
+        for (const CodedTransfer& coded : (*baked_.cells)[c]) decode(cell, coded);
+  }
+  void decode(const SampleCell& cell, const CodedTransfer& coded) {
+    const std::size_t outputs = coded.shape.outputs, own = coded.shape.columns(),
+                      first = coded.shape.order > 0 ? 0 : arriving_.bands();
+    const std::size_t shadowed = coded.shape.shadowed_channels, full = coded.shape.full_channels;
+    decodeCell(cell, coded, decoded_, [&](std::span<const float> vector, std::vector<float>& out) {
+      out.resize(3 * outputs * arriving_.columns(), 0.0f);
+      const auto valueAt = [&](std::size_t first_channel, std::size_t channels, std::size_t c, std::size_t j,
+                               std::size_t i) {
+        return vector[((first_channel + (channels == 3 ? c : 0)) * outputs + j) * own + i];
+      };
+      for (std::size_t j = 0; j < outputs; ++j)
+        for (std::size_t c = 0; c < 3; ++c)
+          for (std::size_t i = 0; i < own; ++i) {
+            const float direct = valueAt(0, shadowed, c, j, i);
+            float& value = out[(j * 3 + c) * arriving_.columns() + first + i];
+            value = full > 0 ? valueAt(shadowed, full, c, j, i) : direct;
+            if (first > 0 && arriving_.perPixel(i)) value -= direct;
+          }
+    });
   }
 
   const ViewPoints& points_;
   const TracedView& traced_;
   const TracedScene& scene_;
   const BakedVertices& baked_;
-  Decoded decoded_;  // three channels of E/pi, with all bounces
+  Arriving arriving_;
+  Decoded decoded_;  // three channels of each output, laid out as in a TransferField
 };
 
-// The points of glossy surfaces: light that leaves them towards the eye is the dot product of the exit kernel
-// (surface_brdfs.hpp) with the light that matrices transfer there, direct and bounced.
+// The points of glossy surfaces: light that leaves them towards the eye is the dot product of the exit
+// kernel (surface_brdfs.hpp) with the light that matrices transfer there, direct and bounced.
 class GlossyPoints {
  public:
   GlossyPoints(const TracedView& traced, const TracedScene& scene, const BakedVertices& baked)
@@ -142,7 +214,7 @@ class GlossyPoints {
                                               traced_.exact_glossy->pass().plain().settings().rays);
     const std::size_t size = baked_.glossy->visibilitySize() + bouncedSize();
     std::vector<float> transfer(size), of_codes(size);
-    std::vector<float> many(3 * columns_), few(many), fields(many), codes(many);
+    std::vector<float> many(3 * (columns_ + 1)), few(many), fields(many), codes(many);
     for (std::size_t p = 0; p < points_.eyes.size(); ++p) {
       if (!seen(p)) continue;
       const std::uint32_t triangle = points_.points.triangles[p];
@@ -204,7 +276,7 @@ class GlossyPoints {
       const std::size_t first = baked_.glossy->channels == 3 ? c * matrix_.size() : 0;
       for (std::size_t k = 0, at = 0; k < outputs_; ++k)
         for (std::size_t i = 0; i < columns_; ++i, ++at)
-          out[c * columns_ + i] +=
+          out[c * (columns_ + 1) + i] +=
               kernel_[c * outputs_ + k] * (bounced.empty() ? matrix_[at] : matrix_[at] + bounced[first + at]);
     }
   }
@@ -238,8 +310,8 @@ class GlossyPoints {
 }  // namespace
 
 std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order, const TracedScene& scene,
-                                    const BakeContext& context) {
-  TracedView traced{viewPoints(scene), nullptr, nullptr, nullptr, nullptr};
+                                    const Importance& importance, const BakeContext& context) {
+  TracedView traced{viewPoints(scene, importance), nullptr, nullptr, nullptr, nullptr};
   const BakeContext unkept = context.keyed(Key{});
   const char* const stage = "error of pictures";
   const std::size_t few = vertices.settings().rays, twice = kLeastTimes * few;
@@ -256,7 +328,7 @@ std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order
         std::make_shared<TracedGlossyPoints>(scene, traced.view.glossy.points, settings, glossy_order);
     return points->look(settings.hit_memory, unkept, stage) ? points : nullptr;
   };
-  if (!scene.samples.diffuse.empty()) {
+  if (scene.samples.glossy.begin > 0) {
     traced.noisy = trace(few);
     traced.exact = trace(std::max(twice, std::clamp(kTimesFewRays * few, kLeastManyRays, kMostManyRays)));
     if (!traced.noisy || !traced.exact) return std::nullopt;
@@ -271,7 +343,7 @@ std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order
 
 std::optional<bundle::PictureError> measurePictureError(const TracedView& traced, const TracedScene& scene,
                                                         const BakedVertices& baked) {
-  PictureSums sums(baked.direct.order, traced.view.eyes);
+  PictureSums sums(baked.direct.order, traced.view.eye_weights);
   if (traced.noisy) DiffusePoints(traced, scene, baked).addTo(sums);
   if (traced.noisy_glossy) GlossyPoints(traced, scene, baked).addTo(sums);
   return sums.result();

@@ -1,8 +1,9 @@
 // Measures how wrong pictures show the surfaces of a group: relative RMS of the light that leaves them
-// towards eyes, over real lights that the bake's bands carry. At points that eyes see (view_points.hpp), the
-// light that vertices, codes and interpolation show is compared with what many rays from the point itself
-// find, all bounces included. What few bands cannot show, of light or of a highlight, is no part of it, and
-// neither is light of lamps nor that of normal-mapped surfaces.
+// towards eyes, over real skies that the bake's bands carry, with the group's lamps as bright as in the file.
+// At points that eyes see (view_points.hpp), the light that vertices, codes and interpolation show is
+// compared with what many rays from the point itself find, all bounces included. What few bands cannot show,
+// of light or of a highlight, is no part of it, and neither is the light of lamps on glossy surfaces, nor the
+// detail of normal maps.
 #pragma once
 
 #include <memory>
@@ -41,14 +42,14 @@ struct TracedView {
 // Matrices have `glossy_order` bands. Returns nothing if stopped. Without surfaces in sight, there are no
 // points. No result is kept.
 std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order, const TracedScene& scene,
-                                    const BakeContext& context);
+                                    const Importance& importance, const BakeContext& context);
 
 // What the bake knows of the vertices, and what bounces brought to the points: to the noisy ones, then to the
 // exact ones. Without bounces, `bounced` is null and the list is empty; without glossy surfaces `glossy` and
 // `brdfs` are null.
 struct BakedVertices {
-  const TransferField& direct;
-  const TransferField* bounced;
+  const TransferField &direct, &mapped;  // of all samples, and of normal-mapped ones (DirectResult)
+  const BounceResult* bounced;
   std::span<const TransferField> bounced_at_points;
   const GlossyField* glossy;
   const SurfaceBrdfs* brdfs;

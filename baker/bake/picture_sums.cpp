@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "baker/compress/light_weights.hpp"
 #include "runtime/sh/basis.hpp"
@@ -14,37 +16,58 @@ constexpr std::size_t kLeastPoints = 64;  // that a figure can be told from
 // Eyes that get less than this share of the light of the mean eye, in squares, stand in the dark between
 // walls.
 constexpr double kLeastLight = 1.0 / 400.0;
+constexpr double kWhite = 4.0;  // times the RMS of the light that an eye sees
+// Band powers are relative to band 0, whose square is 4 pi under a sky with a mean radiance of 1.
+constexpr double kLampPower = 1.0 / (4.0 * std::numbers::pi);
 
 }  // namespace
 
-PictureSums::PictureSums(int order, std::size_t eyes)
-    : coefficients_(static_cast<std::size_t>(sh::coefficientCount(order))), of_eye_(eyes) {}
+PictureSums::PictureSums(int order, std::vector<float> eye_weights)
+    : coefficients_(static_cast<std::size_t>(sh::coefficientCount(order))),
+      eye_weights_(std::move(eye_weights)),
+      of_eye_(eye_weights_.size()) {}
 
 void PictureSums::add(const Point& point, const Shown& shown) {
   const double noise = squareOf(shown.noisy, shown.exact);
-  OfEye& sums = of_eye_[point.eye];
-  sums.light += point.weight * squareOf(shown.exact, {});
-  sums.all += point.weight * (squareOf(shown.codes, shown.exact) - point.noise_of_exact * noise);
-  sums.codes += point.weight * squareOf(shown.codes, shown.fields);
-  sums.samples += point.weight * point.squared_shares * (1.0 - point.noise_of_exact) * noise;
-  ++sums.points;
+  of_eye_[point.eye].push_back({.weight = point.weight,
+                                .light = squareOf(shown.exact, {}),
+                                .all = squareOf(shown.codes, shown.exact) - point.noise_of_exact * noise,
+                                .codes = squareOf(shown.codes, shown.fields),
+                                .samples = point.squared_shares * (1.0 - point.noise_of_exact) * noise});
 }
 
 std::optional<bundle::PictureError> PictureSums::result() const {
-  double light = 0.0;
-  for (const OfEye& sums : of_eye_) light += sums.light / static_cast<double>(of_eye_.size());
+  std::vector<double> light(of_eye_.size(), 0.0);  // mean square of each eye
+  double mean = 0.0, weights = 0.0;
+  for (std::size_t e = 0; e < of_eye_.size(); ++e) {
+    double sum = 0.0, count = 0.0;
+    for (const Squares& at : of_eye_[e]) sum += at.weight * at.light, count += at.weight;
+    if (count > 0.0) light[e] = sum / count;
+    mean += double{eye_weights_[e]} * light[e], weights += double{eye_weights_[e]};
+  }
+  if (weights > 0.0) mean /= weights;
   double all = 0.0, codes = 0.0, samples = 0.0;
-  std::size_t eyes = 0, points = 0;
-  for (const OfEye& sums : of_eye_) {
-    if (!(sums.light > kLeastLight * light)) continue;
-    all += sums.all / sums.light, codes += sums.codes / sums.light, samples += sums.samples / sums.light;
-    ++eyes;
-    points += sums.points;
+  weights = 0.0;
+  std::size_t points = 0;
+  for (std::size_t e = 0; e < of_eye_.size(); ++e) {
+    if (!(light[e] > kLeastLight * mean)) continue;
+    // Where a screen shows the mean as middle grey, it clips what is so many times as bright.
+    const double white = kWhite * kWhite * light[e];
+    double of_light = 0.0, of_all = 0.0, of_codes = 0.0, of_samples = 0.0;
+    for (const Squares& at : of_eye_[e]) {
+      const double shown = at.all > white ? white / at.all : 1.0;
+      of_light += at.weight * std::min(at.light, white);
+      of_all += at.weight * shown * at.all;
+      of_codes += at.weight * shown * at.codes, of_samples += at.weight * shown * at.samples;
+    }
+    const double weight = double{eye_weights_[e]};
+    all += weight * of_all / of_light, codes += weight * of_codes / of_light;
+    samples += weight * of_samples / of_light;
+    weights += weight;
+    points += of_eye_[e].size();
   }
   if (points < kLeastPoints) return std::nullopt;
-  const auto root = [&](double sum) {
-    return static_cast<float>(std::sqrt(std::max(0.0, sum / static_cast<double>(eyes))));
-  };
+  const auto root = [&](double sum) { return static_cast<float>(std::sqrt(std::max(0.0, sum / weights))); };
   return bundle::PictureError{.all = root(all),
                               .samples = root(samples),
                               .codes = root(codes),
@@ -56,8 +79,11 @@ double PictureSums::squareOf(std::span<const float> a, std::span<const float> b)
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double difference = double{a[i]} - (b.empty() ? 0.0 : double{b[i]});
-    const int band = sh::bandOf(static_cast<int>(i % coefficients_));
-    sum += kBandPower[static_cast<std::size_t>(band)] * difference * difference;
+    const std::size_t at = i % (coefficients_ + 1);
+    const double power = at == coefficients_
+                             ? kLampPower
+                             : kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(at)))];
+    sum += power * difference * difference;
   }
   return sum;
 }

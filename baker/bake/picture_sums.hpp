@@ -1,5 +1,6 @@
-// Sums up how wrong the light is that leaves points towards eyes, relative RMS over real lights, and divides
-// the error among its causes.
+// Sums up how wrong the light is that leaves points towards eyes, relative RMS over real skies with lamps as
+// in the file, and divides the error among its causes. A few points that are very bright, or very wrong,
+// count no more than a screen would show of them.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +15,11 @@ namespace lambent::baker {
 
 class PictureSums {
  public:
-  PictureSums(int order, std::size_t eyes);
+  // `eye_weights` are shares of all pictures.
+  PictureSums(int order, std::vector<float> eye_weights);
 
-  // The number of coefficients of a channel.
-  std::size_t coefficients() const { return coefficients_; }
+  // The number of coefficients of a channel: those of the environment, then one for all lamps together.
+  std::size_t coefficients() const { return coefficients_ + 1; }
 
   // The radiance that leaves a point as a function of the environment: coefficients of red, then of green,
   // then of blue. `exact` comes from many rays from the point, `noisy` from as many as a vertex has; `fields`
@@ -34,18 +36,19 @@ class PictureSums {
   };
   void add(const Point& point, const Shown& shown);
 
-  // Every eye counts alike, as it gets used to the light. Returns nothing if too few points were added.
+  // Every eye counts by its weight alone, as it gets used to the light. Returns nothing if too few points
+  // were added.
   std::optional<bundle::PictureError> result() const;
 
  private:
   double squareOf(std::span<const float> a, std::span<const float> b) const;
 
-  struct OfEye {
-    double light = 0.0, all = 0.0, codes = 0.0, samples = 0.0;
-    std::size_t points = 0;
+  struct Squares {  // at one point
+    double weight, light, all, codes, samples;
   };
-  std::size_t coefficients_;
-  std::vector<OfEye> of_eye_;
+  std::size_t coefficients_;  // of the environment
+  std::vector<float> eye_weights_;
+  std::vector<std::vector<Squares>> of_eye_;
 };
 
 }  // namespace lambent::baker

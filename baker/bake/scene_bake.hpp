@@ -2,7 +2,6 @@
 #pragma once
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/picture_budget.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/import/image.hpp"
@@ -18,9 +17,6 @@ struct SceneBake {
   const EffectPlan& plan;
   const BrdfTables& tables;  // of the scene's glossy materials; empty if all are shown as diffuse
   BakeReport& report;
-  // What a try is made with, if a group that leaves too little of the bound on pictures to codes may ask for
-  // another one; else null.
-  const PictureTry* trying = nullptr;
 
   tl::unexpected<Error> stopped() const {
     return fail(scene.source.string(), "stopped; nothing was written");

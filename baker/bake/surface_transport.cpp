@@ -120,7 +120,7 @@ std::optional<SurfaceTransport> transportLight(const GroupScene& group, const Ba
     glossy_pass.emplace(pass, group.view(), bounces ? options.exitOrder() : options.glossy_order);
     if (!traceGlossy(*glossy_pass, group, context, *light)) return std::nullopt;
   }
-  auto view = traceView(pass, options.glossy_order, group.view(), context);
+  auto view = traceView(pass, options.glossy_order, group.view(), group.importance(), context);
   if (!view) return std::nullopt;
   light->view = std::move(*view);
   if (light->view.noisy) light->direct.watched = {light->view.noisy, light->view.exact};
@@ -135,7 +135,8 @@ std::optional<bundle::PictureError> shownBy(const GroupScene& group, const Surfa
   auto shown = measurePictureError(
       light.view, group.view(),
       {.direct = light.direct.field,
-       .bounced = light.bounced ? &light.bounced->field : nullptr,
+       .mapped = light.direct.mapped,
+       .bounced = light.bounced ? &*light.bounced : nullptr,
        .bounced_at_points = light.bounced ? std::span<const TransferField>(light.bounced->at_watched)
                                           : std::span<const TransferField>(),
        .glossy = light.glossy ? &light.glossy->field : nullptr,

@@ -1,6 +1,5 @@
-// Chooses points of a group's surfaces as eyes see them, to measure there how wrong pictures are. In
-// a room the eyes stand in its free space and look all around; a body without such space is looked at from
-// around. Where they stand depends on the geometry alone.
+// Chooses points of a group's surfaces as eyes see them (baker/importance), to measure there how wrong
+// pictures are.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +7,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "baker/importance/importance.hpp"
 #include "baker/trace/traced_scene.hpp"
 #include "baker/transport/face_points.hpp"
 
@@ -22,12 +22,12 @@ struct ViewPoints {
 };
 
 struct View {
-  std::uint32_t eyes = 0;
-  ViewPoints diffuse;
-  ViewPoints glossy;  // at most kMostGlossyPoints, since their rays are dear
+  std::vector<float> eye_weights;  // shares of all pictures
+  ViewPoints diffuse;              // and normal-mapped
+  ViewPoints glossy;               // at most kMostGlossyPoints, since their rays are dear
 };
 inline constexpr std::size_t kMostGlossyPoints = 400;
 
-View viewPoints(const TracedScene& scene);
+View viewPoints(const TracedScene& scene, const Importance& importance);
 
 }  // namespace lambent::baker

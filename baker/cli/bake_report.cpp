@@ -185,11 +185,6 @@ nlohmann::json reportJson(const FinishedBake& bake) {
                        {"rowBytes", volume.row_bytes}});
   return {{"output", bake.output.string()},
           {"settings", bake.options.settings()},
-          {"chosen", r.tries == 0 ? nlohmann::json()
-                                  : nlohmann::json{{"rays", r.chosen.rays},
-                                                   {"refine", r.chosen.refine_bound},
-                                                   {"codes", codesBoundOf(bake)},
-                                                   {"tries", r.tries}}},
           {"estimate", estimatedAndMeasured(bake)},
           {"vertices", r.vertices},
           {"triangles", r.triangles},
@@ -249,10 +244,6 @@ void printReport(const FinishedBake& bake) {
     if (group.picture_error)
       fmt::print("  pictures  {}{}\n", r.groups.size() > 1 ? fmt::format("\"{}\": ", group.name) : "",
                  pictureErrorText(*group.picture_error));
-  if (r.tries > 0)
-    fmt::print("  chosen    {} rays, refinement to {:.2f} %, codes to {:.2f} %{}\n", r.chosen.rays,
-               100.0 * double{r.chosen.refine_bound}, 100.0 * codesBoundOf(bake),
-               r.tries == 1 ? "" : fmt::format(", after {} tries", r.tries));
   fmt::print("  time      {}\n", stagesText(r.stages));
   fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
              durationText(r.ray_seconds),

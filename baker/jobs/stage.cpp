@@ -202,14 +202,6 @@ std::optional<StageFigures> runStage(const Stage& stage, const BakeContext& cont
   return StageFigures{.computed = computed, .found = found};
 }
 
-bool restoreStage(const Stage& stage, const BakeContext& context) {
-  if (!context.keeps()) return false;
-  Entries entries(context, {stage.count, stage.grain});
-  if (entries.load(stage, {}) != stage.count) return false;
-  context.progress.add(stage.count);
-  return true;
-}
-
 void dropStage(const BakeContext& context, std::size_t count, std::size_t grain) {
   if (context.keeps()) Entries(context, {count, grain}).dropAll();
 }

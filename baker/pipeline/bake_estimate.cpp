@@ -38,34 +38,6 @@ BakeOptions rehearsalOf(const BakeOptions& options, bool glossy) {
   return few;
 }
 
-// A rehearsal shows what error a bake with more rays has.
-bundle::PictureError withRays(bundle::PictureError shown, double times) {
-  const float between = shown.interpolation;
-  shown.samples = static_cast<float>(double{shown.samples} / std::sqrt(times));
-  shown.codes = 0.0f;
-  shown.all = std::hypot(shown.samples, between);
-  return shown;
-}
-
-// Returns what the bake's next try begins with, if it has a bound on pictures and this one does not meet it.
-std::optional<PictureSettings> nextTryOfReport(const BakeReport& report, const BakeOptions& asked,
-                                               const BakeOptions& options, const BakeOptions& few) {
-  if (asked.picture_bound == 0.0f) return std::nullopt;
-  const double times = static_cast<double>(options.effectiveRays()) / static_cast<double>(few.rays);
-  for (const BakeReport::Group& group : report.groups) {
-    if (!group.picture_error) continue;
-    const PictureTry tried{
-        .made_with = {static_cast<std::uint32_t>(options.effectiveRays()), few.refine_bound},
-        .refined_to = report.refinement.error_after,
-        .shown = withRays(*group.picture_error, times),
-        .keeps_rays = asked.rays != 0,
-        .keeps_refinement = asked.refine_bound >= 0.0f || report.refinement.at_limit};
-    if (leavesEnough(tried.shown, asked.picture_bound)) continue;
-    if (auto next = nextTry(tried, asked.picture_bound)) return next;
-  }
-  return std::nullopt;
-}
-
 // Returns stages whose seconds are those of processors.
 std::vector<Progress::Stage> ofProcessors(std::span<const Progress::Stage> stages) {
   std::vector<Progress::Stage> out(stages.begin(), stages.end());
@@ -73,31 +45,24 @@ std::vector<Progress::Stage> ofProcessors(std::span<const Progress::Stage> stage
   return out;
 }
 
-// A bake with several tries plans once, and writes after the last.
-void addParts(const PartSeconds& of_try, PartSeconds& parts) {
-  if (!parts.empty()) parts.pop_back();
-  parts.insert(parts.end(), of_try.begin() + (parts.empty() ? 0 : 1), of_try.end());
-}
-
-// Adds to an estimate what a try takes, all of its groups included.
-void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions& options,
-            BakeEstimate& estimate) {
+// Estimates the bake from a rehearsal with few rays.
+BakeEstimate estimateFrom(const BakeReport& report, const BakeOptions& few, const BakeOptions& options) {
+  BakeEstimate estimate;
   const double times = static_cast<double>(options.effectiveRays()) / static_cast<double>(few.rays);
   const PartSeconds parts = scaleSeconds(report.stages, few, options);
   const PartSeconds of_processors = scaleSeconds(ofProcessors(report.stages), few, options);
-  addParts(parts, estimate.parts);
-  estimate.seconds += sumSeconds(parts);
+  estimate.parts = parts;
+  estimate.seconds = sumSeconds(parts);
   for (const auto& [stage, seconds] : stageSeconds(of_processors))
     estimate.processor_stages[stage] += seconds, estimate.processor_seconds += seconds;
   const double of_codes = std::pow(times, few.error_bound > 0.0f ? kBytesPower : 0.0);
   estimate.samples = static_cast<double>(report.samples);
-  estimate.rays += static_cast<double>(report.rays) * times;
+  estimate.rays = static_cast<double>(report.rays) * times;
   estimate.bytes = static_cast<double>(report.file_bytes - report.transfer_bytes) +
                    static_cast<double>(report.transfer_bytes) * of_codes;
   double more_hits = 0.0;
-  std::vector<BakeEstimate::Group> groups;
   for (const BakeReport::Group& group : report.groups) {
-    BakeEstimate::Group& of = groups.emplace_back();
+    BakeEstimate::Group& of = estimate.groups.emplace_back();
     of.name = group.name;
     of.samples = static_cast<double>(group.samples);
     double rays = 0.0;
@@ -117,10 +82,8 @@ void addTry(const BakeReport& report, const BakeOptions& few, const BakeOptions&
     of.memory_bytes = hits + of.samples * options.bytesOfTransfer(false);
     of.bytes = static_cast<double>(group.transfer_bytes) * of_codes;
   }
-  for (std::size_t g = 0; g < std::min(groups.size(), estimate.groups.size()); ++g)
-    groups[g].rays += estimate.groups[g].rays, groups[g].seconds += estimate.groups[g].seconds;
-  estimate.groups = std::move(groups);
   estimate.memory_bytes = static_cast<double>(peakBytes()) + more_hits;
+  return estimate;
 }
 
 Key keyOf(const Scene& scene, const BakeOptions& options) {
@@ -148,18 +111,11 @@ Result<BakeEstimate> estimateBake(const Scene& scene, const BakeOptions& options
                                   const BakeContext& context) {
   const auto plan = planFor(scene, options);
   if (!plan) return failAgain(plan.error());
-  BakeEstimate estimate;
-  BakeOptions chosen = options;
-  for (int tries = 1;; ++tries) {
-    const BakeOptions few = rehearsalOf(chosen, plan->bakes("glossy"));
-    Progress progress;
-    const auto report = rehearse(scene, few, {progress, context.stop});
-    if (!report) return failAgain(report.error());
-    const auto next = tries < kMostTries ? nextTryOfReport(*report, options, chosen, few) : std::nullopt;
-    addTry(*report, few, chosen, estimate);
-    if (!next) return estimate;
-    chosen.rays = next->rays, chosen.refine_bound = next->refine_bound;
-  }
+  const BakeOptions few = rehearsalOf(options, plan->bakes("glossy"));
+  Progress progress;
+  const auto report = rehearse(scene, few, {progress, context.stop});
+  if (!report) return failAgain(report.error());
+  return estimateFrom(*report, few, options);
 }
 
 void keepEstimate(const Scene& scene, const BakeOptions& options, const BakeEstimate& estimate,

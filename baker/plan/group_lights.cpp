@@ -49,4 +49,14 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
   return lights;
 }
 
+std::vector<bool> shadedPerPixel(std::span<const PlannedLight> lights) {
+  // runtime/lighting/shadowed_light.hpp has so many.
+  constexpr std::ptrdiff_t kShadowCubes = 4;
+  std::vector<bool> shaded;
+  for (const PlannedLight& light : lights)
+    shaded.push_back(light.kind == PlannedLight::Kind::Node || !light.spheres.empty());
+  if (std::ranges::count(shaded, true) > kShadowCubes) shaded.assign(lights.size(), false);
+  return shaded;
+}
+
 }  // namespace lambent::baker

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -27,6 +28,10 @@ struct PlannedLight {
 
 // Returns materials first, in the order of the draws, then nodes in their own order.
 std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& group);
+
+// Returns which of a group's lights are shaded per pixel by shadow cubes: those whose shape is known, if
+// there are enough cubes for all of them. Values at vertices bring only what the others send directly.
+std::vector<bool> shadedPerPixel(std::span<const PlannedLight> lights);
 
 // Returns the node at or above `node` that starts its rigid group, or -1 for the static group.
 std::int32_t groupRootOf(const Scene& scene, std::uint32_t node);

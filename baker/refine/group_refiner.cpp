@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <functional>
+#include <limits>
 #include <set>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "baker/jobs/parallel.hpp"
-#include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/sample_areas.hpp"
 
@@ -18,37 +18,34 @@ namespace lambent::baker {
 
 namespace {
 
-// A triangle is probed at n² points if its longest edge is n times this share of the group's diagonal.
+// A triangle is probed at n² points if its longest edge is n times this share of the extent of what is seen.
 constexpr float kProbeSpacing = 1.0f / 32.0f;
 constexpr int kMostProbesAlong = 8;
-constexpr std::uint32_t kUnused = 0xffffffffu;  // a sample of no triangle that is looked at
-// Triangles whose longest edge is below this share of the diagonal are not looked at. In a furnished room
-// they are two thirds of all, have a hundredth of the area, and show shadows as they are.
-constexpr float kShortestEdge = 1.0f / 512.0f;
-// Light is never taken to be less than this share of that of an open point: what bounces brightens the dark.
-constexpr double kLeastLight = 0.07;
+// Rays of eyes that place further points, where what is seen of a triangle is small beside it.
+constexpr std::size_t kSeenPlaces = 8192;
+// Triangles that take up less of all pictures than this, a pixel or two of each, are not probed. They are
+// most triangles of a furnished room, and show shadows as they are.
+constexpr double kLeastShare = 4e-6;
+constexpr std::uint32_t kUnused = 0xffffffffu;  // a sample of no triangle that is probed
+// Light is never taken to be less than this share of that of an open point, or of lamps on average.
+constexpr double kLeastLight = 0.02, kLeastLamps = 0.1;
 // Errors at glossy points count by this factor. What few bands leave of a highlight hides them: a body of
 // gold has the same picture with a quarter of the samples (docs/decisions/vertices.md), and each costs a
 // matrix.
 constexpr double kGlossyCounts = 0.4;
 // A split triangle splits its edges of at least this share of the longest one.
 constexpr float kSplitShare = 0.6f;
-// A vertex stands before a surface that cuts its face by this share of the diagonal, which is a few steps of
-// the lattice of positions. An edge that begins nearer than this many times as far before it is not cut
-// again.
-constexpr float kBeforeCut = 1.0f / 32768.0f, kLeastCut = 2.0f;
-// Edges of bad triangles are cut up to this share of the diagonal.
+// Edges of bad triangles are cut up to this share of the extent.
 constexpr float kLongestCut = 1.0f / 16.0f;
 // Light leaks to a corner that has less than this share of the light of another, if that has at least this
 // share of the light of an open point.
 constexpr float kDarkShare = 0.05f, kLightShare = 0.05f;
-// A round splits triangles until the remaining square error is this share of what is allowed, or this share
-// of all of it if that is more, because what the first splits show decides where the next ones go.
+// A round splits triangles until the remaining square error of a region is this share of what is allowed, or
+// this share of all of it if that is more, because what the first splits show decides where the next ones go.
 constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.35;
-// Many rays do not look at the triangles whose errors, as few rays show them with noise, make up this share
-// of all error, or of what is allowed if that is more.
-// Nor do they look where the square error is so many times what noise adds to it: few rays are enough to
-// tell.
+// Many rays do not probe the triangles whose errors, as few rays show them with noise, make up this share of
+// all error of a region, or of what is allowed if that is more.
+// Nor do they where the square error is so many times what noise adds to it: few rays are enough then.
 constexpr double kOverlooked = 0.1, kBeyondDoubt = 2.0;
 
 // An InnerPoint is a point inside a triangle, by the weights of its corners.
@@ -70,20 +67,6 @@ std::vector<InnerPoint> innerPoints(int n) {
       if (i + j + 1 < n) add(3 * i + 2, 3 * j + 2);
     }
   return points;
-}
-
-// Returns a unit normal, or 0 for a triangle without area.
-glm::vec3 unitNormal(const GroupGeometry& geometry, std::uint32_t triangle) {
-  const glm::vec3 normal = areaNormal(geometry, geometry.triangles[triangle]);
-  const float length = glm::length(normal);
-  return length > 0.0f ? normal / length : glm::vec3(0.0f);
-}
-
-// Returns all numbers below `count`.
-std::vector<std::uint32_t> allOf(std::size_t count) {
-  std::vector<std::uint32_t> all(count);
-  std::iota(all.begin(), all.end(), 0u);
-  return all;
 }
 
 // Gives samples that cannot be seen the most light of their neighbours, as fill.hpp may, and of theirs.
@@ -127,142 +110,277 @@ struct PointError {
   double with_noise = 0.0;  // of what all rays together show
 };
 
-PointError pointError(const ShadowProbe::Difference& wrong, const ShadowProbe::Difference& arriving) {
-  const double light = std::max(ShadowProbe::squareError(arriving), 0.0) + kLeastLight * kLeastLight;
-  PointError error{.square = ShadowProbe::squareError(wrong) / light};
-  for (std::size_t i = 0; i < ShadowProbe::kMostValues; ++i) {
-    const double both = 0.5 * (double{wrong[0][i]} + double{wrong[1][i]});
-    error.with_noise += both * both / light;
+double square(double value) {
+  return value * value;
+}
+
+// Light of the sky and that of lamps may shine without each other, so each is to be right.
+PointError pointError(const ShadowProbe::Difference& wrong, const ShadowProbe::Difference& arriving,
+                      const SentLight& wrongly_sent, const SentLight& sent, double mean_lamps) {
+  const double light =
+      std::max(ShadowProbe::squareError(arriving), 0.0) + square(double{sent.bounced}) + square(kLeastLight);
+  const double bounced = square(double{wrongly_sent.bounced}) / light;
+  PointError error{.square = ShadowProbe::squareError(wrong) / light + bounced, .with_noise = bounced};
+  for (std::size_t i = 0; i < ShadowProbe::kMostValues; ++i)
+    error.with_noise += square(0.5 * (double{wrong[0][i]} + double{wrong[1][i]})) / light;
+  if (mean_lamps > 0.0) {
+    const double lamps =
+        square(double{wrongly_sent.lamps}) / (square(double{sent.lamps}) + square(kLeastLamps * mean_lamps));
+    error.square = std::max(error.square, lamps);
+    error.with_noise = std::max(error.with_noise, lamps);
   }
   return error;
 }
 
-}  // namespace
-
-void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene, const AlphaMaps& alpha_maps) {
-  diagonal_ = glm::distance(geometry.bounds_min, geometry.bounds_max);
-  scene_normals_.clear();
-  for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t)
-    scene_normals_.push_back(unitNormal(geometry, t));
+Key sceneKey(const RefineScene& from, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
+             std::span<const Eye> eyes) {
   KeyMaker key = KeyMaker::ofStage("refinement probes");
   addShape(geometry, key);
-  addOpacity(scene, geometry, key);
-  scene_.emplace(key.key(),
-                 [geometry, &scene, &alpha_maps] { return RayScene::build(geometry, scene, alpha_maps); });
+  addOpacity(from.scene, geometry, key);
+  addLights(from.scene, geometry, lights, key);
+  addEyes(eyes, key);
+  return key.key();
 }
 
-std::vector<std::uint32_t> GroupRefiner::triangles(const GroupGeometry& geometry) const {
-  std::vector<std::uint32_t> triangles;
+}  // namespace
+
+struct GroupRefiner::SeenPlace {
+  FacePoint point;
+  std::uint32_t ray = 0, region = 0;
+  float share = 0.0f;
+};
+
+struct GroupRefiner::Whole {
+  Whole(const RefineScene& from, const GroupGeometry& of, std::vector<PlannedLight> planned, RayScene traced,
+        std::vector<Eye> cameras)
+      : refined(from),
+        geometry(of),
+        lights(std::move(planned)),
+        rays(std::move(traced)),
+        importance(geometry, rays, std::move(cameras)),
+        cuts(geometry, rays, importance.extent()) {}
+
+  const RefineScene& refined;
+  GroupGeometry geometry;
+  std::vector<PlannedLight> lights;
+  RayScene rays;
+  Importance importance;
+  FaceCuts cuts;
+  Result<SurfaceColors> colors;
+  std::optional<SurfaceLight> light;
+  std::vector<SeenPlace> seen;
+  Key key;
+};
+
+GroupRefiner::GroupRefiner(const RefineProbes& probes, bool with_glossy, bool for_wedges)
+    : few_(probes.few), many_(probes.many), with_glossy_(with_glossy), for_wedges_(for_wedges) {}
+GroupRefiner::GroupRefiner(GroupRefiner&&) noexcept = default;
+GroupRefiner::~GroupRefiner() = default;
+
+Result<void> GroupRefiner::prepare(const RefineScene& from, std::size_t group,
+                                   const GroupGeometry& geometry) {
+  auto rays = RayScene::build(geometry, from.scene, from.alpha_maps);
+  if (!rays) return failAgain(rays.error());
+  const std::vector<Eye> cameras = cameraEyes(from.scene, from.groups[group], geometry);
+  whole_ = std::make_unique<Whole>(from, geometry, findGroupLights(from.scene, from.groups[group]),
+                                   std::move(*rays), cameras);
+  Whole& whole = *whole_;
+  whole.colors = SurfaceColors::load(from.scene, whole.geometry, whole.lights, from.images);
+  if (!whole.colors) return failAgain(whole.colors.error());
+  whole.light.emplace(from.scene, whole.geometry, whole.rays, *whole.colors, whole.lights, whole.importance,
+                      few_.shadowProbe());
+  whole.key = sceneKey(from, geometry, whole.lights, cameras);
+  for (const SeenPoint& seen : whole.importance.look(kSeenPlaces, whole.geometry, whole.rays)) {
+    const glm::vec3 weights(1.0f - seen.hit.u - seen.hit.v, seen.hit.u, seen.hit.v);
+    whole.seen.push_back({facePoint(whole.geometry, whole.geometry.triangles[seen.hit.triangle], weights),
+                          seen.ray, static_cast<std::uint32_t>(whole.importance.regions().at(seen.position)),
+                          seen.share});
+  }
+  return {};
+}
+
+float GroupRefiner::seenAt(const FacePoint& point) {
+  const auto [entry, is_new] = seen_at_.try_emplace(vertexKey(point.position, point.normal, {}), 0.0f);
+  if (is_new)
+    entry->second = whole_->importance.at({point.origin.position, point.origin.geometric_normal}).seen;
+  return entry->second;
+}
+
+void GroupRefiner::addEvenly(const GroupGeometry& geometry, std::uint32_t t, int along) {
+  const glm::uvec3 corners = geometry.triangles[t];
+  const std::vector<InnerPoint> points = innerPoints(along);
+  const auto area = static_cast<float>(triangleArea(geometry, corners) / static_cast<double>(points.size()));
+  const std::size_t first = inner_.size();
+  float share = 0.0f;
+  for (const InnerPoint& at : points) {
+    Inner inner{.triangle = t, .weights = at.weights, .point = facePoint(geometry, corners, at.weights)};
+    inner.share = area * seenAt(inner.point);
+    inner.region = static_cast<std::uint32_t>(whole_->importance.regions().at(inner.point.position));
+    share += inner.share;
+    if (inner.share > 0.0f) inner_.push_back(inner);
+  }
+  if (double{share} < kLeastShare) inner_.resize(first);
+}
+
+Result<void> GroupRefiner::placeInner(const GroupGeometry& geometry) {
+  const Whole& whole = *whole_;
+  inner_.clear(), parts_.clear();
+  // Where an eye's ray falls now that triangles were split; the point itself stays that of the group before.
+  const auto now = RayScene::build(geometry, whole.refined.scene, whole.refined.alpha_maps);
+  if (!now) return failAgain(now.error());
+  std::vector<std::vector<Inner>> seen_in(geometry.triangles.size());
+  auto place = whole.seen.begin();
+  for (const SeenPoint& seen : whole.importance.look(kSeenPlaces, geometry, *now)) {
+    while (place != whole.seen.end() && place->ray < seen.ray) ++place;
+    if (place == whole.seen.end() || place->ray != seen.ray) continue;
+    seen_in[seen.hit.triangle].push_back({seen.hit.triangle,
+                                          place->region,
+                                          {1.0f - seen.hit.u - seen.hit.v, seen.hit.u, seen.hit.v},
+                                          place->point,
+                                          place->share});
+  }
   for (const DrawGeometry& draw : geometry.draws) {
     if (draw.texels > 0 || (draw.kind == SampleKind::Glossy && !with_glossy_)) continue;
-    for (std::uint32_t t = draw.first_triangle; t < draw.first_triangle + draw.triangle_count; ++t)
-      if (longestEdge(geometry, geometry.triangles[t]) >= kShortestEdge * diagonal_) triangles.push_back(t);
+    for (std::uint32_t t = draw.first_triangle; t < draw.first_triangle + draw.triangle_count; ++t) {
+      const glm::uvec3 corners = geometry.triangles[t];
+      const double area = triangleArea(geometry, corners);
+      if (!(area > 0.0)) continue;
+      const float spacing = kProbeSpacing * whole.importance.extent();
+      const int along = std::clamp(static_cast<int>(std::ceil(longestEdge(geometry, corners) / spacing)), 1,
+                                   kMostProbesAlong);
+      if (seen_in[t].size() > static_cast<std::size_t>(along * along)) {
+        inner_.insert(inner_.end(), seen_in[t].begin(), seen_in[t].end());
+        continue;
+      }
+      const FacePoint middle = facePoint(geometry, corners, glm::vec3(1.0f / 3.0f));
+      const double most =
+          area * double{whole.importance.mostSeen({middle.origin.position, middle.origin.geometric_normal})};
+      if (along == 1 && most < kLeastShare) continue;
+      addEvenly(geometry, t, along);
+    }
   }
+  std::ranges::stable_sort(inner_, {},
+                           [](const Inner& inner) { return std::pair(inner.triangle, inner.region); });
+  for (std::size_t first = 0, last = 0; first < inner_.size(); first = last) {
+    while (last < inner_.size() && inner_[last].triangle == inner_[first].triangle &&
+           inner_[last].region == inner_[first].region)
+      ++last;
+    parts_.push_back({inner_[first].triangle, inner_[first].region, first, last});
+  }
+  return {};
+}
+
+std::vector<std::uint32_t> GroupRefiner::seenTriangles() const {
+  std::vector<std::uint32_t> triangles;
+  for (const Part& part : parts_)
+    if (triangles.empty() || triangles.back() != part.triangle) triangles.push_back(part.triangle);
   return triangles;
 }
 
-double GroupRefiner::squareError() const {
-  double sum = 0.0;
-  for (const Measured& measured : measured_) sum += measured.square_error;
-  return sum;
-}
-
-double GroupRefiner::seenArea() const {
-  double sum = 0.0;
-  for (const Measured& measured : measured_) sum += measured.seen;
-  return sum;
+GroupRefiner::RegionSums GroupRefiner::sumRegions() const {
+  const std::size_t count = whole_ ? whole_->importance.regions().size() : 0;
+  RegionSums sums{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
+  for (const Part& part : parts_) {
+    sums.square_error[part.region] += part.square_error;
+    sums.seen[part.region] += part.seen;
+  }
+  return sums;
 }
 
 double GroupRefiner::relativeError() const {
-  const double area = seenArea();
-  return area > 0.0 ? std::sqrt(std::max(0.0, squareError()) / area) : 0.0;
+  const RegionSums sums = sumRegions();
+  std::vector<double> errors;
+  for (std::size_t r = 0; r < sums.seen.size(); ++r)
+    errors.push_back(sums.seen[r] > 0.0 ? std::sqrt(std::max(0.0, sums.square_error[r]) / sums.seen[r])
+                                        : 0.0);
+  return boundingError(errors, sums.seen);
 }
 
 Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, double bound, const BakeContext& context) {
   const SampleSet samples = buildSamples(geometry, /*with_texels=*/false);
   const std::size_t count = geometry.triangles.size();
-  measured_.assign(count, {});
   if (for_wedges_) {
-    triangle_area_.assign(count, 0.0);
+    triangle_share_.assign(count, 0.0);
     triangle_lack_.assign(count * 2 * kLackValues, 0.0f);
   }
-  const auto by_few = measureBy(few_, geometry, samples, triangles(geometry), context);
-  if (!by_few || !*by_few) return by_few;
-  const double allowed = bound * bound * seenArea();
-  if (!chosen_ && squareError() <= allowed) return true;
-  std::vector<std::uint32_t> again = trianglesThatMatter(std::max(allowed, squareError()));
+  if (auto placed = placeInner(geometry); !placed) return failAgain(placed.error());
+  if (!measureBy(few_, geometry, samples, seenTriangles(), context)) return false;
+  if (!chosen_ && relativeError() <= bound) return true;
+  std::vector<std::uint32_t> again = trianglesThatMatter(bound);
   std::erase_if(again, [&](std::uint32_t t) {
     return samples.vertex_sample[geometry.triangles[t].x] >= samples.glossy.begin;
   });
   return measureBy(many_, geometry, samples, again, context);
 }
 
-std::vector<std::uint32_t> GroupRefiner::trianglesThatMatter(double square_error) const {
-  std::vector<std::uint32_t> order = allOf(measured_.size());
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return measured_[a].with_noise < measured_[b].with_noise;
-  });
-  double overlooked = 0.0;
-  const auto matters = std::find_if(order.begin(), order.end(), [&](std::uint32_t t) {
-    overlooked += measured_[t].with_noise;
-    return overlooked > kOverlooked * square_error;
-  });
-  order.erase(order.begin(), matters);
-  std::erase_if(order, [&](std::uint32_t t) {
-    const Measured& measured = measured_[t];
-    return measured.square_error > kBeyondDoubt * std::max(measured.with_noise - measured.square_error, 0.0);
-  });
-  std::sort(order.begin(), order.end());
-  return order;
+std::vector<std::uint32_t> GroupRefiner::trianglesThatMatter(double bound) const {
+  const RegionSums sums = sumRegions();
+  std::vector<double> overlooked(sums.seen.size(), 0.0);
+  std::vector<const Part*> order;
+  for (const Part& part : parts_) order.push_back(&part);
+  std::ranges::stable_sort(order, {}, &Part::with_noise);
+  std::vector<std::uint32_t> matter;
+  for (const Part* part : order) {
+    const double allowed = std::max(bound * bound * sums.seen[part->region], sums.square_error[part->region]);
+    overlooked[part->region] += part->with_noise;
+    if (overlooked[part->region] <= kOverlooked * allowed) continue;
+    if (part->square_error > kBeyondDoubt * std::max(part->with_noise - part->square_error, 0.0)) continue;
+    matter.push_back(part->triangle);
+  }
+  std::ranges::sort(matter);
+  matter.erase(std::unique(matter.begin(), matter.end()), matter.end());
+  return matter;
 }
 
-Result<bool> GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry,
-                                     const SampleSet& samples, std::span<const std::uint32_t> triangles,
-                                     const BakeContext& context) {
+bool GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry, const SampleSet& samples,
+                             std::span<const std::uint32_t> triangles, const BakeContext& context) {
   const std::vector<SampleKind> kinds = kindsOf(samples);
   const std::vector<std::uint32_t> of_sample = cornerPoints(points, geometry, samples, kinds, triangles);
-  std::vector<Inner> inner;
-  for (const std::uint32_t t : triangles) {
-    const glm::uvec3 corners = geometry.triangles[t];
-    const SampleKind kind = kinds[samples.vertex_sample[corners.x]];
-    const int along =
-        std::clamp(static_cast<int>(std::ceil(longestEdge(geometry, corners) / (kProbeSpacing * diagonal_))),
-                   1, kMostProbesAlong);
-    for (const InnerPoint& point : innerPoints(along)) {
-      const FacePoint at = facePoint(geometry, corners, point.weights);
-      inner.push_back({t, points.numberOf(at.position, at.normal, kind, std::span(&at.origin, 1)),
-                       point.weights, at.normal});
-    }
-  }
-  if (auto probed = points.probe(*scene_, context); !probed || !*probed) return probed;
+  std::vector<std::uint32_t> number(inner_.size(), kUnused);
+  const auto kindOf = [&](std::uint32_t t) { return kinds[samples.vertex_sample[geometry.triangles[t].x]]; };
+  const auto listed = [&](std::uint32_t t) { return std::ranges::binary_search(triangles, t); };
+  for (std::size_t i = 0; i < inner_.size(); ++i)
+    if (const Inner& inner = inner_[i]; listed(inner.triangle))
+      number[i] = points.numberOf(inner.point.position, inner.point.normal, kindOf(inner.triangle),
+                                  std::span(&inner.point.origin, 1));
+  if (!points.probe({whole_->key, whole_->rays, *whole_->light}, context)) return false;
 
   const ShadowProbe& probe = points.shadowProbe();
-  std::vector<PointError> error_at(inner.size());
-  std::vector<float> lack_at(for_wedges_ ? inner.size() * 2 * kLackValues : 0);
-  std::vector<std::uint8_t> seen_at(inner.size(), 0);
+  std::vector<PointError> error_at(inner_.size());
+  std::vector<float> lack_at(for_wedges_ ? inner_.size() * 2 * kLackValues : 0);
+  std::vector<std::uint8_t> seen_at(inner_.size(), 0);
   // Points that cannot be seen have no error, and unseen corners take the values of their neighbours
   // (fill.hpp).
   const auto measureAt = [&](std::size_t i) {
-    const Inner& point = inner[i];
+    const Inner& inner = inner_[i];
+    if (number[i] == kUnused || !points.seen(number[i])) return;
     std::array<HiddenFrom, 3> corners;
+    std::array<std::uint32_t, 3> at{};
     float shares = 0.0f;
     for (int c = 0; c < 3; ++c) {
-      const std::uint32_t sample = samples.vertex_sample[geometry.triangles[point.triangle][c]],
-                          number = of_sample[sample];
+      const std::uint32_t sample = samples.vertex_sample[geometry.triangles[inner.triangle][c]];
       HiddenFrom& corner = corners[static_cast<std::size_t>(c)];
-      corner = {points.masksAt(number), samples.normals[sample],
-                points.seen(number) ? point.weights[c] : 0.0f};
+      at[static_cast<std::size_t>(c)] = of_sample[sample];
+      corner = {points.masksAt(of_sample[sample]), samples.normals[sample],
+                points.seen(of_sample[sample]) ? inner.weights[c] : 0.0f};
       shares += corner.share;
     }
-    if (!points.seen(point.point) || !(shares > 0.0f)) return;
-    for (HiddenFrom& corner : corners) corner.share /= shares;
-    const HiddenFrom truth{points.masksAt(point.point), point.normal};
-    const SampleKind kind = kinds[samples.vertex_sample[geometry.triangles[point.triangle].x]];
+    if (!(shares > 0.0f)) return;
+    const SentLight& sent = points.lightAt(number[i]);
+    SentLight wrongly{-sent.lamps, -sent.bounced};
+    for (std::size_t c = 0; c < 3; ++c) {
+      corners[c].share /= shares;
+      wrongly.lamps += corners[c].share * points.lightAt(at[c]).lamps;
+      wrongly.bounced += corners[c].share * points.lightAt(at[c]).bounced;
+    }
+    const HiddenFrom truth{points.masksAt(number[i]), inner.point.normal};
+    const SampleKind kind = kindOf(inner.triangle);
     const auto wrong = probe.difference(corners, truth, kind);
-    error_at[i] = pointError(wrong, probe.arriving(truth, kind));
+    error_at[i] =
+        pointError(wrong, probe.arriving(truth, kind), wrongly, sent, double{whole_->light->meanLamps()});
     if (kind == SampleKind::Glossy) {
-      error_at[i].square *= kGlossyCounts * kGlossyCounts;
-      error_at[i].with_noise *= kGlossyCounts * kGlossyCounts;
+      error_at[i].square *= square(kGlossyCounts);
+      error_at[i].with_noise *= square(kGlossyCounts);
     }
     seen_at[i] = 1;
     if (for_wedges_)
@@ -270,114 +388,113 @@ Result<bool> GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& 
         std::copy_n(wrong[half].begin(), kLackValues, lack_at.data() + (2 * i + half) * kLackValues);
   };
   const bool done =
-      parallelRanges(inner.size(), kPointsPerRange, context.stop, [&](std::size_t begin, std::size_t end) {
+      parallelRanges(inner_.size(), kPointsPerRange, context.stop, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) measureAt(i);
       });
   if (!done) return false;
-
-  for (std::size_t first = 0, last = 0; first < inner.size(); first = last) {
-    const std::uint32_t t = inner[first].triangle;
-    Measured sums;
-    for (; last < inner.size() && inner[last].triangle == t; ++last) {
-      sums.square_error += error_at[last].square;
-      sums.with_noise += error_at[last].with_noise;
-      sums.seen += seen_at[last];
+  for (Part& part : parts_) {
+    if (!listed(part.triangle)) continue;
+    part.square_error = part.with_noise = part.seen = 0.0;
+    for (std::size_t i = part.first; i < part.last; ++i) {
+      const double share = double{inner_[i].share};
+      part.square_error += share * error_at[i].square;
+      part.with_noise += share * error_at[i].with_noise;
+      if (seen_at[i] != 0) part.seen += share;
     }
-    const double part =
-        triangleArea(geometry, geometry.triangles[t]) / static_cast<double>(last - first);  // of a point
-    measured_[t] = {part * sums.square_error, part * sums.with_noise, part * sums.seen};
   }
-  if (for_wedges_) keepLacks(geometry, inner, seen_at, lack_at);
+  if (for_wedges_) keepLacks(triangles, seen_at, lack_at);
   return true;
 }
 
 // Keeps the mean over the points of each triangle that can be seen.
-void GroupRefiner::keepLacks(const GroupGeometry& geometry, std::span<const Inner> inner,
-                             std::span<const std::uint8_t> seen, std::span<const float> lacks) {
+void GroupRefiner::keepLacks(std::span<const std::uint32_t> triangles, std::span<const std::uint8_t> seen,
+                             std::span<const float> lacks) {
   constexpr std::size_t kSize = 2 * kLackValues;
-  for (std::size_t first = 0, last = 0; first < inner.size(); first = last) {
-    const std::uint32_t t = inner[first].triangle;
-    float counted = 0.0f;
-    for (last = first; last < inner.size() && inner[last].triangle == t; ++last) counted += seen[last];
-    const auto lack = std::span(triangle_lack_).subspan(t * kSize, kSize);
-    std::fill(lack.begin(), lack.end(), 0.0f);
-    triangle_area_[t] = 0.0;
-    if (counted == 0.0f) continue;
-    triangle_area_[t] = triangleArea(geometry, geometry.triangles[t]);
-    for (std::size_t i = first; i < last; ++i)
-      for (std::size_t k = 0; k < kSize; ++k) lack[k] += lacks[i * kSize + k] / counted;
+  for (const std::uint32_t t : triangles) {
+    std::fill_n(triangle_lack_.begin() + static_cast<std::ptrdiff_t>(t * kSize), kSize, 0.0f);
+    triangle_share_[t] = 0.0;
+  }
+  const auto listed = [&](std::size_t i) {
+    return seen[i] != 0 && std::ranges::binary_search(triangles, inner_[i].triangle);
+  };
+  for (std::size_t i = 0; i < inner_.size(); ++i)
+    if (listed(i)) triangle_share_[inner_[i].triangle] += double{inner_[i].share};
+  for (std::size_t i = 0; i < inner_.size(); ++i) {
+    if (!listed(i)) continue;
+    const std::uint32_t t = inner_[i].triangle;
+    const auto share = static_cast<float>(double{inner_[i].share} / triangle_share_[t]);
+    for (std::size_t k = 0; k < kSize; ++k) triangle_lack_[t * kSize + k] += share * lacks[i * kSize + k];
   }
 }
 
 void GroupRefiner::addLacks(const DrawGeometry& draw, FaceLacks& lacks) const {
   const std::size_t size = 2 * kLackValues;
   const auto from = std::span(triangle_lack_).subspan(draw.first_triangle * size, draw.triangle_count * size);
-  const auto areas = std::span(triangle_area_).subspan(draw.first_triangle, draw.triangle_count);
+  const auto areas = std::span(triangle_share_).subspan(draw.first_triangle, draw.triangle_count);
   lacks.values.insert(lacks.values.end(), from.begin(), from.end());
   lacks.areas.insert(lacks.areas.end(), areas.begin(), areas.end());
 }
 
-Result<std::size_t> GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
-                                            std::size_t& room, MarkedEdges& edges) {
-  const double allowed = bound * bound * seenArea(), square_error = squareError();
-  if (square_error <= allowed) return 0;
+std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
+                                    std::size_t& room, MarkedEdges& edges) {
+  if (relativeError() <= bound) return 0;
   chosen_ = true;
-  std::vector<std::uint32_t> order = allOf(geometry.triangles.size());
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return measured_[a].square_error > measured_[b].square_error;
-  });
-  const double enough = std::max(kLeftOfAllowed * allowed, kLeftOfAll * square_error);
-  double left = square_error;
-  std::vector<Edge> marked;
-  for (const std::uint32_t t : order) {
-    if (left <= enough || room < 3) break;
-    const glm::uvec3 corners = geometry.triangles[t];
+  const RegionSums sums = sumRegions();
+  std::vector<double> left = sums.square_error;
+  std::vector<const Part*> order;
+  for (const Part& part : parts_)
+    if (sums.square_error[part.region] > bound * bound * sums.seen[part.region]) order.push_back(&part);
+  std::ranges::stable_sort(order, std::greater(), &Part::square_error);
+  std::vector<FaceEdge> marked;
+  for (const Part* part : order) {
+    if (room < 3) break;
+    const double enough = std::max(kLeftOfAllowed * bound * bound * sums.seen[part->region],
+                                   kLeftOfAll * sums.square_error[part->region]);
+    if (left[part->region] <= enough) continue;
+    left[part->region] -= part->square_error;
+    const glm::uvec3 corners = geometry.triangles[part->triangle];
     const float longest = longestEdge(geometry, corners);
-    left -= measured_[t].square_error;
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t a = corners[c], b = corners[(c + 1) % 3];
       if (glm::distance(geometry.positions[a], geometry.positions[b]) < kSplitShare * longest) continue;
       const auto added = edges.mark(group, a, b);
       if (!added) continue;
-      marked.push_back({a, b, t});
+      marked.push_back({a, b, part->triangle});
       room -= std::min(room, *added);
     }
   }
   // Longer edges are halved: light changes on both sides of a cut, too.
-  const auto cuts = cutsOf(geometry, marked, kLongestCut * diagonal_);
-  if (!cuts) return failAgain(cuts.error());
+  const std::vector<float> cuts =
+      whole_->cuts.sharesOf(geometry, marked, kLongestCut * whole_->importance.extent());
   for (std::size_t i = 0; i < marked.size(); ++i)
-    if ((*cuts)[i] > 0.0f) edges.splitAt(group, marked[i].a, marked[i].b, (*cuts)[i]);
+    if (cuts[i] > 0.0f) edges.splitAt(group, marked[i].a, marked[i].b, cuts[i]);
   return marked.size();
 }
 
-Result<std::optional<std::size_t>> GroupRefiner::markLeaks(std::size_t group, const GroupGeometry& geometry,
-                                                           std::size_t& room, MarkedEdges& edges,
-                                                           const BakeContext& context) {
+std::optional<std::size_t> GroupRefiner::markLeaks(std::size_t group, const GroupGeometry& geometry,
+                                                   std::size_t& room, MarkedEdges& edges,
+                                                   const BakeContext& context) {
   const SampleSet samples = buildSamples(geometry, /*with_texels=*/false);
   const std::vector<SampleKind> kinds = kindsOf(samples);
-  const std::vector<std::uint32_t> looked_at = triangles(geometry);
-  const std::vector<std::uint32_t> number = cornerPoints(few_, geometry, samples, kinds, looked_at);
-  if (const auto probed = few_.probe(*scene_, context); !probed)
-    return failAgain(probed.error());
-  else if (!*probed)
-    return std::nullopt;
+  const std::vector<std::uint32_t> probed = seenTriangles();
+  const std::vector<std::uint32_t> number = cornerPoints(few_, geometry, samples, kinds, probed);
+  if (!few_.probe({whole_->key, whole_->rays, *whole_->light}, context)) return std::nullopt;
   std::vector<float> light(samples.size(), 0.0f);
   std::vector<std::uint8_t> seen(samples.size(), 0);
-  const auto lookAt = [&](std::size_t s) {
+  const auto lightAt = [&](std::size_t s) {
     if (number[s] == kUnused || !few_.seen(number[s])) return;
     seen[s] = 1;
     light[s] = few_.shadowProbe().openShare({few_.masksAt(number[s]), samples.normals[s]});
   };
   const bool done =
       parallelRanges(samples.size(), kPointsPerRange, context.stop, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t s = begin; s < end; ++s) lookAt(s);
+        for (std::size_t s = begin; s < end; ++s) lightAt(s);
       });
   if (!done) return std::nullopt;
-  lightUnseen(geometry, samples, looked_at, seen, light);
-  std::vector<Edge> between;
+  lightUnseen(geometry, samples, probed, seen, light);
+  std::vector<FaceEdge> between;
   std::set<std::pair<std::uint32_t, std::uint32_t>> met;
-  for (const std::uint32_t t : looked_at)
+  for (const std::uint32_t t : probed)
     for (int c = 0; c < 3; ++c) {
       std::uint32_t dark = geometry.triangles[t][c], lit = geometry.triangles[t][(c + 1) % 3];
       if (light[samples.vertex_sample[dark]] > light[samples.vertex_sample[lit]]) std::swap(dark, lit);
@@ -386,54 +503,16 @@ Result<std::optional<std::size_t>> GroupRefiner::markLeaks(std::size_t group, co
           light[in_dark] < kDarkShare * light[in_light] && met.emplace(std::minmax(dark, lit)).second)
         between.push_back({dark, lit, t});
     }
-  const auto cuts = cutsOf(geometry, between, diagonal_);
-  if (!cuts) return failAgain(cuts.error());
+  const std::vector<float> cuts = whole_->cuts.sharesOf(geometry, between, std::numeric_limits<float>::max());
   std::size_t marked = 0;
   for (std::size_t i = 0; i < between.size() && room > 0; ++i) {
-    if ((*cuts)[i] == 0.0f) continue;
+    if (cuts[i] == 0.0f) continue;
     const auto added = edges.mark(group, between[i].a, between[i].b);
     if (!added) continue;
-    edges.splitAt(group, between[i].a, between[i].b, (*cuts)[i]);
+    edges.splitAt(group, between[i].a, between[i].b, cuts[i]);
     ++marked, room -= std::min(room, *added);
   }
   return marked;
-}
-
-// A face that another surface cuts is lit on one side of it and dark on the other. No vertex may mix both,
-// and none should stand in the cut: each side gets a vertex of its own, a little before it.
-Result<std::vector<float>> GroupRefiner::cutsOf(const GroupGeometry& geometry, std::span<const Edge> list,
-                                                float longest) {
-  if (list.empty()) return {};
-  const auto rays = scene_->rays();
-  if (!rays) return failAgain(rays.error());
-  std::vector<RaySegment> ways;
-  for (const Edge& edge : list) {
-    const glm::vec3 a = geometry.positions[edge.a], b = geometry.positions[edge.b];
-    const auto area = static_cast<float>(triangleArea(geometry, geometry.triangles[edge.triangle]));
-    const glm::vec3 off = standOff(a, std::sqrt(area)) * unitNormal(geometry, edge.triangle),
-                    along = glm::normalize(b - a);
-    ways.push_back({a + off, along, glm::distance(a, b)});
-    ways.push_back({b + off, -along, glm::distance(a, b)});
-  }
-  std::vector<FirstHit> hits(ways.size());
-  (*rays)->firstHits(ways, hits);
-  const float before = kBeforeCut * diagonal_;
-  // Returns the share of a way that lies before the surface that cuts it, less what its vertex keeps away, or
-  // 0 if none does: surfaces that touch an end, as walls do the rim of a floor, cut nothing.
-  const auto shareBefore = [&](std::size_t way) {
-    const auto& [triangle, u, v, distance, back] = hits[way];
-    if (!hits[way].any() || ways[way].length > longest) return 0.0f;
-    const float steep = std::abs(glm::dot(scene_normals_[triangle], ways[way].direction));
-    const bool cuts =
-        distance * steep > kLeastCut * before && (ways[way].length - distance) * steep > 0.5f * before;
-    return cuts ? (distance - before / steep) / ways[way].length : 0.0f;
-  };
-  std::vector<float> cuts(list.size(), 0.0f);
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    cuts[i] = shareBefore(2 * i);
-    if (const float other = shareBefore(2 * i + 1); cuts[i] == 0.0f && other > 0.0f) cuts[i] = 1.0f - other;
-  }
-  return cuts;
 }
 
 }  // namespace lambent::baker

@@ -1,111 +1,125 @@
-// Follows one rigid group through all rounds of refinement: it finds what is hidden from the group's vertices
-// and from points inside its triangles, how wrong interpolation over triangles is, and which edges are to be
-// split.
+// Follows one rigid group through all rounds of refinement: it finds what light reaches the group's vertices
+// and points inside its triangles, how wrong interpolation over triangles is where eyes see it, and which
+// edges are to be split.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "baker/importance/importance.hpp"
 #include "baker/jobs/bake_context.hpp"
+#include "baker/refine/face_cuts.hpp"
 #include "baker/refine/marked_edges.hpp"
 #include "baker/refine/probed_points.hpp"
-#include "baker/refine/shadow_probe.hpp"
+#include "baker/refine/refine.hpp"
 #include "baker/refine/wedges.hpp"
+#include "baker/transport/face_points.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
 
-// Few rays tell where something may be wrong. Their noise is as large as small errors are: the triangles that
+// Few rays say where something may be wrong. Their noise is as large as small errors are: the triangles that
 // it makes look worst are split and those that it makes look right stay, so that in the end the figure is
-// under the bound and the error is not. Many rays therefore look again before anything is split. Glossy
-// surfaces are not looked at again: their pictures gain nothing from it, and their probes cost most.
+// under the bound and the error is not. Many rays therefore probe again before anything is split. Glossy
+// surfaces are not probed again: their pictures gain nothing from it, and their probes cost most.
 struct RefineProbes {
   const ShadowProbe &few, &many;
 };
 
 class GroupRefiner {
  public:
-  // The probes outlive this. Glossy surfaces are looked at `with_glossy` alone. With `for_wedges` it also
-  // keeps what addLacks() needs: 300 bytes per triangle, and as much per probe while measuring.
-  GroupRefiner(const RefineProbes& probes, bool with_glossy, bool for_wedges)
-      : few_(probes.few), many_(probes.many), with_glossy_(with_glossy), for_wedges_(for_wedges) {}
+  // The probes outlive this. Glossy surfaces are refined `with_glossy` alone. With `for_wedges` it also keeps
+  // what addLacks() needs: 300 bytes per triangle, and as much per probe while measuring.
+  GroupRefiner(const RefineProbes& probes, bool with_glossy, bool for_wedges);
+  GroupRefiner(GroupRefiner&&) noexcept;
+  ~GroupRefiner();
 
-  // alpha_maps outlive this. The geometry is that before any split: rays are traced against it in all rounds.
-  void prepare(const GroupGeometry& geometry, const Scene& scene, const AlphaMaps& alpha_maps);
+  // Everything that `from` refers to outlives this. The geometry is that before any split: rays are traced
+  // against it in all rounds. Errors: no memory for the hierarchy, images that cannot be decoded.
+  Result<void> prepare(const RefineScene& from, std::size_t group, const GroupGeometry& geometry);
 
-  // Measures the area times the square of the relative error of every triangle, by many rays where it could
-  // matter for `bound`. Errors: no memory for the hierarchy. False when stopped.
+  // Measures the relative error of every triangle that eyes see, by many rays where it could matter for
+  // `bound`. Errors: no memory for the hierarchy. False when stopped.
   Result<bool> measure(const GroupGeometry& geometry, double bound, const BakeContext& context);
 
-  bool measured() const { return !measured_.empty(); }
-  // Returns the RMS over all that can be seen of what interpolation gets wrong at a point, relative to the
-  // direct light that arrives there: an eye in a dark room sees errors that are small beside open light.
+  bool measured() const { return whole_ != nullptr; }
+  // Returns the RMS of what interpolation gets wrong at a point, relative to the light that arrives there, in
+  // all but the worst 5 % of the regions that eyes see.
   double relativeError() const;
   std::uint64_t raysTraced() const { return few_.raysTraced() + many_.raysTraced(); }
   std::uint64_t raysKept() const { return few_.raysKept() + many_.raysKept(); }
 
-  // Marks edges of the worst triangles, until the remaining error is within the bound or `room` new vertices
-  // are spent. Returns how many edges were marked. Errors: no memory for the hierarchy.
-  Result<std::size_t> markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
-                                std::size_t& room, MarkedEdges& edges);
+  // Marks edges of the worst triangles in regions beyond the bound, until what remains there is within it or
+  // `room` new vertices are spent. Returns how many edges were marked.
+  std::size_t markWorst(std::size_t group, const GroupGeometry& geometry, double bound, std::size_t& room,
+                        MarkedEdges& edges);
 
   // Marks edges that another surface cuts between an end in the dark and one in the light, as far as `room`
   // goes, whatever errors were measured: the inner points of such faces may all lie inside that surface.
-  // Returns how many edges were marked, or nothing when stopped. Errors: no memory for the hierarchy.
-  Result<std::optional<std::size_t>> markLeaks(std::size_t group, const GroupGeometry& geometry,
-                                               std::size_t& room, MarkedEdges& edges,
-                                               const BakeContext& context);
+  // Returns how many edges were marked, or nothing when stopped.
+  std::optional<std::size_t> markLeaks(std::size_t group, const GroupGeometry& geometry, std::size_t& room,
+                                       MarkedEdges& edges, const BakeContext& context);
 
   // Appends what interpolation lacked inside the triangles of `draw` when last measured: values of some low
-  // bands, and areas, per triangle.
+  // bands, and what is seen of each triangle.
   void addLacks(const DrawGeometry& draw, FaceLacks& lacks) const;
   static constexpr std::size_t kLackValues = 36;
 
  private:
-  struct Inner {  // a point inside a triangle
-    std::uint32_t triangle = 0, point = 0;
-    glm::vec3 weights{0.0f}, normal{0.0f};  // of the corners; the shading normal
+  struct Whole;      // the group before any split
+  struct SeenPlace;  // a point of it that an eye sees
+  struct Inner {     // a point inside a triangle
+    std::uint32_t triangle = 0, region = 0;
+    glm::vec3 weights{0.0f};  // of the corners
+    FacePoint point;
+    float share = 0.0f;  // of all pictures
   };
-  // Rays say this of a triangle; all is times its area.
-  struct Measured {
+  // The inner points [first, last) of a triangle in one region, and what rays say of them, times their share.
+  struct Part {
+    std::uint32_t triangle = 0, region = 0;
+    std::size_t first = 0, last = 0;
     double square_error = 0.0;  // without bias from noise, so it may be below 0
     double with_noise = 0.0;    // the square that all rays together show, which noise makes larger
-    double seen = 0.0;          // the part of the area that can be seen
+    double seen = 0.0;          // the share of the points that can be seen
   };
 
-  // Returns the triangles that are looked at: those whose vertices pictures show, which they do not where
+  // Places inner points in the triangles that eyes see, whose vertices pictures show, which they do not where
   // there are texels, and whose splits would show.
-  std::vector<std::uint32_t> triangles(const GroupGeometry& geometry) const;
-  // Fills in measured_ of the triangles listed.
-  Result<bool> measureBy(ProbedPoints& points, const GroupGeometry& geometry, const SampleSet& samples,
-                         std::span<const std::uint32_t> triangles, const BakeContext& context);
-  // Returns the triangles that have nearly all of a square error, whatever noise hides, but for those that
-  // few rays are sure of; in ascending order.
-  std::vector<std::uint32_t> trianglesThatMatter(double square_error) const;
-  double squareError() const;
-  double seenArea() const;
-  struct Edge {
-    std::uint32_t a, b, triangle;
+  Result<void> placeInner(const GroupGeometry& geometry);
+  // Adds points of a triangle that cover it evenly.
+  void addEvenly(const GroupGeometry& geometry, std::uint32_t triangle, int along);
+  // Returns what is seen per square metre at a point.
+  float seenAt(const FacePoint& point);
+  // Fills in what rays say of the parts of the triangles listed. Returns false when stopped.
+  bool measureBy(ProbedPoints& points, const GroupGeometry& geometry, const SampleSet& samples,
+                 std::span<const std::uint32_t> triangles, const BakeContext& context);
+  // Returns the triangles of all parts, in ascending order.
+  std::vector<std::uint32_t> seenTriangles() const;
+  // Returns the triangles that have nearly all of the square error of their region, whatever noise hides, but
+  // for those that few rays are sure of; in ascending order.
+  std::vector<std::uint32_t> trianglesThatMatter(double bound) const;
+  struct RegionSums {
+    std::vector<double> square_error, seen;
   };
-  // Returns for each edge the share of the way from a to b at which it is split because another surface cuts
-  // it, or 0, also if the way is longer than `longest`. Errors: no memory for the hierarchy.
-  Result<std::vector<float>> cutsOf(const GroupGeometry& geometry, std::span<const Edge> list, float longest);
-  void keepLacks(const GroupGeometry& geometry, std::span<const Inner> inner,
-                 std::span<const std::uint8_t> seen, std::span<const float> lacks);
+  RegionSums sumRegions() const;
+  void keepLacks(std::span<const std::uint32_t> triangles, std::span<const std::uint8_t> seen,
+                 std::span<const float> lacks);
 
   ProbedPoints few_, many_;
   bool with_glossy_, for_wedges_;
-  std::optional<ProbedScene> scene_;
-  std::vector<glm::vec3> scene_normals_;  // of the scene's triangles, which are never split
-  float diagonal_ = 0.0f;
-  bool chosen_ = false;             // triangles were marked, so that few rays are no longer right on average
-  std::vector<Measured> measured_;  // of each triangle
-  std::vector<double> triangle_area_;
+  std::unique_ptr<Whole> whole_;
+  std::unordered_map<VertexKey, float, VertexKeyHash> seen_at_;  // of the points of all rounds
+  bool chosen_ = false;       // triangles were marked, so that few rays are no longer right on average
+  std::vector<Inner> inner_;  // by triangle, and then by region
+  std::vector<Part> parts_;   // in the same order
+  std::vector<double> triangle_share_;
   std::vector<float> triangle_lack_;
 };
 

@@ -8,15 +8,6 @@
 
 namespace lambent::baker {
 
-Result<const RayScene*> ProbedScene::rays() {
-  if (!rays_) {
-    auto built = build_();
-    if (!built) return failAgain(built.error());
-    rays_ = std::move(*built);
-  }
-  return &*rays_;
-}
-
 std::uint32_t ProbedPoints::numberOf(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
                                      std::span<const SampleOrigin> origins) {
   const auto next = static_cast<std::uint32_t>(seen_.size() + missing_.size());
@@ -32,36 +23,32 @@ std::uint32_t ProbedPoints::numberOf(const glm::vec3& position, const glm::vec3&
   return entry->second;
 }
 
-Result<bool> ProbedPoints::probe(ProbedScene& scene, const BakeContext& context) {
+bool ProbedPoints::probe(const ProbedScene& scene, const BakeContext& context) {
   const std::vector<Point> points = std::exchange(missing_, {});
   if (points.empty()) return true;
   const std::size_t size = probe_->packets(), first = seen_.size();
   seen_.resize(first + points.size());
+  light_.resize(seen_.size());
   masks_.resize(seen_.size() * size);
   const auto masks = std::span(masks_).subspan(first * size);
-  const RayScene* rays = nullptr;
   const auto compute = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      seen_[first + i] = probe_->look(*rays, points[i].origins, points[i].normal, points[i].kind,
-                                      masks.subspan(i * size, size));
+    for (std::size_t i = begin; i < end; ++i) {
+      const Point& point = points[i];
+      seen_[first + i] =
+          probe_->look(scene.rays, point.origins, point.normal, point.kind, masks.subspan(i * size, size));
+      if (seen_[first + i] != 0) light_[first + i] = scene.light.at(point.origins, point.normal);
+    }
   };
+  const auto begin = static_cast<std::ptrdiff_t>(first);
   const Stage stage{.count = points.size(),
                     .grain = kPointsPerRange,
-                    .writes = {rowsOf(masks, size), rowsOf(seen_, 1, static_cast<std::ptrdiff_t>(first))},
+                    .writes = {rowsOf(masks, size), rowsOf(seen_, 1, begin), rowsOf(light_, 1, begin)},
                     .compute = compute,
                     .keep = KeepWhen::Always};
   KeyMaker key;
-  key.add(scene.key()).add(std::uint64_t{probe_->rays()});
+  key.add(scene.key).add(std::uint64_t{probe_->rays()});
   for (const Point& point : points) key.add(point.normal).add(point.kind).addList(point.origins);
-  const BakeContext own = context.keyed(key.key());
-  if (restoreStage(stage, own)) {
-    kept_ += points.size() * probe_->rays();
-    return true;
-  }
-  const auto built = scene.rays();
-  if (!built) return failAgain(built.error());
-  rays = *built;
-  const auto done = runStage(stage, own);
+  const auto done = runStage(stage, context.keyed(key.key()));
   if (!done) return false;
   traced_ += done->computed * probe_->rays();
   kept_ += done->found * probe_->rays();

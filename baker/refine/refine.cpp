@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "baker/jobs/kept_value.hpp"
@@ -68,6 +69,8 @@ Key outcomeKey(const RefineScene& from, const std::vector<GroupGeometry>& geomet
       key.add(draw.mesh).add(draw.primitive).add(draw.back).add(draw.group_from_mesh);
     addShape(geometries[g], key);
     addOpacity(from.scene, geometries[g], key);
+    addLights(from.scene, geometries[g], findGroupLights(from.scene, groups[g]), key);
+    addEyes(cameraEyes(from.scene, groups[g], geometries[g]), key);
   }
   return key.key();
 }
@@ -130,7 +133,8 @@ class Rounds {
   Result<void> run(std::vector<GroupGeometry> geometries) {
     geometries_ = std::move(geometries);
     for (std::size_t g = 0; g < from_.groups.size(); ++g)
-      if (any(g)) refiners_[g].prepare(geometries_[g], from_.scene, from_.alpha_maps);
+      if (any(g))
+        if (auto prepared = refiners_[g].prepare(from_, g, geometries_[g]); !prepared) return prepared;
     if (auto measured = measure(); !measured) return measured;
     report_.error_before = report_.error_after;
     double left_by_round = kLeftByRound;
@@ -182,15 +186,16 @@ class Rounds {
     return {};
   }
 
-  // Splits the edges that mark(group, room, edges) marks in each group. Returns how many these were.
+  // Splits the edges that mark(group, room, edges) marks in each group, which returns nothing when stopped.
+  // Returns how many these were.
   template <typename Mark>
   Result<std::size_t> split(const Mark& mark) {
     MarkedEdges edges(from_.groups, geometries_, meshes_);
     std::size_t left = room(), marked = 0;
     for (std::size_t g = 0; g < refiners_.size(); ++g) {
       if (!any(g)) continue;
-      const Result<std::size_t> more = mark(g, left, edges);
-      if (!more) return failAgain(more.error());
+      const std::optional<std::size_t> more = mark(g, left, edges);
+      if (!more) return stopped(from_);
       marked += *more;
     }
     if (marked == 0) return marked;
@@ -202,13 +207,9 @@ class Rounds {
   Result<void> cutLeaks() {
     bool cut = false;
     for (int round = 0; round < kMostLeakRounds; ++round) {
-      const auto marked =
-          split([&](std::size_t g, std::size_t& left, MarkedEdges& edges) -> Result<std::size_t> {
-            const auto more = refiners_[g].markLeaks(g, geometries_[g], left, edges, context_);
-            if (!more) return failAgain(more.error());
-            if (!*more) return stopped(from_);
-            return **more;
-          });
+      const auto marked = split([&](std::size_t g, std::size_t& left, MarkedEdges& edges) {
+        return refiners_[g].markLeaks(g, geometries_[g], left, edges, context_);
+      });
       if (!marked) return failAgain(marked.error());
       if (*marked == 0) break;
       cut = true;

@@ -1,8 +1,9 @@
-// The room baker/refine splits edges where shadows change, until interpolation over triangles represents what
-// is hidden from their points within a bound (Krivanek and others 2004 refine by transfer, too). The error is
-// probed inside triangles by rays; where it is too large, the worst triangles are split, round after round.
-// Faces that see nothing change are left alone. The scene, its groups and decoded meshes come in; the meshes
-// with more vertices, and a report, go out. It works on several threads.
+// The room baker/refine splits edges where light changes, until interpolation over triangles shows light
+// within a bound in nearly all regions that eyes see (baker/importance; Krivanek and others 2004 refine by
+// transfer, too). Light is that of the sky, of lamps, and what bounces once. The error is probed inside
+// triangles by rays; where it is too large, the worst triangles are split, round after round. Faces across
+// which nothing changes, or that nobody sees, are left alone. The scene, its groups and decoded meshes come
+// in; the meshes with more vertices, and a report, go out. It works on several threads.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "baker/import/image.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/plan/planned_transport.hpp"
@@ -20,7 +22,7 @@
 namespace lambent::baker {
 
 struct RefineOptions {
-  float bound = 0.01f;  // on each group's error: relative RMS over its visible surface, see GroupRefiner
+  float bound = 0.01f;  // on each group's error, see GroupRefiner::relativeError()
   // Rays of a probe over the sphere: few tell where much is wrong, many where little is.
   std::size_t rays = 512, many_rays = 2048;
   int rounds = 24;     // at most this many
@@ -52,6 +54,7 @@ struct RefineScene {
   const std::vector<PlannedTransport>& transport;  // groups without shadows are left as they are
   const AlphaMaps& alpha_maps;
   bool with_glossy;  // materials that are not diffuse have glossy samples
+  DecodedImages& images;
 };
 
 // Changes meshes[mesh][primitive] in place; they must be the same primitives as the scene's. Draws of one

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "baker/transport/geometry_key.hpp"
 #include "baker/transport/ray_packets.hpp"
 
 namespace lambent::baker {
@@ -14,8 +15,8 @@ namespace lambent::baker {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-// Number of points on all emitters together, and limits for each.
-constexpr std::size_t kPointsInAll = 1024, kLeastPoints = 32, kMostPoints = 256;
+// Limits on the number of points on each emitter.
+constexpr std::size_t kLeastPoints = 32, kMostPoints = 256;
 constexpr float kShortOf = 1.0f - 1e-4f;  // shadow rays end just before the surface
 
 float fraction(double x) {
@@ -35,6 +36,31 @@ const SampleOrigin* originBelow(glm::vec3 point, std::size_t i, std::span<const 
 }
 
 }  // namespace
+
+void addLights(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
+               KeyMaker& key) {
+  key.addText("lights").add(std::uint64_t{lights.size()});
+  for (const PlannedLight& light : lights) {
+    key.add(light.kind);
+    if (light.kind == PlannedLight::Kind::Node) {
+      const gltf::Node& node = scene.nodes[light.index];
+      const gltf::Light& source = scene.lights[static_cast<std::size_t>(node.light)];
+      key.add(light.group_from_node).add(geometry.origin);
+      key.add(source.type).add(source.range_m).add(source.inner_cone_rad).add(source.outer_cone_rad);
+      continue;
+    }
+    const gltf::Material& material = scene.materials[light.index];
+    addTexture(scene, material.emissive_texture.texture, key);
+    const bool textured = material.emissive_texture.texture >= 0;
+    for (std::uint32_t d = 0; d < geometry.draws.size(); ++d) {
+      const DrawGeometry& draw = geometry.draws[d];
+      if (draw.material != static_cast<std::int32_t>(light.index)) continue;
+      key.add(d);
+      if (textured)
+        key.addList(std::span(geometry.emissive_texcoords).subspan(draw.first_vertex, draw.vertex_count));
+    }
+  }
+}
 
 float punctualIrradiance(const gltf::Light& light, glm::vec3 light_direction, glm::vec3 to_surface) {
   if (light.type == gltf::Light::Type::Directional) return 1.0f;
@@ -57,13 +83,12 @@ float punctualIrradiance(const gltf::Light& light, glm::vec3 light_direction, gl
 }
 
 Emitters::Emitters(const Scene& scene, const GroupGeometry& geometry, const SurfaceColors& colors,
-                   std::span<const PlannedLight> lights)
+                   std::span<const PlannedLight> lights, std::size_t points)
     : geometry_(geometry), colors_(colors), surface_of_light_(lights.size(), -1) {
   std::vector<std::vector<std::uint32_t>> triangles(lights.size());
   for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t)
     if (const std::uint32_t light = colors.lightOf(t); light != kNoLight) triangles[light].push_back(t);
-  const auto count =
-      std::clamp(kPointsInAll / std::max<std::size_t>(lights.size(), 1), kLeastPoints, kMostPoints);
+  const auto count = std::clamp(points / std::max<std::size_t>(lights.size(), 1), kLeastPoints, kMostPoints);
   for (std::uint32_t k = 0; k < lights.size(); ++k) {
     if (lights[k].kind == PlannedLight::Kind::Material) {
       Surface surface{.light = k, .area = 0.0f, .points = {}};

@@ -10,6 +10,7 @@
 
 #include <glm/mat3x3.hpp>
 
+#include "baker/cache/key.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/surface_colors.hpp"
@@ -31,8 +32,9 @@ class LightReceiver {
 
 class Emitters {
  public:
+  // `points` is about the number of points on all emitters together.
   Emitters(const Scene& scene, const GroupGeometry& geometry, const SurfaceColors& colors,
-           std::span<const PlannedLight> lights);
+           std::span<const PlannedLight> lights, std::size_t points = 1024);
 
   bool empty() const { return surfaces_.empty() && punctual_.empty(); }
 
@@ -69,6 +71,10 @@ class Emitters {
   std::vector<Punctual> punctual_;
   std::vector<std::int32_t> surface_of_light_;  // index of a light -> index in surfaces_, or -1
 };
+
+// Adds where the lights of the group shine from, at unit strength, and the textures that scale emission.
+void addLights(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
+               KeyMaker& key);
 
 // Returns the irradiance on a surface that faces a punctual light of unit strength: its intensity in the
 // direction `to_surface`, over the squared distance (KHR_lights_punctual). `to_surface` reaches from the

@@ -56,9 +56,6 @@ class BouncePartner {
   virtual bool gather(const Bounce& bounce, TransferField& now, const BakeContext& context) = 0;
   // Makes what was gathered last the input of the next pass.
   virtual void advance() = 0;
-  // Returns the RMS of what was gathered last (at first, that of pass 0) for each light source: the
-  // environment, then each light.
-  virtual std::vector<double> energies() const = 0;
 };
 
 // CornerWeights says how much the corners of a triangle count, in each channel, in the light that diffuse

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "baker/importance/importance.hpp"
 #include "baker/trace/mirror_paths.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/ray_scene.hpp"
@@ -24,9 +25,10 @@ struct TracedScene {
   // False if no part of the group hides light from another (planned_transport.hpp): samples see all that is
   // above the horizons of their faces.
   bool shadows = true;
+  const SampleImportance* importance = nullptr;  // of the samples; null: all count alike
 
   TracedScene withSamples(const SampleSet& others) const {
-    return {scene, geometry, others, rays, colors, lights, mirrors, shadows};
+    return {scene, geometry, others, rays, colors, lights, mirrors, shadows, nullptr};
   }
 };
 

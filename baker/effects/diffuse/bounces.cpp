@@ -36,10 +36,14 @@ constexpr double kShareOfTail = 0.1;
 // between patches once this is all, as a share of all light, that they can get wrong.
 constexpr double kMostOff = 0.05;
 
+// Light that is less than this share of the mean over all regions is too dark to see; what passes add there
+// is measured against it.
+constexpr double kDark = 0.05;
+
 // Adds the squares of a vector under real lights to a sum for each source of light: the environment first,
 // then each light of the group.
 void addSquares(std::span<const float> vector, std::size_t columns, std::size_t bands, double weight,
-                std::vector<double>& sums) {
+                std::span<double> sums) {
   for (std::size_t at = 0; at < vector.size(); ++at) {
     const std::size_t column = at % columns;
     const double square = weight * double{vector[at]} * double{vector[at]};
@@ -50,77 +54,78 @@ void addSquares(std::span<const float> vector, std::size_t columns, std::size_t 
   }
 }
 
-// Returns RMS over samples of what a field has, for each source of light.
-std::vector<double> energies(const TransferField& field) {
-  const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
-  std::vector<double> sums(1 + field.columns - bands, 0.0);
-  const std::size_t samples = field.size();
-  for (std::size_t s = 0; s < samples; ++s) addSquares(field.at(s), field.columns, bands, 1.0, sums);
-  for (double& sum : sums)
-    sum = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(samples * field.channels, 1)));
-  return sums;
-}
+// Says how much of each region that eyes see consists of an item: a sample, or a patch.
+struct SeenItem {
+  std::uint32_t item = 0, region = 0;
+  float share = 0.0f;  // those of a region sum to 1
+};
+
+// Returns RMS over what eyes see of what a field has, by region, and then by source of light.
+struct Energies {
+  std::size_t sources = 1;
+  std::vector<double> values;
+
+  Energies(const TransferField& field, std::span<const SeenItem> seen, std::size_t regions) {
+    const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
+    sources = 1 + field.columns - bands;
+    values.assign(sources * regions, 0.0);
+    for (const auto& [item, region, share] : seen)
+      addSquares(field.at(item), field.columns, bands, double{share},
+                 std::span(values).subspan(region * sources, sources));
+    for (double& value : values) value = std::sqrt(value / static_cast<double>(field.channels));
+  }
+  // Returns the values, none of which is dark beside the mean of its source.
+  std::vector<double> lit() const {
+    std::vector<double> mean(sources, 0.0), lit = values;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      mean[k % sources] += values[k] * static_cast<double>(sources) / static_cast<double>(values.size());
+    for (std::size_t k = 0; k < lit.size(); ++k) lit[k] = std::max(lit[k], kDark * mean[k % sources]);
+    return lit;
+  }
+};
 
 void add(const TransferField& part, TransferField& sum) {
   for (std::size_t i = 0; i < sum.vectors.size(); ++i) sum.vectors[i] += part.vectors[i];
 }
 
-// Returns the largest share of all light that a pass has, over the light sources.
-double shareOf(const std::vector<double>& pass, const std::vector<double>& all) {
+// Returns the largest share of all light that a pass has, over regions and light sources.
+double shareOf(const Energies& pass, const Energies& all) {
+  const std::vector<double> lit = all.lit();
   double share = 0.0;
-  for (std::size_t k = 0; k < pass.size(); ++k)
-    if (all[k] > 0.0) share = std::max(share, pass[k] / all[k]);
+  for (std::size_t k = 0; k < lit.size(); ++k)
+    if (lit[k] > 0.0) share = std::max(share, pass.values[k] / lit[k]);
   return share;
 }
 
-// Estimates what all passes after this one would add, as a share of all light. Passes shrink at least as fast
-// as the last two did, so the rest is bounded by a geometric series.
-double tailOf(const std::vector<double>& before, const std::vector<double>& now,
-              const std::vector<double>& all) {
+// Estimates what all passes after this one would add, as a share of all light, where that is most. Passes
+// shrink at least as fast as the last two did, so the rest is bounded by a geometric series.
+double tailOf(const Energies& before, const Energies& now, const Energies& all) {
+  const std::vector<double> lit = all.lit();
   double worst = 0.0;
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    if (!(all[k] > 0.0)) continue;
-    const double ratio = before[k] > 0.0 ? std::min(now[k] / before[k], 0.999) : 0.0;
-    worst = std::max(worst, now[k] * ratio / (1.0 - ratio) / all[k]);
+  for (std::size_t k = 0; k < lit.size(); ++k) {
+    if (!(lit[k] > 0.0)) continue;
+    const double ratio = before.values[k] > 0.0 ? std::min(now.values[k] / before.values[k], 0.999) : 0.0;
+    worst = std::max(worst, now.values[k] * ratio / (1.0 - ratio) / lit[k]);
   }
   return worst;
 }
 
-// Returns RMS over samples of what patches have, for each source of light, as energies() does.
-std::vector<double> energies(const PatchRadiance& radiance) {
-  const TransferField& field = radiance.field;
-  const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
-  std::vector<double> sums(1 + field.columns - bands, 0.0);
-  for (std::size_t patch = 0; patch < field.size(); ++patch) {
-    const auto members =
-        static_cast<double>(radiance.patches.offsets[patch + 1] - radiance.patches.offsets[patch]);
-    addSquares(field.at(patch), field.columns, bands, members, sums);
-  }
-  const std::size_t samples = std::max<std::size_t>(radiance.patches.samples.size(), 1);
-  for (double& sum : sums) sum = std::sqrt(sum / static_cast<double>(samples * field.channels));
-  return sums;
-}
-
-// Tells how much light each pass brought, and when the rest is not worth another.
+// Keeps account of how much light each pass brought, and of when the rest is not worth another.
 class Tally {
  public:
-  explicit Tally(std::vector<double> first) : first_(first), now_(first), all_(std::move(first)) {}
+  explicit Tally(Energies first) : first_(first), now_(first), all_(std::move(first)) {}
 
-  void add(std::vector<double> energy, BounceResult& result) {
-    const std::vector<double> before = std::exchange(now_, std::move(energy));
-    double share = 0.0;
-    for (std::size_t k = 0; k < now_.size(); ++k) {
-      all_[k] += now_[k];
-      if (first_[k] > 0.0) share = std::max(share, now_[k] / first_[k]);
-    }
-    result.energy.push_back(share);
+  void add(Energies energy, BounceResult& result) {
+    const Energies before = std::exchange(now_, std::move(energy));
+    for (std::size_t k = 0; k < now_.values.size(); ++k) all_.values[k] += now_.values[k];
+    result.energy.push_back(shareOf(now_, first_));
     result.left_out = tailOf(before, now_, all_);
   }
-  const std::vector<double>& now() const { return now_; }
-  const std::vector<double>& all() const { return all_; }
+  const Energies& now() const { return now_; }
+  const Energies& all() const { return all_; }
 
  private:
-  std::vector<double> first_, now_, all_;
+  Energies first_, now_, all_;
 };
 
 // Returns how bright samples are under all lights at once.
@@ -159,7 +164,8 @@ class Passes {
         partner_(partner),
         exit_(scene.geometry, scene.samples, partner),
         gather_(pass, direct, scene, exit_),
-        tally_(withPartner(energies(direct.field))) {
+        seen_(seenSamples(scene)),
+        tally_(energiesOf(direct.field)) {
     if (direct.inside) inside_.emplace(direct.inside, exit_);
     for (const auto& points : direct.watched)
       result_.at_watched.push_back(direct.field.zeros(points->size()));
@@ -182,11 +188,39 @@ class Passes {
   }
 
  private:
-  std::vector<double> withPartner(std::vector<double> sums) const {
-    if (!partner_) return sums;
-    const auto more = partner_->energies();
-    sums.insert(sums.end(), more.begin(), more.end());
-    return sums;
+  std::size_t regions() const { return scene_.importance ? scene_.importance->region_count : 1; }
+  // Without importance, all samples count alike in one region.
+  static std::vector<SeenItem> seenSamples(const TracedScene& scene) {
+    std::vector<SeenItem> seen;
+    const std::size_t count = scene.samples.size();
+    if (!scene.importance) {
+      for (std::uint32_t s = 0; s < count; ++s) seen.push_back({s, 0, 1.0f / static_cast<float>(count)});
+      return seen;
+    }
+    const auto& [shares, of_sample, region_count] = *scene.importance;
+    std::vector<double> sums(region_count, 0.0);
+    for (std::uint32_t s = 0; s < count; ++s) sums[of_sample[s]] += double{shares[s]};
+    for (std::uint32_t s = 0; s < count; ++s)
+      if (const double sum = sums[of_sample[s]]; shares[s] > 0.0f && sum > 0.0)
+        seen.push_back({s, of_sample[s], static_cast<float>(double{shares[s]} / sum)});
+    return seen;
+  }
+  Energies energiesOf(const TransferField& field) const { return {field, seen_, regions()}; }
+  // Returns what the samples of patches count.
+  std::vector<SeenItem> seenPatches(const Patches& patches) const {
+    std::vector<SeenItem> seen;
+    for (const SeenItem& sample : seen_)
+      seen.push_back({patches.of_sample[sample.item], sample.region, sample.share});
+    std::ranges::sort(seen, {}, [](const SeenItem& item) { return std::pair(item.item, item.region); });
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < seen.size(); ++i) {
+      if (seen[i].item == seen[last].item && seen[i].region == seen[last].region)
+        seen[last].share += seen[i].share;
+      else
+        seen[++last] = seen[i];
+    }
+    seen.resize(std::min(seen.size(), last + 1));
+    return seen;
   }
   bool enough(int passes, double tail_error) const {
     return passes == (settings_.bounces < 0 ? kMostBounces : settings_.bounces) ||
@@ -199,7 +233,7 @@ class Passes {
                            .thinly = shareOf(tally_.now(), tally_.all()) < kShareToThin,
                            .exit = exit_,
                            .before = before});
-    if (brought) tally_.add(withPartner(energies(*brought)), result_);
+    if (brought) tally_.add(energiesOf(*brought), result_);
     return brought;
   }
 
@@ -299,30 +333,30 @@ class Passes {
   // Returns how far the first bounce between patches is off from what samples gathered: they reflect alike in
   // all directions. It is RMS over patches, relative, of the light source for which it is most.
   double offBy(const PatchTransport& transport, const Patches& patches, const TransferField& first) const {
-    const PatchRadiance gathered{patches, transport.meansOf(first)};
-    PatchRadiance off{patches, transport.bounce(transport.meansOf(direct_.field))};
-    for (std::size_t i = 0; i < off.field.vectors.size(); ++i)
-      off.field.vectors[i] -= gathered.field.vectors[i];
-    return shareOf(energies(off), energies(gathered));
+    const std::vector<SeenItem> seen = seenPatches(patches);
+    const TransferField gathered = transport.meansOf(first);
+    TransferField off = transport.bounce(transport.meansOf(direct_.field));
+    for (std::size_t i = 0; i < off.vectors.size(); ++i) off.vectors[i] -= gathered.vectors[i];
+    return shareOf({off, seen, regions()}, {gathered, seen, regions()});
   }
 
   // Passes on between patches what pass `passes` brought, and gathers all of it at samples at last. Returns
   // false if stopped.
   bool byPatches(const PatchTransport& transport, const Patches& patches, int passes, TransferField first) {
     PatchRadiance last{patches, transport.meansOf(first)}, rest{patches, first.zeros(patches.size())};
-    const std::vector<double> of_first = tally_.now(), of_first_patches = energies(last);
-    std::vector<double> gathered = of_first;  // energy of all that is gathered at last
+    const std::vector<SeenItem> seen = seenPatches(patches);
+    const Energies of_first = tally_.now(), of_first_patches{last.field, seen, regions()};
+    Energies gathered = of_first;  // energy of all that is gathered at last
     for (int number = passes + 1;; ++number) {
       last.field = transport.bounce(last.field);
-      const std::vector<double> of_patches = energies(last);
-      std::vector<double> energy = of_first;
-      for (std::size_t k = 0; k < energy.size(); ++k) {
-        const std::size_t source = k % of_patches.size();
-        energy[k] *= of_first_patches[source] > 0.0 ? of_patches[source] / of_first_patches[source] : 0.0;
-      }
+      const Energies of_patches{last.field, seen, regions()};
+      Energies energy = of_first;
+      for (std::size_t k = 0; k < energy.values.size(); ++k)
+        energy.values[k] *=
+            of_first_patches.values[k] > 0.0 ? of_patches.values[k] / of_first_patches.values[k] : 0.0;
       tally_.add(energy, result_);
       if (enough(number, kShareOfTail * settings_.tail_error)) break;
-      for (std::size_t k = 0; k < energy.size(); ++k) gathered[k] += energy[k];
+      for (std::size_t k = 0; k < energy.values.size(); ++k) gathered.values[k] += energy.values[k];
       add(last.field, rest.field);
     }
     add(rest, first);
@@ -353,6 +387,7 @@ class Passes {
   BouncePartner* partner_;
   ExitRadiance exit_;
   BounceGather gather_;
+  std::vector<SeenItem> seen_;
   Tally tally_;
   std::optional<Inside> inside_;
   BounceResult result_{.field = {}, .mapped = {}, .energy = {1.0}, .left_out = 0.0};

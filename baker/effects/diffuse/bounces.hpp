@@ -21,17 +21,18 @@ namespace lambent::baker {
 
 struct BounceSettings {
   int bounces = -1;          // -1: as many as tail_error asks for
-  double tail_error = 1e-3;  // only with -1: light of all further passes, relative to all light
+  double tail_error = 1e-3;  // only with -1: bounds BounceResult::left_out
 };
 
 inline constexpr int kMostBounces = 64;
 
 struct BounceResult {
   TransferField field, mapped;  // sums of all bounce passes, laid out as those of DirectResult
-  // Energy of each pass, starting with pass 0 and relative to it: RMS over the samples under real lights. It
-  // is that of the light (environment or one of the group's) with the largest share in the pass.
+  // Energy of each pass, starting with pass 0 and relative to it: RMS over a region that eyes see under real
+  // lights. It is that of the region and the light (environment or one of the group's) with the largest
+  // share.
   std::vector<double> energy;
-  double left_out = 0.0;  // estimate of the light of all further passes, relative to all light
+  double left_out = 0.0;  // estimate of the light of all further passes, relative to all light, likewise
   std::vector<TransferField> at_watched = {};  // what all passes bring to DirectResult::watched
 };
 

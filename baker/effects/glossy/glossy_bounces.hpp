@@ -53,7 +53,6 @@ class GlossyBounces : public BouncePartner {
   void visitHits(std::size_t sample, const ExitRadiance& exit, const TakeHit& take) const override;
   bool gather(const Bounce& bounce, TransferField& now, const BakeContext& context) override;
   void advance() override;
-  std::vector<double> energies() const override { return energies_; }
 
   // Ends the passes: cuts the field to order_out bands and moves their sums into it. Without any pass,
   // `bounced` stays empty, and lights_full is lights_shadowed.

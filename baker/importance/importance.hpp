@@ -1,0 +1,88 @@
+// The room baker/importance says how much each part of a rigid group's surfaces matters to pictures: how much
+// of them it takes up, seen directly by eyes (eyes.hpp), and how much light it sends to what they see (the
+// adjoint of one bounce; Smits, Arvo and Salesin 1992). Whatever chooses what is worth work weighs by it. The
+// group as rays see it comes in; a field over its surfaces and the points that eyes see go out. It takes a
+// second at most, runs on all threads, does not depend on how many, and has no errors.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "baker/importance/eyes.hpp"
+#include "baker/importance/regions.hpp"
+#include "baker/transport/ray_scene.hpp"
+#include "baker/transport/samples.hpp"
+
+namespace lambent::baker {
+
+// A SeenPoint is a point of a front face that an eye sees.
+struct SeenPoint {
+  FirstHit hit;
+  glm::vec3 position{0.0f}, normal{0.0f};  // the normal is the face's
+  glm::vec3 to_eye{0.0f};                  // unit
+  std::uint32_t eye = 0, ray = 0;          // the ray by which it is seen, counted over all eyes
+  float share = 0.0f;                      // of all pictures; the shares of all points sum to 1
+};
+
+// A Place is where importance is asked for, a little off the face.
+struct Place {
+  glm::vec3 position{0.0f}, normal{0.0f};
+};
+
+// Both are shares of all pictures per square metre.
+struct ImportanceAt {
+  float seen = 0.0f;  // taken up by the surface itself
+  float sent = 0.0f;  // lit by what a white surface there sends on
+};
+
+struct SampleImportance {
+  // The share of all pictures in which each sample counts: what is seen of the faces around it, and a part of
+  // what is lit by them, whose errors average out. 0: nobody sees anything of it.
+  std::vector<float> shares;
+  std::vector<std::uint32_t> regions;  // in which each sample lies
+  std::size_t region_count = 1;
+};
+
+class Importance {
+ public:
+  // Nothing matters where no eye sees anything.
+  Importance() = default;
+  // `rays` are those of the geometry, and must outlive this.
+  Importance(const GroupGeometry& geometry, const RayScene& rays, std::vector<Eye> cameras);
+
+  const std::vector<Eye>& eyes() const { return eyes_; }
+  // Returns what eyes see of the geometry, or of the same surfaces cut into other triangles, by about `count`
+  // rays, in their order.
+  std::vector<SeenPoint> look(std::size_t count, const GroupGeometry& geometry, const RayScene& rays) const;
+  // Divides what eyes see into parts that count alike.
+  const Regions& regions() const { return regions_; }
+  // Returns the diagonal of the box that holds nearly all of what eyes see, m.
+  float extent() const { return extent_; }
+
+  ImportanceAt at(const Place& place) const;
+  // Returns a bound on what at() finds to be seen, without rays.
+  float mostSeen(const Place& place) const;
+
+  SampleImportance ofSamples(const SampleSet& samples) const;
+
+ private:
+  struct Sender {  // a seen point that gathers light
+    Place place;
+    float share = 0.0f;
+    float area = 0.0f;  // for which it stands, m^2
+  };
+  float densityAt(const Eye& eye, const Place& place, glm::vec3& way) const;
+
+  const GroupGeometry* geometry_ = nullptr;
+  const RayScene* rays_ = nullptr;
+  std::vector<Eye> eyes_;
+  std::vector<float> seen_shares_;  // of each eye's view, that shows fronts
+  std::vector<Sender> senders_;
+  Regions regions_;
+  float extent_ = 0.0f;
+};
+
+}  // namespace lambent::baker
