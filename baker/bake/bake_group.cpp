@@ -28,14 +28,15 @@ LightProbes lightProbesOf(const GroupScene& group, const BakeContext& context) {
   return probes;
 }
 
-// Colours are loaded only if the proxy was not found in the cache.
+// Colours and rays are needed only if the proxy was not found in the cache.
 Result<bundle::CaptureProxy> proxyOf(GroupScene& group, const BakeContext& context) {
-  context.progress.begin("proxy");
   bundle::CaptureProxy proxy;
   Result<void> loaded;
   findOrMake(context.keyed(group.keys.proxy), proxy, [&] {
     loaded = group.loadColors();
-    if (loaded) proxy = makeCaptureProxy(group.geometry, group.samples, group.colors());
+    if (loaded) loaded = group.findImportance(context);
+    context.progress.begin("proxy");
+    if (loaded) proxy = makeCaptureProxy(group.geometry, group.samples, group.colors(), group.importance());
     return loaded.has_value();
   });
   if (!loaded) return failAgain(loaded.error());

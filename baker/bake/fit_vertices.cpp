@@ -36,8 +36,9 @@ std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy
   const TracedScene& scene = pass.scene();
   GlossyField& field = glossy.field;
   const SampleStretch& stretch = scene.samples.glossy;
-  const auto triangles =
+  auto triangles =
       changingTriangles(scene.geometry, scene.samples, stretch, field.visibilitySize(), field.visibility);
+  std::erase_if(triangles, [&](std::uint32_t t) { return !scene.matters(t); });
   if (triangles.empty()) return FitFigures{};
   const auto inside = std::make_shared<GlossyInsideFaces>(pass, triangles);
   const auto found = inside->look(glossy.hits.bytesLeft(), insideContext(context, triangles));

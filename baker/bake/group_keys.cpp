@@ -80,18 +80,20 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
   addReflection(scene, geometry, options.exitOrder(), surfaces);
   const Key reflecting = surfaces.key();
 
-  keys.proxy = KeyMaker::ofStage("proxy").add(reflecting).key();
-  keys.rays = KeyMaker::ofStage("rays")
-                  .add(seen)
+  KeyMaker proxy = KeyMaker::ofStage("proxy");
+  addEyes(planned.cameras, proxy);
+  keys.proxy = proxy.add(reflecting).key();
+  KeyMaker rays = KeyMaker::ofStage("rays");
+  addEyes(planned.cameras, rays);
+  keys.rays = rays.add(seen)
                   .add(options.order)
                   .add(std::uint64_t{options.effectiveRays()})
                   .add(planned.shadows)
                   .add(planned.bounces)
                   .key();
   keys.glossy_rays = KeyMaker::ofStage("glossy rays").add(keys.rays).add(options.exitOrder()).key();
-  KeyMaker bounces = KeyMaker::ofStage("bounces");
-  addEyes(planned.cameras, bounces);
-  keys.bounces = bounces.add(keys.glossy_rays)
+  keys.bounces = KeyMaker::ofStage("bounces")
+                     .add(keys.glossy_rays)
                      .add(colored)
                      .add(reflecting)
                      .add(options.glossy_order)

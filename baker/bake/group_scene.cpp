@@ -71,14 +71,20 @@ Result<void> GroupScene::loadColors() {
   return {};
 }
 
-Result<void> GroupScene::prepareRays(const BakeContext& context) {
-  if (auto loaded = loadColors(); !loaded) return loaded;
+Result<void> GroupScene::findImportance(const BakeContext& context) {
+  if (rays_) return {};
   context.progress.begin("hierarchy");
   auto rays = RayScene::build(geometry, bake.scene, inputs_.alpha_maps);
   if (!rays) return failAgain(rays.error());
   rays_ = std::move(*rays);
   context.progress.begin("importance");
   importance_ = Importance(geometry, *rays_, cameras_);
+  return {};
+}
+
+Result<void> GroupScene::prepareRays(const BakeContext& context) {
+  if (auto loaded = loadColors(); !loaded) return loaded;
+  if (auto found = findImportance(context); !found) return found;
   sample_importance_ = importance_.ofSamples(samples);
   if (!anyGlossy() && !(bounces() && anyLayered())) return {};
   auto brdfs =

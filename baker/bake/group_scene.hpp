@@ -40,7 +40,9 @@ class GroupScene {
 
   // Loads the colours once, since images take long to decode. Errors: images that cannot be decoded.
   Result<void> loadColors();
-  // Loads the colours and BRDFs, builds the ray hierarchy, and finds out what eyes see. Errors: those of
+  // Builds the ray hierarchy, once, and finds out what eyes see. Errors: no memory for the hierarchy.
+  Result<void> findImportance(const BakeContext& context);
+  // Does both, and loads the BRDFs. Errors: those of
   // loadColors(), no memory for the hierarchy.
   Result<void> prepareRays(const BakeContext& context);
 
@@ -58,6 +60,7 @@ class GroupScene {
             transport().shadows,
             &sample_importance_};
   }
+  // May be called after findImportance().
   const Importance& importance() const { return importance_; }
   const SurfaceBrdfs* brdfs() const { return anyGlossy() && brdfs_ ? &*brdfs_ : nullptr; }
 

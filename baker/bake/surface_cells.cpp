@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "baker/bake/picture_budget.hpp"
 #include "baker/brdf/kernel_power.hpp"
 #include "baker/effects/diffuse/payloads.hpp"
 #include "baker/effects/glossy/payloads.hpp"
@@ -26,6 +27,7 @@ class CellCoder {
         options_(group.bake.options),
         coding_(coding),
         grey_emission_(group.colors().greyEmission()),
+        weights_(weightsOf(*group.view().importance)),
         kernel_power_(group.brdfs()
                           ? kernelPower(group.geometry, *group.brdfs(), group.bake.options.glossy_order)
                           : BandPower(kLobePower)) {}
@@ -34,11 +36,25 @@ class CellCoder {
   std::vector<CodedTransfer> codeDiffuse(const SampleCell& cell, SurfaceFigures& figures);
 
  private:
+  // Returns how much samples matter to pictures. Eyes may come to see any of them one day, so that none
+  // counts for nothing, and none for all.
+  static std::vector<float> weightsOf(const SampleImportance& importance) {
+    constexpr float kLeast = 0.05f, kMost = 4.0f;
+    const auto count = static_cast<float>(importance.shares.size());
+    std::vector<float> weights;
+    for (const float share : importance.shares) weights.push_back(std::clamp(count * share, kLeast, kMost));
+    return weights;
+  }
+  std::span<const float> weightsOf(const SampleCell& cell) const {
+    return std::span(weights_).subspan(cell.first, cell.count);
+  }
+
   const GroupScene& group_;
   const SurfaceTransport& light_;
   const BakeOptions& options_;
   CachedCoding& coding_;
   bool grey_emission_;
+  std::vector<float> weights_;
   BandPower kernel_power_;
 };
 
@@ -66,7 +82,8 @@ std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, Surface
                       .most_components = options_.error_bound > 0.0f ? kAllComponents : kUsualComponents,
                       .loose_bound = options_.glossyLooseness() * bound,
                       .shown_energy = environment ? shown : 0.0,
-                      .kernel_power = kernel_power_}));
+                      .kernel_power = kernel_power_,
+                      .weights = weightsOf(cell)}));
     const double error = coded.back().error;
     if (environment)
       square += error * error;
@@ -82,7 +99,8 @@ std::vector<CodedTransfer> CellCoder::codeDiffuse(const SampleCell& cell, Surfac
   for (const CellVectors& vectors :
        cellVectors(cell, group_.samples, light_.direct, light_.bounced ? &*light_.bounced : nullptr,
                    grey_emission_)) {
-    coded.push_back(coding_.code(vectors.vectors, cell.count, vectors.shape, {.bound = figures.codes_bound}));
+    coded.push_back(coding_.code(vectors.vectors, cell.count, vectors.shape,
+                                 {.bound = figures.codes_bound, .weights = weightsOf(cell)}));
     figures.worst_error = std::max(figures.worst_error, double{coded.back().error});
   }
   return coded;

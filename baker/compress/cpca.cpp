@@ -122,7 +122,8 @@ class Coder {
         checkpoint_(context),
         count_(vectors.size() / shape.size()),
         space_(weightedSpace(vectors, shape, settings.shown_energy, settings.kernel_power)),
-        importance_(sampleImportance(vectors, shape, settings.shown_energy, settings.kernel_power)),
+        importance_(
+            sampleImportance(vectors, shape, settings.shown_energy, settings.kernel_power, settings.weights)),
         least_bits_(shape.beyondDiffuse() ? kGlossyWeightBits : kPlainWeightBits) {
     const double bound = double{settings.bound};
     allowed_ = bound * bound * space_.blocks / static_cast<double>(count_);
@@ -178,7 +179,7 @@ class Coder {
   }
   double errorOf(const CodedTransfer& coded) const {
     return radianceError(vectors_, decodeTransfer(coded), shape_, settings_.shown_energy,
-                         settings_.kernel_power);
+                         settings_.kernel_power, settings_.weights);
   }
 
   void findBasis();

@@ -2,13 +2,13 @@
 // draco_encode.hpp codes meshes. It follows clustered principal components (Sloan, Hall, Hart, Snyder 2003)
 // with quantized weights, and keeps the relative RMS error of shaded radiance over real lights under a bound:
 //   sqrt( sum_s G_s sum_i W_i (t_s,i - t'_s,i)² / sum_s sum_i W_i t_s,i² ) <= bound
-// G_s makes errors in dark samples count more, since eyes adapt (sampleImportance in cpca_space.hpp); each
-// cluster has steps of its own by it. The bound holds for each block (shadowed light, and full light, which
-// is shown) by itself. W_i is the band power of light (light_weights.hpp) for columns of the environment;
-// columns of the group's lights are weighted so that each light counts as much as the whole environment. W_i
-// is multiplied by (A_l/pi)² of the output's band for normal maps, and by the power of a lobe in that band
-// for glossy surfaces. For visibility, an error in coefficient k changes what is reflected by a power of Σ_ij
-// lobe_i light_j Γ_ijk².
+// G_s makes errors in dark samples count more, since eyes adapt, and those in samples that matter to pictures
+// (sampleImportance in cpca_space.hpp); each cluster has steps of its own by it. The bound holds for each
+// block (shadowed light, and full light, which is shown) by itself. W_i is the band power of light
+// (light_weights.hpp) for columns of the environment; columns of the group's lights are weighted so that each
+// light counts as much as the whole environment. W_i is multiplied by (A_l/pi)² of the output's band for
+// normal maps, and by the power of a lobe in that band for glossy surfaces. For visibility, an error in
+// coefficient k changes what is reflected by a power of Σ_ij lobe_i light_j Γ_ijk².
 //
 // The number of clusters and of axes in each is whatever codes to the fewest bytes (codebook, ids and weights
 // after entropy coding). Planes come by falling variance, so any prefix renders. Coding works on several
@@ -63,6 +63,8 @@ struct CodingSettings {
   double shown_energy = 0.0;
   // For glossy transfer, this says how much an error in an output of each band shows.
   BandPower kernel_power = kLobePower;
+  // How much each sample matters to pictures, relative to others; empty: all alike. Above 0.
+  std::span<const float> weights = {};
 };
 
 // Returns Σ_s Σ_i W_i t_s,i² over red, green and blue.
@@ -86,6 +88,6 @@ std::vector<float> decodeTransfer(const CodedTransfer& coded);
 // Returns the error that codeTransfer bounds: that of the worse of the two blocks.
 double radianceError(std::span<const float> truth, std::span<const float> coded,
                      const transfer::TransferShape& shape, double shown_energy = 0.0,
-                     const BandPower& kernel_power = kLobePower);
+                     const BandPower& kernel_power = kLobePower, std::span<const float> weights = {});
 
 }  // namespace lambent::baker

@@ -146,9 +146,11 @@ double transferEnergy(std::span<const float> vectors, const transfer::TransferSh
 }
 
 std::vector<float> sampleImportance(std::span<const float> vectors, const transfer::TransferShape& shape,
-                                    double shown_energy, const BandPower& kernel_power) {
+                                    double shown_energy, const BandPower& kernel_power,
+                                    std::span<const float> weights) {
   const std::size_t size = shape.size(), count = vectors.size() / size;
-  if (shown_energy > 0.0 || shape.isVisibility()) return std::vector<float>(count, 1.0f);
+  const bool eases = !(shown_energy > 0.0) && !shape.isVisibility();
+  if (!eases && weights.empty()) return std::vector<float>(count, 1.0f);
   const std::vector<double> roots = normalisedRoots(vectors, shape, 0.0, kernel_power);
   std::vector<double> squares(count, 0.0);
   parallelRanges(count, kSamplesPerSum, {}, [&](std::size_t begin, std::size_t end) {
@@ -165,7 +167,7 @@ std::vector<float> sampleImportance(std::span<const float> vectors, const transf
   double eased = 0.0;
   for (std::size_t s = 0; s < count; ++s) {
     const double x = std::sqrt(squares[s] * static_cast<double>(count) / energy);
-    counts[s] = 1.0 / (kDarkest + x);
+    counts[s] = (eases ? 1.0 / (kDarkest + x) : 1.0) * (weights.empty() ? 1.0 : double{weights[s]});
     eased += counts[s] * squares[s];
   }
   std::vector<float> importance(count);
@@ -184,12 +186,12 @@ WeightedSpace weightedSpace(std::span<const float> vectors, const transfer::Tran
 }
 
 double radianceError(std::span<const float> truth, std::span<const float> coded,
-                     const transfer::TransferShape& shape, double shown_energy,
-                     const BandPower& kernel_power) {
+                     const transfer::TransferShape& shape, double shown_energy, const BandPower& kernel_power,
+                     std::span<const float> weights) {
   const std::size_t size = shape.size();
   assert(truth.size() == coded.size() && truth.size() % size == 0);
   const std::vector<double> roots = normalisedRoots(truth, shape, shown_energy, kernel_power);
-  std::vector<float> importance = sampleImportance(truth, shape, shown_energy, kernel_power);
+  std::vector<float> importance = sampleImportance(truth, shape, shown_energy, kernel_power, weights);
   for (float& one : importance) one = std::sqrt(one);
   const auto off = energies(size, truth.size() / size, [&](std::size_t sample, std::size_t at) {
     return double{importance[sample]} * (double{coded[at]} - double{truth[at]});

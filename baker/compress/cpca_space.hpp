@@ -17,9 +17,11 @@ namespace lambent::baker {
 // relative to the RMS of all, scaled so that the energy of all samples together stays what it is. An eye that
 // has adapted to a room sees errors relative to what is there, and not to what stands in the window. It is 1
 // for parts that are shown together with others (CodingSettings::shown_energy, visibility), since the
-// brightness of one part says too little.
+// brightness of one part says too little. `weights` multiply it, unless they are empty
+// (CodingSettings::weights).
 std::vector<float> sampleImportance(std::span<const float> vectors, const transfer::TransferShape& shape,
-                                    double shown_energy, const BandPower& kernel_power);
+                                    double shown_energy, const BandPower& kernel_power,
+                                    std::span<const float> weights);
 
 struct WeightedSpace {
   std::vector<double> roots;  // one per value of a vector; 0 where the cell has no energy

@@ -64,7 +64,7 @@ CodedTransfer CachedCoding::code(std::span<const float> vectors, std::size_t cou
     KeyMaker maker = KeyMaker::ofStage("coding");
     maker.add(shape).addList(vectors).add(settings.bound).add(settings.shown_energy);
     maker.add(settings.most_components).add(settings.loose_bound).add(settings.most_expanded_bytes);
-    key = maker.add(settings.kernel_power).key();
+    key = maker.add(settings.kernel_power).addList(settings.weights).key();
     kept_.push_back(key);
   }
   const BakeContext own = context_.keyed(key);

@@ -150,7 +150,7 @@ ImportanceAt Importance::at(const Place& place) const {
 
 SampleImportance Importance::ofSamples(const SampleSet& samples) const {
   const std::vector<float> areas = sampleAreas(*geometry_, samples);
-  SampleImportance importance{std::vector<float>(samples.size(), 0.0f), {}, regions_.size()};
+  SampleImportance importance{std::vector<float>(samples.size(), 0.0f), {}, regions_.size(), extent_};
   std::vector<float>& shares = importance.shares;
   for (const glm::vec3& position : samples.positions)
     importance.regions.push_back(static_cast<std::uint32_t>(regions_.at(position)));

@@ -44,6 +44,13 @@ struct SampleImportance {
   std::vector<float> shares;
   std::vector<std::uint32_t> regions;  // in which each sample lies
   std::size_t region_count = 1;
+  float extent = 0.0f;  // Importance::extent()
+
+  // Returns whether the sample counts at least a little beside the mean.
+  bool matters(std::size_t sample) const {
+    constexpr float kLeast = 0.02f;
+    return shares[sample] * static_cast<float>(shares.size()) >= kLeast;
+  }
 };
 
 class Importance {

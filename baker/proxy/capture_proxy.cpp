@@ -22,7 +22,7 @@ constexpr std::array<std::size_t, 3> kLevels = {bundle::kMaxProxyTriangles, 64, 
 constexpr std::size_t kLeastTriangles = 4;  // per side of a part
 constexpr std::size_t kPointsPerTriangle = 128, kPointsPerPatch = 16;
 constexpr std::size_t kTrianglesPerPatch = 8;  // of the group
-// Patches tell no less than this share of the diagonal of the bounds (runtime/lighting/patches.cpp).
+// Patches show no less than this share of the extent of what is seen (runtime/lighting/patches.cpp).
 constexpr float kPatchError = 2e-3f;
 // Larger surfaces are simplified to this many triangles before their silhouette is taken.
 constexpr std::size_t kSilhouetteTriangles = 32768;
@@ -69,8 +69,9 @@ std::optional<std::vector<std::size_t>> shares(const std::vector<ProxyPart>& par
 
 class ProxyMaker {
  public:
-  ProxyMaker(const GroupGeometry& geometry, const SampleSet& samples, const SurfaceColors& colors)
-      : geometry_(geometry), samples_(samples), colors_(colors) {
+  ProxyMaker(const GroupGeometry& geometry, const SampleSet& samples, const SurfaceColors& colors,
+             const Importance& importance)
+      : geometry_(geometry), samples_(samples), colors_(colors), importance_(importance) {
     parts_ = proxyParts(geometry, colors, bundle::kMaxProxyTriangles / kLeastTriangles);
     for (const ProxyPart& part : parts_) meshes_.push_back(welded(geometry, part.front));
     for (std::size_t p = parts_.size(); p-- > 0;)
@@ -192,7 +193,7 @@ class ProxyMaker {
                std::min<std::size_t>(bundle::kMaxPatchTriangles, trianglesOf(meshes_) / kTrianglesPerPatch));
     if (!counts) return;
     std::vector<SimpleMesh> simple;
-    const float allowed = kPatchError * glm::distance(geometry_.bounds_min, geometry_.bounds_max);
+    const float allowed = kPatchError * importance_.extent();
     for (std::size_t p = 0; p < parts_.size(); ++p)
       simple.push_back(simplified(meshes_[p], (*counts)[p], allowed));
     if (kFewer * static_cast<double>(trianglesOf(simple)) <=
@@ -206,12 +207,36 @@ class ProxyMaker {
     for (std::size_t f = 0; f < faces.size(); ++f)
       for (const bundle::ProxyEntry& entry : shine[f].entries)
         patches.triangles[f].albedo += entry.reflectance;
+    patches.error_m = std::max(patches.error_m, allowed);
+    setDetail(faces, patches);
     for (glm::vec3& position : patches.positions) position += geometry_.origin;
+  }
+
+  // Patches are to be as small as what they send matters where eyes look. Points a little in front of the
+  // simplified surface stand for the one behind it.
+  void setDetail(const std::vector<ProxyFace>& faces, bundle::PatchSurface& patches) const {
+    std::vector<float> matters(faces.size(), 0.0f);
+    float most = 0.0f;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const auto& [a, b, c] = faces[f].corners;
+      const glm::vec3 across = glm::cross(b - a, c - a);
+      if (!(glm::length(across) > 0.0f)) continue;
+      const glm::vec3 normal = glm::normalize(across), middle = (a + b + c) / 3.0f;
+      for (const glm::vec3& toward : {middle, a, b, c}) {
+        const glm::vec3 at = glm::mix(middle, toward, 0.5f) + patches.error_m * normal;
+        const ImportanceAt here = importance_.at({at, normal});
+        matters[f] += 0.25f * (here.seen + here.sent);
+      }
+      most = std::max(most, matters[f]);
+    }
+    for (std::size_t f = 0; f < faces.size() && most > 0.0f; ++f)
+      patches.triangles[f].detail = bundle::detailOf(std::max(matters[f] / most, bundle::kLeastPatchDensity));
   }
 
   const GroupGeometry& geometry_;
   const SampleSet& samples_;
   const SurfaceColors& colors_;
+  const Importance& importance_;
   std::vector<ProxyPart> parts_;
   std::vector<SimpleMesh> meshes_;  // one per part
   std::optional<Silhouette> outline_;
@@ -222,8 +247,8 @@ class ProxyMaker {
 }  // namespace
 
 bundle::CaptureProxy makeCaptureProxy(const GroupGeometry& geometry, const SampleSet& samples,
-                                      const SurfaceColors& colors) {
-  return ProxyMaker(geometry, samples, colors).make();
+                                      const SurfaceColors& colors, const Importance& importance) {
+  return ProxyMaker(geometry, samples, colors, importance).make();
 }
 
 }  // namespace lambent::baker

@@ -94,10 +94,10 @@ struct RangeHits {
   // Starts the next sample: hits that are appended from here on are its own. The last call ends the range.
   void next() { offsets.push_back(static_cast<std::uint32_t>(hits.size())); }
   // Replaces these hits by those of samples [begin, end), traced by a walk with functions look(), looked()
-  // and keepHits(). Returns for each sample whether it took twice the rays.
+  // and keepHits(). Returns how many rays each sample took, as a RayCount.
   template <typename Walk>
-  std::vector<std::uint8_t> traceAgain(Walk&& walk, std::size_t begin, std::size_t end) {
-    std::vector<std::uint8_t> double_rays;
+  auto traceAgain(Walk&& walk, std::size_t begin, std::size_t end) {
+    std::vector<decltype(walk.looked().rayCount())> ray_counts;
     offsets.clear();
     hits.clear();
     scales.clear();
@@ -105,10 +105,10 @@ struct RangeHits {
       next();
       walk.look(s);
       walk.keepHits(*this);
-      double_rays.push_back(walk.looked().double_rays());
+      ray_counts.push_back(walk.looked().rayCount());
     }
     next();
-    return double_rays;
+    return ray_counts;
   }
 
   std::size_t bytes() const {

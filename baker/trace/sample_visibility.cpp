@@ -1,5 +1,6 @@
 #include "baker/trace/sample_visibility.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -16,9 +17,18 @@ namespace {
 // again are the same.
 constexpr float kAskWhatAtOnce = 1.0f / 6.0f;
 
+// Few rays are an eighth of the usual number, or as many as a hemisphere needs at least.
+constexpr std::size_t kFewer = 8, kLeastRays = 128;
+
 }  // namespace
 
+std::size_t raysOf(RayCount count, std::size_t usual) {
+  if (count == RayCount::Twice) return 2 * usual;
+  return count == RayCount::Few ? std::max(std::min(usual, kLeastRays), usual / kFewer) : usual;
+}
+
 void SampleVisibility::stand(std::size_t s) {
+  ray_count_ = RayCount::Usual;
   frame_ = localFrame(glm::normalize(glm::dvec3(samples_.normals[s])));
   if (!shadows_) {
     const auto origins = samples_.originsOf(s);
@@ -27,6 +37,8 @@ void SampleVisibility::stand(std::size_t s) {
     return;
   }
   findSeenOrigins(samples_.originsOf(s), glm::mat3(frame_), rays_, inside_test_, seen_);
+  if (seen_.double_rays) ray_count_ = RayCount::Twice;
+  if (importance_ && !importance_->matters(s)) ray_count_ = RayCount::Few;
 }
 
 std::uint32_t SampleVisibility::look(const DirectionTable& table, bool wants_hits, BelowHorizon below) {

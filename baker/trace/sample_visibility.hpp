@@ -18,19 +18,29 @@
 
 namespace lambent::baker {
 
+// How many rays a sample has: the usual number, twice as many where much is in the way, or few where it does
+// not matter to pictures.
+enum class RayCount : std::uint8_t { Usual, Twice, Few };
+inline constexpr std::size_t kRayCounts = 3;
+std::size_t raysOf(RayCount count, std::size_t usual);
+
 // Both lists have one entry per sample.
 struct SampleVisibilities {
   std::vector<std::uint8_t> valid;  // 0: the sample lies inside something, and is filled from its neighbours
-  std::vector<std::uint8_t> double_rays;  // 1: the sample is traced with twice the rays
+  std::vector<RayCount> ray_counts;
 };
 
 class SampleVisibility {
  public:
   // Everything must outlive it. No rays are traced where the scene has no shadows.
   SampleVisibility(const TracedScene& scene, const InsideTestTables& glances)
-      : samples_(scene.samples), rays_(scene.rays), inside_test_(glances), shadows_(scene.shadows) {}
+      : samples_(scene.samples),
+        importance_(scene.importance),
+        rays_(scene.rays),
+        inside_test_(glances),
+        shadows_(scene.shadows) {}
 
-  // Moves to sample `s`: finds its frame, the origins that lie outside, and whether to trace twice the rays.
+  // Moves to sample `s`: finds its frame, the origins that lie outside, and how many rays to trace.
   void stand(std::size_t s);
   // Traces the table's rays, and records what they hit if `wants_hits`. Returns how many were traced, which
   // is none if the sample has no face.
@@ -39,8 +49,7 @@ class SampleVisibility {
 
   // False if the sample lies inside or under something, or has no face.
   bool valid() const { return seen_.valid; }
-  // True if much is in the way, so that the sample is traced with twice the rays.
-  bool double_rays() const { return seen_.double_rays; }
+  RayCount rayCount() const { return ray_count_; }
   const glm::dmat3& frame() const { return frame_; }  // group_from_local
   std::span<const SampleOrigin> origins() const { return seen_.origins; }
   // Bit k of blocked()[p] is set if ray 16 p + k is blocked.
@@ -52,11 +61,13 @@ class SampleVisibility {
 
  private:
   const SampleSet& samples_;
+  const SampleImportance* importance_;
   const RayScene& rays_;
   const InsideTestTables& inside_test_;
   bool shadows_;
   glm::dmat3 frame_{1.0};
   SeenOrigins seen_;
+  RayCount ray_count_ = RayCount::Usual;
   std::vector<std::uint16_t> blocked_;
   std::vector<RayHit> hits_;
 };

@@ -27,6 +27,13 @@ struct TracedScene {
   bool shadows = true;
   const SampleImportance* importance = nullptr;  // of the samples; null: all count alike
 
+  // Returns whether pictures show anything of a triangle, or of light that it sends.
+  bool matters(std::uint32_t triangle) const {
+    const glm::uvec3 corners = geometry.triangles[triangle];
+    const auto corner = [&](int c) { return importance->matters(samples.vertex_sample[corners[c]]); };
+    return !importance || corner(0) || corner(1) || corner(2);
+  }
+
   TracedScene withSamples(const SampleSet& others) const {
     return {scene, geometry, others, rays, colors, lights, mirrors, shadows, nullptr};
   }

@@ -47,7 +47,8 @@ void appendPatches(std::vector<std::byte>& out, const PatchSurface& patches) {
       out.push_back(
           static_cast<std::byte>(std::lround(std::clamp(triangle.albedo[channel], 0.0f, 1.0f) * kByteOne)));
   for (const PatchTriangle& triangle : patches.triangles)
-    out.push_back(static_cast<std::byte>(triangle.front_only ? kFrontOnly : 0));
+    out.push_back(
+        static_cast<std::byte>((triangle.detail & ~kFrontOnly) | (triangle.front_only ? kFrontOnly : 0)));
 }
 
 // Returns why the rest is no such surface; null if it is one.
@@ -75,6 +76,7 @@ const char* takePatches(Front& front, PatchSurface& patches) {
       if (triangle.vertices[corner] >= positions) return "a patch with a corner that it does not have";
     }
     triangle.front_only = (flags[i] & kFrontOnly) != 0;
+    triangle.detail = static_cast<std::uint8_t>(flags[i] & ~kFrontOnly);
     for (std::size_t channel = 0; channel < 3; ++channel)
       triangle.albedo[static_cast<int>(channel)] =
           static_cast<float>(albedos[channel * triangles + i]) / kByteOne;
@@ -83,6 +85,15 @@ const char* takePatches(Front& front, PatchSurface& patches) {
 }
 
 }  // namespace
+
+float patchDensity(std::uint8_t detail) {
+  return std::exp2(static_cast<float>(detail) / 8.0f);
+}
+
+std::uint8_t detailOf(float density) {
+  return static_cast<std::uint8_t>(
+      std::clamp(std::lround(8.0f * std::log2(density / kLeastPatchDensity)), 0l, 127l));
+}
 
 PatchSurface patchSurfaceOf(const CaptureProxy& proxy) {
   if (!proxy.patches.triangles.empty() || proxy.levels.empty()) return proxy.patches;

@@ -51,7 +51,15 @@ struct PatchTriangle {
   std::array<std::uint32_t, 3> vertices{};  // as of a ProxyTriangle, and so is the next
   bool front_only = false;
   glm::vec3 albedo{0.0f};  // 0..1, stored in steps of 1/255
+  // How many patches the triangle deserves for its area, relative to others (patchDensity), 0..127. Files
+  // from before 0.11 have 0 everywhere.
+  std::uint8_t detail = 0;
 };
+// Patches per area are 2^(detail / 8), relative to other triangles of the surface.
+float patchDensity(std::uint8_t detail);
+inline constexpr float kLeastPatchDensity = 0x1p-15f;  // relative to the most
+// Returns the detail for a density from kLeastPatchDensity to 1.
+std::uint8_t detailOf(float density);
 
 // Shows the group to its own parts, which are nearer to each other than other groups are: light that goes to
 // and fro between them needs their floor, their columns and their arches. Without triangles, the finest level

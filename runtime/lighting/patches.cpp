@@ -12,7 +12,7 @@ namespace lambent::lighting {
 
 namespace {
 
-// These lengths are relative to the diagonal of the bounds.
+// These lengths are relative to the extent of the patches.
 constexpr float kLift = 2e-4f;
 constexpr float kLeastThickness = 2e-3f;
 constexpr float kOnPlane = 1e-5f;
@@ -25,6 +25,7 @@ constexpr std::array<glm::vec3, kPatchPoints> kPointWeights = {
     glm::vec3(1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f), glm::vec3(2.0f / 3.0f, 1.0f / 6.0f, 1.0f / 6.0f),
     glm::vec3(1.0f / 6.0f, 2.0f / 3.0f, 1.0f / 6.0f), glm::vec3(1.0f / 6.0f, 1.0f / 6.0f, 2.0f / 3.0f)};
 
+// Returns into how many parts an edge is cut. Areas are weighed by the patches that they deserve.
 std::uint32_t partsFor(float area, float wanted) {
   return wanted > 0.0f ? std::max(1u, static_cast<std::uint32_t>(std::lround(std::sqrt(area / wanted)))) : 1u;
 }
@@ -44,8 +45,9 @@ TrianglePart TrianglePart::at(std::uint32_t parts, float b, float c) {
 Patches::Patches(const bundle::PatchSurface& surface, std::size_t most) {
   if (surface.triangles.empty()) return;
   std::vector<RayTriangle> triangles;
-  std::vector<float> areas;
+  std::vector<float> areas, weighed;
   float whole = 0.0f;
+  bool any_detail = false;
   glm::vec3 low(INFINITY), high(-INFINITY);
   for (const bundle::PatchTriangle& triangle : surface.triangles) {
     std::array<glm::vec3, 3> corners{};
@@ -58,22 +60,27 @@ Patches::Patches(const bundle::PatchSurface& surface, std::size_t most) {
     const float length = glm::length(across);
     normals_.push_back(length > 0.0f ? across / length : glm::vec3(0.0f, 1.0f, 0.0f));
     areas.push_back(0.5f * length);
-    whole += areas.back();
+    weighed.push_back(areas.back() * bundle::patchDensity(triangle.detail));
+    whole += weighed.back();
+    any_detail |= triangle.detail > 0;
     triangles.push_back({.corners = corners, .front_only = triangle.front_only});
   }
   extent_ = glm::distance(low, high);
+  // The bake knows the extent of what is seen, which may be small beside the bounds, and its error is at
+  // least a share of it.
+  if (any_detail) extent_ = std::min(extent_, surface.error_m / kLeastThickness);
   error_ = std::max(surface.error_m, kLeastThickness * extent_);
   tree_ = TriangleTree(std::move(triangles), kOnPlane * extent_);
   // Rounding gives some triangles more parts than their share; then all get a little fewer.
   float wanted = whole / static_cast<float>(std::max<std::size_t>(most, 1));
   for (int tries = 0; tries < 32; ++tries) {
     std::size_t count = 0;
-    for (const float area : areas) count += std::size_t{partsFor(area, wanted)} * partsFor(area, wanted);
+    for (const float area : weighed) count += std::size_t{partsFor(area, wanted)} * partsFor(area, wanted);
     if (count <= most) break;
     wanted *= 1.1f;
   }
   for (std::size_t t = 0; t < tree_.size(); ++t) {
-    const std::uint32_t parts = partsFor(areas[t], wanted);
+    const std::uint32_t parts = partsFor(weighed[t], wanted);
     split_.push_back({.first = patches_.size(), .parts = parts});
     const auto& [a, b, c] = tree_[t].corners;
     const auto cornerAt = [&](std::uint32_t column, std::uint32_t row) {

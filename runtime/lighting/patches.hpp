@@ -1,6 +1,6 @@
 // Owns the surfaces of a rigid group as patches that exchange light: the triangles of its patch surface
-// (runtime/bundle/capture_proxy.hpp), split into smaller ones of about the same area. A patch sends one
-// radiance in all directions. All positions are in the group's frame. No GL.
+// (runtime/bundle/capture_proxy.hpp), split into smaller ones, most of them where they matter to pictures. A
+// patch sends one radiance in all directions. All positions are in the group's frame. No GL.
 #pragma once
 
 #include <array>
@@ -56,7 +56,7 @@ class Patches {
   }
   // Returns into how many parts each edge is cut.
   std::uint32_t partsOf(std::size_t triangle) const { return split_[triangle].parts; }
-  // Returns the diagonal of the bounds.
+  // Returns the diagonal of the bounds, or of the part that matters to pictures.
   float extent() const { return extent_; }
   // Returns how far the patches may be from the surface that they represent.
   float error() const { return error_; }

@@ -22,7 +22,7 @@ struct BounceGather::Received {
 };
 
 void BounceGather::visitHits(std::size_t sample, const TakeHit& take) const {
-  const Hemisphere& hemisphere = pass_.hemisphereOf(sample, direct_.looks.double_rays[sample] != 0);
+  const Hemisphere& hemisphere = pass_.hemisphereOf(sample, direct_.looks.ray_counts[sample]);
   const StoredHits hits(direct_.hits, pass_, sample, sample + 1);
   const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[sample]))));
   const float scale = hits.scaleOf(sample);
@@ -41,7 +41,7 @@ void BounceGather::range(const Bounce& bounce, std::size_t begin, std::size_t en
   const StoredHits hits(direct_.hits, pass_, begin, end);
   const std::size_t first_mapped = scene_.samples.normal_mapped.begin;
   for (std::size_t s = begin; s < end; ++s) {
-    const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.double_rays[s] != 0);
+    const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.ray_counts[s]);
     const ExitToSample exit(bounce, hemisphere.table(), scene_.samples.normals[s], s);
     const float kept = hits.scaleOf(s);
     Received received{hits.of(s), hits.mirroredOf(s), kept, kept, hemisphere, exit};

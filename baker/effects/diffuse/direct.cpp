@@ -40,7 +40,7 @@ class DirectPass::Walk {
   // Traces the rays of sample `s`, or none if it has no face.
   std::uint32_t look(std::size_t s) {
     look_.stand(s);
-    hemisphere_ = &pass_.hemisphereOf(s, look_.double_rays());
+    hemisphere_ = &pass_.hemisphereOf(s, look_.rayCount());
     return look_.look(hemisphere_->table(), pass_.settings_.keep_hits || !pass_.emitters_.empty());
   }
 
@@ -74,7 +74,7 @@ class DirectPass::Walk {
   void keepHits(RangeHits& out) {
     hits_.clear();
     look_.keepHits(hits_);
-    const std::uint32_t every = pass_.settings_.hits_of_every * (look_.double_rays() ? 2 : 1);
+    const std::uint32_t every = pass_.settings_.hits_of_every * (look_.rayCount() == RayCount::Twice ? 2 : 1);
     const auto weight_of = [this](std::uint32_t ray) { return hemisphere_->weight(ray); };
     out.scales.push_back(keepEvery(every, 0, hits_, weight_of, out.hits));
   }
@@ -123,15 +123,14 @@ class DirectPass::Walk {
 DirectPass::DirectPass(const TracedScene& scene, const DirectSettings& settings)
     : scene_(scene),
       settings_(settings),
-      diffuse_(Hemisphere::forNormal(settings.rays, settings.order)),
-      diffuse_double_rays_(Hemisphere::forNormal(2 * settings.rays, settings.order)),
       emitters_(scene.scene, scene.geometry, scene.colors, scene.lights),
       channels_(scene.colors.grey() && !settings.colored_kernels ? 1 : 3),
       columns_(static_cast<std::uint32_t>(sh::coefficientCount(settings.order)) +
                static_cast<std::uint32_t>(scene.lights.size())) {
-  if (!scene.samples.normal_mapped.empty()) {
-    mapped_ = Hemisphere::forAnyNormal(settings.rays, settings.order);
-    mapped_double_rays_ = Hemisphere::forAnyNormal(2 * settings.rays, settings.order);
+  for (std::size_t k = 0; k < kRayCounts; ++k) {
+    const std::size_t rays = raysOf(static_cast<RayCount>(k), settings.rays);
+    diffuse_[k] = Hemisphere::forNormal(rays, settings.order);
+    if (!scene.samples.normal_mapped.empty()) mapped_[k] = Hemisphere::forAnyNormal(rays, settings.order);
   }
 }
 
@@ -144,7 +143,7 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
     hits.next();
     traced += walk.look(s);
     out.looks.valid[s] = walk.looked().valid();
-    out.looks.double_rays[s] = walk.looked().double_rays();
+    out.looks.ray_counts[s] = walk.looked().rayCount();
     walk.project(out.field.at(s), s < first_mapped ? std::span<float>() : out.mapped.at(s - first_mapped));
     if (settings_.keep_hits) walk.keepHits(hits);
   }
@@ -152,10 +151,10 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
   return traced;
 }
 
-void DirectPass::paint(std::size_t first, std::span<const std::uint8_t> double_rays, RangeHits& hits) const {
+void DirectPass::paint(std::size_t first, std::span<const RayCount> ray_counts, RangeHits& hits) const {
   const auto direction = [&](std::size_t s, std::uint32_t ray) {
     const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[first + s]))));
-    return frame * hemisphereOf(first + s, double_rays[s] != 0).direction(ray);
+    return frame * hemisphereOf(first + s, ray_counts[s]).direction(ray);
   };
   paintHits(scene_, first, direction, hits);
 }
@@ -172,10 +171,10 @@ std::optional<DirectResult> bakeDirect(const DirectPass& pass, const TracedScene
   const DirectSettings& settings = pass.settings();
   DirectResult result{.field = makeField(count, settings.order, 1, pass.channels(), pass.columns()),
                       .mapped = makeField(mapped, settings.order, kIncident, pass.channels(), pass.columns()),
-                      .looks = {std::vector<std::uint8_t>(count, 0), std::vector<std::uint8_t>(count, 0)},
+                      .looks = {std::vector<std::uint8_t>(count, 0), std::vector<RayCount>(count)},
                       .hits = HitStore(own, settings.keep_hits ? settings.hit_memory : 0)};
   const auto paint = [&](std::size_t first, RangeHits& hits) {
-    pass.paint(first, std::span(result.looks.double_rays).subspan(first), hits);
+    pass.paint(first, std::span(std::as_const(result.looks.ray_counts)).subspan(first), hits);
   };
   TracedRanges ranges(scene, own, {settings.keep_hits, context.keeps()}, paint, result.hits);
   const bool grey_lights = scene.colors.greyEmission();
@@ -188,7 +187,7 @@ std::optional<DirectResult> bakeDirect(const DirectPass& pass, const TracedScene
       runStage({.name = stage,
                 .count = own,
                 .grain = kSamplesPerRange,
-                .writes = {rowsOf(result.looks.valid), rowsOf(result.looks.double_rays),
+                .writes = {rowsOf(result.looks.valid), rowsOf(result.looks.ray_counts),
                            directRows(result.field, grey_lights),
                            directRows(result.mapped, grey_lights, -static_cast<std::ptrdiff_t>(first_mapped)),
                            ranges.output()},

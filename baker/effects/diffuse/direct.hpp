@@ -6,6 +6,7 @@
 // passed on to the bounces.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,7 +28,7 @@ namespace lambent::baker {
 
 struct DirectSettings {
   int order = 5;           // 1..8
-  std::size_t rays = 512;  // per sample over its hemisphere, at least 128; some samples take twice as many
+  std::size_t rays = 512;  // per sample over its hemisphere, at least 128; see RayCount
   bool keep_hits = false;  // keep hits for the bounces
   // Hits of every n-th ray are kept. Samples that take twice the rays keep them of every 2n-th: they do so
   // for the edges of what is near, and light that bounces is smooth.
@@ -56,10 +57,10 @@ class DirectPass {
  public:
   DirectPass(const TracedScene& scene, const DirectSettings& settings);
 
-  // With `double_rays`, returns the directions for samples that take twice the rays.
-  const Hemisphere& hemisphereOf(std::size_t sample, bool double_rays) const {
-    if (sample < scene_.samples.normal_mapped.begin) return double_rays ? diffuse_double_rays_ : diffuse_;
-    return double_rays ? *mapped_double_rays_ : *mapped_;
+  // Returns the directions of a sample's rays.
+  const Hemisphere& hemisphereOf(std::size_t sample, RayCount count) const {
+    const auto& kind = sample < scene_.samples.normal_mapped.begin ? diffuse_ : mapped_;
+    return *kind[static_cast<std::size_t>(count)];
   }
   std::uint32_t columns() const { return columns_; }
   std::uint32_t channels() const { return channels_; }
@@ -72,8 +73,8 @@ class DirectPass {
   // samples are left out, since with a million rays per sample a range takes seconds.
   std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, DirectResult& out,
                      RangeHits& hits) const;
-  // Gives hits of samples that begin with `first` their colours. `double_rays` are theirs.
-  void paint(std::size_t first, std::span<const std::uint8_t> double_rays, RangeHits& hits) const;
+  // Gives hits of samples that begin with `first` their colours. `ray_counts` are theirs.
+  void paint(std::size_t first, std::span<const RayCount> ray_counts, RangeHits& hits) const;
   // Fills in only the hits, the same as those of bake() and with colours.
   void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
 
@@ -82,8 +83,8 @@ class DirectPass {
   TracedScene scene_;
   DirectSettings settings_;
   InsideTestTables inside_test_;
-  Hemisphere diffuse_, diffuse_double_rays_;
-  std::optional<Hemisphere> mapped_, mapped_double_rays_;  // set if there are normal-mapped samples
+  // By RayCount. Those of normal-mapped samples are set if there are any.
+  std::array<std::optional<Hemisphere>, kRayCounts> diffuse_, mapped_;
   Emitters emitters_;
   std::uint32_t channels_, columns_;
 };

@@ -16,7 +16,7 @@ namespace {
 // vertices it would cost as much as the vertices.
 constexpr float kLeastChange = 0.15f;
 // Mostly bounced light comes to a triangle that gets less than this share of open light. It is large if an
-// edge is at least this share of the group's diagonal.
+// edge is at least this share of the extent of what is seen.
 constexpr float kMostOpen = 0.5f, kLargeEdge = 1.0f / 256.0f;
 // Uniform light of radiance 1 has sqrt(4 pi) as its coefficient 0 and no others.
 constexpr float kUniform = 3.54490770f;
@@ -63,7 +63,9 @@ auto partOf(Values& values, const SampleStretch& stretch, std::size_t width) {
 std::vector<std::uint32_t> changingDiffuse(const TracedScene& scene, const TransferField& direct) {
   const GroupGeometry& geometry = scene.geometry;
   const SampleSet& samples = scene.samples;
-  const float large = kLargeEdge * glm::distance(geometry.bounds_min, geometry.bounds_max);
+  const float large =
+      kLargeEdge *
+      (scene.importance ? scene.importance->extent : glm::distance(geometry.bounds_min, geometry.bounds_max));
   const std::size_t width = direct.vectorSize();
   std::vector<std::uint8_t> changes(geometry.triangles.size(), 0);
   for (const SampleStretch& stretch : {samples.diffuse, samples.normal_mapped})
@@ -73,7 +75,7 @@ std::vector<std::uint32_t> changingDiffuse(const TracedScene& scene, const Trans
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
     const glm::uvec3 corners = geometry.triangles[t];
-    if (samples.vertex_sample[corners.x] >= samples.glossy.begin) continue;
+    if (samples.vertex_sample[corners.x] >= samples.glossy.begin || !scene.matters(t)) continue;
     float change = 0.0f, light = 0.0f, open = 0.0f;
     for (int c = 0; c < 3; ++c) {
       const auto here = direct.at(samples.vertex_sample[corners[c]]);

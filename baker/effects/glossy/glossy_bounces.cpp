@@ -272,7 +272,7 @@ glm::vec3 GlossyBounces::albedo(const GatherHit& hit, const glm::vec3& to) const
 
 void GlossyBounces::visitHits(std::size_t sample, const ExitRadiance& exit, const TakeHit& take) const {
   const std::size_t s = sample - pass_.first();
-  const GlossyHemisphere& hemisphere = pass_.hemisphereOf(diffuse_.looks.double_rays[sample] != 0);
+  const GlossyHemisphere& hemisphere = pass_.hemisphereOf(diffuse_.looks.ray_counts[sample]);
   const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(pass_.scene().samples.normals[sample]))));
   const StoredHits hits(direct_.hits, pass_, s, s + 1);
   // Rays are uniform over the hemisphere, over which the cosine has the mean 1/2.
@@ -292,8 +292,7 @@ bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& n
     const StoredHits hits(at.hits, at.pass, begin, end);
     Walk walk(at.pass, bounce);
     for (std::size_t s = begin; s < end; ++s) {
-      const GlossyHemisphere& hemisphere =
-          at.pass.hemisphereOf(at.looks.double_rays[at.pass.first() + s] != 0);
+      const GlossyHemisphere& hemisphere = at.pass.hemisphereOf(at.looks.ray_counts[at.pass.first() + s]);
       walk.gather(s, hits, raysTogether(share, hemisphere.table().size()), hemisphere, now);
     }
   };

@@ -89,7 +89,7 @@ class GlossyPass::Walk {
 
   std::uint32_t look(std::size_t sample) {
     look_.stand(pass_.first() + sample);
-    hemisphere_ = &pass_.hemisphereOf(look_.double_rays());
+    hemisphere_ = &pass_.hemisphereOf(look_.rayCount());
     return look_.look(hemisphere_->table(),
                       pass_.diffuse_.settings().keep_hits || !pass_.diffuse_.emitters().empty(),
                       BelowHorizon::Mirrored);
@@ -136,8 +136,7 @@ GlossyPass::GlossyPass(const DirectPass& plain, const TracedScene& scene, int or
       scene_(scene),
       order_in_(plain.settings().order),
       order_out_(order_out),
-      usual_(plain.settings().rays, order_in_ + order_out - 1, order_out),
-      double_rays_(2 * plain.settings().rays, order_in_ + order_out - 1, order_out),
+      hemispheres_{hemisphere(RayCount::Usual), hemisphere(RayCount::Twice), hemisphere(RayCount::Few)},
       gaunt_(sh::makeGauntTable(order_in_, order_out)) {}
 
 GlossyField GlossyPass::shape() const {
@@ -161,7 +160,7 @@ std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::st
     hits.next();
     traced += walk.look(s);
     looks.valid[first() + s] = walk.looked().valid();
-    looks.double_rays[first() + s] = walk.looked().double_rays();
+    looks.ray_counts[first() + s] = walk.looked().rayCount();
     walk.project(std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()));
     if (lights > 0)
       walk.receiveLights(field.channels, lights,
@@ -172,11 +171,11 @@ std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::st
   return traced;
 }
 
-void GlossyPass::paint(std::size_t begin, std::span<const std::uint8_t> double_rays, RangeHits& hits) const {
+void GlossyPass::paint(std::size_t begin, std::span<const RayCount> ray_counts, RangeHits& hits) const {
   const auto direction = [&](std::size_t s, std::uint32_t ray) {
     const glm::mat3 frame(
         localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[first() + begin + s]))));
-    return frame * hemisphereOf(double_rays[s] != 0).direction(ray);
+    return frame * hemisphereOf(ray_counts[s]).direction(ray);
   };
   paintHits(scene_, first() + begin, direction, hits);
 }
@@ -235,7 +234,7 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
   field.visibility.resize(count * field.visibilitySize());
   field.lights_shadowed.resize(count * per_sample);
   const auto paint = [&](std::size_t begin, RangeHits& hits) {
-    pass.paint(begin, std::span(looks.double_rays).subspan(pass.first() + begin), hits);
+    pass.paint(begin, std::span(std::as_const(looks.ray_counts)).subspan(pass.first() + begin), hits);
   };
   TracedRanges ranges(pass.scene(), count, {keep_hits, context.keeps()}, paint, result.hits);
   const auto compute = [&](std::size_t begin, std::size_t end) {
@@ -248,7 +247,7 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
       runStage({.name = stage,
                 .count = count,
                 .grain = kSamplesPerRange,
-                .writes = {rowsOf(looks.valid, 1, first), rowsOf(looks.double_rays, 1, first),
+                .writes = {rowsOf(looks.valid, 1, first), rowsOf(looks.ray_counts, 1, first),
                            rowsOf(field.visibility, field.visibilitySize()),
                            repeatingRows(field.lights_shadowed, per_sample, kept_lights), ranges.output()},
                 .compute = compute,

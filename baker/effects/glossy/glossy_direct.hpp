@@ -4,6 +4,7 @@
 //   t = Σ_k (A_l/pi) y_k(n) M_k.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -26,7 +27,9 @@ class GlossyPass {
 
   const DirectPass& plain() const { return diffuse_; }
   const TracedScene& scene() const { return scene_; }
-  const GlossyHemisphere& hemisphereOf(bool double_rays) const { return double_rays ? double_rays_ : usual_; }
+  const GlossyHemisphere& hemisphereOf(RayCount count) const {
+    return hemispheres_[static_cast<std::size_t>(count)];
+  }
   const sh::GauntTable& gaunt() const { return gaunt_; }
   std::size_t first() const { return scene_.samples.glossy.begin; }
   std::size_t size() const { return scene_.samples.glossy.size(); }
@@ -36,7 +39,7 @@ class GlossyPass {
   // These do what those of DirectPass do. `looks` has all samples of the group.
   std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, GlossyField& field,
                      SampleVisibilities& looks, RangeHits& hits) const;
-  void paint(std::size_t first, std::span<const std::uint8_t> double_rays, RangeHits& hits) const;
+  void paint(std::size_t first, std::span<const RayCount> ray_counts, RangeHits& hits) const;
   void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
 
  private:
@@ -44,7 +47,11 @@ class GlossyPass {
   const DirectPass& diffuse_;
   TracedScene scene_;
   int order_in_, order_out_;
-  GlossyHemisphere usual_, double_rays_;
+  GlossyHemisphere hemisphere(RayCount count) const {
+    return {raysOf(count, diffuse_.settings().rays), order_in_ + order_out_ - 1, order_out_};
+  }
+
+  std::array<GlossyHemisphere, kRayCounts> hemispheres_;
   sh::GauntTable gaunt_;
 };
 

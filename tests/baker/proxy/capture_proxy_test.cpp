@@ -25,7 +25,7 @@ using testing::sceneOf;
 using testing::Transport;
 
 bundle::CaptureProxy proxyOf(const Transport& t) {
-  return makeCaptureProxy(t.geometry, t.samples, t.colors);
+  return makeCaptureProxy(t.geometry, t.samples, t.colors, Importance(t.geometry, t.rays, {}));
 }
 
 bundle::MeshData meshOf(const assets::Mesh& from) {
