@@ -23,10 +23,8 @@ Result<DistantLights> loadDistantLights(
     } else if (const auto* file = std::get_if<EnvironmentMapLight>(&light)) {
       Result<EnvironmentMap> environment_map = load(*file);
       if (!environment_map) return failAgain(environment_map.error());
-      if (environment_map->texels_mended > 0)
-        out.notices.push_back(
-            file->file.string() + ": " + std::to_string(environment_map->texels_mended) +
-            " texels have values that are negative, not finite or above 1e15, which count as 0");
+      for (const std::string& notice : environment_map->image.notices)
+        out.notices.push_back(file->file.string() + ": " + notice);
       out.environment_maps.push_back(std::move(*environment_map));
     }
   }

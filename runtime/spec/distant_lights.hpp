@@ -31,7 +31,7 @@ struct DistantLights {
   std::vector<EnvironmentMap> environment_maps;
   std::vector<Disc> discs;
   glm::vec3 constant{0.0f};
-  // Sentences about repairs to the environment maps.
+  // Sentences about what is odd in files of environment maps, and what was made of it.
   std::vector<std::string> notices;
 
   // Return bands 0..7, with environment maps projected texel by texel and discs and the constant in closed

@@ -118,16 +118,7 @@ Result<EnvironmentMap> loadEnvironmentMap(const EnvironmentMapLight& light) {
     return fail(light.file.string(),
                 "its shape (" + shape + ") cannot be read as " + std::string(sh::name(*layout)),
                 "choose another --light-layout, or leave it out");
-  EnvironmentMap environment_map{std::move(*image), *layout, 0};
-  for (glm::vec3& texel : environment_map.image.texels) {
-    const glm::vec3 stored = texel;
-    // Filters that sharpen leave some values below 0. One that is not finite makes its texel useless.
-    const bool usable = std::max({stored.r, stored.g, stored.b}) <= kMostRadiance &&
-                        !std::isnan(stored.r + stored.g + stored.b);
-    texel = usable ? glm::max(stored, glm::vec3(0.0f)) : glm::vec3(0.0f);
-    environment_map.texels_mended += texel != stored;
-  }
-  return environment_map;
+  return EnvironmentMap{std::move(*image), *layout};
 }
 
 glm::vec3 radiance(const EnvironmentMap& environment_map, glm::vec3 dir) {

@@ -1,10 +1,8 @@
 // An EnvironmentMap is a picture of light from the whole sphere, with its layout, that is looked up by
 // direction. Look-ups are filtered bilinearly on the sphere: lat-long pictures wrap around and across the
 // poles, crosses filter from face to face and never use their empty squares, and angular maps stay inside
-// their circle. Values that are no radiances (negative, not finite) count as 0.
+// their circle.
 #pragma once
-
-#include <cstdint>
 
 #include <glm/vec3.hpp>
 
@@ -16,9 +14,8 @@
 namespace lambent::spec {
 
 struct EnvironmentMap {
-  RgbImage image;  // every value finite
+  RgbImage image;
   sh::ImageLayout layout = sh::ImageLayout::LatLong;
-  std::uint64_t texels_mended = 0;  // texels with values that are no radiances, which count as 0
 };
 
 // Fails as readLightImage does, and if the shape of the picture belongs to no layout or not to the requested

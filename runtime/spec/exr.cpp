@@ -4,6 +4,7 @@
 #include <cstring>
 #include <exception>
 #include <limits>
+#include <optional>
 
 #include <Imath/ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -11,12 +12,15 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 
 #include "runtime/spec/file_bytes.hpp"
 #include "runtime/spec/image.hpp"
+#include "runtime/spec/primaries.hpp"
 
 namespace lambent::spec {
 
@@ -76,24 +80,56 @@ std::vector<Value> toDisplayWindow(std::vector<Value> data, const Imath::Box2i& 
   return values;
 }
 
-Result<RgbaImage> readOpened(Imf::InputFile& file, const std::filesystem::path& path,
-                             std::uint64_t file_bytes) {
-  const Imath::Box2i data = file.header().dataWindow(), display = file.header().displayWindow();
+bool hasColors(const Imf::ChannelList& channels) {
+  return isWholeChannel(channels, "R") && isWholeChannel(channels, "G") && isWholeChannel(channels, "B");
+}
+
+// Chroma (RY, BY) comes at half the resolution, so that such pictures are not grey.
+bool isGrey(const Imf::ChannelList& channels) {
+  return isWholeChannel(channels, "Y") && !channels.findChannel("RY");
+}
+
+// Returns the first part that holds a picture. Depth and masks may come before it.
+Result<int> pictureIn(const Imf::MultiPartInputFile& file, const std::filesystem::path& path) {
+  std::string names;
+  for (int part = 0; part < file.parts(); ++part) {
+    const Imf::Header& header = file.header(part);
+    const bool deep = header.hasType() && Imf::isDeepData(header.type());
+    if (!deep && (hasColors(header.channels()) || isGrey(header.channels()))) return part;
+    names += (names.empty() ? "" : "; ") + std::string(deep ? "deep " : "") + channelNames(header.channels());
+  }
+  return fail(path.string(), "has no channels R, G and B (it has " + names + ")",
+              "save it as RGB at full resolution, one sample per pixel");
+}
+
+// Attributes whiteLuminance and expTime are of no use here: both say how bright the place was, and only the
+// ratio between the lights of a scene matters, which would change between a file that says so and one that
+// does not.
+std::optional<glm::mat3> rec709From(const Imf::Header& header) {
+  if (!Imf::hasChromaticities(header)) return glm::mat3(1.0f);  // the format's default is Rec. 709
+  const Imf::Chromaticities& said = Imf::chromaticities(header);
+  const auto xy = [](const Imath::V2f& from) { return glm::dvec2(from.x, from.y); };
+  return rec709From(Primaries{xy(said.red), xy(said.green), xy(said.blue), xy(said.white)});
+}
+
+Result<CodedExr> readOpened(Imf::MultiPartInputFile& file, const std::filesystem::path& path,
+                            std::uint64_t file_bytes) {
+  const Result<int> part = pictureIn(file, path);
+  if (!part) return failAgain(part.error());
+  const Imf::Header& header = file.header(*part);
+  const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
   constexpr std::uint64_t kTexelsPerByte = 4096;  // far more than any compression of OpenEXR reaches
   for (const Imath::Box2i& window : {data, display})
     if (const auto checked = checkImageSize(path, extent(window.min.x, window.max.x),
                                             extent(window.min.y, window.max.y), file_bytes, kTexelsPerByte);
         !checked)
       return failAgain(checked.error());
+  if (!data.intersects(display))
+    return fail(path.string(), "shows none of its texels: its data window lies outside its display window",
+                "save it without a crop");
 
-  const Imf::ChannelList& channels = file.header().channels();
-  const bool rgb =
-      isWholeChannel(channels, "R") && isWholeChannel(channels, "G") && isWholeChannel(channels, "B");
-  const bool grey = !rgb && isWholeChannel(channels, "Y") && !channels.findChannel("RY");
-  if (!rgb && !grey)
-    return fail(path.string(), "has no channels R, G and B (it has " + channelNames(channels) + ")",
-                "save it as RGB at full resolution");
-
+  const Imf::ChannelList& channels = header.channels();
+  const bool rgb = hasColors(channels);
   const std::size_t count = extent(data.min.x, data.max.x) * extent(data.min.y, data.max.y);
   std::vector<glm::vec4> texels(count);
   std::vector<float> depths(isWholeChannel(channels, kDepthChannel) ? count : 0);
@@ -113,27 +149,28 @@ Result<RgbaImage> readOpened(Imf::InputFile& file, const std::filesystem::path& 
   }
   color("A", 3, 1.0);
   if (!depths.empty()) slice(kDepthChannel, depths.data(), sizeof(float), 0.0);
-  file.setFrameBuffer(target);
-  file.readPixels(data.min.y, data.max.y);
-  if (grey)
+  Imf::InputPart picture(file, *part);
+  picture.setFrameBuffer(target);
+  picture.readPixels(data.min.y, data.max.y);
+  if (!rgb)
     for (glm::vec4& texel : texels) texel.y = texel.z = texel.x;
   RgbaImage image{.width = static_cast<std::uint32_t>(extent(display.min.x, display.max.x)),
                   .height = static_cast<std::uint32_t>(extent(display.min.y, display.max.y)),
                   .texels = toDisplayWindow(std::move(texels), data, display, glm::vec4(0.0f))};
   if (!depths.empty())
     image.depths = toDisplayWindow(std::move(depths), data, display, std::numeric_limits<float>::infinity());
-  return image;
+  return CodedExr{std::move(image), rec709From(header)};
 }
 
 }  // namespace
 
-Result<RgbaImage> readExr(const std::filesystem::path& path) {
+Result<CodedExr> readCodedExr(const std::filesystem::path& path) {
   if (auto checked = checkRegularFile(path, "an .exr file"); !checked) return failAgain(checked.error());
   std::error_code code;
   const std::uint64_t file_bytes = std::filesystem::file_size(path, code);
   if (code) return fail(path.string(), "cannot be read", "check its permissions");
   try {
-    Imf::InputFile file(path.c_str(), /*numThreads=*/0);
+    Imf::MultiPartInputFile file(path.c_str(), /*numThreads=*/0);
     return readOpened(file, path, file_bytes);
   } catch (const std::exception& error) {
     std::string what = error.what();
@@ -141,6 +178,15 @@ Result<RgbaImage> readExr(const std::filesystem::path& path) {
     return fail(path.string(), "is not a readable OpenEXR picture: " + what,
                 "copy, download or export it again");
   }
+}
+
+Result<RgbaImage> readExr(const std::filesystem::path& path) {
+  Result<CodedExr> coded = readCodedExr(path);
+  if (!coded) return failAgain(std::move(coded.error()));
+  const glm::mat3 matrix = coded->rec709_from_file.value_or(glm::mat3(1.0f));
+  if (matrix != glm::mat3(1.0f))
+    for (glm::vec4& texel : coded->image.texels) texel = glm::vec4(matrix * glm::vec3(texel), texel.a);
+  return std::move(coded->image);
 }
 
 Result<void> writeExr(const std::filesystem::path& path, const RgbaImage& image) {

@@ -1,12 +1,13 @@
-// Reads and writes picture files. It reads light images (.hdr Radiance RGBE; .exr OpenEXR, scanline or tiled,
-// half or float) and all that it writes: PNG (8 bits, already tone-mapped and sRGB), linear EXR (float32 RGBA
-// and depths) and Radiance. Row 0 is the top. Values are linear Rec.709. Files are written whole or not at
-// all. Errors name the file and say whether it is missing, of another type, truncated, damaged or too large.
-// Nothing throws.
+// Reads and writes picture files. It reads light images (.hdr Radiance RGBE or XYZE; .exr OpenEXR, scanline
+// or tiled, half or float) and all that it writes: PNG (8 bits, already tone-mapped and sRGB), linear EXR
+// (float32 RGBA and depths) and Radiance. Row 0 is the top. Values are linear Rec.709, to which those of
+// other primaries that a file names are converted. Files are written whole or not at all. Errors name the
+// file and say whether it is missing, of another type, truncated, damaged or too large. Nothing throws.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -22,6 +23,8 @@ inline constexpr std::uint64_t kMaxImageTexels = std::uint64_t{1} << 27;
 struct RgbImage {
   std::uint32_t width = 0, height = 0;
   std::vector<glm::vec3> texels;  // row-major, width * height
+  // Sentences without a subject about what is odd in the file, and what was made of it.
+  std::vector<std::string> notices = {};
 };
 
 struct RgbaImage {
@@ -41,10 +44,13 @@ struct Rgba8Image {
   std::vector<std::uint8_t> texels;  // 4 * width * height
 };
 
-// Reads .hdr or .exr, which it distinguishes by the bytes, not the name. Values may be NaN or infinite.
+// Reads .hdr or .exr, which it distinguishes by the bytes, not the name. All values are radiances: negative
+// ones and NaN count as 0. What is infinite or above kMostRadiance (light.hpp) counts as 65504, the largest
+// half float, since it is mostly a sun that half floats could not hold.
 Result<RgbImage> readLightImage(const std::filesystem::path& path);
 
-// Alpha is 1 if the file has none. Depths are the channel Z, if the file has it.
+// Values may be negative, NaN or infinite. Alpha is 1 if the file has none. Depths are the channel Z, if the
+// file has it.
 Result<RgbaImage> readExr(const std::filesystem::path& path);
 // Writes depths, if there are any, as the channel Z. Says in the file that colours are those of Rec. 709.
 Result<void> writeExr(const std::filesystem::path& path, const RgbaImage& image);

@@ -1,7 +1,11 @@
-// Reads and writes Radiance RGBE pictures. A file has text lines up to an empty one, the line "-Y height +X
-// width", and then scanlines. A scanline is flat (4 bytes per texel), old run-length coded (1 1 1 n repeats)
-// or new run-length coded (2 2 width, then the four components one after the other). G. Ward, "Real Pixels",
-// Graphics Gems II, 1991.
+// Reads and writes Radiance RGBE pictures. A file has text lines up to an empty one, a line such as "-Y
+// height +X width", and then scanlines. A scanline is flat (4 bytes per texel), old run-length coded (1 1 1 n
+// repeats) or new run-length coded (2 2 width, then the four components one after the other). G. Ward, "Real
+// Pixels", Graphics Gems II, 1991.
+//
+// Each program that scales a picture adds a line EXPOSURE= or COLORCORR= to what is there, and radiance is
+// what all of these factors divide. Radiance's own manual indents the lines of pictures that went into this
+// one, and they do not count.
 //
 // A component is m * 2^(e - 136). Ward's own reader adds half a step (m + 0.5), but common viewers of
 // environment maps do not, so the encoder below rounds to nearest.
@@ -9,9 +13,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "runtime/spec/file_bytes.hpp"
 #include "runtime/spec/image.hpp"
+#include "runtime/spec/numbers.hpp"
+#include "runtime/spec/primaries.hpp"
 
 namespace lambent::spec {
 
@@ -116,10 +123,94 @@ bool readScanline(Bytes& in, std::vector<Rgbe>& scanline) {
   return true;
 }
 
-bool parseCount(std::string_view& text, std::uint64_t& value) {
-  const auto [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
-  return code == std::errc{};
+struct Header {
+  std::string_view format = "32-bit_rle_rgbe";
+  glm::vec3 scale{1.0f};  // from values in the file to radiance
+  std::optional<Primaries> primaries = {};
+  std::vector<std::string> notices = {};
+};
+
+std::vector<float> numbersIn(std::string_view text) {
+  constexpr std::string_view kSpaces = " \t\r";
+  std::vector<float> numbers;
+  while (text.find_first_not_of(kSpaces) != std::string_view::npos) {
+    text.remove_prefix(text.find_first_not_of(kSpaces));
+    const std::size_t size = std::min(text.find_first_of(kSpaces), text.size());
+    const std::optional<float> number = parseNumber(text.substr(0, size));
+    if (!number) return {};
+    numbers.push_back(*number);
+    text.remove_prefix(size);
+  }
+  return numbers;
+}
+
+// Return false if a line has no usable numbers.
+bool takeFactors(const std::vector<float>& factors, std::size_t count, glm::vec3& scale) {
+  if (factors.size() != count) return false;
+  const glm::vec3 by =
+      scale / (count == 1 ? glm::vec3(factors[0]) : glm::vec3(factors[0], factors[1], factors[2]));
+  constexpr float kMost = 1e15f;
+  for (int channel = 0; channel < 3; ++channel)
+    if (!(by[channel] > 1.0f / kMost && by[channel] < kMost)) return false;
+  scale = by;
+  return true;
+}
+
+bool takePrimaries(const std::vector<float>& xy, std::optional<Primaries>& primaries) {
+  if (xy.size() != 8) return false;
+  if (std::ranges::all_of(xy, [](float value) { return value == 0.0f; })) return true;  // Photoshop: unknown
+  const Primaries said{{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}};
+  if (!rec709From(said)) return false;
+  primaries = said;
+  return true;
+}
+
+Header readHeader(Bytes& in) {
+  Header header;
+  for (std::string_view line = in.line(); !line.empty() && line != "\r"; line = in.line()) {
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::size_t equals = line.find('=');
+    if (equals == std::string_view::npos) continue;
+    const std::string_view name = line.substr(0, equals), value = line.substr(equals + 1);
+    if (name == "FORMAT") header.format = value.substr(std::min(value.find_first_not_of(' '), value.size()));
+    const bool sense = name == "EXPOSURE"    ? takeFactors(numbersIn(value), 1, header.scale)
+                       : name == "COLORCORR" ? takeFactors(numbersIn(value), 3, header.scale)
+                       : name == "PRIMARIES" ? takePrimaries(numbersIn(value), header.primaries)
+                                             : true;
+    if (!sense)
+      header.notices.push_back("has no usable numbers in its line \"" + std::string(line) +
+                               "\", which is ignored");
+  }
+  return header;
+}
+
+// In which order texels follow one another.
+struct Order {
+  bool columns = false;  // scanlines are columns of the picture
+  bool from_right = false, from_below = false;
+  std::uint64_t width = 0, height = 0;
+};
+
+// Parses lines such as "-Y 512 +X 1024": y falls from scanline to scanline, x grows along each.
+std::optional<Order> parseOrder(std::string_view text) {
+  Order order;
+  std::string axes;
+  for (int axis = 0; axis < 2; ++axis) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    if (text.size() < 3 || (text[0] != '-' && text[0] != '+')) return std::nullopt;
+    const bool falls = text[0] == '-', x = text[1] == 'X';
+    axes += text[1];
+    text.remove_prefix(2);
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    const auto [stop, code] =
+        std::from_chars(text.data(), text.data() + text.size(), x ? order.width : order.height);
+    if (code != std::errc{}) return std::nullopt;
+    text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
+    (x ? order.from_right : order.from_below) = x ? falls : !falls;
+  }
+  if (axes != "YX" && axes != "XY") return std::nullopt;
+  order.columns = axes == "XY";
+  return order;
 }
 
 void appendRuns(const std::vector<Rgbe>& scanline, std::size_t component, std::string& out) {
@@ -151,37 +242,42 @@ Result<RgbImage> readHdr(const std::filesystem::path& path) {
   Bytes in(*text);
   if (!in.line().starts_with("#?"))
     return fail(path.string(), "is not a Radiance picture", "name a .hdr file");
-  bool rgbe = true;
-  for (std::string_view line = in.line(); !line.empty() && line != "\r"; line = in.line())
-    if (line.starts_with("FORMAT=")) rgbe = line.starts_with("FORMAT=32-bit_rle_rgbe");
-  if (!rgbe) return fail(path.string(), "is not in RGB (FORMAT is not 32-bit_rle_rgbe)", "convert it to RGB");
-
-  std::string_view size = in.line();
-  std::uint64_t width = 0, height = 0;
-  const auto skip = [&](std::string_view word) {
-    const bool there = size.starts_with(word);
-    if (there) size.remove_prefix(word.size());
-    return there;
-  };
-  if (!(skip("-Y ") && parseCount(size, height) && skip(" +X ") && parseCount(size, width)) || in.ranOut())
-    return fail(path.string(), "its size line is not \"-Y height +X width\"",
-                "save it upright, from top to bottom, left to right");
+  Header header = readHeader(in);
+  const bool xyze = header.format.starts_with("32-bit_rle_xyze");
+  if (!xyze && !header.format.starts_with("32-bit_rle_rgbe"))
+    return fail(path.string(), "is neither in RGB nor in XYZ (FORMAT=" + std::string(header.format) + ")",
+                "convert it to RGB");
+  const std::optional<Order> order = parseOrder(in.line());
+  if (!order || in.ranOut())
+    return fail(path.string(), "its size line is not as \"-Y height +X width\"", "save it again");
   // New runs need at least 2 bytes for 127 values of each of 4 components. Old runs need 4 bytes for 255 <<
   // 16 texels, but nobody writes them any more, so 4096 texels per byte are generous.
-  if (const auto checked = checkImageSize(path, width, height, in.rest().size(), /*texels_per_byte=*/4096);
+  if (const auto checked = checkImageSize(path, order->width, order->height, in.rest().size(),
+                                          /*texels_per_byte=*/4096);
       !checked)
     return failAgain(checked.error());
 
-  RgbImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
-  image.texels.reserve(width * height);
-  std::vector<Rgbe> scanline(width);
-  for (std::uint64_t y = 0; y < height; ++y) {
+  const glm::mat3 colors = xyze               ? rec709FromXyz()
+                           : header.primaries ? *rec709From(*header.primaries)
+                                              : glm::mat3(1.0f);
+  const bool converts = colors != glm::mat3(1.0f);
+  RgbImage image{static_cast<std::uint32_t>(order->width), static_cast<std::uint32_t>(order->height),
+                 std::vector<glm::vec3>(order->width * order->height), std::move(header.notices)};
+  const std::uint64_t scanlines = order->columns ? order->width : order->height;
+  std::vector<Rgbe> scanline(order->columns ? order->height : order->width);
+  for (std::uint64_t line = 0; line < scanlines; ++line) {
     if (!readScanline(in, scanline))
       return fail(path.string(),
-                  std::string(in.ranOut() ? "is truncated" : "is damaged") + " in row " + std::to_string(y) +
-                      " of " + std::to_string(height),
+                  std::string(in.ranOut() ? "is truncated" : "is damaged") + " in scanline " +
+                      std::to_string(line) + " of " + std::to_string(scanlines),
                   "copy or download it again");
-    for (const Rgbe texel : scanline) image.texels.push_back(decode(texel));
+    for (std::uint64_t i = 0; i < scanline.size(); ++i) {
+      const glm::vec3 color = header.scale * decode(scanline[i]);
+      const std::uint64_t right = order->columns ? line : i, down = order->columns ? i : line;
+      const std::uint64_t x = order->from_right ? order->width - 1 - right : right,
+                          y = order->from_below ? order->height - 1 - down : down;
+      image.texels[y * order->width + x] = converts ? colors * color : color;
+    }
   }
   return image;
 }

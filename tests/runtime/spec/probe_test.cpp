@@ -26,7 +26,7 @@ constexpr Shape kShapes[] = {{ImageLayout::LatLong, 128, 64},
 template <typename Function>
 EnvironmentMap picture(const Shape& shape, const Function& f) {
   constexpr float kPoison = 1e6f;
-  EnvironmentMap environment_map{{shape.width, shape.height, {}}, shape.layout, 0};
+  EnvironmentMap environment_map{{shape.width, shape.height, {}}, shape.layout};
   for (int y = 0; y < static_cast<int>(shape.height); ++y)
     for (int x = 0; x < static_cast<int>(shape.width); ++x) {
       const glm::dvec3 dir = sh::texelDirection(shape.layout, static_cast<int>(shape.width),
@@ -114,21 +114,27 @@ TEST(SpecEnvironmentMap, TinyPicturesAreLookedUpToo) {
   }
 }
 
-TEST(SpecEnvironmentMap, ValuesThatAreNoRadiancesAreBlackAndCounted) {
+TEST(SpecEnvironmentMap, ValuesThatAreNoRadiancesAreReplacedAndCounted) {
   const auto path = std::filesystem::path(::testing::TempDir()) / "lambent_spec_not_finite.exr";
   RgbaImage image{4, 2, std::vector<glm::vec4>(8, glm::vec4(1.0f))};
   image.texels[1].x = std::numeric_limits<float>::quiet_NaN();
   image.texels[6].z = -std::numeric_limits<float>::infinity();
   image.texels[3].y = -0.25f;  // as filters leave it
   image.texels[5].x = 3e38f;
+  image.texels[0].y = std::numeric_limits<float>::infinity();  // a sun that half floats cannot hold
   ASSERT_TRUE(writeExr(path, image));
   const Result<EnvironmentMap> environment_map = loadEnvironmentMap({path, {}});
   ASSERT_TRUE(environment_map) << environment_map.error().line();
-  EXPECT_EQ(environment_map->texels_mended, 4u);
-  EXPECT_EQ(environment_map->image.texels[3], glm::vec3(1.0f, 0.0f, 1.0f));
-  EXPECT_EQ(environment_map->image.texels[5], glm::vec3(0.0f));
-  EXPECT_EQ(environment_map->image.texels[1], glm::vec3(0.0f));
-  EXPECT_EQ(environment_map->image.texels[2], glm::vec3(1.0f));
+  const std::vector<glm::vec3>& texels = environment_map->image.texels;
+  EXPECT_EQ(texels[0], glm::vec3(1.0f, 65504.0f, 1.0f));
+  EXPECT_EQ(texels[1], glm::vec3(0.0f, 1.0f, 1.0f));
+  EXPECT_EQ(texels[2], glm::vec3(1.0f));
+  EXPECT_EQ(texels[3], glm::vec3(1.0f, 0.0f, 1.0f));
+  EXPECT_EQ(texels[5], glm::vec3(65504.0f, 1.0f, 1.0f));
+  EXPECT_EQ(texels[6], glm::vec3(1.0f, 1.0f, 0.0f));
+  ASSERT_EQ(environment_map->image.notices.size(), 2u);
+  EXPECT_TRUE(environment_map->image.notices[0].starts_with("is negative or no number in 3 of 8 texels"));
+  EXPECT_TRUE(environment_map->image.notices[1].starts_with("is infinite or above 1e15 in 2 of 8 texels"));
   std::filesystem::remove(path);
 }
 
