@@ -12,6 +12,7 @@
 #include "baker/bake/option_rows.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
+#include "baker/plan/counted.hpp"
 #include "baker/sweep/advice.hpp"
 #include "baker/sweep/sweep.hpp"
 #include "baker/sweep/write_results.hpp"
@@ -81,8 +82,8 @@ class Lines {
   }
   void measured(std::size_t done, std::size_t all, const Measured& m) const {
     const Figures& f = m.picture.as_light_is;
-    fmt::print(stderr, "{}lambent: {} of {}  {}: {:.2f} % wrong, bake {}, frame {:.1f} ms, {}\n",
-               terminal_ ? "\r\033[K" : "", done, all, titleOf(m), 100.0 * f.rms,
+    fmt::print(stderr, "{}lambent: {} of {}  {}: {} wrong, bake {}, frame {:.1f} ms, {}\n",
+               terminal_ ? "\r\033[K" : "", done, all, titleOf(m), percentText(f.rms, 2),
                durationText(m.bake.seconds), m.picture.frame_ms,
                bytesText(static_cast<double>(m.bake.bytes)));
   }

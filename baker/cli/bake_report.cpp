@@ -94,16 +94,16 @@ std::string missedText(const FinishedBake& bake) {
   for (const BakeReport::Group& group : bake.report.groups)
     if (const auto& error = group.picture_error;
         error && error->bound > 0.0f && bundle::missesBound(error->all, error->bound))
-      text += fmt::format("{}the error of pictures of \"{}\": {:.2f} instead of {:.2f} %; {}",
-                          text.empty() ? "" : ", ", group.name, 100.0 * double{error->all},
-                          100.0 * double{error->bound}, whyMissed(bake, *error));
+      text += fmt::format("{}the error of pictures of \"{}\": {} instead of {}; {}", text.empty() ? "" : ", ",
+                          group.name, percentText(double{error->all}, 2),
+                          percentText(double{error->bound}, 2), whyMissed(bake, *error));
   if (bake.options.picture_bound == 0.0f && bundle::missesBound(bake.report.worst_error, bound))
-    text = fmt::format("the error bound: {:.2f} instead of {:.2f} %", 100.0 * bake.report.worst_error,
-                       100.0 * bound);
+    text = fmt::format("the error bound: {} instead of {}", percentText(bake.report.worst_error, 2),
+                       percentText(bound, 2));
   if (bake.options.picture_bound == 0.0f && bundle::missesBound(bake.report.worst_glossy_error, glossy_bound))
-    text += fmt::format("{}: {:.2f} instead of {:.2f} %; --codes keeps more, at a price in bytes and time",
+    text += fmt::format("{}: {} instead of {}; --codes keeps more, at a price in bytes and time",
                         text.empty() ? "the error bound of glossy surfaces" : ", of glossy surfaces",
-                        100.0 * bake.report.worst_glossy_error, 100.0 * glossy_bound);
+                        percentText(bake.report.worst_glossy_error, 2), percentText(glossy_bound, 2));
   // Past a tenth, the limit was not kept: the rest is what the bake cannot do without.
   constexpr double kKept = 1.1;
   if (const double limit = static_cast<double>(bake.options.memory_bytes),
@@ -117,19 +117,18 @@ std::string missedText(const FinishedBake& bake) {
 // The estimate takes it that passes shrink as the last two did. Where the last is no darker than the one
 // before, as with a lamp that lights little directly, that says nothing.
 std::string leftOutText(double left_out) {
-  return left_out < 1.0 ? fmt::format("{:.3f} % left out", 100.0 * left_out)
-                        : "too few to tell what is left out";
+  return left_out < 1.0 ? percentText(left_out, 3) + " left out" : "too few to tell what is left out";
 }
 
 }  // namespace
 
 std::string pictureErrorText(const bundle::PictureError& error) {
   return fmt::format(
-      "{:.2f} % wrong{} at {} points that eyes see: {:.2f} % by too few rays, {:.2f} % by codes, {:.2f} % "
-      "between vertices",
-      100.0 * double{error.all},
-      error.bound > 0.0f ? fmt::format(" (bound {:.2f} %)", 100.0 * double{error.bound}) : "", error.points,
-      100.0 * double{error.samples}, 100.0 * double{error.codes}, 100.0 * double{error.interpolation});
+      "{} wrong{} at {} points that eyes see: {} by too few rays, {} by codes, {} between vertices",
+      percentText(double{error.all}, 2),
+      error.bound > 0.0f ? fmt::format(" (bound {})", percentText(double{error.bound}, 2)) : "", error.points,
+      percentText(double{error.samples}, 2), percentText(double{error.codes}, 2),
+      percentText(double{error.interpolation}, 2));
 }
 
 nlohmann::json pictureErrorJson(const std::optional<bundle::PictureError>& error) {
@@ -236,9 +235,9 @@ void printReport(const FinishedBake& bake) {
              r.triangles, r.samples, durationText(secondsOf(r)));
   if (r.texel_samples > 0) fmt::print("  texels    {} of the samples\n", r.texel_samples);
   if (const RefineReport& refined = r.refinement; refined.vertices_after > refined.vertices_before)
-    fmt::print("  refined   {} vertices to {}: shadows between them {:.2f} % wrong, before {:.2f} %{}\n",
-               refined.vertices_before, refined.vertices_after, 100.0 * refined.error_after,
-               100.0 * refined.error_before,
+    fmt::print("  refined   {} vertices to {}: shadows between them {} wrong, before {}{}\n",
+               refined.vertices_before, refined.vertices_after, percentText(refined.error_after, 2),
+               percentText(refined.error_before, 2),
                refined.fans > 0 ? fmt::format("; {} more values where faces disagree", refined.fans) : "");
   for (const BakeReport::Group& group : r.groups)
     if (group.picture_error)
@@ -253,13 +252,12 @@ void printReport(const FinishedBake& bake) {
                countText(static_cast<double>(r.rays_kept)),
                bytesText(static_cast<double>(r.cache.bytes_read)));
   if (!r.pass_energy.empty())
-    fmt::print("  bounces   {}, the last with {:.3f} % of the direct light; {}\n", r.pass_energy.size() - 1,
-               100.0 * r.pass_energy.back(), leftOutText(r.left_out));
+    fmt::print("  bounces   {}, the last with {} of the direct light; {}\n", r.pass_energy.size() - 1,
+               percentText(r.pass_energy.back(), 3), leftOutText(r.left_out));
   for (const BakeReport::Volume& volume : r.volumes)
     fmt::print(
-        "  volume    {}: {} voxels, {} samples, density in {} bits ({:.2f} %), scattering solved in {} "
-        "steps\n",
-        volume.name, volume.voxels, volume.samples, volume.density_bits, 100.0 * volume.density_error,
+        "  volume    {}: {} voxels, {} samples, density in {} bits ({}), scattering solved in {} steps\n",
+        volume.name, volume.voxels, volume.samples, volume.density_bits, percentText(volume.density_error, 2),
         volume.iterations);
   std::uint64_t light_probes = 0, proxy_triangles = 0;
   for (const BakeReport::Group& group : r.groups)
@@ -273,14 +271,14 @@ void printReport(const FinishedBake& bake) {
       bytesText(static_cast<double>(r.transfer_bytes)),
       static_cast<double>(r.transfer_bytes) / static_cast<double>(std::max<std::uint64_t>(r.vertices, 1)),
       bytesText(static_cast<double>(r.proxy_bytes)), bytesText(static_cast<double>(r.image_bytes)));
-  fmt::print("  coding    {:.2f} % relative error of shaded radiance (bound {:.2f} %)\n",
-             100.0 * r.worst_error, 100.0 * codesBoundOf(bake));
+  fmt::print("  coding    {} relative error of shaded radiance (bound {})\n", percentText(r.worst_error, 2),
+             percentText(codesBoundOf(bake), 2));
   if (r.worst_glossy_error > 0.0)
-    fmt::print("            {:.2f} % of glossy surfaces (bound {:.2f} %)\n", 100.0 * r.worst_glossy_error,
-               100.0 * glossyCodesBoundOf(bake));
+    fmt::print("            {} of glossy surfaces (bound {})\n", percentText(r.worst_glossy_error, 2),
+               percentText(glossyCodesBoundOf(bake), 2));
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
-    fmt::print("  around    {}: {} x {} x {} points, {:.3f} % of irradiance, {:.1f} % of the change\n",
-               n.name, n.size.x, n.size.y, n.size.z, 100.0 * n.error, 100.0 * n.change_error);
+    fmt::print("  around    {}: {} x {} x {} points, {} of irradiance, {} of the change\n", n.name, n.size.x,
+               n.size.y, n.size.z, percentText(n.error, 3), percentText(n.change_error));
   if (bake.estimate && r.rays_kept == 0) {
     std::string text;
     for (const Held& held : heldAgainst(*bake.estimate, r))

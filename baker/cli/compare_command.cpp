@@ -11,6 +11,7 @@
 #include "baker/accuracy/shrink.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
+#include "baker/plan/counted.hpp"
 #include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
@@ -27,9 +28,9 @@ struct CompareArguments {
 
 std::string heatLine(const CompareArguments& a, HeatMap map, double range) {
   return map == HeatMap::Signed
-             ? fmt::format("{}: luminance off by -{:g} % (blue) to +{:g} % (red)", a.heat.string(),
-                           100.0 * range, 100.0 * range)
-             : fmt::format("{}: off by 0 (black) to {:g} % (light yellow)", a.heat.string(), 100.0 * range);
+             ? fmt::format("{0}: luminance off by -{1} (blue) to +{1} (red)", a.heat.string(),
+                           percentText(range))
+             : fmt::format("{}: off by 0 (black) to {} (light yellow)", a.heat.string(), percentText(range));
 }
 
 void printDifference(const CompareArguments& a, HeatMap map, const Difference& difference) {
@@ -60,19 +61,18 @@ void printDifference(const CompareArguments& a, HeatMap map, const Difference& d
   fmt::print("{} against {}: {} pixels{}\n", a.picture.string(), a.reference.string(), e.pixels,
              e.pixels_apart ? fmt::format(", {} more covered in one only", e.pixels_apart) : "");
   const bool drowned = e.relative_rms * e.relative_rms < 2.0 * e.relative_square_error;
-  fmt::print("  relative RMS  {:.3f} %{}\n", 100.0 * e.relative_rms,
+  fmt::print("  relative RMS  {}{}\n", percentText(e.relative_rms, 3),
              a.reference2.empty() ? ", the reference's own noise included"
              : drowned            ? ", drowned in the references' noise: give them more --spp"
                                   : ", free of the references' noise");
   if (e.pixels_of_other_surfaces)
-    fmt::print(
-        "  same surfaces {}; {} pixels show another surface\n",
-        e.same_surface_rms ? fmt::format("{:.3f} %", 100.0 * *e.same_surface_rms) : "none that are lit",
-        *e.pixels_of_other_surfaces);
+    fmt::print("  same surfaces {}; {} pixels show another surface\n",
+               e.same_surface_rms ? percentText(*e.same_surface_rms, 3) : "none that are lit",
+               *e.pixels_of_other_surfaces);
   fmt::print("  bias          R {:+.3f} %, G {:+.3f} %, B {:+.3f} %\n", 100.0 * e.bias[0], 100.0 * e.bias[1],
              100.0 * e.bias[2]);
-  fmt::print("  pixels        median {:.3f} %, 95th {:.3f} %, 99th {:.3f} %, max {:.3f} %\n",
-             100.0 * e.median, 100.0 * e.percentile_95, 100.0 * e.percentile_99, 100.0 * e.largest);
+  fmt::print("  pixels        median {}, 95th {}, 99th {}, max {}\n", percentText(e.median, 3),
+             percentText(e.percentile_95, 3), percentText(e.percentile_99, 3), percentText(e.largest, 3));
   if (!a.heat.empty()) fmt::print("  {}\n", heatLine(a, map, difference.range));
 }
 

@@ -187,12 +187,12 @@ void printBundle(const bundle::Reader& reader, const Sizes& sizes) {
           group.volume->transfer_size.z);
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::CellTransfer& transfer : cell.transfers) {
-        fmt::print("  {} {}: {}, {}, {}, {}, error {:.3f} % (bound {:.3f} %)\n", effectName(cell, transfer),
+        fmt::print("  {} {}: {}, {}, {}, {}, error {} (bound {})\n", effectName(cell, transfer),
                    transfer.fromEnvironment() ? fmt::format("order {}", transfer.shape.order)
                                               : counted(transfer.shape.light_columns, "lamp"),
                    partName(transfer.shape), counted(cell.sample_count, "sample"),
                    counted(transfer.clusters, "cluster"), counted(transfer.planes.size(), "plane"),
-                   100.0 * double{transfer.error}, 100.0 * double{transfer.error_bound});
+                   percentText(double{transfer.error}, 3), percentText(double{transfer.error_bound}, 3));
         missed += bundle::missesBound(transfer.error, transfer.error_bound);
         ++transfers;
       }

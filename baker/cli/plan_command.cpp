@@ -6,17 +6,14 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "baker/bake/bake.hpp"
 #include "baker/bake/option_rows.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
-#include "baker/decisions/decisions.hpp"
+#include "baker/cli/plan_text.hpp"
 #include "baker/import/gltf.hpp"
-#include "baker/pipeline/bake_estimate.hpp"
-#include "baker/plan/counted.hpp"
 #include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
@@ -26,24 +23,10 @@ namespace {
 struct PlanArguments {
   std::filesystem::path scene;
   BakeOptions options;
-  bool json = false, allow_outside = false;
+  bool json = false, verbose = false, allow_outside = false;
   bool estimate = false;
   std::string cache;  // as that of the bake
 };
-
-struct GroupSize {
-  std::size_t vertices = 0, triangles = 0;
-};
-
-GroupSize sizeOf(const Scene& scene, const RigidGroup& group) {
-  GroupSize size;
-  for (const PlannedDraw& draw : group.draws) {
-    const bundle::MeshData& mesh = scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
-    size.vertices += mesh.positions.size();
-    size.triangles += mesh.indices.size() / 3;
-  }
-  return size;
-}
 
 nlohmann::json estimateJson(const BakeEstimate& estimate) {
   const auto figures = [](const auto& of) {
@@ -88,10 +71,6 @@ nlohmann::json decisionsJson(const std::vector<Decision>& decisions) {
   return json;
 }
 
-std::string materialName(const Scene& scene, std::int32_t material) {
-  return material < 0 ? "" : scene.materials[static_cast<std::size_t>(material)].name;
-}
-
 nlohmann::json primitivesJson(const Scene& scene, const RigidGroup& group, const GroupDecisions& of) {
   nlohmann::json json = nlohmann::json::array();
   for (const PrimitiveDecisions& primitive : of.primitives) {
@@ -107,17 +86,8 @@ nlohmann::json primitivesJson(const Scene& scene, const RigidGroup& group, const
   return json;
 }
 
-// Told is a plan with all that is said about it.
-struct Told {
-  const Scene& scene;
-  const EffectPlan& plan;
-  const std::vector<GroupDecisions>& decisions;  // one per group
-  const std::optional<BakeEstimate>& estimate;
-  std::optional<Saved> saved;  // by all that is left out
-};
-
-void printPlanJson(const Told& told) {
-  const auto& [scene, plan, decisions, estimate, saved] = told;
+void printPlanJson(const PlanReport& report) {
+  const auto& [scene, plan, decisions, estimate, saved] = report;
   nlohmann::json groups = nlohmann::json::array(), effects = nlohmann::json::array();
   for (std::size_t g = 0; g < plan.groups.size(); ++g) {
     const RigidGroup& group = plan.groups[g];
@@ -151,95 +121,10 @@ void printPlanJson(const Told& told) {
   fmt::print("{}\n", json.dump(2));
 }
 
-void printNeighborhood(const EffectPlan& plan, std::size_t group) {
-  const PlannedNeighborhood& around = plan.neighborhoods[group];
-  if (around.baked) {
-    std::vector<std::string> names;
-    for (const std::uint32_t receiver : around.receivers) names.push_back(plan.groups[receiver].name);
-    fmt::print("      neighborhood for {}{}: {}\n", fmt::join(names, ", "),
-               around.matrices ? ", in all bands" : "", around.reason);
-  } else if (!around.reason.empty()) {
-    fmt::print("      no neighborhood: {}\n", around.reason);
-  }
-}
-
-void printEstimate(const BakeEstimate& estimate) {
-  const auto line = [](const std::string& name, const auto& of, const char* what) {
-    fmt::print("    {}: {} samples, {} rays, {}, {} of memory, {} {}\n", name, std::llround(of.samples),
-               countText(of.rays), durationText(of.seconds), bytesText(of.memory_bytes), bytesText(of.bytes),
-               what);
-  };
-  fmt::print("  estimate\n");
-  for (const BakeEstimate::Group& group : estimate.groups) line(group.name, group, "of transfer");
-  line("all, with refinement and meshes", estimate, "of bundle");
-}
-
-// Decisions about what a scene does not have are left to --json.
-void printDecisions(const std::vector<Decision>& decisions, const char* indent) {
-  for (const Decision& d : decisions) {
-    if (d.choice == Choice::Absent || d.choice == Choice::AtRunTime) continue;
-    fmt::print("{}{:<15} {}: {}", indent, d.effect, d.choice == Choice::Baked ? "baked" : "left out",
-               d.reason);
-    if (d.choice == Choice::LeftOut && d.saves.seconds)
-      fmt::print("; saves {:.2f} s of processor time, {} of memory, {}", *d.saves.seconds,
-                 bytesText(d.saves.memory_bytes.value_or(0.0)), bytesText(d.saves.bytes.value_or(0.0)));
-    fmt::print("\n");
-  }
-}
-
-void printPrimitives(const Scene& scene, const RigidGroup& group, const GroupDecisions& of) {
-  for (const PrimitiveDecisions& primitive : of.primitives) {
-    const PlannedDraw& draw = group.draws[primitive.draw];
-    const std::string material =
-        materialName(scene, scene.meshes[draw.mesh].primitives[draw.primitive].material);
-    fmt::print("      {}, primitive {}{}{}\n",
-               scene.meshes[draw.mesh].name.empty() ? fmt::format("mesh {}", draw.mesh)
-                                                    : scene.meshes[draw.mesh].name,
-               draw.primitive, material.empty() ? "" : " of " + material, draw.back ? ", back" : "");
-    printDecisions(primitive.decisions, "        ");
-  }
-}
-
-void printPlan(const Told& told) {
-  const auto& [scene, plan, decisions, estimate, saved] = told;
-  fmt::print("{}\n", scene.source.string());
-  for (const EffectChoice& choice : plan.effects)
-    fmt::print("  {:<10} {}: {}\n", choice.effect, choice.baked ? "baked" : "not baked", choice.reason);
-  fmt::print("  rigid groups\n");
-  for (std::size_t g = 0; g < plan.groups.size(); ++g) {
-    const RigidGroup& group = plan.groups[g];
-    const GroupSize size = sizeOf(scene, group);
-    if (group.volume >= 0) {
-      fmt::print("    {}: a volume{}\n", group.name,
-                 group.within < 0
-                     ? ""
-                     : " among the surfaces of " + plan.groups[static_cast<std::size_t>(group.within)].name);
-      printNeighborhood(plan, g);
-      continue;
-    }
-    fmt::print("    {}: {}, {} vertices, {} triangles\n", group.name, counted(group.draws.size(), "draw"),
-               size.vertices, size.triangles);
-    printDecisions(decisions[g].decisions, "      ");
-    printPrimitives(scene, group, decisions[g]);
-  }
-  if (!plan.shadowed_lights.empty()) fmt::print("  local lights\n");
-  for (const std::string& sentence : plan.shadowed_lights) fmt::print("    {}\n", sentence);
-  if (!plan.left_out.empty()) fmt::print("  left out\n");
-  for (const std::string& sentence : plan.left_out) fmt::print("    {}\n", sentence);
-  if (estimate) printEstimate(*estimate);
-}
-
 // Returns whether a bake that leaves nothing out would do more.
 bool leavesOut(const EffectPlan& plan) {
   return std::ranges::any_of(plan.transport,
                              [](const PlannedTransport& of) { return !of.shadows || !of.bounces; });
-}
-
-Result<std::vector<GroupLook>> lookAtAll(const Scene& scene, const EffectPlan& plan) {
-  DecodedImages images(scene);
-  const auto alpha_maps = loadAlphaMaps(scene, images);
-  if (!alpha_maps) return failAgain(alpha_maps.error());
-  return lookAt(scene, plan.groups, *alpha_maps, images);
 }
 
 int runPlan(const PlanArguments& a) {
@@ -247,8 +132,6 @@ int runPlan(const PlanArguments& a) {
   if (!scene) return reportError(scene.error());
   const auto plan = planFor(*scene, a.options);
   if (!plan) return reportError(plan.error());
-  const auto looks = lookAtAll(*scene, *plan);
-  if (!looks) return reportError(looks.error());
   std::optional<BakeEstimate> estimate, all;
   if (a.estimate) {
     if (const auto checked = checkOptions(a.options); !checked) return reportError(checked.error());
@@ -268,8 +151,12 @@ int runPlan(const PlanArguments& a) {
     estimate = std::move(*made);
   }
   const Estimates estimates{estimate ? &*estimate : nullptr, all ? &*all : nullptr};
-  const auto decisions = decisionsOf({*scene, a.options, *plan, *looks, estimates});
-  (a.json ? printPlanJson : printPlan)({*scene, *plan, decisions, estimate, savedByAll(estimates)});
+  const auto decisions = decisionsOf({*scene, a.options, *plan, estimates});
+  const PlanReport report{*scene, *plan, decisions, estimate, savedByAll(estimates)};
+  if (a.json)
+    printPlanJson(report);
+  else
+    printPlan(report, a.verbose);
   return 0;
 }
 
@@ -287,9 +174,10 @@ void addPlanCommand(CLI::App& app, Command& run) {
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--json", a->json, "Print as JSON");
+  command->add_flag("-v,--verbose", a->verbose, "Print every warning, group and primitive");
   command_line::group(*command, "Machine", {"--cache"});
   command_line::group(*command, "Files", {"--allow-outside"});
-  command_line::group(*command, "Output", {"--json"});
+  command_line::group(*command, "Output", {"--json", "--verbose"});
   command_line::addExamples(
       *command,
       {{"lambent plan scene.gltf", "says what would be baked and why"},

@@ -8,6 +8,7 @@
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/plan/counted.hpp"
 #include "reference/reference.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/memory.hpp"
@@ -103,7 +104,7 @@ void printReference(const ReferenceArguments& a, const reference::Request& reque
              request.options.size.height, request.options.spp, durationText(r.seconds));
   fmt::print("  rays   {} ({} a second)\n", countText(static_cast<double>(r.rays)), countText(rate));
   if (r.standard_error)
-    fmt::print("  noise  {:.3f} % standard error of a pixel\n", 100.0 * *r.standard_error);
+    fmt::print("  noise  {} standard error of a pixel\n", percentText(*r.standard_error, 3));
 }
 
 int runReference(const ReferenceArguments& a) {

@@ -11,11 +11,9 @@ const char* choiceName(Choice choice) {
     case Choice::LeftOut:
       return "leftOut";
     case Choice::Absent:
-      return "absent";
-    case Choice::AtRunTime:
       break;
   }
-  return "atRunTime";
+  return "absent";
 }
 
 std::vector<GroupDecisions> decisionsOf(const Decided& decided) {

@@ -1,7 +1,7 @@
 // Lists what was decided about each effect that a bake may have, for each rigid group and each of its
-// primitives, with a reason that holds its number. A scene, its plan and what a few rays saw of its groups
-// come in; with an estimate of the bake, and one of a bake that leaves nothing out, each decision also says
-// what it saves. baker/plan decides; this only tells.
+// primitives, with a reason that holds its number. A scene and its plan come in, and no rays are traced; with
+// an estimate of the bake, and one of a bake that leaves nothing out, each decision also says what it saves.
+// baker/plan decides; this only reports.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "baker/bake/options.hpp"
-#include "baker/decisions/group_look.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/pipeline/bake_estimate.hpp"
 #include "baker/plan/effect_plan.hpp"
@@ -18,11 +17,10 @@ namespace lambent::baker {
 
 enum class Choice : std::uint8_t {
   Baked,
-  LeftOut,   // it would change less than the bake's error
-  Absent,    // there is nothing in the scene that it could show
-  AtRunTime  // decided for each frame
+  LeftOut,  // it would change less than the bake's error, or something else shows it
+  Absent    // there is nothing in the scene that it could show
 };
-const char* choiceName(Choice choice);  // "baked", "leftOut", "absent", "atRunTime"
+const char* choiceName(Choice choice);  // "baked", "leftOut", "absent"
 
 struct Figure {
   std::string name;
@@ -66,7 +64,6 @@ struct Decided {
   const Scene& scene;
   const BakeOptions& options;
   const EffectPlan& plan;
-  const std::vector<GroupLook>& looks;  // one per group
   Estimates estimates;
 };
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -12,8 +11,6 @@ namespace lambent::baker {
 
 namespace {
 
-// Bounces that bring less than this share of all light together are not counted in a reason.
-constexpr double kRest = 0.003;
 // Stages of a bake that trace what is hidden, and that serve refinement.
 bool isShadows(std::string_view stage) {
   return stage == "direct light" || stage == "glossy shadows" || stage == "inside faces" ||
@@ -79,74 +76,28 @@ class Savings {
   std::optional<double> refinement_;
 };
 
-Decision groupShadows(const PlannedTransport& planned, const GroupLook& look, const Savings& savings) {
+Decision groupShadows(const PlannedTransport& planned, const Savings& savings) {
   Decision d{.effect = "shadows",
              .choice = planned.shadows ? Choice::Baked : Choice::LeftOut,
-             .reason = fmt::format("surfaces hide {:.2g} % of the sky's light from each other: {}",
-                                   100.0 * look.all.hidden, planned.shadows_reason)};
-  d.figures = {{"hiddenLight", 100.0 * look.all.hidden, "%"}};
-  if (planned.height >= 0.0)
-    d.figures.push_back({"heightAboveFaces", 100.0 * planned.height, "% of the diagonal"});
+             .reason = planned.shadows_reason};
+  if (planned.height >= 0.0) d.figures = {{"heightAboveFaces", 100.0 * planned.height, "% of the diagonal"}};
   d.saves = savings.shadows(planned.shadows);
   return d;
 }
 
-// Returns how many bounces bring all but so much of the light.
-std::size_t bouncesFor(const GroupLook& look, double rest) {
-  std::size_t bounces = 0;
-  while (bounces + 1 < look.passes.size() && look.after(bounces) > rest) ++bounces;
-  return bounces;
-}
-
-Decision groupInterreflection(const Decided& decided, std::size_t group, const Savings& savings) {
-  const BakeOptions& options = decided.options;
-  const GroupLook& look = decided.looks[group];
-  const PlannedTransport& planned = decided.plan.transport[group];
-  Decision d{.effect = "interreflection"};
-  const double bounced = look.after(0);
-  if (!planned.bounces || options.bounces == 0) {
-    d.choice = Choice::LeftOut;
-    d.reason = fmt::format("{:.2g} % of the light that arrives has bounced: {}", 100.0 * bounced,
-                           planned.bounces ? "--bounces 0" : planned.bounces_reason);
-  } else {
-    const std::size_t needed = bouncesFor(look, kRest),
-                      most = options.bounces < 0 ? BakeOptions::kMostBounces
-                                                 : static_cast<std::size_t>(options.bounces);
-    const std::size_t kept = std::min(needed, most);
-    d.reason =
-        fmt::format("{:.3g} % of the light that arrives has bounced: {} of {} carry {:.1f} % of all light",
-                    100.0 * bounced, kept, counted(most, "bounce"), 100.0 * (1.0 - look.after(kept)));
-    d.figures = {{"bounces", static_cast<double>(kept), "bounces"},
-                 {"carried", 100.0 * (1.0 - look.after(kept)), "%"}};
-  }
-  d.figures.insert(d.figures.begin(), {"bouncedLight", 100.0 * bounced, "%"});
-  d.figures.push_back({"mostReflected", 100.0 * planned.most_reflected, "%"});
-  d.saves = savings.bounces(d.choice == Choice::Baked, planned.shadows);
-  return d;
-}
-
-// Bands are what is asked for; the reason says what fewer would do.
-Decision order(const BakeOptions& options, const GroupLook& look) {
-  const auto left = [&](int bands) {
-    return static_cast<std::size_t>(bands) < look.from_band.size()
-               ? 100.0 * look.from_band[static_cast<std::size_t>(bands)]
-               : 0.0;
-  };
-  int enough = 1;
-  while (enough < options.order && left(enough) > 100.0 * kRest) ++enough;
-  Decision d{
-      .effect = "order",
-      .choice = Choice::Baked,
-      .reason = enough < options.order
-                    ? fmt::format("order {} suffices: it leaves out {:.2g} % of direct light, and order {} "
-                                  "{:.2g} %",
-                                  enough, left(enough), options.order, left(options.order))
-                    : fmt::format("order {} leaves out {:.2g} % of direct light in eight bands, order 3 "
-                                  "{:.2g} %; key lights carry what is sharper",
-                                  options.order, left(options.order), left(3))};
-  d.figures = {{"order", static_cast<double>(options.order), "bands"},
-               {"leftOut", left(options.order), "%"},
-               {"leftOutByOrder3", left(3), "%"}};
+Decision groupInterreflection(const BakeOptions& options, const PlannedTransport& planned,
+                              const Savings& savings) {
+  const std::size_t most =
+      options.bounces < 0 ? BakeOptions::kMostBounces : static_cast<std::size_t>(options.bounces);
+  const bool baked = planned.bounces && most > 0;
+  Decision d{.effect = "interreflection",
+             .choice = baked ? Choice::Baked : Choice::LeftOut,
+             .reason = !baked
+                           ? planned.bounces ? "--bounces 0" : planned.bounces_reason
+                           : fmt::format("{}: at most {}", planned.bounces_reason, counted(most, "bounce"))};
+  d.figures = {{"mostReflected", 100.0 * planned.most_reflected, "%"}};
+  if (baked) d.figures.push_back({"mostBounces", static_cast<double>(most), "bounces"});
+  d.saves = savings.bounces(baked, planned.shadows);
   return d;
 }
 
@@ -174,8 +125,8 @@ Decision refinement(const Decided& decided, std::size_t group, const Savings& sa
   const bool shadows = decided.plan.transport[group].shadows;
   Decision d{.effect = "refinement", .choice = Choice::Baked};
   if (bound > 0.0 && shadows) {
-    d.reason = fmt::format("edges are split until interpolation errs by {:.2g} % where shadows change",
-                           100.0 * bound);
+    d.reason = fmt::format("edges are split until interpolation errs by {} where shadows change",
+                           percentText(bound));
   } else {
     d.choice = Choice::LeftOut;
     d.reason = shadows ? "--refine off: 0 edges are split" : "0 shadows change between its vertices";
@@ -210,20 +161,6 @@ Decision neighborhood(const PlannedNeighborhood& planned) {
   return d;
 }
 
-// Other groups see this one in their light probes, unless its neighborhood carries that.
-Decision proxy(const EffectPlan& plan, std::size_t group) {
-  std::size_t others = 0;
-  for (std::size_t g = 0; g < plan.groups.size(); ++g)
-    others += g != group && plan.groups[g].volume < 0 && !plan.neighborhoods[group].carries(g);
-  Decision d{.effect = "proxy",
-             .choice = Choice::Baked,
-             .reason = fmt::format("{} of this scene see it in their light probes, and so do those of other "
-                                   "bundles",
-                                   counted(others, "group"))};
-  d.figures = {{"groups", static_cast<double>(others), "groups"}};
-  return d;
-}
-
 }  // namespace
 
 std::vector<Decision> groupDecisions(const Decided& decided, std::size_t g) {
@@ -235,22 +172,14 @@ std::vector<Decision> groupDecisions(const Decided& decided, std::size_t g) {
                   .reason = group.volume < 0 ? "0 media: it is a group of surfaces" : "1 medium"};
   if (group.volume < 0) {
     const Savings savings(decided.estimates, g);
-    all = {groupShadows(plan.transport[g], decided.looks[g], savings),
-           groupInterreflection(decided, g, savings),
-           order(decided.options, decided.looks[g]),
-           lamps(decided.scene, group),
-           refinement(decided, g, savings),
-           proxy(plan, g)};
+    all = {groupShadows(plan.transport[g], savings),
+           groupInterreflection(decided.options, plan.transport[g], savings), lamps(decided.scene, group),
+           refinement(decided, g, savings)};
     volume.saves = kSavesNothing;
   }
   all.push_back(lightProbes(plan.light_probes[g]));
   all.push_back(neighborhood(plan.neighborhoods[g]));
   all.push_back(std::move(volume));
-  all.push_back(
-      {.effect = "keyLights",
-       .choice = Choice::AtRunTime,
-       .reason = "what bands cannot carry of the light that a picture is shown under is shaded per pixel; "
-                 "lambent-demo --json says how many there are"});
   return all;
 }
 

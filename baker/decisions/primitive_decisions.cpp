@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "baker/decisions/decisions.hpp"
+#include "baker/plan/counted.hpp"
 #include "baker/plan/lobe_energy.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/trace/mirror_paths.hpp"
@@ -14,25 +15,6 @@ namespace {
 
 Decision absent(const char* effect, std::string reason) {
   return {.effect = effect, .choice = Choice::Absent, .reason = std::move(reason), .saves = kSavesNothing};
-}
-
-Decision surfaceShadows(const PlannedTransport& planned, const SurfaceLook& look) {
-  Decision d{
-      .effect = "shadows",
-      .choice = planned.shadows ? Choice::Baked : Choice::LeftOut,
-      .reason = fmt::format("its group hides {:.2g} % of the sky's light from it", 100.0 * look.hidden)};
-  d.figures = {{"hiddenLight", 100.0 * look.hidden, "%"}};
-  return d;
-}
-
-Decision surfaceInterreflection(const PlannedTransport& planned, const BakeOptions& options,
-                                const SurfaceLook& look) {
-  Decision d{
-      .effect = "interreflection",
-      .choice = planned.bounces && options.bounces != 0 ? Choice::Baked : Choice::LeftOut,
-      .reason = fmt::format("{:.2g} % of the light that arrives at it has bounced", 100.0 * look.bounced)};
-  d.figures = {{"bouncedLight", 100.0 * look.bounced, "%"}};
-  return d;
 }
 
 // The share of a highlight that the bands of matrices carry.
@@ -47,15 +29,14 @@ Decision matrices(const gltf::Material& material, const BakeOptions& options, bo
   Decision d{.effect = "matrices", .choice = Choice::Baked};
   if (!hasMatrices(material)) {
     d.choice = Choice::LeftOut;
-    d.reason = fmt::format("order {} carries {:.2g} % of this highlight: the specular layer shows it instead",
-                           options.glossy_order, carried.value);
+    d.reason = "the specular layer shows this highlight instead";
   } else if (!glossy) {
     d.choice = Choice::LeftOut;
-    d.reason = fmt::format("--effects {} leaves them out, with {:.2g} % of this highlight", options.effects,
-                           carried.value);
+    d.reason = fmt::format("--effects {} leaves them out, with {} of this highlight", options.effects,
+                           percentText(carried.value / 100.0));
   } else {
-    d.reason =
-        fmt::format("order {} carries {:.2g} % of this highlight", options.glossy_order, carried.value);
+    d.reason = fmt::format("order {} carries {} of this highlight", options.glossy_order,
+                           percentText(carried.value / 100.0));
   }
   d.figures = {carried, {"roughness", double{material.roughness}, ""}};
   return d;
@@ -67,12 +48,10 @@ Decision specularLayer(const gltf::Material& material, const BakeOptions& option
                                        ? "matrices carry its highlight"
                                        : "0 % of its light is a highlight of a layer");
   const Figure carried = carriedBy(material, options.glossy_order);
-  Decision d{
-      .effect = "specularLayer",
-      .choice = Choice::Baked,
-      .reason = fmt::format("matrices: order {} carries {:.2g} % of this highlight: specular occlusion and "
-                            "the prefiltered environment",
-                            options.glossy_order, carried.value)};
+  Decision d{.effect = "specularLayer",
+             .choice = Choice::Baked,
+             .reason = fmt::format("order {} of matrices would carry {} of this highlight",
+                                   options.glossy_order, percentText(carried.value / 100.0))};
   d.figures = {carried, {"roughness", double{material.roughness}, ""}};
   return d;
 }
@@ -116,12 +95,9 @@ std::optional<Decision> backs(const RigidGroup& group, std::size_t draw, const g
   if (group.draws[draw].back) return std::nullopt;
   if (!material.double_sided) return absent("backs", "0 double-sided materials: it is seen from its front");
   if (draw + 1 < group.draws.size() && group.draws[draw + 1].back)
-    return Decision{.effect = "backs",
-                    .choice = Choice::Baked,
-                    .reason = "both sides of its faces may be seen, or are not known to be hidden"};
-  return Decision{.effect = "backs",
-                  .choice = Choice::LeftOut,
-                  .reason = "each of its parts is closed and has nothing within: 0 % of its backs is seen"};
+    return Decision{.effect = "backs", .choice = Choice::Baked, .reason = "both sides may be seen"};
+  return Decision{
+      .effect = "backs", .choice = Choice::LeftOut, .reason = "its parts are closed and have nothing within"};
 }
 
 }  // namespace
@@ -133,10 +109,8 @@ std::vector<Decision> primitiveDecisions(const Decided& decided, std::size_t gro
                                       ? gltf::Material{}
                                       : decided.scene.materials[static_cast<std::size_t>(primitive.material)];
   const PlannedTransport& transport = decided.plan.transport[group];
-  const SurfaceLook& look = decided.looks[group].draws[draw];
   const bool glossy = decided.plan.bakes("glossy") && primitive.material >= 0;
-  std::vector<Decision> all = {surfaceShadows(transport, look),
-                               surfaceInterreflection(transport, decided.options, look)};
+  std::vector<Decision> all;
   if (auto back = backs(decided.plan.groups[group], draw, material)) all.push_back(std::move(*back));
   if (primitive.material < 0) {
     all.push_back(absent("matrices", "0 materials: it is white and diffuse"));

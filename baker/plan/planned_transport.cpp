@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "baker/plan/counted.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 
 namespace lambent::baker {
@@ -117,15 +118,15 @@ PlannedTransport transportOf(const Scene& scene, const RigidGroup& group) {
     planned.shadows_reason = "it has too many faces to prove that none sees another";
   else if (planned.shadows)
     planned.shadows_reason =
-        fmt::format("a vertex stands {:.3g} % of the group's size above a face", 100.0 * planned.height);
+        fmt::format("a vertex lies {} of the group's size above a face", percentText(planned.height));
   else
     planned.shadows_reason = fmt::format(
-        "no vertex stands above the plane of a face, to {:.2g} % of the group's size", 100.0 * kLevel);
+        "no vertex lies above the plane of a face, to {} of the group's size", percentText(kLevel, 3));
   if (!planned.shadows)
     planned.bounces_reason = "no surface sees another";
   else
     planned.bounces_reason =
-        fmt::format("its brightest surface reflects up to {:.3g} % of light", 100.0 * planned.most_reflected);
+        fmt::format("its brightest surface reflects up to {} of light", percentText(planned.most_reflected));
   return planned;
 }
 

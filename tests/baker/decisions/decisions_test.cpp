@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/bake/bake.hpp"
+#include "baker/plan/counted.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace lambent::baker {
@@ -20,10 +21,7 @@ using testing::sceneOf;
 GroupDecisions decided(const Scene& scene, const BakeOptions& options = {}, const Estimates& estimates = {}) {
   const auto plan = planFor(scene, options);
   EXPECT_TRUE(plan);
-  DecodedImages images(scene);
-  const auto looks = lookAt(scene, plan->groups, {}, images);
-  EXPECT_TRUE(looks);
-  return decisionsOf({scene, options, *plan, *looks, estimates}).at(0);
+  return decisionsOf({scene, options, *plan, estimates}).at(0);
 }
 
 const Decision& about(const std::vector<Decision>& decisions, const std::string& effect) {
@@ -38,10 +36,8 @@ TEST(Decisions, LeaveShadowsAndBouncesOutOnAConvexBody) {
   const auto [group, primitives] = decided(sceneOf({icosphere({0, 0, 0}, 1.0f, 2)}));
   for (const char* effect : {"shadows", "interreflection", "refinement"})
     EXPECT_EQ(about(group, effect).choice, Choice::LeftOut) << effect;
-  EXPECT_NE(about(group, "shadows").reason.find("hide 0 %"), std::string::npos);
-  EXPECT_NE(about(group, "order").reason.find("order 3"), std::string::npos);
-  ASSERT_EQ(primitives.size(), 1u);
-  EXPECT_EQ(about(primitives[0].decisions, "shadows").choice, Choice::LeftOut);
+  EXPECT_NE(about(group, "shadows").reason.find("no vertex"), std::string::npos);
+  EXPECT_EQ(primitives.size(), 1u);
 }
 
 TEST(Decisions, LeaveOutTheBacksOfClosedBodies) {
@@ -61,22 +57,18 @@ TEST(Decisions, LeaveOutTheBacksOfClosedBodies) {
 
 TEST(Decisions, BakeWhatABallOnAFloorCallsFor) {
   const auto [group, primitives] = decided(ballOnFloor());
-  for (const char* effect : {"shadows", "interreflection", "order", "refinement"})
+  for (const char* effect : {"shadows", "interreflection", "refinement"})
     EXPECT_EQ(about(group, effect).choice, Choice::Baked) << effect;
   for (const char* effect : {"lamps", "volume", "neighborhood"})
     EXPECT_EQ(about(group, effect).choice, Choice::Absent) << effect;
-  const auto& figures = about(group, "interreflection").figures;
-  const auto bounces = std::ranges::find(figures, "bounces", &Figure::name);
-  ASSERT_NE(bounces, figures.end());
-  EXPECT_GE(bounces->value, 1.0);
   EXPECT_EQ(primitives.size(), 2u);
 }
 
-TEST(Decisions, CountNoMoreBouncesThanAreAskedFor) {
+TEST(Decisions, SayNoMoreBouncesThanAreAskedFor) {
   const auto none = decided(ballOnFloor(), {.bounces = 0});
   EXPECT_EQ(about(none.decisions, "interreflection").choice, Choice::LeftOut);
   const auto one = decided(ballOnFloor(), {.bounces = 1});
-  EXPECT_NE(about(one.decisions, "interreflection").reason.find("1 of 1 bounce "), std::string::npos);
+  EXPECT_NE(about(one.decisions, "interreflection").reason.find("at most 1 bounce"), std::string::npos);
 }
 
 TEST(Decisions, SayWhichCarrierAHighlightHas) {
@@ -97,6 +89,18 @@ TEST(Decisions, SayWhichCarrierAHighlightHas) {
   EXPECT_EQ(about(lacquer, "mirrorPaths").choice, Choice::Absent);
   scene.materials[1].specular = 0.0f;
   EXPECT_EQ(about(of_ball(), "matrices").choice, Choice::Absent);
+}
+
+TEST(Decisions, WriteSharesAsPeopleDo) {
+  EXPECT_EQ(percentText(1.0), "100 %");
+  EXPECT_EQ(percentText(0.99999), "100 %");
+  EXPECT_EQ(percentText(12.5), "1250 %");
+  EXPECT_EQ(percentText(0.0421), "4.2 %");
+  EXPECT_EQ(percentText(0.004), "0.4 %");
+  EXPECT_EQ(percentText(0.0004), "<0.1 %");
+  EXPECT_EQ(percentText(0.0), "0 %");
+  EXPECT_EQ(percentText(2e-5, 3), "0.002 %");
+  EXPECT_EQ(percentText(0.2, 0), "20 %");
 }
 
 TEST(Decisions, SayWhatTheySaveOnceTheBakeIsEstimated) {
