@@ -20,7 +20,7 @@ namespace {
 struct QualityRow {
   const char* name;
   std::size_t rays;
-  float error_bound, glossy_error_bound, refine_bound;
+  float picture_bound, error_bound, glossy_error_bound, refine_bound;
   double refine_growth;
   std::size_t refine_added;
   double refine_wedges;
@@ -30,9 +30,9 @@ struct QualityRow {
   int zstd_level;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f, 0.03f, 0.04f, 1.2, 10'000, 0.0, false, false, 0.0f, 5, 12},
-    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.02f, 1.5, 20'000, 0.5, true, true, 1.5f, 7, 19},
-    QualityRow{"high", 4096, 0.001f, 0.005f, 0.01f, 4.0, 60'000, 0.5, true, true, 3.0f, 9, 19},
+    QualityRow{"draft", 256, 0.05f, 0.01f, 0.03f, 0.04f, 1.2, 10'000, 0.0, false, false, 0.0f, 5, 12},
+    QualityRow{"standard", 1024, 0.03f, 0.003f, 0.015f, 0.02f, 1.5, 20'000, 0.5, true, true, 1.5f, 7, 19},
+    QualityRow{"high", 4096, 0.015f, 0.001f, 0.005f, 0.01f, 4.0, 60'000, 0.5, true, true, 3.0f, 9, 19},
 };
 static_assert(kQualities.back().exit_bands <= sh::kMaxFactoredOrder);
 
@@ -74,6 +74,10 @@ std::size_t BakeOptions::effectiveRays() const {
 float BakeOptions::effectiveErrorBound() const {
   if (error_bound > 0.0f) return error_bound;
   return picture_bound > 0.0f ? kCodesShare * picture_bound : row(quality).error_bound;
+}
+
+float BakeOptions::effectivePictureBound() const {
+  return picture_bound > 0.0f ? picture_bound : row(quality).picture_bound;
 }
 
 float BakeOptions::effectiveGlossyErrorBound() const {

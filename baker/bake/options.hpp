@@ -51,6 +51,8 @@ struct BakeOptions {
 
   std::size_t effectiveRays() const;
   float effectiveErrorBound() const;
+  // Returns picture_bound, or what pictures of the quality are expected to stay within.
+  float effectivePictureBound() const;
   // Returns the bound for glossy transfer, which takes more bytes: error_bound if it is set, else a share of
   // picture_bound, else the quality's.
   float effectiveGlossyErrorBound() const;

@@ -142,7 +142,7 @@ std::optional<bundle::PictureError> shownBy(const GroupScene& group, const Surfa
        .glossy = light.glossy ? &light.glossy->field : nullptr,
        .brdfs = group.brdfs(),
        .cells = cells});
-  if (shown) shown->bound = group.bake.options.picture_bound;
+  if (shown) shown->bound = group.bake.options.effectivePictureBound();
   return shown;
 }
 

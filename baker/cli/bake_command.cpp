@@ -13,10 +13,8 @@
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/cli/watch.hpp"
-#include "baker/import/gltf.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/source_watch.hpp"
-#include "baker/pipeline/time_budget.hpp"
 #include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
@@ -33,22 +31,7 @@ int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
     else
       fmt::print("{} is up to date; --force bakes it again\n", a.output.string());
   }
-  return 0;
-}
-
-// Replaces the options by those with which the bake takes about the time that was asked for.
-Result<void> chooseByTime(BakeArguments& a, const std::stop_token& stop) {
-  const auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
-  if (!scene) return failAgain(scene.error());
-  Progress unused;
-  const auto chosen = optionsForTime(*scene, a.options, a.time_s, {unused, stop});
-  if (!chosen) return failAgain(chosen.error());
-  a.options = chosen->options;
-  if (a.say.quiet) return {};
-  reportNotice(a.scene, fmt::format("baked with {}, which takes about {}{}", chosen->words,
-                                    durationText(chosen->seconds),
-                                    chosen->seconds > a.time_s ? "; nothing coarser takes less" : ""));
-  return {};
+  return failsStrictly(a, *outcome) ? 1 : 0;
 }
 
 // Reports an error in the command line and returns the exit code 2.
@@ -85,9 +68,8 @@ int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::
 
 int runBake(BakeArguments a) {
   if (!a.watch.empty()) {
-    if (!a.scene.empty() || a.resume || a.force || a.time_s > 0.0)
-      return wrongUsage(
-          {"--watch", "is given with a scene, --resume, --force or --time", "give it a folder alone"});
+    if (!a.scene.empty() || a.resume || a.force)
+      return wrongUsage({"--watch", "is given with a scene, --resume or --force", "give it a folder alone"});
     std::optional<Cache> cache = bakeCache(a);
     return watchFolder(
         {a.watch, a.output, a.options, {.allow_outside = a.allow_outside}, a.json, a.say.quiet},
@@ -98,19 +80,11 @@ int runBake(BakeArguments a) {
   if (a.scene.empty() && !a.output.empty())
     return wrongUsage(
         {"--output", "is given with --resume alone", "leave it out: each bake knows its bundle"});
-  if (a.time_s > 0.0 && (a.scene.empty() || a.options.picture_bound > 0.0f))
-    return wrongUsage({"--time", "is given with --resume or --error", "give it with a scene, and one bound"});
   std::error_code failed;
   const bool folder = std::filesystem::is_directory(a.scene, failed);
-  if (folder && a.time_s > 0.0)
-    return wrongUsage({"--time", "is given with a folder", "give it with a single scene"});
   if (!folder && a.output.empty()) a.output = bundleBeside(a.scene);
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
-  if (a.time_s > 0.0) {
-    if (const auto checked = checkRequest(a.options, a.output); !checked) return reportError(checked.error());
-    if (const auto done = chooseByTime(a, stop.get_token()); !done) return reportError(done.error());
-  }
   std::optional<Cache> cache = bakeCache(a);
   if (a.scene.empty()) return resumeBakes(a, cache, stop.get_token());
   if (folder) return bakeFolder(a, cache, stop.get_token());
@@ -154,14 +128,9 @@ void addBakeCommand(CLI::App& app, Command& run) {
                    "How many seconds of work a bake that is killed may lose, about; default 8")
       ->check(CLI::Range(0.05, 600.0))
       ->type_name("S");
-  command
-      ->add_option(
-          "--time", a->time_s,
-          "Choose --quality, and --rays, --refine and --codes as far as they are not given, so that the "
-          "bake takes about so many seconds here, its rehearsals included, on a machine that does "
-          "nothing else: measured 0.6 to 1.1 times as many. Says which were chosen")
-      ->check(CLI::Range(0.1, 1e6))
-      ->type_name("S");
+  command->add_flag(
+      "--strict", a->strict,
+      "Fail, with exit code 1, where the error of pictures misses its bound; the bundle is written");
   command->add_flag("--force", a->force,
                     "Bake all anew, even if the bundle is up to date and whatever the cache holds");
   command->add_flag("--json", a->json, "Print figures as JSON; of a folder an array of them");
@@ -169,7 +138,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
   addProgress(*command, a->say);
   command_line::group(*command, "Files and runs",
                       {"--output", "--watch", "--resume", "--force", "--allow-outside"});
-  command_line::group(*command, "Accuracy", {"--time"});
+  command_line::group(*command, "Accuracy", {"--strict"});
   command_line::group(*command, "Machine", {"--cache", "--cache-size", "--checkpoint"});
   command_line::group(*command, "Output", {"--json", "--quiet", "--progress"});
   command_line::addExamples(

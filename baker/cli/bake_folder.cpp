@@ -33,6 +33,7 @@ class FolderReport {
   }
   void baked(const BakeArguments& one, const BakeOutcome& outcome, double seconds) {
     ++(outcome.report ? baked_ : up_to_date_);
+    missed_ |= failsStrictly(one, outcome);
     if (!arguments_.json) {
       say("{}: {}", one.scene.string(),
           outcome.report ? fmt::format("{} in {}, {}", one.output.string(), durationText(seconds),
@@ -52,7 +53,7 @@ class FolderReport {
       say("{}: {} baked, {} up to date, {} failed{} in {}", counted(scenes, "scene"), baked_, up_to_date_,
           failed_, missing > 0 ? fmt::format(", {} not begun", missing) : "",
           durationText(secondsSince(begun_)));
-    return failed_ + missing > 0 ? 1 : 0;
+    return failed_ + missing > 0 || missed_ ? 1 : 0;
   }
 
  private:
@@ -66,6 +67,7 @@ class FolderReport {
   const BakeArguments& arguments_;
   std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   std::size_t baked_ = 0, up_to_date_ = 0, failed_ = 0;
+  bool missed_ = false;  // a bound that bakes are held to
   nlohmann::json json_ = nlohmann::json::array();
 };
 

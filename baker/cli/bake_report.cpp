@@ -65,70 +65,58 @@ nlohmann::json estimatedAndMeasured(const FinishedBake& bake) {
   return json;
 }
 
-// Returns the widest bound on codes that was chosen for a group, or what the options say.
-double boundOf(const FinishedBake& bake, float BakeReport::Group::*chosen, float asked) {
-  double bound = 0.0;
-  for (const BakeReport::Group& group : bake.report.groups) bound = std::max(bound, double{group.*chosen});
-  return bound > 0.0 ? bound : double{asked};
-}
-double codesBoundOf(const FinishedBake& bake) {
-  return boundOf(bake, &BakeReport::Group::codes_bound, bake.options.effectiveErrorBound());
-}
-double glossyCodesBoundOf(const FinishedBake& bake) {
-  return boundOf(bake, &BakeReport::Group::glossy_codes_bound, bake.options.effectiveGlossyErrorBound());
+// Returns the group whose pictures are furthest off for their bound; null if none was measured.
+const BakeReport::Group* worstGroup(const BakeReport& report) {
+  const BakeReport::Group* worst = nullptr;
+  for (const BakeReport::Group& group : report.groups)
+    if (group.picture_error && (!worst || group.picture_error->all > worst->picture_error->all))
+      worst = &group;
+  return worst;
 }
 
-// Says why pictures of a group are further off than was asked for.
-std::string whyMissed(const FinishedBake& bake, const bundle::PictureError& error) {
-  if (bake.report.refinement.at_limit && error.interpolation > error.samples)
-    return "refinement ended at its limit of vertices";
-  if (error.interpolation > error.samples)
-    return "more vertices where shadows change do not take the rest away";
-  return bake.options.rays != 0 ? "--rays is fixed" : "rays ended at their limit";
+// Returns what would make pictures better, by the largest part of their error.
+std::string helpFor(const FinishedBake& bake, const bundle::PictureError& error) {
+  const bool finer = bake.options.quality != Quality::High;
+  if (error.interpolation >= std::max(error.samples, error.codes))
+    return finer ? "--quality high splits more edges where light changes"
+                 : "a finer mesh, or --max-edge, where light changes helps";
+  if (error.codes > error.samples) return "a lower --codes keeps more of the transfer";
+  return fmt::format("--rays {} takes most of it away", 4 * bake.options.effectiveRays());
 }
 
 // Says which bounds and limits are missed; empty if all are kept.
 std::string missedText(const FinishedBake& bake) {
-  const double bound = codesBoundOf(bake), glossy_bound = glossyCodesBoundOf(bake);
-  std::string text;
-  for (const BakeReport::Group& group : bake.report.groups)
-    if (const auto& error = group.picture_error;
-        error && error->bound > 0.0f && bundle::missesBound(error->all, error->bound))
-      text += fmt::format("{}the error of pictures of \"{}\": {} instead of {}; {}", text.empty() ? "" : ", ",
-                          group.name, percentText(double{error->all}, 2),
-                          percentText(double{error->bound}, 2), whyMissed(bake, *error));
-  if (bake.options.picture_bound == 0.0f && bundle::missesBound(bake.report.worst_error, bound))
-    text = fmt::format("the error bound: {} instead of {}", percentText(bake.report.worst_error, 2),
-                       percentText(bound, 2));
-  if (bake.options.picture_bound == 0.0f && bundle::missesBound(bake.report.worst_glossy_error, glossy_bound))
-    text += fmt::format("{}: {} instead of {}; --codes keeps more, at a price in bytes and time",
-                        text.empty() ? "the error bound of glossy surfaces" : ", of glossy surfaces",
-                        percentText(bake.report.worst_glossy_error, 2), percentText(glossy_bound, 2));
+  std::vector<std::string> missed;
+  if (const BakeReport::Group* group = worstGroup(bake.report);
+      group && bundle::missesBound(group->picture_error->all, group->picture_error->bound))
+    missed.push_back(fmt::format("pictures of \"{}\" are {} wrong instead of {}; {}", group->name,
+                                 percentText(double{group->picture_error->all}),
+                                 percentText(double{group->picture_error->bound}),
+                                 helpFor(bake, *group->picture_error)));
+  if (const double bound = double{bake.options.error_bound}; bound > 0.0) {
+    const double error = std::max(bake.report.worst_error, bake.report.worst_glossy_error);
+    if (bundle::missesBound(error, bound))
+      missed.push_back(
+          fmt::format("--codes: {} instead of {}", percentText(error, 2), percentText(bound, 2)));
+  }
   // Past a tenth, the limit was not kept: the rest is what the bake cannot do without.
   constexpr double kKept = 1.1;
   if (const double limit = static_cast<double>(bake.options.memory_bytes),
       took = static_cast<double>(peakBytes());
       limit > 0.0 && took > kKept * limit)
-    text += fmt::format("{}--max-memory: {} instead of {}, which this bake takes even if it keeps no hits",
-                        text.empty() ? "" : ", ", bytesText(took), bytesText(limit));
-  return text;
-}
-
-// The estimate takes it that passes shrink as the last two did. Where the last is no darker than the one
-// before, as with a lamp that lights little directly, that says nothing.
-std::string leftOutText(double left_out) {
-  return left_out < 1.0 ? percentText(left_out, 3) + " left out" : "too few to tell what is left out";
+    missed.push_back(
+        fmt::format("--max-memory: {} instead of {}, which this bake takes even if it keeps no hits",
+                    bytesText(took), bytesText(limit)));
+  return fmt::format("{}", fmt::join(missed, "; "));
 }
 
 }  // namespace
 
 std::string pictureErrorText(const bundle::PictureError& error) {
   return fmt::format(
-      "{} wrong{} at {} points that eyes see: {} by too few rays, {} by codes, {} between vertices",
-      percentText(double{error.all}, 2),
-      error.bound > 0.0f ? fmt::format(" (bound {})", percentText(double{error.bound}, 2)) : "", error.points,
-      percentText(double{error.samples}, 2), percentText(double{error.codes}, 2),
-      percentText(double{error.interpolation}, 2));
+      "{} wrong (bound {}) where eyes look: {} by too few rays, {} by codes, {} between vertices",
+      percentText(double{error.all}), percentText(double{error.bound}), percentText(double{error.samples}),
+      percentText(double{error.codes}), percentText(double{error.interpolation}));
 }
 
 nlohmann::json pictureErrorJson(const std::optional<bundle::PictureError>& error) {
@@ -203,7 +191,7 @@ nlohmann::json reportJson(const FinishedBake& bake) {
           {"hitBytes", r.hit_bytes},
           {"codingError", r.worst_error},
           {"glossyCodingError", r.worst_glossy_error},
-          {"missesBound", !missedText(bake).empty()},
+          {"missesBound", missesBound(bake)},
           {"glossySamples", r.glossy_samples},
           {"fileBytes", r.file_bytes},
           {"meshBytes", r.mesh_bytes},
@@ -229,20 +217,21 @@ nlohmann::json reportJson(const FinishedBake& bake) {
           {"stages", stages}};
 }
 
+bool missesBound(const FinishedBake& bake) {
+  return !missedText(bake).empty();
+}
+
 void printReport(const FinishedBake& bake) {
   const BakeReport& r = bake.report;
   fmt::print("{}: {} vertices, {} triangles, {} samples in {}\n", bake.output.string(), r.vertices,
              r.triangles, r.samples, durationText(secondsOf(r)));
   if (r.texel_samples > 0) fmt::print("  texels    {} of the samples\n", r.texel_samples);
   if (const RefineReport& refined = r.refinement; refined.vertices_after > refined.vertices_before)
-    fmt::print("  refined   {} vertices to {}: shadows between them {} wrong, before {}{}\n",
-               refined.vertices_before, refined.vertices_after, percentText(refined.error_after, 2),
-               percentText(refined.error_before, 2),
+    fmt::print("  refined   {} vertices to {}{}\n", refined.vertices_before, refined.vertices_after,
                refined.fans > 0 ? fmt::format("; {} more values where faces disagree", refined.fans) : "");
-  for (const BakeReport::Group& group : r.groups)
-    if (group.picture_error)
-      fmt::print("  pictures  {}{}\n", r.groups.size() > 1 ? fmt::format("\"{}\": ", group.name) : "",
-                 pictureErrorText(*group.picture_error));
+  if (const BakeReport::Group* group = worstGroup(r))
+    fmt::print("  pictures  {}{}\n", r.groups.size() > 1 ? fmt::format("\"{}\": ", group->name) : "",
+               pictureErrorText(*group->picture_error));
   fmt::print("  time      {}\n", stagesText(r.stages));
   fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
              durationText(r.ray_seconds),
@@ -251,9 +240,7 @@ void printReport(const FinishedBake& bake) {
     fmt::print("  kept      {} rays of earlier bakes; {} read from the cache\n",
                countText(static_cast<double>(r.rays_kept)),
                bytesText(static_cast<double>(r.cache.bytes_read)));
-  if (!r.pass_energy.empty())
-    fmt::print("  bounces   {}, the last with {} of the direct light; {}\n", r.pass_energy.size() - 1,
-               percentText(r.pass_energy.back(), 3), leftOutText(r.left_out));
+  if (!r.pass_energy.empty()) fmt::print("  bounces   {}\n", r.pass_energy.size() - 1);
   for (const BakeReport::Volume& volume : r.volumes)
     fmt::print(
         "  volume    {}: {} voxels, {} samples, density in {} bits ({}), scattering solved in {} steps\n",
@@ -271,11 +258,6 @@ void printReport(const FinishedBake& bake) {
       bytesText(static_cast<double>(r.transfer_bytes)),
       static_cast<double>(r.transfer_bytes) / static_cast<double>(std::max<std::uint64_t>(r.vertices, 1)),
       bytesText(static_cast<double>(r.proxy_bytes)), bytesText(static_cast<double>(r.image_bytes)));
-  fmt::print("  coding    {} relative error of shaded radiance (bound {})\n", percentText(r.worst_error, 2),
-             percentText(codesBoundOf(bake), 2));
-  if (r.worst_glossy_error > 0.0)
-    fmt::print("            {} of glossy surfaces (bound {})\n", percentText(r.worst_glossy_error, 2),
-               percentText(glossyCodesBoundOf(bake), 2));
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
     fmt::print("  around    {}: {} x {} x {} points, {} of irradiance, {} of the change\n", n.name, n.size.x,
                n.size.y, n.size.z, percentText(n.error, 3), percentText(n.change_error));

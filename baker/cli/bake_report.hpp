@@ -25,7 +25,10 @@ struct FinishedBake {
 std::string pictureErrorText(const bundle::PictureError& error);
 nlohmann::json pictureErrorJson(const std::optional<bundle::PictureError>& error);
 
-// Says in its last line if a bound on the error is missed.
+// Returns whether a bound on the error, or a limit, was missed.
+bool missesBound(const FinishedBake& bake);
+
+// Says in its last line if a bound is missed, and what would help.
 void printReport(const FinishedBake& bake);
 nlohmann::json reportJson(const FinishedBake& bake);
 

@@ -78,6 +78,10 @@ Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cach
   return outcome;
 }
 
+bool failsStrictly(const BakeArguments& a, const BakeOutcome& outcome) {
+  return a.strict && outcome.report && missesBound({a.output, a.options, *outcome.report, outcome.estimate});
+}
+
 nlohmann::json outcomeJson(const BakeArguments& a, const BakeOutcome& outcome) {
   if (!outcome.report) return {{"output", a.output.string()}, {"upToDate", true}};
   return reportJson({a.output, a.options, *outcome.report, outcome.estimate});

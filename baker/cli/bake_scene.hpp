@@ -22,10 +22,10 @@ struct BakeArguments {
   std::filesystem::path watch;  // a folder; empty means none
   bool resume = false;
   double checkpoint_s = 0.0;  // 0 keeps the cache's own interval
-  double time_s = 0.0;        // 0: the options say all
   BakeOptions options;
   bool force = false, json = false, allow_outside = false;
-  std::string cache;  // a folder, "off", or empty for the default one
+  bool strict = false;  // a bake that misses a bound fails
+  std::string cache;    // a folder, "off", or empty for the default one
   std::uint64_t cache_bytes = kCacheBytes;
   SayOptions say;
 };
@@ -37,6 +37,8 @@ struct BakeOutcome {
 
 Result<BakeOutcome> bakeScene(const BakeArguments& arguments, std::optional<Cache>& cache,
                               const std::stop_token& stop);
+// Returns whether the bake missed a bound and is to fail for it.
+bool failsStrictly(const BakeArguments& arguments, const BakeOutcome& outcome);
 nlohmann::json outcomeJson(const BakeArguments& arguments, const BakeOutcome& outcome);
 
 std::optional<Cache> bakeCache(const BakeArguments& arguments);

@@ -20,7 +20,7 @@ constexpr std::size_t kFirstLook = 8192;  // rays that say what is seen
 constexpr std::size_t kSenders = 24;
 constexpr int kRegionDepth = 6;  // 64 regions
 // Eyes that come nearer than this share of the distance to what they see on average see no more of it.
-constexpr float kNearest = 0.05f;
+constexpr float kNearest = 0.02f;
 // Sent light is summed over many senders, so its errors show less than those of what is seen.
 constexpr float kSentCounts = 0.25f;
 constexpr float kMiddle = 0.9f;      // of what is seen, along each axis, lies within the extent

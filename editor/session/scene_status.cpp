@@ -14,20 +14,15 @@ namespace {
 
 using baker::JobPhase;
 
-// Returns a sentence if the codes of the shown bundle err by more than they were allowed to.
+// Returns a sentence if pictures of the shown bundle err by more than they were to.
 std::string missedBound(const bundle::Description& description) {
-  std::size_t missed = 0;
-  double error = 0.0, bound = 0.0;
+  const bundle::PictureError* worst = nullptr;
   for (const bundle::Group& group : description.groups)
-    for (const bundle::Cell& cell : group.cells)
-      for (const bundle::CellTransfer& transfer : cell.transfers) {
-        if (!bundle::missesBound(double{transfer.error}, double{transfer.error_bound})) continue;
-        ++missed;
-        if (double{transfer.error} <= error) continue;
-        error = double{transfer.error}, bound = double{transfer.error_bound};
-      }
-  if (missed == 0) return {};
-  return fmt::format("misses its error bound: {:.2f} instead of {:.2f} %", 100.0 * error, 100.0 * bound);
+    if (const auto& error = group.picture_error; error && (!worst || error->all > worst->all))
+      worst = &*error;
+  if (!worst || !bundle::missesBound(double{worst->all}, double{worst->bound})) return {};
+  return fmt::format("pictures err by {:.1f} % instead of {:.1f} %", 100.0 * double{worst->all},
+                     100.0 * double{worst->bound});
 }
 
 bool works(JobPhase phase) {
@@ -63,7 +58,7 @@ SceneStatus statusOf(Session& session, std::size_t index) {
         job && job->reached == baker::PreviewLevel::Coarse ? "coarse preview" : "preview without shadows",
         "the final bake was not made: Bake makes it");
   if (std::string missed = missedBound(session.stage.world().description(*entry.slot)); !missed.empty())
-    return wanting(std::move(missed), "a lower error in the bake's options, or more rays, can keep it");
+    return wanting(std::move(missed), "a higher quality in the bake's options helps");
   if (!job) return {Standing::Good, "bundle", "it was opened without its scene"};
   return {Standing::Good, job->up_to_date ? "up to date" : "baked", {}};
 }

@@ -195,8 +195,8 @@ struct NeighborhoodGrid {
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // first and last point, in the group's frame
 };
 
-// Says how wrong the diffuse surfaces of a group are shown, as the bake measured it: relative RMS of the
-// light that leaves them towards eyes, over real lights that the bundle's bands carry, without lamps. The
+// Says how wrong the surfaces of a group are shown, as the bake measured it: relative RMS of the light that
+// leaves them towards eyes, over real skies that the bundle's bands carry, with lamps as in the file. The
 // squares of its three parts sum to that of `all`.
 struct PictureError {
   float all = 0.0f;
@@ -204,7 +204,7 @@ struct PictureError {
   float codes = 0.0f;          // compression
   float interpolation = 0.0f;  // too few vertices
   std::uint32_t points = 0;    // where it was measured
-  float bound = 0.0f;          // what `all` was to stay below; 0: no such bound was asked for
+  float bound = 0.0f;          // what `all` was to stay below; 0: nothing was asked for
   bool operator==(const PictureError&) const = default;
 };
 

@@ -1,7 +1,5 @@
 // Tests `lambent bake DIR` as a user sees it: a line per scene, a summary, and an exit code that tells
 // whether all scenes have their bundles; and what --quiet and --progress leave of what a bake says.
-#include <thread>
-
 #include <nlohmann/json.hpp>
 
 #include "tests/programs/lambent_program.hpp"
@@ -90,18 +88,12 @@ TEST_F(LambentFolder, PrintsAnArrayAsJson) {
 TEST_F(LambentFolder, EndsAtAnInterrupt) {
   std::filesystem::remove(folder / "scenes/a.glb");
   std::filesystem::copy(kGallery, folder / "scenes/a.glb");
-  const ::pid_t id = start(LAMBENT_PROGRAM, {"bake", path("scenes"), "-o", path("bundles"), "--quality",
-                                             "high", "--rays", "1048576"});
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-  ::kill(id, SIGINT);
-  const Outcome outcome = finish(id);
+  const Outcome outcome = interrupt({"bake", path("scenes"), "-o", path("bundles"), "--quality", "high",
+                                     "--rays", "1048576", "--progress", "json"},
+                                    "{", SIGINT);
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.out.find("2 scenes: 0 baked, 0 up to date, 1 failed, 1 not begun in "), std::string::npos)
       << outcome.out << outcome.err;
-}
-
-TEST_F(LambentFolder, RefusesATimeForAFolder) {
-  EXPECT_EQ(bakeAll({"--time", "5"}).exit_code, 2);
 }
 
 TEST_F(LambentFolder, QuietLeavesErrorsAndJson) {

@@ -1,5 +1,4 @@
 // Tests lambent as a user sees it: exit codes, one-line errors, files that appear whole or not at all.
-#include <chrono>
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -324,11 +323,12 @@ TEST_F(LambentProgram, BadInputIsExitCode1OneLineAndLeavesNoFile) {
 
 // A missing output folder must be reported before hours of tracing.
 TEST_F(LambentProgram, LooksAtTheOutputAndTheOptionsBeforeTheRays) {
-  const auto begin = std::chrono::steady_clock::now();
-  for (const std::string& output : {path("no/such/out.lmb.glb"), folder.string()})
-    EXPECT_EQ(lambent({"bake", kGallery, "-o", output, "--quality", "high", "--rays", "1048576"}).exit_code,
-              1);
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+  for (const std::string& output : {path("no/such/out.lmb.glb"), folder.string()}) {
+    const Outcome outcome =
+        lambent({"bake", kGallery, "-o", output, "--quality", "high", "--rays", "1048576"});
+    EXPECT_EQ(outcome.exit_code, 1);
+    expectOneLine(outcome, "lambent", "the bake would first have said how long it takes");
+  }
 }
 
 }  // namespace

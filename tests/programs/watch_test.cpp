@@ -6,6 +6,7 @@
 
 #include "assets/scenes.hpp"
 #include "runtime/bundle/reader.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
 
 namespace lambent {
@@ -33,12 +34,7 @@ class LambentWatch : public testing::ProgramTest {
     return found;
   }
   bool waitFor(const std::string& kind, std::size_t count) const {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(90);
-    while (events(kind).size() < count) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    return true;
+    return testing::eventually([&] { return events(kind).size() >= count; });
   }
   static std::string bytesOfScene(const std::filesystem::path& at, const assets::Scene& scene) {
     EXPECT_TRUE(assets::writeGlb(at, scene));

@@ -197,12 +197,12 @@ class Passes {
       for (std::uint32_t s = 0; s < count; ++s) seen.push_back({s, 0, 1.0f / static_cast<float>(count)});
       return seen;
     }
-    const auto& [shares, of_sample, region_count] = *scene.importance;
-    std::vector<double> sums(region_count, 0.0);
-    for (std::uint32_t s = 0; s < count; ++s) sums[of_sample[s]] += double{shares[s]};
+    const SampleImportance& importance = *scene.importance;
+    std::vector<double> sums(importance.region_count, 0.0);
+    for (std::uint32_t s = 0; s < count; ++s) sums[importance.regions[s]] += double{importance.shares[s]};
     for (std::uint32_t s = 0; s < count; ++s)
-      if (const double sum = sums[of_sample[s]]; shares[s] > 0.0f && sum > 0.0)
-        seen.push_back({s, of_sample[s], static_cast<float>(double{shares[s]} / sum)});
+      if (const double sum = sums[importance.regions[s]]; importance.shares[s] > 0.0f && sum > 0.0)
+        seen.push_back({s, importance.regions[s], static_cast<float>(double{importance.shares[s]} / sum)});
     return seen;
   }
   Energies energiesOf(const TransferField& field) const { return {field, seen_, regions()}; }

@@ -11,7 +11,7 @@ TracedGlossyPoints::TracedGlossyPoints(const TracedScene& scene, FacePoints poin
       plain_(scene_, settings),
       pass_(plain_, scene_, order_out),
       looks_{std::vector<std::uint8_t>(points_.samples.size(), 0),
-             std::vector<std::uint8_t>(points_.samples.size(), 0)} {}
+             std::vector<RayCount>(points_.samples.size())} {}
 
 bool TracedGlossyPoints::look(std::size_t hit_memory, const BakeContext& context, const char* stage) {
   auto found = bakeGlossyDirect(pass_, hit_memory, looks_, context, stage);

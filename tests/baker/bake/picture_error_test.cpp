@@ -147,12 +147,13 @@ TEST(PictureError, OfMetalsIsWithinTheBoundThatWasAskedForAndNotFarBelow) {
 
 TEST(PictureError, EyesStandInRoomsAndAroundBodies) {
   const Transport room(openRoom());
-  const ViewPoints in_room = viewPoints(room.diffuse()).diffuse;
+  const ViewPoints in_room = viewPoints(room.diffuse(), Importance(room.geometry, room.rays, {})).diffuse;
   ASSERT_GT(in_room.eyes.size(), 300u);
   for (const glm::vec3& normal : in_room.points.samples.normals)
     EXPECT_GE(normal.y, -0.01f) << "there is no ceiling, and walls are not seen from outside";
   const Transport sphere(testing::sceneOf({testing::icosphere(glm::vec3(0.0f), 1.0f, 3)}));
-  const ViewPoints around = viewPoints(sphere.diffuse()).diffuse;
+  const ViewPoints around =
+      viewPoints(sphere.diffuse(), Importance(sphere.geometry, sphere.rays, {})).diffuse;
   ASSERT_GT(around.eyes.size(), 300u);
   float least = 1.0f, most = -1.0f;
   for (const glm::vec3& point : around.points.samples.positions)

@@ -6,7 +6,6 @@
 #include "baker/bake/option_rows.hpp"
 #include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/long_bake.hpp"
-#include "baker/pipeline/time_budget.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/transport.hpp"
@@ -94,32 +93,6 @@ TEST(BakeEstimate, IsFoundForTheSameSceneAndOptionsOnly) {
   EXPECT_EQ(found->bytes, 77.0);
   EXPECT_EQ(found->parts, estimate.parts);
   EXPECT_FALSE(findEstimate(scene, {.quality = Quality::High}, *cache));
-}
-
-TEST(OptionsForTime, LieBetweenThePresetsAndAreWhatTheirWordsSay) {
-  const BakeOptions draft{.quality = Quality::Draft}, standard;
-  const BakeOptions middle = between(draft, standard, {}, 0.5);
-  EXPECT_EQ(middle.rays, 512u);
-  EXPECT_GT(middle.refine_bound, standard.effectiveRefineBound());
-  EXPECT_LT(middle.refine_bound, draft.effectiveRefineBound());
-  EXPECT_GT(middle.error_bound, standard.effectiveErrorBound());
-  EXPECT_LT(middle.error_bound, draft.effectiveErrorBound());
-  BakeOptions typed;
-  for (const char* name : {"quality", "rays", "refine", "codes"})
-    ASSERT_TRUE(putOption(typed, name, findOption(name)->word(middle)));
-  EXPECT_EQ(typed.settings(), middle.settings()) << "the same bytes";
-  const BakeOptions asked{.rays = 300};
-  EXPECT_EQ(between({.rays = 300}, {.rays = 300}, asked, 0.5).rays, 300u) << "what is given stays";
-}
-
-// No machine bakes this in a hundredth of a second.
-TEST(OptionsForTime, AreTheCoarsestWhereNothingFits) {
-  Progress progress;
-  const auto timed = optionsForTime(boxAboveFloor(), {}, 0.01, {progress});
-  ASSERT_TRUE(timed) << timed.error().line();
-  EXPECT_EQ(timed->options.quality, Quality::Draft);
-  EXPECT_EQ(timed->options.rays, 128u);
-  EXPECT_GT(timed->seconds, 0.01);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 namespace lambent::baker {
 namespace {
 
+using testing::eventually;
 using Kind = BakeEvent::Kind;
 
 class BakeQueueTest : public testing::PipelineTest {

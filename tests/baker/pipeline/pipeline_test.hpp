@@ -1,18 +1,17 @@
-// Provides a folder for each test, and waiting for other threads.
+// Provides a folder for each test.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
-#include <thread>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "assets/scenes.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace lambent::testing {
 
@@ -36,16 +35,6 @@ class PipelineTest : public ::testing::Test {
   static void write(const std::filesystem::path& path, const assets::Scene& scene) {
     const auto written = assets::writeGlb(path, scene);
     ASSERT_TRUE(written) << written.error().line();
-  }
-  // Polls `done` until it is true. The timeout is long enough for a busy machine.
-  template <typename Done>
-  static bool eventually(const Done& done, std::chrono::milliseconds within = std::chrono::seconds(60)) {
-    const auto end = std::chrono::steady_clock::now() + within;
-    while (!done()) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    return true;
   }
 
   std::filesystem::path folder;

@@ -41,7 +41,7 @@ TEST(WholeProgress, KnowsThatMuchIsLeftWhileAStageOfMoreBegins) {
   work();
   progress.add(2);
   EXPECT_LT(whole.look(progress).share, 0.1) << "the stage is done, and the whole is not";
-  EXPECT_NEAR(whole.look(progress).seconds_left, 10.0, 0.5);
+  EXPECT_GT(whole.look(progress).seconds_left, 9.5) << "more on a machine that was busy meanwhile";
 }
 
 TEST(TimeLeft, FollowsRefinementFromItsBeginToItsEnd) {

@@ -109,13 +109,13 @@ TEST(Refinement, DoesNotTakeTheNoiseOfFewRaysForASmallError) {
   const Scene scene = floorInShaft(1);
   const RefineOptions few{.bound = 0.03f, .rays = 128, .many_rays = 128};
   RefineOptions many = few;
-  many.many_rays = 1024;
+  many.many_rays = 2048;
   const Refined by_few = refined(scene, few), by_many = refined(scene, many);
   EXPECT_LT(by_few.report.error_after, 0.03);
   EXPECT_LT(by_many.report.error_after, 0.03);
   // Few rays split what their noise makes look worst and then call the rest right.
   EXPECT_GT(errorByMoreRays(scene, by_few.meshes), 0.05);
-  EXPECT_LT(errorByMoreRays(scene, by_many.meshes), 0.035);
+  EXPECT_LT(errorByMoreRays(scene, by_many.meshes), 0.04) << "that of the worst of many regions has more noise";
 }
 
 TEST(Refinement, LooksOnceAtWhatIsWithinTheBoundFromTheStart) {

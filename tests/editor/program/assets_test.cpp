@@ -5,7 +5,6 @@
 #include <chrono>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -14,6 +13,7 @@
 #include "editor/session/picture_cache.hpp"
 #include "editor/session/small_pictures.hpp"
 #include "runtime/spec/image.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace lambent::editor {
@@ -112,11 +112,10 @@ TEST_F(Assets, PicturesKeepWithinTheirBytesAndTheLatestStay) {
 
 // Waits until the pictures that were asked for have come.
 void settle(AssetPictures& pictures) {
-  for (int i = 0; i < 1000 && pictures.busy(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(lambent::testing::eventually([&] {
     pictures.update();
-  }
-  ASSERT_FALSE(pictures.busy());
+    return !pictures.busy();
+  }));
 }
 
 TEST_F(Assets, PicturesOfMapsAreMadeAndThoseOfScenesAreTheViews) {

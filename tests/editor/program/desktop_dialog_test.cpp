@@ -45,12 +45,10 @@ class DesktopDialogs : public testing::Windowless {
   void ask() {
     session->window.desktop_program = desktopDialogProgram();
     answer("environment-map-folder");
-    for (int i = 0; i < 1000; ++i) {
+    EXPECT_TRUE(lambent::testing::eventually([&] {
       session->update(0.0);
-      if (!session->window.desktop_dialog.open()) return;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    ADD_FAILURE() << "the dialog stays";
+      return !session->window.desktop_dialog.open();
+    }));
   }
 
   std::filesystem::path programs = folder.path() / "bin";
@@ -73,11 +71,10 @@ TEST_F(DesktopDialogs, AnswerWithTheFileThatIsChosen) {
           "\"; printf '%s\\n' \"$@\" >" + (folder.path() / "words").string());
   session->window.desktop_program = desktopDialogProgram();
   answer("open");
-  for (int i = 0; i < 1000 && session->scenes.entries().empty(); ++i) {
+  ASSERT_TRUE(lambent::testing::eventually([&] {
     session->update(0.0);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  ASSERT_EQ(session->scenes.entries().size(), 1u);
+    return !session->scenes.entries().empty();
+  }));
   EXPECT_EQ(session->scenes.entries().front().source, file);
   EXPECT_FALSE(session->window.dialog);
   std::ifstream words(folder.path() / "words");

@@ -2,11 +2,9 @@
 // memory limit, so that bundles are not uploaded before a first picture.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -15,6 +13,7 @@
 #include "assets/scenes.hpp"
 #include "editor/commands/command.hpp"
 #include "editor/session/session.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace lambent::editor::testing {
@@ -43,13 +42,11 @@ class Windowless : public ::testing::Test {
     waitForBundle(*session);
   }
   static void waitForBundle(Session& of) {
-    using namespace std::chrono_literals;
     ASSERT_FALSE(of.scenes.entries().empty());
-    for (int i = 0; i < 3000 && !of.scenes.entries().front().slot; ++i) {
-      std::this_thread::sleep_for(10ms);
+    ASSERT_TRUE(lambent::testing::eventually([&] {
       of.update(0.0);
-    }
-    ASSERT_TRUE(of.scenes.entries().front().slot) << "no bundle came";
+      return of.scenes.entries().front().slot.has_value();
+    })) << "no bundle came";
   }
 
   Result<nlohmann::json> run(const char* id, std::vector<std::string> words = {}) {

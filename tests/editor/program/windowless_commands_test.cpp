@@ -157,11 +157,10 @@ TEST_F(WindowlessCommands, OpenAWorldOfWhichOneSceneIsGoneAndAnotherDoesNotBake)
   std::ofstream(broken) << "no scene";
   answer("open", {broken.string()});
   const auto waitFor = [&](auto holds) {
-    for (int i = 0; i < 3000 && !holds(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_TRUE(lambent::testing::eventually([&] {
       session->update(0.0);
-    }
-    EXPECT_TRUE(holds());
+      return holds();
+    }));
   };
   waitFor([&] { return statusOf(*session, 1).text == "bake failed"; });
   const std::string file = (folder.path() / "world.json").string();
@@ -219,10 +218,10 @@ TEST_F(WindowlessCommands, SayInOnePlaceThatASceneNeedsARebake) {
   std::filesystem::copy(entry.shown, entry.bundle);
   answer("close");
   answer("open", {(folder.path() / "hello.glb").string()});
-  for (int i = 0; i < 3000 && session->scenes.busy(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(lambent::testing::eventually([&] {
     session->update(0.0);
-  }
+    return !session->scenes.busy();
+  }));
   EXPECT_EQ(status().standing, Standing::Good) << status().text;
   EXPECT_TRUE(worstStatus(*session).text.empty());
   answer("select", {"has:Transform sphere"});
@@ -252,10 +251,10 @@ TEST_F(WindowlessCommands, OfferUnfinishedBakesAndShowNothingOfThem) {
   EXPECT_EQ(session->scenes.entries().size(), 1u) << "only what was opened is there";
   answer("go-on", {"other.glb"});
   EXPECT_EQ(answer("state")["unfinished"], json::array());
-  for (int i = 0; i < 3000 && session->scenes.busy(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(lambent::testing::eventually([&] {
     session->update(0.0);
-  }
+    return !session->scenes.busy();
+  }));
   EXPECT_EQ(answer("state")["unseen"][0]["phase"], "done");
   EXPECT_EQ(session->scenes.entries().size(), 1u);
 
@@ -438,13 +437,13 @@ TEST_F(WindowlessCommands, TellOneShareOfABakeFromUpdateToUpdate) {
   const std::filesystem::path file = folder.path() / "hello.glb";
   ASSERT_TRUE(assets::writeGlb(file, assets::hello()));
   answer("open", {file.string()});
-  for (int i = 0; i < 3000 && !session->scenes.entries().front().slot; ++i) {
-    session->update(0.0);
-    const std::string told = statusOf(*session, 0).text;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  std::string told = statusOf(*session, 0).text;
+  EXPECT_TRUE(lambent::testing::eventually([&] {
     EXPECT_EQ(statusOf(*session, 0).text, told);
-  }
-  EXPECT_TRUE(session->scenes.entries().front().slot);
+    session->update(0.0);
+    told = statusOf(*session, 0).text;
+    return session->scenes.entries().front().slot.has_value();
+  }));
 }
 
 }  // namespace

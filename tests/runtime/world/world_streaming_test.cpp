@@ -1,10 +1,8 @@
 // Tests a row of bundles that need three times the available memory, with a camera that flies along it.
-#include <chrono>
-#include <thread>
-
 #include <gtest/gtest.h>
 
 #include "runtime/world/frame_times.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/frame/world_stage.hpp"
 
 namespace lambent::frame {
@@ -61,24 +59,23 @@ TEST_F(WorldStreaming, ResidencyFollowsTheCameraWithinTheBudget) {
     ASSERT_LE(stage.world.residency().bytesResident(), budget) << "at " << x;
     ASSERT_TRUE(stage.world.errors().empty());
   };
-  for (int frame = 0; frame < 400 && stage.world.streaming().queued + (frame < 3) > 0; ++frame) {
-    fly(0.0f);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  int frames = 0;
+  const auto restAt = [&](float x) {
+    return lambent::testing::eventually([&] {
+      fly(x);
+      return ++frames > 3 && stage.world.streaming().queued == 0;
+    });
+  };
+  ASSERT_TRUE(restAt(0.0f));
   const auto first = stage.world.streaming();
-  EXPECT_EQ(first.queued, 0u);
   EXPECT_EQ(first.bundles[0].state, BundleStatus::State::Whole);
   EXPECT_LT(first.bundles[11].resident_bytes, first.bundles[11].whole_bytes);
   // The camera flies along the row and stops at the end.
   constexpr float kEnd = kApart_m * (kBundles - 1);
   for (int frame = 0; frame <= 200; ++frame) fly(kEnd * static_cast<float>(frame) / 200.0f);
-  int frames = 0;
-  for (; frames < 400 && stage.world.streaming().queued > 0; ++frames) {
-    fly(kEnd);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  ASSERT_TRUE(restAt(kEnd));
   const auto last = stage.world.streaming();
-  EXPECT_EQ(last.bundles[11].state, BundleStatus::State::Whole) << "after " << frames << " frames";
+  EXPECT_EQ(last.bundles[11].state, BundleStatus::State::Whole);
   EXPECT_LT(last.bundles[0].resident_bytes, last.bundles[0].whole_bytes) << "made room";
   // Near bundles look as if all of them fitted into memory.
   stage.renderFrom(at(kEnd));
