@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 
 #include <fmt/format.h>
@@ -15,9 +14,10 @@ namespace {
 
 using bundle::MeshData;
 
-// Triangles smaller than this share of the bounding box's squared diagonal are dropped: ray tracers report
-// false hits on them, and they carry no light.
-constexpr double kDegenerateArea = 1e-12;
+// A triangle is without area if it is thinner than this share of its longest edge, or than what rounding its
+// own coordinates to floats moves them by, so that its normal is noise: ray tracers report false hits on
+// such, and they carry no light. The rest of the mesh does not count, since a large one may have small parts.
+constexpr double kThinnest = 1e-12, kRounding = 0x1p-25;
 
 // Returns twice the area along the geometric normal, in double because of small triangles far from the
 // origin.
@@ -50,14 +50,17 @@ std::size_t dropNonFinite(MeshData& mesh) {
 }
 
 std::size_t dropDegenerate(MeshData& mesh) {
-  glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
-  for (const std::uint32_t v : mesh.indices) {
-    low = glm::min(low, glm::dvec3(mesh.positions[v]));
-    high = glm::max(high, glm::dvec3(mesh.positions[v]));
-  }
-  const glm::dvec3 diagonal = high - low;
-  const double least = 2.0 * kDegenerateArea * glm::dot(diagonal, diagonal);
-  return dropTriangles(mesh, [&](std::size_t i) { return glm::length(areaVector(mesh, i)) > least; });
+  return dropTriangles(mesh, [&](std::size_t i) {
+    double longest = 0.0, largest = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const glm::dvec3 a = mesh.positions[mesh.indices[i + c]],
+                       b = mesh.positions[mesh.indices[i + (c + 1) % 3]];
+      longest = std::max(longest, glm::distance(a, b));
+      largest = std::max({largest, std::abs(a.x), std::abs(a.y), std::abs(a.z)});
+    }
+    // Twice the area is the height over the longest edge times its length.
+    return glm::length(areaVector(mesh, i)) > longest * std::max(kThinnest * longest, kRounding * largest);
+  });
 }
 
 void dropUnusedVertices(MeshData& mesh) {
