@@ -127,6 +127,18 @@ Result<void> normalize(std::vector<glm::vec4>& tangents, const std::string& subj
   return {};
 }
 
+// Colours in integers are shares of the largest one, also where the encoder has not said so.
+void normalizeColors(const draco::Mesh& mesh, std::int32_t id, std::vector<glm::vec4>& colors) {
+  if (colors.empty()) return;
+  const draco::PointAttribute& attribute = *mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
+  if (attribute.normalized() || !draco::IsDataTypeIntegral(attribute.data_type())) return;
+  const float most =
+      std::exp2(8.0f * static_cast<float>(draco::DataTypeLength(attribute.data_type()))) - 1.0f;
+  for (glm::vec4& color : colors) {
+    for (int c = 0; c < attribute.num_components(); ++c) color[c] /= most;
+  }
+}
+
 Result<MeshData> extract(const draco::Mesh& mesh, const DracoAttributes& attributes,
                          const std::string& subject) {
   MeshData data;
@@ -144,6 +156,7 @@ Result<MeshData> extract(const draco::Mesh& mesh, const DracoAttributes& attribu
   if (done && attributes.texcoord1 >= 0)
     done = take(data.texcoords1, attributes.texcoord1, "texture coordinates");
   if (done && attributes.color0 >= 0) done = take(data.colors, attributes.color0, "colors");
+  if (done) normalizeColors(mesh, attributes.color0, data.colors);
   if (done && attributes.tangent >= 0) done = take(data.tangents, attributes.tangent, "tangents");
   if (done && attributes.normal_weight >= 0) {
     std::vector<glm::vec1> weights;
