@@ -7,6 +7,7 @@
 #include <span>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "baker/import/hints.hpp"
 #include "baker/import/tinygltf.hpp"
@@ -64,11 +65,14 @@ struct Elements {
   const unsigned char* operator[](std::size_t i) const { return first + i * stride; }
 };
 
-Elements elementsAt(const tinygltf::Model& model, int view_index, std::size_t offset, std::size_t count,
+Elements elementsAt(const Document& document, int view_index, std::size_t offset, std::size_t count,
                     std::size_t element, bool strided) {
-  const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(view_index)];
-  const std::vector<unsigned char>& bytes = model.buffers[static_cast<std::size_t>(view.buffer)].data;
-  const std::size_t stride = strided && view.byteStride != 0 ? view.byteStride : element;
+  const auto index = static_cast<std::size_t>(view_index);
+  const tinygltf::BufferView& view = document.model().bufferViews[index];
+  const std::vector<unsigned char>& bytes =
+      document.model().buffers[static_cast<std::size_t>(view.buffer)].data;
+  const std::size_t stride =
+      strided ? document.json()["bufferViews"][index].value("byteStride", element) : element;
   assert(view.byteOffset + offset + (count - 1) * stride + element <= bytes.size());
   static_cast<void>(count);
   return {bytes.data() + view.byteOffset + offset, stride};
@@ -76,7 +80,7 @@ Elements elementsAt(const tinygltf::Model& model, int view_index, std::size_t of
 
 // Calls replace(target, bytes of the value) for every element that a sparse accessor replaces.
 template <typename Replace>
-void forEachSparse(const tinygltf::Model& model, const tinygltf::Accessor& accessor, std::size_t element,
+void forEachSparse(const Document& document, const tinygltf::Accessor& accessor, std::size_t element,
                    Replace replace) {
   if (!accessor.sparse.isSparse) return;
   const auto& sparse = accessor.sparse;
@@ -84,11 +88,11 @@ void forEachSparse(const tinygltf::Model& model, const tinygltf::Accessor& acces
   const auto index_bytes = static_cast<std::size_t>(
       tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(sparse.indices.componentType)));
   const Elements indices =
-      elementsAt(model, sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset), count,
-                 index_bytes, /*strided=*/false);
+      elementsAt(document, sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset),
+                 count, index_bytes, /*strided=*/false);
   const Elements values =
-      elementsAt(model, sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset), count,
-                 element, /*strided=*/false);
+      elementsAt(document, sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset),
+                 count, element, /*strided=*/false);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t target = toIndex(indices[i], sparse.indices.componentType);
     if (target < accessor.count) replace(target, values[i]);  // otherwise there is nothing to replace
@@ -114,8 +118,8 @@ Result<Floats> readFloats(const Document& document, int index, const std::string
   const std::size_t component_bytes = static_cast<std::size_t>(
       tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)));
   Floats floats{std::vector<float>(accessor.count * components, 1.0f), components};
-  if (accessor.bufferView >= 0) {
-    const Elements elements = elementsAt(model, accessor.bufferView, accessor.byteOffset, accessor.count,
+  if (accessor.bufferView >= 0 && accessor.count > 0) {
+    const Elements elements = elementsAt(document, accessor.bufferView, accessor.byteOffset, accessor.count,
                                          stored * component_bytes, /*strided=*/true);
     for (std::size_t i = 0; i < accessor.count; ++i)
       for (std::size_t c = 0; c < stored; ++c)
@@ -125,7 +129,7 @@ Result<Floats> readFloats(const Document& document, int index, const std::string
     for (std::size_t i = 0; i < accessor.count; ++i)
       for (std::size_t c = 0; c < stored; ++c) floats.values[i * components + c] = 0.0f;
   }
-  forEachSparse(model, accessor, stored * component_bytes,
+  forEachSparse(document, accessor, stored * component_bytes,
                 [&](std::size_t target, const unsigned char* value) {
                   for (std::size_t c = 0; c < stored; ++c)
                     floats.values[target * components + c] =
@@ -146,12 +150,12 @@ Result<std::vector<std::uint32_t>> readIndices(const Document& document, int ind
   const auto bytes =
       static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
   std::vector<std::uint32_t> indices(accessor.count, 0);
-  if (accessor.bufferView >= 0) {
-    const Elements elements = elementsAt(document.model(), accessor.bufferView, accessor.byteOffset,
-                                         accessor.count, bytes, /*strided=*/true);
+  if (accessor.bufferView >= 0 && accessor.count > 0) {
+    const Elements elements = elementsAt(document, accessor.bufferView, accessor.byteOffset, accessor.count,
+                                         bytes, /*strided=*/true);
     for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = toIndex(elements[i], type);
   }
-  forEachSparse(document.model(), accessor, bytes, [&](std::size_t target, const unsigned char* value) {
+  forEachSparse(document, accessor, bytes, [&](std::size_t target, const unsigned char* value) {
     indices[target] = toIndex(value, type);
   });
   return indices;

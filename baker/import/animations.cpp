@@ -1,5 +1,5 @@
 // Converts animations: channels of translation, rotation and scale. They are checked here, so that players
-// need not.
+// need not; one that makes no sense is left out with a warning, and its node stays at rest.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -75,6 +75,7 @@ Result<AnimationChannel> readChannel(const Document& document, const json& sampl
   if (values->count() != each * times->count())
     return fail(file, fmt::format("{}: {} values for {} keys", name, values->count(), times->count()),
                 kExportAgain);
+  if (times->count() == 0) return fail(file, name + ": it has no keys", kExportAgain);
   channel.times_s = std::move(times->values);
   channel.values = std::move(values->values);
   if (auto checked = checkTimes(channel.times_s, file, name); !checked) return failAgain(checked.error());
@@ -128,12 +129,13 @@ Result<gltf::Trs> partsOf(const Document& document, std::size_t n) {
 }
 
 Result<void> markAnimated(const Document& document, std::size_t file_node, gltf::Node& node) {
+  if (!node.trs) {
+    auto trs = partsOf(document, file_node);
+    if (!trs) return failAgain(trs.error());
+    node.trs = *trs;
+    node.parent_from_node = trs->matrix();
+  }
   node.animated = true;
-  if (node.trs) return {};
-  auto trs = partsOf(document, file_node);
-  if (!trs) return failAgain(trs.error());
-  node.trs = *trs;
-  node.parent_from_node = trs->matrix();
   return {};
 }
 
@@ -155,21 +157,30 @@ Result<void> convertAnimation(const Document& document, const json& source, cons
     if (!target.contains("node")) continue;  // glTF says to ignore the channel
     const auto node = target["node"].get<std::size_t>();
     if (map.scene_node[node] < 0) continue;  // the node belongs to another scene
-    if (!targets.emplace(node, *path).second)
-      return fail(document.file(), fmt::format("{} moves the {} of node {} twice", name, word, node),
-                  kExportAgain);
+    const auto leaveOut = [&](const Error& error) {
+      scene.warnings.push_back(error.problem + ", so the channel is left out");
+    };
+    if (!targets.emplace(node, *path).second) {
+      leaveOut({{}, fmt::format("{}: it moves the {} of node {} twice", name, word, node), {}});
+      continue;
+    }
     AnimationChannel wanted;
     wanted.node = static_cast<std::uint32_t>(map.scene_node[node]);
     wanted.path = *path;
     auto read = readChannel(document, source["samplers"][channel["sampler"].get<std::size_t>()], wanted,
                             fmt::format("{}, channel {}", name, c));
-    if (!read) return failAgain(std::move(read.error()));
+    if (!read) {
+      leaveOut(read.error());
+      continue;
+    }
     total += read->times_s.size() + read->values.size();
     if (total > kMaxNumbers)
       return fail(document.file(), fmt::format("{} brings the keyframes to more than {}", name, kMaxNumbers),
                   "sample its motion at fewer times");
-    animation.channels.push_back(std::move(*read));
-    if (auto marked = markAnimated(document, node, scene.nodes[wanted.node]); !marked) return marked;
+    if (const auto marked = markAnimated(document, node, scene.nodes[wanted.node]); !marked)
+      leaveOut(marked.error());
+    else
+      animation.channels.push_back(std::move(*read));
   }
   if (!animation.channels.empty()) scene.animations.push_back(std::move(animation));
   return {};

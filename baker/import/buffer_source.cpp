@@ -31,10 +31,12 @@ std::size_t bytesCovered(std::vector<std::pair<std::size_t, std::size_t>> ranges
 }  // namespace
 
 BufferSource::BufferSource(json& document, std::vector<std::byte> binary, const std::filesystem::path& path,
-                           const ImportOptions& options)
-    : binary_(std::move(binary)), path_(path), options_(options) {
+                           const ImportOptions& options, std::vector<std::string>& warnings)
+    : binary_(std::move(binary)), path_(path), options_(options), warnings_(warnings) {
   if (!document.contains("buffers")) return;
   for (json& buffer : document["buffers"]) {
+    // tinygltf refuses an empty buffer, of which nothing is read.
+    if (buffer["byteLength"] == 0) buffer.update({{"byteLength", 1u}, {"uri", "data:,0"}});
     wanted_.push_back({buffer.value("uri", std::string()), buffer["byteLength"].get<std::size_t>(), {}});
     buffer["uri"] = std::to_string(wanted_.size() - 1);
   }
@@ -101,7 +103,7 @@ Result<std::vector<std::byte>> BufferSource::load(std::size_t i) {
       return fail(path_.string(), object + " has neither a URI nor a binary chunk", kExportAgain);
     bytes = std::exchange(binary_, {});
   } else {
-    auto read = readUri(path_, uri, options_, object);
+    auto read = readUri(path_, uri, options_, object, warnings_);
     if (!read) return read;
     bytes = std::move(*read);
   }

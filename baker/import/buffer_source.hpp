@@ -21,7 +21,7 @@ class BufferSource {
  public:
   // Replaces the URI of each buffer by its number, because tinygltf asks for buffers by URI.
   BufferSource(nlohmann::json& document, std::vector<std::byte> binary, const std::filesystem::path& path,
-               const ImportOptions& options);
+               const ImportOptions& options, std::vector<std::string>& warnings);
 
   // Returns as many bytes as the buffer announces. Errors name the file and "buffer 2".
   Result<std::vector<std::byte>> read(std::size_t buffer);
@@ -46,6 +46,7 @@ class BufferSource {
   std::vector<std::byte> binary_;
   std::filesystem::path path_;
   ImportOptions options_;
+  std::vector<std::string>& warnings_;
 };
 
 }  // namespace lambent::baker

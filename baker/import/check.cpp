@@ -1,6 +1,9 @@
 #include "baker/import/check.hpp"
 
+#include <algorithm>
+
 #include "baker/import/check_fields.hpp"
+#include "baker/import/mend.hpp"
 #include "baker/import/reason.hpp"
 #include "baker/import/texture_transfer.hpp"
 
@@ -18,11 +21,40 @@ void checkAsset(const Root& root) {
         "export the scene as glTF 2.0"};
 }
 
+// Returns whether an object has an extension.
+bool has(const nlohmann::json& object, const std::string& name) {
+  return object.is_object() && object.contains("extensions") && object["extensions"].contains(name);
+}
+
+// Returns whether bytes of vertices or indices lie where only the extension finds or decodes them: it is used
+// by a buffer, view or accessor, or by a primitive that has no such bytes.
+bool holdsGeometry(const std::string& name, const Root& root) {
+  const auto uses = [&](const nlohmann::json& object) { return has(object, name); };
+  for (const char* key : {"buffers", "bufferViews", "accessors"})
+    if (std::ranges::any_of(root.object.list(key), uses)) return true;
+  const nlohmann::json& accessors = root.object.list("accessors");
+  const auto lacksBytes = [&](const nlohmann::json& owner, const char* key) {
+    if (!owner.is_object() || !owner.contains(key)) return false;
+    const std::size_t i = owner[key].is_number_unsigned() ? owner[key].get<std::size_t>() : accessors.size();
+    return i < accessors.size() && !accessors[i].contains("bufferView") && !accessors[i].contains("sparse");
+  };
+  bool found = false;
+  root.forEach("meshes", "mesh", [&](const Object& mesh) {
+    for (const nlohmann::json& primitive : mesh.list("primitives"))
+      if (uses(primitive)) {
+        const nlohmann::json attributes = primitive.value("attributes", nlohmann::json::object());
+        found |= !attributes.contains("POSITION") || lacksBytes(attributes, "POSITION") ||
+                 lacksBytes(primitive, "indices");
+      }
+  });
+  return found;
+}
+
 void checkExtensions(const Root& root) {
   for (const nlohmann::json& entry : root.object.list("extensionsRequired")) {
     const std::string name = entry.is_string() ? entry.get<std::string>() : entry.dump();
-    if (!readsExtension(name))
-      throw BrokenField{fmt::format("requires the extension {}, which this program does not know", name),
+    if (!readsExtension(name) && holdsGeometry(name, root))
+      throw BrokenField{fmt::format("has geometry that only the extension {} can decode", name),
                         "export the scene without it"};
   }
 }
@@ -65,26 +97,13 @@ void checkPrimitive(const Object& primitive, const Root& root) {
 
 void checkMaterials(const Root& root) {
   root.forEach("images", "image", [&](const Object& image) {
-    const bool in_view = image.index("bufferView", root.size("bufferViews"), "bufferViews").has_value();
-    if (in_view != image.text("uri").empty())
-      throw BrokenField{fmt::format("{} has neither or both of uri and bufferView", image.name)};
-    image.text("mimeType");
-    image.text("name");
-  });
-  root.forEach("samplers", "sampler", [](const Object& sampler) {
-    for (const char* key : {"wrapS", "wrapT", "magFilter", "minFilter"})
-      if (sampler.number(key).value_or(0) > 0xffff)
-        throw BrokenField{fmt::format("{}: {} is no GL constant", sampler.name, key)};
+    image.index("bufferView", root.size("bufferViews"), "bufferViews");
   });
   root.forEach("textures", "texture", [&](const Object& texture) {
     texture.index("source", root.size("images"), "images");
     texture.index("sampler", root.size("samplers"), "samplers");
   });
-  root.forEach("materials", "material", [&](const Object& material) {
-    checkMaterialFields(material, root);
-    checkTextureInfo(material, "occlusionTexture", root);
-    checkEmission(material);
-  });
+  root.forEach("materials", "material", [&](const Object& material) { checkMaterial(material, root); });
 }
 
 void checkMeshes(const Root& root) {
@@ -99,15 +118,19 @@ void checkMeshes(const Root& root) {
 
 }  // namespace
 
-Result<void> checkDocument(const nlohmann::json& document, const std::string& file) {
+Result<void> checkDocument(nlohmann::json& document, const std::string& file,
+                           std::vector<std::string>& warnings) {
   try {
+    const Entry entry{document, "the document", warnings};
+    for (const auto mend :
+         {mendCameras, mendMembers, mendMaterials, mendLights, mendPrimitives, mendAnimations, mendUnused})
+      mend(entry);
     const Root root{{document, "the document"}};
     checkAsset(root);
     checkExtensions(root);
     checkBuffers(root);
     checkMaterials(root);
     checkMeshes(root);
-    checkLights(root);
     checkNodes(root);
     return {};
   } catch (const BrokenField& broken) {

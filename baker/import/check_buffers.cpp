@@ -36,24 +36,6 @@ std::uint64_t elementBytes(const std::string& type, std::uint64_t component) {
   return 0;
 }
 
-void checkView(const Object& view, const Root& root) {
-  const auto buffer = view.index("buffer", root.size("buffers"), "buffers");
-  if (!buffer) throw BrokenField{fmt::format("{} has no buffer", view.name)};
-  const std::uint64_t available =
-      Object{root.object.list("buffers")[*buffer], fmt::format("buffer {}", *buffer)}.required("byteLength");
-  const std::uint64_t offset = view.number("byteOffset").value_or(0);
-  const std::uint64_t length = view.required("byteLength");
-  if (length == 0) throw BrokenField{fmt::format("{} has no bytes", view.name)};
-  if (offset > available || length > available - offset)
-    throw BrokenField{fmt::format("{} reaches from byte {} to {} of a buffer of {} bytes", view.name, offset,
-                                  offset + length, available)};
-  const std::uint64_t stride = view.number("byteStride").value_or(4);
-  if (stride < 4 || stride > 252 || stride % 4 != 0)
-    throw BrokenField{
-        fmt::format("{}: byteStride {} is not a multiple of 4 from 4 to 252", view.name, stride)};
-  checkMeshopt(view, root);
-}
-
 // Checks that `count` elements of `element` bytes fit at byteOffset of the object's bufferView.
 void checkExtent(const Object& object, const Root& root, std::uint64_t count, std::uint64_t element,
                  bool strided) {
@@ -89,13 +71,29 @@ void checkSparse(const Object& sparse, const Root& root, std::uint64_t count, st
   checkExtent(*values, root, replaced, element, /*strided=*/false);
 }
 
+}  // namespace
+
+void checkView(const Object& view, const Root& root) {
+  const auto buffer = view.index("buffer", root.size("buffers"), "buffers");
+  if (!buffer) throw BrokenField{fmt::format("{} has no buffer", view.name)};
+  const std::uint64_t available =
+      Object{root.object.list("buffers")[*buffer], fmt::format("buffer {}", *buffer)}.required("byteLength");
+  const std::uint64_t offset = view.number("byteOffset").value_or(0);
+  const std::uint64_t length = view.required("byteLength");
+  if (offset > available || length > available - offset)
+    throw BrokenField{fmt::format("{} reaches from byte {} to {} of a buffer of {} bytes", view.name, offset,
+                                  offset + length, available)};
+  view.number("byteStride");
+  checkMeshopt(view, root);
+}
+
 void checkAccessor(const Object& accessor, const Root& root) {
   const std::uint64_t component = componentBytes(accessor.required("componentType"));
   if (component == 0) throw BrokenField{fmt::format("{} has an unknown componentType", accessor.name)};
   const std::uint64_t element = elementBytes(accessor.text("type"), component);
   if (element == 0) throw BrokenField{fmt::format("{} has an unknown type", accessor.name)};
   const std::uint64_t count = accessor.required("count");
-  if (count == 0) throw BrokenField{fmt::format("{} has no elements", accessor.name)};
+  if (count == 0) return;
   if (accessor.find("bufferView") != nullptr) {
     checkExtent(accessor, root, count, element, /*strided=*/true);
   } else if (count > kMaxImplicitCount) {
@@ -104,11 +102,9 @@ void checkAccessor(const Object& accessor, const Root& root) {
   if (const auto sparse = accessor.object("sparse")) checkSparse(*sparse, root, count, element);
 }
 
-}  // namespace
-
 void checkBuffers(const Root& root) {
   root.forEach("buffers", "buffer", [](const Object& buffer) {
-    if (buffer.required("byteLength") == 0) throw BrokenField{fmt::format("{} has no bytes", buffer.name)};
+    buffer.required("byteLength");
     buffer.text("uri");
   });
   root.forEach("bufferViews", "bufferView", [&](const Object& view) { checkView(view, root); });

@@ -99,21 +99,17 @@ struct Root {
 // Requires finite numbers: `count` of them, or any number of them if it is 0.
 void checkNumbers(const Object& object, const char* key, std::size_t count = 0);
 
-// For extensions these check values as well as types, so that conversions can use them as they are.
-void checkTextureTransform(const Object& texture_info);
-void checkEmission(const Object& material);
-// Checks a textureInfo under `key`, if there is one.
-void checkTextureInfo(const Object& owner, const char* key, const Root& root);
-// Checks all textures that are read, the numbers and colours of reflection (by the table of a material's
-// fields), and the file that `extras.lambent.brdf` names.
-void checkMaterialFields(const Object& material, const Root& root);
-void checkLights(const Root& root);
+// Checks that the textures of a material exist, and the file that `extras.lambent.brdf` names. Mends have
+// been to all else in it.
+void checkMaterial(const Object& material, const Root& root);
 void checkNodeExtensions(const Object& node, const Root& root);  // lights, instances
 
 void checkNodeGrids(const Object& node);  // volumes, neighborhoods
 
 void checkMeshopt(const Object& view, const Root& root);  // a bufferView, if meshoptimizer coded it
 void checkBuffers(const Root& root);                      // every byte extent of buffers, views and accessors
+void checkView(const Object& view, const Root& root);
+void checkAccessor(const Object& accessor, const Root& root);
 void checkNodes(const Root& root);  // nodes, scenes, animations: a forest, all references
 
 }  // namespace lambent::baker

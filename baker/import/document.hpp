@@ -37,17 +37,21 @@ class Document {
   // Returns the checked JSON, without buffers and images, for the parts that tinygltf does not read
   // faithfully (extensions, animations, skins).
   const nlohmann::json& json() const { return *json_; }
+  // Lists what was mended, one sentence each.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   const ImportOptions& options() const { return options_; }
   const std::filesystem::path& path() const { return path_; }
   std::string file() const { return path_.string(); }
 
  private:
   Document(std::filesystem::path path, const ImportOptions& options,
-           std::unique_ptr<lambent_tinygltf::Model> model, std::unique_ptr<nlohmann::json> json);
+           std::unique_ptr<lambent_tinygltf::Model> model, std::unique_ptr<nlohmann::json> json,
+           std::vector<std::string> warnings);
   std::filesystem::path path_;
   ImportOptions options_;
   std::unique_ptr<lambent_tinygltf::Model> model_;
   std::unique_ptr<nlohmann::json> json_;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace lambent::baker

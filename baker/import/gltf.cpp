@@ -28,9 +28,11 @@ bool isBundle(const Document& document) {
 }
 
 void warnAboutExtensions(const Document& document, Scene& scene) {
-  const auto& used = document.model().extensionsUsed;
+  const tinygltf::Model& model = document.model();
+  std::set<std::string> names(model.extensionsUsed.begin(), model.extensionsUsed.end());
+  names.insert(model.extensionsRequired.begin(), model.extensionsRequired.end());
   std::string looks;
-  for (const std::string& name : std::set<std::string>(used.begin(), used.end())) {
+  for (const std::string& name : names) {
     if (readsExtension(name)) continue;
     if (name.starts_with("KHR_materials_"))
       looks += (looks.empty() ? "" : ", ") + name;
@@ -65,6 +67,7 @@ Result<Scene> convert(const Document& document) {
   if (isBundle(document))
     return fail(document.file(), "is a bundle, which was baked already",
                 "name the scene that it was made of");
+  scene.warnings = document.warnings();
   warnAboutExtensions(document, scene);
   // Convert materials, with the textures and images that they use.
   if (auto materials = convertMaterials(document, scene); !materials)

@@ -13,8 +13,8 @@
 
 namespace lambent::baker {
 
-// Errors: missing or unreadable file, not glTF 2.0, unknown required extension, broken accessors or buffers,
-// or a scene without triangles and volumes.
+// Errors: missing or unreadable file, not glTF 2.0, geometry in an unknown extension, broken accessors or
+// buffers, or a scene without triangles and volumes.
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options = {});
 
 }  // namespace lambent::baker

@@ -63,7 +63,8 @@ Result<DecodedImage> decode(const SceneImage& image, const std::string& subject)
     essential = std::move(*png);
     bytes = essential;
   }
-  const auto stored = (*reader)->decode(bytes, is_png ? "memory.png" : "memory.jpg", subject);
+  const std::string kind = image.mime_type.substr(image.mime_type.find('/') + 1);
+  const auto stored = (*reader)->decode(bytes, "memory." + kind, subject);
   if (!stored) return failAgain(stored.error());
 
   const std::size_t pixels = std::size_t{stored->width} * stored->height, channels = stored->channels;

@@ -78,7 +78,12 @@ Result<void> expand(const Document& document, const json& attributes, std::size_
                   kExportAgain);
     if (here != 0) count = here;
   }
-  if (count == 0) return {};  // it has only custom attributes, so it is drawn once
+  if (count == 0) {
+    // It has no instance, unless it has only custom attributes: then it is drawn once.
+    for (const Attribute* attribute : {&translation, &rotation, &scale})
+      if (attributes.contains(attribute->name)) scene.nodes[static_cast<std::size_t>(scene_node)].mesh = -1;
+    return {};
+  }
   total += count;
   if (total > kMaxInstances)
     return fail(document.file(),

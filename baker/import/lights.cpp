@@ -1,4 +1,4 @@
-// Converts KHR_lights_punctual. check_extensions.cpp has checked types and ranges.
+// Converts KHR_lights_punctual. mend_lights.cpp has seen to types and ranges.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

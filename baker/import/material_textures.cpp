@@ -1,13 +1,12 @@
 #include "baker/import/material_textures.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <span>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "baker/import/storable_image.hpp"
 #include "baker/import/uri.hpp"
 
 namespace lambent::baker {
@@ -37,13 +36,19 @@ gltf::TextureRef placementOf(const tinygltf::ExtensionMap& extensions, int texco
   return ref;
 }
 
-// Finds the type from the first bytes, because what the file says about it is often wrong.
-std::string imageType(const std::vector<std::byte>& bytes) {
-  constexpr std::array<unsigned char, 4> kPng{0x89, 'P', 'N', 'G'};
-  constexpr std::array<unsigned char, 3> kJpeg{0xff, 0xd8, 0xff};
-  if (bytes.size() > 8 && std::memcmp(bytes.data(), kPng.data(), kPng.size()) == 0) return "image/png";
-  if (bytes.size() > 8 && std::memcmp(bytes.data(), kJpeg.data(), kJpeg.size()) == 0) return "image/jpeg";
-  return {};
+// Returns the images that a texture names, its own one first, then those for readers of an extension.
+std::vector<std::size_t> imagesOf(const nlohmann::json& texture, std::size_t count) {
+  std::vector<std::size_t> images;
+  const auto add = [&](const nlohmann::json& owner) {
+    if (!owner.is_object() || !owner.contains("source")) return;
+    const nlohmann::json& source = owner["source"];
+    if (source.is_number_unsigned() && source.get<std::size_t>() < count)
+      images.push_back(source.get<std::size_t>());
+  };
+  add(texture);
+  if (texture.contains("extensions"))
+    for (const nlohmann::json& extension : texture["extensions"]) add(extension);
+  return images;
 }
 
 }  // namespace
@@ -60,8 +65,8 @@ MaterialTextures::MaterialTextures(const Document& document, Scene& scene)
       texture_of_(document.model().textures.size(), kUnknown),
       image_of_(document.json().contains("images") ? document.json()["images"].size() : 0, kUnknown) {}
 
-Result<gltf::TextureRef> MaterialTextures::refer(int index, const tinygltf::ExtensionMap& extensions,
-                                                 int texcoord, std::size_t material, const char* use) {
+gltf::TextureRef MaterialTextures::refer(int index, const tinygltf::ExtensionMap& extensions, int texcoord,
+                                         std::size_t material, const char* use) {
   if (index < 0) return gltf::TextureRef{};
   gltf::TextureRef ref = placementOf(extensions, texcoord);
   if (ref.texcoord > 1) {
@@ -70,14 +75,12 @@ Result<gltf::TextureRef> MaterialTextures::refer(int index, const tinygltf::Exte
                     use, ref.texcoord));
     return gltf::TextureRef{};
   }
-  const auto texture = take(index);
-  if (!texture) return failAgain(texture.error());
-  ref.texture = *texture;
+  ref.texture = take(index);
   return ref.texture < 0 ? gltf::TextureRef{} : ref;
 }
 
-Result<gltf::TextureRef> MaterialTextures::refer(const tinygltf::Value& extension, const char* key,
-                                                 std::size_t material, const char* use) {
+gltf::TextureRef MaterialTextures::refer(const tinygltf::Value& extension, const char* key,
+                                         std::size_t material, const char* use) {
   if (!extension.Has(key)) return gltf::TextureRef{};
   const tinygltf::Value& info = extension.Get(key);
   tinygltf::ExtensionMap extensions;
@@ -86,20 +89,38 @@ Result<gltf::TextureRef> MaterialTextures::refer(const tinygltf::Value& extensio
   return refer(info.Get("index").GetNumberAsInt(), extensions, texcoord, material, use);
 }
 
-Result<std::int32_t> MaterialTextures::take(int index) {
+gltf::TextureRef MaterialTextures::roughnessOf(gltf::TextureRef ref, float factor) {
+  if (ref.texture < 0) return ref;
+  const auto [known, added] = roughness_of_.try_emplace({ref.texture, factor}, -1);
+  if (added) {
+    gltf::Texture texture = scene_.textures[static_cast<std::size_t>(ref.texture)];
+    auto roughness = roughnessImage(scene_.images[static_cast<std::size_t>(texture.image)], factor);
+    if (roughness) {
+      texture.image = static_cast<std::int32_t>(scene_.images.size());
+      scene_.images.push_back(std::move(*roughness));
+      known->second = static_cast<std::int32_t>(scene_.textures.size());
+      scene_.textures.push_back(texture);
+    } else {
+      scene_.warnings.push_back(roughness.error().line());
+    }
+  }
+  ref.texture = known->second;
+  return ref;
+}
+
+std::int32_t MaterialTextures::take(int index) {
   std::int32_t& texture = texture_of_[static_cast<std::size_t>(index)];
   if (texture != kUnknown) return texture;
-  const tinygltf::Texture& source = document_.model().textures[static_cast<std::size_t>(index)];
   texture = -1;
-  if (source.source < 0) {
-    scene_.warnings.push_back(fmt::format("texture {} has no PNG or JPEG image and is left out", index));
-    return texture;
-  }
-  auto image = takeImage(source.source);
-  if (!image) return failAgain(std::move(image.error()));
-  if (*image < 0) return texture;
+  const auto images =
+      imagesOf(document_.json()["textures"][static_cast<std::size_t>(index)], image_of_.size());
+  if (images.empty())
+    scene_.warnings.push_back(fmt::format("texture {} names no image and is left out", index));
   gltf::Texture out;
-  out.image = *image;
+  for (const std::size_t image : images)
+    if (out.image < 0) out.image = takeImage(image);
+  if (out.image < 0) return texture;
+  const tinygltf::Texture& source = document_.model().textures[static_cast<std::size_t>(index)];
   if (source.sampler >= 0) {
     const tinygltf::Sampler& sampler = document_.model().samplers[static_cast<std::size_t>(source.sampler)];
     out.sampler.wrap_s = static_cast<std::uint32_t>(sampler.wrapS);
@@ -112,30 +133,44 @@ Result<std::int32_t> MaterialTextures::take(int index) {
   return texture;
 }
 
-Result<std::int32_t> MaterialTextures::takeImage(int index) {
-  std::int32_t& image = image_of_[static_cast<std::size_t>(index)];
+std::int32_t MaterialTextures::takeImage(std::size_t index) {
+  std::int32_t& image = image_of_[index];
   if (image != kUnknown) return image;
-  const nlohmann::json& source = document_.json()["images"][static_cast<std::size_t>(index)];
-  auto bytes = imageBytes(source, index);
-  if (!bytes) return failAgain(std::move(bytes.error()));
   image = -1;
-  const std::string type = imageType(*bytes);
-  if (type.empty()) {
-    scene_.warnings.push_back(fmt::format("image {} is neither PNG nor JPEG and is left out", index));
-    return image;
+  auto read = readImage(index);
+  if (read) {
+    image = static_cast<std::int32_t>(scene_.images.size());
+    scene_.images.push_back(std::move(*read));
+  } else {
+    lacks_images_ = true;
+    const Error& error = read.error();
+    const std::string uri = document_.json()["images"][index].value("uri", "");
+    scene_.warnings.push_back(fmt::format(
+        "image {}{}: {}, so surfaces look as without it ({})", index,
+        uri.empty() || uri.starts_with("data:") ? "" : fmt::format(" (\"{}\")", uri.substr(0, 80)),
+        error.problem, error.hint));
   }
-  image = static_cast<std::int32_t>(scene_.images.size());
-  std::string name = source.value("name", "");
-  const std::string uri = source.value("uri", "");
-  if (name.empty() && !uri.starts_with("data:")) name = decodePercent(uri);
-  scene_.images.push_back({name, type, std::move(*bytes)});
   return image;
 }
 
-Result<std::vector<std::byte>> MaterialTextures::imageBytes(const nlohmann::json& source, int index) const {
+Result<SceneImage> MaterialTextures::readImage(std::size_t index) {
+  const std::string object = fmt::format("image {}", index);
+  const nlohmann::json& source = document_.json()["images"][index];
+  auto bytes = imageBytes(source, object);
+  if (!bytes) return failAgain(std::move(bytes.error()));
+  std::string name = source.value("name", "");
+  const std::string uri = source.value("uri", "");
+  if (name.empty() && source.contains("uri") && !uri.starts_with("data:")) name = decodePercent(uri);
+  return storableImage(std::move(name), std::move(*bytes));
+}
+
+Result<std::vector<std::byte>> MaterialTextures::imageBytes(const nlohmann::json& source,
+                                                            const std::string& object) {
   if (source.contains("uri"))
-    return readUri(document_.path(), source["uri"].get<std::string>(), document_.options(),
-                   fmt::format("image {}", index));
+    return readUri(document_.path(), source["uri"].get<std::string>(), document_.options(), object,
+                   scene_.warnings);
+  if (!source.contains("bufferView"))
+    return fail(object, "names neither a file nor a bufferView", "name a file");
   const tinygltf::BufferView& view = document_.model().bufferViews[source["bufferView"].get<std::size_t>()];
   const auto bytes =
       std::as_bytes(std::span(document_.model().buffers[static_cast<std::size_t>(view.buffer)].data))

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -55,8 +54,7 @@ std::vector<int> rootsOf(const tinygltf::Model& model) {
   return roots;
 }
 
-Result<gltf::Camera> convertCamera(const tinygltf::Camera& camera, const std::string& file,
-                                   std::size_t index) {
+gltf::Camera convertCamera(const tinygltf::Camera& camera) {
   gltf::Camera out;
   out.name = camera.name;
   out.perspective = camera.type == "perspective";
@@ -71,14 +69,6 @@ Result<gltf::Camera> convertCamera(const tinygltf::Camera& camera, const std::st
     out.znear = static_cast<float>(camera.orthographic.znear);
     out.zfar = static_cast<float>(camera.orthographic.zfar);
   }
-  const bool finite = std::isfinite(out.aspect) && std::isfinite(out.znear) && std::isfinite(out.zfar) &&
-                      std::isfinite(out.xmag) && std::isfinite(out.ymag);
-  const bool lens = out.perspective
-                        ? out.yfov_rad > 0.0f && out.yfov_rad < std::numbers::pi_v<float> && out.znear > 0.0f
-                        : out.xmag != 0.0f && out.ymag != 0.0f && out.znear >= 0.0f;
-  if (!finite || !lens || out.aspect < 0.0f || (out.zfar != 0.0f && out.zfar <= out.znear))
-    return fail(file, fmt::format("camera {} has impossible values", index),
-                "correct its field of view and planes");
   return out;
 }
 
@@ -101,11 +91,7 @@ std::vector<glm::mat4> fileWorldTransforms(const Document& document) {
 
 Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
   const tinygltf::Model& model = document.model();
-  for (std::size_t i = 0; i < model.cameras.size(); ++i) {
-    auto camera = convertCamera(model.cameras[i], document.file(), i);
-    if (!camera) return failAgain(std::move(camera.error()));
-    scene.cameras.push_back(std::move(*camera));
-  }
+  for (const tinygltf::Camera& camera : model.cameras) scene.cameras.push_back(convertCamera(camera));
 
   // Parents come first, in the order of the file; nodes of other scenes are left out.
   NodeMap map;

@@ -187,7 +187,7 @@ Result<bundle::MeshData> readPrimitive(const Document& document, const tinygltf:
     return bundle::MeshData{};
   }
   if (!primitive.attributes.contains("POSITION")) {
-    warnings.push_back(fmt::format("{}: has no positions and is left out", name));
+    warnings.push_back(fmt::format("{}: has no geometry and is left out", name));
     return bundle::MeshData{};
   }
   // glTF gives no meaning to tangents without normals.

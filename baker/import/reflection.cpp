@@ -1,6 +1,7 @@
 #include "baker/import/reflection.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -13,26 +14,17 @@
 namespace lambent::baker {
 namespace {
 
+constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
 const tinygltf::Value* extensionOf(const tinygltf::Material& source, const char* name) {
   const auto found = source.extensions.find(name);
   return found != source.extensions.end() && found->second.IsObject() ? &found->second : nullptr;
 }
 
-// Sets `target` to what `refer` returns, if `wanted` says that the texture could change anything.
-Result<void> assignTexture(gltf::TextureRef& target, bool wanted, auto refer) {
-  if (!wanted) return {};
-  Result<gltf::TextureRef> ref = refer();
-  if (!ref) return failAgain(std::move(ref.error()));
-  target = *ref;
-  return {};
-}
-
-// Numbers may exceed 1 by rounding.
-void readField(const nlohmann::json& value, const gltf::MaterialJson& range, float& factor) {
+void readField(const nlohmann::json& value, float& factor) {
   factor = value.get<float>();
-  if (range.allowed == gltf::MaterialJson::Allowed::ZeroToOne) factor = std::min(factor, 1.0f);
 }
-void readField(const nlohmann::json& value, const gltf::MaterialJson&, glm::vec3& color) {
+void readField(const nlohmann::json& value, glm::vec3& color) {
   for (int c = 0; c < 3; ++c) color[c] = value[static_cast<std::size_t>(c)].get<float>();
 }
 
@@ -54,23 +46,53 @@ void readFactors(const nlohmann::json& source, gltf::Material& material) {
         place = &*found;
       }
       if (const auto value = place->find(row.json.key); value != place->end())
-        readField(*value, row.json, material.*row.member);
+        readField(*value, material.*row.member);
     }
   });
 }
 
-// Adds the textures of KHR_materials_specular.
-Result<void> referSpecular(const tinygltf::Value& extension, std::size_t number, MaterialTextures& textures,
-                           gltf::Material& material) {
-  const bool reflects = material.specular > 0.0f;
-  if (auto done = assignTexture(
-          material.specular_texture, reflects,
-          [&] { return textures.refer(extension, "specularTexture", number, "specular texture"); });
-      !done)
-    return done;
-  return assignTexture(
-      material.specular_color_texture, reflects && material.specular_color != glm::vec3(0.0f),
-      [&] { return textures.refer(extension, "specularColorTexture", number, "specular color texture"); });
+// Adds the textures of KHR_materials_specular that could change anything.
+void referSpecular(const tinygltf::Value& extension, std::size_t number, MaterialTextures& textures,
+                   gltf::Material& material) {
+  if (material.specular <= 0.0f) return;
+  material.specular_texture = textures.refer(extension, "specularTexture", number, "specular texture");
+  if (material.specular_color != glm::vec3(0.0f))
+    material.specular_color_texture =
+        textures.refer(extension, "specularColorTexture", number, "specular color texture");
+}
+
+// Converts KHR_materials_pbrSpecularGlossiness, which replaces the rest. Both models have the same lobes: the
+// dielectric's reflectance at normal incidence times its colour is the extension's specular colour. One whose
+// diffuse colour is black is a metal.
+void convertSpecularGlossiness(const nlohmann::json& source, const tinygltf::Value& extension,
+                               std::size_t number, MaterialTextures& textures, gltf::Material& material) {
+  glm::vec3 specular(1.0f);
+  float glossiness = 1.0f;
+  material.base_color = glm::vec4(1.0f);
+  if (const auto color = source.find("diffuseFactor"); color != source.end())
+    for (int c = 0; c < 4; ++c) material.base_color[c] = (*color)[static_cast<std::size_t>(c)].get<float>();
+  if (const auto color = source.find("specularFactor"); color != source.end()) readField(*color, specular);
+  if (const auto value = source.find("glossinessFactor"); value != source.end())
+    readField(*value, glossiness);
+  const gltf::TextureRef both =
+      textures.refer(extension, "specularGlossinessTexture", number, "specular-glossiness texture");
+  material.roughness = both.texture < 0 ? 1.0f - glossiness : 1.0f;
+  material.metallic_roughness_texture = textures.roughnessOf(both, glossiness);
+  material.specular = 1.0f;
+  // The alpha of its texture is glossiness, which would cut holes into a metal that is not opaque.
+  if (glm::vec3(material.base_color) == glm::vec3(0.0f) && material.alpha_mode == gltf::AlphaMode::Opaque) {
+    material.metallic = 1.0f;
+    material.base_color = glm::vec4(specular, material.base_color.a);
+    material.base_color_texture = both;
+    return;
+  }
+  material.metallic = 0.0f;
+  material.base_color_texture = textures.refer(extension, "diffuseTexture", number, "diffuse texture");
+  const float most = std::max({specular.r, specular.g, specular.b});
+  const float amplitude = std::sqrt(most);  // (ior - 1) / (ior + 1); 0 stands for an infinite index
+  material.ior = amplitude < 1.0f ? (1.0f + amplitude) / (1.0f - amplitude) : 0.0f;
+  material.specular_color = most > 0.0f ? specular / most : glm::vec3(1.0f);
+  material.specular_color_texture = both;
 }
 
 }  // namespace
@@ -81,8 +103,8 @@ Result<void> MeasuredBrdfs::bind(const tinygltf::Material& source, std::size_t n
   const tinygltf::Value& lambent = source.extras.Get("lambent");
   if (!lambent.IsObject() || !lambent.Has("brdf") || !lambent.Get("brdf").IsString()) return {};
   const std::string object = fmt::format("the BRDF of material {}", number);
-  auto file = resolveUri(document_.path().parent_path(), lambent.Get("brdf").Get<std::string>(),
-                         document_.options(), document_.file(), object);
+  auto file = resolveUri(document_.path(), lambent.Get("brdf").Get<std::string>(), document_.options(),
+                         object, scene_.warnings);
   if (!file) return failAgain(std::move(file.error()));
   const auto [known, added] = number_of_.try_emplace(*file, static_cast<std::int32_t>(scene_.brdfs.size()));
   material.brdf = known->second;
@@ -97,25 +119,27 @@ Result<void> MeasuredBrdfs::bind(const tinygltf::Material& source, std::size_t n
   return {};
 }
 
-Result<void> convertReflection(const Document& document, std::size_t number, MaterialTextures& textures,
-                               gltf::Material& material) {
-  readFactors(document.json()["materials"][number], material);
-  if (material.unlit || material.brdf >= 0) return {};
+void convertReflection(const Document& document, std::size_t number, MaterialTextures& textures,
+                       gltf::Material& material) {
+  const nlohmann::json& json = document.json()["materials"][number];
   const tinygltf::Material& source = document.model().materials[number];
-  if (const auto* specular = extensionOf(source, "KHR_materials_specular"))
-    if (auto done = referSpecular(*specular, number, textures, material); !done) return done;
-  if (const auto* anisotropy = extensionOf(source, "KHR_materials_anisotropy")) {
-    auto done = assignTexture(material.anisotropy_texture, material.anisotropy > 0.0f, [&] {
-      return textures.refer(*anisotropy, "anisotropyTexture", number, "anisotropy texture");
-    });
-    if (!done) return done;
+  readFactors(json, material);
+  if (const auto* glossiness = extensionOf(source, kSpecularGlossiness)) {
+    convertSpecularGlossiness(json["extensions"][kSpecularGlossiness], *glossiness, number, textures,
+                              material);
+    return;
   }
+  if (material.unlit || material.brdf >= 0) return;
+  if (const auto* specular = extensionOf(source, "KHR_materials_specular"))
+    referSpecular(*specular, number, textures, material);
+  const auto* anisotropy = extensionOf(source, "KHR_materials_anisotropy");
+  if (anisotropy && material.anisotropy > 0.0f)
+    material.anisotropy_texture =
+        textures.refer(*anisotropy, "anisotropyTexture", number, "anisotropy texture");
   const auto& texture = source.pbrMetallicRoughness.metallicRoughnessTexture;
-  const bool reflects = material.metallic > 0.0f || (material.specular > 0.0f && material.roughness > 0.0f);
-  return assignTexture(material.metallic_roughness_texture, reflects, [&] {
-    return textures.refer(texture.index, texture.extensions, texture.texCoord, number,
-                          "metallic-roughness texture");
-  });
+  if (material.metallic > 0.0f || (material.specular > 0.0f && material.roughness > 0.0f))
+    material.metallic_roughness_texture = textures.refer(texture.index, texture.extensions, texture.texCoord,
+                                                         number, "metallic-roughness texture");
 }
 
 }  // namespace lambent::baker

@@ -28,7 +28,7 @@ class MeasuredBrdfs {
 
 // Reads what material `number` of the file reflects. Unlit, base colour and brdf must be set before; textures
 // that could change nothing are left out of the scene.
-Result<void> convertReflection(const Document& document, std::size_t number, MaterialTextures& textures,
-                               gltf::Material& material);
+void convertReflection(const Document& document, std::size_t number, MaterialTextures& textures,
+                       gltf::Material& material);
 
 }  // namespace lambent::baker

@@ -1,5 +1,6 @@
 #include "baker/import/uri.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -15,16 +16,25 @@
 namespace lambent::baker {
 namespace {
 
-// Decodes base64 (RFC 4648). Padding may be missing; any other wrong character gives nothing.
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+bool sameLetters(std::string_view a, std::string_view b) {
+  return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
+}
+
+// Decodes base64 (RFC 4648), also in the alphabet for URLs. Padding may be missing and lines may be broken;
+// any other wrong character gives nothing.
 std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
   std::vector<std::byte> bytes;
   bytes.reserve(text.size() / 4 * 3 + 2);
   std::uint32_t bits = 0;
   int count = 0;
   for (const char c : text) {
-    const std::size_t digit = kDigits.find(c);
+    if (c == '=' || c == '\n' || c == '\r' || c == ' ') continue;
+    const std::size_t digit = kDigits.find(c == '-' ? '+' : c == '_' ? '/' : c);
     if (digit == std::string_view::npos) return std::nullopt;
     bits = (bits << 6) | static_cast<std::uint32_t>(digit);
     count += 6;
@@ -35,16 +45,49 @@ std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
   return bytes;
 }
 
-// Decodes a data: URI (RFC 2397).
+// Decodes a data: URI (RFC 2397), whose words may be in letters of any case.
 std::optional<std::vector<std::byte>> decodeData(const std::string& uri) {
   constexpr std::string_view kBase64 = ";base64";
   const std::size_t comma = uri.find(',');
   if (comma == std::string::npos) return std::nullopt;
-  if (std::string_view(uri).substr(0, comma).ends_with(kBase64))
-    return decodeBase64(std::string_view(uri).substr(comma + 1));
-  const std::string text = decodePercent(uri.substr(comma + 1));
+  const std::string_view head = std::string_view(uri).substr(0, comma),
+                         data = std::string_view(uri).substr(comma + 1);
+  const bool base64 =
+      head.size() >= kBase64.size() && sameLetters(head.substr(head.size() - kBase64.size()), kBase64);
+  if (base64 && data.find('%') == std::string_view::npos) return decodeBase64(data);
+  const std::string text = decodePercent(std::string(data));
+  if (base64) return decodeBase64(text);
   const auto bytes = std::as_bytes(std::span(text));
   return std::vector<std::byte>(bytes.begin(), bytes.end());
+}
+
+// Returns the entry of a folder with this name, or else the first one whose name differs only in the case of
+// letters, as folders of other systems do not mind it.
+std::filesystem::path entryOf(const std::filesystem::path& folder, const std::filesystem::path& name) {
+  std::error_code error;
+  std::filesystem::path found = folder / name;
+  if (std::filesystem::exists(found, error)) return found;
+  std::filesystem::path other;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (sameLetters(entry.path().filename().string(), name.string()) &&
+        (other.empty() || entry.path() < other))
+      other = entry.path();
+  return other.empty() ? found : other;
+}
+
+// Returns the file that a name in the folder `home` means. Exporters also write backslashes, letters of
+// another case, names that are percent-encoded twice, and names with a percent sign that is not encoded.
+std::filesystem::path meantBy(const std::filesystem::path& home, const std::string& uri) {
+  const std::filesystem::path plain = home / decodePercent(uri);
+  std::error_code error;
+  if (std::filesystem::exists(plain, error)) return plain;
+  for (std::string name : {decodePercent(uri), uri, decodePercent(decodePercent(uri))}) {
+    std::ranges::replace(name, '\\', '/');
+    std::filesystem::path place = home;
+    for (const std::filesystem::path& part : std::filesystem::path(name)) place = entryOf(place, part);
+    if (std::filesystem::exists(place, error)) return place;
+  }
+  return plain;
 }
 
 }  // namespace
@@ -66,43 +109,49 @@ std::string decodePercent(const std::string& uri) {
   return decoded;
 }
 
-Result<std::filesystem::path> resolveUri(const std::filesystem::path& folder, const std::string& uri,
-                                         const ImportOptions& options, const std::string& subject,
-                                         const std::string& object) {
-  const std::string shown = uri.substr(0, 80);
+Result<std::filesystem::path> resolveUri(const std::filesystem::path& scene, const std::string& uri,
+                                         const ImportOptions& options, const std::string& object,
+                                         std::vector<std::string>& warnings) {
+  const std::string shown = uri.substr(0, 80), subject = fmt::format("{}: {}", scene.string(), object);
   const std::size_t colon = uri.find(':');
   if (colon != std::string::npos && uri.find_first_of("/?#") > colon)
-    return fail(subject,
-                fmt::format("{} has the URI \"{}\", which is not a file beside the scene", object, shown),
+    return fail(subject, fmt::format("has the URI \"{}\", which is not a file beside the scene", shown),
                 "save the data into the scene's folder");
   const std::string name = decodePercent(uri);
   if (name.empty() || name.find('\0') != std::string::npos)
-    return fail(subject, fmt::format("{} has an empty or broken URI", object), kExportAgain);
+    return fail(subject, "has an empty or broken URI", kExportAgain);
 
   std::error_code error;
   // A scene named without a folder lies in the current one; an empty path has no canonical form.
+  const std::filesystem::path folder = scene.parent_path();
   const auto home =
       std::filesystem::weakly_canonical(folder.empty() ? std::filesystem::path(".") : folder, error);
-  const auto file = error ? home : std::filesystem::weakly_canonical(home / name, error);
-  if (!error && options.allow_outside) return file;
+  const std::filesystem::path meant = error ? home : meantBy(home, uri);
+  const auto file = error ? home : std::filesystem::weakly_canonical(meant, error);
   const auto relative = error ? std::filesystem::path("..") : file.lexically_relative(home);
-  if (relative.empty() || *relative.begin() == ".." || relative == ".")
-    return fail(subject, fmt::format("{} (\"{}\") lies outside the scene's folder", object, shown),
+  const bool outside = relative.empty() || *relative.begin() == ".." || relative == ".";
+  if (outside && (error || !options.allow_outside))
+    return fail(subject, fmt::format("\"{}\" lies outside the scene's folder", shown),
                 "move it beside the scene, or pass --allow-outside");
+  if (meant != home / name)
+    warnings.push_back(fmt::format("{}: \"{}\" is read from \"{}\"", object, shown,
+                                   meant.lexically_relative(home).string()));
   return file;
 }
 
-Result<std::vector<std::byte>> readUri(const std::filesystem::path& file, const std::string& uri,
-                                       const ImportOptions& options, const std::string& object) {
-  if (uri.starts_with("data:")) {
+Result<std::vector<std::byte>> readUri(const std::filesystem::path& scene, const std::string& uri,
+                                       const ImportOptions& options, const std::string& object,
+                                       std::vector<std::string>& warnings) {
+  if (sameLetters(std::string_view(uri).substr(0, 5), "data:")) {
     auto bytes = decodeData(uri);
     if (!bytes)
-      return fail(file.string(), fmt::format("{} has a data URI that is not base64", object), kExportAgain);
+      return fail(fmt::format("{}: {}", scene.string(), object), "has a data URI that is not base64",
+                  kExportAgain);
     return std::move(*bytes);
   }
-  const auto found = resolveUri(file.parent_path(), uri, options, file.string(), object);
+  const auto found = resolveUri(scene, uri, options, object, warnings);
   if (!found) return failAgain(found.error());
-  return readBytes(*found, fmt::format("{}: {} ({})", file.string(), object, found->filename().string()));
+  return readBytes(*found, fmt::format("{}: {} ({})", scene.string(), object, found->filename().string()));
 }
 
 }  // namespace lambent::baker

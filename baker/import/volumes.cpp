@@ -41,11 +41,10 @@ Result<DensityGrid> procedural(const std::string& words, const std::string& subj
 }
 
 Result<DensityGrid> readGrid(const Document& document, const std::string& uri, const std::string& grid,
-                             const std::string& object) {
+                             const std::string& object, std::vector<std::string>& warnings) {
   const std::string subject = fmt::format("{}: {}", document.file(), object);
   if (uri.starts_with("procedural:")) return procedural(uri, subject);
-  const auto file =
-      resolveUri(document.path().parent_path(), uri, document.options(), document.file(), object);
+  const auto file = resolveUri(document.path(), uri, document.options(), object, warnings);
   if (!file) return failAgain(file.error());
   const std::string kind = file->extension().string();
   if (kind != ".vdb" && kind != ".nrrd")
@@ -79,7 +78,7 @@ std::size_t scaleDensities(std::vector<float>& values, float scale) {
 Result<void> addVolume(const Document& document, const json& source, std::uint32_t node,
                        const std::string& object, Scene& scene) {
   const auto uri = source["file"].get<std::string>();
-  auto densities = readGrid(document, uri, source.value("grid", ""), object);
+  auto densities = readGrid(document, uri, source.value("grid", ""), object, scene.warnings);
   if (!densities) return failAgain(std::move(densities.error()));
 
   SceneVolume volume;

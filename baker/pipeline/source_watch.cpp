@@ -6,7 +6,6 @@
 #include <map>
 #include <mutex>
 #include <set>
-#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -53,23 +52,10 @@ struct Watched {
   bool dirty = true, told = false, complained = false;
 };
 
-// Detects truncated PNG files, because images stay encoded at import and would only fail in the bake.
-bool cutOff(const SceneImage& image) {
-  if (image.mime_type != "image/png") return false;
-  constexpr std::size_t kTail = 64;
-  const std::size_t count = std::min(kTail, image.file_bytes.size());
-  const auto* const tail =
-      reinterpret_cast<const char*>(image.file_bytes.data() + image.file_bytes.size() - count);
-  return std::string_view(tail, count).find("IEND") == std::string_view::npos;
-}
-
 Result<void> tryImport(const fs::path& path, const ImportOptions& options) {
   try {
     const auto scene = importScene(path, options);
     if (!scene) return failAgain(scene.error());
-    for (const SceneImage& image : scene->images)
-      if (cutOff(image))
-        return fail(path.string(), "its image \"" + image.name + "\" is cut off", "write it again");
     return {};
   } catch (const std::exception& failure) {  // most likely out of memory
     return fail(path.string(), failure.what(), "free some memory");
@@ -178,7 +164,10 @@ void SourceWatch::Impl::check(const fs::path& scene, Watched& state) {
   // show a change.
   const bool overdue = state.failing && now - *state.failing >= settings.complain_after;
   if (state.error && !(overdue && !state.complained)) return;
-  const Result<void> imported = tryImport(scene, settings.import);
+  // Images that stay as they are for long are left out, as the import does.
+  ImportOptions options = settings.import;
+  options.whole_images = !overdue;
+  const Result<void> imported = tryImport(scene, options);
   std::vector<fs::path> files = sourceFiles(scene);
   // A file changed meanwhile, or the scene names new files.
   if (files != state.files || stampsOf(files) != state.stamps) {

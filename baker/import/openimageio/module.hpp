@@ -30,6 +30,7 @@ struct OpenImageIo {
   // Returns the picture, of three channels, as a JPEG file. Qualities are 1..100.
   Result<std::vector<std::uint8_t>> (*encodeJpeg)(const Pixels& picture, int quality,
                                                   const std::string& subject);
+  Result<std::vector<std::uint8_t>> (*encodePng)(const Pixels& picture, const std::string& subject);
   // Reads a grid of an OpenVDB file; see readVdb().
   Result<DensityGrid> (*readVdb)(const std::filesystem::path& file, const std::string& grid);
 };
@@ -43,6 +44,7 @@ namespace openimageio {
 
 Result<Pixels> decode(std::span<const std::byte> file, const std::string& name, const std::string& subject);
 Result<std::vector<std::uint8_t>> encodeJpeg(const Pixels& picture, int quality, const std::string& subject);
+Result<std::vector<std::uint8_t>> encodePng(const Pixels& picture, const std::string& subject);
 Result<DensityGrid> readVdb(const std::filesystem::path& file, const std::string& grid);
 
 }  // namespace openimageio

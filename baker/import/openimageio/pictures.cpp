@@ -1,4 +1,6 @@
 // Decodes and encodes pictures in memory.
+#include <algorithm>
+
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -9,6 +11,27 @@ namespace lambent::baker::openimageio {
 namespace {
 
 constexpr int kLargestSide = 1 << 15;
+
+// OpenImageIO's words may have several lines.
+std::string inOneLine(std::string words) {
+  std::ranges::replace(words, '\n', ' ');
+  return words;
+}
+
+Result<std::vector<std::uint8_t>> encode(const Pixels& picture, const std::string& name,
+                                         const std::string& compression, const std::string& subject) {
+  std::vector<std::uint8_t> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  OIIO::ImageSpec spec(static_cast<int>(picture.width), static_cast<int>(picture.height),
+                       static_cast<int>(picture.channels), OIIO::TypeDesc::UINT8);
+  spec.attribute("Compression", compression);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  const auto output = OIIO::ImageOutput::create(name, &memory);
+  if (!output || !output->set_ioproxy(&memory) || !output->open(name, spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, picture.values.data()) || !output->close())
+    return fail(subject, "cannot be encoded: " + (output ? output->geterror() : OIIO::geterror()));
+  return bytes;
+}
 
 }  // namespace
 
@@ -21,7 +44,7 @@ Result<Pixels> decode(std::span<const std::byte> file, const std::string& name, 
   wanted.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   const auto input = OIIO::ImageInput::open(name, &wanted);
   if (!input)
-    return fail(subject, fmt::format("cannot be decoded ({})", OIIO::geterror()),
+    return fail(subject, fmt::format("cannot be decoded ({})", inOneLine(OIIO::geterror())),
                 "save it again as PNG or JPEG");
 
   const OIIO::ImageSpec& spec = input->spec();
@@ -35,22 +58,16 @@ Result<Pixels> decode(std::span<const std::byte> file, const std::string& name, 
              .values = {}};
   out.values.resize(std::size_t{out.width} * out.height * out.channels);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, out.values.data()))
-    return fail(subject, fmt::format("is damaged ({})", input->geterror()), "save it again");
+    return fail(subject, fmt::format("is damaged ({})", inOneLine(input->geterror())), "save it again");
   return out;
 }
 
 Result<std::vector<std::uint8_t>> encodeJpeg(const Pixels& picture, int quality, const std::string& subject) {
-  constexpr const char* kName = "picture.jpg";
-  std::vector<std::uint8_t> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  OIIO::ImageSpec spec(static_cast<int>(picture.width), static_cast<int>(picture.height),
-                       static_cast<int>(picture.channels), OIIO::TypeDesc::UINT8);
-  spec.attribute("Compression", fmt::format("jpeg:{}", quality));
-  const auto output = OIIO::ImageOutput::create(kName, &memory);
-  if (!output || !output->set_ioproxy(&memory) || !output->open(kName, spec) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, picture.values.data()) || !output->close())
-    return fail(subject, "cannot be encoded: " + (output ? output->geterror() : OIIO::geterror()));
-  return bytes;
+  return encode(picture, "picture.jpg", fmt::format("jpeg:{}", quality), subject);
+}
+
+Result<std::vector<std::uint8_t>> encodePng(const Pixels& picture, const std::string& subject) {
+  return encode(picture, "picture.png", "zip:6", subject);
 }
 
 }  // namespace lambent::baker::openimageio

@@ -22,11 +22,6 @@ struct BrokenCase {
   std::function<void(json&)> bend;
 };
 
-json withLight(json document, const char* light) {
-  document["extensions"]["KHR_lights_punctual"]["lights"] = json::array({json::parse(light)});
-  return document;
-}
-
 TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
   const std::vector<BrokenCase> cases{
       {"accessor 0", [](json& j) { j["accessors"][0]["count"] = 4; }},
@@ -47,7 +42,7 @@ TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
        }},
       {"bufferView 0", [](json& j) { j["bufferViews"][0]["byteOffset"] = 18446744073709551610u; }},
       {"bufferView 0", [](json& j) { j["bufferViews"][0]["buffer"] = 1; }},
-      {"bufferView 0", [](json& j) { j["bufferViews"][0]["byteStride"] = 3; }},
+      {"accessor 0", [](json& j) { j["bufferViews"][0]["byteStride"] = 3; }},
       {"accessor 0", [](json& j) { j["bufferViews"][0]["byteStride"] = 8; }},
       {"buffer 0", [](json& j) { j["buffers"][0]["byteLength"] = 37; }},
       {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "../scene.bin"; }},
@@ -97,20 +92,17 @@ TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
        [](json& j) {
          j["scenes"][0]["nodes"] = {0, 0};
        }},
-      {"camera 0",
-       [](json& j) {
-         j["cameras"] = json::parse(R"([{"type":"perspective","perspective":{"yfov":4,"znear":1}}])");
-       }},
       {"animation 0",
-       [](json& j) { j["animations"] = json::parse(R"([{"channels":[{"target":{"node":5}}]}])"); }},
+       [](json& j) {
+         j["animations"] = json::parse(
+             R"([{"channels":[{"sampler":0,"target":{"node":5}}],"samplers":[{"input":0,"output":0}]}])");
+       }},
       {"animation 0, channel 0",
-       [](json& j) { j["animations"] = json::parse(R"([{"channels":[{"target":{"node":0}}]}])"); }},
+       [](json& j) {
+         j["animations"] = json::parse(R"([{"channels":[{"sampler":0,"target":{"node":0}}]}])");
+       }},
       {"animation 0, sampler 0",
        [](json& j) { j["animations"] = json::parse(R"([{"samplers":[{"input":0,"output":9}]}])"); }},
-      {"animation 0, sampler 0",
-       [](json& j) {
-         j["animations"] = json::parse(R"([{"samplers":[{"input":0,"output":0,"interpolation":"MAGIC"}]}])");
-       }},
       {"skin 0", [](json& j) { j["skins"] = json::parse(R"([{"joints":[]}])"); }},
       {"skin 0", [](json& j) { j["skins"] = json::parse(R"([{"joints":[7]}])"); }},
       {"node 0", [](json& j) { j["nodes"][0]["skin"] = 0; }},
@@ -123,38 +115,6 @@ TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
          j["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = 5;
        }},
       {"node 0", [](json& j) { j["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0; }},
-      {"light 0", [](json& j) { j = withLight(j, R"({"type":"laser"})"); }},
-      {"light 0: intensity", [](json& j) { j = withLight(j, R"({"type":"point","intensity":-1})"); }},
-      {"light 0 has an intensity of 3e+38",
-       [](json& j) { j = withLight(j, R"({"type":"point","color":[1,0.5,1],"intensity":3e38})"); }},
-      {"light 0: range", [](json& j) { j = withLight(j, R"({"type":"point","range":-1})"); }},
-      {"light 0: range", [](json& j) { j = withLight(j, R"({"type":"point","range":0})"); }},
-      {"light 0: color", [](json& j) { j = withLight(j, R"({"type":"point","color":[1,-1,0]})"); }},
-      {"light 0 has no spot", [](json& j) { j = withLight(j, R"({"type":"spot"})"); }},
-      {"light 0: spot",
-       [](json& j) {
-         j = withLight(j, R"({"type":"spot","spot":{"innerConeAngle":0.5,"outerConeAngle":0.4}})");
-       }},
-      {"light 0: spot",
-       [](json& j) { j = withLight(j, R"({"type":"spot","spot":{"outerConeAngle":1.6}})"); }},
-      {"material 0",
-       [](json& j) {
-         j["materials"] =
-             json::parse(R"([{"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":-1}}}])");
-       }},
-      {"material 0 emits 3e+38",
-       [](json& j) {
-         j["materials"] = json::parse(
-             R"([{"emissiveFactor":[1,1,1],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":3e38}}}])");
-       }},
-      {"material 0: emissiveFactor is negative",
-       [](json& j) { j["materials"] = json::parse(R"([{"emissiveFactor":[1,-1,1]}])"); }},
-      {"KHR_texture_transform: scale",
-       [](json& j) {
-         j["textures"] = json::parse("[{}]");
-         j["materials"] = json::parse(
-             R"([{"normalTexture":{"index":0,"extensions":{"KHR_texture_transform":{"scale":[1]}}}}])");
-       }},
       {"accessor 1 holds indices",
        [](json& j) {
          j["accessors"].push_back({{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}});
@@ -250,7 +210,7 @@ GltfWriter everything() {
   writer.json["animations"][0]["samplers"][0]["input"] = writer.add<float>("SCALAR", 5126, {0, 1}, 1);
   writer.json["animations"][0]["samplers"][0]["output"] =
       writer.add<float>("VEC3", 5126, {1, 2, 3, 4, 5, 6}, 3);
-  writer.json["images"] = json::parse(R"([{"uri":"data:image/png;base64,iVBORw0KGgpzbyBvbg=="}])");
+  writer.json["images"] = json::parse(std::string(R"([{"uri":")") + testing::kPngUri + "\"}]");
   writer.json["textures"] = json::parse(R"([{"source":0}])");
   writer.json["materials"] = json::parse(R"([{"normalTexture":{"index":0,"scale":2},
       "emissiveFactor":[1,1,1],"emissiveTexture":{"index":0,"extensions":{"KHR_texture_transform":

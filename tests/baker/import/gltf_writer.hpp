@@ -40,6 +40,16 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+// A PNG of one gray texel, as a file and as a URI.
+inline const std::string kPngFile(
+    "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\b\0\0\0\0:~"
+    "\x9bU\0\0\0\nIDATx\x9c\x63h\0\0\0\x82\0\x81w\xcdr\xb6\0\0\0\0"
+    "IEND\xae\x42`\x82",
+    67);
+inline constexpr const char* kPngUri =
+    "data:image/png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==";
+
 // Builds a document: add() appends values to buffer 0 and returns the index of their accessor.
 class GltfWriter {
  public:

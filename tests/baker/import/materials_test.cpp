@@ -27,8 +27,8 @@ GltfWriter withMaterial(const TemporaryFolder& folder, const char* material) {
   writer.json["materials"] = json::array({json::parse(material)});
   writer.json["textures"] = json::parse(R"([{"source":0},{"source":1},{"source":2}])");
   writer.json["images"] = json::parse(R"([{"uri":"a.png"},{"uri":"b.png"},{"uri":"c.webp"}])");
-  folder.write("a.png", "\x89PNG\r\n\x1a\n and so on");
-  folder.write("b.png", "\x89PNG\r\n\x1a\n and so on");
+  folder.write("a.png", testing::kPngFile);
+  folder.write("b.png", testing::kPngFile);
   folder.write("c.webp", "RIFF....WEBP");
   return writer;
 }

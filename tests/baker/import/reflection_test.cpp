@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/import/gltf.hpp"
+#include "baker/import/image.hpp"
 #include "baker/import/measured_brdf.hpp"
 #include "tests/baker/import/gltf_writer.hpp"
 
@@ -27,7 +28,7 @@ GltfWriter withMaterials(const TemporaryFolder& folder, const json& materials) {
   writer.json["materials"] = materials;
   writer.json["textures"] = json::parse(R"([{"source":0},{"source":1},{"source":2}])");
   writer.json["images"] = json::parse(R"([{"uri":"a.png"},{"uri":"b.png"},{"uri":"c.png"}])");
-  for (const char* name : {"a.png", "b.png", "c.png"}) folder.write(name, "\x89PNG\r\n\x1a\n and so on");
+  for (const char* name : {"a.png", "b.png", "c.png"}) folder.write(name, testing::kPngFile);
   return writer;
 }
 GltfWriter withOneMaterial(const TemporaryFolder& folder, const char* material) {
@@ -108,26 +109,87 @@ TEST(Reflection, KeepsTangentsWhereTheLobeIsNotRound) {
             0u);
 }
 
-TEST(Reflection, FactorsThatAreNoneAreRefusedByName) {
+TEST(Reflection, FactorsOutOfTheirRangeAreClampedWithOneWarning) {
+  TemporaryFolder folder;
+  const auto mended = [&](const char* material, const char* words) {
+    const Scene scene = imported(withOneMaterial(folder, material), folder);
+    EXPECT_EQ(scene.warnings.size(), 1u) << material;
+    EXPECT_NE(scene.warnings.at(0).find("material 0"), std::string::npos) << scene.warnings[0];
+    EXPECT_NE(scene.warnings[0].find(words), std::string::npos) << scene.warnings[0];
+    return scene.materials.at(0);
+  };
+  const auto pbr = [](const char* inner) {
+    return std::string(R"({"pbrMetallicRoughness":{)") + inner + "}}";
+  };
+  const auto extension = [](const char* name, const char* inner) {
+    return std::string(R"({"extensions":{"KHR_materials_)") + name + R"(":{)" + inner + "}}}";
+  };
+  EXPECT_EQ(mended(pbr(R"("roughnessFactor":1.5)").c_str(), "roughnessFactor").roughness, 1.0f);
+  EXPECT_EQ(mended(pbr(R"("metallicFactor":-1)").c_str(), "metallicFactor").metallic, 0.0f);
+  EXPECT_EQ(mended(pbr(R"("baseColorFactor":[0.5,1,0])").c_str(), "no alpha").base_color,
+            glm::vec4(0.5f, 1.0f, 0.0f, 1.0f));
+  EXPECT_EQ(mended(pbr(R"("baseColorFactor":[0.5,2,-1,1])").c_str(), "counts as").base_color,
+            glm::vec4(0.5f, 1.0f, 0.0f, 1.0f));
+  EXPECT_EQ(mended(extension("ior", R"("ior":0.5)").c_str(), "ior is 0.5").ior, 1.0f);
+  EXPECT_EQ(mended(extension("ior", R"("ior":1e60)").c_str(), "ior is 1e+60").ior, 1.5f);
+  EXPECT_EQ(mended(extension("specular", R"("specularFactor":2)").c_str(), "specularFactor").specular, 1.0f);
+  EXPECT_EQ(
+      mended(extension("specular", R"("specularColorFactor":[1,-1,1])").c_str(), "counts as").specular_color,
+      glm::vec3(1.0f, 0.0f, 1.0f));
+  EXPECT_EQ(mended(extension("specular", R"("specularColorFactor":[1,1])").c_str(), "3 finite numbers")
+                .specular_color,
+            glm::vec3(1.0f));
+  EXPECT_EQ(mended(extension("anisotropy", R"("anisotropyStrength":1.5)").c_str(), "counts as 1").anisotropy,
+            1.0f);
+  EXPECT_EQ(mended(extension("anisotropy", R"("anisotropyTexture":{})").c_str(), "has no index").anisotropy,
+            0.0f);
+  EXPECT_EQ(mended(R"({"extensions":{"KHR_materials_ior":3}})", "is not an object").ior, 1.5f);
+  EXPECT_EQ(mended(R"({"alphaMode":"mask"})", "alphaMode").alpha_mode, gltf::AlphaMode::Mask);
+  EXPECT_TRUE(mended(R"({"doubleSided":1})", "doubleSided").double_sided);
+}
+
+TEST(Reflection, TexturesThatDoNotExistAndMeasuredBrdfsWithoutANameAreRefused) {
   TemporaryFolder folder;
   const auto refused = [&](const char* material, const char* words) {
     const std::string line = refusal(withOneMaterial(folder, material), folder);
     EXPECT_NE(line.find(words), std::string::npos) << line;
     EXPECT_NE(line.find("material 0"), std::string::npos) << line;
   };
-  refused(R"({"pbrMetallicRoughness":{"roughnessFactor":1.5}})", "roughnessFactor");
-  refused(R"({"pbrMetallicRoughness":{"metallicFactor":-1}})", "metallicFactor");
   refused(R"({"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":3}}})", "metallicRoughnessTexture");
-  refused(R"({"extensions":{"KHR_materials_ior":{"ior":0.5}}})", "ior is 0.5");
-  refused(R"({"extensions":{"KHR_materials_ior":{"ior":1e60}}})", "ior");
-  refused(R"({"extensions":{"KHR_materials_specular":{"specularFactor":2}}})", "specularFactor");
-  refused(R"({"extensions":{"KHR_materials_specular":{"specularColorFactor":[1,-1,1]}}})", "is negative");
-  refused(R"({"extensions":{"KHR_materials_specular":{"specularColorFactor":[1,1]}}})", "3 finite numbers");
   refused(R"({"extensions":{"KHR_materials_specular":{"specularTexture":{"index":9}}}})", "specularTexture");
-  refused(R"({"extensions":{"KHR_materials_anisotropy":{"anisotropyStrength":1.5}}})", "anisotropyStrength");
-  refused(R"({"extensions":{"KHR_materials_anisotropy":{"anisotropyRotation":1e60}}})", "anisotropyRotation");
-  refused(R"({"extensions":{"KHR_materials_anisotropy":{"anisotropyTexture":{}}}})", "has no index");
   refused(R"({"extras":{"lambent":{"brdf":7}}})", "brdf is not a string");
+}
+
+TEST(Reflection, OfSpecularGlossinessHasTheSameLobes) {
+  TemporaryFolder folder;
+  const auto converted = [&](const char* inner) {
+    const std::string material =
+        std::string(R"({"extensions":{"KHR_materials_pbrSpecularGlossiness":{)") + inner + "}}}";
+    GltfWriter writer = withOneMaterial(folder, material.c_str());
+    writer.json["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
+    return imported(writer, folder);
+  };
+  const Scene plain = converted(
+      R"("diffuseFactor":[0.2,0.4,0.6,1],"specularFactor":[0.04,0.02,0.04],"glossinessFactor":0.75)");
+  EXPECT_TRUE(plain.warnings.empty());
+  const gltf::Material& m = plain.materials.at(0);
+  EXPECT_EQ(m.base_color, glm::vec4(0.2f, 0.4f, 0.6f, 1.0f));
+  EXPECT_EQ(m.metallic, 0.0f);
+  EXPECT_EQ(m.roughness, 0.25f);
+  EXPECT_NEAR(m.reflectance(), 0.04f, 1e-6f);
+  EXPECT_EQ(m.specular_color, glm::vec3(1.0f, 0.5f, 1.0f));
+  const Scene metal = converted(R"("diffuseFactor":[0,0,0,1],"specularFactor":[0.9,0.8,0.1])");
+  EXPECT_EQ(metal.materials.at(0).metallic, 1.0f);
+  EXPECT_EQ(metal.materials[0].base_color, glm::vec4(0.9f, 0.8f, 0.1f, 1.0f));
+  EXPECT_EQ(metal.materials[0].roughness, 0.0f);
+  // The texture has no alpha, so its glossiness is 1.
+  const Scene textured = converted(R"("glossinessFactor":0.25,"specularGlossinessTexture":{"index":1})");
+  const auto roughness =
+      static_cast<std::size_t>(textured.materials.at(0).metallic_roughness_texture.texture);
+  const auto image =
+      decodeImage(textured.images.at(static_cast<std::size_t>(textured.textures.at(roughness).image)));
+  ASSERT_TRUE(image) << image.error().line();
+  EXPECT_EQ(image->rgba, (std::vector<std::uint8_t>{0, 191, 0, 255}));
 }
 
 // The file has two measurements: a white one of value 2, and a black one.

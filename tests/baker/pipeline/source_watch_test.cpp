@@ -136,6 +136,19 @@ TEST_F(SourceWatchTest, ARemovedSceneIsToldAndBundlesAndHiddenFilesAreNoScenes) 
   EXPECT_FALSE(next(watch, kQuiet));
 }
 
+TEST_F(SourceWatchTest, AnImageThatStaysMissingIsLeftOut) {
+  const std::filesystem::path scene = folder / "a.gltf";
+  std::string text = gltfText("a.bin");
+  text.replace(text.rfind('}'), 1, R"(, "images": [{"uri": "none.png"}], "textures": [{"source": 0}],
+      "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]})");
+  writeBytes(folder / "a.bin", triangleBytes(1.0f));
+  writeBytes(scene, text);
+  SourceWatch watch({folder}, quick());
+  const auto event = next(watch);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->kind, WatchKind::Found);
+}
+
 TEST_F(SourceWatchTest, FilesThatASceneNamesAreFoundWithoutCheckingIt) {
   writeBytes(folder / "a.gltf", R"({"buffers": [{"uri": "a.bin"}, {"uri": "data:;base64,AA=="}, {}, 3],
       "images": [{"uri": "textures/stone.png"}, {"bufferView": 0}],
