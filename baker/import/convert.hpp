@@ -53,6 +53,9 @@ Result<void> convertGrids(const Document& document, const NodeMap& map, Scene& s
 // Checks that every body is of a size, and at a place, that can be traced.
 Result<void> checkSizes(const Document& document, const Scene& scene);
 
+// Warns about a body around all others that keeps light from outside away, such as a sky dome.
+void warnAboutDomes(Scene& scene);
+
 // Removes non-finite and degenerate triangles and unused vertices, makes flat normals where there are no
 // usable ones, and makes normals and tangents unit. Warnings begin with `name`.
 void cleanMesh(bundle::MeshData& mesh, const std::string& name, std::vector<std::string>& warnings);

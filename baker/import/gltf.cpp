@@ -88,6 +88,7 @@ Result<Scene> convert(const Document& document) {
   // Convert volumes and requests for neighborhoods.
   if (auto grids = convertGrids(document, *map, scene); !grids) return failAgain(std::move(grids.error()));
   if (auto sizes = checkSizes(document, scene); !sizes) return failAgain(std::move(sizes.error()));
+  warnAboutDomes(scene);
   foldWarnings(scene.warnings);
   if (scene.meshes.empty() && scene.volumes.empty())
     return fail(document.file(), "has no triangles in its scene that have an area", "give it a mesh");
