@@ -27,8 +27,8 @@ constexpr std::size_t kSeenPlaces = 8192;
 // most triangles of a furnished room, and show shadows as they are.
 constexpr double kLeastShare = 4e-6;
 constexpr std::uint32_t kUnused = 0xffffffffu;  // a sample of no triangle that is probed
-// Light is never taken to be less than this share of that of an open point, or of lamps on average.
-constexpr double kLeastLight = 0.02, kLeastLamps = 0.1;
+// Light is never taken to be less than this share of what eyes see on average, of the sky or of lamps.
+constexpr double kLeastLight = 0.1;
 // Errors at glossy points count by this factor. What few bands leave of a highlight hides them: a body of
 // gold has the same picture with a quarter of the samples (docs/decisions/vertices.md), and each costs a
 // matrix.
@@ -116,16 +116,16 @@ double square(double value) {
 
 // Light of the sky and that of lamps may shine without each other, so each is to be right.
 PointError pointError(const ShadowProbe::Difference& wrong, const ShadowProbe::Difference& arriving,
-                      const SentLight& wrongly_sent, const SentLight& sent, double mean_lamps) {
+                      const SentLight& wrongly_sent, const SentLight& sent, const SurfaceLight& lit) {
   const double light =
       std::max(ShadowProbe::squareError(arriving), 0.0) + square(double{sent.bounced}) + square(kLeastLight);
   const double bounced = square(double{wrongly_sent.bounced}) / light;
   PointError error{.square = ShadowProbe::squareError(wrong) / light + bounced, .with_noise = bounced};
   for (std::size_t i = 0; i < ShadowProbe::kMostValues; ++i)
     error.with_noise += square(0.5 * (double{wrong[0][i]} + double{wrong[1][i]})) / light;
-  if (mean_lamps > 0.0) {
-    const double lamps =
-        square(double{wrongly_sent.lamps}) / (square(double{sent.lamps}) + square(kLeastLamps * mean_lamps));
+  if (lit.meanLamps() > 0.0f) {
+    const double lamps = square(double{wrongly_sent.lamps}) /
+                         (square(double{sent.lamps}) + square(kLeastLight * double{lit.meanLamps()}));
     error.square = std::max(error.square, lamps);
     error.with_noise = std::max(error.with_noise, lamps);
   }
@@ -376,8 +376,7 @@ bool GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry
     const HiddenFrom truth{points.masksAt(number[i]), inner.point.normal};
     const SampleKind kind = kindOf(inner.triangle);
     const auto wrong = probe.difference(corners, truth, kind);
-    error_at[i] =
-        pointError(wrong, probe.arriving(truth, kind), wrongly, sent, double{whole_->light->meanLamps()});
+    error_at[i] = pointError(wrong, probe.arriving(truth, kind), wrongly, sent, *whole_->light);
     if (kind == SampleKind::Glossy) {
       error_at[i].square *= square(kGlossyCounts);
       error_at[i].with_noise *= square(kGlossyCounts);

@@ -56,6 +56,7 @@ SurfaceLight::SurfaceLight(const Scene& scene, const GroupGeometry& geometry, co
     if (density > 0.0f) bouncer.area = std::min(1.0f / (float{kBouncers} * density), most_area);
     if (probe.look(rays, origins, point.normal, SampleKind::Diffuse, masks))
       bouncer.sky = kAlbedo * probe.openShare({masks, point.normal});
+    mean_sky_ += bouncer.sky / (kAlbedo * float{kBouncers});
     const auto sums = std::span(of_lamps).subspan(i * lights.size(), lights.size());
     addLamps(origins, point.normal, sums);
     for (std::size_t k = 0; k < lights.size(); ++k) strengths_[k] += sums[k] / float{kBouncers};
@@ -68,6 +69,13 @@ SurfaceLight::SurfaceLight(const Scene& scene, const GroupGeometry& geometry, co
   for (std::size_t i = 0; i < bouncers_.size(); ++i)
     for (std::size_t k = 0; k < lights.size(); ++k)
       bouncers_[i].lamps += kAlbedo * strengths_[k] * of_lamps[i * lights.size() + k];
+  float bounced = 0.0f;
+  for (const Bouncer& bouncer : bouncers_) {
+    const SampleOrigin origin{
+        .position = bouncer.position, .geometric_normal = bouncer.normal, .weight = 1.0f};
+    bounced += bouncedAt(origin, bouncer.normal).bounced / float{kBouncers};
+  }
+  mean_sky_ += bounced;
   at_vertices_ = strengths_;
   const std::vector<bool> per_pixel = shadedPerPixel(lights);
   for (std::size_t k = 0; k < lights.size(); ++k)
@@ -82,12 +90,16 @@ void SurfaceLight::addLamps(std::span<const SampleOrigin> origins, const glm::ve
 }
 
 SentLight SurfaceLight::at(std::span<const SampleOrigin> origins, const glm::vec3& normal) const {
-  SentLight light;
+  if (origins.empty()) return {};
+  SentLight light = bouncedAt(origins[0], normal);
   std::vector<float> of_lamps(at_vertices_.size(), 0.0f);
   addLamps(origins, normal, of_lamps);
   for (std::size_t k = 0; k < of_lamps.size(); ++k) light.lamps += at_vertices_[k] * of_lamps[k];
-  if (origins.empty()) return light;
-  const SampleOrigin& origin = origins[0];
+  return light;
+}
+
+SentLight SurfaceLight::bouncedAt(const SampleOrigin& origin, const glm::vec3& normal) const {
+  SentLight light;
   std::vector<RaySegment> ways;
   std::vector<const Bouncer*> from;
   std::vector<float> shares;

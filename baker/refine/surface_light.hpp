@@ -33,7 +33,9 @@ class SurfaceLight {
                const Importance& importance, const ShadowProbe& probe);
 
   SentLight at(std::span<const SampleOrigin> origins, const glm::vec3& normal) const;
-  // Returns the light of all lamps as eyes see it on average.
+  // Return the light of a uniform sky, relative to that of an open point, and of all lamps, as eyes see them
+  // on average.
+  float meanSky() const { return mean_sky_; }
   float meanLamps() const { return mean_lamps_; }
 
  private:
@@ -43,6 +45,7 @@ class SurfaceLight {
     float sky = 0.0f;    // what it reflects of a uniform sky, relative to an open white surface
     float lamps = 0.0f;  // and of the lamps
   };
+  SentLight bouncedAt(const SampleOrigin& origin, const glm::vec3& normal) const;
   // Adds what each lamp sends, at unit strength.
   void addLamps(std::span<const SampleOrigin> origins, const glm::vec3& normal, std::span<float> sums) const;
 
@@ -50,7 +53,7 @@ class SurfaceLight {
   std::vector<float> strengths_, at_vertices_;  // of each lamp, and of those that are not shaded per pixel
   Emitters emitters_;
   std::vector<Bouncer> bouncers_;
-  float mean_lamps_ = 0.0f;
+  float mean_sky_ = 0.0f, mean_lamps_ = 0.0f;
 };
 
 }  // namespace lambent::baker
