@@ -160,7 +160,7 @@ void openLog(const Words& words) {
   if (std::ofstream log(words.log); !log) stop({words.log, "cannot be written", "give a path to a file"});
 }
 
-Flight fly(const Words& words, Row& row, const lighting::Environment& environment, bool load_first) {
+Flight fly(const Words& words, Row& row, lighting::Environment& environment, bool load_first) {
   frame::FrameOptions options;
   options.size = words.size;
   Result<frame::Frame> frame = frame::Frame::create(options, environment);

@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
   if (words.empty()) words.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
   const Result<std::vector<spec::Light>> lights = spec::parseLights(words);
   if (!lights) return failed(lights.error());
-  const Result<lighting::Environment> environment = lighting::Environment::create(*lights);
+  Result<lighting::Environment> environment = lighting::Environment::create(*lights);
   if (!environment) return failed(environment.error());
   const Result<gpu::Context> context = gpu::Context::createHeadless();
   if (!context) return failed(context.error());

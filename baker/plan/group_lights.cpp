@@ -43,7 +43,7 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
     if (scene.nodes[n].light < 0 || groupRootOf(scene, n) != group.root) continue;
     const gltf::Light& light = scene.lights[static_cast<std::size_t>(scene.nodes[n].light)];
     const glm::vec3 color = light.intensity * light.color;
-    if (!isLit(color)) continue;
+    if (!isLit(color) || light.type == gltf::Light::Type::Directional) continue;
     lights.push_back({PlannedLight::Kind::Node, n, color, groupFromNode(scene, group, n, world), {}});
   }
   return lights;

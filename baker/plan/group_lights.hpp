@@ -1,6 +1,6 @@
-// Finds the lights that belong to a rigid group: emissive materials on its surfaces and punctual lights on
-// nodes that move with it. Light from infinity cannot describe them, so each becomes a column of the group's
-// transfer at unit strength, and can be dimmed and recoloured live.
+// Finds the lights that belong to a rigid group: emissive materials on its surfaces, and point and spot
+// lights on nodes that move with it. Light from infinity cannot describe them, so each becomes a column of
+// the group's transfer at unit strength, and can be dimmed and recoloured live.
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -63,7 +62,6 @@ void addLights(const Scene& scene, const GroupGeometry& geometry, std::span<cons
 }
 
 float punctualIrradiance(const gltf::Light& light, glm::vec3 light_direction, glm::vec3 to_surface) {
-  if (light.type == gltf::Light::Type::Directional) return 1.0f;
   const float squared = glm::dot(to_surface, to_surface), distance = std::sqrt(squared);
   if (!(squared > 0.0f)) return 0.0f;
   float value = 1.0f / squared;
@@ -198,16 +196,14 @@ void Emitters::addChosen(std::span<const SampleOrigin> origins, const glm::mat3&
     }
   for (const Punctual& light : punctual_)
     for (const SampleOrigin& origin : origins) {
-      const bool far = light.source.type == gltf::Light::Type::Directional;
-      const glm::vec3 to_light = far ? -light.direction : light.position - origin.position;
+      const glm::vec3 to_light = light.position - origin.position;
       const float distance = glm::length(to_light);
       if (!(distance > 0.0f)) continue;
       const glm::vec3 direction = to_light / distance, local = local_from_group * direction;
       if (!isAbove(direction, origin) || !(local.z > 0.0f)) continue;
       const float irradiance = punctualIrradiance(light.source, light.direction, -to_light);
       if (!(irradiance > 0.0f)) continue;
-      segments.push_back(
-          {origin.position, direction, far ? std::numeric_limits<float>::infinity() : distance * kShortOf});
+      segments.push_back({origin.position, direction, distance * kShortOf});
       chosen.push_back({light.light, glm::vec3(origin.weight * irradiance), local});
     }
   std::vector<std::uint8_t> blocked(segments.size());

@@ -78,7 +78,7 @@ void addLights(const Scene& scene, const GroupGeometry& geometry, std::span<cons
 
 // Returns the irradiance on a surface that faces a punctual light of unit strength: its intensity in the
 // direction `to_surface`, over the squared distance (KHR_lights_punctual). `to_surface` reaches from the
-// light to the surface; for directional lights the result is 1.
+// light to the surface.
 float punctualIrradiance(const gltf::Light& light, glm::vec3 light_direction, glm::vec3 to_surface);
 
 }  // namespace lambent::baker

@@ -22,6 +22,7 @@ class Stage {
 
   frame::World& world() { return world_; }
   const frame::World& world() const { return world_; }
+  lighting::Environment& environment() { return environment_; }
   const lighting::Environment& environment() const { return environment_; }
   ecs::Entity environmentEntity() const { return environment_entity_; }
   const frame::FrameSettings& settings() const { return settings_; }

@@ -20,7 +20,7 @@ class Stage {
   static Result<Stage> create(const Options& options, lighting::Environment environment);
 
   frame::World& world() { return world_; }
-  const lighting::Environment& environment() const { return environment_; }
+  lighting::Environment& environment() { return environment_; }
 
   void turnLight(float degrees);
   // Updates the environment from its entity.

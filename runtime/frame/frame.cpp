@@ -86,8 +86,7 @@ float Frame::exposureEv() const {
   return kept<ToneMapper>().exposureEv();
 }
 
-FrameContext Frame::contextOf(World& world, const lighting::Environment& environment,
-                              const spec::View* view) {
+FrameContext Frame::contextOf(World& world, lighting::Environment& environment, const spec::View* view) {
   return {.world = world,
           .environment = environment,
           .options = options_,
@@ -98,7 +97,7 @@ FrameContext Frame::contextOf(World& world, const lighting::Environment& environ
           .board = board_};
 }
 
-Result<void> Frame::render(World& world, const lighting::Environment& environment, const spec::View& view) {
+Result<void> Frame::render(World& world, lighting::Environment& environment, const spec::View& view) {
   clip_from_view_ = view.clip_from_view;
   world.look(view);
   timers_.beginFrame();
@@ -109,7 +108,7 @@ Result<void> Frame::render(World& world, const lighting::Environment& environmen
   return gpu::checkContext();
 }
 
-Result<std::uint32_t> Frame::rest(World& world, const lighting::Environment& environment) {
+Result<std::uint32_t> Frame::rest(World& world, lighting::Environment& environment) {
   for (std::uint32_t steps = 0; steps < kMaxRestSteps; ++steps) {
     if (atRest(world, environment)) return steps;
     timers_.beginFrame();
@@ -128,11 +127,11 @@ Result<void> Frame::step(FrameContext& context) {
   counts_.clear();
   log_.begin();
   log_.noticeSettings(options_.settings);
-  log_.noticeEnvironment(context.environment);
   if (std::exchange(forgotten_, false)) log_.note(Cause::Asked, "asked for");
   settled_ = true;
+  Result<void> done = walk(passes_.step, context);
   environment_ = context.environment.version();
-  return walk(passes_.step, context);
+  return done;
 }
 
 Result<void> Frame::walk(std::span<const std::unique_ptr<FramePass>> passes, FrameContext& context) {

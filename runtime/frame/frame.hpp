@@ -44,11 +44,11 @@ class Frame {
   // Makes the next step compute everything anew, as if all had just arrived.
   void forget();
 
-  // Runs a step and draws a picture.
-  Result<void> render(World& world, const lighting::Environment& environment, const spec::View& view);
+  // Runs a step and draws a picture. Each step gives the environment the suns of the world.
+  Result<void> render(World& world, lighting::Environment& environment, const spec::View& view);
   // Runs steps until no light changes any more, at most kMaxRestSteps, without a picture. Returns how many it
   // took.
-  Result<std::uint32_t> rest(World& world, const lighting::Environment& environment);
+  Result<std::uint32_t> rest(World& world, lighting::Environment& environment);
   void resize(const spec::Size& size);
   // Draws into textures of other code from now on, if the frame was made for Destination::Shared: linear
   // radiance (GL_RGBA16F or GL_RGBA32F) and depth, of the same size and samples. Their storage stays alive
@@ -89,7 +89,7 @@ class Frame {
  private:
   Frame(const FrameOptions& options, PassList passes, Blackboard board);
 
-  FrameContext contextOf(World& world, const lighting::Environment& environment, const spec::View* view);
+  FrameContext contextOf(World& world, lighting::Environment& environment, const spec::View* view);
   Result<void> step(FrameContext& context);
   Result<void> walk(std::span<const std::unique_ptr<FramePass>> passes, FrameContext& context);
   bool atRest(const World& world, const lighting::Environment& environment) const;

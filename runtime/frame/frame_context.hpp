@@ -23,7 +23,7 @@ struct PassInfo;
 
 struct FrameContext {
   World& world;
-  const lighting::Environment& environment;
+  lighting::Environment& environment;  // only the pass for transforms changes it: its suns of the scene
   const FrameOptions& options;
   const spec::View* view;  // null if no picture follows
   PictureTargets& targets;

@@ -35,6 +35,11 @@ class Seal {
   void add(const glm::vec3& v) {
     for (int i = 0; i < 3; ++i) add(v[i]);
   }
+  void add(const Disc& disc) {
+    add(disc.direction);
+    add(disc.radius_rad);
+    add(disc.radiance);
+  }
   std::uint64_t value() const { return std::max<std::uint64_t>(bundle::checksum(bytes_), 1); }
 
  private:
@@ -192,6 +197,12 @@ void Environment::setMostKeys(std::uint32_t most) {
   mix();
 }
 
+void Environment::setSuns(std::vector<Disc> suns) {
+  if (suns == suns_) return;
+  suns_ = std::move(suns);
+  mix();
+}
+
 Environment::Rest Environment::restOf(std::size_t index) const {
   const Set& set = sets_[index];
   Rest rest{.environment_maps = {}, .constant = set.lights.constant, .discs = set.parted.discs};
@@ -232,11 +243,7 @@ void Environment::seal() {
   for (const Set& set : sets_) {
     seal.add(set.lights.constant);
     seal.add(set.lights.discs.size());
-    for (const Disc& disc : set.lights.discs) {
-      seal.add(disc.direction);
-      seal.add(disc.radius_rad);
-      seal.add(disc.radiance);
-    }
+    for (const Disc& disc : set.lights.discs) seal.add(disc);
     seal.add(set.lights.environment_maps.size());
     for (std::size_t k = 0; k < set.lights.environment_maps.size(); ++k) {
       const spec::EnvironmentMap& environment_map = set.lights.environment_maps[k];
@@ -296,13 +303,15 @@ void Environment::mix() {
   }
   first_key_ = discs_.size();
   for (std::size_t i = 0; i < kSets; ++i) place(sets_[i].key_discs, shareOf(i));
+  discs_.insert(discs_.end(), suns_.begin(), suns_.end());
   sky_light_ = spec::turned(sky, turn_degrees_);
-  key_light_ = spec::turned(keys, turn_degrees_);
+  key_light_ = spec::turned(keys, turn_degrees_) + spec::discVector(suns_);
   rest_light_ = spec::turned(sky + discs, turn_degrees_);
   light_ = rest_light_ + key_light_;
   Seal seal;
   seal.add(lights_version_);
   for (const float value : {turn_degrees_, fade_, intensity_}) seal.add(value);
+  for (const Disc& sun : suns_) seal.add(sun);
   version_ = seal.value();
 }
 

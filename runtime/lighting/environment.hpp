@@ -1,8 +1,8 @@
 // Owns the light at infinity: the sum of environment maps, suns and constants, in one or two sets that can be
-// faded between and are turned together about +Y. It takes parsed lights and ignores those that stand in the
-// scene. It provides light vectors of order 8 in world space (environment maps are projected once when they
-// are loaded, suns in closed form), the suns as discs, and what the sky shows; fading and turning only mix
-// what was projected.
+// faded between and are turned together about +Y, and the suns of the scene, which are key lights. It takes
+// parsed lights and ignores those that stand in the scene. It provides light vectors of order 8 in world
+// space (environment maps are projected once when they are loaded, suns in closed form), the suns as discs,
+// and what the sky shows; fading and turning only mix what was projected.
 //
 // If key lights are asked for, the light is divided once when it is loaded (key_lights.hpp): surfaces receive
 // the direct light of key lights by shadow maps, and the rest, which few bands can carry, by transfer. Key
@@ -47,6 +47,11 @@ class Environment {
   // Sets how many key lights each set may have at most. 0, the default of this class, means none. A change
   // divides the light again.
   void setMostKeys(std::uint32_t most);
+  std::uint32_t mostKeys() const { return most_keys_; }
+
+  // Replaces the suns of the scene, in world axes. They neither turn nor fade with the other lights, and the
+  // sky and mirrors do not show them.
+  void setSuns(std::vector<Disc> suns);
 
   // Replaces all edits. Each edit applies to the key light of its set, found in an environment map, that is
   // nearest to edit.found, if it is close enough; the last of several edits of one key light counts. An edit
@@ -72,8 +77,8 @@ class Environment {
   const sh::LightVector& skyLight() const { return sky_light_; }    // without any disc
   const sh::LightVector& keyLight() const { return key_light_; }    // key lights only
   const sh::LightVector& restLight() const { return rest_light_; }  // light() without keyLight()
-  // Returns the suns of both sets, key lights last. Their number and order do not change while the lights
-  // fade; dark ones have radiance 0.
+  // Returns the suns of both sets, then their key lights, then the suns of the scene, which are key lights
+  // too. Their number and order do not change while the lights fade; dark ones have radiance 0.
   const std::vector<Disc>& discs() const { return discs_; }
   std::span<const Disc> keys() const { return std::span(discs_).subspan(first_key_); }
   bool isKey(std::size_t disc) const { return disc >= first_key_; }
@@ -106,7 +111,8 @@ class Environment {
     std::vector<Disc> discs;
   };
   Shown shownOf(std::size_t index) const;
-  // Describes a key light as found and as edited. foundKeys() returns them in the order of keys().
+  // Describes a key light as found and as edited. foundKeys() returns them in the order of keys(), in
+  // which the suns of the scene come after them.
   struct FoundKey {
     std::size_t set = 0;
     KeyOrigin origin;
@@ -161,6 +167,7 @@ class Environment {
   float turn_degrees_ = 0.0f, fade_ = 0.0f, intensity_ = 1.0f;
   std::uint32_t most_keys_ = 0;
   std::vector<spec::KeyEdit> key_edits_;
+  std::vector<Disc> suns_;  // of the scene
   sh::LightVector light_, sky_light_, key_light_, rest_light_;
   std::vector<Disc> discs_;
   std::size_t first_key_ = 0;

@@ -27,7 +27,7 @@ struct MeasureOptions {
 // Describes what is drawn: the resident part of the world, under this light, in this view.
 struct MeasuredScene {
   World& world;
-  const lighting::Environment& environment;
+  lighting::Environment& environment;
   const spec::View& view;
 };
 

@@ -45,9 +45,8 @@ std::vector<lighting::ShadowedLight> punctualOf(const World& world, ecs::Entity 
   const auto* place = world.registry().tryGet<scene::WorldTransform>(entity);
   if (!light || !place) return {};
   const bool spot = baked.type == gltf::Light::Type::Spot;
-  if (baked.type == gltf::Light::Type::Directional || light->range_m != baked.range_m ||
-      light->kind !=
-          (spot ? scene::LocalLightComponent::Kind::Spot : scene::LocalLightComponent::Kind::Point))
+  if (light->range_m != baked.range_m || light->kind != (spot ? scene::LocalLightComponent::Kind::Spot
+                                                              : scene::LocalLightComponent::Kind::Point))
     return {};
   if (spot &&
       (light->inner_cone_rad != baked.inner_cone_rad || light->outer_cone_rad != baked.outer_cone_rad))

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "runtime/lighting/light_blocks.hpp"
 #include "runtime/scene/affine.hpp"
 #include "runtime/shadows/column_lights.hpp"
 #include "runtime/shadows/shadowed_light_choice.hpp"
@@ -17,6 +19,9 @@
 namespace lambent::frame {
 
 namespace {
+
+// At this angular radius a penumbra is narrower than a texel of the finest shadow map.
+constexpr float kSunRadius_rad = 1e-4f;
 
 // A body brighter than its surroundings by this factor is drawn however small it is.
 constexpr float kMaxBrightness = 1e6f;
@@ -50,6 +55,12 @@ lighting::LocalLight describe(const scene::LocalLightComponent& light, const glm
           .range_m = light.range_m,
           .inner_cone_rad = light.inner_cone_rad,
           .outer_cone_rad = light.outer_cone_rad};
+}
+
+lighting::LocalLight describe(const ecs::Registry& registry, ecs::Entity entity,
+                              const scene::LocalLightComponent& light) {
+  const auto* place = registry.tryGet<scene::WorldTransform>(entity);
+  return describe(light, place ? place->world_from_node : glm::mat4(1.0f));
 }
 
 // Returns the largest radiance that a triangle of the proxy emits.
@@ -151,16 +162,46 @@ BodyProxies proxiesOf(const streaming::Residency& residency) {
   return bodies;
 }
 
+Suns sunsOf(const World& world, std::uint32_t most) {
+  const ecs::Registry& registry = world.registry();
+  struct Sun {
+    ecs::Entity entity;
+    lighting::LocalLight light;
+    std::size_t place;
+  };
+  std::vector<Sun> suns;
+  for (auto [entity, light] : registry.view<const scene::LocalLightComponent>())
+    if (light.kind == scene::LocalLightComponent::Kind::Directional && light.power() != glm::vec3(0.0f))
+      suns.push_back({entity, describe(registry, entity, light), suns.size()});
+  if (suns.size() > most) {
+    std::ranges::stable_sort(suns, std::ranges::greater{},
+                             [](const Sun& sun) { return lighting::luminance(sun.light.power); });
+    suns.resize(most);
+    std::ranges::sort(suns, {}, &Sun::place);
+  }
+  Suns found;
+  const float sine = std::sin(kSunRadius_rad);
+  for (const Sun& sun : suns) {
+    found.entities.push_back(sun.entity);
+    // A disc of radiance L gives the irradiance π sin² r L to a surface that faces it.
+    found.discs.push_back({.direction = -sun.light.direction_ws,
+                           .radius_rad = kSunRadius_rad,
+                           .radiance = sun.light.power / (std::numbers::pi_v<float> * sine * sine)});
+  }
+  return found;
+}
+
 LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options) {
   LitScene scene;
   const ecs::Registry& registry = world.registry();
   const auto& groups = world.residency().groups();
 
+  const Suns suns = sunsOf(world, options.most_suns);
   std::vector<ecs::Entity> light_entities;
   for (auto [entity, light] : registry.view<const scene::LocalLightComponent>()) {
-    const auto* place = registry.tryGet<scene::WorldTransform>(entity);
-    if (light.power() == glm::vec3(0.0f)) continue;
-    scene.lights.push_back(describe(light, place ? place->world_from_node : glm::mat4(1.0f)));
+    if (light.power() == glm::vec3(0.0f) || std::ranges::find(suns.entities, entity) != suns.entities.end())
+      continue;
+    scene.lights.push_back(describe(registry, entity, light));
     light_entities.push_back(entity);
   }
   std::vector<float> shares(scene.lights.size(), 0.0f);

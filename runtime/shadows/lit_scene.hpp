@@ -9,6 +9,9 @@
 //   shines so on all groups of surfaces, so that what stands between them casts each shadow once, and its
 //   bounces travel as harmonics at the light probes, kept apart as for key lights. Near the limit of that
 //   distance the light fades to the next carrier;
+// - a shadow map, per pixel, if the light is directional and among the brightest of these (sunsOf): then it
+// is
+//   a key light of the environment and not in `lights`;
 // - harmonics at the group's light probes otherwise.
 // Each path of light has exactly one carrier, or it would count twice. Render thread; no errors.
 #pragma once
@@ -59,7 +62,15 @@ struct LitSceneOptions {
   bool column_lights = false;   // true: column lights are shaded per pixel where shadow cubes are free
   float local_radii = 0.0f;     // lights within this many radii of a group's centre are beside it
   bool bodies = true;           // false: groups neither light nor shadow each other
+  std::uint32_t most_suns = 0;  // as for sunsOf()
 };
+
+// Lists the brightest directional lights of the world, at most so many, in the order of their entities.
+struct Suns {
+  std::vector<ecs::Entity> entities;
+  std::vector<spec::Disc> discs;  // in world axes; far smaller than the sun, as the lights are parallel
+};
+Suns sunsOf(const World& world, std::uint32_t most);
 
 // Gathers the scene. `surroundings` is the mean radiance against which bodies count as bright. The frame
 // fills in radiance_drift of the bodies.

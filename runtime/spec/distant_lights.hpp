@@ -22,6 +22,7 @@ struct Disc {
   glm::vec3 direction{0.0f, 1.0f, 0.0f};  // unit, towards the disc
   float radius_rad = 0.0f;
   glm::vec3 radiance{0.0f};
+  bool operator==(const Disc&) const = default;
 };
 
 // Returns bands 0..7 of the sum of the discs, in closed form.

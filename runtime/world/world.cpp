@@ -111,6 +111,11 @@ bool World::inPlace(std::uint32_t slot, bundle::GroupIndex group, std::size_t co
   const bundle::Group& described = bundle.reader->description().groups[group.value];
   const bundle::GroupLight& light = described.lights[column];
   if (light.kind == bundle::GroupLight::Kind::Material) return true;
+  // Bundles of version 0.10 have columns for directional lights, which are key lights now.
+  const std::int32_t carried = bundle.reader->description().nodes[light.index].light;
+  if (bundle.reader->description().lights[static_cast<std::size_t>(carried)].type ==
+      gltf::Light::Type::Directional)
+    return false;
   const auto* now = registry_.tryGet<scene::WorldTransform>(bundle.instance.nodes[light.index]);
   const auto* rigid = rigidGroup(slot, group);
   if (!now || !rigid) return false;

@@ -1,7 +1,7 @@
 // Suns of an environment map. Few bands blur them, so their direct light comes by three's shadow maps, and transfer
 // brings what they bounce.
 import {
-  Color, DataTexture, DirectionalLight, DoubleSide, FloatType, Group, LinearFilter, RGBAFormat, Sphere, Vector3,
+  Color, DataTexture, DirectionalLight, DoubleSide, FloatType, Group, LinearFilter, Matrix4, RGBAFormat, Sphere, Vector3,
 } from 'three';
 import { LightVector, equirectTexels } from './light_vector.js';
 import { projectEquirect } from './sh.js';
@@ -66,6 +66,26 @@ function withoutTexels(texture, width, height, texel) {
   return Object.assign(map, { mapping, wrapS, wrapT, needsUpdate: true });
 }
 
+/** Fits the shadow map of a directional light to a sphere in the world; world matrices must be up to date. */
+export function fitShadow(light, { center, radius }) {
+  const [from, to] = [light, light.target].map((end) => new Vector3().setFromMatrixPosition(end.matrixWorld));
+  const { camera } = light.shadow, axes = new Matrix4().lookAt(from, to, camera.up); // as three turns the camera
+  const { x, y, z } = center.clone().sub(from).applyMatrix4(axes.transpose());
+  Object.assign(camera, { left: x - radius, right: x + radius, top: y + radius, bottom: y - radius });
+  Object.assign(camera, { near: -z - 1.5 * radius, far: -z + 1.5 * radius });
+  camera.updateProjectionMatrix();
+  light.shadow.normalBias = (3 * radius) / light.shadow.mapSize.x;
+}
+
+/** Lets all meshes below `root` cast and receive shadows, but neither volumes nor what is blended. */
+export function takeShadows(root) {
+  root.traverse((object) => {
+    if (!object.isMesh || object.material.transparent) return;
+    object.castShadow = object.receiveShadow = true;
+    object.material.shadowSide = DoubleSide; // rooms have walls without a back
+  });
+}
+
 /** Directional lights for the suns that splitKeyLights found. Turn this group as the light turns. */
 export class KeyLights extends Group {
   constructor(suns, { size = 2048 } = {}) {
@@ -87,17 +107,11 @@ export class KeyLights extends Group {
     this.position.copy(center);
     for (const light of this.lights) {
       light.position.copy(light.userData.direction).multiplyScalar(2 * radius);
-      const { camera } = light.shadow;
-      Object.assign(camera, { left: -radius, right: radius, top: radius, bottom: -radius });
-      Object.assign(camera, { near: 0.5 * radius, far: 3.5 * radius });
-      camera.updateProjectionMatrix();
-      light.shadow.normalBias = (3 * radius) / light.shadow.mapSize.x;
+      light.updateWorldMatrix(true, false);
+      light.target.updateWorldMatrix(true, false);
+      fitShadow(light, sphere);
     }
-    root?.traverse((object) => {
-      if (!object.isMesh || object.material.transparent) return; // neither volumes nor what is blended
-      object.castShadow = object.receiveShadow = true;
-      object.material.shadowSide = DoubleSide; // rooms have walls without a back
-    });
+    if (root) takeShadows(root);
     return this;
   }
 

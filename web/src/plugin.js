@@ -3,6 +3,7 @@ import { Matrix4, Mesh } from 'three';
 import { Bundle, EXTENSION } from './bundle.js';
 import { Lamp } from './local_lights.js';
 import { LambentScene } from './scene.js';
+import { SceneSuns } from './suns.js';
 
 const warned = new Set();
 
@@ -87,6 +88,7 @@ function attach(scene, gltf, parser) {
   }
   for (const { mesh } of parts) mesh.onBeforeRender = (renderer) => scene.prepare(renderer);
   scene.setLamps(lamps, [...meshes.values()]);
+  scene.setSuns(new SceneSuns(sunsOf(scene, gltf.scene, parser), gltf.scene));
   scene.groups.forEach(({ json, volume }, index) => {
     if (!volume) return;
     const parent = nodes[json.node] ?? gltf.scene, groupFromBox = volume.makeMesh(scene, index);
@@ -95,20 +97,36 @@ function attach(scene, gltf, parser) {
   });
 }
 
+// Returns the node of one of three's lights, and its column if it is a lamp of a group.
+function placeOf(light, scene, parser) {
+  let owner = light, column = null;
+  while (owner && parser.associations.get(owner)?.nodes === undefined) owner = owner.parent;
+  const node = parser.associations.get(owner)?.nodes;
+  scene.groups.forEach(({ json }, group) => json.lights.forEach((lamp, index) => {
+    if (lamp.kind === 'node' && lamp.node === node) column = { group, index };
+  }));
+  return { node, column };
+}
+
 // Takes over three's lights for lamps, in the order of their nodes.
 function lampsOf(scene, root, parser) {
   const found = [];
   root.traverse((light) => {
-    if (!light.isLight) return;
-    let owner = light;
-    while (owner && parser.associations.get(owner)?.nodes === undefined) owner = owner.parent;
-    const node = parser.associations.get(owner)?.nodes;
-    let column = null;
-    scene.groups.forEach(({ json }, group) => json.lights.forEach((lamp, index) => {
-      if (lamp.kind === 'node' && lamp.node === node) column = { group, index };
-    }));
-    if (light.isPointLight || light.isSpotLight) found.push([node, new Lamp(light, column)]);
-    else if (column) light.layers.disableAll(); // it shines by its column
+    if (!light.isPointLight && !light.isSpotLight) return;
+    const { node, column } = placeOf(light, scene, parser);
+    found.push([node, new Lamp(light, column)]);
   });
   return found.sort(([a], [b]) => a - b).map(([, lamp]) => lamp);
+}
+
+// Returns three's directional lights. Bundles of version 0.10 have columns for them, which stay dark.
+function sunsOf(scene, root, parser) {
+  const suns = [];
+  root.traverse((light) => {
+    if (!light.isDirectionalLight) return;
+    const { column } = placeOf(light, scene, parser);
+    if (column) scene.lamps[column.group][column.index] = [0, 0, 0];
+    suns.push(light);
+  });
+  return suns;
 }

@@ -54,6 +54,7 @@ export class LambentScene {
     this.lamps = bundle.groups.map((json) => json.lights.map((lamp) => [...lamp.color]));
     this._light = LightVector.constant(1, 1, 1);
     this._key = null;
+    this._suns = null; // of the glTF
     this._transfer = 'full';
     this._order = 8;
     this._changed = true;
@@ -105,7 +106,7 @@ export class LambentScene {
   }
 
   /**
-   * Light of suns that shine directly by shadow maps (KeyLights). Transfer brings only what they bounce.
+   * Light of suns that shine directly by shadow maps (KeyLights), besides directional lights of the glTF. Transfer brings only what they bounce.
    */
   get keyLight() {
     return this._key;
@@ -182,6 +183,16 @@ export class LambentScene {
     if (this._shining.length > 0) this._cubes = new ShadowCubes(meshes, this._lampUniforms.lambentCubes);
   }
 
+  /** Takes the suns of the glTF (SceneSuns). */
+  setSuns(suns) {
+    this._suns = suns;
+  }
+
+  // Returns the light of all suns, the glTF's and others.
+  get _keys() {
+    return both(this._key, this._suns?.light);
+  }
+
   /** Tells whether a group has lamps that shine as spheres. */
   hasSpheres(group) {
     return this._sphereLamps.some((lamp) => lamp.isColumnOf(group));
@@ -206,6 +217,7 @@ export class LambentScene {
    */
   update() {
     if (this._seenChanged) this.findSeen();
+    if (this._suns?.follow()) this._changed = true;
     const places = this.groups.map((_, index) => this.worldFromGroup(index)), before = this._divided;
     const turns = places.map((place) => new Matrix4().extractRotation(place).invert());
     this.divideLamps(places);
@@ -222,7 +234,7 @@ export class LambentScene {
 
   // Finds the light at the light probes of all groups, and returns the groups for which it changed.
   gatherLight(places, turns, lampsChanged) {
-    const { _light: light, _key: key, _divided: divided, _divided: { ofGroup } } = this;
+    const { _light: light, _keys: key, _divided: divided, _divided: { ofGroup } } = this;
     const mode = this._transfer === 'shadowed' ? 'shadowed' : 'full';
     if (this._captures) {
       const risen = this._captures.update({
@@ -295,6 +307,7 @@ export class LambentScene {
     } else if (!this._changed && renderer.info.render.frame === this._frame) {
       return true;
     }
+    if (this._suns?.light) renderer.shadowMap.enabled = true;
     this.shadeChanged(renderer);
     this._frame = renderer.info.render.frame;
     return true;
@@ -338,8 +351,9 @@ export class LambentScene {
     const mean = incident.map(({ light }) => light).reduce((a, b) => a.add(b)).multiplyScalar(1 / incident.length);
     fill(lambentSky.value, inGroup(mean));
     fill(lambentKnown.value, inGroup(this._light));
-    fill(lambentKey.value, this._key ? inGroup(this._key) : new Float64Array(0));
-    lambentKeyed.value = this._key !== null;
+    const key = this._keys;
+    fill(lambentKey.value, key ? inGroup(key) : new Float64Array(0));
+    lambentKeyed.value = key !== null;
     lambentOpen.value = this._transfer === 'unshadowed';
     if (lambentOpen.value) return;
     // With light k that shines by shadow maps or cubes, and the rest r, transfer brings f r + (f - s) k; columns alike.

@@ -78,7 +78,8 @@ class LightPass final : public FramePass {
                             {.shadowed_lights = settings.local_shadows,
                              .column_lights = settings.local_shadows && frame.options.keysApart(),
                              .local_radii = frame.options.keysApart() ? settings.local_radii : 0.0f,
-                             .bodies = settings.captures});
+                             .bodies = settings.captures,
+                             .most_suns = frame.environment.mostKeys()});
     Neighborhoods& neighborhoods = frame.write<Neighborhoods>();
     if (settings.neighborhoods || neighborhoods.any())
       neighborhoods.chooseCarriers(frame.world, scene_, settings.neighborhoods);

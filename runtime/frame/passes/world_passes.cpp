@@ -1,8 +1,10 @@
-// Uploads what has arrived, within a budget of bytes, and updates nodes, rigid groups and materials.
+// Uploads what has arrived, within a budget of bytes, and updates nodes, rigid groups, materials and
+// the suns of the scene.
 #include <chrono>
 #include <optional>
 
 #include "runtime/frame/passes/passes.hpp"
+#include "runtime/shadows/lit_scene.hpp"
 #include "runtime/world/frame_times.hpp"
 
 namespace lambent::frame {
@@ -57,6 +59,8 @@ class TransformsPass final : public FramePass {
   Result<void> update(FrameContext& frame) override {
     frame.world.updateTransforms();
     frame.world.updateMaterials();
+    frame.environment.setSuns(sunsOf(frame.world, frame.environment.mostKeys()).discs);
+    frame.log.noticeEnvironment(frame.environment);
     frame.log.noticeWorld(frame.world);
     frame.because();
     return {};

@@ -73,7 +73,7 @@ spec::RgbaImage pictureOf(const BundleBuilder& builder, const spec::OrbitCamera&
   const std::filesystem::path path =
       std::filesystem::path(::testing::TempDir()) / fmt::format("{}-layered.lmb.glb", getpid());
   builder.write(path);
-  const auto environment = *lighting::Environment::create({spec::ConstantLight{.radiance = glm::vec3(1.0f)}});
+  auto environment = *lighting::Environment::create({spec::ConstantLight{.radiance = glm::vec3(1.0f)}});
   World world;
   EXPECT_TRUE(world.open(path));
   gpu::Counters counters;

@@ -36,7 +36,7 @@ class SurfacesWorld : public testing::GpuTest {
     EXPECT_TRUE(world.uploadAll(loading));
     std::filesystem::remove(path);
     const spec::Light light = spec::ConstantLight{.radiance = glm::vec3(radiance)};
-    const auto environment = lighting::Environment::create(std::vector<spec::Light>{light});
+    auto environment = lighting::Environment::create(std::vector<spec::Light>{light});
     FrameOptions options;
     options.output = Output::Linear;
     options.size = {32, 32};
