@@ -23,6 +23,6 @@ struct ShadowedLight {
 };
 
 // One picture has at most this many.
-inline constexpr std::uint32_t kMaxShadowedLights = 4;
+inline constexpr std::uint32_t kMaxShadowedLights = 8;
 
 }  // namespace lambent::lighting

@@ -2,16 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
 #include <glm/geometric.hpp>
 
+#include "runtime/shadows/key_region.hpp"
 #include "runtime/shadows/shadowed_light_record.hpp"
 
 namespace lambent::frame {
 
 namespace {
+
+// A light that has cubes counts this many times as much as one that has none.
+constexpr float kKeeps = 1.5f;
+constexpr float kBesideCone = 0.1f;  // share of a spot's light where its cone does not reach
+constexpr float kNearest = 0.25f;    // of the size of what is seen; limits 1/d² beside a lamp
 
 // Returns whether the group has the size that it was baked with.
 bool hasItsSize(const glm::mat4& world_from_group) {
@@ -62,6 +69,37 @@ std::vector<lighting::ShadowedLight> punctualOf(const World& world, ecs::Entity 
            .outer_cone_rad = light->outer_cone_rad}};
 }
 
+// Returns points in the part of the group's bounds that the camera sees: the middle, and points half-way from
+// there to the corners.
+std::vector<glm::vec3> pointsSeen(const World& world, std::size_t group, const spec::View& view) {
+  const glm::mat4 world_from_group = world.worldFromGroup(group);
+  const std::vector<glm::dvec3> corners =
+      seenCorners(world.groupBounds(group), view.clip_from_view * view.view_from_world * world_from_group);
+  glm::dvec3 middle(0.0);
+  for (const glm::dvec3& corner : corners) middle += corner / static_cast<double>(corners.size());
+  std::vector<glm::vec3> points;
+  for (const glm::dvec3& corner : corners)
+    points.emplace_back(world_from_group * glm::vec4(0.5 * (corner + middle), 1.0f));
+  if (!corners.empty()) points.emplace_back(world_from_group * glm::vec4(middle, 1.0f));
+  return points;
+}
+
+float meanIrradiance(const lighting::ShadowedLight& light, std::span<const glm::vec3> points) {
+  float sum = 0.0f, widest = 0.0f;
+  for (const glm::vec3& point : points) widest = std::max(widest, glm::distance(point, points.back()));
+  for (const glm::vec3& point : points) {
+    const glm::vec3 way = point - light.position_ws;
+    const float squared = glm::dot(way, way), least = kNearest * widest;
+    // Few points may all miss a narrow cone that shines on something between them.
+    float cone = 1.0f;
+    if (light.kind == lighting::ShadowedLight::Kind::Spot &&
+        glm::dot(way, light.direction_ws) < std::cos(light.outer_cone_rad) * std::sqrt(squared))
+      cone = kBesideCone;
+    sum += cone * intensityOf(light) / (squared + least * least);
+  }
+  return points.empty() ? 0.0f : sum / static_cast<float>(points.size());
+}
+
 }  // namespace
 
 std::vector<ColumnLight> findColumnLights(const World& world) {
@@ -97,21 +135,35 @@ float intensityOf(const lighting::ShadowedLight& light) {
                           : luminance;
 }
 
-std::vector<std::size_t> chooseColumnLights(std::span<const ColumnLight> lights, std::size_t cubes) {
-  std::vector<float> intensity;
+std::vector<float> effectsOf(const World& world, std::span<const ColumnLight> lights) {
+  std::map<std::size_t, std::vector<glm::vec3>> seen_of_group;
+  std::vector<float> effects;
   for (const ColumnLight& light : lights) {
-    intensity.push_back(0.0f);
-    for (const lighting::ShadowedLight& shape : light.shapes) intensity.back() += intensityOf(shape);
+    const auto [seen, made] = seen_of_group.try_emplace(light.group);
+    if (made && world.view()) seen->second = pointsSeen(world, light.group, *world.view());
+    effects.push_back(0.0f);
+    for (const lighting::ShadowedLight& shape : light.shapes)
+      effects.back() += world.view() ? meanIrradiance(shape, seen->second) : intensityOf(shape);
   }
+  return effects;
+}
+
+std::vector<std::size_t> chooseColumnLights(std::span<const ColumnLight> lights,
+                                            std::span<const float> effects, std::size_t cubes,
+                                            std::span<const ecs::Entity> before) {
+  std::vector<float> worth(effects.begin(), effects.end());
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (std::ranges::find(before, lights[i].entity) != before.end()) worth[i] *= kKeeps;
   std::vector<std::size_t> order(lights.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return intensity[i]; });
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return worth[i]; });
   std::vector<std::size_t> chosen;
   for (const std::size_t i : order) {
     if (lights[i].shapes.size() > cubes) continue;
     cubes -= lights[i].shapes.size();
     chosen.push_back(i);
   }
+  std::ranges::sort(chosen);  // so that cubes are not drawn again where the order of effects changes alone
   return chosen;
 }
 

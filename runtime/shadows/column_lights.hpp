@@ -29,8 +29,15 @@ std::vector<ColumnLight> findColumnLights(const World& world);
 // Returns the intensity of a light, as luminance in candela.
 float intensityOf(const lighting::ShadowedLight& light);
 
-// Returns the indices of those lights that get shadow cubes, of which `cubes` are free: the brightest ones,
-// each only if there are cubes for all of its shapes.
-std::vector<std::size_t> chooseColumnLights(std::span<const ColumnLight> lights, std::size_t cubes);
+// Returns about what each light brings to the picture: its mean irradiance over what the camera sees of the
+// bounds of its group, as if nothing was in the way. Without a camera it is the light's intensity.
+std::vector<float> effectsOf(const World& world, std::span<const ColumnLight> lights);
+
+// Returns the indices, rising, of those lights that get shadow cubes, of which `cubes` are free: those with
+// the greatest effect, each only if there are cubes for all of its shapes. A light whose entity is in
+// `before` keeps its cubes until another one is clearly greater.
+std::vector<std::size_t> chooseColumnLights(std::span<const ColumnLight> lights,
+                                            std::span<const float> effects, std::size_t cubes,
+                                            std::span<const ecs::Entity> before = {});
 
 }  // namespace lambent::frame

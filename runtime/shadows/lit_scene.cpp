@@ -113,11 +113,13 @@ bool shadesColumn(const World& world, const LitScene& scene, std::size_t group, 
 }
 
 // Gives the free shadow cubes to column lights.
-void addColumnLights(const World& world, std::span<const ecs::Entity> light_entities, LitScene& scene) {
+void addColumnLights(const World& world, std::span<const ecs::Entity> light_entities,
+                     std::span<const ecs::Entity> before, LitScene& scene) {
   const std::vector<ColumnLight> lights = findColumnLights(world);
   const std::size_t free = lighting::kMaxShadowedLights - scene.shadowed_lights.size();
-  for (const std::size_t i : chooseColumnLights(lights, free)) {
+  for (const std::size_t i : chooseColumnLights(lights, effectsOf(world, lights), free, before)) {
     const ColumnLight& light = lights[i];
+    scene.column_entities.push_back(light.entity);
     std::vector<float>& apart = scene.lamps_apart[light.group];
     apart.resize(world.residency().groups()[light.group].light_columns, 0.0f);
     apart[light.column] = 1.0f;
@@ -220,7 +222,7 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
 
   scene.own_lamps.resize(scene.shadowed_lights.size());
   scene.lamps_apart.resize(groups.size());
-  if (options.column_lights) addColumnLights(world, light_entities, scene);
+  if (options.column_lights) addColumnLights(world, light_entities, options.cubes_before, scene);
 
   std::uint32_t proxy_index = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {

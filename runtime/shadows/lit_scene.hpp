@@ -18,6 +18,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "runtime/lighting/incident_light.hpp"
@@ -45,6 +46,7 @@ struct LitScene {
   std::vector<std::uint32_t> pixel_masks;  // per group: bit k if shadowed light k shines on it per pixel
   // Column lights come after the other shadowed lights, and each shines so on the group of its column only.
   std::vector<ColumnCube> column_cubes;
+  std::vector<ecs::Entity> column_entities;  // of these lights
   std::vector<std::size_t> local_sources;  // for each shadowed light that is no column, its index in `lights`
   // For each shadowed light, the entity of an emissive material whose own surfaces it does not light, or
   // null.
@@ -63,6 +65,8 @@ struct LitSceneOptions {
   float local_radii = 0.0f;     // lights within this many radii of a group's centre are beside it
   bool bodies = true;           // false: groups neither light nor shadow each other
   std::uint32_t most_suns = 0;  // as for sunsOf()
+  // Column lights that had cubes in the step before.
+  std::span<const ecs::Entity> cubes_before{};
 };
 
 // Lists the brightest directional lights of the world, at most so many, in the order of their entities.

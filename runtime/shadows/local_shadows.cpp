@@ -17,7 +17,7 @@ namespace lambent::frame {
 namespace {
 
 using lighting::ShadowedLight;
-constexpr std::uint32_t kFaces = 6;
+constexpr std::uint32_t kFaces = 6, kFullCubes = 4;
 constexpr std::size_t kFaceStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr float kLocalPlane_m = 2e-3f;
 constexpr float kLightSurface = 1.01f;  // the body of a spherical lamp may be larger by this factor
@@ -172,9 +172,13 @@ Result<void> LocalShadows::update(World& world, std::span<const ShadowedLight> l
 void LocalShadows::makeRoom(std::uint32_t rows) {
   if (rows <= rows_) return;
   rows_ = rows;
-  shadows_ = gpu::Texture(
-      "near shadows",
-      {.format = GL_DEPTH_COMPONENT32F, .width = kFaces * options_.size, .height = rows * options_.size});
+  // All cubes together take no more memory than kFullCubes of the largest size.
+  size_ = rows <= kFullCubes
+              ? options_.size
+              : static_cast<std::uint32_t>(static_cast<float>(options_.size) *
+                                           std::sqrt(float{kFullCubes} / static_cast<float>(rows)));
+  shadows_ = gpu::Texture("near shadows",
+                          {.format = GL_DEPTH_COMPONENT32F, .width = kFaces * size_, .height = rows * size_});
   GLuint id = 0;
   glCreateFramebuffers(1, &id);
   target_ = gpu::Handle<gpu::FramebufferTraits>(id);
@@ -191,9 +195,9 @@ void LocalShadows::drawCubes(World& world, const std::vector<std::uint32_t>& cha
     Cube& cube = cubes_[k];
     for (std::uint32_t face = 0; face < kFaces; ++face) {
       ShadowCasters::Tile& tile =
-          tiles.emplace_back(ShadowCasters::Tile{.x = face * options_.size,
-                                                 .y = k * options_.size,
-                                                 .size = options_.size,
+          tiles.emplace_back(ShadowCasters::Tile{.x = face * size_,
+                                                 .y = k * size_,
+                                                 .size = size_,
                                                  .view = (kFaces * k + face) * kFaceStride,
                                                  .casters = {}});
       for (const ShadowCaster& caster : cube.casters)
@@ -222,7 +226,7 @@ void LocalShadows::bind(const spec::View& view, const spec::Size& size) {
                 .world_from_view = glm::mat4(glm::inverse(glm::dmat4(view.view_from_world))),
                 .width = static_cast<float>(size.width),
                 .height = static_cast<float>(size.height),
-                .size = options_.size,
+                .size = size_,
                 .samples = options_.samples};
   for (std::size_t k = 0; k < lights_.size(); ++k) block.lights[k] = recordOf(lights_[k], cubes_[k].reach);
   block_.assign(std::span<const Block>(&block, 1));

@@ -27,7 +27,8 @@
 namespace lambent::frame {
 
 struct LocalOptions {
-  std::uint32_t size = 512;    // texels along an edge of a cube's face, 16..4096
+  std::uint32_t size =
+      512;  // texels along an edge of a cube's face, 16..4096; more than four cubes are smaller
   std::uint32_t samples = 16;  // sample points on a light with an extent, 1..256
 };
 
@@ -81,6 +82,7 @@ class LocalShadows {
   gpu::Texture shadows_;
   gpu::Handle<gpu::FramebufferTraits> target_;
   std::uint32_t rows_ = 0;  // rows of the texture, one per light
+  std::uint32_t size_ = 0;  // texels along an edge of a face
   gpu::Table block_, draws_table_, faces_;
   std::vector<LocalDraw> draws_;
   // draws_ follows from the groups' masks, the materials that shine as lights, the lights that shine,

@@ -25,7 +25,7 @@ LAMBENT_CONSTANT kBindShadowFace = 4u;      // uniform block ShadowFace
 LAMBENT_CONSTANT kBindLocalDraws = 5u;      // array of LocalDraw
 LAMBENT_CONSTANT kUnitLocalShadows = 8u;    // texture unit of the shadow cubes
 
-LAMBENT_CONSTANT kShadowedLights = 4u;  // lighting::kMaxShadowedLights
+LAMBENT_CONSTANT kShadowedLights = 8u;  // lighting::kMaxShadowedLights
 
 // These are the values of lighting::ShadowedLight::Kind.
 LAMBENT_CONSTANT kLocalPoint = 0u;

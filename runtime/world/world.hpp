@@ -134,6 +134,7 @@ class World {
   // Sets the view that decides what is loaded first, and what is kept when there is not room for everything:
   // what looks larger. Without it all bundles are equal.
   void look(const spec::View& view) { view_ = view; }
+  const std::optional<spec::View>& view() const { return view_; }
   StreamingStatus streaming() const;
 
   // Returns what stands in for surfaces. With limited memory, surfaces are shown once all of a bundle's are

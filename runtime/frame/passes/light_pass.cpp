@@ -74,12 +74,14 @@ class LightPass final : public FramePass {
  private:
   void gatherScene(const FrameContext& frame) {
     const FrameSettings& settings = frame.settings();
+    const std::vector<ecs::Entity> cubes_before = std::move(scene_.column_entities);
     scene_ = gatherLitScene(frame.world, meanRadiance(frame.environment),
                             {.shadowed_lights = settings.local_shadows,
                              .column_lights = settings.local_shadows && frame.options.keysApart(),
                              .local_radii = frame.options.keysApart() ? settings.local_radii : 0.0f,
                              .bodies = settings.captures,
-                             .most_suns = frame.environment.mostKeys()});
+                             .most_suns = frame.environment.mostKeys(),
+                             .cubes_before = cubes_before});
     Neighborhoods& neighborhoods = frame.write<Neighborhoods>();
     if (settings.neighborhoods || neighborhoods.any())
       neighborhoods.chooseCarriers(frame.world, scene_, settings.neighborhoods);

@@ -56,15 +56,17 @@ TEST(ShadowedLightChoice, WithoutRadiiOnlyLightsWithinBoundsShinePerPixel) {
 }
 
 TEST(ShadowedLightChoice, OfManyLightsWithinBoundsTheFirstHaveThePlaces) {
-  const std::vector<float> from = {0.5f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
-  EXPECT_EQ(localShares(from, 6.0f), (std::vector<float>{0.0f, 1.0f, 1.0f, 1.0f, 1.0f, 0.0f}));
+  std::vector<float> from(lighting::kMaxShadowedLights + 2, 0.0f), expected(from.size(), 1.0f);
+  from.front() = 0.5f;
+  expected.front() = expected.back() = 0.0f;
+  EXPECT_EQ(localShares(from, 6.0f), expected);
 }
 
 TEST(ShadowedLightChoice, NoMoreShineThanThereAreShadowCubesForAndNoneJumps) {
-  // Seven lights move to and fro, and change their order all the time.
+  // Eleven lights move to and fro, and change their order all the time.
   const auto at = [](int step) {
     std::vector<float> from;
-    for (int k = 0; k < 7; ++k)
+    for (int k = 0; k < 11; ++k)
       from.push_back(3.5f +
                      3.0f * std::sin(0.002f * static_cast<float>(step * (k + 2)) + static_cast<float>(k)));
     return from;
@@ -98,11 +100,28 @@ TEST(ColumnLightChoice, TheBrightestGetTheCubesAsFarAsAllTheirShapesFit) {
   const std::vector<ColumnLight> lights = {columnOf({0.1f}, 10.0f), columnOf({0.1f, 0.1f, 0.1f}, 9.0f),
                                            columnOf({0.2f}, 10.0f)};
   using Chosen = std::vector<std::size_t>;
-  EXPECT_EQ(chooseColumnLights(lights, 5), (Chosen{2, 1, 0}));
-  EXPECT_EQ(chooseColumnLights(lights, 4), (Chosen{2, 1}));
-  EXPECT_EQ(chooseColumnLights(lights, 3), (Chosen{2, 0})) << "two cubes are too few for three spheres";
-  EXPECT_EQ(chooseColumnLights(lights, 1), (Chosen{2}));
-  EXPECT_EQ(chooseColumnLights(lights, 0), Chosen());
+  const std::vector<float> effects = effectsOf(World(), lights);
+  EXPECT_EQ(chooseColumnLights(lights, effects, 5), (Chosen{0, 1, 2}));
+  EXPECT_EQ(chooseColumnLights(lights, effects, 4), (Chosen{1, 2}));
+  EXPECT_EQ(chooseColumnLights(lights, effects, 3), (Chosen{0, 2}))
+      << "two cubes are too few for three spheres";
+  EXPECT_EQ(chooseColumnLights(lights, effects, 1), (Chosen{2}));
+  EXPECT_EQ(chooseColumnLights(lights, effects, 0), Chosen());
+}
+
+TEST(ColumnLightChoice, ALightKeepsItsCubeUntilAnotherBringsClearlyMore) {
+  std::vector<ColumnLight> lights = {columnOf({0.1f}, 1.0f), columnOf({0.1f}, 1.0f)};
+  for (std::uint32_t i = 0; i < 2; ++i) lights[i].entity = {.index = i, .generation = 1};
+  std::vector<ecs::Entity> chosen;
+  std::vector<std::size_t> steps;
+  // What the second brings rises past the first and falls back.
+  for (const float effect : {0.9f, 1.2f, 1.4f, 1.6f, 1.2f, 0.9f, 0.6f}) {
+    const std::vector<std::size_t> now =
+        chooseColumnLights(lights, std::vector<float>{1.0f, effect}, 1, chosen);
+    chosen = {lights[now.at(0)].entity};
+    steps.push_back(now[0]);
+  }
+  EXPECT_EQ(steps, (std::vector<std::size_t>{0, 0, 0, 1, 1, 1, 0}));
 }
 
 }  // namespace
