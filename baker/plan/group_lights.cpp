@@ -51,7 +51,7 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
 
 std::vector<bool> shadedPerPixel(std::span<const PlannedLight> lights) {
   // runtime/lighting/shadowed_light.hpp has so many.
-  constexpr std::ptrdiff_t kShadowCubes = 4;
+  constexpr std::ptrdiff_t kShadowCubes = 8;
   std::vector<bool> shaded;
   for (const PlannedLight& light : lights)
     shaded.push_back(light.kind == PlannedLight::Kind::Node || !light.spheres.empty());

@@ -38,8 +38,8 @@ constexpr float kSplitShare = 0.6f;
 // Edges of bad triangles are cut up to this share of the extent.
 constexpr float kLongestCut = 1.0f / 16.0f;
 // Light leaks to a corner that has less than this share of the light of another, if that has at least this
-// share of the light of an open point.
-constexpr float kDarkShare = 0.05f, kLightShare = 0.05f;
+// share of the light that eyes see on average.
+constexpr float kDarkShare = 0.25f, kLightShare = 0.1f;
 // A round splits triangles until the remaining square error of a region is this share of what is allowed, or
 // this share of all of it if that is more, because what the first splits show decides where the next ones go.
 constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.35;
@@ -117,8 +117,8 @@ double square(double value) {
 // Light of the sky and that of lamps may shine without each other, so each is to be right.
 PointError pointError(const ShadowProbe::Difference& wrong, const ShadowProbe::Difference& arriving,
                       const SentLight& wrongly_sent, const SentLight& sent, const SurfaceLight& lit) {
-  const double light =
-      std::max(ShadowProbe::squareError(arriving), 0.0) + square(double{sent.bounced}) + square(kLeastLight);
+  const double light = std::max(ShadowProbe::squareError(arriving), 0.0) + square(double{sent.bounced}) +
+                       square(std::max(kLeastLight * double{lit.meanSky()}, 1e-6));
   const double bounced = square(double{wrongly_sent.bounced}) / light;
   PointError error{.square = ShadowProbe::squareError(wrong) / light + bounced, .with_noise = bounced};
   for (std::size_t i = 0; i < ShadowProbe::kMostValues; ++i)
@@ -483,7 +483,8 @@ std::optional<std::size_t> GroupRefiner::markLeaks(std::size_t group, const Grou
   const auto lightAt = [&](std::size_t s) {
     if (number[s] == kUnused || !few_.seen(number[s])) return;
     seen[s] = 1;
-    light[s] = few_.shadowProbe().openShare({few_.masksAt(number[s]), samples.normals[s]});
+    light[s] = few_.shadowProbe().openShare({few_.masksAt(number[s]), samples.normals[s]}) +
+               few_.lightAt(number[s]).bounced;
   };
   const bool done =
       parallelRanges(samples.size(), kPointsPerRange, context.stop, [&](std::size_t begin, std::size_t end) {
@@ -491,6 +492,7 @@ std::optional<std::size_t> GroupRefiner::markLeaks(std::size_t group, const Grou
       });
   if (!done) return std::nullopt;
   lightUnseen(geometry, samples, probed, seen, light);
+  const float least = kLightShare * whole_->light->meanSky();
   std::vector<FaceEdge> between;
   std::set<std::pair<std::uint32_t, std::uint32_t>> met;
   for (const std::uint32_t t : probed)
@@ -498,8 +500,8 @@ std::optional<std::size_t> GroupRefiner::markLeaks(std::size_t group, const Grou
       std::uint32_t dark = geometry.triangles[t][c], lit = geometry.triangles[t][(c + 1) % 3];
       if (light[samples.vertex_sample[dark]] > light[samples.vertex_sample[lit]]) std::swap(dark, lit);
       const std::uint32_t in_dark = samples.vertex_sample[dark], in_light = samples.vertex_sample[lit];
-      if (seen[in_dark] != 0 && light[in_light] > kLightShare &&
-          light[in_dark] < kDarkShare * light[in_light] && met.emplace(std::minmax(dark, lit)).second)
+      if (seen[in_dark] != 0 && light[in_light] > least && light[in_dark] < kDarkShare * light[in_light] &&
+          met.emplace(std::minmax(dark, lit)).second)
         between.push_back({dark, lit, t});
     }
   const std::vector<float> cuts = whole_->cuts.sharesOf(geometry, between, std::numeric_limits<float>::max());

@@ -109,8 +109,8 @@ bool read(ByteReader& in, Outcome& outcome) {
   return true;
 }
 
-// Splits edges round after round: first those of the worst triangles, until the error is within the bound,
-// then those over which light leaks.
+// Splits edges round after round: first those over which light leaks, since no number of other splits mends
+// these, then those of the worst triangles, until the error is within the bound.
 class Rounds {
  public:
   // Everything must outlive it.
@@ -137,6 +137,7 @@ class Rounds {
         if (auto prepared = refiners_[g].prepare(from_, g, geometries_[g]); !prepared) return prepared;
     if (auto measured = measure(); !measured) return measured;
     report_.error_before = report_.error_after;
+    if (auto cut = cutLeaks(); !cut) return cut;
     double left_by_round = kLeftByRound;
     std::uint64_t done_before = 0;
     for (int round = 0; round < options_.rounds && room() > 0; ++round) {

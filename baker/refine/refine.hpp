@@ -25,7 +25,7 @@ struct RefineOptions {
   float bound = 0.01f;  // on each group's error, see GroupRefiner::relativeError()
   // Rays of a probe over the sphere: few tell where much is wrong, many where little is.
   std::size_t rays = 512, many_rays = 2048;
-  int rounds = 24;     // at most this many
+  int rounds = 48;     // at most this many
   bool glossy = true;  // false: surfaces with glossy samples are left as they are
   // What is drawn gets at most most_growth times as many vertices as it had and most_added more, and never
   // more than most_vertices in all. A mesh that is drawn several times counts as often, as its samples do.
