@@ -7,7 +7,8 @@ void addGlossyProbes(Reflected reflected, SurfaceLight light, inout vec3 mirrore
   float share = 1.0 - smoothstep(kSharp, kRough, pixel_lobes.roughness);
   if (probes.counts.y == 0.0 || share == 0.0 || pixel_lobes.anisotropy != 0.0) return;
   vec3 place_ws = (draws[draw_of].world_from_mesh * vec4(position_mesh, 1.0)).xyz;
-  vec4 room = probeMirror(place_ws, mat3(draws[draw_of].glossy.group_from_world));
+  vec3 normal = draws[draw_of].facing * unit(normal_group.xyz);
+  vec4 room = probeMirror(place_ws, normal, mat3(draws[draw_of].glossy.group_from_world));
   Fresnel fresnel = pixel_lobes.fresnel;
   vec3 rho = fresnel.f0 * reflected.albedo.x + fresnel.f90 * reflected.albedo.y;
   mirrored = mix(mirrored, rho * room.rgb + (1.0 - room.a) * mirrored, share);

@@ -6,6 +6,6 @@
 void addLayeredProbes(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights) {
   if (probes.counts.y == 0.0) return;
   vec3 place_ws = (draws[draw_of].world_from_mesh * vec4(mirror.position_mesh, 1.0)).xyz;
-  vec4 room = probeMirror(place_ws, mat3(draws[draw_of].glossy.group_from_world));
+  vec4 room = probeMirror(place_ws, mirror.smooth_normal, mat3(draws[draw_of].glossy.group_from_world));
   mirrored = room.rgb + (1.0 - room.a) * mirrored;
 }

@@ -69,8 +69,8 @@ ProbeHit followRay(uint probe, ProbeRay ray) {
   int steps = clamp(int(ceil(ray.angle / kProbeStep)), 2, kMostProbeSteps);
   float rim = 1.5 * 1.5708 / float(textureSize(probe_images, 0).x);  // beside an edge, which filtering blurs
   vec2 solid = vec2(0.0, probeSees(probe, ray.from));  // place on the arc and 1 / distance of what was seen last
-  bool hidden = solid.y * ray.start > 1.0 + 2.0 * kProbeSame;
-  float trust = hidden ? kUnseenTrust : 1.0, before = 0.0;
+  bool hidden = false;
+  float trust = 1.0, before = 0.0;
   ProbeHit edge = ProbeHit(ray.angle, 0.0);
   for (int i = 1; i <= steps; ++i) {
     float turned = ray.angle * float(i) / float(steps);
@@ -106,13 +106,13 @@ ProbeHit followRay(uint probe, ProbeRay ray) {
   return hidden || trust < 1.0 ? edge : ProbeHit(ray.angle, 1.0);
 }
 
-// Lists the probes that a place asks, best first: the nearest of those that see it, then the nearest of the others.
+// Lists the probes that a place asks, the nearest first: of those that see this side of its surface.
 struct ProbeOrder {
   uint probe[kMostAsked];
   int count;
 };
 
-ProbeOrder probesFor(vec3 place_ws) {
+ProbeOrder probesFor(vec3 place_ws, vec3 normal_ws) {
   ProbeOrder order;
   order.count = 0;
   uint taken = 0u;
@@ -123,8 +123,8 @@ ProbeOrder probesFor(vec3 place_ws) {
       if (probes.places[i].w == 0.0 || (taken >> i & 1u) != 0u) continue;
       vec3 from = place_ws - probes.places[i].xyz;
       float apart = length(from);
-      if (probeSees(i, from) * apart > 1.0 + 2.0 * kProbeSame) apart += 1e6;
-      if (apart >= least) continue;
+      bool hidden = dot(from, normal_ws) > 0.0 || probeSees(i, from) * apart > 1.0 + 2.0 * kProbeSame;
+      if (hidden || apart >= least) continue;
       least = apart;
       order.probe[n] = i;
     }
@@ -166,11 +166,12 @@ vec3 visibleNormal(vec3 to_eye, float alpha, vec2 at) {
   return normalize(vec3(alpha * n.xy, max(n.z, 1e-4)));
 }
 
-// Returns what the mirror of this pixel shows at a place, times how much that may be trusted, which is in w. A wide lobe
-// is divided among narrower ones, each with a hit of its own, because beside what the middle meets lies something else.
-vec4 probeMirror(vec3 place_ws, mat3 group_from_world) {
+// Returns what the mirror of this pixel shows at a place, times how much that may be trusted, which is in w. The normal
+// is that of the surface, on its visible side. A wide lobe is divided among narrower ones, each with a hit of its own,
+// because beside what the middle meets lies something else.
+vec4 probeMirror(vec3 place_ws, vec3 normal, mat3 group_from_world) {
   float alpha = pixel_lobes.roughness * pixel_lobes.roughness;
-  ProbeOrder order = probesFor(place_ws);
+  ProbeOrder order = probesFor(place_ws, normal * group_from_world);
   if (alpha < kSharpAlpha)
     return probeLobe(order, place_ws, reflect(-pixel_to_eye, pixel_normal) * group_from_world, pixel_lobes.roughness);
   vec3 tangent = perpendicular(pixel_normal);

@@ -54,6 +54,30 @@ TEST_F(MirrorRoom, ShowsTheWallThatTheRayMeetsAndNotTheOneInItsDirection) {
   EXPECT_EQ(show.frame->kept<frame::ReflectionProbes>().places().size(), 1u);
 }
 
+// A probe inside must not show its room to the other side of the walls, which have no thickness.
+TEST_F(MirrorRoom, TheOutsideOfABoxWithoutALidMirrorsTheSky) {
+  assets::Scene scene = named("box");
+  const auto wall = [&](const char* name, glm::vec3 corner, glm::vec3 right, glm::vec3 up) {
+    add(scene, name, assets::plane(corner, right, up, 0.25f), glm::vec3(0.05f), {0, 0, 0}, false);
+    scene.materials.back().roughness = 0.0f;
+    scene.materials.back().specular = 1.0f;
+    scene.materials.back().double_sided = true;
+  };
+  wall("floor", {-1, -1, 1}, {2, 0, 0}, {0, 0, -2});
+  wall("back", {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
+  wall("front", {1, -1, 1}, {-2, 0, 0}, {0, 2, 0});
+  wall("left", {-1, -1, 1}, {0, 0, -2}, {0, 2, 0});
+  wall("right", {1, -1, -1}, {0, 0, 2}, {0, 2, 0});
+  Show show(scene, {constantLight(1.0f)});
+  const glm::vec3 eye(2.5f, 0.5f, 1.6f), target(0.2f, 0.1f, 1.0f);
+  const glm::vec3 on = show.patch(eye, target);
+  EXPECT_FALSE(show.frame->kept<frame::ReflectionProbes>().places().empty());
+  frame::FrameSettings settings = show.frame->settings();
+  settings.reflection_probes = 0;
+  ASSERT_TRUE(show.frame->setSettings(settings));
+  EXPECT_EQ(show.patch(eye, target), on);
+}
+
 TEST_F(MirrorRoom, ABallUnderTheOpenSkyHasNoProbesAndTheSamePicture) {
   assets::Scene scene = named("ball");
   add(scene, "ball", assets::sphere(1.0f, 12), glm::vec3(1.0f), glm::vec3(0.0f), /*movable=*/false);
