@@ -28,8 +28,8 @@ void readField(const nlohmann::json& value, glm::vec3& color) {
   for (int c = 0; c < 3; ++c) color[c] = value[static_cast<std::size_t>(c)].get<float>();
 }
 
-// Reads the numbers and colours of reflection, by the table of a material's fields. Of those in extensions,
-// unlit and measured materials keep only the index of refraction.
+// Reads the numbers and colours of reflection and of panes, by the table of a material's fields. Of those in
+// extensions, unlit and measured materials keep only the index of refraction.
 void readFactors(const nlohmann::json& source, gltf::Material& material) {
   const bool has_lobes = !material.unlit && material.brdf < 0;
   gltf::forEachMaterialField([&]<class Row>(const Row& row) {
@@ -37,7 +37,10 @@ void readFactors(const nlohmann::json& source, gltf::Material& material) {
     if constexpr (std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3>) {
       const auto& objects = row.json.objects;
       const bool wanted = has_lobes || objects[1] == nullptr || objects == gltf::material_rows::kIor;
-      if (row.part != gltf::MaterialPart::Reflection || !wanted) return;
+      const bool read = row.part == gltf::MaterialPart::Reflection ||
+                        objects == gltf::material_rows::kTransmission ||
+                        objects == gltf::material_rows::kVolume;
+      if (!read || !wanted) return;
       const nlohmann::json* place = &source;
       for (const char* object : objects) {
         if (!object) continue;
@@ -130,6 +133,10 @@ void convertReflection(const Document& document, std::size_t number, MaterialTex
     return;
   }
   if (material.unlit || material.brdf >= 0) return;
+  const auto* transmission = extensionOf(source, "KHR_materials_transmission");
+  if (transmission && material.transmits())
+    material.transmission_texture =
+        textures.refer(*transmission, "transmissionTexture", number, "transmission texture");
   if (const auto* specular = extensionOf(source, "KHR_materials_specular"))
     referSpecular(*specular, number, textures, material);
   const auto* anisotropy = extensionOf(source, "KHR_materials_anisotropy");

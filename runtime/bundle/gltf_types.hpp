@@ -4,6 +4,7 @@
 // "none".
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -69,8 +70,8 @@ struct TextureRef {
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 
-// A material is the metallic-roughness model of glTF 2.0 with KHR_materials_ior, _specular and _anisotropy,
-// or a measured BRDF. docs/conventions.md, "Materials", has the formulas.
+// A material is the metallic-roughness model of glTF 2.0 with KHR_materials_ior, _specular, _anisotropy,
+// _transmission and _volume, or a measured BRDF. docs/conventions.md, "Materials", has the formulas.
 struct Material {
   std::string name;
   glm::vec4 base_color{1.0f};     // linear
@@ -100,6 +101,26 @@ struct Material {
   AlphaMode alpha_mode = AlphaMode::Opaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
+  // KHR_materials_transmission: the share of the light under the dielectric layer that passes through instead
+  // of being reflected (texture linear, in R). Base colour tints it.
+  float transmission = 0.0f;
+  TextureRef transmission_texture;
+  // KHR_materials_volume. A thickness of 0 means a thin wall, and a distance of 0 that nothing is absorbed.
+  float thickness_m = 0.0f, attenuation_distance_m = 0.0f;
+  glm::vec3 attenuation_color{1.0f};
+
+  // Returns whether the surface is a pane, which light passes through. Blended surfaces let all of it pass.
+  bool transmits() const {
+    return transmission > 0.0f && metallic < 1.0f && !unlit && brdf < 0 && alpha_mode != AlphaMode::Blend;
+  }
+  // Returns the share of the light that meets a pane at a right angle and passes its face, before textures
+  // and colour.
+  float passedStraightOn() const {
+    const float most = std::max({specular_color.r, specular_color.g, specular_color.b});
+    return transmits()
+               ? (1.0f - metallic) * transmission * (1.0f - specular * std::min(reflectance() * most, 1.0f))
+               : 0.0f;
+  }
 
   // Returns the dielectric reflectance at normal incidence from air, before specular strength and colour.
   float reflectance() const {

@@ -42,7 +42,7 @@ enum class MaterialPart : std::uint8_t {
   Reflection,  // transfer and kernels of glossy surfaces, and the light that they bounce
   Emission,    // lights of a group, up to a factor that can change at run time
   Relief,      // only the tangents of glossy surfaces, since normal maps are applied at run time
-  Opacity,     // rays that a surface stops
+  Opacity,     // rays that a surface stops or weakens
 };
 
 // Tells where a field stands in glTF's JSON.
@@ -99,6 +99,8 @@ inline constexpr Objects kPbr = {"pbrMetallicRoughness"};
 inline constexpr Objects kIor = {"extensions", "KHR_materials_ior"};
 inline constexpr Objects kSpecular = {"extensions", "KHR_materials_specular"};
 inline constexpr Objects kAnisotropy = {"extensions", "KHR_materials_anisotropy"};
+inline constexpr Objects kTransmission = {"extensions", "KHR_materials_transmission"};
+inline constexpr Objects kVolume = {"extensions", "KHR_materials_volume"};
 inline constexpr Objects kUnlit = {"extensions", "KHR_materials_unlit"};
 inline constexpr bool kRequired = true, kColor = true;
 
@@ -189,7 +191,16 @@ inline constexpr auto kMaterialFields = [] {
       row("alpha_cutoff", &M::alpha_cutoff, Part::Opacity,
           {kTop, "alphaCutoff", Allowed::Any, !kRequired, &masks},
           live("alpha_cutoff", &F::alpha_cutoff, "alphaCutoff", kZeroToOne)),
-      row("double_sided", &M::double_sided, Part::Opacity, {kTop, "doubleSided"})};
+      row("double_sided", &M::double_sided, Part::Opacity, {kTop, "doubleSided"}),
+      row("transmission", &M::transmission, Part::Opacity,
+          {kTransmission, "transmissionFactor", Allowed::ZeroToOne}),
+      texture("transmission_texture", &M::transmission_texture, Part::Opacity,
+              {kTransmission, "transmissionTexture"}),
+      row("thickness_m", &M::thickness_m, Part::Opacity, {kVolume, "thicknessFactor", Allowed::NotNegative}),
+      row("attenuation_distance_m", &M::attenuation_distance_m, Part::Opacity,
+          {kVolume, "attenuationDistance", Allowed::NotNegative}),
+      row("attenuation_color", &M::attenuation_color, Part::Opacity,
+          {kVolume, "attenuationColor", Allowed::NotNegative})};
 }();
 
 // Calls visit(field) for each row.

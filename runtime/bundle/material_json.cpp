@@ -86,6 +86,7 @@ using Allowed = gltf::MaterialJson::Allowed;
 
 void checkValue(const Field& field, Allowed allowed, float value) {
   if (allowed == Allowed::ZeroToOne && !(value >= 0.0f && value <= 1.0f)) field.fault("is not from 0 to 1");
+  if (allowed == Allowed::NotNegative && !(value >= 0.0f)) field.fault("is negative");
   if (allowed == Allowed::ZeroOrFromOne && value != 0.0f && !(value >= 1.0f))
     field.fault("is neither 0 nor 1 and more");
 }

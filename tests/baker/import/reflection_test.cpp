@@ -68,6 +68,22 @@ TEST(Reflection, OfEveryKindIsReadWithItsTextures) {
   EXPECT_FALSE(m.isDiffuse());
 }
 
+TEST(Reflection, OfPanesIsReadWithWhatTheyTransmitAndAbsorb) {
+  TemporaryFolder folder;
+  const Scene scene = imported(withOneMaterial(folder, R"({"pbrMetallicRoughness":{"metallicFactor":0},
+    "extensions":{"KHR_materials_transmission":{"transmissionFactor":0.75,"transmissionTexture":{"index":1}},
+      "KHR_materials_volume":{"thicknessFactor":0.5,"attenuationDistance":2,"attenuationColor":[0.25,0.5,1]}}})"),
+                               folder);
+  const gltf::Material& m = scene.materials.at(0);
+  EXPECT_EQ(m.transmission, 0.75f);
+  EXPECT_GE(m.transmission_texture.texture, 0);
+  EXPECT_EQ(m.thickness_m, 0.5f);
+  EXPECT_EQ(m.attenuation_distance_m, 2.0f);
+  EXPECT_EQ(m.attenuation_color, glm::vec3(0.25f, 0.5f, 1.0f));
+  EXPECT_FLOAT_EQ(m.passedStraightOn(), 0.75f * 0.96f);
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
 TEST(Reflection, IsWhatGltfSaysWhereTheFileSaysNothing) {
   TemporaryFolder folder;
   const gltf::Material m = imported(withOneMaterial(folder, R"({"extensions":{"KHR_materials_ior":{},
