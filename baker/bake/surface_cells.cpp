@@ -26,7 +26,7 @@ class CellCoder {
         light_(light),
         options_(group.bake.options),
         coding_(coding),
-        grey_emission_(group.colors().greyEmission()),
+        grey_{.sky = group.colors().greyPanes(), .lights = group.colors().greyEmission()},
         weights_(weightsOf(*group.view().importance)),
         kernel_power_(group.brdfs()
                           ? kernelPower(group.geometry, *group.brdfs(), group.bake.options.glossy_order)
@@ -53,7 +53,7 @@ class CellCoder {
   const SurfaceTransport& light_;
   const BakeOptions& options_;
   CachedCoding& coding_;
-  bool grey_emission_;
+  GreyColumns grey_;
   std::vector<float> weights_;
   BandPower kernel_power_;
 };
@@ -62,7 +62,7 @@ class CellCoder {
 // up to the square of the bound. A bound that was asked for is kept at any price.
 std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, SurfaceFigures& figures) {
   std::vector<CodedTransfer> coded;
-  const std::vector<CellVectors> parts = glossyCellVectors(cell, light_.glossy->field, grey_emission_);
+  const std::vector<CellVectors> parts = glossyCellVectors(cell, light_.glossy->field, grey_.lights);
   double shown = 0.0;
   bool any_bounced = false;
   for (const CellVectors& part : parts) {
@@ -97,8 +97,7 @@ std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, Surface
 std::vector<CodedTransfer> CellCoder::codeDiffuse(const SampleCell& cell, SurfaceFigures& figures) {
   std::vector<CodedTransfer> coded;
   for (const CellVectors& vectors :
-       cellVectors(cell, group_.samples, light_.direct, light_.bounced ? &*light_.bounced : nullptr,
-                   grey_emission_)) {
+       cellVectors(cell, group_.samples, light_.direct, light_.bounced ? &*light_.bounced : nullptr, grey_)) {
     coded.push_back(coding_.code(vectors.vectors, cell.count, vectors.shape,
                                  {.bound = figures.codes_bound, .weights = weightsOf(cell)}));
     figures.worst_error = std::max(figures.worst_error, double{coded.back().error});

@@ -157,7 +157,7 @@ void sumIsotropic(const float* weights, const float* harmonics, float* out) {
 
 // Parameters describe a point of a GGX surface, after textures.
 struct Parameters {
-  float roughness = 1.0f, metal = 0.0f;
+  float roughness = 1.0f, metal = 0.0f, transmission = 0.0f;
   glm::vec3 base{0.0f}, f0{0.0f};
   float f90 = 0.0f;
 };
@@ -167,7 +167,8 @@ struct Parameters {
 glm::vec3 diffuseRest(const Parameters& p, std::span<const float> weights, std::size_t second) {
   const glm::vec3 reflected = p.f0 * weights[0] + p.f90 * weights[second];
   const float rest = 1.0f - std::max({reflected.r, reflected.g, reflected.b});
-  return p.metal < 1.0f && rest > 0.0f ? (1.0f - p.metal) * rest * p.base : glm::vec3(0.0f);
+  return p.metal < 1.0f && rest > 0.0f ? (1.0f - p.metal) * (1.0f - p.transmission) * rest * p.base
+                                       : glm::vec3(0.0f);
 }
 
 }  // namespace
@@ -230,6 +231,7 @@ Parameters SurfaceBrdfs::State::parametersAt(const Surface& surface, std::uint32
   const glm::vec4 rough_metal = data(surface.metallic_roughness, triangle, u, v);
   Parameters p{.roughness = std::clamp(material.roughness * rough_metal.g, 0.0f, 1.0f),
                .metal = std::clamp(material.metallic * rough_metal.b, 0.0f, 1.0f),
+               .transmission = material.transmits() ? material.transmission : 0.0f,
                .base = baseColor(surface, triangle, u, v)};
   const float specular = material.specular * data(surface.specular, triangle, u, v).a;
   glm::vec3 tint = material.specular_color;

@@ -53,6 +53,10 @@ std::vector<std::string> leftOut(const Scene& scene, bool glossy) {
         "Metallic and glossy reflection are left out: every material is Lambert with albedo = base color.");
   if (any_material([](const gltf::Material& m) { return m.alpha_mode == gltf::AlphaMode::Blend; }))
     sentences.emplace_back("Materials with alphaMode BLEND cast no shadow.");
+  if (any_material([](const gltf::Material& m) { return m.transmits(); }))
+    sentences.emplace_back(
+        "Panes (KHR_materials_transmission) pass light straight on; shadows of key lights and lamps ignore "
+        "them.");
   addStretchedNodes(scene, sentences);
   return sentences;
 }

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/transport/geometry_key.hpp"
+#include "baker/transport/panes.hpp"
 #include "baker/transport/ray_packets.hpp"
 
 namespace lambent::baker {
@@ -159,7 +160,7 @@ void Emitters::addMet(std::span<const RayHit> hits, std::span<const SampleOrigin
     const float share = isAbove(straight, origin)
                             ? 1.0f - chosenShare(receiver.raysPerSteradian(local.z), points_per_steradian)
                             : 1.0f;
-    const glm::vec3 radiance = share * colors_.emission(hit.triangle, hit.u, hit.v);
+    const glm::vec3 radiance = share * hit.passed * colors_.emission(hit.triangle, hit.u, hit.v);
     receiver.addAlong(hit.ray, light, radiance);
   }
 }
@@ -208,9 +209,11 @@ void Emitters::addChosen(std::span<const SampleOrigin> origins, const glm::mat3&
     }
   std::vector<std::uint8_t> blocked(segments.size());
   rays.occluded(segments, blocked);
+  std::vector<glm::vec3> passed(segments.size());
+  passedAlong(segments, rays, colors_, passed);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (blocked[i]) continue;
-    receiver.addFrom(chosen[i].local, chosen[i].light, chosen[i].radiance);
+    receiver.addFrom(chosen[i].local, chosen[i].light, passed[i] * chosen[i].radiance);
   }
 }
 

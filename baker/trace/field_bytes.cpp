@@ -10,38 +10,34 @@ namespace {
 
 // Calls visit(offset, length) for each stretch of a sample's vector that is kept.
 template <typename Visit>
-void forCached(const TransferField& field, bool grey_lights, const Visit& visit) {
+void forCached(const TransferField& field, GreyColumns grey, const Visit& visit) {
   const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
   const std::size_t lights = field.columns - bands;
   for (std::size_t output = 0; output < field.outputs; ++output)
     for (std::size_t channel = 0; channel < field.channels; ++channel) {
       const std::size_t at = (output * field.channels + channel) * field.columns;
-      if (channel == 0)
-        visit(at, bands + lights);
-      else if (!grey_lights)
-        visit(at + bands, lights);
+      if (channel == 0 || !grey.sky) visit(at, bands);
+      if (channel == 0 || !grey.lights) visit(at + bands, lights);
     }
 }
 
 // Copies the first channel to the channels that were not kept.
-void spread(const TransferField& field, bool grey_lights, std::span<float> vector) {
+void spread(const TransferField& field, GreyColumns grey, std::span<float> vector) {
   const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
-  const std::size_t same = grey_lights ? field.columns : bands;
+  const std::size_t begin = grey.sky ? 0 : bands, end = grey.lights ? field.columns : bands;
   for (std::size_t output = 0; output < field.outputs; ++output) {
-    const auto first = vector.subspan(output * field.channels * field.columns, same);
+    const auto channels = vector.subspan(output * field.channels * field.columns);
     for (std::size_t channel = 1; channel < field.channels; ++channel)
-      std::copy(
-          first.begin(), first.end(),
-          vector.begin() + static_cast<std::ptrdiff_t>((output * field.channels + channel) * field.columns));
+      for (std::size_t i = begin; i < end; ++i) channels[channel * field.columns + i] = channels[i];
   }
 }
 
-void writeDirect(const TransferField& field, bool grey_lights, std::size_t begin, std::size_t end,
+void writeDirect(const TransferField& field, GreyColumns grey, std::size_t begin, std::size_t end,
                  ByteWriter& out) {
   std::vector<float> kept;
   for (std::size_t s = begin; s < end; ++s) {
     const auto vector = field.at(s);
-    forCached(field, grey_lights, [&](std::size_t at, std::size_t count) {
+    forCached(field, grey, [&](std::size_t at, std::size_t count) {
       const auto stretch = vector.subspan(at, count);
       kept.insert(kept.end(), stretch.begin(), stretch.end());
     });
@@ -49,32 +45,32 @@ void writeDirect(const TransferField& field, bool grey_lights, std::size_t begin
   out.addList(kept);
 }
 
-bool readDirect(ByteReader& in, bool grey_lights, std::size_t begin, std::size_t end, TransferField& field) {
+bool readDirect(ByteReader& in, GreyColumns grey, std::size_t begin, std::size_t end, TransferField& field) {
   std::vector<float> kept;
   std::size_t size = 0, at_kept = 0;
-  forCached(field, grey_lights, [&](std::size_t, std::size_t count) { size += count; });
+  forCached(field, grey, [&](std::size_t, std::size_t count) { size += count; });
   if (!in.readList(kept) || kept.size() != size * (end - begin)) return false;
   for (std::size_t s = begin; s < end; ++s) {
     const auto vector = field.at(s);
-    forCached(field, grey_lights, [&](std::size_t at, std::size_t count) {
+    forCached(field, grey, [&](std::size_t at, std::size_t count) {
       std::copy_n(kept.begin() + static_cast<std::ptrdiff_t>(at_kept), count,
                   vector.begin() + static_cast<std::ptrdiff_t>(at));
       at_kept += count;
     });
-    spread(field, grey_lights, vector);
+    spread(field, grey, vector);
   }
   return true;
 }
 
 }  // namespace
 
-Output directRows(TransferField& field, bool grey_lights, std::ptrdiff_t first_row) {
+Output directRows(TransferField& field, GreyColumns grey, std::ptrdiff_t first_row) {
   const auto row = [first_row](std::size_t item) { return rowOfItem(item, first_row); };
-  return {[&field, grey_lights, row](std::size_t begin, std::size_t end, ByteWriter& out) {
-            writeDirect(field, grey_lights, row(begin), row(end), out);
+  return {[&field, grey, row](std::size_t begin, std::size_t end, ByteWriter& out) {
+            writeDirect(field, grey, row(begin), row(end), out);
           },
-          [&field, grey_lights, row](std::size_t begin, std::size_t end, ByteReader& in) {
-            return readDirect(in, grey_lights, row(begin), row(end), field);
+          [&field, grey, row](std::size_t begin, std::size_t end, ByteReader& in) {
+            return readDirect(in, grey, row(begin), row(end), field);
           }};
 }
 

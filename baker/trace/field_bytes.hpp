@@ -1,6 +1,6 @@
 // Packs direct transfer of ranges of samples into bytes. Light of the environment has no colour before it is
-// reflected, nor has that of grey lamps: what is the same for red, green and blue is kept once, so that
-// traced results stay valid when a grey scene becomes a coloured one.
+// reflected, unless it passes coloured panes, nor has that of grey lamps: what is the same for red, green and
+// blue is kept once, so that traced results stay valid when a grey scene becomes a coloured one.
 #pragma once
 
 #include "baker/jobs/stage.hpp"
@@ -8,8 +8,12 @@
 
 namespace lambent::baker {
 
-// Returns the direct transfer of a field as an output of a stage; its rows (rowOfItem) are samples. With
-// `grey_lights`, the columns after the environment's are the same in all channels.
-Output directRows(TransferField& field, bool grey_lights, std::ptrdiff_t first_row = 0);
+// Says which columns are the same in all channels: those of the environment, and those after them.
+struct GreyColumns {
+  bool sky, lights;
+};
+
+// Returns the direct transfer of a field as an output of a stage; its rows (rowOfItem) are samples.
+Output directRows(TransferField& field, GreyColumns grey, std::ptrdiff_t first_row = 0);
 
 }  // namespace lambent::baker

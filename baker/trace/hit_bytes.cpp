@@ -4,6 +4,9 @@ namespace lambent::baker {
 
 namespace {
 
+// What panes pass of the light where there are none.
+constexpr std::uint16_t kAllPassed = 0xffff;
+
 // Maps small differences of either sign to small numbers.
 std::uint32_t zigzag(std::uint32_t difference) {
   return difference << 1 ^ (difference >> 31 ? ~std::uint32_t{0} : 0);
@@ -32,7 +35,7 @@ bool take(std::span<const std::uint8_t>& in, std::uint32_t& value) {
 
 void writeHits(const RangeHits& hits, ByteWriter& out) {
   std::vector<std::uint8_t> numbers;
-  std::vector<std::uint16_t> places;
+  std::vector<std::uint16_t> places, passed;
   numbers.reserve(3 * hits.hits.size());
   places.reserve(2 * hits.hits.size());
   GatherHit last;
@@ -41,23 +44,28 @@ void writeHits(const RangeHits& hits, ByteWriter& out) {
     put(zigzag(hit.triangle - last.triangle), numbers);
     places.push_back(hit.u);
     places.push_back(hit.v);
+    passed.insert(passed.end(), hit.albedo, hit.albedo + 3);
     last = hit;
   }
+  if (std::ranges::all_of(passed, [](std::uint16_t share) { return share == kAllPassed; })) passed.clear();
   out.addList(hits.offsets);
   out.addList(hits.scales);
   out.addList(numbers);
   out.addList(places);
+  out.addList(passed);
 }
 
 bool readHits(ByteReader& in, std::size_t samples, std::size_t triangle_count, RangeHits& hits) {
   hits.hits.clear();
   std::vector<std::uint8_t> numbers;
-  std::vector<std::uint16_t> places;
+  std::vector<std::uint16_t> places, passed;
   if (!in.readList(hits.offsets) || hits.offsets.size() != samples + 1 || hits.offsets.front() != 0 ||
       !std::is_sorted(hits.offsets.begin(), hits.offsets.end()))
     return false;
   if (!in.readList(hits.scales) || (!hits.scales.empty() && hits.scales.size() != samples)) return false;
   if (!in.readList(numbers) || !in.readList(places) || places.size() != 2 * std::size_t{hits.offsets.back()})
+    return false;
+  if (!in.readList(passed) || (!passed.empty() && passed.size() != 3 * std::size_t{hits.offsets.back()}))
     return false;
   hits.hits.reserve(hits.offsets.back());
   std::span<const std::uint8_t> left = numbers;
@@ -68,7 +76,9 @@ bool readHits(ByteReader& in, std::size_t samples, std::size_t triangle_count, R
     last = {.triangle = last.triangle + unzigzag(triangle),
             .ray = last.ray + unzigzag(ray),
             .u = places[i],
-            .v = places[i + 1]};
+            .v = places[i + 1],
+            .albedo = {kAllPassed, kAllPassed, kAllPassed}};
+    if (!passed.empty()) std::copy_n(&passed[3 * (i / 2)], 3, last.albedo);
     if (last.triangle >= triangle_count) return false;
     hits.hits.push_back(last);
   }

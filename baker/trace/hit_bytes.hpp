@@ -1,6 +1,7 @@
 // Packs the hits of a range of samples into bytes, without what the surfaces reflect: that is looked up
-// again, so that traced results stay valid when colours change. Neighbouring rays hit neighbouring triangles,
-// so differences, stored as byte planes, leave little but the places on the triangles.
+// again, so that traced results stay valid when colours change. What panes before a hit pass is kept.
+// Neighbouring rays hit neighbouring triangles, so differences, stored as byte planes, leave little but the
+// places on the triangles.
 #pragma once
 
 #include "baker/cache/bytes.hpp"

@@ -24,11 +24,15 @@ static_assert(kSamplesPerRange % kSamplesGathered == 0);
 struct GatherHit {
   std::uint32_t triangle = 0, ray = 0;
   std::uint16_t u = 0, v = 0;           // unorm16; barycentric weights of corners 1 and 2
-  std::uint16_t albedo[3] = {0, 0, 0};  // unorm16; at the hit
+  std::uint16_t albedo[3] = {0, 0, 0};  // unorm16; at the hit, times what panes before it pass of the light
 
   static std::uint16_t unorm(float value) {
     return static_cast<std::uint16_t>(std::clamp(value, 0.0f, 1.0f) * 65535.0f + 0.5f);
   }
+  void setAlbedo(const glm::vec3& value) {
+    for (int c = 0; c < 3; ++c) albedo[c] = unorm(value[c]);
+  }
+  glm::vec3 albedoAt() const { return glm::vec3(albedo[0], albedo[1], albedo[2]) * (1.0f / 65535.0f); }
 };
 
 // MirroredLight is what a ray of a sample found by way of mirrors (mirror_paths.hpp), beside diffuse
@@ -47,9 +51,7 @@ struct MirroredLight {
   glm::vec3 direction{0.0f};
   From from = From::Sky;
 
-  glm::vec3 throughput() const {
-    return glm::vec3(hit.albedo[0], hit.albedo[1], hit.albedo[2]) * (1.0f / 65535.0f);
-  }
+  glm::vec3 throughput() const { return hit.albedoAt(); }
 };
 
 // A sample that has at most this many hits keeps all of them.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,6 +10,7 @@
 
 #include "baker/brdf/follow_highlight.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
+#include "baker/transport/panes.hpp"
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
@@ -22,10 +22,6 @@ constexpr std::uint32_t kMostReflections = 16;
 
 float shareOf(std::uint16_t unorm) {
   return static_cast<float>(unorm) * (1.0f / 65535.0f);
-}
-
-void setAlbedo(const glm::vec3& albedo, GatherHit& hit) {
-  for (int c = 0; c < 3; ++c) hit.albedo[c] = GatherHit::unorm(albedo[c]);
 }
 
 bool isBlack(const GatherHit& hit) {
@@ -62,9 +58,9 @@ float MirrorPaths::leaveBase(const glm::vec3& along, GatherHit& hit) const {
   const float length = glm::length(normal);
   const float reflected =
       brdfs_.layerAlbedo(hit.triangle, length > 0.0f ? -glm::dot(along, normal) / length : 0.0f);
-  const glm::vec3 albedo(shareOf(hit.albedo[0]), shareOf(hit.albedo[1]), shareOf(hit.albedo[2]));
-  setAlbedo((1.0f - reflected) * baseUnderLayer(albedo, colors_.layer(hit.triangle)), hit);
-  return reflected;
+  hit.setAlbedo((1.0f - reflected) * baseUnderLayer(hit.albedoAt(), colors_.layer(hit.triangle)));
+  const float of_pane = colors_.paneReflectance(hit.triangle);
+  return of_pane > 0.0f ? std::min(reflected, of_pane) : reflected;
 }
 
 // Follows all paths of a range at once, a reflection at a time.
@@ -72,17 +68,29 @@ class MirrorPaths::Walk {
  public:
   Walk(const MirrorPaths& mirrors, RangeHits& hits) : mirrors_(mirrors), hits_(hits) {}
 
-  // Starts a path at hit `index`, which sample `sample` sees along a ray of this direction. A path that
-  // begins at a layer stands for `of_layer` such paths, and the hit stays for the base.
-  void start(std::size_t index, std::size_t sample, std::uint32_t number, const glm::vec3& along,
-             std::optional<float> of_layer = {}) {
-    paths_.push_back({.hit = hits_.hits[index],
-                      .along = along,
-                      .throughput = glm::vec3(of_layer.value_or(1.0f)),
-                      .index = index,
-                      .sample = static_cast<std::uint32_t>(sample),
-                      .number = number,
-                      .from_layer = of_layer.has_value()});
+  // Says where a path begins: at a hit that a sample sees along a ray of this direction, with this
+  // throughput.
+  struct Start {
+    std::size_t index, sample;
+    std::uint32_t number;
+    glm::vec3 along, throughput;
+  };
+  // Starts a path. The hit at a layer stays for the base.
+  void start(const Start& at, bool from_layer) {
+    paths_.push_back({.hit = hits_.hits[at.index],
+                      .along = at.along,
+                      .throughput = at.throughput,
+                      .index = at.index,
+                      .sample = static_cast<std::uint32_t>(at.sample),
+                      .number = at.number,
+                      .from_layer = from_layer});
+  }
+  // Takes what the surface at a hit sends, which is not diffuse, with the path's throughput.
+  void end(const Start& at) {
+    start(at, /*from_layer=*/false);
+    add(MirroredLight::From::Kernel, paths_.back(), -at.along, at.throughput);
+    paths_.pop_back();
+    hits_.hits[at.index].triangle = kNowhere;
   }
 
   void follow() {
@@ -95,6 +103,7 @@ class MirrorPaths::Walk {
         rays.push_back({path.from, path.ray, std::numeric_limits<float>::infinity()});
       met.resize(rays.size());
       mirrors_.rays_.firstHits(rays, met);
+      passPanes(met, rays);
       std::size_t next = 0;
       std::erase_if(paths_, [&](Path& path) { return !meet(path, met[next++]); });
     }
@@ -143,9 +152,18 @@ class MirrorPaths::Walk {
     MirroredLight light;
   };
 
+  // Weakens paths by the panes on their rays, up to what these met.
+  void passPanes(const std::vector<FirstHit>& met, std::vector<RaySegment>& rays) {
+    if (!mirrors_.rays_.hasPanes()) return;
+    for (std::size_t i = 0; i < rays.size(); ++i) rays[i].length = met[i].distance;
+    std::vector<glm::vec3> passed(rays.size());
+    passedAlong(rays, mirrors_.rays_, mirrors_.colors_, passed);
+    for (std::size_t i = 0; i < paths_.size(); ++i) paths_[i].throughput *= passed[i];
+  }
+
   void add(MirroredLight::From from, const Path& path, const glm::vec3& direction, const glm::vec3& factor) {
     MirroredLight light{.hit = path.hit, .direction = direction, .from = from};
-    setAlbedo(factor, light.hit);
+    light.hit.setAlbedo(factor);
     if (!isBlack(light.hit)) found_.push_back({path.sample, light});
   }
 
@@ -166,6 +184,8 @@ class MirrorPaths::Walk {
     using From = MirroredLight::From;
     if (in_layer) {
       const float reflected = mirrors_.brdfs_.layerAlbedo(hit.triangle, glm::dot(to, at.normal));
+      if (const float of_pane = mirrors_.colors_.paneReflectance(hit.triangle); of_pane > 0.0f)
+        path.throughput *= std::min(of_pane / reflected, 1.0f);
       if (mirrors_.with_lights_) add(From::LightsByLayer, path, to, path.throughput * reflected);
     } else {
       if (mirrors_.with_lights_) add(From::LightsByKernel, path, to, path.throughput);
@@ -203,7 +223,7 @@ class MirrorPaths::Walk {
       add(MirroredLight::From::Diffuse, path, -path.along, passed);
       return false;
     }
-    setAlbedo(passed, path.hit);
+    path.hit.setAlbedo(passed);
     if (!isBlack(path.hit)) hits_.hits[path.index] = path.hit;
     return false;
   }
@@ -214,7 +234,8 @@ class MirrorPaths::Walk {
   std::vector<Found> found_;
 };
 
-void MirrorPaths::follow(std::size_t first_sample, const RayDirection& direction, RangeHits& hits) const {
+void MirrorPaths::follow(std::size_t first_sample, const RayDirection& direction,
+                         std::span<const glm::vec3> passed, RangeHits& hits) const {
   Walk walk(*this, hits);
   std::vector<std::uint8_t> begun(hits.hits.size(), 0);
   bool any = false;
@@ -222,17 +243,27 @@ void MirrorPaths::follow(std::size_t first_sample, const RayDirection& direction
     const std::uint32_t number = scattered(first_sample + s);
     for (std::uint32_t h = hits.offsets[s]; h < hits.offsets[s + 1]; ++h) {
       GatherHit& hit = hits.hits[h];
-      if (brdfs_.layered(hit.triangle)) {
-        const glm::vec3 along = direction(s, hit.ray);
-        const float reflected = leaveBase(along, hit);
+      const glm::vec3 before = passed.empty() ? glm::vec3(1.0f) : passed[h];
+      const bool layered = brdfs_.layered(hit.triangle), sharp = isSharp(hit),
+                 dimmed = before != glm::vec3(1.0f) && brdfs_.glossy(hit.triangle);
+      Walk::Start at{h, s, number + hit.ray, glm::vec3(0.0f), before};
+      if (layered || sharp || dimmed) at.along = direction(s, hit.ray);
+      if (layered) {
+        const float reflected = leaveBase(at.along, hit);
         const float chance = std::min(kPathsInLayer * reflected, 1.0f);
-        if (!(evenly(number + hit.ray) < chance)) continue;
-        any = true;
-        walk.start(h, s, number + hit.ray, along, 1.0f / chance);
-      } else if (isSharp(hit)) {
+        if (evenly(at.number) < chance) {
+          any = true;
+          at.throughput /= chance;
+          walk.start(at, /*from_layer=*/true);
+        }
+      } else if (sharp || dimmed) {
         begun[h] = 1, any = true;
-        walk.start(h, s, number + hit.ray, direction(s, hit.ray));
+        if (sharp)
+          walk.start(at, /*from_layer=*/false);
+        else
+          walk.end(at);
       }
+      if (!passed.empty()) hit.setAlbedo(before * hit.albedoAt());
     }
   }
   if (!any) return;

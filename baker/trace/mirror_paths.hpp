@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 
 #include <glm/vec3.hpp>
 
@@ -35,14 +36,16 @@ class MirrorPaths {
               const SurfaceBrdfs& brdfs, bool with_lights)
       : geometry_(geometry), rays_(rays), colors_(colors), brdfs_(brdfs), with_lights_(with_lights) {}
 
-  // Follows the painted hits of samples that begin with `first_sample`.
-  void follow(std::size_t first_sample, const RayDirection& direction, RangeHits& hits) const;
+  // Follows the painted hits of samples that begin with `first_sample`. `passed` says what panes before each
+  // hit pass of the light, which is not in the colours of the hits yet; it is empty if there are no panes.
+  void follow(std::size_t first_sample, const RayDirection& direction, std::span<const glm::vec3> passed,
+              RangeHits& hits) const;
 
  private:
   class Walk;
   bool isSharp(const GatherHit& hit) const;
   // Leaves a hit on a layer, met along this direction, to the base under it. Returns the share of light that
-  // the layer reflects there.
+  // the layer reflects there; of a pane, that at a right angle, as it also passes light (SurfaceColors).
   float leaveBase(const glm::vec3& along, GatherHit& hit) const;
 
   const GroupGeometry& geometry_;

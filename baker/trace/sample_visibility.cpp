@@ -43,6 +43,7 @@ void SampleVisibility::stand(std::size_t s) {
 
 std::uint32_t SampleVisibility::look(const DirectionTable& table, bool wants_hits, BelowHorizon below) {
   hits_.clear();
+  dimmed_.clear();
   blocked_.assign(table.packets(), 0);
   if (seen_.origins.empty()) return 0;
   const SampleRays rays{seen_.origins, glm::mat3(frame_), table, below};
@@ -50,20 +51,26 @@ std::uint32_t SampleVisibility::look(const DirectionTable& table, bool wants_hit
     blockBelowHorizons(rays, blocked_);
     return 0;
   }
-  if (!wants_hits) return rays_.trace(rays, blocked_);
-  return rays_.traceHits(rays, seen_.blocked > kAskWhatAtOnce, blocked_, hits_);
+  const std::uint32_t traced = wants_hits
+                                   ? rays_.traceHits(rays, seen_.blocked > kAskWhatAtOnce, blocked_, hits_)
+                                   : rays_.trace(rays, blocked_);
+  if (rays_.hasPanes()) lookThroughPanes(rays, rays_, colors_, blocked_, hits_, dimmed_);
+  return traced;
 }
 
 void SampleVisibility::keepHits(std::vector<GatherHit>& out) const {
-  for (const RayHit& hit : hits_)
-    out.push_back({.triangle = hit.triangle,
-                   .ray = hit.ray,
-                   .u = GatherHit::unorm(hit.u),
-                   .v = GatherHit::unorm(hit.v)});
+  for (const RayHit& hit : hits_) {
+    GatherHit& kept = out.emplace_back(GatherHit{.triangle = hit.triangle,
+                                                 .ray = hit.ray,
+                                                 .u = GatherHit::unorm(hit.u),
+                                                 .v = GatherHit::unorm(hit.v)});
+    kept.setAlbedo(hit.passed);
+  }
 }
 
 void paintHits(const TracedScene& scene, std::size_t first, const RayDirection& direction, RangeHits& hits) {
   const SurfaceColors& colors = scene.colors;
+  std::vector<glm::vec3> passed;  // by the panes before each hit; empty without panes
   std::size_t left = 0;
   for (std::size_t s = 0; s + 1 < hits.offsets.size(); ++s) {
     const std::size_t begin = std::exchange(hits.offsets[s], static_cast<std::uint32_t>(left));
@@ -75,13 +82,16 @@ void paintHits(const TracedScene& scene, std::size_t first, const RayDirection& 
                                              static_cast<float>(hit.v) * (1.0f / 65535.0f));
       // A glossy surface that is black still has a specular reflection.
       if (albedo == glm::vec3(0.0f) && !colors.glossy(hit.triangle)) continue;
-      for (int c = 0; c < 3; ++c) hit.albedo[c] = GatherHit::unorm(albedo[c]);
+      const glm::vec3 before = hit.albedoAt();
+      if (before == glm::vec3(0.0f)) continue;
+      if (scene.rays.hasPanes()) passed.push_back(before);
+      hit.setAlbedo(scene.mirrors ? albedo : before * albedo);
       hits.hits[left++] = hit;
     }
   }
   if (!hits.offsets.empty()) hits.offsets.back() = static_cast<std::uint32_t>(left);
   hits.hits.resize(left);
-  if (scene.mirrors) scene.mirrors->follow(first, direction, hits);
+  if (scene.mirrors) scene.mirrors->follow(first, direction, passed, hits);
 }
 
 }  // namespace lambent::baker

@@ -11,6 +11,7 @@
 #include "baker/trace/hits.hpp"
 #include "baker/trace/traced_scene.hpp"
 #include "baker/transport/direction_table.hpp"
+#include "baker/transport/panes.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/seen_origins.hpp"
@@ -37,6 +38,7 @@ class SampleVisibility {
       : samples_(scene.samples),
         importance_(scene.importance),
         rays_(scene.rays),
+        colors_(scene.colors),
         inside_test_(glances),
         shadows_(scene.shadows) {}
 
@@ -54,15 +56,19 @@ class SampleVisibility {
   std::span<const SampleOrigin> origins() const { return seen_.origins; }
   // Bit k of blocked()[p] is set if ray 16 p + k is blocked.
   std::span<const std::uint16_t> blocked() const { return blocked_; }
+  // Includes the faces of panes.
   std::span<const RayHit> hits() const { return hits_; }
+  // Lists the open rays that pass panes.
+  std::span<const DimmedRay> dimmed() const { return dimmed_; }
 
-  // Appends the hits to `out`, without colours (paintHits).
+  // Appends the hits to `out`, with what panes before them pass in place of colours (paintHits).
   void keepHits(std::vector<GatherHit>& out) const;
 
  private:
   const SampleSet& samples_;
   const SampleImportance* importance_;
   const RayScene& rays_;
+  const SurfaceColors& colors_;
   const InsideTestTables& inside_test_;
   bool shadows_;
   glm::dmat3 frame_{1.0};
@@ -70,6 +76,7 @@ class SampleVisibility {
   RayCount ray_count_ = RayCount::Usual;
   std::vector<std::uint16_t> blocked_;
   std::vector<RayHit> hits_;
+  std::vector<DimmedRay> dimmed_;
 };
 
 // Looks up what the surfaces at hits reflect, and removes hits on surfaces that reflect nothing. Then follows

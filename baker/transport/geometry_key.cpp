@@ -30,9 +30,16 @@ void addOpacity(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key
     key.add(draw.material >= 0);
     if (draw.material < 0) continue;
     const gltf::Material& material = scene.materials[static_cast<std::size_t>(draw.material)];
-    key.add(material.double_sided).add(material.alpha_mode);
-    if (material.alpha_mode != gltf::AlphaMode::Mask) continue;
-    key.add(material.alpha_cutoff).add(material.base_color.w);
+    key.add(material.double_sided).add(material.alpha_mode).add(material.transmits());
+    if (material.transmits()) {
+      key.add(material.passedStraightOn()).add(glm::vec3(material.base_color)).add(material.thickness_m);
+      key.add(material.attenuation_distance_m).add(material.attenuation_color);
+      addTextureRef(scene, material.transmission_texture, key);
+    }
+    if (material.alpha_mode == gltf::AlphaMode::Mask)
+      key.add(material.alpha_cutoff).add(material.base_color.w);
+    else if (!material.transmits())
+      continue;
     addTexture(scene, material.base_color_texture.texture, key);
     key.addList(ofDraw(geometry.texcoords, draw)).addList(ofDraw(geometry.colors, draw));
   }

@@ -19,7 +19,7 @@ inline constexpr bool kPlainBytes<BrdfMeasurement> = sizeof(BrdfMeasurement) == 
 // Adds triangles, normals and kinds of samples, which determine all samples.
 void addShape(const GroupGeometry& geometry, KeyMaker& key);
 
-// Adds what lets rays through beside the shape: sides, blending, and cut-outs with their images.
+// Adds what lets rays through beside the shape: sides, blending, and cut-outs and panes with their images.
 void addOpacity(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key);
 
 // Adds a texture as it is looked up: the bytes of its image and its sampler.

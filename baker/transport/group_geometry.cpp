@@ -93,6 +93,11 @@ void appendDraw(const PlannedDraw& draw, const ScenePrimitive& primitive, const 
     geometry.emissive_texcoords.push_back(texcoordOf(emissive, mesh, v));
     geometry.colors.push_back(mesh.colors.empty() ? glm::vec4(1.0f) : mesh.colors[v]);
   }
+  if (material && material->transmission_texture.texture >= 0) {
+    geometry.pane_texcoords.resize(out.first_vertex, glm::vec2(0.0f));
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+      geometry.pane_texcoords.push_back(texcoordOf(material->transmission_texture, mesh, v));
+  }
   if (out.kind == SampleKind::Glossy) appendGlossy(mesh, linear, side, out.first_vertex, geometry);
   appendCharts(primitive, mesh, out, geometry);
   const bool reversed = (glm::determinant(linear) < 0.0f) != draw.back;

@@ -46,6 +46,9 @@ struct GroupGeometry {
   std::vector<glm::vec2> texcoords;
   std::vector<glm::vec2> emissive_texcoords;  // for its emissive texture
   std::vector<glm::vec4> colors;              // vertex colours, linear; 1 where there are none
+  // For the transmission texture of panes; 0 for vertices before those, and it ends with the last pane that
+  // has one.
+  std::vector<glm::vec2> pane_texcoords;
   // These two serve the textures of glossy surfaces. They hold values for the vertices of glossy draws, 0 for
   // those before them, and end with the last glossy one. `texcoord_sets` are as in the file, 0 if it has
   // none. `tangents` are unit, along the group's axes; w is the sign of the bitangent cross(normal, tangent)

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cstring>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "baker/embree/embree.hpp"
@@ -71,6 +72,38 @@ void filterMasked(const RTCFilterFunctionNArguments* args) {
   }
 }
 
+// MetFace is a face of a pane as Embree reports it.
+struct MetFace {
+  std::uint32_t surface, triangle;
+  float u, v, distance;
+  bool behind;
+
+  // A ray may meet both triangles at an edge that they share.
+  bool isSame(const MetFace& before) const {
+    return surface == before.surface && behind == before.behind &&
+           distance - before.distance <= 1e-6f * distance;
+  }
+};
+
+// Adds every face that a ray meets to the query's list, and lets the ray go on.
+void collectFaces(const RTCFilterFunctionNArguments* args) {
+  auto& faces = *static_cast<std::vector<MetFace>*>(RayQuery::userOf(*args));
+  const unsigned n = args->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (args->valid[i] != -1) continue;
+    const float along = RTCRayN_dir_x(args->ray, n, i) * RTCHitN_Ng_x(args->hit, n, i) +
+                        RTCRayN_dir_y(args->ray, n, i) * RTCHitN_Ng_y(args->hit, n, i) +
+                        RTCRayN_dir_z(args->ray, n, i) * RTCHitN_Ng_z(args->hit, n, i);
+    faces.push_back({.surface = RTCHitN_geomID(args->hit, n, i),
+                     .triangle = RTCHitN_primID(args->hit, n, i),
+                     .u = RTCHitN_u(args->hit, n, i),
+                     .v = RTCHitN_v(args->hit, n, i),
+                     .distance = RTCRayN_tfar(args->ray, n, i),
+                     .behind = along > 0.0f});
+    args->valid[i] = 0;
+  }
+}
+
 struct Packet {
   alignas(64) RTCRayHit16 rays;
   PacketLanes lanes;
@@ -81,6 +114,19 @@ std::uint32_t validMask(const PacketLanes& lanes) {
   std::uint32_t mask = 0;
   for (std::size_t k = 0; k < kPacketWidth; ++k) mask |= lanes.valid[k] ? 1u << k : 0u;
   return mask;
+}
+
+// Fills a packet with the first segments of a list. Lanes beyond its end are not valid.
+void fillSegments(std::span<const RaySegment> segments, RTCRay16& rays,
+                  std::array<int, kPacketWidth>& valid) {
+  for (std::size_t k = 0; k < kPacketWidth; ++k) {
+    valid[k] = k < segments.size() ? -1 : 0;
+    const auto& [origin, direction, length] = segments[std::min(k, segments.size() - 1)];
+    rays.org_x[k] = origin.x, rays.org_y[k] = origin.y, rays.org_z[k] = origin.z;
+    rays.dir_x[k] = direction.x, rays.dir_y[k] = direction.y, rays.dir_z[k] = direction.z;
+    rays.tnear[k] = 0.0f, rays.tfar[k] = length;
+    rays.time[k] = 0.0f, rays.mask[k] = ~0u, rays.flags[k] = 0;
+  }
 }
 
 void forgetHits(RTCRayHit16& rays) {
@@ -100,9 +146,9 @@ struct SurfaceSides {
 
 struct RayScene::State {
   Device device;
-  EmbreeScene scene;
+  EmbreeScene scene, panes;                         // panes is null if there are none
   std::vector<std::unique_ptr<MaskedDraw>> masked;  // user data of geometries, which must stay in place
-  std::vector<SurfaceSides> surfaces;               // by geometry id
+  std::vector<SurfaceSides> surfaces;               // by geometry id, which both scenes share
 };
 
 RayScene::RayScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -126,7 +172,7 @@ RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const Dra
   }
   std::memcpy(vertices, &group.positions[draw.first_vertex], draw.vertex_count * sizeof(glm::vec3));
   for (std::uint32_t t = 0; t < draw.triangle_count; ++t)
-    indices[t] = flipped_faces[draw.first_triangle + t] != 0
+    indices[t] = !flipped_faces.empty() && flipped_faces[draw.first_triangle + t] != 0
                      ? glm::uvec3(0)  // a degenerate triangle, which no ray hits
                      : group.triangles[draw.first_triangle + t] - draw.first_vertex;
   return geometry;
@@ -164,7 +210,14 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
         draw.material < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(draw.material)];
     if (draw.back || draw.triangle_count == 0) continue;  // the front's triangles stand for both sides
     if (material && material->alpha_mode == gltf::AlphaMode::Blend) continue;
-    RTCGeometry geometry = makeGeometry(state->device.get(), group, draw, flipped_faces);
+    const bool pane = material && material->transmits();
+    if (pane && !state->panes) {
+      // Spatial splits (HIGH) would report a triangle's hit more than once.
+      state->panes.reset(rtcNewScene(state->device.get()));
+      rtcSetSceneFlags(state->panes.get(), kSceneFlagQueryFilter);
+    }
+    RTCGeometry geometry = makeGeometry(state->device.get(), group, draw,
+                                        pane ? std::span<const std::uint8_t>() : flipped_faces);
     if (!geometry) return fail("Embree", "has not enough memory for the scene", "bake it in parts");
     if (material && material->alpha_mode == gltf::AlphaMode::Mask) {
       state->masked.push_back(maskedDraw(group, draw, alpha_maps[static_cast<std::size_t>(draw.material)]));
@@ -173,7 +226,8 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
       rtcSetGeometryIntersectFilterFunction(geometry, filterMasked);
     }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(state->scene.get(), geometry, static_cast<unsigned>(state->surfaces.size()));
+    rtcAttachGeometryByID(pane ? state->panes.get() : state->scene.get(), geometry,
+                          static_cast<unsigned>(state->surfaces.size()));
     rtcReleaseGeometry(geometry);  // the scene keeps its own reference
     SurfaceSides sides{.front = draw.first_triangle, .back = 0, .double_sided = false};
     if (d + 1 < group.draws.size() && group.draws[d + 1].back)
@@ -181,6 +235,7 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
     state->surfaces.push_back(sides);
   }
   rtcCommitScene(state->scene.get());
+  if (state->panes) rtcCommitScene(state->panes.get());
   if (rtcGetDeviceError(state->device.get()) != RTC_ERROR_NONE)
     return fail("Embree", "could not build its hierarchy over the scene", "check the memory that is free");
   return RayScene(std::move(state));
@@ -257,7 +312,8 @@ std::uint32_t RayScene::traceHits(const SampleRays& rays, bool mostly_blocked, s
       RayHit out{.ray = static_cast<std::uint32_t>(p * kPacketWidth + k),
                  .triangle = (back ? sides.back : sides.front) + hit.primID[k],
                  .u = hit.u[k],
-                 .v = hit.v[k]};
+                 .v = hit.v[k],
+                 .distance = ray.tfar[k]};
       if (back) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
       hits.push_back(out);
     }
@@ -272,15 +328,7 @@ void RayScene::occluded(std::span<const RaySegment> segments, std::span<std::uin
   alignas(64) std::array<int, kPacketWidth> valid;
   RayQuery query(RayOrder::Incoherent);
   for (std::size_t first = 0; first < segments.size(); first += kPacketWidth) {
-    for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      valid[k] = first + k < segments.size() ? -1 : 0;
-      const RaySegment& segment = segments[std::min(first + k, segments.size() - 1)];
-      rays.org_x[k] = segment.origin.x, rays.org_y[k] = segment.origin.y, rays.org_z[k] = segment.origin.z;
-      rays.dir_x[k] = segment.direction.x, rays.dir_y[k] = segment.direction.y;
-      rays.dir_z[k] = segment.direction.z;
-      rays.tnear[k] = 0.0f, rays.tfar[k] = segment.length;
-      rays.time[k] = 0.0f, rays.mask[k] = ~0u, rays.flags[k] = 0;
-    }
+    fillSegments(segments.subspan(first), rays, valid);
     query.occluded(state_->scene.get(), valid.data(), rays);
     for (std::size_t k = 0; k < kPacketWidth && first + k < segments.size(); ++k)
       blocked[first + k] = rays.tfar[k] < 0.0f ? 1 : 0;
@@ -295,14 +343,7 @@ void RayScene::firstHits(std::span<const RaySegment> rays, std::span<FirstHit> h
   RTCRay16& ray = packet.rays.ray;
   for (std::size_t first = 0; first < rays.size(); first += kPacketWidth) {
     forgetHits(packet.rays);
-    for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      packet.lanes.valid[k] = first + k < rays.size() ? -1 : 0;
-      const RaySegment& from = rays[std::min(first + k, rays.size() - 1)];
-      ray.org_x[k] = from.origin.x, ray.org_y[k] = from.origin.y, ray.org_z[k] = from.origin.z;
-      ray.dir_x[k] = from.direction.x, ray.dir_y[k] = from.direction.y, ray.dir_z[k] = from.direction.z;
-      ray.tnear[k] = 0.0f, ray.tfar[k] = from.length;
-      ray.time[k] = 0.0f, ray.mask[k] = ~0u, ray.flags[k] = 0;
-    }
+    fillSegments(rays.subspan(first), ray, packet.lanes.valid);
     query.intersect(state_->scene.get(), packet.lanes.valid.data(), packet.rays);
     const RTCHit16& hit = packet.rays.hit;
     for (std::size_t k = 0; k < kPacketWidth && first + k < rays.size(); ++k) {
@@ -317,6 +358,51 @@ void RayScene::firstHits(std::span<const RaySegment> rays, std::span<FirstHit> h
              .distance = ray.tfar[k],
              .back = behind && !sides.double_sided};
       if (behind && sides.double_sided) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
+    }
+  }
+}
+
+bool RayScene::hasPanes() const {
+  return state_->panes != nullptr;
+}
+
+void RayScene::panesOn(std::span<const RaySegment> rays, std::vector<PaneHit>& hits) const {
+  hits.clear();
+  if (!hasPanes()) return;
+  const FlushDenormals flush;
+  alignas(64) RTCRay16 packet;
+  alignas(64) std::array<int, kPacketWidth> valid;
+  std::vector<MetFace> faces;
+  RayQuery any(RayOrder::Incoherent), every(RayOrder::Incoherent, collectFaces, &faces);
+  for (std::size_t first = 0; first < rays.size(); first += kPacketWidth) {
+    fillSegments(rays.subspan(first), packet, valid);
+    any.occluded(state_->panes.get(), valid.data(), packet);
+    for (std::size_t k = 0; k < kPacketWidth && first + k < rays.size(); ++k) {
+      if (!(packet.tfar[k] < 0.0f)) continue;
+      const RaySegment& ray = rays[first + k];
+      faces.clear();
+      RTCRayHit one{};
+      one.ray.org_x = ray.origin.x, one.ray.org_y = ray.origin.y, one.ray.org_z = ray.origin.z;
+      one.ray.dir_x = ray.direction.x, one.ray.dir_y = ray.direction.y, one.ray.dir_z = ray.direction.z;
+      one.ray.tfar = ray.length, one.ray.mask = ~0u;
+      one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      every.intersect(state_->panes.get(), one);
+      std::ranges::sort(faces, {}, [](const MetFace& face) {
+        return std::tuple(face.distance, face.surface, face.triangle);
+      });
+      for (std::size_t i = 0; i < faces.size(); ++i) {
+        const MetFace& face = faces[i];
+        if (i > 0 && face.isSame(faces[i - 1])) continue;
+        const SurfaceSides& sides = state_->surfaces[face.surface];
+        const bool back = face.behind && sides.double_sided;
+        hits.push_back({.ray = static_cast<std::uint32_t>(first + k),
+                        .triangle = (back ? sides.back : sides.front) + face.triangle,
+                        .u = back ? face.v : face.u,
+                        .v = back ? face.u : face.v,
+                        .distance = face.distance,
+                        .entering = !face.behind,
+                        .back = face.behind && !sides.double_sided});
+      }
     }
   }
 }

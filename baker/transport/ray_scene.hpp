@@ -1,10 +1,11 @@
 // The room baker/transport owns a group's geometry, samples, ray directions and surface colours, and this
 // file owns visibility inside the group, by Embree. A group's geometry and the scene's materials come in;
 // masks of blocked rays and first hits go out. Solid surfaces and single-sided back faces block rays, except
-// flipped faces (flipped_faces.hpp); alphaMode MASK blocks where its alpha says so, and alphaMode BLEND
-// blocks nothing. All rays of one sample are traced in packets of sixteen sorted directions, which was
-// measured to be 1.2 to 2.8 times as fast as single rays or one direction over many samples. Calls are safe
-// from any thread; only build() can fail.
+// flipped faces (flipped_faces.hpp); alphaMode MASK blocks where its alpha says so, and alphaMode BLEND and
+// panes (KHR_materials_transmission) block nothing: panesOn() finds the latter (panes.hpp). All rays of one
+// sample are traced in packets of sixteen sorted directions, which was measured to be 1.2 to 2.8 times as
+// fast as single rays or one direction over many samples. Calls are safe from any thread; only build() can
+// fail.
 #pragma once
 
 #include <cstdint>
@@ -28,6 +29,8 @@ struct RayHit {
   std::uint32_t ray = 0;       // index in the table
   std::uint32_t triangle = 0;  // into GroupGeometry::triangles; of the back draw if the ray hit the back
   float u = 0.0f, v = 0.0f;    // barycentric weights of corners 1 and 2
+  float distance = 0.0f;
+  glm::vec3 passed{1.0f};  // what panes on the way pass of the light (panes.hpp)
 };
 
 // A RaySegment is the stretch between two points.
@@ -45,6 +48,15 @@ struct FirstHit {
   bool back = false;  // the back of a single-sided surface, which blocks and sends no light
 
   bool any() const { return triangle != kNothing; }
+};
+
+// A PaneHit is where a ray passes a face of a pane.
+struct PaneHit {
+  std::uint32_t ray = 0;       // index in the list of rays
+  std::uint32_t triangle = 0;  // as in RayHit
+  float u = 0.0f, v = 0.0f, distance = 0.0f;
+  bool entering = false;  // met from its front
+  bool back = false;      // the back of a single-sided surface, which sends no light
 };
 
 // The shares of an origin's rays whose first hit is the back of a single-sided surface (`back`), or that or
@@ -82,6 +94,11 @@ class RayScene {
   // Finds what each ray hits first on its stretch. This is fastest if sixteen neighbours of the list have
   // similar directions.
   void firstHits(std::span<const RaySegment> rays, std::span<FirstHit> hits) const;
+
+  // Returns whether panes weaken any ray.
+  bool hasPanes() const;
+  // Finds the panes that each ray passes on its stretch, ray by ray, the nearest first.
+  void panesOn(std::span<const RaySegment> rays, std::vector<PaneHit>& hits) const;
 
   // Fills in what the rays of each origin hit. Returns the share of all rays that hit anything.
   float meet(const SampleRays& rays, std::span<MetShares> shares) const;

@@ -54,9 +54,8 @@ class DirectPass::Walk {
     local_.resize(bands);
     hemisphere_->projection().project(look_.blocked(), local_);
     group_from_local_.set(look_.frame());
-    group_from_local_.apply(std::span<const float>(local_), scalar.first(bands));
-    for (std::uint32_t c = 1; c < pass_.channels_; ++c)
-      std::copy_n(scalar.begin(), bands, scalar.begin() + static_cast<std::ptrdiff_t>(c * pass_.columns_));
+    addSky(
+        local_, [&](std::size_t ray) { return static_cast<float>(hemisphere_->weight(ray)); }, scalar);
     if (!incident.empty()) projectIncident(bands, incident);
     if (!pass_.emitters_.empty() && !look_.origins().empty()) {
       LambertReceiver receiver(*hemisphere_, {.scalar = scalar,
@@ -91,12 +90,30 @@ class DirectPass::Walk {
       for (std::size_t j = 0; j < kIncident; ++j)
         for (std::size_t i = 0; i < bands; ++i) incident_local_[j * bands + i] += weights[j] * harmonics[i];
     }
-    for (std::size_t j = 0; j < kIncident; ++j) {
-      const auto row = incident.subspan(j * stride, stride);
-      group_from_local_.apply(std::span<const float>(incident_local_).subspan(j * bands, bands),
-                              row.first(bands));
-      for (std::uint32_t c = 1; c < pass_.channels_; ++c)
-        std::copy_n(row.begin(), bands, row.begin() + static_cast<std::ptrdiff_t>(c * pass_.columns_));
+    for (std::size_t j = 0; j < kIncident; ++j)
+      addSky(
+          std::span(incident_local_).subspan(j * bands, bands),
+          [&](std::size_t ray) { return hemisphere_->incidentWeight(ray)[j]; },
+          incident.subspan(j * stride, stride));
+  }
+
+  // Fills in the environment's columns of one output from those of all open rays, in the sample's frame and
+  // with these weights. Panes take a part of the light of some rays.
+  template <typename WeightOf>
+  void addSky(std::span<const float> open, const WeightOf& weight_of, std::span<float> out) {
+    for (std::uint32_t c = 0; c < pass_.channels_; ++c) {
+      const auto channel = out.subspan(c * pass_.columns_, open.size());
+      if (c > 0 && look_.dimmed().empty()) {
+        std::copy_n(out.begin(), open.size(), channel.begin());
+        continue;
+      }
+      seen_.assign(open.begin(), open.end());
+      for (const DimmedRay& ray : look_.dimmed()) {
+        const float taken = (1.0f - ray.passed[static_cast<int>(c)]) * weight_of(ray.ray);
+        const auto harmonics = hemisphere_->projection().harmonics(ray.ray);
+        for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] -= taken * harmonics[i];
+      }
+      group_from_local_.apply(std::span<const float>(seen_), channel);
     }
   }
 
@@ -116,7 +133,7 @@ class DirectPass::Walk {
   SampleVisibility look_;
   sh::Rotation group_from_local_, incident_from_local_;
   const Hemisphere* hemisphere_ = nullptr;
-  std::vector<float> local_, incident_local_;
+  std::vector<float> local_, incident_local_, seen_;
   std::vector<GatherHit> hits_;
 };
 
@@ -177,23 +194,22 @@ std::optional<DirectResult> bakeDirect(const DirectPass& pass, const TracedScene
     pass.paint(first, std::span(std::as_const(result.looks.ray_counts)).subspan(first), hits);
   };
   TracedRanges ranges(scene, own, {settings.keep_hits, context.keeps()}, paint, result.hits);
-  const bool grey_lights = scene.colors.greyEmission();
+  const GreyColumns grey{.sky = scene.colors.greyPanes(), .lights = scene.colors.greyEmission()};
   const auto compute = [&](std::size_t begin, std::size_t end) {
     RangeHits hits;
     const std::uint64_t rays = pass.bake(begin, end, context.stop, result, hits);
     ranges.add(begin / kSamplesPerRange, rays, std::move(hits), context.stop);
   };
-  const auto done =
-      runStage({.name = stage,
-                .count = own,
-                .grain = kSamplesPerRange,
-                .writes = {rowsOf(result.looks.valid), rowsOf(result.looks.ray_counts),
-                           directRows(result.field, grey_lights),
-                           directRows(result.mapped, grey_lights, -static_cast<std::ptrdiff_t>(first_mapped)),
-                           ranges.output()},
-                .compute = compute,
-                .keep = KeepWhen::Always},
-               context);
+  const auto done = runStage(
+      {.name = stage,
+       .count = own,
+       .grain = kSamplesPerRange,
+       .writes = {rowsOf(result.looks.valid), rowsOf(result.looks.ray_counts), directRows(result.field, grey),
+                  directRows(result.mapped, grey, -static_cast<std::ptrdiff_t>(first_mapped)),
+                  ranges.output()},
+       .compute = compute,
+       .keep = KeepWhen::Always},
+      context);
   if (!done) return std::nullopt;
   result.field.rays = ranges.raysTraced();
   result.rays_kept = ranges.raysFound();

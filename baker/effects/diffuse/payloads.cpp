@@ -46,7 +46,7 @@ bool anyBounced(const TransferField* bounced, std::size_t first_column, std::siz
 
 std::vector<CellVectors> cellVectors(const SampleCell& cell, const SampleSet& samples,
                                      const DirectResult& direct, const BounceResult* bounced,
-                                     bool grey_emission) {
+                                     GreyColumns grey) {
   const bool mapped = cell.kind == SampleKind::NormalMapped;
   const TransferField& field = mapped ? direct.mapped : direct.field;
   const TransferField* extra = nullptr;
@@ -61,14 +61,15 @@ std::vector<CellVectors> cellVectors(const SampleCell& cell, const SampleSet& sa
   std::vector<CellVectors> out;
   out.push_back(stack({.order = static_cast<std::uint32_t>(field.order),
                        .light_columns = 0,
-                       .shadowed_channels = 1,  // direct light of the environment has no colour
+                       // Direct light of the environment has no colour, unless it passes coloured panes.
+                       .shadowed_channels = grey.sky ? 1 : field.channels,
                        .full_channels = full(0, bands),
                        .outputs = field.outputs},
                       0, first, cell.count, field, extra));
   if (lights > 0)
     out.push_back(stack({.order = 0,
                          .light_columns = lights,
-                         .shadowed_channels = grey_emission ? 1 : field.channels,
+                         .shadowed_channels = grey.lights ? 1 : field.channels,
                          .full_channels = full(bands, lights),
                          .outputs = field.outputs},
                         bands, first, cell.count, field, extra));

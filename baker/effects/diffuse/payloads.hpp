@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "baker/effects/diffuse/bounces.hpp"
+#include "baker/trace/field_bytes.hpp"
 #include "runtime/transfer/codebook.hpp"
 
 namespace lambent::baker {
@@ -16,9 +17,10 @@ struct CellVectors {
 };
 
 // Returns the vectors of the environment, then those of the group's lights if there are any. `bounced` is
-// null without bounces; if no bounced light reaches the cell, there is no full block.
+// null without bounces; if no bounced light reaches the cell, there is no full block. `grey` says which
+// columns of direct light have no colour.
 std::vector<CellVectors> cellVectors(const SampleCell& cell, const SampleSet& samples,
                                      const DirectResult& direct, const BounceResult* bounced,
-                                     bool grey_emission);
+                                     GreyColumns grey);
 
 }  // namespace lambent::baker

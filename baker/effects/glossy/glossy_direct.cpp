@@ -98,7 +98,7 @@ class GlossyPass::Walk {
   const SampleVisibility& looked() const { return look_; }
 
   void project(std::span<float> visibility) {
-    hemisphere_->project(look_.blocked(), local_);
+    hemisphere_->project(look_.blocked(), look_.dimmed(), local_);
     visibility_from_local_.set(look_.frame());
     visibility_from_local_.apply(std::span<const float>(local_), visibility);
   }

@@ -80,7 +80,8 @@ void GlossyHemisphere::incident(glm::vec3 local, std::span<float> out) const {
   for (std::size_t e = 0; e < even_outputs_; ++e) out[e] = 2.0f * all[even_[e]];
 }
 
-void GlossyHemisphere::project(std::span<const std::uint16_t> blocked, std::span<float> out) const {
+void GlossyHemisphere::project(std::span<const std::uint16_t> blocked, std::span<const DimmedRay> dimmed,
+                               std::span<float> out) const {
   int blocked_rays = 0;
   for (const std::uint16_t mask : blocked) blocked_rays += std::popcount(mask);
   // The smaller side is summed: blocked rays are taken off 1, or open rays are added to nothing.
@@ -100,6 +101,9 @@ void GlossyHemisphere::project(std::span<const std::uint16_t> blocked, std::span
   std::fill(out.begin(), out.end(), 0.0f);
   for (std::size_t e = 0; e < sum.size(); ++e) out[even_[e]] = subtract ? -sum[e] : sum[e];
   if (subtract) out[0] += static_cast<float>(std::sqrt(2.0 * kTwoPi));
+  for (const DimmedRay& ray : dimmed)
+    for (std::size_t e = 0; e < even_.size(); ++e)
+      out[even_[e]] -= (1.0f - meanOf(ray.passed)) * row(ray.ray)[e];
 }
 
 void turnOutputs(const sh::Rotation& group_from_local, std::span<const std::uint16_t> even,

@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include "baker/transport/direction_table.hpp"
+#include "baker/transport/panes.hpp"
 #include "runtime/sh/rotation.hpp"
 
 namespace lambent::baker {
@@ -46,8 +47,10 @@ class GlossyHemisphere {
   void incident(glm::vec3 local, std::span<float> out) const;
 
   // Computes V in the local frame, all visibility_bands² coefficients, from the blocked masks of
-  // RayScene::trace.
-  void project(std::span<const std::uint16_t> blocked, std::span<float> out) const;
+  // RayScene::trace and the open rays that pass panes. V has no colour, so it gets the mean of what they
+  // pass.
+  void project(std::span<const std::uint16_t> blocked, std::span<const DimmedRay> dimmed,
+               std::span<float> out) const;
 
  private:
   DirectionTable table_;

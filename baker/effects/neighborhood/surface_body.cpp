@@ -9,6 +9,7 @@
 
 #include "baker/brdf/follow_highlight.hpp"
 #include "baker/jobs/parallel.hpp"
+#include "baker/transport/panes.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
 
@@ -127,16 +128,16 @@ class SurfaceBody::Paths {
   explicit Paths(const SurfaceBody& body)
       : body_(body), columns_(static_cast<std::size_t>(sh::coefficientCount(body.order_))) {}
 
-  // Starts paths at `hit`, which a ray along `along` from `from` has found. Their light is added to row `row`
-  // of the packet.
-  void start(const FirstHit& hit, const glm::vec3& from, const glm::vec3& along, std::size_t ray,
-             std::size_t row) {
+  // Starts paths at `hit`, which a ray along `along` from `from` has found, by way of panes that pass
+  // `passed`. Their light is added to row `row` of the packet.
+  void start(const FirstHit& hit, const glm::vec3& from, const glm::vec3& along, const glm::vec3& passed,
+             std::size_t ray, std::size_t row) {
     const std::size_t count = pathsFor(body_.brdfs_->roughness(hit.triangle, hit.u, hit.v));
     for (std::size_t p = 0; p < count; ++p)
       paths_.push_back({.hit = hit,
                         .from = from,
                         .along = along,
-                        .scale = glm::vec3(1.0f / static_cast<float>(count)),
+                        .scale = passed / static_cast<float>(count),
                         .row = row,
                         .number = static_cast<std::uint32_t>(ray * kRoughPaths + p)});
   }
@@ -155,8 +156,12 @@ class SurfaceBody::Paths {
         rays.push_back({path.from, path.along, std::numeric_limits<float>::infinity()});
       hits.resize(rays.size());
       body_.scene_.rays.firstHits(rays, hits);
+      passed_.resize(rays.size());
+      for (std::size_t i = 0; i < rays.size(); ++i) rays[i].length = hits[i].distance;
+      passedAlong(rays, body_.scene_.rays, body_.scene_.colors, passed_);
       std::size_t next = 0;
       std::erase_if(paths_, [&](Path& path) {
+        path.scale *= passed_[next];
         path.hit = hits[next++];
         return !goesOn(path, reflection, sent.subspan(path.row * row_size, row_size));
       });
@@ -212,6 +217,7 @@ class SurfaceBody::Paths {
   const SurfaceBody& body_;
   std::size_t columns_;
   std::vector<Path> paths_;
+  std::vector<glm::vec3> passed_;
 };
 
 void SurfaceBody::look(const glm::vec3& from, const DirectionPacket& along, std::size_t first_ray,
@@ -221,13 +227,16 @@ void SurfaceBody::look(const glm::vec3& from, const DirectionPacket& along, std:
   for (std::size_t k = 0; k < kPacketWidth; ++k)
     rays[k] = {from, along[k], std::numeric_limits<float>::infinity()};
   scene_.rays.firstHits(rays, hits);
+  std::array<glm::vec3, kPacketWidth> passed;
+  for (std::size_t k = 0; k < kPacketWidth; ++k) rays[k].length = hits[k].distance;
+  passedAlong(rays, scene_.rays, scene_.colors, passed);
   out.sends = out.backs = 0;
   out.nearest_back = std::numeric_limits<float>::infinity();
   const std::size_t row_size = channels_ * static_cast<std::size_t>(sh::coefficientCount(order_));
   std::optional<Paths> paths;
   for (std::size_t k = 0; k < kPacketWidth; ++k) {
     const FirstHit& hit = hits[k];
-    out.stopped[k] = hit.any() ? 1.0f : 0.0f;
+    out.stopped[k] = hit.any() ? 1.0f : 1.0f - meanOf(passed[k]);
     if (!hit.any()) continue;
     const auto bit = static_cast<std::uint16_t>(1u << k);
     if (hit.back) {
@@ -248,15 +257,14 @@ void SurfaceBody::look(const glm::vec3& from, const DirectionPacket& along, std:
     std::fill(row.begin(), row.end(), 0.0f);
     switch (wayOf(hit)) {
       case Way::Matte:
-        addDiffuse(hit, glm::vec3(1.0f), row);
+        addDiffuse(hit, passed[k], row);
         break;
       case Way::Kernel:
-        addKernel(hit, along[k], choices(static_cast<std::uint32_t>(first_ray + k), 0).x, glm::vec3(1.0f),
-                  row);
+        addKernel(hit, along[k], choices(static_cast<std::uint32_t>(first_ray + k), 0).x, passed[k], row);
         break;
       case Way::Path:
         if (!paths) paths.emplace(*this);
-        paths->start(hit, from, along[k], first_ray + k, k);
+        paths->start(hit, from, along[k], passed[k], first_ray + k, k);
     }
   }
   if (paths) paths->follow(out.sent);

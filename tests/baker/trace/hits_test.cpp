@@ -70,6 +70,8 @@ TEST(HitBytes, BringBackHitsAndTheirScales) {
   hits.scales = {1.5f, 1.0f};
   hits.next();
   hits.next();
+  for (GatherHit& hit : hits.hits) hit.setAlbedo(glm::vec3(1.0f));
+  hits.hits[3].setAlbedo({0.25f, 0.5f, 0.75f});  // a pane before it
   ByteWriter out;
   writeHits(hits, out);
   const std::vector<std::byte> bytes = out.take();
@@ -80,6 +82,7 @@ TEST(HitBytes, BringBackHitsAndTheirScales) {
   EXPECT_EQ(found.scales, hits.scales);
   ASSERT_EQ(found.hits.size(), 5u);
   EXPECT_EQ(found.hits[4].ray, 12u);
+  for (std::size_t h = 0; h < 5; ++h) EXPECT_EQ(found.hits[h].albedoAt(), hits.hits[h].albedoAt());
   EXPECT_EQ(found.scaleOf(0), 1.5f);
   ByteReader again(bytes);
   EXPECT_FALSE(readHits(again, 3, 7, found)) << "a range of other samples";
