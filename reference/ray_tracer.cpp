@@ -83,14 +83,47 @@ void filterBacks(const RTCFilterFunctionNArguments* args) {
     if (args->valid[i] == -1 && isCulled(args, i)) args->valid[i] = 0;
 }
 
-// Records every hit in the query's list and lets the ray continue.
+bool isLayer(const Surface& surface) {
+  return surface.material.alpha_mode == gltf::AlphaMode::Blend || surface.material.transmits();
+}
+
+bool isBlended(const RTCFilterFunctionNArguments* args) {
+  const auto& record = *static_cast<const Record*>(args->geometryUserPtr);
+  return surfaceOf(record).material.alpha_mode == gltf::AlphaMode::Blend;
+}
+
+// Record every hit in the query's list and let the ray continue: those that the eye sees, or those of panes.
+template <bool OfEye>
 void filterLayers(const RTCFilterFunctionNArguments* args) {
   auto& layers = *static_cast<std::vector<Hit>*>(RayQuery::userOf(*args));
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
-    if (!isCulled(args, i)) layers.push_back(hitOf(args, i));
+    if (!(OfEye ? isCulled(args, i) : isBlended(args))) layers.push_back(hitOf(args, i));
     args->valid[i] = 0;
   }
+}
+
+// Sorts layers by distance. A ray may hit both triangles at an edge that they share.
+void sortLayers(const Surfaces& surfaces, const glm::vec3& dir, std::vector<Hit>& layers) {
+  std::sort(layers.begin(), layers.end(),
+            [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
+  const auto behind = [&](const Hit& hit) {
+    return glm::dot(surfaces.areaVector(hit.triangle), glm::dvec3(dir)) > 0.0;
+  };
+  const auto same = [&](const Hit& a, const Hit& b) {
+    return a.surface == b.surface && b.t - a.t <= 1e-6f * b.t && behind(a) == behind(b);
+  };
+  layers.erase(std::unique(layers.begin(), layers.end(), same), layers.end());
+}
+
+RTCRayHit traceOne(RTCScene scene, const Ray& ray, float far, RayQuery& query) {
+  RTCRayHit hit{};
+  hit.ray.org_x = ray.origin.x, hit.ray.org_y = ray.origin.y, hit.ray.org_z = ray.origin.z;
+  hit.ray.dir_x = ray.dir.x, hit.ray.dir_y = ray.dir.y, hit.ray.dir_z = ray.dir.z;
+  hit.ray.tfar = far, hit.ray.mask = ~0u;
+  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.intersect(scene, hit);
+  return hit;
 }
 
 bool addGeometry(RTCDevice device, RTCScene scene, const Record& record) {
@@ -143,7 +176,8 @@ void fill(RTCRay16& packet, std::span<const Ray> rays, int* valid) {
 
 struct RayTracer::State {
   Device device;
-  EmbreeScene solid, blended;  // blended is null if no surface is blended
+  EmbreeScene solid, layers;  // layers is null if no surface is blended or a pane
+  bool any_pane = false;
   std::vector<Record> records;
   const Surfaces* surfaces = nullptr;
 };
@@ -171,14 +205,15 @@ Result<RayTracer> RayTracer::build(const Surfaces& surfaces) {
   for (std::uint32_t s = 0; s < surfaces.surfaces().size(); ++s) state->records.push_back({&surfaces, s});
   for (const Record& record : state->records) {
     if (surfaceOf(record).triangle_count == 0) continue;
-    const bool blend = surfaceOf(record).material.alpha_mode == gltf::AlphaMode::Blend;
+    const bool layer = isLayer(surfaceOf(record));
+    state->any_pane |= surfaceOf(record).material.transmits();
     // Spatial splits (HIGH) would report a triangle's hit more than once.
-    if (blend && !state->blended) state->blended = newScene(RTC_BUILD_QUALITY_MEDIUM);
-    if (!addGeometry(state->device.get(), blend ? state->blended.get() : state->solid.get(), record))
+    if (layer && !state->layers) state->layers = newScene(RTC_BUILD_QUALITY_MEDIUM);
+    if (!addGeometry(state->device.get(), layer ? state->layers.get() : state->solid.get(), record))
       return fail("Embree", "has not enough memory for the scene", "make it smaller");
   }
   rtcCommitScene(state->solid.get());
-  if (state->blended) rtcCommitScene(state->blended.get());
+  if (state->layers) rtcCommitScene(state->layers.get());
   if (rtcGetDeviceError(state->device.get()) != RTC_ERROR_NONE)
     return fail("Embree", "could not build its hierarchy over the scene", "check the memory that is free");
   return RayTracer(std::move(state));
@@ -218,30 +253,29 @@ void RayTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> bloc
   }
 }
 
+bool RayTracer::hasPanes() const {
+  return state_->any_pane;
+}
+
+void RayTracer::panesOn(const Ray& ray, std::vector<Hit>& faces) const {
+  faces.clear();
+  if (!hasPanes() || !traceable(ray)) return;
+  const FlushDenormals flush;
+  RayQuery query(RayOrder::Incoherent, filterLayers</*OfEye=*/false>, &faces);
+  traceOne(state_->layers.get(), ray, ray.far, query);
+  sortLayers(*state_->surfaces, ray.dir, faces);
+}
+
 void RayTracer::visible(const Ray& ray, std::vector<Hit>& layers) const {
   const FlushDenormals flush;
   layers.clear();
   if (!traceable(ray)) return;
-  const auto trace = [&](RTCScene scene, RTCFilterFunctionN filter, float far) {
-    RayQuery query(RayOrder::Incoherent, filter, &layers);
-    RTCRayHit hit{};
-    hit.ray.org_x = ray.origin.x, hit.ray.org_y = ray.origin.y, hit.ray.org_z = ray.origin.z;
-    hit.ray.dir_x = ray.dir.x, hit.ray.dir_y = ray.dir.y, hit.ray.dir_z = ray.dir.z;
-    hit.ray.tfar = far, hit.ray.mask = ~0u;
-    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.intersect(scene, hit);
-    return hit;
-  };
-  const RTCRayHit solid = trace(state_->solid.get(), filterBacks, ray.far);
-  if (state_->blended) {
-    trace(state_->blended.get(), filterLayers, solid.ray.tfar);
-    std::sort(layers.begin(), layers.end(),
-              [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
-    // A ray may hit both triangles at an edge that they share.
-    const auto same = [](const Hit& a, const Hit& b) {
-      return a.surface == b.surface && b.t - a.t <= 1e-6f * b.t;
-    };
-    layers.erase(std::unique(layers.begin(), layers.end(), same), layers.end());
+  RayQuery fronts(RayOrder::Incoherent, filterBacks),
+      every(RayOrder::Incoherent, filterLayers</*OfEye=*/true>, &layers);
+  const RTCRayHit solid = traceOne(state_->solid.get(), ray, ray.far, fronts);
+  if (state_->layers) {
+    traceOne(state_->layers.get(), ray, solid.ray.tfar, every);
+    sortLayers(*state_->surfaces, ray.dir, layers);
   }
   if (solid.hit.geomID != RTC_INVALID_GEOMETRY_ID)
     layers.push_back({solid.hit.geomID,

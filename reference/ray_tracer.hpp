@@ -1,7 +1,7 @@
 // Finds ray hits with Embree. The baker has its own wrapper, so that the two share no ray code. Rays are
 // passed in lists and traced 16 at a time. Cut-outs (alphaMode MASK) are tested by their texture. Blended
-// surfaces are kept in a separate scene, because only eye rays see them, as layers. Calls are thread-safe;
-// the Surfaces must outlive this.
+// surfaces and panes are kept in a separate scene: eye rays see both as layers, and other rays pass panes.
+// Calls are thread-safe; the Surfaces must outlive this.
 #pragma once
 
 #include <memory>
@@ -30,8 +30,11 @@ class RayTracer {
   void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
   // Sets blocked[i] to 1 if something lies on the ray, else to 0.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;
-  // Finds what an eye ray sees, nearest first: blended layers, then the opaque surface, if any. Backs of
-  // single-sided surfaces are skipped, because the runtime culls them.
+  bool hasPanes() const;
+  // Finds the faces of panes that a ray passes, nearest first.
+  void panesOn(const Ray& ray, std::vector<Hit>& faces) const;
+  // Finds what an eye ray sees, nearest first: layers of blended surfaces and panes, then the opaque surface,
+  // if any. Backs of single-sided surfaces are skipped, because the runtime culls them.
   void visible(const Ray& ray, std::vector<Hit>& layers) const;
 
  private:

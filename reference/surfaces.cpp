@@ -134,6 +134,21 @@ glm::vec3 Surfaces::emittedAt(const Hit& hit) const {
   return material.emissive * glm::vec3(textures_.color(ref, texcoord(hit, ref.texcoord)));
 }
 
+float Surfaces::transmission(const Hit& hit) const {
+  const gltf::Material& material = surfaces_[hit.surface].material;
+  if (!material.transmits()) return 0.0f;
+  const gltf::TextureRef& ref = material.transmission_texture;
+  return (1.0f - material.metallic) * material.transmission *
+         textures_.data(ref, texcoord(hit, ref.texcoord)).r;
+}
+
+glm::vec3 Surfaces::passedAt(const Hit& hit) const {
+  const gltf::Material& material = surfaces_[hit.surface].material;
+  const float step = material.ior > 0.0f ? (material.ior - 1.0f) / (material.ior + 1.0f) : 1.0f;
+  const float reflected = material.specular * std::min(step * step * largest(material.specular_color), 1.0f);
+  return (1.0f - reflected) * transmission(hit) * glm::vec3(baseColor(hit));
+}
+
 // Returns the file's tangent, or one computed from the texture coordinates of this triangle. In glTF the
 // texture coordinate v points down and +Y of normal maps points up, so the bitangent is -dp/dv.
 glm::vec4 Surfaces::tangent(const Hit& hit, const glm::vec3& normal) const {
@@ -249,6 +264,9 @@ SurfacePoint Surfaces::pointAt(const Hit& hit, const glm::vec3& dir) const {
   }
   point.glossy = !material.isDiffuse();
   if (point.glossy) point.reflector = reflectorAt(hit, point, normal, -dir);
+  const float kept = 1.0f - transmission(hit);
+  point.albedo *= kept;
+  point.reflector.diffuse *= kept;
   return point;
 }
 

@@ -79,6 +79,8 @@ class Surfaces {
   // Returns the alpha of the front side, for cut-outs (in the ray filter) and blended surfaces.
   float alphaAt(const Hit& hit) const;
   glm::vec3 emittedAt(const Hit& hit) const;
+  // Returns what a pane's face passes of the light: that of a right angle, at all angles.
+  glm::vec3 passedAt(const Hit& hit) const;
   // Returns the triangle's geometric normal on the front side, with twice its area as length.
   glm::dvec3 areaVector(std::uint32_t triangle) const;
 
@@ -87,6 +89,7 @@ class Surfaces {
   T interpolated(const std::vector<T>& values, const Hit& hit) const;
   glm::vec2 texcoord(const Hit& hit, std::uint32_t set) const;
   glm::vec4 baseColor(const Hit& hit) const;
+  float transmission(const Hit& hit) const;  // 0 where the surface is no pane
   glm::vec3 mappedNormal(const Hit& hit, const glm::vec3& normal) const;
   glm::vec4 tangent(const Hit& hit, const glm::vec3& normal) const;
   Reflector reflectorAt(const Hit& hit, const SurfacePoint& point, const glm::vec3& normal,

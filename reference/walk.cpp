@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "reference/panes.hpp"
 #include "reference/phase.hpp"
 #include "reference/warp.hpp"
 
@@ -9,6 +10,8 @@ namespace lambent::baker::reference {
 
 namespace {
 
+// Panes reflect at least this share of the paths that meet them from a side that reflects.
+constexpr float kLeastReflected = 0.02f;
 constexpr std::uint32_t kFirstRoulette = 4;  // bounces before Russian roulette begins
 constexpr std::uint32_t kPerLayer = kPerVertex * (kMostVertices + 1);
 // Vertices beyond kMostVertices use additional samplers, one for this many vertices.
@@ -167,19 +170,51 @@ void Walk::advance(bool first) {
   traced += rays.size();
   for (std::size_t i = 0; i < rays.size(); ++i) {
     Path& path = paths[ray_path[i]];
+    const glm::vec3 passed = meetPanes(path, rays[i], hits[i]);
     const bool hit = hits[i].any();
-    addShapes(path, hit ? hits[i].t : rays[i].far * kShadowReach);
     if (!hit && !collisions[i]) {
       addSky(path, first);
+      if (first && limited && passed != glm::vec3(1.0f)) takeSky(path, 1.0f - passed);
       path.alive = false;
       continue;
     }
-    if (first && limited) takeSky(path);
+    if (first && limited) takeSky(path, glm::vec3(1.0f));
     if (hit)
       arrive(path, hits[i]);
     else
       enterMedium(path, rays[i], *collisions[i]);
   }
+}
+
+glm::vec3 Walk::meetPanes(Path& path, const Ray& ray, Hit& hit) {
+  const float far = hit.any() ? hit.t : ray.far * kShadowReach;
+  glm::vec3 all(1.0f);
+  float near = 0.0f;
+  if (world.rays.hasPanes()) {
+    Stream random = stream(path, kAtPanes);
+    world.rays.panesOn({ray.origin, ray.dir, far}, faces);
+    PaneWay way(world.surfaces, ray);
+    const auto pass = [&](const glm::vec3& share) {
+      path.throughput *= share;
+      all *= share;
+    };
+    for (const Hit& face : faces) {
+      addShapes(path, near, face.t);
+      near = face.t;
+      const glm::vec3 passed = way.pass(face);
+      const bool back = world.surfaces.pointAt(face, path.dir).blocked;
+      const float reflected = back ? 0.0f : std::max(1.0f - largest(passed), kLeastReflected);
+      if (random.next() < double{reflected}) {
+        hit = face;
+        path.throughput /= reflected;
+        return all;
+      }
+      pass(passed / (1.0f - reflected));
+    }
+    pass(way.end());
+  }
+  addShapes(path, near, far);
+  return all;
 }
 
 void Walk::collide() {
@@ -198,6 +233,9 @@ void Walk::arrive(Path& path, const Hit& hit) const {
   if (!path.alive) return;
   addEmitted(path, hit, there);
   path.at = there;
+  // Panes reflect as much less than all as they pass, which is that of a right angle at all angles.
+  if (world.surfaces.surfaces()[hit.surface].material.transmits())
+    path.at.reflector.f90 = largest(there.reflector.f0);
   path.in_medium = false;
   path.alive = ++path.reflections <= mostReflections();
 }
@@ -220,10 +258,10 @@ void Walk::lookAtSky(bool first) {
   traceOccluded();
   for (std::size_t i = 0; i < rays.size(); ++i) {
     Path& path = paths[ray_path[i]];
-    if (!blocked[i])
-      addSky(path, first);
-    else if (first && limited)
-      takeSky(path);
+    const glm::vec3 passed = blocked[i] ? glm::vec3(0.0f) : passedOn(rays[i]);
+    path.throughput *= passed;
+    if (!blocked[i]) addSky(path, first);
+    if (first && limited && passed != glm::vec3(1.0f)) takeSky(path, 1.0f - passed);
   }
 }
 

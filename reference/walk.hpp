@@ -41,6 +41,8 @@ inline constexpr std::uint32_t kLobe = 1u << 31, kPlaceInVolume = 1u << 30;
 // Number the streams of a vertex for tracking through media: one for its own path, and one towards each kind
 // of light.
 enum Way : std::uint32_t { kOnward, kToSky, kToEmissive, kToPunctual, kToShapes };
+// The choice between passing a pane and being reflected by it has a stream of its own.
+inline constexpr std::uint32_t kAtPanes = 0xffffffffu;
 
 struct Path {
   SurfacePoint at;  // in a medium: without normals, and with the medium's albedo
@@ -87,6 +89,7 @@ struct Walk {
   std::vector<Hit> hits = {};
   std::vector<std::optional<Volumes::Collision>> collisions = {};
   std::vector<std::uint8_t> blocked = {};
+  std::vector<Hit> faces = {};
   sh::LightVector first_shapes = {};     // light of shapes as SH at the first vertex, where all paths are
   std::optional<FirstHit> limited = {};  // with --band-limit IN,OUT: the first vertex, where all paths are
   std::uint64_t traced = 0;
@@ -148,13 +151,16 @@ struct Walk {
   void lightFromPunctual(std::size_t p, bool first);
   glm::vec3 throughVolumes(const Shadow& shadow) const;
   void traceOccluded();
+  // Returns what panes pass of the light along a ray.
+  glm::vec3 passedOn(const Ray& ray);
   // Returns the SH of all shapes as seen from a point.
   sh::LightVector shapesFrom(const glm::vec3& point) const;
-  // Subtracts the sky that a path of the first vertex finds blocked, because FirstHit::open() has counted it.
-  void takeSky(Path& path) const;
+  // Subtracts the share of the sky that a path of the first vertex does not see, because FirstHit::open() has
+  // counted it.
+  void takeSky(Path& path, const glm::vec3& share) const;
   void addSky(Path& path, bool first);
-  // Adds the shapes that the ray hits before the surface at `far`.
-  void addShapes(Path& path, float far) const;
+  // Adds the shapes that the ray hits between `near` and the surface at `far`.
+  void addShapes(Path& path, float near, float far) const;
   void addEmitted(Path& path, const Hit& hit, const SurfacePoint& there) const;
 
   // The steps are in walk.cpp. This one adds the light that the surface of `layer` reflects to the paths'
@@ -171,6 +177,9 @@ struct Walk {
   void advance(bool first);
   // Shortens rays to where a volume scatters.
   void collide();
+  // Leads a path on its ray, which meets `hit` behind the panes, to one of them that reflects it, or past all
+  // of them. Adds the shapes before what the path meets at last. Returns what panes pass.
+  glm::vec3 meetPanes(Path& path, const Ray& ray, Hit& hit);
   void arrive(Path& path, const Hit& hit) const;
   void enterMedium(Path& path, const Ray& ray, const Volumes::Collision& collision) const;
   static void standInMedium(Path& path, const glm::vec3& position, const SceneVolume& medium);

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "reference/panes.hpp"
 #include "reference/walk.hpp"
 #include "reference/warp.hpp"
 
@@ -95,7 +96,7 @@ void Walk::gatherLights(bool first) {
   for (const Shadow& shadow : shadows) rays.push_back(shadow.ray);
   traceOccluded();
   for (std::size_t i = 0; i < shadows.size(); ++i)
-    if (!blocked[i]) paths[shadows[i].path].sum += throughVolumes(shadows[i]);
+    if (!blocked[i]) paths[shadows[i].path].sum += passedOn(rays[i]) * throughVolumes(shadows[i]);
 }
 
 glm::vec3 Walk::throughVolumes(const Shadow& shadow) const {
@@ -111,14 +112,23 @@ void Walk::traceOccluded() {
   traced += rays.size();
 }
 
+glm::vec3 Walk::passedOn(const Ray& ray) {
+  glm::vec3 passed(1.0f);
+  if (!world.rays.hasPanes()) return passed;
+  world.rays.panesOn(ray, faces);
+  PaneWay way(world.surfaces, ray);
+  for (const Hit& face : faces) passed *= way.pass(face);
+  return passed * way.end();
+}
+
 sh::LightVector Walk::shapesFrom(const glm::vec3& point) const {
   sh::LightVector sum{.order = options.band_limit->in};
   for (const spec::LocalLight& shape : world.shapes) sum += shapeLight(shape, sum.order, point);
   return sum;
 }
 
-void Walk::takeSky(Path& path) const {
-  path.sum -= limited->skyOfAll(path.dir) / path.pdf;
+void Walk::takeSky(Path& path, const glm::vec3& share) const {
+  path.sum -= share * limited->skyOfAll(path.dir) / path.pdf;
 }
 
 void Walk::addSky(Path& path, bool first) {
@@ -131,11 +141,11 @@ void Walk::addSky(Path& path, bool first) {
   path.sum += path.throughput * sky.radiance * weight;
 }
 
-void Walk::addShapes(Path& path, float far) const {
+void Walk::addShapes(Path& path, float near, float far) const {
   if (shapesAreSky()) return;
   for (const spec::LocalLight& shape : world.shapes)
     if (const auto way = lookAtShape(shape, path.at.origin(), path.dir);
-        way && way->distance * kShadowReach < far)
+        way && way->distance >= near && way->distance * kShadowReach < far)
       path.sum += path.throughput * way->radiance * powerHeuristic(path.ray_pdf, way->pdf);
 }
 
