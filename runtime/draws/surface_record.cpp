@@ -42,6 +42,7 @@ SurfaceDraw describe(const World& world, std::size_t draw) {
   const gltf::Material& material = materialOf(world, draw);
   const float facing = resident.back ? -1.0f : 1.0f;
   const glm::quat turn = world.rotationOf(resident.group);
+  const float transmission = material.transmits() ? (1.0f - material.metallic) * material.transmission : 0.0f;
   // Unlit surfaces emit nothing but their base colour (KHR_materials_unlit).
   const glm::vec3 emission = material.unlit ? glm::vec3(0.0f) : emissionOf(world, draw);
   return {.world_from_mesh = world.worldFromMesh(draw),
@@ -67,8 +68,8 @@ SurfaceDraw describe(const World& world, std::size_t draw) {
           .unlit = material.unlit ? 1u : 0u,
           .bounced_word = kAbsent,
           .irradiance_set = hasTexels(world, draw) ? resident.texel_set : kAbsent,
-          .pad0 = 0,
-          .pad1 = 0};
+          .transmission = transmission,
+          .pane_reflectance = transmission > 0.0f ? 1.0f - material.passedStraightOn() / transmission : 0.0f};
 }
 
 SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDraw& record) {

@@ -38,13 +38,13 @@ LAMBENT_CONSTANT kAbsent = 0xffffffffu;
 LAMBENT_CONSTANT kUnitBaseColor = 0u;  // texture units
 LAMBENT_CONSTANT kUnitEmissive = 1u;
 LAMBENT_CONSTANT kUnitNormal = 2u;
-LAMBENT_CONSTANT kUnitIrradiance = 2u;  // in draws with texels, which have no normal map
+LAMBENT_CONSTANT kUnitIrradiance = 2u;         // in draws with texels, which have no normal map
 LAMBENT_CONSTANT kUnitMetallicRoughness = 3u;  // from here on only in glossy and layered draws
 LAMBENT_CONSTANT kUnitSpecular = 4u;
 LAMBENT_CONSTANT kUnitSpecularColor = 5u;
 LAMBENT_CONSTANT kUnitAnisotropy = 6u;
 LAMBENT_CONSTANT kUnitSeenKernel = 6u;  // in layered draws, which have no direction
-LAMBENT_CONSTANT kUnitBrdf = 7u;  // table of b(v)
+LAMBENT_CONSTANT kUnitBrdf = 7u;        // table of b(v)
 
 LAMBENT_CONSTANT kAlphaOpaque = 0u;  // alpha is 1
 LAMBENT_CONSTANT kAlphaMask = 1u;    // below the cutoff the surface is absent
@@ -60,8 +60,8 @@ struct TextureSlot {
   uint pad;
 };
 
-// Holds the additional fields of draws that reflect: glossy ones (effects/glossy) and layered ones, which have no
-// samples.
+// Holds the additional fields of draws that reflect: glossy ones (effects/glossy) and layered ones, which
+// have no samples.
 struct GlossyPart {
   mat3x4 group_from_world;  // rotation
   vec4 dielectric;          // ((ior - 1) / (ior + 1))² times the specular colour; w: specular
@@ -78,7 +78,8 @@ struct GlossyPart {
   uint rows_word;  // vertex_count + 1 offsets, then samples, then weights, two per word
   uint row_entries;
   uint vertex_count;
-  uint first_sample;  // of the draw; output o of sample s is vec4 first_output + outputs (s - first_sample) + o
+  uint first_sample;  // of the draw; output o of sample s is vec4 first_output + outputs (s - first_sample) +
+                      // o
   uint draw;          // index in the residency
   uint first_output;
   uint seen_word;  // layered draws: first word of what the vertices see of the sky, in the page of radiance
@@ -107,9 +108,10 @@ struct SurfaceDraw {
   uint alpha_mode;
   float alpha_cutoff;
   uint unlit;
-  uint bounced_word;  // first word of its light of patches; kAbsent: none
+  uint bounced_word;    // first word of its light of patches; kAbsent: none
   uint irradiance_set;  // texture coordinates that look up its texels; kAbsent: has none
-  uint pad0, pad1;
+  // Panes: the share of the light under the layer that passes through, and F0 of the layer; else 0.
+  float transmission, pane_reflectance;
 #ifdef LAMBENT_GLOSSY
   GlossyPart glossy;
 #endif

@@ -4,6 +4,12 @@
 
 namespace lambent::frame {
 
+namespace {
+
+constexpr float kClear = 0.5f;
+
+}  // namespace
+
 bool ShadowCaster::operator==(const ShadowCaster& other) const {
   return id == other.id && world_from_mesh == other.world_from_mesh && block.page == other.block.page &&
          block.offset == other.block.offset && block.byte_count == other.block.byte_count &&
@@ -22,7 +28,9 @@ bool ShadowCasters::follow(const World& world) {
     if (draw.back) continue;  // the front's triangles serve both sides (docs/decisions/vertices.md)
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
     const gltf::Material& material = materialOf(world, i);
-    if (!mesh.block || material.alpha_mode == gltf::AlphaMode::Blend) continue;
+    // A pane that passes half of the light or more would be wronger as a whole shadow than without one.
+    const bool clear = material.transmits() && material.transmission >= kClear;
+    if (!mesh.block || material.alpha_mode == gltf::AlphaMode::Blend || clear) continue;
     const scene::Box bounds =
         scene::drawBounds(world.registry(), world.instance(draw.bundle).draws[draw.index]);
     if (bounds.empty()) continue;

@@ -29,14 +29,21 @@ void main() {
   if (draws[draw_of].base_color_texture.set != kAbsent) albedo *= look(base_color_texture, looks_at.xy);
   vec3 emission = draws[draw_of].emission.rgb;
   if (draws[draw_of].emissive_texture.set != kAbsent) emission *= look(emissive_texture, looks_at.zw).rgb;
-  vec3 shown = reflectedLight(albedo.rgb);
+  float transmission = draws[draw_of].transmission;
+  vec3 shown = reflectedLight((1.0 - transmission) * albedo.rgb);
   if (kShown == kShownRadiance && draws[draw_of].unlit != 0u) shown = albedo.rgb;  // shows the base colour itself
 
   uint mode = draws[draw_of].alpha_mode;
   if (mode == kAlphaMask && albedo.a < draws[draw_of].alpha_cutoff) discard;
   if (kShown == kShownNormals) shown = normalColor();
-  if (kShown == kShownRadiance)
-    color = vec4(shown + emission, mode == kAlphaBlend ? albedo.a : 1.0);
-  else
+  if (kShown != kShownRadiance) {
     color = vec4(shown, 1.0);
+  } else if (transmission > 0.0) {
+    // A pane adds all that it reflects to what it passes. Blending multiplies its colour by its coverage.
+    float passed = (1.0 - draws[draw_of].pane_reflectance) * transmission * dot(albedo.rgb, vec3(1.0 / 3.0));
+    float coverage = max(1.0 - passed, 1.0 / 1024.0);
+    color = vec4((shown + emission) / coverage, coverage);
+  } else {
+    color = vec4(shown + emission, mode == kAlphaBlend ? albedo.a : 1.0);
+  }
 }

@@ -144,7 +144,8 @@ Result<void> Surfaces::collect(World& world, const effects::diffuse::Diffuse& di
     }
     // What comes into view later must not wait for a compiler.
     if (Result<void> done = compile(item.state.kind); !done) return done;
-    (records_[i].alpha_mode == kAlphaBlend ? blended_items_ : opaque_items_).push_back(item);
+    const bool through = records_[i].alpha_mode == kAlphaBlend || records_[i].transmission > 0.0f;
+    (through ? blended_items_ : opaque_items_).push_back(item);
   }
   std::ranges::stable_sort(opaque_items_, std::ranges::less(), &Item::state);
   std::ranges::stable_sort(blended_items_, std::ranges::greater(), &Item::distance);

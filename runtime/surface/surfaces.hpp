@@ -1,10 +1,10 @@
 // Draws every primitive that is resident and shaded: opaque and masked ones in as few multi-draws as
-// textures, pages and culling allow, then blended ones from back to front. Draws that the view does not reach
-// are left out. It reads the arenas and writes the
-// bound framebuffer. Back faces of single-sided materials are culled, as glTF asks; mirrored nodes reverse
-// their winding. Each kind of surface (glossy ones, and those that modules reach) has a program of its own,
-// compiled when the first such draw arrives. Glossy surfaces are shaded here entirely, per pixel. Only the
-// records and commands that changed are uploaded. Fails if a shader does not compile on this device.
+// textures, pages and culling allow, then blended ones and panes from back to front. Draws that the view does
+// not reach are left out. It reads the arenas and writes the bound framebuffer. Back faces of single-sided
+// materials are culled, as glTF asks; mirrored nodes reverse their winding. Each kind of surface (glossy
+// ones, and those that modules reach) has a program of its own, compiled when the first such draw arrives.
+// Glossy surfaces are shaded here entirely, per pixel. Only the records and commands that changed are
+// uploaded. Fails if a shader does not compile on this device.
 #pragma once
 
 #include <compare>
