@@ -69,6 +69,18 @@ TEST_F(LambentProgram, BakesAgainOnlyWhenSomethingChangedOrForced) {
   EXPECT_TRUE(bytesOf(bundle) == before);
 }
 
+TEST_F(LambentProgram, FailsStrictlyWhereABoundIsMissedAndWritesTheBundle) {
+  const std::vector<std::string> coarse = {"--refine", "off", "--rays", "128", "--error", "0.05%"};
+  const Outcome lenient = bakeHello("hello.lmb.glb", coarse);
+  EXPECT_EQ(lenient.exit_code, 0) << lenient.err;
+  EXPECT_NE(lenient.out.find("\n  missed    pictures of \"static\" are "), std::string::npos) << lenient.out;
+  std::vector<std::string> strictly = coarse;
+  strictly.push_back("--strict");
+  EXPECT_EQ(bakeHello("strict.lmb.glb", strictly).exit_code, 1);
+  EXPECT_TRUE(bytesOf(folder / "strict.lmb.glb") == bytesOf(folder / "hello.lmb.glb"));
+  EXPECT_EQ(bakeHello("fine.lmb.glb", {"--strict"}).exit_code, 0);
+}
+
 TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   const Outcome baked = bakeHello("hello.lmb.glb", {"--refine", "off", "--json"});
   ASSERT_EQ(baked.exit_code, 0) << baked.err;

@@ -227,6 +227,30 @@ TEST_F(Bake, SplitsEdgesWhereAShadowFallsUnlessToldNotTo) {
   EXPECT_LT(report->refinement.error_after, options.effectiveRefineBound());
 }
 
+// The mean over all surfaces knows more of the outside, which is bright and from which nothing bounces.
+TEST_F(Bake, AHouseWithOutsideFacesHasAsManyBouncesAsItsRoom) {
+  bundle::MeshData room = testing::flipped(box({0, 0, 0}, {4.0f, 3.0f, 4.0f}, 4)),
+                   shell = box({0, 0, 0}, {4.4f, 3.4f, 4.4f}, 4);
+  // A window: one quad of 16 is taken out of the wall towards +x, inside and outside.
+  for (bundle::MeshData* mesh : {&room, &shell}) {
+    std::vector<std::uint32_t> kept;
+    for (std::size_t t = 0; t + 2 < mesh->indices.size(); t += 3) {
+      const glm::vec3 middle = (mesh->positions[mesh->indices[t]] + mesh->positions[mesh->indices[t + 1]] +
+                                mesh->positions[mesh->indices[t + 2]]) /
+                               3.0f;
+      const bool window = std::abs(middle.x) > 1.9f && middle.x > 0.0f && middle.y > 0.0f &&
+                          middle.y < 0.85f && middle.z > 0.0f && middle.z < 1.1f;
+      if (!window) kept.insert(kept.end(), {mesh->indices[t], mesh->indices[t + 1], mesh->indices[t + 2]});
+    }
+    mesh->indices = kept;
+  }
+  BakeOptions options = unrefinedDraft();
+  options.bounces = -1;
+  const auto report = bakeTo("house.lmb.glb", sceneOf({room, shell}), options);
+  ASSERT_TRUE(report) << report.error().line();
+  EXPECT_GT(report->pass_energy.size(), 8u) << "half of the light is left by each bounce";
+}
+
 TEST_F(Bake, KnowsWhenABundleIsUpToDate) {
   Scene scene = twoGroups();
   EXPECT_FALSE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));

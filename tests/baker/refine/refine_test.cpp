@@ -97,6 +97,27 @@ TEST(Refinement, MeasuresErrorsBesideTheLightThatArrives) {
   EXPECT_GT(in_the_shaft, 0.5 * in_the_open);
 }
 
+TEST(Refinement, FindsTheShadowOfACubeOnAWideGround) {
+  const Scene scene = sceneOf({grid({0, 0, 0}, 200.0f, 1), box({0.0f, 0.5f, 0.0f}, glm::vec3(1.0f), 2)});
+  const Refined result = refined(scene, {.bound = 0.02f});
+  EXPECT_GT(result.report.error_before, 0.05);
+  EXPECT_LT(result.report.error_after, 0.02);
+  std::size_t near = 0;
+  for (const glm::vec3& p : result.meshes[0][0].positions) near += glm::length(p) < 2.0f;
+  EXPECT_GT(near, 12u) << "the ground has two triangles";
+}
+
+TEST(Refinement, FollowsTheLightOfAPanelInAClosedRoom) {
+  Scene scene = sceneOf({flipped(box({0, 0, 0}, {4.0f, 3.0f, 4.0f}, 2)),
+                         box({0, -0.6f, 0}, {1.2f, 0.1f, 1.2f}, 1), flipped(grid({0, 1.45f, 0}, 0.6f, 1))});
+  scene.materials.resize(2);
+  scene.materials[1].emissive = glm::vec3(5.0f);
+  scene.meshes[2].primitives[0].material = 1;
+  const Refined result = refined(scene, {.bound = 0.05f});
+  EXPECT_GT(result.report.error_before, 0.1);
+  EXPECT_GT(result.report.vertices_after, 2 * result.report.vertices_before) << "the shadow of the table";
+}
+
 // Returns the error of meshes as more rays than those of refinement measure it.
 double errorByMoreRays(const Scene& scene, const Meshes& meshes) {
   Scene split = scene;
@@ -115,7 +136,8 @@ TEST(Refinement, DoesNotTakeTheNoiseOfFewRaysForASmallError) {
   EXPECT_LT(by_many.report.error_after, 0.03);
   // Few rays split what their noise makes look worst and then call the rest right.
   EXPECT_GT(errorByMoreRays(scene, by_few.meshes), 0.05);
-  EXPECT_LT(errorByMoreRays(scene, by_many.meshes), 0.04) << "that of the worst of many regions has more noise";
+  EXPECT_LT(errorByMoreRays(scene, by_many.meshes), 0.04)
+      << "that of the worst of many regions has more noise";
 }
 
 TEST(Refinement, LooksOnceAtWhatIsWithinTheBoundFromTheStart) {

@@ -79,8 +79,8 @@ Scene makeScene(lambent::testing::BundleMaker& maker, const GlossyKind& kind, bo
              .unlit = 0,
              .bounced_word = kAbsent,
              .irradiance_set = kAbsent,
-             .pad0 = 0,
-             .pad1 = 0};
+             .transmission = 0.0f,
+             .pane_reflectance = 0.0f};
   scene.record.glossy = {.group_from_world = glm::mat3x4(1.0f),
                          .dielectric = {0.04f, 0.05f, 0.06f, 0.9f},
                          .metallic_roughness_texture = slotOf(textures),

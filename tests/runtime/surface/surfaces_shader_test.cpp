@@ -71,8 +71,8 @@ SurfaceDraw diffuseRecord() {
           .unlit = 0,
           .bounced_word = kAbsent,
           .irradiance_set = kAbsent,
-          .pad0 = 0,
-          .pad1 = 0};
+          .transmission = 0.0f,
+          .pane_reflectance = 0.0f};
 }
 
 TextureSlot slot(std::uint32_t set, const gltf::TextureRef& reference = {}) {
