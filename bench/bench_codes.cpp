@@ -104,8 +104,8 @@ int main(int argc, char** argv) {
   if (options.bounces != 0) bounced = bakeBounces(pass, *direct, view, {options.bounces, 1e-3}, {progress});
   std::vector<CellVectors> cells;
   for (const SampleCell& cell : samples.cells)
-    for (CellVectors& parts :
-         cellVectors(cell, samples, *direct, bounced ? &*bounced : nullptr, work->colors->greyEmission()))
+    for (CellVectors& parts : cellVectors(cell, samples, *direct, bounced ? &*bounced : nullptr,
+                                          {.sky = true, .lights = work->colors->greyEmission()}))
       cells.push_back(std::move(parts));
 
   const auto vertices = static_cast<double>(work->geometry.positions.size());

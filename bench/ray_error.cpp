@@ -55,7 +55,8 @@ double errorOf(const GroupWorkload& work, const Baked& truth, const Baked& test,
   for (const SampleCell& cell : work.samples.cells) {
     const auto vectorsOf = [&](const Baked& baked) {
       return cellVectors(cell, work.samples, baked.direct,
-                         all_light && baked.bounced ? &*baked.bounced : nullptr, true)[0];
+                         all_light && baked.bounced ? &*baked.bounced : nullptr,
+                         {.sky = true, .lights = true})[0];
     };
     const CellVectors a = shownBlock(vectorsOf(truth)), b = shownBlock(vectorsOf(test));
     if (a.shape != b.shape) continue;

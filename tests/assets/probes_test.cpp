@@ -17,7 +17,7 @@ double luminance(glm::dvec3 c) {
 }
 
 double luminanceTowards(const spec::RgbImage& image, float azimuth_deg, float elevation_deg) {
-  const spec::EnvironmentMap environment_map{image, sh::ImageLayout::LatLong, 0};
+  const spec::EnvironmentMap environment_map{image, sh::ImageLayout::LatLong};
   return luminance(
       spec::radiance(environment_map, spec::directionFromAzimuthElevation(azimuth_deg, elevation_deg)));
 }
@@ -53,7 +53,7 @@ TEST(AssetsEnvironmentMaps, TheSkyIsBlueAboveAndItsSunKeepsItsEnergyAtEveryWidth
   };
   EXPECT_NEAR(sunlight(large) / sunlight(small), 1.0, 0.01);
   EXPECT_GT(luminanceTowards(large, 34, 44), 50.0);
-  const spec::EnvironmentMap environment_map{large, sh::ImageLayout::LatLong, 0};
+  const spec::EnvironmentMap environment_map{large, sh::ImageLayout::LatLong};
   const glm::vec3 zenith = spec::radiance(environment_map, glm::vec3(0, 1, 0));
   EXPECT_GT(zenith.b, 1.5f * zenith.r);
   EXPECT_LT(luminanceTowards(large, 0, -60), 1.0);  // the ground reflects a quarter

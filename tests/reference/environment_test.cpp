@@ -17,7 +17,7 @@ namespace {
 spec::EnvironmentMap environment_map(sh::ImageLayout layout, std::uint32_t width, std::uint32_t height) {
   std::mt19937 random(7);
   std::lognormal_distribution<float> value(0.0f, 1.5f);
-  spec::EnvironmentMap out{{width, height, {}}, layout, 0};
+  spec::EnvironmentMap out{{width, height, {}}, layout};
   for (std::uint32_t i = 0; i < width * height; ++i)
     out.image.texels.emplace_back(value(random), value(random), value(random));
   return out;
