@@ -35,6 +35,10 @@ void write(const bundle::CaptureProxy& proxy, ByteWriter& out) {
   out.add(std::uint64_t{proxy.levels.size()});
   for (const bundle::ProxyLevel& level : proxy.levels)
     out.add(level.first_triangle), out.add(level.triangle_count), out.add(level.error_m);
+  out.addList(proxy.patches.positions), out.add(proxy.patches.error_m);
+  out.add(std::uint64_t{proxy.patches.triangles.size()});
+  for (const bundle::PatchTriangle& t : proxy.patches.triangles)
+    out.add(t.vertices), out.add(t.front_only), out.add(t.albedo), out.add(t.detail);
 }
 
 bool read(ByteReader& in, bundle::CaptureProxy& proxy) {
@@ -54,6 +58,11 @@ bool read(ByteReader& in, bundle::CaptureProxy& proxy) {
   for (std::uint64_t i = 0; i < count && in.ok(); ++i) {
     bundle::ProxyLevel& level = proxy.levels.emplace_back();
     in.read(level.first_triangle), in.read(level.triangle_count), in.read(level.error_m);
+  }
+  in.readList(proxy.patches.positions), in.read(proxy.patches.error_m), in.read(count);
+  for (std::uint64_t i = 0; i < count && in.ok(); ++i) {
+    bundle::PatchTriangle& t = proxy.patches.triangles.emplace_back();
+    in.read(t.vertices), in.read(t.front_only), in.read(t.albedo), in.read(t.detail);
   }
   return in.ok();
 }

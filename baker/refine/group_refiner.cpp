@@ -35,6 +35,9 @@ constexpr double kLeastLight = 0.1;
 constexpr double kGlossyCounts = 0.4;
 // A split triangle splits its edges of at least this share of the longest one.
 constexpr float kSplitShare = 0.6f;
+// Edges that are shorter than so many steps of floats at their place are not split: splits would show
+// rounding.
+constexpr float kFewestSteps = 256.0f;
 // Edges of bad triangles are cut up to this share of the extent.
 constexpr float kLongestCut = 1.0f / 16.0f;
 // Light leaks to a corner that has less than this share of the light of another, if that has at least this
@@ -455,7 +458,11 @@ std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geom
     const float longest = longestEdge(geometry, corners);
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t a = corners[c], b = corners[(c + 1) % 3];
-      if (glm::distance(geometry.positions[a], geometry.positions[b]) < kSplitShare * longest) continue;
+      const glm::vec3 place = glm::abs(geometry.origin + geometry.positions[a]);
+      const float step = std::numeric_limits<float>::epsilon() * std::max({place.x, place.y, place.z});
+      if (glm::distance(geometry.positions[a], geometry.positions[b]) <
+          std::max(kSplitShare * longest, kFewestSteps * step))
+        continue;
       const auto added = edges.mark(group, a, b);
       if (!added) continue;
       marked.push_back({a, b, part->triangle});

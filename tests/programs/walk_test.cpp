@@ -19,7 +19,6 @@ using testing::Outcome;
 // Lists by path why a file may be refused; the error line must say so.
 const std::map<std::string, std::string> kRefused = {
     {"asset-generator/Compatibility/Compatibility_04.gltf", "needs glTF 2.1"},
-    {"asset-generator/Compatibility/Compatibility_05.gltf", "FAKE_materials_quantumRendering"},
     {"draco-testdata/CubeScaledInstances/glTF/cube_att.gltf", "is a child of node 1 and of node 2"},
     {"draco-testdata/SphereTwoMaterials/sphere_two_materials_point_cloud.gltf", "has no triangles"},
 };

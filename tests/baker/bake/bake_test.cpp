@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -170,9 +171,14 @@ TEST_F(Bake, WritesAnOrdinaryScene) {
   scene.nodes[2].parent_from_node = scene.nodes[2].trs->matrix();
   scene.nodes[2].animated = true;
   scene.animations = {{"roll", {{.node = 2, .times_s = {0, 1}, .values = {0, 0, 0, 1, 0, 0}}}}};
-  scene.images = {{"bumps", "image/png", std::vector<std::byte>(9)}};
-  const char* png = "\x89PNG\r\n\x1a\n";
-  for (std::size_t i = 0; i < 8; ++i) scene.images[0].file_bytes[i] = static_cast<std::byte>(png[i]);
+  // One flat texel.
+  constexpr std::string_view kPng(
+      "\211\120\116\107\015\012\032\012\000\000\000\015\111\110\104\122\000\000\000\001\000\000\000\001\010"
+      "\002\000\000\000\220\167\123\336\000\000\000\014\111\104\101\124\170\234\143\150\150\370\017\000\003"
+      "\203\002\000\000\245\373\211\000\000\000\000\111\105\116\104\256\102\140\202",
+      69);
+  scene.images = {{"bumps", "image/png", {}}};
+  for (const char byte : kPng) scene.images[0].file_bytes.push_back(static_cast<std::byte>(byte));
   scene.textures = {{0, {}}};
   scene.materials[0].emissive = {4, 2, 1};
   scene.materials[0].normal_texture = {.texture = 0, .offset = {0.5f, 0.25f}, .rotation_rad = 1.0f};

@@ -9,7 +9,7 @@ namespace lambent::baker {
 namespace {
 
 TEST(PictureBudget, GivesCodesWhatRaysAndRefinementLeave) {
-  for (const float bound : {0.04f, 0.01f}) {
+  for (const float bound : {0.01f, 0.005f}) {
     const bundle::PictureError half{.all = 0.5f * bound};
     EXPECT_NEAR(std::hypot(half.all, codesBound(half, bound)), bound, 0.06f * bound);
     EXPECT_LT(raysFor(2.0f * bound), raysFor(bound));

@@ -307,7 +307,7 @@ TEST(ImportScene, WarnsAboutAnUnknownExtensionOnceAndRefusesItByNameWhereItHolds
   ASSERT_EQ(glossy.warnings.size(), 1u);
   EXPECT_NE(glossy.warnings[0].find("KHR_materials_clearcoat, KHR_materials_sheen"), std::string::npos);
   for (const char* name :
-       {"KHR_materials_transmission", "KHR_materials_variants", "KHR_xmp_json_ld", "ACME_sparkle"}) {
+       {"KHR_materials_iridescence", "KHR_materials_variants", "KHR_xmp_json_ld", "ACME_sparkle"}) {
     writer.json["extensionsUsed"] = writer.json["extensionsRequired"] = {name};
     writer.primitive()["extensions"][name] = nlohmann::json::object();
     const Scene read = imported(writer.writeText(folder));
