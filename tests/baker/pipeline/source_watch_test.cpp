@@ -143,7 +143,9 @@ TEST_F(SourceWatchTest, AnImageThatStaysMissingIsLeftOut) {
       "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]})");
   writeBytes(folder / "a.bin", triangleBytes(1.0f));
   writeBytes(scene, text);
-  SourceWatch watch({folder}, quick());
+  WatchSettings settings = quick();
+  settings.complain_after = std::chrono::milliseconds(300);
+  SourceWatch watch({folder}, settings);
   const auto event = next(watch);
   ASSERT_TRUE(event);
   EXPECT_EQ(event->kind, WatchKind::Found);
