@@ -153,9 +153,15 @@ TEST_F(BakeAgain, TracesNoRayForAnAlbedo) {
   EXPECT_EQ(brushed.of("static", "glossy"), Reuse::Found);
   EXPECT_EQ(brushed.of("plate", "glossy"), Reuse::Regathered);
 
-  // Neither names nor the strength of a lamp are baked.
+  // The strength of a lamp is not baked, but the error of pictures is that of lamps as they are.
   scene = stage();
   scene.materials[kLamp].emissive = glm::vec3(5.0f, 1.0f, 0.5f);
+  const Baked dimmed = bakeBoth(cache, scene);
+  EXPECT_EQ(dimmed.rays(), 0u);
+  EXPECT_EQ(dimmed.of("static", "diffuse"), Reuse::Regathered);
+
+  // Names are not baked.
+  scene = stage();
   scene.materials[kFloor].name = "a floor";
   scene.nodes[0].name = "below";
   const Baked renamed = bakeBoth(cache, scene);
