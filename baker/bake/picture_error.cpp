@@ -119,7 +119,9 @@ class DiffusePoints {
         addPoint(baked_.bounced_at_points[0], All, few), addPoint(baked_.bounced_at_points[1], All, many);
       PictureSums::Point point{
           .eye = points_.eyes[p], .squared_shares = 0.0, .noise_of_exact = noise_of_exact};
-      for (const auto& [sample, weight] : shownAt(p)) {
+      for (const SampleShare& shown : shownAt(p)) {
+        const std::uint32_t sample = shown.sample;
+        const float weight = shown.share;
         if (weight == 0.0f) continue;
         point.squared_shares += double{weight} * double{weight};
         const auto addShown = [&](std::span<const float> vector, std::size_t channels, Arriving::Lamps lamps,

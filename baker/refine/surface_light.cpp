@@ -52,7 +52,8 @@ SurfaceLight::SurfaceLight(const Scene& scene, const GroupGeometry& geometry, co
     const SampleOrigin origin{.position = point.position, .geometric_normal = point.normal, .weight = 1.0f};
     const std::span<const SampleOrigin> origins(&origin, 1);
     const float density = importance.at({point.position, point.normal}).seen;
-    Bouncer& bouncer = bouncers_.emplace_back(point.position, point.normal, most_area);
+    bouncers_.push_back({.position = point.position, .normal = point.normal, .area = most_area});
+    Bouncer& bouncer = bouncers_.back();
     if (density > 0.0f) bouncer.area = std::min(1.0f / (float{kBouncers} * density), most_area);
     if (probe.look(rays, origins, point.normal, SampleKind::Diffuse, masks))
       bouncer.sky = kAlbedo * probe.openShare({masks, point.normal});

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -14,7 +13,6 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 // Limits on the number of points on each emitter.
 constexpr std::size_t kLeastPoints = 32, kMostPoints = 256;
 constexpr float kShortOf = 1.0f - 1e-4f;  // shadow rays end just before the surface
