@@ -33,7 +33,7 @@ Importance::Importance(const GroupGeometry& geometry, const RayScene& rays, std:
   seen_shares_.assign(eyes_.size(), 1.0f);
   const std::vector<SeenPoint> seen = look(kFirstLook, geometry, rays);
   if (seen.empty()) return;
-  std::vector<float> distances(eyes_.size(), 0.0f), counts(eyes_.size(), 0.0f);
+  std::vector<float> counts(eyes_.size(), 0.0f);
   for (const SeenPoint& point : seen) counts[point.eye] += 1.0f;
   for (std::size_t e = 0; e < eyes_.size(); ++e)
     seen_shares_[e] =

@@ -228,12 +228,18 @@ void GroupRefiner::addEvenly(const GroupGeometry& geometry, std::uint32_t t, int
 Result<void> GroupRefiner::placeInner(const GroupGeometry& geometry) {
   const Whole& whole = *whole_;
   inner_.clear(), parts_.clear();
-  // Where an eye's ray falls now that triangles were split; the point itself stays that of the group before.
-  const auto now = RayScene::build(geometry, whole.refined.scene, whole.refined.alpha_maps);
-  if (!now) return failAgain(now.error());
+  // Rays of eyes find the triangles that lie at the seen places now. Splits only add triangles, so that a
+  // group with as many as before any split is the same.
+  std::optional<RayScene> split;
+  if (geometry.triangles.size() != whole.geometry.triangles.size()) {
+    auto built = RayScene::build(geometry, whole.refined.scene, whole.refined.alpha_maps);
+    if (!built) return failAgain(built.error());
+    split = std::move(*built);
+  }
+  const RayScene& now = split ? *split : whole.rays;
   std::vector<std::vector<Inner>> seen_in(geometry.triangles.size());
   auto place = whole.seen.begin();
-  for (const SeenPoint& seen : whole.importance.look(kSeenPlaces, geometry, *now)) {
+  for (const SeenPoint& seen : whole.importance.look(kSeenPlaces, geometry, now)) {
     while (place != whole.seen.end() && place->ray < seen.ray) ++place;
     if (place == whole.seen.end() || place->ray != seen.ray) continue;
     seen_in[seen.hit.triangle].push_back({seen.hit.triangle,
