@@ -121,7 +121,6 @@ class Assembler {
     std::size_t most_planes = 0;
     const auto forAll = [&](const auto& visit) {
       for (std::size_t g = 0; g < baked.size(); ++g) {
-        told_ = g < report_.groups.size() ? &report_.groups[g] : nullptr;
         auto stored = description_.groups[g].cells.begin();
         const auto visitCell = [&](const std::vector<CodedTransfer>& coded) {
           for (std::size_t t = 0; t < coded.size(); ++t) visit(coded[t], stored->transfers, t);
@@ -133,7 +132,6 @@ class Assembler {
         if (baked[g].neighborhood)
           for (const CodedCell& cell : baked[g].neighborhood->cells) visitCell(cell.transfers);
       }
-      told_ = nullptr;
     };
     forAll([&](const CodedTransfer& coded, auto& stored, std::size_t) {
       stored.push_back(addCodebook(coded));
@@ -180,7 +178,6 @@ class Assembler {
   std::uint32_t addTransferPayload(bundle::PayloadType type, bundle::Blob raw, std::uint32_t priority) {
     const std::uint32_t index = addPayload(type, std::move(raw), priority);
     report_.transfer_bytes += blobs_.back().size();
-    if (told_) told_->transfer_bytes += blobs_.back().size();
     return index;
   }
 
@@ -334,7 +331,6 @@ class Assembler {
   const Scene& scene_;
   const EffectPlan& plan_;
   const BakeOptions& options_;
-  BakeReport::Group* told_ = nullptr;  // of the group whose transfer is being added, if the report has it
   const BrdfTables& tables_;
   BakeReport& report_;
   bundle::Description description_;

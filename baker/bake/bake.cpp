@@ -6,7 +6,6 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "baker/bake/assemble.hpp"
 #include "baker/bake/bake_group.hpp"
@@ -90,7 +89,6 @@ Result<BakedScene> bakeAll(const SceneBake& whole, const AlphaMaps& alpha_maps, 
                      ? bakeVolume(whole, alpha_maps, g, baked.groups, context)
                      : bakeGroup(whole, {baked.meshes, alpha_maps, images}, g, context);
     if (!group) return failAgain(group.error());
-    whole.report.groups.back().part = context.progress.now().part;
     baked.groups.push_back(std::move(*group));
   }
   if (context.stopped()) return whole.stopped();
@@ -209,16 +207,6 @@ Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const st
   std::optional<Result<BakeReport>> result;
   if (context.cache) context.cache->beginBake();
   withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, context); });
-  return std::move(*result);
-}
-
-Result<BakeReport> rehearse(const Scene& scene, const BakeOptions& options, const BakeContext& context) {
-  std::error_code ignored;
-  const std::filesystem::path folder = std::filesystem::temp_directory_path(ignored);
-  const std::filesystem::path output = folder / fmt::format("lambent-rehearsal-{}.lmb.glb", getpid());
-  std::optional<Result<BakeReport>> result;
-  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, context); });
-  std::filesystem::remove(output, ignored);
   return std::move(*result);
 }
 

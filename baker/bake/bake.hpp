@@ -55,9 +55,6 @@ struct BakeReport {
     std::vector<Effect> effects;
     std::optional<bundle::PictureError> picture_error = {};
     float codes_bound = 0.0f, glossy_codes_bound = 0.0f;
-    std::uint64_t samples = 0, transfer_bytes = 0;
-    std::uint64_t hit_bytes = 0;  // memory of the hits kept for the bounces
-    std::size_t part = 0;         // of `stages`
   };
   std::vector<Group> groups;
   struct Neighborhood {
@@ -92,10 +89,6 @@ struct BakeReport {
 // output that cannot be written, "stopped" if a stop was requested.
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
                         const BakeContext& context);
-
-// Bakes into a temporary file that is removed, to learn what a bake with other options will take. Errors: as
-// those of bake().
-Result<BakeReport> rehearse(const Scene& scene, const BakeOptions& options, const BakeContext& context);
 
 // Checks what can be checked before the scene is read and rays are traced; bake() begins with it. Errors:
 // options out of range, an effect that is not known, an output that cannot be written.

@@ -52,7 +52,6 @@ BakeReport::Group& tell(const GroupScene& group, const BakedGroup& baked) {
   report.lights += group.lights.size();
   BakeReport::Group& told = report.groups.emplace_back();
   told.name = group.group.name;
-  told.samples = group.samples.size();
   told.light_probes = baked.light_probes.points.size();
   for (const bundle::ProxyLevel& level : baked.proxy.levels)
     told.proxy_triangles.push_back(level.triangle_count);
@@ -70,7 +69,6 @@ void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, Ba
   report.left_out = std::max(report.left_out, figures.left_out);
   told.picture_error = figures.picture_error;
   told.codes_bound = figures.codes_bound, told.glossy_codes_bound = figures.glossy_codes_bound;
-  told.hit_bytes = figures.hit_bytes;
   if (figures.pass_energy.size() > report.pass_energy.size()) report.pass_energy = figures.pass_energy;
   report.ray_seconds += figures.ray_seconds;
   const auto add = [&](const char* name, const SurfaceFigures::Rays& rays) {

@@ -280,7 +280,6 @@ void tellVolume(const CodedVolume& coded, const SceneVolume& volume, const Quant
                             .residual = coded.residual,
                             .row_bytes = coded.row_bytes});
   report.groups.push_back({.name = name, .light_probes = 1, .proxy_triangles = {}, .effects = {}});
-  report.groups.back().samples = coded.voxels.size();
 }
 
 }  // namespace

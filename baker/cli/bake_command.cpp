@@ -7,12 +7,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/cli/bake_folder.hpp"
 #include "baker/cli/bake_report.hpp"
 #include "baker/cli/bake_scene.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
-#include "baker/cli/watch.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/source_watch.hpp"
 #include "runtime/command_line/help.hpp"
@@ -26,8 +24,8 @@ int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
   if (a.json) {
     fmt::print("{}\n", outcomeJson(a, *outcome).dump(2));
   } else if (!a.say.quiet) {
-    if (outcome->report)
-      printReport({a.output, a.options, *outcome->report, outcome->estimate});
+    if (*outcome)
+      printReport({a.output, a.options, **outcome});
     else
       fmt::print("{} is up to date; --force bakes it again\n", a.output.string());
   }
@@ -71,9 +69,7 @@ int runBake(BakeArguments a) {
     if (!a.scene.empty() || a.resume || a.force)
       return wrongUsage({"--watch", "is given with a scene, --resume or --force", "give it a folder alone"});
     std::optional<Cache> cache = bakeCache(a);
-    return watchFolder(
-        {a.watch, a.output, a.options, {.allow_outside = a.allow_outside}, a.json, a.say.quiet},
-        cache ? &*cache : nullptr);
+    return watchFolder(a, cache ? &*cache : nullptr);
   }
   if (a.scene.empty() && !a.resume)
     return wrongUsage({"SCENE", "is missing", "name a scene or a folder of scenes"});

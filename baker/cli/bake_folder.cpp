@@ -1,11 +1,10 @@
-#include "baker/cli/bake_folder.hpp"
-
 #include <chrono>
 #include <cstdio>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "baker/cli/bake_scene.hpp"
 #include "baker/cli/folder_outputs.hpp"
 #include "baker/pipeline/source_watch.hpp"
 #include "baker/plan/counted.hpp"
@@ -32,13 +31,13 @@ class FolderReport {
     json_.push_back({{"scene", scene.string()}, {"error", error.line()}});
   }
   void baked(const BakeArguments& one, const BakeOutcome& outcome, double seconds) {
-    ++(outcome.report ? baked_ : up_to_date_);
+    ++(outcome ? baked_ : up_to_date_);
     missed_ |= failsStrictly(one, outcome);
     if (!arguments_.json) {
       say("{}: {}", one.scene.string(),
-          outcome.report ? fmt::format("{} in {}, {}", one.output.string(), durationText(seconds),
-                                       bytesText(static_cast<double>(outcome.report->file_bytes)))
-                         : one.output.string() + " is up to date");
+          outcome ? fmt::format("{} in {}, {}", one.output.string(), durationText(seconds),
+                                bytesText(static_cast<double>(outcome->file_bytes)))
+                  : one.output.string() + " is up to date");
       return;
     }
     json_.push_back(outcomeJson(one, outcome));

@@ -20,7 +20,7 @@ std::string stagesText(const std::vector<Progress::Stage>& stages) {
   std::vector<std::pair<std::string, double>> sums;
   for (const Progress::Stage& stage : stages) {
     // Passes of bounces are one stage to whoever waits.
-    const std::string name = isBounce(stage.name) ? "bounces" : stage.name;
+    const std::string name = stage.name.starts_with("bounce ") ? "bounces" : stage.name;
     const auto known = std::ranges::find(sums, name, &std::pair<std::string, double>::first);
     if (known != sums.end())
       known->second += stage.seconds;
@@ -38,31 +38,6 @@ double secondsOf(const BakeReport& report) {
   double seconds = 0.0;
   for (const Progress::Stage& stage : report.stages) seconds += stage.seconds;
   return seconds;
-}
-
-// A Held is one figure of the estimate against what it came to.
-struct Held {
-  const char* name;
-  double estimated, measured;
-};
-std::vector<Held> heldAgainst(const BakeEstimate& estimate, const BakeReport& report) {
-  // An estimate begins after the import.
-  double imported = 0.0;
-  for (const Progress::Stage& stage : report.stages)
-    if (stage.name == "import") imported += stage.seconds;
-  return {{"seconds", estimate.seconds, secondsOf(report) - imported},
-          {"samples", estimate.samples, static_cast<double>(report.samples)},
-          {"rays", estimate.rays, static_cast<double>(report.rays)},
-          {"memory", estimate.memory_bytes, static_cast<double>(peakBytes())},
-          {"bytes", estimate.bytes, static_cast<double>(report.file_bytes)}};
-}
-
-nlohmann::json estimatedAndMeasured(const FinishedBake& bake) {
-  if (!bake.estimate || bake.report.rays_kept > 0) return nullptr;
-  nlohmann::json json;
-  for (const Held& held : heldAgainst(*bake.estimate, bake.report))
-    json[held.name] = {{"estimated", held.estimated}, {"measured", held.measured}};
-  return json;
 }
 
 // Returns the group whose pictures are furthest off for their bound; null if none was measured.
@@ -172,7 +147,6 @@ nlohmann::json reportJson(const FinishedBake& bake) {
                        {"rowBytes", volume.row_bytes}});
   return {{"output", bake.output.string()},
           {"settings", bake.options.settings()},
-          {"estimate", estimatedAndMeasured(bake)},
           {"vertices", r.vertices},
           {"triangles", r.triangles},
           {"samples", r.samples},
@@ -261,13 +235,6 @@ void printReport(const FinishedBake& bake) {
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
     fmt::print("  around    {}: {} x {} x {} points, {} of irradiance, {} of the change\n", n.name, n.size.x,
                n.size.y, n.size.z, percentText(n.error, 3), percentText(n.change_error));
-  if (bake.estimate && r.rays_kept == 0) {
-    std::string text;
-    for (const Held& held : heldAgainst(*bake.estimate, r))
-      text += fmt::format("{}{} {:.2f}", text.empty() ? "" : ", ", held.name,
-                          held.measured > 0.0 ? held.estimated / held.measured : 1.0);
-    fmt::print("  estimate  times what it came to: {}\n", text);
-  }
   if (const std::string missed = missedText(bake); !missed.empty()) fmt::print("  missed    {}\n", missed);
 }
 

@@ -8,7 +8,6 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "baker/bake/bake.hpp"
-#include "baker/pipeline/bake_estimate.hpp"
 
 namespace lambent::baker {
 
@@ -16,8 +15,6 @@ struct FinishedBake {
   const std::filesystem::path& output;
   const BakeOptions& options;
   const BakeReport& report;
-  // What `lambent plan` had said, if it had. It is held against bakes that found nothing in the cache.
-  const std::optional<BakeEstimate>& estimate;
 };
 
 // Returns what the bake measured of its pictures' error, as a sentence's end and as JSON, which is null if

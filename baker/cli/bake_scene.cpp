@@ -1,21 +1,30 @@
 #include "baker/cli/bake_scene.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "baker/cli/bake_report.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/guess_seconds.hpp"
-#include "baker/pipeline/long_bake.hpp"
 #include "baker/pipeline/progress_record.hpp"
 #include "runtime/base/atomic_file.hpp"
 
 namespace lambent::baker {
 
 std::optional<Cache> bakeCache(const BakeArguments& a) {
-  auto cache = openCache(a.cache, a.cache_bytes);
-  if (cache && a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
-  return cache;
+  if (a.cache == "off") return std::nullopt;
+  const std::filesystem::path folder =
+      a.cache.empty() ? Cache::defaultFolder() : std::filesystem::path(a.cache);
+  if (folder.empty()) return std::nullopt;
+  auto cache = Cache::open(folder, a.cache_bytes);
+  if (!cache) {
+    fmt::print(stderr, "lambent: {}; going on without it\n", cache.error().line());
+    return std::nullopt;
+  }
+  if (a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
+  return std::move(*cache);
 }
 
 Journal bakeJournal(const std::optional<Cache>& cache) {
@@ -45,24 +54,20 @@ Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cach
     record.done();
     return BakeOutcome{};
   }
-  BakeOutcome outcome;
-  outcome.estimate = cache ? findEstimate(*scene, a.options, *cache) : std::nullopt;
   PartSeconds expected;
-  if (outcome.estimate) {
-    expected = outcome.estimate->parts;
-  } else if (const auto plan = planFor(*scene, a.options)) {
-    PartSeconds guess = guessProcessorSeconds(*scene, *plan, a.options);
-    if (const auto notice = longBakeNotice(sumSeconds(guess)); notice && !a.say.quiet)
+  if (const auto plan = planFor(*scene, a.options)) {
+    BakeGuess guess = guessBake(*scene, *plan, a.options);
+    if (const auto notice = longBakeNotice(guess.processor_seconds); notice && !a.say.quiet)
       reportNotice(a.scene, *notice);
-    expected = onThreads(std::move(guess), a.options.threads);
+    expected = std::move(guess.seconds);
   }
   if (cache) cache->setReading(!a.force);
   const Key progress_key = progressKey(*scene, a.options);
   Result<BakeReport> report = [&] {
-    const ProgressRecord begun = cache ? findProgress(progress_key, *cache) : ProgressRecord{};
-    std::optional<ProgressKeeper> keeper;
-    if (cache) keeper.emplace(progress, expected, begun, *cache, progress_key);
-    const ProgressLine line(progress, WholeProgress(expected, begun), a.say, a.scene);
+    const WholeProgress whole(std::move(expected), cache ? findProgress(progress_key, *cache) : 0.0);
+    std::optional<ProgressWatch> keeper;
+    if (cache) keeper.emplace(keepProgress(progress, whole, *cache, progress_key));
+    const ProgressLine line(progress, whole, a.say, a.scene);
     return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
   }();
   if (report && cache) cache->drop(progress_key);
@@ -74,17 +79,16 @@ Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cach
     return failAgain(report.error());
   }
   for (const std::string& notice : report->notices) reportNotice(a.scene, notice);
-  outcome.report = std::move(*report);
-  return outcome;
+  return std::move(*report);
 }
 
 bool failsStrictly(const BakeArguments& a, const BakeOutcome& outcome) {
-  return a.strict && outcome.report && missesBound({a.output, a.options, *outcome.report, outcome.estimate});
+  return a.strict && outcome && missesBound({a.output, a.options, *outcome});
 }
 
 nlohmann::json outcomeJson(const BakeArguments& a, const BakeOutcome& outcome) {
-  if (!outcome.report) return {{"output", a.output.string()}, {"upToDate", true}};
-  return reportJson({a.output, a.options, *outcome.report, outcome.estimate});
+  if (!outcome) return {{"output", a.output.string()}, {"upToDate", true}};
+  return reportJson({a.output, a.options, *outcome});
 }
 
 }  // namespace lambent::baker

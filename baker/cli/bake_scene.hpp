@@ -1,5 +1,5 @@
-// Bakes one scene for `lambent bake`: it records the bake in the journal, shows progress, and leaves a bundle
-// alone that is up to date. The caller prints what came of it.
+// Bakes for `lambent bake`: one scene, or all of a folder, once or whenever they change. Bakes are recorded
+// in the journal, progress is shown, and a bundle that is up to date is left alone.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "baker/bake/bake.hpp"
+#include "baker/cache/cache.hpp"
 #include "baker/cli/output.hpp"
-#include "baker/pipeline/bake_estimate.hpp"
 #include "baker/pipeline/journal.hpp"
 
 namespace lambent::baker {
@@ -30,19 +30,27 @@ struct BakeArguments {
   SayOptions say;
 };
 
-struct BakeOutcome {
-  std::optional<BakeReport> report;  // nothing: the bundle was up to date
-  std::optional<BakeEstimate> estimate;
-};
+using BakeOutcome = std::optional<BakeReport>;
 
+// Returns the report, or nothing if the bundle was up to date.
 Result<BakeOutcome> bakeScene(const BakeArguments& arguments, std::optional<Cache>& cache,
                               const std::stop_token& stop);
 // Returns whether the bake missed a bound and is to fail for it.
 bool failsStrictly(const BakeArguments& arguments, const BakeOutcome& outcome);
 nlohmann::json outcomeJson(const BakeArguments& arguments, const BakeOutcome& outcome);
 
+// Opens the cache that the arguments name, if any. A bake without a cache is only slower, so a problem with
+// the folder is reported and no error.
 std::optional<Cache> bakeCache(const BakeArguments& arguments);
 // The journal of this program lies in the cache's folder.
 Journal bakeJournal(const std::optional<Cache>& cache);
+
+// Bakes every scene of the folder `arguments.scene` once. `arguments.output` is a folder for bundles, or
+// empty: beside the scenes. Returns the exit code: 1 if a scene has no bundle that shows it as it is.
+int bakeFolder(const BakeArguments& arguments, std::optional<Cache>& cache, const std::stop_token& stop);
+
+// Bakes every scene of the folder `arguments.watch`, then again what changes, until it is interrupted.
+// Returns the exit code: 1 if a scene is broken or its last bake failed.
+int watchFolder(const BakeArguments& arguments, Cache* cache);
 
 }  // namespace lambent::baker

@@ -3,11 +3,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <csignal>
 #include <cstdio>
 #include <map>
-#include <mutex>
 #include <span>
 
 #include <CLI/CLI.hpp>
@@ -64,16 +62,6 @@ std::string durationText(double seconds) {
   return fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
-std::optional<Cache> openCache(const std::string& folder, std::uint64_t most_bytes) {
-  if (folder == "off") return std::nullopt;
-  const std::filesystem::path path = folder.empty() ? Cache::defaultFolder() : std::filesystem::path(folder);
-  if (path.empty()) return std::nullopt;
-  auto cache = Cache::open(path, most_bytes);
-  if (cache) return std::move(*cache);
-  fmt::print(stderr, "lambent: {}; going on without it\n", cache.error().line());
-  return std::nullopt;
-}
-
 int reportError(const Error& error) {
   fmt::print(stderr, "lambent: {}\n", error.line());
   return 1;
@@ -106,9 +94,9 @@ ProgressLine::ProgressLine(const Progress& progress, WholeProgress seen_as, cons
       say.progress.value_or(say.quiet ? SayOptions::Progress::Off : SayOptions::Progress::Text);
   if (style == SayOptions::Progress::Off) return;
   const bool json = style == SayOptions::Progress::Json;
-  const bool terminal = !json && ::isatty(STDERR_FILENO) != 0;
-  const auto every = terminal ? kTerminalEvery : json ? kJsonEvery : kLogEvery;
-  const auto print = [json, terminal, label = say.label,
+  terminal_ = !json && ::isatty(STDERR_FILENO) != 0;
+  const auto every = terminal_ ? kTerminalEvery : json ? kJsonEvery : kLogEvery;
+  const auto print = [json, terminal = terminal_, label = say.label,
                       scene = std::move(scene)](const WholeProgress::Seen& seen) {
     if (seen.stage.name.empty()) return;
     if (json)
@@ -119,18 +107,13 @@ ProgressLine::ProgressLine(const Progress& progress, WholeProgress seen_as, cons
     std::fflush(stderr);
   };
   if (json) print(seen_as.look(progress));  // so that a program learns at once what is baked
-  thread_ = std::jthread(
-      [&progress, whole = std::move(seen_as), print, terminal, every](std::stop_token stop) mutable {
-        std::mutex lock;
-        std::condition_variable_any stopped;  // lets the end of a job come before the next tick
-        std::unique_lock hold(lock);
-        while (!stopped.wait_for(hold, stop, every, [&] { return stop.stop_requested(); }))
-          print(whole.look(progress));
-        if (terminal) fmt::print(stderr, "\r\033[K");
-      });
+  watch_.emplace(progress, std::move(seen_as), every, print);
 }
 
-ProgressLine::~ProgressLine() = default;  // the jthread stops and joins
+ProgressLine::~ProgressLine() {
+  watch_.reset();
+  if (terminal_) fmt::print(stderr, "\r\033[K");
+}
 
 InterruptGuard::InterruptGuard(std::stop_source stop) {
   sigset_t signals;

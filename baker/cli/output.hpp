@@ -9,7 +9,6 @@
 #include <string>
 #include <thread>
 
-#include "baker/cache/cache.hpp"
 #include "baker/jobs/progress.hpp"
 #include "baker/pipeline/whole_progress.hpp"
 #include "runtime/base/result.hpp"
@@ -24,10 +23,6 @@ namespace lambent::baker {
 std::string countText(double count);
 std::string bytesText(double bytes);
 std::string durationText(double seconds);
-
-// Opens the cache in this folder, in the default one if it is empty, or none if it is "off". A bake without a
-// cache is only slower, so a problem with the folder is reported and no error.
-std::optional<Cache> openCache(const std::string& folder, std::uint64_t most_bytes = kCacheBytes);
 
 // Prints "lambent: SUBJECT: PROBLEM; MEND" to stderr and returns the exit code 1.
 int reportError(const Error& error);
@@ -57,7 +52,8 @@ class ProgressLine {
   ~ProgressLine();
 
  private:
-  std::jthread thread_;
+  bool terminal_ = false;
+  std::optional<ProgressWatch> watch_;
 };
 
 // While it lives, SIGINT and SIGTERM ask `stop` to stop, and a second one ends the program at once. Construct

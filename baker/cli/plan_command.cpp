@@ -1,8 +1,6 @@
 // Implements lambent plan SCENE.
-#include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -24,37 +22,7 @@ struct PlanArguments {
   std::filesystem::path scene;
   BakeOptions options;
   bool json = false, verbose = false, allow_outside = false;
-  bool estimate = false;
-  std::string cache;  // as that of the bake
 };
-
-nlohmann::json estimateJson(const BakeEstimate& estimate) {
-  const auto figures = [](const auto& of) {
-    return nlohmann::json{{"samples", std::llround(of.samples)},
-                          {"rays", std::llround(of.rays)},
-                          {"seconds", of.seconds},
-                          {"memoryBytes", std::llround(of.memory_bytes)},
-                          {"bytes", std::llround(of.bytes)}};
-  };
-  nlohmann::json json = figures(estimate);
-  json["processorSeconds"] = estimate.processor_seconds;
-  json["stages"] = stageSeconds(estimate.parts);
-  json["groups"] = nlohmann::json::array();
-  for (const BakeEstimate::Group& group : estimate.groups) {
-    json["groups"].push_back(figures(group));
-    json["groups"].back()["name"] = group.name;
-  }
-  return json;
-}
-
-nlohmann::json savedJson(const Saved& saved) {
-  const auto known = [](const std::optional<double>& value) {
-    return value ? nlohmann::json(*value) : nlohmann::json();
-  };
-  return {{"seconds", known(saved.seconds)},
-          {"memoryBytes", known(saved.memory_bytes)},
-          {"bytes", known(saved.bytes)}};
-}
 
 nlohmann::json decisionsJson(const std::vector<Decision>& decisions) {
   nlohmann::json json = nlohmann::json::array();
@@ -65,8 +33,7 @@ nlohmann::json decisionsJson(const std::vector<Decision>& decisions) {
     json.push_back({{"effect", d.effect},
                     {"decision", choiceName(d.choice)},
                     {"reason", d.reason},
-                    {"figures", figures},
-                    {"saves", savedJson(d.saves)}});
+                    {"figures", figures}});
   }
   return json;
 }
@@ -87,7 +54,7 @@ nlohmann::json primitivesJson(const Scene& scene, const RigidGroup& group, const
 }
 
 void printPlanJson(const PlanReport& report) {
-  const auto& [scene, plan, decisions, estimate, saved] = report;
+  const auto& [scene, plan, decisions, guess] = report;
   nlohmann::json groups = nlohmann::json::array(), effects = nlohmann::json::array();
   for (std::size_t g = 0; g < plan.groups.size(); ++g) {
     const RigidGroup& group = plan.groups[g];
@@ -116,15 +83,13 @@ void printPlanJson(const PlanReport& report) {
                                {"effects", effects},
                                {"nearLights", plan.shadowed_lights},
                                {"leftOut", plan.left_out},
-                               {"estimate", estimate ? estimateJson(*estimate) : nlohmann::json()},
-                               {"saves", saved ? savedJson(*saved) : nlohmann::json()}};
+                               {"estimate",
+                                {{"samples", std::llround(guess.samples)},
+                                 {"rays", std::llround(guess.rays)},
+                                 {"seconds", sumSeconds(guess.seconds)},
+                                 {"processorSeconds", guess.processor_seconds},
+                                 {"memoryBytes", std::llround(guess.memory_bytes)}}}};
   fmt::print("{}\n", json.dump(2));
-}
-
-// Returns whether a bake that leaves nothing out would do more.
-bool leavesOut(const EffectPlan& plan) {
-  return std::ranges::any_of(plan.transport,
-                             [](const PlannedTransport& of) { return !of.shadows || !of.bounces; });
 }
 
 int runPlan(const PlanArguments& a) {
@@ -132,27 +97,10 @@ int runPlan(const PlanArguments& a) {
   if (!scene) return reportError(scene.error());
   const auto plan = planFor(*scene, a.options);
   if (!plan) return reportError(plan.error());
-  std::optional<BakeEstimate> estimate, all;
-  if (a.estimate) {
-    if (const auto checked = checkOptions(a.options); !checked) return reportError(checked.error());
-    const std::stop_source stop;
-    const InterruptGuard interrupts(stop);
-    Progress unused;
-    auto made = estimateBake(*scene, a.options, {unused, stop.get_token()});
-    if (!made) return reportError(made.error());
-    BakeOptions forced = a.options;
-    forced.effects = "all";
-    auto made_all = leavesOut(*plan) && a.options.effects == "auto"
-                        ? estimateBake(*scene, forced, {unused, stop.get_token()})
-                        : made;
-    if (!made_all) return reportError(made_all.error());
-    all = std::move(*made_all);
-    if (auto cache = openCache(a.cache)) keepEstimate(*scene, a.options, *made, *cache);
-    estimate = std::move(*made);
-  }
-  const Estimates estimates{estimate ? &*estimate : nullptr, all ? &*all : nullptr};
-  const auto decisions = decisionsOf({*scene, a.options, *plan, estimates});
-  const PlanReport report{*scene, *plan, decisions, estimate, savedByAll(estimates)};
+  if (const auto checked = checkOptions(a.options); !checked) return reportError(checked.error());
+  const auto decisions = decisionsOf({*scene, a.options, *plan});
+  const BakeGuess guess = guessBake(*scene, *plan, a.options);
+  const PlanReport report{*scene, *plan, decisions, guess};
   if (a.json)
     printPlanJson(report);
   else
@@ -167,31 +115,15 @@ void addPlanCommand(CLI::App& app, Command& run) {
   CLI::App* command = app.add_subcommand("plan", "Say what would be baked, what not, and why");
   command->add_option("SCENE", a->scene, "The scene, .gltf or .glb")->required();
   addBakeOptions(*command, a->options);
-  command
-      ->add_option("--cache", a->cache,
-                   "Folder where the estimate is kept for the bake, as that of `lambent bake`; off: none")
-      ->type_name("DIR|off");
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--json", a->json, "Print as JSON");
   command->add_flag("-v,--verbose", a->verbose, "Print every warning, group and primitive");
-  command_line::group(*command, "Machine", {"--cache"});
   command_line::group(*command, "Files", {"--allow-outside"});
   command_line::group(*command, "Output", {"--json", "--verbose"});
-  command_line::addExamples(
-      *command,
-      {{"lambent plan scene.gltf", "says what would be baked and why"},
-       {"lambent plan scene.gltf --quality standard", "says also what that takes"}},
-      "With an option of the bake beside --effects and --light-probes, such as --quality draft, the plan "
-      "also "
-      "estimates samples, rays, time, memory and bytes. It rehearses the bake with 128 rays, which takes "
-      "about as long as a draft, and a third to a half of a bake of standard quality.");
-  command->callback([a, command, &run] {
-    for (const OptionRow& row : optionRows())
-      a->estimate |= row.name != "effects" && row.name != "light-probes" &&
-                     command->count("--" + std::string(row.name)) > 0;
-    run = [a] { return runPlan(*a); };
-  });
+  command_line::addExamples(*command, {{"lambent plan scene.gltf", "says what would be baked and why"},
+                                       {"lambent plan scene.gltf --quality draft", "says so of a draft"}});
+  command->callback([a, &run] { run = [a] { return runPlan(*a); }; });
 }
 
 }  // namespace lambent::baker

@@ -35,17 +35,11 @@ std::string wordsOf(const std::string& effect) {
   return words;
 }
 
-std::string savedText(const Decision& d) {
-  if (d.choice != Choice::LeftOut || !d.saves.seconds) return {};
-  return fmt::format("; saves {:.2f} s of processor time, {} of memory, {}", *d.saves.seconds,
-                     bytesText(d.saves.memory_bytes.value_or(0.0)), bytesText(d.saves.bytes.value_or(0.0)));
-}
-
 void addDecisions(const std::vector<Decision>& decisions, const char* indent, PlanLines& lines) {
   for (const Decision& d : decisions)
     if (d.choice != Choice::Absent)  // --json has those too
-      lines.push_back(fmt::format("{}{:<16} {}: {}{}", indent, wordsOf(d.effect), choiceText(d.choice),
-                                  d.reason, savedText(d)));
+      lines.push_back(
+          fmt::format("{}{:<16} {}: {}", indent, wordsOf(d.effect), choiceText(d.choice), d.reason));
 }
 
 const ScenePrimitive& primitiveOf(const Scene& scene, const PlannedDraw& draw) {
@@ -188,18 +182,6 @@ void addGroups(const PlanReport& report, bool verbose, PlanLines& lines) {
                                 rest, kRest));
 }
 
-void addEstimate(const BakeEstimate& estimate, bool verbose, PlanLines& lines) {
-  const auto line = [&](const std::string& name, const auto& of, const char* what) {
-    lines.push_back(fmt::format("    {}: {} samples, {} rays, {}, {} of memory, {} {}", name,
-                                std::llround(of.samples), countText(of.rays), durationText(of.seconds),
-                                bytesText(of.memory_bytes), bytesText(of.bytes), what));
-  };
-  lines.emplace_back("  estimate");
-  if (verbose)
-    for (const BakeEstimate::Group& group : estimate.groups) line(group.name, group, "of transfer");
-  line("all, with refinement and meshes", estimate, "of bundle");
-}
-
 }  // namespace
 
 GroupSize sizeOf(const Scene& scene, const RigidGroup& group) {
@@ -225,7 +207,10 @@ void printPlan(const PlanReport& report, bool verbose) {
     lines.push_back(
         fmt::format("    {:<12} {}: {}", choice.effect, choice.baked ? "baked" : "not baked", choice.reason));
   addSentences("local lights", plan.shadowed_lights, verbose, lines);
-  if (report.estimate) addEstimate(*report.estimate, verbose, lines);
+  const BakeGuess& guess = report.guess;
+  lines.push_back(fmt::format("  about {} samples, {} rays, {}, {} of memory for transfer",
+                              countText(guess.samples), countText(guess.rays),
+                              durationText(sumSeconds(guess.seconds)), bytesText(guess.memory_bytes)));
   addGroups(report, verbose, lines);
   for (const std::string& line : lines) fmt::print("{}\n", line);
 }

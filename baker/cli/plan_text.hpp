@@ -2,13 +2,12 @@
 // primitives are summed up by decision. All of it is in --verbose.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "baker/decisions/decisions.hpp"
 #include "baker/import/scene.hpp"
-#include "baker/pipeline/bake_estimate.hpp"
+#include "baker/pipeline/guess_seconds.hpp"
 #include "baker/plan/effect_plan.hpp"
 
 namespace lambent::baker {
@@ -18,8 +17,7 @@ struct PlanReport {
   const Scene& scene;
   const EffectPlan& plan;
   const std::vector<GroupDecisions>& decisions;  // one per group
-  const std::optional<BakeEstimate>& estimate;
-  std::optional<Saved> saved;  // by all that is left out
+  const BakeGuess& guess;
 };
 
 struct GroupSize {

@@ -1,5 +1,3 @@
-#include "baker/cli/watch.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -10,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "baker/cli/bake_scene.hpp"
 #include "baker/cli/folder_outputs.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/pipeline/bake_queue.hpp"
@@ -25,7 +24,7 @@ constexpr std::chrono::milliseconds kTurn{100};
 
 class FolderBakes {
  public:
-  FolderBakes(const WatchArguments& arguments, BakeQueue& queue) : arguments_(arguments), queue_(queue) {}
+  FolderBakes(const BakeArguments& arguments, BakeQueue& queue) : arguments_(arguments), queue_(queue) {}
 
   // Prints one line for each event.
   void say(const char* event, const fs::path& scene, const std::string& text,
@@ -34,7 +33,7 @@ class FolderBakes {
       more["event"] = event;
       if (!scene.empty()) more["scene"] = scene.string();
       fmt::print("{}\n", more.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-    } else if (arguments_.quiet) {
+    } else if (arguments_.say.quiet) {
       if (more.contains("error")) reportNotice(scene, text);
     } else {
       fmt::print("{}\n", scene.empty() ? text : scene.string() + ": " + text);
@@ -105,33 +104,33 @@ class FolderBakes {
       failed_.insert(scene);
       return say("failed", scene, output.error().line(), {{"error", output.error().line()}});
     }
-    jobs_.insert_or_assign(
-        scene,
-        queue_.add(
-            {.scene = scene, .output = *output, .options = arguments_.options, .import = arguments_.import}));
+    jobs_.insert_or_assign(scene, queue_.add({.scene = scene,
+                                              .output = *output,
+                                              .options = arguments_.options,
+                                              .import = {.allow_outside = arguments_.allow_outside}}));
   }
 
-  const WatchArguments& arguments_;
+  const BakeArguments& arguments_;
   BakeQueue& queue_;
   std::map<fs::path, JobId> jobs_;
-  FolderOutputs outputs_{arguments_.folder, arguments_.output};
+  FolderOutputs outputs_{arguments_.watch, arguments_.output};
   std::set<fs::path> failed_;  // scenes that are broken or whose last bake failed
 };
 
 }  // namespace
 
-int watchFolder(const WatchArguments& arguments, Cache* cache) {
+int watchFolder(const BakeArguments& arguments, Cache* cache) {
   std::error_code failed;
-  if (!fs::is_directory(arguments.folder, failed))
+  if (!fs::is_directory(arguments.watch, failed))
     return reportError(
-        {arguments.folder.string(), "is no folder", "give --watch a folder of .gltf or .glb files"});
+        {arguments.watch.string(), "is no folder", "give --watch a folder of .gltf or .glb files"});
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
-  SourceWatch watch({arguments.folder}, {.import = arguments.import});
+  SourceWatch watch({arguments.watch}, {.import = {.allow_outside = arguments.allow_outside}});
   BakeQueue queue({.work_folder = cache ? cache->folder() : fs::path(), .cache = cache, .previews = false});
   FolderBakes bakes(arguments, queue);
-  bakes.say("watching", {}, "watching " + arguments.folder.string() + "; interrupt to end",
-            {{"folder", arguments.folder.string()}});
+  bakes.say("watching", {}, "watching " + arguments.watch.string() + "; interrupt to end",
+            {{"folder", arguments.watch.string()}});
   while (!stop.stop_requested()) {
     for (const WatchEvent& event : watch.takeEvents()) bakes.take(event);
     queue.waitForEvents(kTurn);

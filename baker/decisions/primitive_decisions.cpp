@@ -14,7 +14,7 @@ namespace lambent::baker {
 namespace {
 
 Decision absent(const char* effect, std::string reason) {
-  return {.effect = effect, .choice = Choice::Absent, .reason = std::move(reason), .saves = kSavesNothing};
+  return {.effect = effect, .choice = Choice::Absent, .reason = std::move(reason)};
 }
 
 // The share of a highlight that the bands of matrices carry.

@@ -1,26 +1,14 @@
 #include "baker/jobs/progress.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <utility>
 
 namespace lambent::baker {
-
-namespace {
-
-double processorSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-}  // namespace
 
 Progress::Stage Progress::current() const {
   Stage stage = running_;
   stage.done = done_.load(std::memory_order_relaxed);
   stage.seconds = std::chrono::duration<double>(Clock::now() - began_).count();
-  stage.processor_seconds = processorSeconds() - processor_began_;
   return stage;
 }
 
@@ -36,7 +24,6 @@ void Progress::begin(std::string name, std::uint64_t total, std::string unit) {
   running_ = {.name = std::move(name), .unit = std::move(unit), .total = total, .part = part_};
   done_ = 0;
   began_ = Clock::now();
-  processor_began_ = processorSeconds();
 }
 
 void Progress::expect(std::uint64_t total) {
@@ -44,9 +31,11 @@ void Progress::expect(std::uint64_t total) {
   running_.total = std::max(total, done_.load(std::memory_order_relaxed));
 }
 
-void Progress::found() {
+void Progress::found(std::uint64_t units) {
   const std::lock_guard hold(lock_);
+  add(units);
   running_.found = true;
+  running_.found_units += units;
 }
 
 void Progress::end() {

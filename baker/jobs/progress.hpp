@@ -22,9 +22,9 @@ class Progress {
     std::uint64_t total = 0;  // in units; 0 if unknown
     std::uint64_t done = 0;
     double seconds = 0.0;
-    double processor_seconds = 0.0;  // of all threads of the program
-    std::size_t part = 0;            // of the job
-    bool found = false;              // results were found in the cache, so its seconds say nothing
+    std::size_t part = 0;           // of the job
+    bool found = false;             // results were found in the cache, so its seconds say little
+    std::uint64_t found_units = 0;  // of those done, if they were counted
   };
 
   // Ends the running stage, if any. The stages that follow belong to the next part.
@@ -34,8 +34,8 @@ class Progress {
   // Sets the total of the running stage, which learns it as it goes. It is never less than what is done.
   void expect(std::uint64_t total);
   void add(std::uint64_t units) { done_.fetch_add(units, std::memory_order_relaxed); }
-  // Says that results of the running stage were found.
-  void found();
+  // Says that results of the running stage were found, and adds their units.
+  void found(std::uint64_t units = 0);
   void end();
 
   // Returns the running stage; with an empty name if none runs, but of the part that does.
@@ -50,7 +50,6 @@ class Progress {
   mutable std::mutex lock_;
   Stage running_;
   Clock::time_point began_;
-  double processor_began_ = 0.0;
   std::vector<Stage> finished_;
   std::size_t part_ = 0;
   std::atomic<std::uint64_t> done_ = 0;

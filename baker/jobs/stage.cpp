@@ -179,8 +179,7 @@ std::optional<StageFigures> runStage(const Stage& stage, const BakeContext& cont
   }
   Entries entries(context, cut);
   const std::size_t found = entries.load(stage, context.stop);
-  context.progress.add(found);
-  if (found > 0) context.progress.found();
+  if (found > 0) context.progress.found(found);
   Waiting waiting(stage, *context.cache, entries, cut);
   const auto began = std::chrono::steady_clock::now();
   const bool finished =

@@ -76,7 +76,6 @@ struct StageFigures {
 // Returns nothing if it was stopped. Without a cache or a key in the context, nothing is kept.
 std::optional<StageFigures> runStage(const Stage& stage, const BakeContext& context);
 
-
 // Removes what was kept of a stage of so many items, such as checkpoints once the result that they led to is
 // kept.
 void dropStage(const BakeContext& context, std::size_t count, std::size_t grain);

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <mutex>
 #include <optional>
 #include <stop_token>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -136,35 +133,6 @@ Expected<void> Baker::keepResultsIn(const std::string& folder) {
   return {};
 }
 
-namespace {
-
-// Asks the watcher until it ends, and stops the bake if the watcher says so.
-class Watching {
- public:
-  Watching(const Baker::Watcher& watcher, const baker::Progress& progress, baker::WholeProgress whole,
-           std::stop_source stop)
-      : thread_([&watcher, &progress, whole = std::move(whole), stop](std::stop_token over) mutable {
-          constexpr auto kEvery = std::chrono::milliseconds(100);
-          std::mutex lock;
-          std::unique_lock held(lock);
-          std::condition_variable_any ended;
-          while (!ended.wait_for(held, over, kEvery, [] { return false; }) && !over.stop_requested()) {
-            const baker::WholeProgress::Seen seen = whole.look(progress);
-            if (!watcher({.stage = seen.stage.name,
-                          .unit = seen.stage.unit,
-                          .done = seen.stage.done,
-                          .fraction = seen.share,
-                          .seconds_left = seen.seconds_left}))
-              stop.request_stop();
-          }
-        }) {}
-
- private:
-  std::jthread thread_;
-};
-
-}  // namespace
-
 Expected<BakeResult> Baker::run(const BakeScene& scene, const std::string& output, const Watcher& watcher) {
   const baker::Scene& baked = scene.state_->scene;
   if (baked.meshes.empty() && baked.volumes.empty()) return Failure{"scene", "is empty", "add a mesh"};
@@ -172,13 +140,20 @@ Expected<BakeResult> Baker::run(const BakeScene& scene, const std::string& outpu
   std::stop_source stop;
   const auto start = std::chrono::steady_clock::now();
   const Result<baker::BakeReport> report = [&] {
-    std::optional<Watching> watching;
+    std::optional<baker::ProgressWatch> watching;
     if (watcher) {
       baker::PartSeconds expected;
       if (const auto plan = baker::planFor(baked, state_->options))
-        expected = baker::onThreads(baker::guessProcessorSeconds(baked, *plan, state_->options),
-                                    state_->options.threads);
-      watching.emplace(watcher, progress, baker::WholeProgress(std::move(expected)), stop);
+        expected = baker::guessBake(baked, *plan, state_->options).seconds;
+      watching.emplace(progress, baker::WholeProgress(std::move(expected)), std::chrono::milliseconds(100),
+                       [&](const baker::WholeProgress::Seen& seen) {
+                         if (!seen.stage.name.empty() && !watcher({.stage = seen.stage.name,
+                                                                   .unit = seen.stage.unit,
+                                                                   .done = seen.stage.done,
+                                                                   .fraction = seen.share,
+                                                                   .seconds_left = seen.seconds_left}))
+                           stop.request_stop();
+                       });
     }
     return baker::bake(baked, state_->options, output,
                        {progress, stop.get_token(), state_->cache ? &*state_->cache : nullptr});

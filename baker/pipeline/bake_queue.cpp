@@ -1,6 +1,7 @@
 #include "baker/pipeline/bake_queue.hpp"
 
 #include <algorithm>
+#include <array>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -11,7 +12,6 @@
 
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/guess_seconds.hpp"
-#include "baker/pipeline/job_estimate.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/progress_record.hpp"
 #include "baker/pipeline/whole_progress.hpp"
@@ -42,11 +42,9 @@ struct Job {
   bool begun = false;
   Journal::Entry record;
   std::optional<std::string> unrecorded;     // says that the journal could not be written
-  PartSeconds expected;                      // for the final bake
-  PartSeconds expected_coarse;               // for the coarse preview
   double coarse_seconds = 0.0;               // what the coarse preview took, once it is done
-  PartSeconds before;                        // what earlier runs of the final bake spent on it
   std::shared_ptr<const Progress> progress;  // of the step that runs
+  std::optional<WholeProgress> whole;        // of that step, once the scene is known
 
   // Steps that show something sooner come first.
   int rank() const {
@@ -88,19 +86,6 @@ void removeOldPreviews(const fs::path& folder) {
   }
 }
 
-struct Guess {
-  PartSeconds of_final, of_coarse;
-};
-Guess guessOf(const Scene& scene, const BakeOptions& options) {
-  const auto plan = planFor(scene, options);
-  if (!plan) return {};
-  const auto guess = [&](PreviewLevel level) {
-    return onThreads(guessProcessorSeconds(scene, *plan, previewLevelOptions(level, options)),
-                     options.threads);
-  };
-  return {guess(PreviewLevel::Final), guess(PreviewLevel::Coarse)};
-}
-
 double total(std::span<const Progress::Stage> stages) {
   double seconds = 0.0;
   for (const Progress::Stage& stage : stages) seconds += stage.seconds;
@@ -108,6 +93,11 @@ double total(std::span<const Progress::Stage> stages) {
 }
 
 }  // namespace
+
+const char* phaseName(JobPhase phase) {
+  static constexpr std::array kNames = {"waiting", "importing", "baking", "done", "failed", "cancelled"};
+  return kNames[static_cast<std::size_t>(phase)];
+}
 
 struct BakeQueue::Impl {
   explicit Impl(QueueSettings given)
@@ -182,7 +172,7 @@ struct BakeQueue::Impl {
     job.asked = ++asked;
     job.step = firstStep(job.state.request);
     job.tried = job.begun = false;
-    job.before = {};
+    job.whole.reset();
     job.coarse_seconds = 0.0;
     job.state.preview_level = previewLevelOf(job.step);
   }
@@ -211,30 +201,14 @@ JobState BakeQueue::Impl::snapshot(Job& job) const {
     state.fraction = 1.0;
     state.seconds_left = 0.0;
   }
-  std::vector<Progress::Stage> finished;
-  if (job.progress) {
-    state.stage = job.progress->now();
-    finished = job.progress->finished();
-    state.seconds += total(finished) + state.stage.seconds;
-  }
-  const bool going = state.phase == JobPhase::Waiting || state.phase == JobPhase::Importing ||
-                     state.phase == JobPhase::Baking;
-  if (!going || job.expected.empty()) return state;
-  // The coarse preview and the final bake count; the unshadowed preview is short.
-  const bool at_final = job.progress && state.preview_level == PreviewLevel::Final;
-  const bool at_coarse = job.progress && state.preview_level == PreviewLevel::Coarse;
-  const PartSeconds before = at_final ? job.before : PartSeconds{};
-  if (const double took = secondsOf(state.stage, before, finished); took > 0.0)
-    state.units_per_s = static_cast<double>(state.stage.done) / took;
-  double spent = sumSeconds(job.before) + job.coarse_seconds, left = 0.0;
-  if (at_final || at_coarse) spent += total(finished) + state.stage.seconds;
-  if (at_coarse) left = secondsLeft(job.expected_coarse, {}, finished, state.stage);
-  if (!at_final) finished.clear();
-  left += secondsLeft(job.expected, job.before, finished, at_final ? state.stage : Progress::Stage{});
-  state.seconds_left = left;
-  if (left + spent > 0.0)
-    state.fraction = std::max(state.fraction, std::min(kMostBeforeTheEnd, spent / (spent + left)));
-  job.state.fraction = state.fraction;
+  if (!job.progress) return state;
+  state.stage = job.progress->now();
+  state.seconds += total(job.progress->finished()) + state.stage.seconds;
+  if (!job.whole) return state;
+  const WholeProgress::Seen seen = job.whole->look(*job.progress);
+  state.units_per_s = seen.units_per_s;
+  job.state.seconds_left = state.seconds_left = seen.seconds_left;
+  job.state.fraction = state.fraction = std::max(state.fraction, seen.share);
   return state;
 }
 
@@ -254,7 +228,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
   const std::uint64_t asked_then = job->asked;
   const BakeRequest request = job->state.request;
   const Step step = job->step;
-  const bool guesses = job->expected.empty() || step == Step::Coarse;
+  const double coarse_seconds = job->coarse_seconds;
   const PreviewLevel preview_level = previewLevelOf(step);
   const auto progress = std::make_shared<Progress>();
   std::stop_source stop;
@@ -279,7 +253,6 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       unrecorded = entry.error()->line() + "; if this bake is cut short, no later session goes on with it";
   }
   bool up_to_date = false;
-  PartSeconds expected;
   Key progress_key = {};
   std::vector<std::string> warnings;
   const Result<BakeReport> result = [&]() -> Result<BakeReport> {
@@ -290,7 +263,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       const auto scene = sceneOf(request, asked_then);
       if (!scene) return failAgain(scene.error());
       warnings = (*scene)->warnings;
-      ProgressRecord begun;
+      double begun = 0.0;  // share of the final bake
       if (settings.cache != nullptr) {
         progress_key = progressKey(**scene, request.options);
         begun = findProgress(progress_key, *settings.cache);
@@ -299,21 +272,28 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
         up_to_date = true;
         return BakeReport{};
       }
-      const Guess guess = guesses ? guessOf(**scene, request.options) : Guess{};
+      const auto plan = planFor(**scene, request.options);
+      if (!plan) return failAgain(plan.error());
+      const auto guess = [&](PreviewLevel level) {
+        return guessBake(**scene, *plan, previewLevelOptions(level, request.options)).seconds;
+      };
+      PartSeconds expected = guess(PreviewLevel::Final);
+      // The coarse preview and the final bake count; the unshadowed preview is short.
+      std::optional<WholeProgress> whole;
+      if (preview_level == PreviewLevel::Coarse)
+        whole.emplace(guess(PreviewLevel::Coarse), begun, JobSeconds{.left = sumSeconds(expected)});
+      if (preview_level == PreviewLevel::Final)
+        whole.emplace(std::move(expected), begun, JobSeconds{.spent = coarse_seconds});
+      std::optional<ProgressWatch> keeper;
+      if (settings.cache != nullptr && preview_level == PreviewLevel::Final)
+        keeper.emplace(keepProgress(*progress, *whole, *settings.cache, progress_key));
       {
         const std::lock_guard again(lock);
         if (job->asked == asked_then) {
           job->state.phase = JobPhase::Baking;
-          if (job->expected.empty()) job->expected = guess.of_final;
-          job->expected_coarse = guess.of_coarse;
-          expected = job->expected;
-          job->before = begun.spent;
-          job->state.fraction = std::max(job->state.fraction, begun.share);
+          job->whole = std::move(whole);
         }
       }
-      std::optional<ProgressKeeper> keeper;
-      if (settings.cache != nullptr && preview_level == PreviewLevel::Final)
-        keeper.emplace(*progress, expected, begun, *settings.cache, progress_key);
       std::optional<Deadline> deadline;
       if (step == Step::Trial) deadline.emplace(stop, settings.trial);
       return bakePreviewLevel(preview_level, **scene, request.options, place,
@@ -323,11 +303,8 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
     }
   }();
   progress->end();
-  PartSeconds before;
-  if (progress_key != Key{} && preview_level == PreviewLevel::Final) {
-    if (result) settings.cache->drop(progress_key);
-    before = findProgress(progress_key, *settings.cache).spent;
-  }
+  if (progress_key != Key{} && preview_level == PreviewLevel::Final && result)
+    settings.cache->drop(progress_key);
 
   hold.lock();
   running = nullptr;
@@ -340,8 +317,8 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
   const std::vector<Progress::Stage> stages = progress->finished();
   snapshot(*job);  // remembers the share
   state.seconds += total(stages);
-  if (preview_level == PreviewLevel::Final) job->before = std::move(before);
   job->progress = nullptr;
+  job->whole.reset();
   state.warnings = warnings;
   if (job->unrecorded) state.warnings.push_back(*job->unrecorded);
   if (!result) {
@@ -368,16 +345,11 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
   state.warnings.insert(state.warnings.end(), result->notices.begin(), result->notices.end());
   tell(BakeEvent::Kind::Bundle, *job, *state.reached, state.bundle);
   if (state.reached >= request.last) {
-    if (!up_to_date) job->expected = partSeconds(stages);  // for the next time
     state.phase = JobPhase::Done;
     job->record.done();
     return;
   }
-  if (preview_level == PreviewLevel::Coarse) {
-    job->coarse_seconds = total(stages);
-    job->expected =
-        scaleSeconds(stages, previewLevelOptions(PreviewLevel::Coarse, request.options), request.options);
-  }
+  if (preview_level == PreviewLevel::Coarse) job->coarse_seconds = total(stages);
   state.phase = JobPhase::Waiting;
   job->step = preview_level == PreviewLevel::Coarse ? Step::Final : job->tried ? Step::Coarse : Step::Trial;
   state.preview_level = previewLevelOf(job->step);

@@ -28,7 +28,9 @@ constexpr double kGlossyRay_s = 2.5e-6, kGlossySample_s = 2.6e-4;
 // Refinement is expected to double the vertices where it may.
 constexpr double kGrowth = 2.0;
 // Stages of a group share that so, roughly. Of diffuse and of glossy samples, codes take these shares of all.
-constexpr double kProbing = 1.0, kDirect = 1.0, kBounce = 0.3;
+constexpr double kProbing = 1.0, kDirect = 1.0, kBounce = 0.3, kPatches = 0.09;
+// So many passes gather light; the rest passes between patches (effects/diffuse/bounces.hpp).
+constexpr int kMostGathered = 2;
 constexpr double kDiffuseCoding = 0.05, kGlossyCoding = 0.5;
 // A point of a neighborhood's grid takes so much with drafts' 256 rays, and its codes without matrices and
 // with.
@@ -36,6 +38,13 @@ constexpr double kPoint_s = 1e-4, kPointCoding_s = 2e-4, kMatricesCoding_s = 4.5
 constexpr double kFewPoints = 8192.0, kPoints = 32768.0;
 constexpr double kVoxel_s = 1.2e-4;  // of each voxel of a volume's grid, empty ones included
 constexpr double kDraftRays = 256.0;
+// Bakes of which more processor time is guessed are announced. They may take over a minute, since guesses
+// err.
+constexpr double kLongBake_s = 40.0;
+
+double cellsOf(const glm::uvec3& grid) {
+  return std::max(1.0, double(grid.x) * double(grid.y) * double(grid.z));
+}
 
 struct Vertices {
   double diffuse = 0.0, glossy = 0.0;
@@ -83,9 +92,9 @@ StageSeconds sharesOfRays(const BakeOptions& options) {
   StageSeconds shares = {{"direct light", kDirect}};
   if (options.effectiveRefineBound() > 0.0f) shares[kRefinement] = kProbing;
   if (options.fitsDiffuse()) shares["inside faces"] = kDirect;
-  for (int bounce = 1; bounce <= gatheredBounces(options); ++bounce)
-    shares[fmt::format("bounce {}", bounce)] = kBounce;
-  if (gatheredBounces(options) > 1) shares[kBetweenPatches] = kPatchShare * kBounce;
+  const int gathered = options.bounces < 0 ? kMostGathered : std::min(options.bounces, kMostGathered);
+  for (int bounce = 1; bounce <= gathered; ++bounce) shares[fmt::format("bounce {}", bounce)] = kBounce;
+  if (gathered > 1) shares["bounce between patches"] = kPatches;
   double sum = 0.0;
   for (const auto& [stage, share] : shares) sum += share;
   for (auto& [stage, share] : shares) share /= sum;
@@ -103,7 +112,7 @@ void addNeighborhood(const PlannedNeighborhood& planned, const BakeOptions& opti
 
 }  // namespace
 
-PartSeconds guessProcessorSeconds(const Scene& scene, const EffectPlan& plan, const BakeOptions& options) {
+BakeGuess guessBake(const Scene& scene, const EffectPlan& plan, const BakeOptions& options) {
   const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
   std::vector<Vertices> groups(plan.groups.size());
   Vertices all;
@@ -122,30 +131,42 @@ PartSeconds guessProcessorSeconds(const Scene& scene, const EffectPlan& plan, co
   const double glossy_growth = refines && options.refinesGlossy() ? growth(all.glossy) : 1.0;
   const auto rays = static_cast<double>(options.effectiveRays());
   const StageSeconds shares = sharesOfRays(options);
-  PartSeconds parts(2);
+  BakeGuess guess{.seconds = PartSeconds(2)};
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const double sample_s = std::lerp(kOpenSample_s, kRoomSample_s, groups[g].room),
                  ray_s = std::lerp(kOpenRay_s, kRoomRay_s, groups[g].room);
-    const double diffuse = diffuse_growth * groups[g].diffuse * (sample_s + rays * ray_s);
-    const double glossy = glossy_growth * groups[g].glossy * (kGlossySample_s + rays * kGlossyRay_s);
-    const double coding = kDiffuseCoding * diffuse + kGlossyCoding * glossy;
-    StageSeconds& part = parts.emplace_back();
+    const double diffuse = diffuse_growth * groups[g].diffuse, glossy = glossy_growth * groups[g].glossy;
+    guess.samples += diffuse + glossy;
+    guess.memory_bytes = std::max(guess.memory_bytes, diffuse * options.bytesOfTransfer(false) +
+                                                          glossy * options.bytesOfTransfer(true));
+    const double diffuse_s = diffuse * (sample_s + rays * ray_s);
+    const double glossy_s = glossy * (kGlossySample_s + rays * kGlossyRay_s);
+    const double coding = kDiffuseCoding * diffuse_s + kGlossyCoding * glossy_s;
+    StageSeconds& part = guess.seconds.emplace_back();
     part["coding"] = coding;
     for (const auto& [stage, share] : shares)
-      (stage == kRefinement ? parts[1] : part)[stage] += share * (diffuse + glossy - coding);
+      (stage == kRefinement ? guess.seconds[1] : part)[stage] += share * (diffuse_s + glossy_s - coding);
     if (plan.groups[g].volume >= 0)
       part["scattering"] = cellsOf(options.volume_grid) * kVoxel_s * rays / kDraftRays;
     if (plan.neighborhoods[g].baked) addNeighborhood(plan.neighborhoods[g], options, part);
   }
-  return parts;
+  guess.rays = guess.samples * rays;
+  guess.processor_seconds = sumSeconds(guess.seconds);
+  const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
+  const double used = options.threads > 0 ? std::min(options.threads, processors) : processors;
+  for (StageSeconds& part : guess.seconds)
+    for (auto& [stage, seconds] : part) seconds /= used;
+  return guess;
 }
 
-PartSeconds onThreads(PartSeconds of_processors, unsigned threads) {
-  const unsigned all = std::max(1u, std::thread::hardware_concurrency());
-  const double used = threads > 0 ? std::min(threads, all) : all;
-  for (StageSeconds& part : of_processors)
-    for (auto& [stage, seconds] : part) seconds /= used;
-  return of_processors;
+std::optional<std::string> longBakeNotice(double processor_seconds) {
+  if (processor_seconds <= kLongBake_s) return std::nullopt;
+  const double minutes = processor_seconds / 60.0;
+  const std::string time = minutes < 120.0 ? fmt::format("{:.0f} min", std::ceil(minutes))
+                                           : fmt::format("{:.0f} hours", std::ceil(minutes / 60.0));
+  return fmt::format(
+      "takes about {} of processor time, less what the cache holds of it; fewer rays (--rays) take less",
+      time);
 }
 
 }  // namespace lambent::baker

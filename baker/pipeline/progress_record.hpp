@@ -1,39 +1,20 @@
 // Records how far a bake is, so that a later run that goes on with it begins to count where it was. The
-// record lies in the cache beside the results that it counts, under the same scene and options. It is written
-// while the bake runs, as of one interval of checkpoints ago, because only what is that old is surely kept;
-// at the end of a bake that was stopped it is of that moment. A record is no promise: without what it counts,
-// a bake takes longer than it says.
+// record lies in the cache beside the results that it counts, under the same scene and options. A record is
+// no promise: a bake that was killed may have kept less than it counts, and takes longer than it says.
 #pragma once
 
-#include <thread>
-
+#include "baker/bake/options.hpp"
 #include "baker/cache/cache.hpp"
 #include "baker/cache/key.hpp"
 #include "baker/import/scene.hpp"
-#include "baker/pipeline/job_estimate.hpp"
+#include "baker/pipeline/whole_progress.hpp"
 
 namespace lambent::baker {
 
-struct ProgressRecord {
-  double share = 0.0;  // that was shown, 0..1
-  PartSeconds spent;   // by all runs together, on what was kept
-};
-
 Key progressKey(const Scene& scene, const BakeOptions& options);
-// Returns an empty record if there is none.
-ProgressRecord findProgress(const Key& key, const Cache& cache);
-
-// Keeps the record while it lives. Cache and progress must outlive it.
-class ProgressKeeper {
- public:
-  ProgressKeeper(const Progress& progress, PartSeconds expected, ProgressRecord begun, Cache& cache,
-                 const Key& key);
-  ProgressKeeper(const ProgressKeeper&) = delete;
-  ProgressKeeper& operator=(const ProgressKeeper&) = delete;
-  ~ProgressKeeper();
-
- private:
-  std::jthread thread_;
-};
+// Returns the share that was reached, 0..1; 0 if there is no record.
+double findProgress(const Key& key, const Cache& cache);
+// Keeps the record while the result lives. The cache must outlive it too.
+ProgressWatch keepProgress(const Progress& progress, WholeProgress whole, Cache& cache, const Key& key);
 
 }  // namespace lambent::baker

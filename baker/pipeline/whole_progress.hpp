@@ -1,24 +1,42 @@
 // Sees a job with many stages as one: the share of the whole that is done, which never falls, and the time
-// that is left. The caller says what each stage is expected to take (job_estimate.hpp). One thread uses an
-// object.
+// that is left. The caller says what each stage is expected to take, in each part of the job
+// (Progress::beginPart); measured times replace that as stages run. One thread at a time uses an object.
 #pragma once
 
+#include <chrono>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "baker/jobs/progress.hpp"
-#include "baker/pipeline/job_estimate.hpp"
-#include "baker/pipeline/progress_record.hpp"
 
 namespace lambent::baker {
 
-// The share of a job that is not done is at most this: what was expected may be over before the job is.
-inline constexpr double kMostBeforeTheEnd = 0.99;
+using StageSeconds = std::map<std::string, double>;
+using PartSeconds = std::vector<StageSeconds>;
+
+inline constexpr const char* kRefinement = "refinement";
+
+double sumSeconds(const PartSeconds& parts);
+
+// Seconds of a job: spent, where what the cache held counts as though it had been computed, and left.
+struct JobSeconds {
+  double spent = 0.0, left = 0.0;
+};
+// Returns those of a job that was expected to take `expected`, has finished these stages and is at `now`.
+JobSeconds jobSeconds(const PartSeconds& expected, std::span<const Progress::Stage> finished,
+                      const Progress::Stage& now);
 
 class WholeProgress {
  public:
-  // `begun` is what earlier runs of the same job recorded.
-  explicit WholeProgress(PartSeconds expected, ProgressRecord begun = {})
-      : expected_(std::move(expected)), before_(std::move(begun.spent)), share_(begun.share) {}
+  // `share` is that which an earlier run of the same job had reached (progress_record.hpp). `others` are jobs
+  // that count as parts of this one: a preview counts with the bake that follows.
+  explicit WholeProgress(PartSeconds expected, double share = 0.0, JobSeconds others = {})
+      : expected_(std::move(expected)), share_(share), others_(others) {}
 
   struct Seen {
     double share = 0.0;  // 0..1
@@ -29,8 +47,20 @@ class WholeProgress {
   Seen look(const Progress& progress);
 
  private:
-  PartSeconds expected_, before_;
-  double share_ = 0.0;
+  PartSeconds expected_;
+  double share_;
+  JobSeconds others_;
+};
+
+// While it lives, says how far a job is: every so often and once at the end, on a thread of its own. The
+// progress must outlive it.
+class ProgressWatch {
+ public:
+  ProgressWatch(const Progress& progress, WholeProgress whole, std::chrono::duration<double> every,
+                std::function<void(const WholeProgress::Seen&)> say);
+
+ private:
+  std::jthread thread_;
 };
 
 }  // namespace lambent::baker

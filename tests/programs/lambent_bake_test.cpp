@@ -112,6 +112,8 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   EXPECT_EQ(plan["effects"][3]["effect"], "neighborhood");
   EXPECT_EQ(plan["effects"][3]["baked"], false);
   EXPECT_FALSE(plan["effects"][0]["reason"].get<std::string>().empty());
+  for (const char* figure : {"samples", "rays", "seconds", "processorSeconds", "memoryBytes"})
+    EXPECT_GT(plan["estimate"][figure], 0.0) << figure;
   ASSERT_EQ(plan["groups"][0]["primitives"].size(), 3u) << "floor, box and sphere";
   const auto expectDecided = [](const json& decisions) {
     ASSERT_FALSE(decisions.empty());
@@ -119,8 +121,6 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
       const auto word = decision["decision"].get<std::string>();
       EXPECT_TRUE(word == "baked" || word == "leftOut" || word == "absent") << word;
       EXPECT_FALSE(decision["reason"].get<std::string>().empty()) << decision;
-      EXPECT_EQ(decision["saves"]["seconds"].is_null(), word != "absent")
-          << "without --quality nobody has rehearsed: " << decision;
     }
   };
   expectDecided(plan["groups"][0]["decisions"]);

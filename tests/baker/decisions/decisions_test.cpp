@@ -18,10 +18,10 @@ using testing::icosphere;
 using testing::sceneOf;
 
 // Returns the decisions about the only group of a scene.
-GroupDecisions decided(const Scene& scene, const BakeOptions& options = {}, const Estimates& estimates = {}) {
+GroupDecisions decided(const Scene& scene, const BakeOptions& options = {}) {
   const auto plan = planFor(scene, options);
   EXPECT_TRUE(plan);
-  return decisionsOf({scene, options, *plan, estimates}).at(0);
+  return decisionsOf({scene, options, *plan}).at(0);
 }
 
 const Decision& about(const std::vector<Decision>& decisions, const std::string& effect) {
@@ -101,24 +101,6 @@ TEST(Decisions, WriteSharesAsPeopleDo) {
   EXPECT_EQ(percentText(0.0), "0 %");
   EXPECT_EQ(percentText(2e-5, 3), "0.002 %");
   EXPECT_EQ(percentText(0.2, 0), "20 %");
-}
-
-TEST(Decisions, SayWhatTheySaveOnceTheBakeIsEstimated) {
-  const Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 3)});
-  EXPECT_FALSE(about(decided(scene).decisions, "shadows").saves.seconds) << "nobody has estimated";
-  Progress progress;
-  BakeOptions options{.quality = Quality::Draft};
-  const auto planned = estimateBake(scene, options, {progress});
-  options.effects = "all";
-  const auto all = estimateBake(scene, options, {progress});
-  ASSERT_TRUE(planned && all);
-  options.effects = "auto";
-  const Estimates estimates{&*planned, &*all};
-  const auto group = decided(scene, options, estimates).decisions;
-  EXPECT_GT(about(group, "shadows").saves.seconds.value_or(0.0), 0.0);
-  EXPECT_GT(savedByAll(estimates)->seconds.value_or(0.0), 0.0);
-  EXPECT_EQ(planned->rays, 0.0);
-  EXPECT_GT(all->rays, 0.0);
 }
 
 }  // namespace

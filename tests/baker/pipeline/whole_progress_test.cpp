@@ -47,7 +47,7 @@ TEST(WholeProgress, KnowsThatMuchIsLeftWhileAStageOfMoreBegins) {
 TEST(TimeLeft, FollowsRefinementFromItsBeginToItsEnd) {
   const PartSeconds expected = {{{"refinement", 10.0}}, {{"direct light", 20.0}}};
   const auto left = [&](std::uint64_t total, std::uint64_t done, double seconds) {
-    return secondsLeft(expected, {}, {}, {"refinement", "probes", total, done, seconds, seconds});
+    return jobSeconds(expected, {}, {"refinement", "probes", total, done, seconds}).left;
   };
   const double begin = left(1000, 0, 0.0), half = left(1000, 500, 5.0), end = left(1000, 1000, 10.0);
   EXPECT_GT(begin, half + 1.0);
@@ -60,7 +60,7 @@ TEST(TimeLeft, FollowsRefinementFromItsBeginToItsEnd) {
 TEST(TimeLeft, ExpectsOfLaterStagesWhatSamplesTookSoFar) {
   const PartSeconds expected = {{{"direct light", 10.0}, {"bounce 1", 3.0}, {"coding", 2.0}, {"proxy", 1.0}}};
   const auto left = [&](double seconds_of_half) {
-    return secondsLeft(expected, {}, {}, {"direct light", "samples", 100, 50, seconds_of_half, 0.0});
+    return jobSeconds(expected, {}, {"direct light", "samples", 100, 50, seconds_of_half}).left;
   };
   EXPECT_NEAR(left(5.0), 5.0 + 3.0 + 2.0 + 1.0, 1e-9);
   EXPECT_NEAR(left(20.0), 20.0 + 4.0 * (3.0 + 2.0) + 1.0, 2.0) << "there are four times as many samples";
@@ -72,25 +72,27 @@ TEST(TimeLeft, IsThatOfPartsToComeAndOfNoneThatAreOver) {
   const StageSeconds group = {{"direct light", 10.0}, {"coding", 10.0}};
   const PartSeconds expected = {{{"refinement", 10.0}}, group, group, {{"writing", 1.0}}};
   const auto stage = [](const char* name, double seconds, std::size_t part, std::uint64_t done) {
-    return Progress::Stage{name, "samples", 100, done, seconds, 0.0, part};
+    return Progress::Stage{name, "samples", 100, done, seconds, part};
   };
   std::vector<Progress::Stage> finished = {stage("refinement", 10.0, 0, 100),
                                            stage("direct light", 10.0, 1, 100)};
-  EXPECT_NEAR(secondsLeft(expected, {}, finished, stage("coding", 5.0, 1, 50)), 5.0 + 20.0 + 1.0, 1e-9);
+  EXPECT_NEAR(jobSeconds(expected, finished, stage("coding", 5.0, 1, 50)).left, 5.0 + 20.0 + 1.0, 1e-9);
   // The first group turns out not to be coded at all.
-  EXPECT_NEAR(secondsLeft(expected, {}, finished, stage("direct light", 5.0, 2, 50)), 5.0 + 10.0 + 1.0, 1e-9);
+  EXPECT_NEAR(jobSeconds(expected, finished, stage("direct light", 5.0, 2, 50)).left, 5.0 + 10.0 + 1.0, 1e-9);
   finished.push_back(stage("direct light", 10.0, 2, 100));
   finished.push_back(stage("coding", 3.0, 2, 100));
-  EXPECT_NEAR(secondsLeft(expected, {}, finished, stage("writing", 0.0, 3, 0)), 1.0, 1e-9);
+  EXPECT_NEAR(jobSeconds(expected, finished, stage("writing", 0.0, 3, 0)).left, 1.0, 1e-9);
 }
 
-TEST(TimeLeft, LearnsNothingFromWhatTheCacheHolds) {
+TEST(TimeLeft, LearnsFromWhatWasComputedAndNotFromWhatTheCacheHolds) {
   const PartSeconds expected = {{{"direct light", 10.0}, {"bounce 1", 3.0}}};
-  const Progress::Stage found{"direct light", "samples", 100, 100, 0.01, 0.01, 0, /*found=*/true};
-  const Progress::Stage now{"bounce 1", "samples", 100, 0, 0.0, 0.0};
-  EXPECT_NEAR(secondsLeft(expected, {}, std::vector{found}, now), 3.0, 1e-9);
-  // A run that was cut short says how long the kept part took.
-  EXPECT_NEAR(secondsLeft(expected, {{{"direct light", 20.0}}}, std::vector{found}, now), 6.0, 0.3);
+  Progress::Stage found{"direct light", "samples", 100, 100, 0.01, 0, /*found=*/true};
+  const Progress::Stage now{"bounce 1", "samples", 100};
+  EXPECT_NEAR(jobSeconds(expected, std::vector{found}, now).left, 3.0, 1e-9);
+  EXPECT_NEAR(jobSeconds(expected, std::vector{found}, now).spent, 10.0, 1e-9) << "as though computed";
+  found.found_units = 80, found.seconds = 4.0;  // 20 samples took 4 s, so all would take 20 s
+  EXPECT_NEAR(jobSeconds(expected, std::vector{found}, now).left, 6.0, 0.3);
+  EXPECT_NEAR(jobSeconds(expected, std::vector{found}, now).spent, 20.0, 1e-9);
 }
 
 TEST(WholeProgress, NeverFallsThoughRefinementTurnsOutLonger) {
@@ -113,18 +115,17 @@ TEST(WholeProgress, NeverFallsThoughRefinementTurnsOutLonger) {
 }
 
 TEST(WholeProgress, CountsWhatEarlierRunsKept) {
-  WholeProgress whole({{{"direct light", 30.0}, {"bounces", 10.0}}},
-                      {.share = 0.6, .spent = {{{"direct light", 24.0}}}});
+  WholeProgress whole({{{"direct light", 30.0}, {"bounces", 10.0}}}, /*share=*/0.6);
   Progress progress;
   progress.begin("plan");
   EXPECT_NEAR(whole.look(progress).share, 0.6, 0.01);
   EXPECT_NEAR(whole.look(progress).seconds_left, 16.0, 0.5);
-  // The stage finds 80 of its 100 samples at once, and its rate is that at which they were made.
+  // The stage finds 80 of its 100 samples at once, which says nothing about its rate.
   progress.begin("direct light", 100, "samples");
-  progress.add(80);
+  progress.found(80);
   const auto seen = whole.look(progress);
   EXPECT_NEAR(seen.share, 0.6, 0.01);
-  EXPECT_NEAR(seen.units_per_s, 80.0 / 24.0, 0.1);
+  EXPECT_EQ(seen.units_per_s, 0.0);
   EXPECT_NEAR(seen.seconds_left, 6.0 + 10.0, 0.5);
 }
 
