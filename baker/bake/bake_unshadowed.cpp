@@ -40,33 +40,20 @@ CodedTransfer openTransfer(int order, std::uint32_t outputs) {
   return codeTransfer(vector, 1, shape, {.bound = kBound});
 }
 
-// Adds a cell with one sample in the middle of the group.
-void addSample(BakedGroup& group, SampleKind kind, CodedTransfer transfer) {
-  const glm::vec3 center = group.light_probes.points.front();
-  const auto first = static_cast<std::uint32_t>(group.samples.positions.size());
-  group.samples.positions.push_back(center);
-  group.samples.cells.push_back({first, 1, center, center, kind});
-  group.light_probes.cells.push_back({{0}, {}});
-  group.cells.push_back({std::move(transfer)});
-}
-
+// Making BRDF tables takes longer than all else here, so glossy surfaces are diffuse until they exist.
 BakedGroup openSurfaces(const Scene& scene, const RigidGroup& group, const ShippedMeshes& meshes,
-                        bool with_glossy, const BakeOptions& options) {
+                        const BakeOptions& options) {
   BakedGroup baked;
-  baked.geometry = buildGroupGeometry(group, scene, meshes.decoded, with_glossy);
-  baked.light_probes.points = {0.5f * (baked.geometry.bounds_min + baked.geometry.bounds_max)};
-  // This sample belongs to no vertex: it says how many bands of light the group takes.
-  addSample(baked, SampleKind::Diffuse, openTransfer(options.order, 1));
+  baked.geometry = buildGroupGeometry(group, scene, meshes.decoded, /*with_glossy=*/false);
+  // A cell with one sample in the middle belongs to no vertex: it says how many bands of light the group
+  // takes.
+  const glm::vec3 center = 0.5f * (baked.geometry.bounds_min + baked.geometry.bounds_max);
+  baked.light_probes.points = {center};
+  baked.light_probes.cells.push_back({{0}, {}});
+  baked.samples.positions.push_back(center);
+  baked.samples.cells.push_back({0, 1, center, center, SampleKind::Diffuse});
+  baked.cells.push_back({openTransfer(options.order, 1)});
   baked.samples.vertex_sample.assign(baked.geometry.positions.size(), kNoSample);
-  for (const DrawGeometry& draw : baked.geometry.draws) {
-    if (draw.kind != SampleKind::Glossy) continue;
-    if (baked.samples.size() == 1)
-      addSample(baked, SampleKind::Glossy,
-                openTransfer(options.order,
-                             static_cast<std::uint32_t>(options.glossy_order * options.glossy_order)));
-    const auto first = baked.samples.vertex_sample.begin() + static_cast<std::ptrdiff_t>(draw.first_vertex);
-    std::fill(first, first + static_cast<std::ptrdiff_t>(draw.vertex_count), 1u);
-  }
   return baked;
 }
 
@@ -92,7 +79,6 @@ Result<BakeReport> bakeUnshadowedOnTheseThreads(const Scene& scene, const BakeOp
   context.progress.begin("plan");
   const auto plan = planFor(scene, options);
   if (!plan) return failAgain(plan.error());
-  // Making BRDF tables takes longer than all else here, so glossy surfaces are diffuse until they exist.
   const BrdfTables tables;
   auto split = splitMeshes(scene, plan->groups, options.max_edge_m);
   if (!split) return failAgain(split.error());
@@ -102,9 +88,8 @@ Result<BakeReport> bakeUnshadowedOnTheseThreads(const Scene& scene, const BakeOp
   context.progress.begin("writing");
   std::vector<BakedGroup> baked;
   for (const RigidGroup& group : plan->groups) {
-    baked.push_back(group.volume >= 0
-                        ? openVolume(scene, group, options)
-                        : openSurfaces(scene, group, *meshes, !tables.entries.empty(), options));
+    baked.push_back(group.volume >= 0 ? openVolume(scene, group, options)
+                                      : openSurfaces(scene, group, *meshes, options));
     report.vertices += baked.back().geometry.positions.size();
     report.triangles += baked.back().geometry.triangles.size();
   }

@@ -12,7 +12,7 @@
 
 namespace lambent::baker {
 
-// Uses only the orders, the effects and the longest edge of the options. Errors: those of bake().
+// Uses only the order, the effects and the longest edge of the options. Errors: those of bake().
 Result<BakeReport> bakeUnshadowed(const Scene& scene, const BakeOptions& options,
                                   const std::filesystem::path& output, const BakeContext& context);
 
