@@ -107,7 +107,7 @@ ProgressLine::ProgressLine(const Progress& progress, WholeProgress seen_as, cons
     std::fflush(stderr);
   };
   if (json) print(seen_as.look(progress));  // so that a program learns at once what is baked
-  watch_.emplace(progress, std::move(seen_as), every, print);
+  watch_.emplace(progress, std::move(seen_as), every, print, /*at_end=*/false);
 }
 
 ProgressLine::~ProgressLine() {

@@ -52,12 +52,12 @@ class WholeProgress {
   JobSeconds others_;
 };
 
-// While it lives, says how far a job is: every so often and once at the end, on a thread of its own. The
-// progress must outlive it.
+// While it lives, says how far a job is: every so often and, if wanted, once at the end, on a thread of its
+// own. The progress must outlive it.
 class ProgressWatch {
  public:
   ProgressWatch(const Progress& progress, WholeProgress whole, std::chrono::duration<double> every,
-                std::function<void(const WholeProgress::Seen&)> say);
+                std::function<void(const WholeProgress::Seen&)> say, bool at_end = true);
 
  private:
   std::jthread thread_;
