@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
-#include "baker/compress/coding_state.hpp"
 #include "baker/compress/cpca_clusters.hpp"
 #include "baker/compress/cpca_quantize.hpp"
 #include "baker/compress/cpca_space.hpp"
@@ -110,16 +110,14 @@ std::size_t expandedBytes(const std::vector<Cluster>& clusters, const transfer::
   return vectors * shape.size() * sizeof(float);
 }
 
-// Codes one transfer step by step. The state after each step is all that another run needs to go on.
 class Coder {
  public:
   Coder(std::span<const float> vectors, const transfer::TransferShape& shape, const CodingSettings& settings,
-        const BakeContext& context)
+        std::stop_token stop)
       : vectors_(vectors),
         shape_(shape),
         settings_(settings),
-        stop_(context.stop),
-        checkpoint_(context),
+        stop_(std::move(stop)),
         count_(vectors.size() / shape.size()),
         space_(weightedSpace(vectors, shape, settings.shown_energy, settings.kernel_power)),
         importance_(
@@ -130,50 +128,31 @@ class Coder {
   }
 
   CodedTransfer code() {
-    const bool goes_on = checkpoint_.restore(count_, state_);
-    if (!goes_on) findBasis();
-    if (state_.basis.basis_scales.empty()) return dark();
-    if (goes_on ? stop_.stop_requested() : stopped()) return {};
-    points_ = coordinates(vectors_, space_.roots, state_.basis);
+    findBasis();
+    if (basis_.basis_scales.empty()) return dark();
+    if (stopped()) return {};
+    points_ = coordinates(vectors_, space_.roots, basis_);
     for (;;) {
-      if (state_.step == CodingState::Step::Search && !searchAndAssign()) return {};
-      auto found = refine(points_, settings_.axes, kFinalRounds, /*held_out=*/false, importance_);
+      auto few = settings_.clusters > 0 ? fromSome(settings_.clusters, settings_.axes) : search();
+      if (!few) return {};
+      ClusterIds ids = assignClusters(points_, few->clusters, few->step, {}, importance_);
+      auto found =
+          refine(points_, std::move(ids), settings_.axes, kFinalRounds, /*held_out=*/false, importance_);
       if (!found) return {};
       const bool fewer = settings_.clusters == 0 && found->clusters.size() > 1;
-      if (state_.step == CodingState::Step::Fit || !fewer || fits(*found)) {
-        if (state_.step != CodingState::Step::Fit && !beginFit(found->step)) return {};
+      if (!fewer || fits(*found)) {
         const auto fitted = fitToBound(*found);
         if (!fitted) return {};
-        if (*fitted || !fewer) return std::move(state_.coded);
+        if (*fitted || !fewer) return std::move(coded_);
       }
       // The estimate from some of the samples, or for the bound, was too small: try with half as many
       // clusters.
-      state_.most_clusters = static_cast<std::uint32_t>(found->clusters.size() / 2);
-      beginSearch();
+      most_clusters_ = static_cast<std::uint32_t>(found->clusters.size() / 2);
     }
   }
 
  private:
-  // Saves the state after a step of the work if that is due. Returns true if the work is to end here.
-  bool stopped() {
-    const bool stop = stop_.stop_requested();
-    checkpoint_.save(state_, stop);
-    return stop;
-  }
-  void beginSearch() {
-    state_.step = CodingState::Step::Search;
-    state_.tried = 0;
-    state_.fewest_bytes = std::numeric_limits<double>::infinity();
-    state_.best = state_.rounds = {};
-    state_.coded = {};
-  }
-  // Returns false if stopped.
-  bool beginFit(double step) {
-    state_.step = CodingState::Step::Fit;
-    state_.attempt = 0;
-    state_.quantum = step;
-    return !stopped();
-  }
+  bool stopped() const { return stop_.stop_requested(); }
   bool fits(const Clustering& one) const {
     return expandedBytes(one.clusters, shape_) <= settings_.most_expanded_bytes;
   }
@@ -184,13 +163,12 @@ class Coder {
 
   void findBasis();
   CodedTransfer dark() const;
-  // Runs iterative PCA, which fits and moves samples in turn, from state_.rounds on. Returns nothing if
-  // stopped.
-  std::optional<Clustering> refine(const Points& points, int axes, std::uint32_t rounds, bool held_out,
-                                   Importance importance);
+  // Runs rounds of iterative PCA, which fits and moves samples in turn. Returns nothing if stopped.
+  std::optional<Clustering> refine(const Points& points, ClusterIds ids, int axes, int rounds, bool held_out,
+                                   Importance importance) const;
   Clustering fitted(const Points& points, ClusterIds ids, int axes, bool held_out,
                     Importance importance) const;
-  std::optional<Clustering> fromSome(std::uint32_t clusters, int axes);
+  std::optional<Clustering> fromSome(std::uint32_t clusters, int axes) const;
   std::vector<std::uint32_t> searchedSamples(std::uint32_t clusters) const {
     return someSamples(count_, std::max(kLeastSearched, kSearchedPerCluster * clusters));
   }
@@ -199,12 +177,10 @@ class Coder {
     for (const std::uint32_t s : samples) out.push_back(importance_[s]);
     return out;
   }
-  std::optional<Clustering> search();
-  // Assigns all samples to clusters that were found from some of them. Returns false if stopped.
-  bool searchAndAssign();
-  // Quantizes at the step of this attempt.
-  CodedTransfer coded(const Clustering& found) const;
-  // Leaves the best codes in state_.coded. Returns false if the memory for means and axes ran out before the
+  std::optional<Clustering> search() const;
+  // Quantizes with this step.
+  CodedTransfer coded(const Clustering& found, double step) const;
+  // Leaves the best codes in coded_. Returns false if the memory for means and axes ran out before the
   // bound was reached, and nothing if stopped.
   std::optional<bool> fitToBound(Clustering& found);
 
@@ -212,13 +188,15 @@ class Coder {
   const transfer::TransferShape& shape_;
   const CodingSettings& settings_;
   std::stop_token stop_;
-  CodingCheckpoint checkpoint_;
   std::size_t count_;
   WeightedSpace space_;
   std::vector<float> importance_;
   double least_bits_, allowed_ = 0.0;
   Points points_;
-  CodingState state_;
+  transfer::SharedCodebook basis_;
+  double reachable_ = 0.0, budget_ = 0.0;  // mean square errors
+  std::uint32_t most_clusters_ = std::numeric_limits<std::uint32_t>::max();
+  CodedTransfer coded_;  // the best so far
 };
 
 // Finds a basis for the cell: all principal components but those that hardly matter.
@@ -232,25 +210,24 @@ void Coder::findBasis() {
     some.col(static_cast<Eigen::Index>(s)) *= std::sqrt(importance_[looked[s]]);
   Spectrum spectrum = leadingSpectrum(some, kTailShare * allowed_, settings_.most_components, left_out);
   // If the components that were looked for leave out more than is allowed, the rest is coded to match.
-  state_.reachable = std::max(allowed_, kBesideLeftOut * left_out);
+  reachable_ = std::max(allowed_, kBesideLeftOut * left_out);
   const double looseness = double{settings_.loose_bound} / double{settings_.bound};
   double tail_allowed = kTailShare * allowed_;
-  if (const double loose = looseness * looseness * allowed_; loose > allowed_ && state_.reachable > loose) {
+  if (const double loose = looseness * looseness * allowed_; loose > allowed_ && reachable_ > loose) {
     tail_allowed = kTailShare * loose;
     spectrum = leadingSpectrum(some, tail_allowed, kAllComponents, left_out);
-    state_.reachable = std::max(loose, kBesideLeftOut * left_out);
+    reachable_ = std::max(loose, kBesideLeftOut * left_out);
   }
-  state_.budget = 0.9 * (state_.reachable - left_out);  // the rest is for rounding of basis, means and axes
+  budget_ = 0.9 * (reachable_ - left_out);  // the rest is for rounding of basis, means and axes
   Eigen::Index rank = spectrum.variances.size();
   for (double tail = left_out; rank > 0 && (tail += spectrum.variances(rank - 1)) <= left_out + tail_allowed;)
     --rank;
-  const double step = std::sqrt(12.0 * state_.budget / static_cast<double>(std::max<Eigen::Index>(rank, 1)));
-  state_.basis = roundedBasis(spectrum.axes.leftCols(rank), spectrum.variances, space_.roots, step);
-  beginSearch();
+  const double step = std::sqrt(12.0 * budget_ / static_cast<double>(std::max<Eigen::Index>(rank, 1)));
+  basis_ = roundedBasis(spectrum.axes.leftCols(rank), spectrum.variances, space_.roots, step);
 }
 
 CodedTransfer Coder::dark() const {
-  CodedTransfer coded{shape_, state_.basis, std::vector<std::uint32_t>(count_, 0), {}, 0.0f};
+  CodedTransfer coded{shape_, basis_, std::vector<std::uint32_t>(count_, 0), {}, 0.0f};
   coded.codebook.axis_counts = {0};
   coded.error = static_cast<float>(errorOf(coded));
   return coded;
@@ -260,70 +237,52 @@ Clustering Coder::fitted(const Points& points, ClusterIds ids, int axes, bool he
                          Importance importance) const {
   Clustering found{std::move(ids), {}, 0.0};
   found.clusters = fitClusters(points, found.ids, held_out, importance, least_bits_);
-  found.step = stepFor(found.clusters, state_.budget);
+  found.step = stepFor(found.clusters, budget_);
   if (axes >= 0) keepSoMany(found.clusters, axes);
   return found;
 }
 
-std::optional<Clustering> Coder::refine(const Points& points, int axes, std::uint32_t rounds, bool held_out,
-                                        Importance importance) {
-  Rounds& at = state_.rounds;
-  for (;;) {
-    Clustering found = fitted(points, at.ids, axes, held_out, importance);
-    if (at.next >= rounds || found.clusters.size() == 1) {
-      at = {found.ids, rounds};
-      return found;
-    }
-    at = {assignClusters(points, found.clusters, found.step, found.ids, importance), at.next + 1};
+std::optional<Clustering> Coder::refine(const Points& points, ClusterIds ids, int axes, int rounds,
+                                        bool held_out, Importance importance) const {
+  for (int round = 0;; ++round) {
+    Clustering found = fitted(points, std::move(ids), axes, held_out, importance);
+    if (round >= rounds || found.clusters.size() == 1) return found;
+    ids = assignClusters(points, found.clusters, found.step, found.ids, importance);
     if (stopped()) return std::nullopt;
   }
 }
 
-std::optional<Clustering> Coder::fromSome(std::uint32_t clusters, int axes) {
+std::optional<Clustering> Coder::fromSome(std::uint32_t clusters, int axes) const {
   const auto some = searchedSamples(clusters);
   const Points searched = columnsOf(points_, some);
   const std::vector<float> counts = importanceOf(some);
-  if (state_.rounds.ids.empty()) state_.rounds = {seedClusters(searched, clusters, counts), 0};
-  return refine(searched, axes, kSearchRounds, some.size() < count_, counts);
+  return refine(searched, seedClusters(searched, clusters, counts), axes, kSearchRounds, some.size() < count_,
+                counts);
 }
 
 // Finds the number of clusters that codes to the fewest bytes, by estimates from some of the samples.
-std::optional<Clustering> Coder::search() {
+std::optional<Clustering> Coder::search() const {
   Clustering best;
-  if (!state_.best.ids.empty()) {
-    const auto some = searchedSamples(kClusterCounts[state_.tried - 1]);
-    best = fitted(columnsOf(points_, some), state_.best.ids, -1, some.size() < count_, importanceOf(some));
-  }
-  for (; state_.tried < std::size(kClusterCounts); ++state_.tried, state_.rounds = {}) {
-    const std::uint32_t clusters = kClusterCounts[state_.tried];
-    if (clusters > state_.most_clusters) break;
+  double fewest_bytes = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t clusters : kClusterCounts) {
+    if (clusters > most_clusters_) break;
     auto tried = fromSome(clusters, -1);
     if (!tried) return std::nullopt;
     if (clusters > 1 && !fits(*tried)) break;
     const double bytes = expectedBytes(tried->clusters, tried->step, static_cast<double>(count_));
-    if (bytes >= state_.fewest_bytes) break;
-    state_.fewest_bytes = bytes;
-    state_.best = state_.rounds;
+    if (bytes >= fewest_bytes) break;
+    fewest_bytes = bytes;
     best = std::move(*tried);
   }
   return best;
 }
 
-bool Coder::searchAndAssign() {
-  const auto few = settings_.clusters > 0 ? fromSome(settings_.clusters, settings_.axes) : search();
-  if (!few) return false;
-  state_.rounds = {assignClusters(points_, few->clusters, few->step, {}, importance_), 0};
-  state_.step = CodingState::Step::Refine;
-  return !stopped();
-}
-
 // A sample next to a lamp may share a cluster with dark ones, of which it is a ten-thousandth in number and
 // ten thousand times as bright. Codes of 16 bits do not span the weights of both, so such a cluster is cut in
-// two, as often as it takes. Only the codes know of it: `found` stays as it is, since a later run goes on
-// from it.
-CodedTransfer Coder::coded(const Clustering& found) const {
+// two, as often as it takes.
+CodedTransfer Coder::coded(const Clustering& found, double step) const {
   const auto quantized = [&](const ClusterIds& ids, const std::vector<Cluster>& clusters) {
-    return quantize(points_, ids, clusters, state_.basis, shape_, state_.quantum);
+    return quantize(points_, ids, clusters, basis_, shape_, step);
   };
   Quantized all = quantized(found.ids, found.clusters);
   const bool fixed = settings_.clusters > 0 || settings_.axes >= 0;
@@ -332,7 +291,7 @@ CodedTransfer Coder::coded(const Clustering& found) const {
   for (int i = 0; i < kMostCuts && !all.wide.empty(); ++i) {
     for (const WideAxis& wide : all.wide) splitAlong(points_, cut.ids, cut.clusters, wide.cluster, wide.axis);
     cut.clusters = fitClusters(points_, cut.ids, /*held_out=*/false, importance_, least_bits_);
-    keepAxes(cut.clusters, state_.quantum);
+    keepAxes(cut.clusters, step);
     if (!fits(cut)) break;
     all = quantized(cut.ids, cut.clusters);
   }
@@ -342,17 +301,18 @@ CodedTransfer Coder::coded(const Clustering& found) const {
 // Steps were planned from expected errors and bits. This measures the errors and makes the step as large as
 // the bound allows.
 std::optional<bool> Coder::fitToBound(Clustering& found) {
-  const double bound = double{settings_.bound} * std::sqrt(state_.reachable / allowed_);
-  CodedTransfer& best = state_.coded;
-  while (state_.attempt < kMostAttempts) {
-    if (settings_.axes < 0) keepAxes(found.clusters, state_.quantum);
-    if (state_.attempt > 0 && !fits(found)) return double{best.error} <= bound;
-    CodedTransfer tried = coded(found);
+  const double bound = double{settings_.bound} * std::sqrt(reachable_ / allowed_);
+  CodedTransfer& best = coded_ = {};
+  double step = found.step;
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    if (settings_.axes < 0) keepAxes(found.clusters, step);
+    if (attempt > 0 && !fits(found)) return double{best.error} <= bound;
+    CodedTransfer tried = coded(found, step);
     tried.error = static_cast<float>(errorOf(tried));
     const float error = tried.error;
     const bool met = double{error} <= bound, met_before = double{best.error} <= bound;
     // Among codes that keep the bound, the larger error is the smaller code.
-    if (state_.attempt == 0 || (met ? !met_before || error > best.error : error < best.error))
+    if (attempt == 0 || (met ? !met_before || error > best.error : error < best.error))
       best = std::move(tried);
     if (settings_.axes >= 0) break;  // no step makes up for axes that were left out
     if (met && double{best.error} > 0.98 * bound) break;
@@ -361,9 +321,8 @@ std::optional<bool> Coder::fitToBound(Clustering& found) {
     // The rest has to make up for it, so the step goes down by the square of the ratio, and by more where
     // that has not sufficed.
     const double ratio = 0.995 * bound / std::max(double{error}, 1e-12);
-    const double power = met ? 1.0 : state_.attempt < 2 ? 2.0 : std::exp2(state_.attempt);
-    state_.quantum *= std::clamp(std::pow(ratio, power), 0.3, 1.5);
-    ++state_.attempt;
+    const double power = met ? 1.0 : attempt < 2 ? 2.0 : std::exp2(attempt);
+    step *= std::clamp(std::pow(ratio, power), 0.3, 1.5);
     if (stopped()) return std::nullopt;
   }
   return true;
@@ -382,17 +341,11 @@ std::vector<float> decodeTransfer(const CodedTransfer& coded) {
   return vectors;
 }
 
-CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
-                           const transfer::TransferShape& shape, const CodingSettings& settings) {
-  Progress progress;  // nobody looks at it
-  return codeTransfer(vectors, count, shape, settings, BakeContext{progress});
-}
-
 CodedTransfer codeTransfer(std::span<const float> vectors, [[maybe_unused]] std::size_t count,
                            const transfer::TransferShape& shape, const CodingSettings& settings,
-                           const BakeContext& context) {
+                           std::stop_token stop) {
   assert(count > 0 && vectors.size() == count * shape.size() && settings.bound > 0.0f);
-  return Coder(vectors, shape, settings, context).code();
+  return Coder(vectors, shape, settings, std::move(stop)).code();
 }
 
 }  // namespace lambent::baker

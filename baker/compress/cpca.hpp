@@ -18,10 +18,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "baker/compress/light_weights.hpp"
-#include "baker/jobs/bake_context.hpp"
 #include "runtime/transfer/codebook.hpp"
 
 namespace lambent::baker {
@@ -71,16 +71,10 @@ struct CodingSettings {
 double transferEnergy(std::span<const float> vectors, const transfer::TransferShape& shape,
                       const BandPower& kernel_power = kLobePower);
 
-// vectors: `count` times shape.size() values, count > 0; all finite.
-CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
-                           const transfer::TransferShape& shape, const CodingSettings& settings);
-// Does the same, but stops early, with an unusable result, when asked to. The key of the context covers all
-// of the above. The progress of the work is kept under it when a checkpoint is due and when it is stopped,
-// and the next call continues from there. It stays until CodingCheckpoint::drop (coding_state.hpp);
-// kept_transfer.hpp does all that.
+// vectors: `count` times shape.size() values, count > 0; all finite. The result is unusable if stopped.
 CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const transfer::TransferShape& shape, const CodingSettings& settings,
-                           const BakeContext& context);
+                           std::stop_token stop = {});
 
 // Returns the vectors that the codes hold, coded.shape.size() values per sample.
 std::vector<float> decodeTransfer(const CodedTransfer& coded);

@@ -1,6 +1,5 @@
 #include "baker/compress/kept_transfer.hpp"
 
-#include "baker/compress/coding_state.hpp"
 #include "baker/jobs/kept_value.hpp"
 
 namespace lambent::baker {
@@ -69,11 +68,10 @@ CodedTransfer CachedCoding::code(std::span<const float> vectors, std::size_t cou
   }
   const BakeContext own = context_.keyed(key);
   CodedTransfer coded;
-  const auto found = findOrMake(own, coded, [&] {
-    coded = codeTransfer(vectors, count, shape, settings, own);
+  findOrMake(own, coded, [&] {
+    coded = codeTransfer(vectors, count, shape, settings, own.stop);
     return !own.stopped();
   });
-  if (found == false) CodingCheckpoint(own).drop();  // made, and kept as a whole
   return coded;
 }
 

@@ -1,6 +1,5 @@
-// Stores coded transfer as bytes in the cache (baker/cache), so that coding may be cut short anywhere: the
-// next run of the same work finds what was coded, and goes on from the last checkpoint of what was being
-// coded.
+// Stores coded transfer as bytes in the cache (baker/cache): after a bake that was cut short, the next run
+// finds the transfers that were coded.
 #pragma once
 
 #include <span>
@@ -9,6 +8,7 @@
 #include "baker/cache/bytes.hpp"
 #include "baker/compress/baked_grids.hpp"
 #include "baker/compress/cpca.hpp"
+#include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
 

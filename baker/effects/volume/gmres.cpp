@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "baker/effects/volume/gmres_checkpoint.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/jobs/parallel.hpp"
 
@@ -71,55 +70,84 @@ ColumnSums normalize(std::span<float> v) {
   return length;
 }
 
+// LeastSquares is the least-squares problem of one column, solved by Givens rotations.
+struct LeastSquares {
+  std::vector<std::vector<double>> h;  // columns of the triangular matrix
+  std::vector<double> cosine, sine, g;
+
+  explicit LeastSquares(double length = 0.0) : g(1, length) {}
+  void add(std::vector<double> column);
+  std::vector<double> solve() const;
+};
+
+void LeastSquares::add(std::vector<double> column) {
+  const std::size_t j = h.size();
+  for (std::size_t i = 0; i < j; ++i) {
+    const double a = column[i], b = column[i + 1];
+    column[i] = cosine[i] * a + sine[i] * b;
+    column[i + 1] = cosine[i] * b - sine[i] * a;
+  }
+  const double r = std::hypot(column[j], column[j + 1]);
+  cosine.push_back(r > 0.0 ? column[j] / r : 1.0);
+  sine.push_back(r > 0.0 ? column[j + 1] / r : 0.0);
+  column[j] = r;
+  g.push_back(-sine[j] * g[j]);
+  g[j] *= cosine[j];
+  h.push_back(std::move(column));
+}
+
+std::vector<double> LeastSquares::solve() const {
+  std::vector<double> y(h.size(), 0.0);
+  for (std::size_t i = h.size(); i-- > 0;) {
+    double sum = g[i];
+    for (std::size_t j = i + 1; j < h.size(); ++j) sum -= h[j][i] * y[j];
+    y[i] = h[i][i] > 1e-30 ? sum / h[i][i] : 0.0;
+  }
+  return y;
+}
+
 }  // namespace
 
 GmresResult solveGmres(std::span<const float> b, std::span<float> x,
                        const std::function<bool(std::span<const float>, std::span<float>)>& apply,
-                       const GmresSettings& settings, const BakeContext& context) {
+                       const GmresSettings& settings) {
   const std::size_t rows = b.size() / kBlockColumns;
   const double wanted = lengthOf(dots(b, b));
   if (wanted == 0.0) {
     std::fill(x.begin(), x.end(), 0.0f);
     return {};
   }
-  GmresCheckpoints checkpoints(context, settings.restart);
-  GmresState state;
-  checkpoints.restore(state, x);
-  std::vector<Vector>& basis = state.basis;
-  const auto stopped = [&] {
-    checkpoints.save(state, x);
-    return GmresResult{state.iterations, state.residual, true};
+  GmresResult result;
+  const auto applied = [&](std::span<const float> from, std::span<float> to) {
+    ++result.iterations;
+    result.stopped = !apply(from, to);
+    return !result.stopped;
   };
+  double before = 0.0;  // residual of the previous round; 0: none
   Vector image(b.size());
   while (true) {
-    if (basis.empty()) {
-      // The residual is r = b - (x - G x).
-      if (!apply(x, image)) return stopped();
-      ++state.iterations;
-      basis.assign(1, Vector(b.size()));
-      overRows(rows, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin * kBlockColumns; i < end * kBlockColumns; ++i)
-          basis[0][i] = b[i] - x[i] + image[i];
-      });
-      const ColumnSums length = normalize(basis[0]);
-      ColumnSums squares;
-      for (std::size_t c = 0; c < kBlockColumns; ++c)
-        state.small[c].begin(length[c]), squares[c] = length[c] * length[c];
-      state.residual = lengthOf(squares) / wanted;
-      // Rounding sets a floor: a residual that a whole round hardly improves will not get better.
-      const bool stuck = state.before > 0.0 && state.residual > 0.7 * state.before && state.residual < 1e-3;
-      if (state.residual <= settings.tolerance || state.iterations >= settings.most_iterations || stuck) {
-        checkpoints.drop(state.round);
-        return {state.iterations, state.residual, false};
-      }
-      state.before = state.residual;
-    }
+    // The residual is r = b - (x - G x).
+    if (!applied(x, image)) return result;
+    std::vector<Vector> basis(1, Vector(b.size()));
+    overRows(rows, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin * kBlockColumns; i < end * kBlockColumns; ++i)
+        basis[0][i] = b[i] - x[i] + image[i];
+    });
+    const ColumnSums length = normalize(basis[0]);
+    ColumnSums squares;
+    std::array<LeastSquares, kBlockColumns> small;
+    for (std::size_t c = 0; c < kBlockColumns; ++c)
+      small[c] = LeastSquares(length[c]), squares[c] = length[c] * length[c];
+    result.residual = lengthOf(squares) / wanted;
+    // Rounding sets a floor: a residual that a whole round hardly improves will not get better.
+    const bool stuck = before > 0.0 && result.residual > 0.7 * before && result.residual < 1e-3;
+    if (result.residual <= settings.tolerance || result.iterations >= settings.most_iterations || stuck)
+      return result;
+    before = result.residual;
 
-    for (auto j = static_cast<int>(basis.size()) - 1;
-         j < settings.restart && state.iterations < settings.most_iterations; ++j) {
+    for (int j = 0; j < settings.restart && result.iterations < settings.most_iterations; ++j) {
       const Vector& v = basis.back();
-      if (!apply(v, image)) return stopped();
-      ++state.iterations;
+      if (!applied(v, image)) return result;
       Vector next(b.size());
       overRows(rows, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin * kBlockColumns; i < end * kBlockColumns; ++i) next[i] = v[i] - image[i];
@@ -134,24 +162,19 @@ GmresResult solveGmres(std::span<const float> b, std::span<float> x,
       double left = 0.0;
       for (std::size_t c = 0; c < kBlockColumns; ++c) {
         column[c].push_back(last[c]);
-        state.small[c].add(std::move(column[c]));
-        left += state.small[c].g.back() * state.small[c].g.back();
+        small[c].add(std::move(column[c]));
+        left += small[c].g.back() * small[c].g.back();
       }
       basis.push_back(std::move(next));
       if (std::sqrt(left) <= settings.tolerance * wanted) break;
-      checkpoints.saveIfDue(state, x);
     }
     std::array<std::vector<double>, kBlockColumns> y;
-    for (std::size_t c = 0; c < kBlockColumns; ++c) y[c] = state.small[c].solve();
+    for (std::size_t c = 0; c < kBlockColumns; ++c) y[c] = small[c].solve();
     for (std::size_t j = 0; j < y[0].size(); ++j) {
       ColumnSums factor;
       for (std::size_t c = 0; c < kBlockColumns; ++c) factor[c] = y[c][j];
       addColumns(x, basis[j], factor);
     }
-    basis.clear();
-    state.small = {};
-    ++state.round;
-    checkpoints.saveIfDue(state, x);
   }
 }
 

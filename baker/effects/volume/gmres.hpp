@@ -1,7 +1,6 @@
 // Solves linear systems x = G x + b for many right-hand sides at once, each column by itself, by restarted
 // GMRES (Saad and Schultz 1986). Rows are unknowns, with kBlockColumns columns side by side. Sums run in a
-// fixed order, so the result is the same for any number of threads. With a cache, the state of long runs is
-// kept, and a later run continues from there with the same result.
+// fixed order, so the result is the same for any number of threads.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +9,6 @@
 #include <vector>
 
 #include "baker/cache/bytes.hpp"
-#include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
 
@@ -27,10 +25,10 @@ struct GmresResult {
 };
 
 // apply(x, y) computes y = G x and returns false if stopped. `x` is the first guess on entry and the solution
-// on return. The key of the context covers b, G and the settings; checkpoints are kept under it.
+// on return.
 GmresResult solveGmres(std::span<const float> b, std::span<float> x,
                        const std::function<bool(std::span<const float>, std::span<float>)>& apply,
-                       const GmresSettings& settings, const BakeContext& context);
+                       const GmresSettings& settings);
 
 // A SolvedBlock is a block of columns with its solution. It is kept as soon as it is solved, since the next
 // block may take long, too.

@@ -26,11 +26,10 @@ constexpr std::uint64_t kSolverBytes = std::uint64_t{1} << 30, kLeastKept = 6, k
 // leaves each sample.
 class PhasedSystem {
  public:
-  // The key of the context is that of the block.
-  PhasedSystem(PhaseScattering& scattering, double albedo, const BakeContext& context)
+  PhasedSystem(PhaseScattering& scattering, double albedo, std::stop_token stop)
       : scattering_(scattering),
         albedo_(albedo),
-        context_(context),
+        stop_(std::move(stop)),
         scale_(scattering.samples() * scattering.outputs()) {
     const std::size_t n = scattering.outputs();
     for (std::size_t p = 0; p < scattering.samples(); ++p)
@@ -52,7 +51,7 @@ class PhasedSystem {
     return solveGmres(
         right, result,
         [&](std::span<const float> x, std::span<float> y) {
-          if (!scattering_.apply(x, y, context_.stop)) return false;
+          if (!scattering_.apply(x, y, stop_)) return false;
           const std::size_t n = scattering_.outputs();
           parallelRanges(scale_.size(), kScatteredPerRange * n, {}, [&](std::size_t begin, std::size_t end) {
             for (std::size_t row = begin; row < end; ++row) {
@@ -63,7 +62,7 @@ class PhasedSystem {
           });
           return true;
         },
-        {.tolerance = kScatteringTolerance, .restart = kept_vectors_}, context_);
+        {.tolerance = kScatteringTolerance, .restart = kept_vectors_});
   }
 
   // Computes so many scatterings one after the other.
@@ -72,7 +71,7 @@ class PhasedSystem {
     std::vector<float> change(first.size());
     const std::size_t n = scattering_.outputs();
     for (int k = 0; k < times; ++k) {
-      if (!scattering_.apply(result, change, context_.stop)) return {k, 0.0, true};
+      if (!scattering_.apply(result, change, stop_)) return {k, 0.0, true};
       for (std::size_t i = 0; i < first.size(); ++i) {
         const double goes_on = scattering_.factor(i / kBlockColumns % n);
         result[i] = static_cast<float>(double{first[i]} +
@@ -85,7 +84,7 @@ class PhasedSystem {
  private:
   PhaseScattering& scattering_;
   double albedo_;
-  BakeContext context_;
+  std::stop_token stop_;
   std::vector<double> scale_;
   int kept_vectors_ = 0;
 };
@@ -121,9 +120,7 @@ bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, co
   out.rays += scattering->samplesTraced() * few.size();
   out.rays_kept += (samples - scattering->samplesTraced()) * few.size();
   out.row_bytes = scattering->bytes();
-  const auto system = [&](double albedo, const BakeContext& block) {
-    return PhasedSystem(*scattering, albedo, block);
-  };
+  const auto system = [&](double albedo) { return PhasedSystem(*scattering, albedo, context.stop); };
   return scatterLight(system, settings, out, context);
 }
 

@@ -35,7 +35,7 @@ bool scatterLight(const Make& make, const VolumeSettings& settings, VolumeTransf
     for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
       const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
       const BakeContext block_context = context.part("block", begin, channel);
-      auto system = make(albedo, block_context);
+      auto system = make(albedo);
       SolvedBlock solved{{}, result};
       const auto found = findOrMake(block_context.part("solved"), solved, [&] {
         solved.result = settings.scatterings < 0 ? system.solve(first, result)

@@ -58,12 +58,11 @@ std::optional<FirstLights> lightIn(const VolumeScene& scene, const SphereTable& 
 // [sample][kBlockColumns].
 class Scattering {
  public:
-  // The key of the context is that of the block.
   Scattering(const ScatterRows& rows, const TransferGrid& grid, const FirstLights& light, double albedo,
-             const BakeContext& context)
+             std::stop_token stop)
       : rows_(rows),
         albedo_(albedo),
-        context_(context),
+        stop_(std::move(stop)),
         nodes_(grid.nodes() * kBlockColumns),
         scale_(rows.samples()) {
     for (std::size_t p = 0; p < scale_.size(); ++p) {
@@ -78,16 +77,15 @@ class Scattering {
     for (std::size_t i = 0; i < first.size(); ++i)
       right[i] = static_cast<float>(double{first[i]} * scale_[i / kBlockColumns]);
     std::copy(right.begin(), right.end(), result.begin());
-    return solveGmres(
-        right, result,
-        [&](std::span<const float> x, std::span<float> y) {
-          std::copy(x.begin(), x.end(), nodes_.begin());
-          if (!rows_.apply(nodes_, y, context_.stop)) return false;
-          for (std::size_t i = 0; i < y.size(); ++i)
-            y[i] = static_cast<float>(albedo_ * scale_[i / kBlockColumns] * double{y[i]});
-          return true;
-        },
-        {.tolerance = kScatteringTolerance}, context_);
+    return solveGmres(right, result,
+                      [&](std::span<const float> x, std::span<float> y) {
+                        std::copy(x.begin(), x.end(), nodes_.begin());
+                        if (!rows_.apply(nodes_, y, stop_)) return false;
+                        for (std::size_t i = 0; i < y.size(); ++i)
+                          y[i] = static_cast<float>(albedo_ * scale_[i / kBlockColumns] * double{y[i]});
+                        return true;
+                      },
+                      {.tolerance = kScatteringTolerance});
   }
 
   // Computes so many scatterings one after the other.
@@ -96,7 +94,7 @@ class Scattering {
     std::vector<float> others(first.size());
     for (int k = 0; k < times; ++k) {
       std::copy(result.begin(), result.end(), nodes_.begin());
-      if (!rows_.apply(nodes_, others, context_.stop)) return {k, 0.0, true};
+      if (!rows_.apply(nodes_, others, stop_)) return {k, 0.0, true};
       for (std::size_t i = 0; i < first.size(); ++i)
         result[i] = static_cast<float>(
             double{first[i]} +
@@ -108,7 +106,7 @@ class Scattering {
  private:
   const ScatterRows& rows_;
   double albedo_;
-  BakeContext context_;
+  std::stop_token stop_;
   std::vector<float> nodes_;
   std::vector<double> scale_;
 };
@@ -157,8 +155,8 @@ bool bakeTransfer(const Medium& medium, const VolumeSettings& settings, const Oc
   out.rays += rows->samplesTraced() * few.size();
   out.rays_kept += (samples - rows->samplesTraced()) * few.size();
   out.row_bytes = rows->bytes();
-  const auto system = [&](double albedo, const BakeContext& block) {
-    return Scattering(*rows, out.grid, *light, albedo, block);
+  const auto system = [&](double albedo) {
+    return Scattering(*rows, out.grid, *light, albedo, context.stop);
   };
   return scatterLight(system, settings, out, context) && fit(&*rows);
 }

@@ -346,9 +346,7 @@ TEST(ClusteredCoding, StopsWhenAskedTo) {
   const auto vectors = bumpyTransfer(2000, shape, 37);
   std::stop_source stop;
   stop.request_stop();
-  Progress progress;
-  EXPECT_TRUE(
-      codeTransfer(vectors, 2000, shape, {0.005f, 0}, {progress, stop.get_token()}).cluster_of.empty());
+  EXPECT_TRUE(codeTransfer(vectors, 2000, shape, {0.005f, 0}, stop.get_token()).cluster_of.empty());
 }
 
 TEST(RadianceError, IsRelativeToTheBlockAndTakesTheWorse) {
