@@ -151,6 +151,7 @@ class Assembler {
       forAll([&](const CodedTransfer& coded, auto& stored, std::size_t t) {
         if (j < coded.planes.size()) stored[t].planes.push_back(addPlane(coded.planes[j], j));
       });
+    addImportance(baked, kFirstPlanePriority + static_cast<std::uint32_t>(most_planes));
   }
 
   AssembledBundle take() { return {std::move(description_), std::move(blobs_)}; }
@@ -268,6 +269,17 @@ class Assembler {
         if (const auto& weights = baked[g].light_probes.cells[c].weights; !weights.empty())
           description_.groups[g].cells[c].light_weights = static_cast<std::int32_t>(addTransferPayload(
               bundle::PayloadType::LightWeights, transfer::encodeLightWeights(weights), kCodebookPriority));
+  }
+
+  void addImportance(const std::vector<BakedGroup>& baked, std::uint32_t priority) {
+    for (std::size_t g = 0; g < baked.size(); ++g)
+      for (bundle::Cell& cell : description_.groups[g].cells) {
+        if (baked[g].importance.empty() || cell.domain != transfer::Domain::Vertex) continue;
+        const auto codes =
+            std::as_bytes(std::span(baked[g].importance)).subspan(cell.first_sample, cell.sample_count);
+        cell.importance = static_cast<std::int32_t>(
+            addTransferPayload(bundle::PayloadType::Importance, {codes.begin(), codes.end()}, priority));
+      }
   }
 
   void addProxies(const std::vector<BakedGroup>& baked) {

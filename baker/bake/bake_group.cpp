@@ -123,6 +123,7 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
   const bool around_found = any_around && findAround(around, around_context, baked.neighborhood);
   const auto take = [&](SurfaceCells& from) {
     baked.cells = std::move(from.cells);
+    baked.importance = std::move(from.importance);
     baked.picture_error = from.figures.picture_error;
     baked.codes_bound = from.figures.codes_bound, baked.glossy_codes_bound = from.figures.glossy_codes_bound;
   };

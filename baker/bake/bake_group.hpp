@@ -21,6 +21,7 @@ struct BakedGroup {
   SampleSet samples;
   std::vector<PlannedLight> lights;
   std::vector<std::vector<CodedTransfer>> cells;  // as in SurfaceCells
+  std::vector<std::uint8_t> importance;           // as in SurfaceCells
   std::optional<bundle::PictureError> picture_error;
   float codes_bound = 0.0f, glossy_codes_bound = 0.0f;
   LightProbes light_probes;           // in the frame of SampleSet::positions

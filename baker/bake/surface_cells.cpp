@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "baker/bake/picture_budget.hpp"
 #include "baker/brdf/kernel_power.hpp"
 #include "baker/effects/diffuse/payloads.hpp"
 #include "baker/effects/glossy/payloads.hpp"
+#include "baker/transport/sample_areas.hpp"
+#include "runtime/bundle/importance_code.hpp"
 
 namespace lambent::baker {
 
@@ -105,11 +108,25 @@ std::vector<CodedTransfer> CellCoder::codeDiffuse(const SampleCell& cell, Surfac
   return coded;
 }
 
+// Codes the importance of samples per area, relative to the mean.
+std::vector<std::uint8_t> importanceCodes(const GroupScene& group) {
+  const std::vector<float>& shares = group.view().importance->shares;
+  const std::vector<float> areas = sampleAreas(group.geometry, group.samples);
+  const double all_shares = std::reduce(shares.begin(), shares.end(), 0.0);
+  const double all_areas = std::reduce(areas.begin(), areas.end(), 0.0);
+  const auto mean = static_cast<float>(all_areas > 0.0 ? all_shares / all_areas : 0.0);
+  std::vector<std::uint8_t> codes;
+  for (std::size_t s = 0; s < shares.size(); ++s)
+    codes.push_back(bundle::importanceCode(mean * areas[s] > 0.0f ? shares[s] / (mean * areas[s]) : 0.0f));
+  return codes;
+}
+
 }  // namespace
 
 void write(const SurfaceCells& cells, ByteWriter& out) {
   const SurfaceFigures& figures = cells.figures;
   write(cells.cells, out);
+  out.addList(cells.importance);
   out.add(figures.filled_samples), out.add(figures.glossy_samples), out.add(figures.hit_bytes);
   out.add(figures.worst_error), out.add(figures.worst_glossy_error), out.add(figures.left_out);
   out.addList(figures.pass_energy);
@@ -122,12 +139,12 @@ void write(const SurfaceCells& cells, ByteWriter& out) {
 bool read(ByteReader& in, SurfaceCells& cells) {
   SurfaceFigures& figures = cells.figures;
   bundle::PictureError error;
-  const bool whole = read(in, cells.cells) && in.read(figures.filled_samples) &&
-                     in.read(figures.glossy_samples) && in.read(figures.hit_bytes) &&
-                     in.read(figures.worst_error) && in.read(figures.worst_glossy_error) &&
-                     in.read(figures.left_out) && in.readList(figures.pass_energy) &&
-                     in.read(figures.diffuse.kept) && in.read(figures.glossy.kept) && in.read(error) &&
-                     in.read(figures.codes_bound) && in.read(figures.glossy_codes_bound);
+  const bool whole =
+      read(in, cells.cells) && in.readList(cells.importance) && in.read(figures.filled_samples) &&
+      in.read(figures.glossy_samples) && in.read(figures.hit_bytes) && in.read(figures.worst_error) &&
+      in.read(figures.worst_glossy_error) && in.read(figures.left_out) && in.readList(figures.pass_energy) &&
+      in.read(figures.diffuse.kept) && in.read(figures.glossy.kept) && in.read(error) &&
+      in.read(figures.codes_bound) && in.read(figures.glossy_codes_bound);
   if (whole && error.points > 0) figures.picture_error = error;
   return whole;
 }
@@ -135,7 +152,7 @@ bool read(ByteReader& in, SurfaceCells& cells) {
 std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceTransport& light,
                                          CachedCoding& coding, Progress& progress) {
   const BakeOptions& options = group.bake.options;
-  SurfaceCells out{{}, light.figures};
+  SurfaceCells out{{}, importanceCodes(group), light.figures};
   out.cells.resize(group.samples.cells.size());
   CellCoder coder(group, light, coding);
   // Returns false if stopped.

@@ -24,7 +24,7 @@ struct InfoArguments {
 
 struct Sizes {
   std::uint64_t mesh = 0, image = 0, rows = 0, codebooks = 0, ids = 0, planes = 0, light_weights = 0,
-                proxies = 0, brdf_tables = 0, densities = 0;
+                proxies = 0, brdf_tables = 0, densities = 0, importance = 0;
   std::uint64_t vertices = 0, triangles = 0, texels = 0;
 };
 
@@ -42,6 +42,7 @@ Sizes sizesOf(const bundle::Description& d) {
     if (payload.type == bundle::PayloadType::LightWeights) sizes.light_weights += length;
     if (payload.type == bundle::PayloadType::CaptureProxy) sizes.proxies += length;
     if (payload.type == bundle::PayloadType::BrdfTable) sizes.brdf_tables += length;
+    if (payload.type == bundle::PayloadType::Importance) sizes.importance += length;
     if (payload.type == bundle::PayloadType::Density || payload.type == bundle::PayloadType::Voxels)
       sizes.densities += length;
   }
@@ -134,6 +135,7 @@ void printBundleJson(const bundle::Reader& reader, const Sizes& sizes) {
       {"proxyBytes", sizes.proxies},
       {"brdfTableBytes", sizes.brdf_tables},
       {"densityBytes", sizes.densities},
+      {"importanceBytes", sizes.importance},
       {"groups", groups}};
   fmt::print("{}\n", json.dump(2));
 }
@@ -161,6 +163,7 @@ void printBundle(const bundle::Reader& reader, const Sizes& sizes) {
   line("proxies", sizes.proxies);
   if (!d.brdf_tables.empty()) line("BRDF tables", sizes.brdf_tables);
   if (sizes.densities > 0) line("densities", sizes.densities);
+  line("importance", sizes.importance);
   line("whole file", reader.fileBytes());
   std::size_t missed = 0;
   for (const bundle::Group& group : d.groups) {

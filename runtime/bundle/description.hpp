@@ -77,6 +77,7 @@ enum class PayloadType : std::uint8_t {
   BrdfTable,      // b(v) of a family of BRDFs (brdf_table.hpp)
   Density,        // extinction of a volume at its own resolution (volume_grid.hpp)
   Voxels,         // voxels of its transfer grid at which a volume has samples (volume_grid.hpp)
+  Importance,     // how much each sample of a cell matters to pictures (importance_code.hpp)
 };
 
 enum class PayloadCodec : std::uint8_t { Raw, Zstd };
@@ -136,6 +137,7 @@ struct Cell {
   // positions in this list. If there is only one probe, it lights all samples of the cell.
   std::vector<std::uint32_t> light_probes = {0};
   std::int32_t light_weights = -1;  // payload; -1 if there is only one light probe
+  std::int32_t importance = -1;     // payload, for views only; -1: not known
   transfer::Domain domain = transfer::Domain::Vertex;
 
   std::uint32_t outputs() const { return transfers.empty() ? 1 : transfers.front().shape.outputs; }

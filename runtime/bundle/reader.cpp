@@ -186,6 +186,16 @@ Result<std::vector<transfer::LightWeights>> Reader::readLightWeights(GroupIndex 
       fmt::format("{}: group {} cell {}", path().string(), group.value, cell_index.value));
 }
 
+Result<std::vector<std::uint8_t>> Reader::readImportance(GroupIndex group, CellIndex cell_index) const {
+  const Cell& cell = cellAt(description(), group, cell_index);
+  std::vector<std::uint8_t> codes;
+  if (cell.importance < 0) return codes;
+  const auto bytes = readPayload(static_cast<std::uint32_t>(cell.importance));
+  if (!bytes) return failAgain(bytes.error());
+  for (const std::byte one : *bytes) codes.push_back(std::to_integer<std::uint8_t>(one));
+  return codes;
+}
+
 Result<CaptureProxy> Reader::readProxy(GroupIndex index) const {
   const Group& group = description().groups.at(index.value);
   if (group.proxy < 0) return CaptureProxy{};

@@ -17,9 +17,9 @@ namespace {
 constexpr std::uint32_t kMaxOrder = 8, kMaxColumns = 4096, kMaxCellSamples = 65536;
 constexpr std::uint32_t kMaxClusters = 65536;
 constexpr std::uint64_t kMaxPayloadBytes = std::uint64_t{1} << 32;  // limits what one payload may allocate
-constexpr std::array kPayloadTypes = {"vertexRows",  "codebook",     "clusterIds",
-                                      "weightPlane", "lightWeights", "captureProxy",
-                                      "brdfTable",   "density",      "voxels"};
+constexpr std::array kPayloadTypes = {"vertexRows",   "codebook",     "clusterIds", "weightPlane",
+                                      "lightWeights", "captureProxy", "brdfTable",  "density",
+                                      "voxels",       "importance"};
 constexpr std::array kDomains = {"surface", "volume", "neighborhood"};
 constexpr std::array kBrdfFamilies = {"ggx", "anisotropicGgx", "measured"};
 // Glossy surfaces have transferred light in 4, 5 or 6 bands and incident light in at most 6.
@@ -143,7 +143,7 @@ CellTransfer readCellTransfer(const Field& field, const Description& d, const Gr
   return transfer;
 }
 
-// Reads the light probes of a cell and, if there are several, the payload of their weights.
+// Reads the light probes of a cell and, if there are several, the payload of their weights; and importance.
 void readCellLights(const Field& field, const Description& d, const Group& group, Cell& cell) {
   const Field list = field["lightSamples"];
   cell.light_probes.clear();
@@ -160,6 +160,9 @@ void readCellLights(const Field& field, const Description& d, const Group& group
                      std::uint64_t{cell.sample_count} * sizeof(transfer::LightWeights)));
   else if (field.has("lightWeights"))
     field["lightWeights"].fault("are there for one light probe");
+  if (field.has("importance"))
+    cell.importance = static_cast<std::int32_t>(
+        payloadIndex(field["importance"], d, PayloadType::Importance, cell.sample_count));
 }
 
 // Checks that the parts of a cell's transfer stand in this order, each at most once: the environment (for
@@ -239,6 +242,7 @@ Json cellJson(const Cell& cell) {
                {"boundsMax", vectorJson(cell.bounds_max)}, {"transfers", transfers},
                {"lightSamples", cell.light_probes}};
   if (cell.light_weights >= 0) json["lightWeights"] = cell.light_weights;
+  if (cell.importance >= 0) json["importance"] = cell.importance;
   return json;
 }
 

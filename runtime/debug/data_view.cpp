@@ -1,11 +1,13 @@
 #include "runtime/debug/data_view.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
+#include "runtime/bundle/importance_code.hpp"
 #include "runtime/debug/shaders.hpp"
 #include "runtime/draws/view_block.hpp"
 
@@ -45,7 +47,27 @@ CodingErrors errorsOf(const World& world) {
   return errors;
 }
 
+// Reads the importance of all samples from their bundles, in the order of TransferValues.
+Result<std::vector<evaluate::SampleValue>> importanceOf(const World& world) {
+  std::vector<evaluate::SampleValue> values;
+  const streaming::Residency& residency = world.residency();
+  for (const streaming::ResidentGroup& group : residency.groups())
+    for (std::uint32_t c = 0; c < group.cell_count; ++c) {
+      const streaming::ResidentCell& cell = residency.cells()[group.first_cell + c];
+      if (cell.domain != transfer::Domain::Vertex) continue;
+      const auto codes = world.reader(group.bundle).readImportance(group.index, bundle::CellIndex{c});
+      if (!codes) return failAgain(codes.error());
+      const std::size_t first = values.size();
+      values.resize(first + cell.sample_count, {.value_bits = 0, .cluster = evaluate::kNoCluster});
+      for (std::size_t s = 0; s < codes->size(); ++s)
+        if ((*codes)[s] > 0)
+          values[first + s] = {std::bit_cast<std::uint32_t>(bundle::importanceOctaves((*codes)[s])), 0};
+    }
+  return values;
+}
+
 TransferValue valueOf(SurfaceView view) {
+  if (view == SurfaceView::Importance) return TransferValue::Given;
   if (view == SurfaceView::TransferDc) return TransferValue::Dc;
   return view == SurfaceView::TransferBand ? TransferValue::BandEnergy : TransferValue::OfCell;
 }
@@ -64,11 +86,12 @@ Result<void> DataView::update(World& world, const lighting::GroupLights& lights,
   choice_ = choice;
   const CodingErrors errors = errorsOf(world);
   legend_ = legendOf(choice, errors.range_end);
-  return values_.update(world.residency(), lights,
-                        {.value = valueOf(choice.view),
-                         .band = choice.view == SurfaceView::TransferBand ? choice.band : 0,
-                         .mode = mode},
-                        errors.of_cells, counters);
+  return values_.update(
+      world.residency(), lights,
+      {.value = valueOf(choice.view),
+       .band = choice.view == SurfaceView::TransferBand ? choice.band : 0,
+       .mode = mode},
+      errors.of_cells, [&] { return importanceOf(world); }, counters);
 }
 
 Result<void> DataView::draw(World& world, const spec::View& view, gpu::Counters& counters) {

@@ -19,10 +19,16 @@ TransferValues::TransferValues()
 
 Result<void> TransferValues::update(streaming::Residency& residency, const lighting::GroupLights& lights,
                                     const TransferQuestion& question, std::span<const float> of_cells,
-                                    gpu::Counters& counters) {
+                                    const GiveValues& give, gpu::Counters& counters) {
   if (!changed_.renew(question, residency.version(), lights.groupCount())) return {};
   question_ = question;
   describe(residency, lights, of_cells);
+  if (question.value == TransferValue::Given) {
+    const Result<std::vector<SampleValue>> given = give();
+    if (!given) return failAgain(given.error());
+    values_.write(0, std::span<const SampleValue>(*given));
+    return {};
+  }
   const SampleValue nothing{.value_bits = 0, .cluster = kNoCluster};
   glClearNamedBufferData(values_.id(), GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, &nothing);
   if (Result<void> done = run(residency, work_, counters); !done) return done;

@@ -1,13 +1,15 @@
 // Computes numbers of the coded transfer at every sample of every surface, for views of it: DC, the energy of
-// a band, a number per cell, and always the cluster. It takes the resident codes of all effects that keep
-// them (diffuse, normal-mapped, glossy), and provides a buffer of SampleValue that a raster pass gathers by
-// the rows of vertices. Nothing is held or dispatched until update() is called; update() does nothing if
-// neither the codes nor the question changed. transfer_measures.hpp defines the numbers. Render thread only.
-// Fails if a kernel does not compile on this device.
+// a band, a number per cell, and always the cluster. Values that are known without codes can be given. It
+// takes the resident codes of all effects that keep them (diffuse, normal-mapped, glossy), and provides a
+// buffer of SampleValue that a raster pass gathers by the rows of vertices. Nothing is held or dispatched
+// until update() is called; update() does nothing if neither the codes nor the question changed.
+// transfer_measures.hpp defines the numbers. Render thread only. Fails if a kernel does not compile on this
+// device.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <vector>
@@ -23,7 +25,7 @@
 
 namespace lambent::evaluate {
 
-enum class TransferValue : std::uint8_t { OfCell, Dc, BandEnergy };
+enum class TransferValue : std::uint8_t { OfCell, Dc, BandEnergy, Given };
 
 struct TransferQuestion {
   TransferValue value = TransferValue::Dc;
@@ -32,14 +34,18 @@ struct TransferQuestion {
   bool operator==(const TransferQuestion&) const = default;
 };
 
+// Returns the values of all samples, in the order of SampleValue.
+using GiveValues = std::function<Result<std::vector<SampleValue>>()>;
+
 class TransferValues {
  public:
   TransferValues();
 
+  // `give` is called for TransferValue::Given only, when values are due.
   // `of_cells` holds a number per cell of the residency for TransferValue::OfCell; otherwise it may be empty.
   Result<void> update(streaming::Residency& residency, const lighting::GroupLights& lights,
                       const TransferQuestion& question, std::span<const float> of_cells,
-                      gpu::Counters& counters);
+                      const GiveValues& give, gpu::Counters& counters);
 
   // Returns the index of the value of the group's first sample.
   std::uint32_t firstOf(std::size_t group) const { return first_of_group_[group]; }

@@ -19,6 +19,7 @@ enum class SurfaceView : std::uint8_t {
   TransferDc,
   TransferBand,
   ErrorEstimate,
+  Importance,
   ClusterIds,
   Normals,
   Wireframe
@@ -45,7 +46,7 @@ struct SurfaceViewRow {
   ViewColors colors;
 };
 
-inline constexpr std::array<SurfaceViewRow, 8> kSurfaceViews = {{
+inline constexpr std::array<SurfaceViewRow, 9> kSurfaceViews = {{
     {SurfaceView::Final, "final", "Final", "the light as it is", ViewColors::Light},
     {SurfaceView::Irradiance, "irradiance", "Irradiance",
      "E/pi that arrives at surfaces, without their own color", ViewColors::Light},
@@ -55,6 +56,8 @@ inline constexpr std::array<SurfaceViewRow, 8> kSurfaceViews = {{
      "energy of one band of the transfer: transfer-band:BAND", ViewColors::Scale},
     {SurfaceView::ErrorEstimate, "error", "Coding error",
      "error of the coded transfer, as the bake measured it in each cell", ViewColors::Scale},
+    {SurfaceView::Importance, "importance", "Importance",
+     "how much the bake took each part of the surfaces to matter to pictures", ViewColors::Scale},
     {SurfaceView::ClusterIds, "clusters", "Clusters", "which samples are coded together",
      ViewColors::Distinct},
     {SurfaceView::Normals, "normals", "Normals", "shading normals, world axes", ViewColors::Directions},
@@ -77,7 +80,8 @@ std::string knownViews();
 // Returns whether the view shows numbers of the coded transfer, which are then computed for it.
 constexpr bool showsTransfer(SurfaceView view) {
   return view == SurfaceView::TransferDc || view == SurfaceView::TransferBand ||
-         view == SurfaceView::ErrorEstimate || view == SurfaceView::ClusterIds;
+         view == SurfaceView::ErrorEstimate || view == SurfaceView::Importance ||
+         view == SurfaceView::ClusterIds;
 }
 // Returns whether the picture shows light, and so has a sky and volumes and is exposed and tone-mapped.
 constexpr bool showsLight(SurfaceView view) {

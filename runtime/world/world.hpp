@@ -203,6 +203,7 @@ class World {
   const bundle::Description& description(std::size_t bundle) const {
     return bundles_[bundle]->reader->description();
   }
+  const bundle::Reader& reader(std::uint32_t bundle) const { return *bundles_[bundle]->reader; }
   const scene::SceneInstance& instance(std::size_t bundle) const { return bundles_[bundle]->instance; }
 
  private:

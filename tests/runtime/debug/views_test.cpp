@@ -98,6 +98,21 @@ TEST_F(ViewTest, TheErrorEstimateIsWhatTheBundleRecords) {
   EXPECT_GT(transfer.error, 0.0f);
 }
 
+TEST_F(ViewTest, ImportanceIsWhatTheBundleRecordsAndNothingWhereNobodySees) {
+  BundleBuilder builder = openSphere();
+  builder.importance([](const glm::vec3& normal) { return normal.z > 0.0f ? 4.0f : 0.0f; });
+  ViewStage stage(builder, {kWhite}, linearOptions({SurfaceView::Importance}));
+  stage.camera.azimuth_deg = 90.0f;  // half of what is seen has z > 0
+  std::size_t seen = 0, unseen = 0;
+  for (const glm::vec4& texel : stage.picture().texels) {
+    if (texel.a == 0.0f) continue;
+    (texel.r == -1.0f ? unseen : seen) += 1;
+    EXPECT_TRUE(texel.r == -1.0f || std::abs(texel.r - 2.0f) < 1e-3f) << texel.r << ", not log2 of 4";
+  }
+  EXPECT_GT(seen, 100u);
+  EXPECT_GT(unseen, 100u);
+}
+
 TEST_F(ViewTest, IrradianceIsTheLightWithoutTheAlbedo) {
   ViewStage stage(openSphere(), {kWhite}, linearOptions({SurfaceView::Irradiance}));
   for (const glm::vec4& texel : stage.picture().texels) {

@@ -9,6 +9,7 @@
 
 #include "baker/compress/draco_encode.hpp"
 #include "runtime/base/normal_matrix.hpp"
+#include "runtime/bundle/importance_code.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/transfer/vertex_rows.hpp"
@@ -73,6 +74,11 @@ BundleBuilder& BundleBuilder::volume(BuiltVolume volume) {
   return *this;
 }
 
+BundleBuilder& BundleBuilder::importance(std::function<float(const glm::vec3&)> relative) {
+  importance_ = std::move(relative);
+  return *this;
+}
+
 BundleBuilder& BundleBuilder::groupRotation(const glm::quat& rest_rotation) {
   rest_rotation_ = rest_rotation;
   return *this;
@@ -98,6 +104,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
   group.bounds_min = glm::vec3(-10.0f);
   group.bounds_max = glm::vec3(10.0f);
   std::vector<std::vector<float>> vectors;
+  bundle::Blob importance;
   for (std::uint32_t i = 0; i < meshes_.size(); ++i) {
     const BuiltMesh& mesh = meshes_[i];
     const Result<baker::EncodedMesh> encoded = baker::encodeDraco(mesh.data, 1.0f / 16384.0f, "test mesh");
@@ -133,7 +140,9 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
         rows.samples.push_back(static_cast<std::uint32_t>(vectors.size()));
         rows.weights.push_back(1.0f);
         rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));
-        vectors.push_back(transfer_((back ? -1.0f : 1.0f) * glm::normalize(group_from_mesh * normal)));
+        const glm::vec3 sample_normal = (back ? -1.0f : 1.0f) * glm::normalize(group_from_mesh * normal);
+        vectors.push_back(transfer_(sample_normal));
+        if (importance_) importance.push_back(std::byte{bundle::importanceCode(importance_(sample_normal))});
       }
       description.draws.push_back(
           {.node = i,
@@ -172,6 +181,8 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
   for (std::vector<float>& vector : vectors)
     for (std::size_t i = 0; vector.size() < shape.size(); ++i) vector.push_back(vector[i]);
   cell.transfers.push_back(storeTransfer(store, shape, vectors));
+  if (importance_)
+    cell.importance = static_cast<std::int32_t>(store.payload(bundle::PayloadType::Importance, importance));
   cell.transfers.back().error_bound = 0.02f;
   cell.transfers.back().error = 0.0125f;  // what views say of it
   if (!lamps_.empty()) {

@@ -56,6 +56,8 @@ class BundleBuilder {
   // Adds a light of the group that gives `transfer` times its radiance to every sample. Bundles with normal
   // maps are not supported.
   BundleBuilder& lamp(const bundle::GroupLight& light, float transfer);
+  // Says how much samples matter to pictures, from their normals in the group frame (importance_code.hpp).
+  BundleBuilder& importance(std::function<float(const glm::vec3&)> relative);
   BundleBuilder& groupRotation(const glm::quat& rest_rotation);
   // Adds a volume in a group of its own, after the meshes' group if there are meshes.
   BundleBuilder& volume(BuiltVolume volume);
@@ -80,6 +82,7 @@ class BundleBuilder {
   bundle::BrdfTable table_;
   std::vector<BuiltLamp> lamps_;
   TransferOf transfer_;
+  std::function<float(const glm::vec3&)> importance_;
   glm::quat rest_rotation_{1.0f, 0.0f, 0.0f, 0.0f};
   std::vector<BuiltMesh> meshes_;
   std::vector<BuiltVolume> volumes_;
