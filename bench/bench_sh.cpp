@@ -1,5 +1,5 @@
 // Measures spherical harmonics on one thread at orders 5 and 6: times in nanoseconds, medians with
-// --benchmark_repetitions. Rivals (docs/measurements/frames.md says where each was measured): DirectXMath's
+// --benchmark_repetitions. Rivals (docs/design/streaming.md says where each was measured): DirectXMath's
 // SHMath evaluates one direction and rotates, drjit evaluates in batches. Limits are measured in the same
 // run: *_limit rows do the same arithmetic or move the same bytes and nothing else.
 #include <array>

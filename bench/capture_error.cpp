@@ -1,4 +1,4 @@
-// Measures the time and the error of cube maps of light: it makes the tables of docs/measurements/captures.md
+// Measures the time and the error of cube maps of light: it makes the table of docs/design/captures.md
 // through the real GPU path. Discs are bodies: a polygon of 256 corners that faces its point is drawn,
 // resolved and projected like any other body; the truth is the disc's closed form. Environment maps go
 // through the sky's texels, at random rotations; the truth is the picture projected texel by texel and

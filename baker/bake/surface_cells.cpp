@@ -17,7 +17,7 @@ namespace {
 
 // The share of visibility in the bound on glossy light, where light bounces: halving the error costs
 // visibility a dozen bytes a vertex, and bounced light of sharp metals a hundred
-// (docs/decisions/compression.md, "Glossy matrices").
+// (docs/design/compression.md, "Glossy matrices").
 constexpr float kOfVisibility = 0.35f;
 // Eyes may see other errors of codes than those of all samples, so codes are made again with a better bound.
 constexpr int kMostCodings = 3;

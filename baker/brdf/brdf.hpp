@@ -53,8 +53,8 @@ Result<std::unique_ptr<Brdf>> makeMeasured(const MeasuredBrdf& measured);
 void integrateView(const Brdf& brdf, const BrdfParameters& at, const bundle::BrdfView& view, int order,
                    std::size_t directions, std::span<double> out);
 
-// A BrdfGrid has the number of nodes along each axis of a table; docs/measurements/glossy.md, "Tables of
-// b(v)", lists their cost and error.
+// A BrdfGrid has the number of nodes along each axis of a table; docs/design/glossy.md, "Shading per
+// pixel", lists their cost and error.
 struct BrdfGrid {
   std::uint32_t angles = 2, azimuths = 1, roughnesses = 1, strengths = 1;
 };

@@ -21,7 +21,7 @@ namespace {
 
 // A sample takes so much processor time for each ray and for what is done whatever its rays, bounces and
 // codes included. In a room nearly all rays of diffuse samples meet something that sends light on, around an
-// open body hardly any. Figures are rounded from bakes of docs/measurements/bakes.md, "Beforehand".
+// open body hardly any. Figures are rounded from bakes of docs/design/bakes.md, "Beforehand".
 constexpr double kRoomRay_s = 1.5e-6, kRoomSample_s = 2.4e-4;
 constexpr double kOpenRay_s = 1e-7, kOpenSample_s = 1e-4;
 constexpr double kGlossyRay_s = 2.5e-6, kGlossySample_s = 2.6e-4;

@@ -22,7 +22,7 @@ struct Step {
   std::uint32_t count;
 };
 // These counts leave an error of about 5 % of the picture between light probes
-// (docs/measurements/local-lights.md, "Light probes near a lamp").
+// (docs/design/captures.md, "Light probes near a lamp").
 constexpr std::array kSteps = {Step{0.05f, 1}, Step{0.15f, 4}, Step{0.25f, 8}, Step{0.5f, 16}};
 
 std::uint32_t countFor(float ratio) {

@@ -1,7 +1,7 @@
 // Decides which surfaces get transfer matrices. Matrices give highlights in a few bands. What a dielectric
 // reflects is little beside its diffuse light, and few bands blur what a smooth one reflects, so such a
 // surface has diffuse transfer, and the runtime adds a specular layer: the prefiltered environment, hidden as
-// far as the transfer knows (docs/decisions/glossy.md, "Smooth dielectrics").
+// far as the transfer knows (docs/design/glossy.md, "Smooth dielectrics").
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -30,7 +30,7 @@ constexpr std::uint32_t kUnused = 0xffffffffu;  // a sample of no triangle that 
 // Light is never taken to be less than this share of what eyes see on average, of the sky or of lamps.
 constexpr double kLeastLight = 0.1;
 // Errors at glossy points count by this factor. What few bands leave of a highlight hides them: a body of
-// gold has the same picture with a quarter of the samples (docs/decisions/vertices.md), and each costs a
+// gold has the same picture with a quarter of the samples (docs/design/vertices.md), and each costs a
 // matrix.
 constexpr double kGlossyCounts = 0.4;
 // A split triangle splits its edges of at least this share of the longest one.

@@ -29,7 +29,7 @@ bool isBlack(const GatherHit& hit) {
 }
 
 // Layers are followed by this many times as many paths as there would be if each passed on all the light of
-// its ray. With more of them there is less noise, and less to code (docs/decisions/glossy.md).
+// its ray. With more of them there is less noise, and less to code (docs/design/glossy.md).
 constexpr float kPathsInLayer = 8.0f;
 
 // Returns numbers from 0 to 1 that are evenly spread for successive numbers: multiples of the golden ratio.

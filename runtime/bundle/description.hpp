@@ -320,7 +320,7 @@ struct Description {
 };
 
 // Returns whether the runtime adds a specular layer to a draw: one whose material is not diffuse, but which
-// has diffuse or normal-mapped transfer (smooth dielectrics; docs/decisions/glossy.md), in a bundle with a
+// has diffuse or normal-mapped transfer (smooth dielectrics; docs/design/glossy.md), in a bundle with a
 // GGX table. Bundles without tables were baked without glossy reflection, and do not show it.
 bool isLayered(const Description& description, const Draw& draw);
 

@@ -1,6 +1,6 @@
 // Uploads bytes to buffers that only the GPU writes. The CPU writes them to mapped memory, and the GPU copies
 // them in the order of its commands. Without this, drivers move a buffer that the CPU writes often to memory
-// of the CPU, even within a frame, and shaders then read it over the bus (docs/decisions/streaming.md, "GPU
+// of the CPU, even within a frame, and shaders then read it over the bus (docs/design/streaming.md, "GPU
 // memory"). The mapped memory is a ring that is made on first use. Writing waits for the GPU only if the ring
 // is full of bytes that are not copied yet. The object must not outlive the context.
 #pragma once

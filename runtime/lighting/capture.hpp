@@ -3,7 +3,7 @@
 // spherical harmonics on the GPU. It takes the environment, bodies as capture proxies with one radiance per
 // triangle, and points. Some frames later it returns, for each point, the light that arrives there and the
 // visible share of each analytic light. Analytic lights are never drawn into texels.
-// docs/decisions/captures.md describes the method. Render thread only. create() fails if an option is out of
+// docs/design/captures.md describes the method. Render thread only. create() fails if an option is out of
 // range or a shader does not compile on this device.
 #pragma once
 

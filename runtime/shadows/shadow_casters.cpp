@@ -25,7 +25,7 @@ bool ShadowCasters::follow(const World& world) {
   casters_.clear();
   for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
-    if (draw.back) continue;  // the front's triangles serve both sides (docs/decisions/vertices.md)
+    if (draw.back) continue;  // the front's triangles serve both sides (docs/design/vertices.md)
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
     const gltf::Material& material = materialOf(world, i);
     // A pane that passes half of the light or more would be wronger as a whole shadow than without one.

@@ -72,7 +72,7 @@ TEST_F(SunThroughAWindow, BouncesOffTheFloorAsInTheReference) {
       compareAt({u, v, -1});
     }
   // 64 links see a spot of this size to about 12 % each and to 6 % in the mean
-  // (docs/decisions/local-lights.md, "Patches"). Which they are depends on the compiler and Embree: 10 % with
+  // (docs/design/light.md, "Patches"). Which they are depends on the compiler and Embree: 10 % with
   // those of Debian 12, 14 with 13's.
   EXPECT_LT(std::sqrt(squares / places), 0.18);
   EXPECT_NEAR(found / expected, 1.0, 0.08);

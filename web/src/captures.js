@@ -1,4 +1,4 @@
-// Light between groups (docs/decisions/captures.md): each light probe of a group sees the capture proxies of others,
+// Light between groups (docs/design/captures.md): each light probe of a group sees the capture proxies of others,
 // which hide the sky and send out light, unless a group's grid brings that. What is seen is found anew when something
 // moved, for a few probes at a time; light then goes to and fro until it is at rest.
 import { Matrix4, Vector3 } from 'three';

@@ -191,7 +191,7 @@ function transferred({ outputs }) {
 }
 
 // Brushed metal reflects a fan of round lobes about the view mirrored in normals that lean along the tangent, by equal
-// shares of GGX's slopes (docs/decisions/glossy.md, "Prefiltered environment").
+// shares of GGX's slopes (docs/design/glossy.md, "Prefiltered environment").
 const FAN = /* glsl */ `
     float lambentNarrow = pow2(lambentRoughness), lambentWide = mix(lambentNarrow, 1.0, pow2(lambentStrength));
     float lambentFan = sqrt(max(pow2(lambentWide) - pow2(lambentNarrow), 0.0));

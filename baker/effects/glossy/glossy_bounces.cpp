@@ -34,7 +34,7 @@ constexpr float kUniform = 3.54490770f;
 // costs reading a matrix. Each hit keeps its own weight, so a white furnace stays white in every output.
 // Noise is proportional to share x rays^0.75, so every pass may have rows of 1 / share rays; kCaution
 // shortens them, since late passes add up in white rooms. Every row has a few rays: pictures by 128
-// or 256 exit radiances show no more noise (docs/decisions/glossy.md).
+// or 256 exit radiances show no more noise (docs/design/glossy.md).
 constexpr std::uint32_t kMostTogether = 32;
 constexpr double kCaution = 64.0;       // rows have 2 rays up to a share of 1.6 %, 4 up to 0.8 %
 constexpr std::size_t kLeastRows = 64;  // rows over the hemisphere

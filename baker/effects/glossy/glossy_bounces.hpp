@@ -6,7 +6,7 @@
 //   bakeBounces(diffuse_pass, direct, scene, settings, context, &glossy);
 //   glossy.finish();   // glossy_direct.field has `bounced` and `lights_full`, all of order_out bands
 // Passes read and add all bands that `direct` has, which may be more than order_out: the kernel of a sharp
-// surface meets shadow edges where light leaves, which few bands cannot represent (docs/decisions/glossy.md,
+// surface meets shadow edges where light leaves, which few bands cannot represent (docs/design/glossy.md,
 // "Bounces"). The sum of the passes has order_out bands. If direct light was fitted to points inside faces,
 // each pass is fitted to what it adds there before the next one begins.
 //

@@ -2,7 +2,7 @@
 // harmonics. Functions continue below the horizon as their mirror image (glossy_transport.hpp), so in the
 // sample's frame only harmonics with even l + m are left: n(n+1)/2 of n². They are called "even" here, and
 // listed by ascending index, so those of a lower order come first. They are orthogonal over the hemisphere,
-// which makes exact weights easy (docs/decisions/glossy.md, "Visibility").
+// which makes exact weights easy (docs/design/glossy.md, "Visibility").
 #pragma once
 
 #include <cstddef>

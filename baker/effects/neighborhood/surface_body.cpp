@@ -17,7 +17,7 @@ namespace lambent::baker {
 
 namespace {
 
-// From this roughness on, five bands represent nine tenths of a highlight (docs/measurements/glossy.md), so
+// From this roughness on, five bands represent nine tenths of a highlight (docs/design/glossy.md), so
 // matrices of few bands are enough.
 constexpr float kRoughEnough = 0.5f;
 // Paths per ray that hits a highlight: a mirror needs one, and with rougher surfaces neighbouring rays share

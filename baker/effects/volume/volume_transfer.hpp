@@ -3,7 +3,7 @@
 // per coefficient of the light, both with single scattering alone (the light that the medium and the surfaces
 // around it let through) and with all scatterings (scatter_rows.hpp), which a linear solver computes to a
 // relative residual of 1e-5. Surfaces block light; light that they reflect is not added
-// (docs/decisions/volumes.md). Where free paths are shorter than voxels, samples are not the values at voxel
+// (docs/design/volumes.md). Where free paths are shorter than voxels, samples are not the values at voxel
 // centres, but those that interpolate best to the values at many places (fit_within_voxels.hpp).
 //
 // With an anisotropic phase function (Henyey and Greenstein's, g not 0), bands of the arriving radiance take

@@ -161,7 +161,7 @@ TEST(BrdfTables, OfSmoothSurfacesAreMirrors) {
   }
 }
 
-// Compares interpolation between nodes with integration at that place; docs/measurements/glossy.md has the
+// Compares interpolation between nodes with integration at that place; docs/design/glossy.md has the
 // mean error.
 TEST(BrdfTables, InterpolateWithinHalfAPercentWhereFiveBandsCarryTheLobe) {
   const auto ggx = makeGgx(false);

@@ -1,5 +1,5 @@
 // Measures the error of evaluating glossy shading at vertices instead of pixels: the figures of
-// docs/measurements/glossy.md, "Highlights at vertices".
+// docs/design/glossy.md, "Shading per pixel".
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
