@@ -35,10 +35,11 @@ std::vector<float> FaceCuts::sharesOf(const GroupGeometry& geometry, std::span<c
   for (const FaceEdge& edge : edges) {
     const glm::vec3 a = geometry.positions[edge.a], b = geometry.positions[edge.b];
     const auto area = static_cast<float>(triangleArea(geometry, geometry.triangles[edge.triangle]));
-    const glm::vec3 off = standOff(a, std::sqrt(area)) * unitNormal(geometry, edge.triangle),
-                    along = glm::normalize(b - a);
-    ways.push_back({a + off, along, glm::distance(a, b)});
-    ways.push_back({b + off, -along, glm::distance(a, b)});
+    const glm::vec3 off = standOff(a, std::sqrt(area)) * unitNormal(geometry, edge.triangle);
+    const float length = glm::distance(a, b);  // 0 where two vertices of a face are in one place
+    const glm::vec3 along = length > 0.0f ? (b - a) / length : glm::vec3(0.0f);
+    ways.push_back({a + off, along, length});
+    ways.push_back({b + off, -along, length});
   }
   std::vector<FirstHit> hits(ways.size());
   rays_.firstHits(ways, hits);

@@ -212,6 +212,17 @@ TEST(Refinement, LeavesNoFaceFromTheLightIntoADarkBox) {
   EXPECT_LT(crossing, 0.1);
 }
 
+TEST(Refinement, TakesFacesWithTwoCornersInOnePlace) {
+  Scene scene = darkBox();
+  bundle::MeshData& floor = scene.meshes[0].primitives[0].mesh;
+  const auto copy = static_cast<std::uint32_t>(floor.positions.size());
+  floor.positions.push_back(floor.positions[floor.indices[0]]);
+  floor.normals.push_back(floor.normals[floor.indices[0]]);
+  const std::array<std::uint32_t, 3> sliver = {floor.indices[0], copy, floor.indices[1]};
+  floor.indices.insert(floor.indices.end(), sliver.begin(), sliver.end());
+  EXPECT_LT(refined(scene, {.bound = 0.02f}).report.error_after, 0.02);
+}
+
 TEST(Refinement, EndsWithTheVerticesThatItMayAdd) {
   const Refined result = refined(floorUnderSlab(), {.bound = 1e-4f, .most_growth = 1.0, .most_added = 500});
   EXPECT_GT(result.report.vertices_after, result.report.vertices_before + 250);
