@@ -12,6 +12,7 @@
 
 #include "baker/import/accessor.hpp"
 #include "baker/import/convert.hpp"
+#include "baker/import/details.hpp"
 #include "baker/import/hints.hpp"
 #include "baker/import/placed_box.hpp"
 #include "baker/import/primitives.hpp"
@@ -166,6 +167,7 @@ class MeshConverter {
       if (const std::uint32_t texels = textureTransferOf(described, described["primitives"][p]); texels > 0)
         giveTexels(texels, name, mesh.primitives.back(), scene_.warnings);
     }
+    separateDetails(mesh);
     return mesh;
   }
 

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/baker/import/gltf_writer.hpp"
-#include "tests/support/differences.hpp"
 
 namespace lambent::baker {
 namespace {
