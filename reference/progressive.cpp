@@ -125,7 +125,7 @@ class ProgressiveReference::Worker {
     if (auto built = build(job.scene); !built) return failAgain(std::move(built.error()));
     const auto view = viewOf(*traced_scene_, traced_->surfaces(), request);
     if (!view) return failAgain(view.error());
-    const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
+    const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights, traced_scene_->origin);
     enter(job, ProgressivePhase::Tracing);
 
     spec::RgbaImage shown;  // a coarse picture, overwritten by the finished rows of the first pass

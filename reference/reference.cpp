@@ -100,7 +100,7 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   spec::DistantLights lights = together(*loaded, request.light_factors);
   addLights(lights, request.more_light.get());
   report.notices = lights.notices;
-  const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
+  const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights, scene.origin);
   const auto traced = TracedScene::build(scene);
   if (!traced) return failAgain(traced.error());
   report.notices.insert(report.notices.end(), (*traced)->notices().begin(), (*traced)->notices().end());

@@ -19,7 +19,7 @@ double capOf(double radius, double distance) {
 }
 
 std::optional<WayToLight> sample(const spec::SphereLight& light, const glm::vec3& point, const glm::vec2& u) {
-  const glm::dvec3 to = glm::dvec3(light.position_ws) - glm::dvec3(point);
+  const glm::dvec3 to = light.position_ws - glm::dvec3(point);
   const double distance = glm::length(to), radius = double{light.radius_m};
   if (!(radius > 0.0) || distance <= radius) return std::nullopt;
   const auto cap = static_cast<float>(capOf(radius, distance));
@@ -36,7 +36,7 @@ std::optional<WayToLight> sample(const spec::SphereLight& light, const glm::vec3
 }
 
 std::optional<WayToLight> look(const spec::SphereLight& light, const glm::vec3& point, const glm::vec3& dir) {
-  const glm::dvec3 to = glm::dvec3(light.position_ws) - glm::dvec3(point), along(dir);
+  const glm::dvec3 to = light.position_ws - glm::dvec3(point), along(dir);
   const double radius = double{light.radius_m}, distance = glm::length(to), middle = glm::dot(to, along);
   const glm::dvec3 aside = to - middle * along;
   const double half2 = radius * radius - glm::dot(aside, aside);
@@ -71,12 +71,11 @@ std::optional<WayToLight> sample(const spec::DiscLight& light, const glm::vec3& 
   // Cosine-distributed directions, projected onto the plane, are uniform over a disc.
   const glm::vec3 on = cosineDirection(u);
   const glm::vec3 offset = light.radius_m * (frameAbout(light.normal_ws) * glm::vec3(on.x, on.y, 0.0f));
-  return towards(light, glm::dvec3(light.position_ws) + glm::dvec3(offset) - glm::dvec3(point));
+  return towards(light, light.position_ws + glm::dvec3(offset) - glm::dvec3(point));
 }
 
 std::optional<WayToLight> look(const spec::DiscLight& light, const glm::vec3& point, const glm::vec3& dir) {
-  const glm::dvec3 to = glm::dvec3(light.position_ws) - glm::dvec3(point), along(dir),
-                   normal(light.normal_ws);
+  const glm::dvec3 to = light.position_ws - glm::dvec3(point), along(dir), normal(light.normal_ws);
   const double facing = -glm::dot(normal, along), height = -glm::dot(normal, to);
   if (!(light.radius_m > 0.0f) || !(facing > 0.0) || !(height > 0.0)) return std::nullopt;
   const glm::dvec3 there = height / facing * along;
@@ -87,12 +86,11 @@ std::optional<WayToLight> look(const spec::DiscLight& light, const glm::vec3& po
 }
 
 sh::LightVector truncated(const spec::SphereLight& light, int order, const glm::dvec3& point) {
-  return sh::sphereLight(order, glm::dvec3(light.position_ws) - point, double{light.radius_m},
-                         light.radiance);
+  return sh::sphereLight(order, light.position_ws - point, double{light.radius_m}, light.radiance);
 }
 
 sh::LightVector truncated(const spec::DiscLight& light, int order, const glm::dvec3& point) {
-  return sh::discAreaLight(order, glm::dvec3(light.position_ws) - point, glm::dvec3(light.normal_ws),
+  return sh::discAreaLight(order, light.position_ws - point, glm::dvec3(light.normal_ws),
                            double{light.radius_m}, light.radiance);
 }
 

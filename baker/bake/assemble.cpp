@@ -33,6 +33,7 @@ class Assembler {
 
   void copyScene() {
     description_.generator = generatorOf(scene_, options_);
+    description_.origin = scene_.origin;
     description_.nodes = scene_.nodes;
     description_.roots = scene_.roots;
     description_.materials = scene_.materials;

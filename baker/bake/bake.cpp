@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -69,7 +70,7 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
     if (!refined) return failAgain(refined.error());
     report.refinement = *refined;
   }
-  return shipMeshes(scene, plan.groups, *split, context);
+  return shipMeshes(scene, plan.groups, std::move(*split), context);
 }
 
 struct BakedScene {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "baker/bake/assemble.hpp"
 #include "baker/bake/bake_group.hpp"
@@ -82,7 +83,7 @@ Result<BakeReport> bakeUnshadowedOnTheseThreads(const Scene& scene, const BakeOp
   const BrdfTables tables;
   auto split = splitMeshes(scene, plan->groups, options.max_edge_m);
   if (!split) return failAgain(split.error());
-  auto meshes = shipMeshes(scene, plan->groups, *split, context);
+  auto meshes = shipMeshes(scene, plan->groups, std::move(*split), context);
   if (!meshes) return failAgain(meshes.error());
 
   context.progress.begin("writing");

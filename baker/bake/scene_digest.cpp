@@ -73,6 +73,7 @@ void addVolume(const SceneVolume& volume, KeyMaker& digest) {
 std::uint64_t sceneDigest(const Scene& scene) {
   KeyMaker digest;
   digest.addText(scene.source.filename().string());
+  if (scene.origin != glm::dvec3(0.0)) digest.add(scene.origin);
   digest.add(scene.nodes.size());
   for (const gltf::Node& node : scene.nodes) addNode(node, digest);
   digest.addList(scene.roots);

@@ -1,9 +1,10 @@
-// Bakes what ships: meshes are split, encoded by Draco on one lattice per group and decoded again before
+// Bakes what ships: meshes are split, encoded by Draco on the lattice of their group and decoded again before
 // anything is computed on them.
 #pragma once
 
 #include <vector>
 
+#include "baker/bake/lattice_steps.hpp"
 #include "baker/compress/draco_encode.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/jobs/bake_context.hpp"
@@ -17,15 +18,13 @@ struct ShippedMeshes {
   std::vector<std::vector<bundle::MeshData>> decoded;            // [mesh][primitive]
 };
 
-using Meshes = std::vector<std::vector<bundle::MeshData>>;  // [mesh][primitive]
-
 // Returns the scene's meshes with edges longer than max_edge_m (metres in the group's frame; 0: no limit)
 // split. Errors: too many triangles.
 Result<Meshes> splitMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m);
 
 // Encodes and decodes the meshes. A mesh that was encoded before on the same lattice is taken from the cache.
 // Errors: a mesh that cannot be encoded, "stopped".
-Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
-                                 const Meshes& meshes, const BakeContext& context);
+Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, Meshes meshes,
+                                 const BakeContext& context);
 
 }  // namespace lambent::baker

@@ -120,6 +120,7 @@ void printBundleJson(const bundle::Reader& reader, const Sizes& sizes) {
       {"generator",
        {{"program", d.generator.program}, {"version", d.generator.version}, {"isa", d.generator.isa}}},
       {"settings", d.generator.settings},
+      {"origin", {d.origin.x, d.origin.y, d.origin.z}},
       {"draws", d.draws.size()},
       {"vertices", sizes.vertices},
       {"triangles", sizes.triangles},
@@ -145,6 +146,8 @@ void printBundle(const bundle::Reader& reader, const Sizes& sizes) {
   fmt::print("{}: format {}, {} {} ({})\n", reader.path().string(), d.version, d.generator.program,
              d.generator.version, d.generator.isa);
   for (const auto& [name, value] : d.generator.settings) fmt::print("  {:<13} {}\n", name, value);
+  if (d.origin != glm::dvec3(0.0))
+    fmt::print("  {:<13} {}, {}, {} m\n", "origin", d.origin.x, d.origin.y, d.origin.z);
   const double vertices = static_cast<double>(std::max<std::uint64_t>(sizes.vertices, 1));
   const auto line = [&](const char* name, std::uint64_t bytes) {
     fmt::print("  {:<13} {:>10}  {:6.2f} bytes a vertex\n", name, bytesText(static_cast<double>(bytes)),

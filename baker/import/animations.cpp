@@ -107,7 +107,7 @@ Result<gltf::Trs> partsOf(const Document& document, std::size_t n) {
     }
     return trs;
   }
-  const glm::mat4 matrix = localMatrix(document, n);
+  const glm::mat4 matrix(localMatrix(document, n));
   glm::mat3 linear(matrix);
   trs.translation = glm::vec3(matrix[3]);
   trs.scale = {glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])};

@@ -22,19 +22,23 @@ Result<void> convertMaterials(const Document& document, Scene& scene);
 void convertLights(const Document& document, Scene& scene);
 
 // Maps nodes of the file to those of the scene and back. -1 marks nodes of other scenes in the file, and
-// nodes made here.
+// nodes made here. Parents precede their children in the scene until placeNearOrigin().
 struct NodeMap {
   std::vector<std::int32_t> scene_node;  // by node of the file
   std::vector<std::int32_t> file_node;   // by node of the scene
+  // By node of the scene, in double as in the file; those in the scene are rounded.
+  std::vector<glm::dmat4> parent_from_node;
 };
 
 // Converts the nodes of the default scene, renumbered, and their cameras. Meshes keep the file's numbers for
 // now.
 Result<NodeMap> convertNodes(const Document& document, Scene& scene);
 // Returns the node's own transform, from its matrix or its translation, rotation and scale.
-glm::mat4 localMatrix(const Document& document, std::size_t file_node);
+glm::dmat4 localMatrix(const Document& document, std::size_t file_node);
 // Returns world_from_node of every node of the file, including nodes outside all scenes (joints may be).
-std::vector<glm::mat4> fileWorldTransforms(const Document& document);
+std::vector<glm::dmat4> fileWorldTransforms(const Document& document);
+// Returns world_from_node of every node of the scene, with the file's origin.
+std::vector<glm::dmat4> sceneWorldTransforms(const NodeMap& map, const Scene& scene);
 
 // Converts the meshes that nodes of the scene draw, at rest. A mesh with a skin, or with other weights of its
 // morph targets, becomes a mesh of its own. Nodes get the scene's mesh numbers.
@@ -44,14 +48,19 @@ Result<void> convertMeshes(const Document& document, NodeMap& map, Scene& scene)
 // parts.
 Result<void> convertAnimations(const Document& document, const NodeMap& map, Scene& scene);
 
-// Makes a child node for every instance of EXT_mesh_gpu_instancing. This comes last, since it adds nodes.
-Result<void> convertInstances(const Document& document, const NodeMap& map, Scene& scene);
+// Makes a child node for every instance of EXT_mesh_gpu_instancing. This follows the other conversions of
+// nodes, since it adds some.
+Result<void> convertInstances(const Document& document, NodeMap& map, Scene& scene);
 
 // Converts extras.lambent.volume and extras.lambent.neighborhood to Scene::volumes and Scene::neighborhoods.
 Result<void> convertGrids(const Document& document, const NodeMap& map, Scene& scene);
 
 // Checks that every body is of a size, and at a place, that can be traced.
-Result<void> checkSizes(const Document& document, const Scene& scene);
+Result<void> checkSizes(const Document& document, const NodeMap& map, const Scene& scene);
+
+// Subtracts Scene::origin from the places of all nodes, in double, and rounds them only then. The origin is 0
+// where the scene stands near that of the file.
+void placeNearOrigin(NodeMap map, Scene& scene);
 
 // Warns about a body around all others that keeps light from outside away, such as a sky dome.
 void warnAboutDomes(Scene& scene);

@@ -87,7 +87,8 @@ Result<Scene> convert(const Document& document) {
     return failAgain(std::move(instances.error()));
   // Convert volumes and requests for neighborhoods.
   if (auto grids = convertGrids(document, *map, scene); !grids) return failAgain(std::move(grids.error()));
-  if (auto sizes = checkSizes(document, scene); !sizes) return failAgain(std::move(sizes.error()));
+  if (auto sizes = checkSizes(document, *map, scene); !sizes) return failAgain(std::move(sizes.error()));
+  placeNearOrigin(std::move(*map), scene);
   warnAboutDomes(scene);
   foldWarnings(scene.warnings);
   if (scene.meshes.empty() && scene.volumes.empty())

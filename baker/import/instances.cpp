@@ -64,7 +64,7 @@ glm::mat4 instanceMatrix(const Attribute& translation, const Attribute& rotation
 }
 
 Result<void> expand(const Document& document, const json& attributes, std::size_t file_node,
-                    std::int32_t scene_node, std::size_t& total, Scene& scene) {
+                    std::int32_t scene_node, std::size_t& total, NodeMap& map, Scene& scene) {
   const std::string name = fmt::format("node {}", file_node);
   Attribute translation{"TRANSLATION", 3, {}}, rotation{"ROTATION", 4, {}}, scale{"SCALE", 3, {}};
   std::size_t count = 0;
@@ -98,6 +98,7 @@ Result<void> expand(const Document& document, const json& attributes, std::size_
     node.mesh = source.mesh;
     scene.nodes[static_cast<std::size_t>(scene_node)].children.push_back(
         static_cast<std::int32_t>(scene.nodes.size()));
+    map.parent_from_node.emplace_back(node.parent_from_node);
     scene.nodes.push_back(std::move(node));
   }
   scene.nodes[static_cast<std::size_t>(scene_node)].mesh = -1;
@@ -106,7 +107,7 @@ Result<void> expand(const Document& document, const json& attributes, std::size_
 
 }  // namespace
 
-Result<void> convertInstances(const Document& document, const NodeMap& map, Scene& scene) {
+Result<void> convertInstances(const Document& document, NodeMap& map, Scene& scene) {
   constexpr const char* kExtension = "EXT_mesh_gpu_instancing";
   if (map.scene_node.empty()) return {};
   const json& nodes = document.json()["nodes"];
@@ -118,7 +119,7 @@ Result<void> convertInstances(const Document& document, const NodeMap& map, Scen
     const auto scene_node = map.scene_node[n];
     if (scene.nodes[static_cast<std::size_t>(scene_node)].mesh < 0) continue;
     const json& attributes = nodes[n]["extensions"][kExtension]["attributes"];
-    if (auto done = expand(document, attributes, n, scene_node, total, scene); !done) return done;
+    if (auto done = expand(document, attributes, n, scene_node, total, map, scene); !done) return done;
   }
   return {};
 }

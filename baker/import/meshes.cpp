@@ -3,14 +3,18 @@
 #include <map>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
 #include "baker/import/accessor.hpp"
 #include "baker/import/convert.hpp"
+#include "baker/import/details.hpp"
 #include "baker/import/hints.hpp"
+#include "baker/import/placed_box.hpp"
 #include "baker/import/primitives.hpp"
 #include "baker/import/tangents.hpp"
 #include "baker/import/texture_transfer.hpp"
@@ -36,7 +40,7 @@ bool turnsWithTangents(const gltf::Material& material) {
 
 // Returns the joint matrices of a skin: world at rest from mesh as stored.
 Result<std::vector<glm::dmat4>> jointMatrices(const Document& document, std::size_t number,
-                                              const std::vector<glm::mat4>& world) {
+                                              const std::vector<glm::dmat4>& world) {
   const nlohmann::json& skin = document.json()["skins"][number];
   const nlohmann::json& joints = skin["joints"];
   std::vector<glm::dmat4> matrices(joints.size(), glm::dmat4(1.0));
@@ -54,7 +58,7 @@ Result<std::vector<glm::dmat4>> jointMatrices(const Document& document, std::siz
         matrices[j][i / 4][i % 4] = double{floats->values[16 * j + static_cast<std::size_t>(i)]};
   }
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    matrices[j] = glm::dmat4(world[joints[j].get<std::size_t>()]) * matrices[j];
+    matrices[j] = world[joints[j].get<std::size_t>()] * matrices[j];
     for (int i = 0; i < 16; ++i)
       if (!std::isfinite(matrices[j][i / 4][i % 4]))
         return fail(document.file(), fmt::format("skin {}: the matrix of joint {} is not finite", number, j),
@@ -108,24 +112,31 @@ class MeshConverter {
 
   // glTF places a skinned mesh by its joints alone. Here it stays at its node, converted to the node's space,
   // so that whatever moves the figure as a whole moves the mesh. If the node's space is flat or mirrored, it
-  // gets a node of its own instead. Returns the node that draws it.
+  // gets a node of its own instead, and if the joints are far from it, a child in their midst. Returns the
+  // node that draws it.
   std::size_t placeSkinned(std::size_t n, MeshPose& pose) {
-    const glm::dmat4 world(world_[static_cast<std::size_t>(map_.file_node[n])]);
+    constexpr double kFarFromNode = 1e4;  // floats are 1/1024 apart there
+    const glm::dmat4& world = world_[static_cast<std::size_t>(map_.file_node[n])];
     const double size = std::cbrt(std::abs(glm::determinant(glm::dmat3(world))));
-    if (glm::determinant(glm::dmat3(world)) > 0.0 && size > 1e-6) {
-      const glm::dmat4 mesh_from_world = glm::inverse(world);
-      for (glm::dmat4& joint : pose.joints) joint = mesh_from_world * joint;
-      return n;
-    }
+    const bool stays = glm::determinant(glm::dmat3(world)) > 0.0 && size > 1e-6;
+    if (stays)
+      for (glm::dmat4& joint : pose.joints) joint = glm::inverse(world) * joint;
+    glm::dvec3 place = glm::round(glm::dvec3(pose.joints.front()[3]));
+    if (!(largest(place) > kFarFromNode)) place = glm::dvec3(0.0);
+    if (stays && place == glm::dvec3(0.0)) return n;
+    for (glm::dmat4& joint : pose.joints) joint = glm::translate(glm::dmat4(1.0), -place) * joint;
+    const auto added = static_cast<std::int32_t>(scene_.nodes.size());
     gltf::Node own;
     own.name = scene_.nodes[n].name;
-    own.mesh = scene_.nodes[n].mesh;
-    own.movable = scene_.nodes[n].movable;
-    scene_.nodes[n].mesh = -1;
-    scene_.roots.push_back(static_cast<std::int32_t>(scene_.nodes.size()));
+    own.mesh = std::exchange(scene_.nodes[n].mesh, -1);
+    own.parent = stays ? static_cast<std::int32_t>(n) : -1;
+    own.movable = !stays && scene_.nodes[n].movable;
+    own.parent_from_node = glm::translate(glm::mat4(1.0f), glm::vec3(place));
+    (stays ? scene_.nodes[n].children : scene_.roots).push_back(added);
     scene_.nodes.push_back(std::move(own));
     map_.file_node.push_back(-1);
-    return scene_.nodes.size() - 1;
+    map_.parent_from_node.push_back(glm::translate(glm::dmat4(1.0), place));
+    return static_cast<std::size_t>(added);
   }
 
   Result<SceneMesh> readMesh(std::size_t m, const MeshPose& pose) {
@@ -156,6 +167,7 @@ class MeshConverter {
       if (const std::uint32_t texels = textureTransferOf(described, described["primitives"][p]); texels > 0)
         giveTexels(texels, name, mesh.primitives.back(), scene_.warnings);
     }
+    separateDetails(mesh);
     return mesh;
   }
 
@@ -163,7 +175,7 @@ class MeshConverter {
   const Document& document_;
   NodeMap& map_;
   Scene& scene_;
-  std::vector<glm::mat4> world_;
+  std::vector<glm::dmat4> world_;
   std::map<Key, std::int32_t> number_;
   std::size_t vertices_ = 0;
 };

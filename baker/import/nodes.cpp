@@ -12,8 +12,8 @@
 namespace lambent::baker {
 namespace {
 
-glm::mat4 localMatrix(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) return glm::mat4(glm::make_mat4(node.matrix.data()));
+glm::dmat4 localMatrix(const tinygltf::Node& node) {
+  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
   glm::dmat4 matrix(1.0);
   if (node.translation.size() == 3) matrix = glm::translate(matrix, glm::make_vec3(node.translation.data()));
   if (node.rotation.size() == 4) {
@@ -23,7 +23,7 @@ glm::mat4 localMatrix(const tinygltf::Node& node) {
     if (glm::length(rotation) > 0.0) matrix *= glm::mat4_cast(glm::normalize(rotation));
   }
   if (node.scale.size() == 3) matrix = glm::scale(matrix, glm::make_vec3(node.scale.data()));
-  return glm::mat4(matrix);
+  return matrix;
 }
 
 bool isMovable(const tinygltf::Node& node) {
@@ -38,20 +38,21 @@ std::int32_t lightOf(const nlohmann::json& node) {
   return node["extensions"]["KHR_lights_punctual"]["light"].get<std::int32_t>();
 }
 
+std::vector<int> parentless(const tinygltf::Model& model) {
+  std::vector<bool> has_parent(model.nodes.size(), false);
+  for (const tinygltf::Node& node : model.nodes)
+    for (int child : node.children) has_parent[static_cast<std::size_t>(child)] = true;
+  std::vector<int> found;
+  for (std::size_t i = 0; i < has_parent.size(); ++i)
+    if (!has_parent[i]) found.push_back(static_cast<int>(i));
+  return found;
+}
+
 // Returns the roots of the default scene, or of the first one; in a file without scenes, all nodes without a
 // parent.
 std::vector<int> rootsOf(const tinygltf::Model& model) {
-  std::vector<int> roots;
-  if (!model.scenes.empty()) {
-    roots = model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))].nodes;
-  } else {
-    std::vector<bool> has_parent(model.nodes.size(), false);
-    for (const tinygltf::Node& node : model.nodes)
-      for (int child : node.children) has_parent[static_cast<std::size_t>(child)] = true;
-    for (std::size_t i = 0; i < has_parent.size(); ++i)
-      if (!has_parent[i]) roots.push_back(static_cast<int>(i));
-  }
-  return roots;
+  if (model.scenes.empty()) return parentless(model);
+  return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))].nodes;
 }
 
 gltf::Camera convertCamera(const tinygltf::Camera& camera) {
@@ -74,19 +75,32 @@ gltf::Camera convertCamera(const tinygltf::Camera& camera) {
 
 }  // namespace
 
-glm::mat4 localMatrix(const Document& document, std::size_t file_node) {
+glm::dmat4 localMatrix(const Document& document, std::size_t file_node) {
   return localMatrix(document.model().nodes[file_node]);
 }
 
-std::vector<glm::mat4> fileWorldTransforms(const Document& document) {
+std::vector<glm::dmat4> fileWorldTransforms(const Document& document) {
   const auto& sources = document.model().nodes;
-  std::vector<gltf::Node> nodes(sources.size());
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    nodes[i].parent_from_node = localMatrix(sources[i]);
-    for (const int child : sources[i].children)
-      nodes[static_cast<std::size_t>(child)].parent = static_cast<std::int32_t>(i);
+  std::vector<glm::dmat4> world(sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) world[i] = localMatrix(sources[i]);
+  std::vector<int> open = parentless(document.model());  // nodes whose matrices are those of the world
+  while (!open.empty()) {
+    const auto parent = static_cast<std::size_t>(open.back());
+    open.pop_back();
+    for (const int child : sources[parent].children) {
+      world[static_cast<std::size_t>(child)] = world[parent] * world[static_cast<std::size_t>(child)];
+      open.push_back(child);
+    }
   }
-  return gltf::worldTransforms(nodes);
+  return world;
+}
+
+std::vector<glm::dmat4> sceneWorldTransforms(const NodeMap& map, const Scene& scene) {
+  std::vector<glm::dmat4> world = map.parent_from_node;
+  for (std::size_t n = 0; n < world.size(); ++n)  // parents come first
+    if (const std::int32_t parent = scene.nodes[n].parent; parent >= 0)
+      world[n] = world[static_cast<std::size_t>(parent)] * world[n];
+  return world;
 }
 
 Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
@@ -110,7 +124,8 @@ Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
     gltf::Node node;
     node.name = source.name;
     node.parent = parent;
-    node.parent_from_node = localMatrix(source);
+    map.parent_from_node.push_back(localMatrix(source));
+    node.parent_from_node = glm::mat4(map.parent_from_node.back());
     for (int c = 0; c < 4; ++c)
       for (int r = 0; r < 4; ++r)
         if (!std::isfinite(node.parent_from_node[c][r]))

@@ -47,6 +47,9 @@ struct NeighborhoodRequest {
 
 struct Scene {
   std::filesystem::path source;
+  // Nodes stand relative to this point of the file's world, in m, so that floats are fine enough. Unless it
+  // is 0 there is one root, which stands there and never moves.
+  glm::dvec3 origin{0.0};
   std::vector<gltf::Node> nodes;
   std::vector<std::int32_t> roots;  // roots of the default scene
   std::vector<SceneMesh> meshes;

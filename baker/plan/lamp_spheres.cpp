@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "baker/plan/connected_parts.hpp"
+#include "baker/import/connected_parts.hpp"
 #include "baker/plan/corner_numbers.hpp"
 
 namespace lambent::baker {

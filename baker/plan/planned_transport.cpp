@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "baker/import/details.hpp"
 #include "baker/plan/counted.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 
@@ -26,6 +27,7 @@ using Triangle = std::array<glm::dvec3, 3>;
 // A Body is a group's surfaces in the group's frame.
 struct Body {
   std::vector<glm::dvec3> points;
+  std::vector<double> sizes;        // of what is coded together with each point, m
   std::vector<Triangle> triangles;  // counter-clockwise seen from outside
   double diagonal = 0.0;
 };
@@ -50,7 +52,22 @@ Body bodyOf(const Scene& scene, const RigidGroup& group) {
       body.triangles.push_back(triangle);
     }
   }
-  if (!body.points.empty()) body.diagonal = glm::distance(low, high);
+  if (body.points.empty()) return body;
+  body.diagonal = glm::distance(low, high);
+  for (const PlannedDraw& draw : group.draws) {
+    const bundle::MeshData& mesh = scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
+    const std::size_t first = body.sizes.size();
+    body.sizes.resize(first + mesh.positions.size(), body.diagonal);
+    const auto scale =
+        static_cast<float>(std::cbrt(std::abs(glm::determinant(glm::dmat3(draw.group_from_mesh)))));
+    if (!bends(static_cast<float>(0.2 * kLevel * body.diagonal), scale * detailOf(mesh))) continue;
+    // It has a lattice of its own.
+    low = glm::dvec3(std::numeric_limits<double>::max()), high = -low;
+    for (std::size_t i = first; i < body.sizes.size(); ++i)
+      low = glm::min(low, body.points[i]), high = glm::max(high, body.points[i]);
+    std::fill(body.sizes.begin() + static_cast<std::ptrdiff_t>(first), body.sizes.end(),
+              glm::distance(low, high));
+  }
   return body;
 }
 
@@ -61,10 +78,11 @@ struct Plane {
   double heightOf(const glm::dvec3& p) const { return glm::dot(normal, p) - offset; }
 };
 
-// Returns how far vertices stand above the planes of faces, relative to the diagonal: the most, or the first
+// Returns how far vertices stand above the planes of faces, relative to their sizes: the most, or the first
 // that is more than kLevel, or -1 if there is too much to compare.
 double heightAboveFaces(const Body& body) {
-  const double level = kLevel * body.diagonal;
+  if (body.points.empty()) return 0.0;
+  const double level = kLevel * std::ranges::min(body.sizes);
   double highest = 0.0, compared = 0.0;
   Plane last;
   bool any = false;
@@ -79,12 +97,12 @@ double heightAboveFaces(const Body& body) {
     last = plane, any = true;
     compared += static_cast<double>(body.points.size());
     if (compared > kMostComparisons) return -1.0;
-    for (const glm::dvec3& p : body.points) {
-      highest = std::max(highest, plane.heightOf(p));
-      if (highest > level) return highest / body.diagonal;
+    for (std::size_t i = 0; i < body.points.size(); ++i) {
+      if (body.sizes[i] > 0.0) highest = std::max(highest, plane.heightOf(body.points[i]) / body.sizes[i]);
+      if (highest > kLevel) return highest;
     }
   }
-  return body.diagonal > 0.0 ? highest / body.diagonal : 0.0;
+  return highest;
 }
 
 // Returns a bound on what a surface of the material reflects of the light that arrives. Textures and colours

@@ -18,14 +18,15 @@ struct PlannedTransport {
   bool bounces = true;  // true if light may bounce between its surfaces; false without shadows
   // Each is a phrase that is true either way.
   std::string shadows_reason, bounces_reason;
-  // How far a vertex stands above the plane of a face, relative to the group's diagonal; with shadows, of the
+  // How far a vertex stands above the plane of a face, relative to the group's diagonal, or to the
+  // primitive's if that is small enough for a lattice of its own (import/details.hpp); with shadows, of the
   // first that counts, or -1 if there were too many faces to look at.
   double height = 0.0;
   double most_reflected = 1.0;  // share of light that the brightest surface may reflect, from factors alone
 };
 
-// Vertices this far above a face, relative to the group's diagonal, do not count. The lattice of coded
-// positions is about as fine.
+// Vertices this far above a face, relative to the same diagonal, do not count. The lattice of coded positions
+// is about as fine.
 inline constexpr double kLevel = 2e-5;
 // Surfaces that reflect less are black: of their light at most this share bounces, which is less than any
 // quality of bakes leaves out.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "baker/import/gltf.hpp"
 #include "baker/import/join_scenes.hpp"
@@ -98,7 +99,9 @@ Result<baker::Scene> makeReferenceScene(const std::vector<ReferencePart>& parts,
     baker::reference::poseAt(*scene, animation_s);
     baker::applyEdits(part.edits, *scene);
     if (all.source.empty()) all.source = part.source;
-    baker::joinScene(std::move(*scene), part.name, part.world_from_scene, all);
+    const glm::mat4 world_from_scene =
+        glm::translate(part.world_from_scene, glm::vec3(scene->origin - part.origin));
+    baker::joinScene(std::move(*scene), part.name, world_from_scene, all);
   }
   addLamps(lamps, all);
   return all;

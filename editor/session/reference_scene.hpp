@@ -20,6 +20,7 @@ struct ReferencePart {
   std::string name;
   baker::SceneEdits edits;
   glm::mat4 world_from_scene{1.0f};
+  glm::dvec3 origin{0.0};  // of the world, frame::World::origin()
   bool operator==(const ReferencePart&) const = default;
 };
 

@@ -29,7 +29,8 @@ Result<std::vector<ReferencePart>> partsOf(const Session& session) {
                      .time = std::filesystem::last_write_time(entries[i].source, ignored),
                      .name = entries[i].id,
                      .edits = session.changes.editsOf(i),
-                     .world_from_scene = worldFromNode(session.document.registry(), instance.root)});
+                     .world_from_scene = worldFromNode(session.document.registry(), instance.root),
+                     .origin = session.stage.world().origin()});
   }
   return parts;
 }

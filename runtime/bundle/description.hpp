@@ -294,6 +294,9 @@ struct Description {
   std::uint32_t version = kVersionCurrent;
   Generator generator;
 
+  // What the world's coordinates count from in the nodes without a parent and in Group::rest_translation, in
+  // m in the world of the file. Unless it is 0, no animation moves these nodes.
+  glm::dvec3 origin{0.0};
   std::vector<gltf::Node> nodes;
   std::vector<std::int32_t> roots;
   std::vector<Mesh> meshes;
@@ -318,6 +321,9 @@ struct Description {
     return 0;
   }
 };
+
+// Makes the description count from another origin.
+void countFrom(const glm::dvec3& origin, Description& description);
 
 // Returns whether the runtime adds a specular layer to a draw: one whose material is not diffuse, but which
 // has diffuse or normal-mapped transfer (smooth dielectrics; docs/design/glossy.md), in a bundle with a

@@ -88,18 +88,21 @@ Primitive readPrimitive(const Field& field, const std::vector<Field>& accessors,
 
 // --- nodes ---
 
-Json nodeJson(const gltf::Node& node) {
+// A node without a parent stands relative to the description's origin, in the file to that of the world.
+Json nodeJson(const gltf::Node& node, const glm::dvec3& origin) {
   Json json = Json::object();
   if (!node.name.empty()) json["name"] = node.name;
   if (!node.children.empty()) json["children"] = node.children;
   if (node.trs) {  // animation channels need the parts; for other nodes the matrix is exact
     const glm::quat& q = node.trs->rotation;
-    json["translation"] = vectorJson(node.trs->translation);
+    json["translation"] = vectorJson(glm::dvec3(node.trs->translation) + origin);
     json["rotation"] = vectorJson(glm::vec4(q.x, q.y, q.z, q.w));
     json["scale"] = vectorJson(node.trs->scale);
-  } else if (node.parent_from_node != glm::mat4(1.0f)) {
+  } else if (node.parent_from_node != glm::mat4(1.0f) || origin != glm::dvec3(0.0)) {
+    glm::dmat4 parent_from_node(node.parent_from_node);
+    parent_from_node[3] += glm::dvec4(origin, 0.0);
     Json matrix = Json::array();
-    for (int i = 0; i < 16; ++i) matrix.push_back(glm::value_ptr(node.parent_from_node)[i]);
+    for (int i = 0; i < 16; ++i) matrix.push_back(glm::value_ptr(parent_from_node)[i]);
     json["matrix"] = std::move(matrix);
   }
   if (node.mesh >= 0) json["mesh"] = node.mesh;
@@ -134,6 +137,18 @@ gltf::Node readNode(const Field& field, const Description& d, std::size_t node_c
   node.movable = field.has("extras") && field["extras"].has("lambent") &&
                  field["extras"]["lambent"].has("movable") && field["extras"]["lambent"]["movable"].flag();
   return node;
+}
+
+// Reads the place of a node without a parent again, relative to the origin.
+void readPlace(const Field& field, const glm::dvec3& origin, gltf::Node& node) {
+  if (node.animated) field.fault("is moved by an animation, but stands at the origin");
+  glm::dvec3 place(0.0);
+  if (field.has("translation")) place = field["translation"].vector<glm::dvec3>();
+  if (field.has("matrix"))
+    for (std::size_t i = 0; i < 3; ++i)
+      place[static_cast<int>(i)] = field["matrix"].items()[12 + i].preciseNumber();
+  node.parent_from_node[3] = glm::vec4(glm::vec3(place - origin), 1.0f);
+  if (node.trs) node.trs->translation = glm::vec3(node.parent_from_node[3]);
 }
 
 // Sets parents from children. Throws JsonFault if nodes do not form a forest, since later code chains
@@ -220,7 +235,9 @@ void writeGltf(const Description& d, std::uint64_t binary_bytes, Json& document)
     writeList(document["extensions"][kPunctualLights], "lights", d.lights, lightJson);
     used.insert(kPunctualLights);
   }
-  writeList(document, "nodes", d.nodes, nodeJson);
+  writeList(document, "nodes", d.nodes, [&](const gltf::Node& node) {
+    return nodeJson(node, node.parent < 0 ? d.origin : glm::dvec3(0.0));
+  });
   if (!d.roots.empty()) {
     document["scenes"] = Json::array({{{"nodes", d.roots}}});
     document["scene"] = 0;
@@ -284,6 +301,12 @@ void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d)
       node.animated = true;
       if (!node.trs) node.trs = gltf::Trs{};  // readAnimation() has checked that the node has no matrix
     }
+  }
+  const Field extension = document["extensions"][std::string(kExtensionName).c_str()];
+  if (extension.has("origin")) {
+    d.origin = extension["origin"].vector<glm::dvec3>();
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (d.nodes[i].parent < 0) readPlace(nodes[i], d.origin, d.nodes[i]);
   }
   const auto scenes = document.list("scenes");
   if (document.has("scenes") && scenes.empty()) document["scenes"].fault("are none");

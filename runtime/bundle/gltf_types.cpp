@@ -12,7 +12,7 @@ glm::mat4 Trs::matrix() const {
 }
 
 std::vector<glm::mat4> worldTransforms(const std::vector<Node>& nodes) {
-  std::vector<glm::mat4> world_from_node(nodes.size(), glm::mat4(1.0f));
+  std::vector<glm::dmat4> world_from_node(nodes.size(), glm::dmat4(1.0));
   std::vector<bool> done(nodes.size(), false);
   std::vector<std::size_t> chain;
   for (std::size_t start = 0; start < nodes.size(); ++start) {
@@ -28,12 +28,12 @@ std::vector<glm::mat4> worldTransforms(const std::vector<Node>& nodes) {
       const std::size_t i = chain.back();
       chain.pop_back();
       const std::int32_t parent = nodes[i].parent;
-      world_from_node[i] =
-          parent < 0 ? nodes[i].parent_from_node
-                     : world_from_node[static_cast<std::size_t>(parent)] * nodes[i].parent_from_node;
+      world_from_node[i] = glm::dmat4(nodes[i].parent_from_node);
+      if (parent >= 0)
+        world_from_node[i] = world_from_node[static_cast<std::size_t>(parent)] * world_from_node[i];
     }
   }
-  return world_from_node;
+  return {world_from_node.begin(), world_from_node.end()};
 }
 
 }  // namespace lambent::gltf

@@ -177,7 +177,7 @@ struct Animation {
   std::vector<AnimationChannel> channels;
 };
 
-// Returns world_from_node for every node. Parents may follow their children in the list.
+// Returns world_from_node for every node, composed in double. Parents may follow their children in the list.
 std::vector<glm::mat4> worldTransforms(const std::vector<Node>& nodes);
 
 }  // namespace lambent::gltf

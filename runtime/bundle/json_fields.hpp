@@ -57,12 +57,14 @@ class Field {
     if (!value_->is_boolean()) fault("is not true or false");
     return value_->get<bool>();
   }
-  float number() const {
+  float number() const { return static_cast<float>(preciseNumber()); }
+  // Returns a number within the range of floats, without rounding it to one.
+  double preciseNumber() const {
     if (!value_->is_number()) fault("is not a number");
     const double value = value_->get<double>();
     if (!std::isfinite(value) || std::abs(value) > double{std::numeric_limits<float>::max()})
       fault("is not finite");
-    return static_cast<float>(value);
+    return value;
   }
   std::uint64_t count(std::uint64_t largest) const {
     if (!value_->is_number_unsigned()) fault("is not a whole number");
@@ -95,7 +97,8 @@ class Field {
     Vec out{};
     if (parts.size() != static_cast<std::size_t>(Vec::length()))
       fault(fmt::format("is not {} numbers", Vec::length()));
-    for (std::size_t i = 0; i < parts.size(); ++i) out[static_cast<int>(i)] = parts[i].number();
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      out[static_cast<int>(i)] = static_cast<typename Vec::value_type>(parts[i].preciseNumber());
     return out;
   }
 

@@ -64,6 +64,10 @@ Result<Reader> Reader::open(const std::filesystem::path& path) {
   return reader;
 }
 
+void Reader::countFrom(const glm::dvec3& origin) {
+  bundle::countFrom(origin, file_->description);
+}
+
 const std::filesystem::path& Reader::path() const {
   return file_->glb.path();
 }

@@ -39,6 +39,9 @@ class Reader {
   Reader& operator=(Reader&&) noexcept;
   ~Reader();
 
+  // Makes the description count from another origin; that of a file that was opened is the file's.
+  void countFrom(const glm::dvec3& origin);
+
   const std::filesystem::path& path() const;
   const Description& description() const;
   std::uint64_t fileBytes() const;

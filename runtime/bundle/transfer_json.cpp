@@ -281,10 +281,10 @@ PictureError readPictureError(const Field& field) {
           .bound = field.has("bound") ? share("bound") : 0.0f};
 }
 
-Json groupJson(const Group& group) {
+Json groupJson(const Group& group, const glm::dvec3& origin) {
   const glm::quat& r = group.rest_rotation;
   Json json = {{"name", group.name},
-               {"restTranslation", vectorJson(group.rest_translation)},
+               {"restTranslation", vectorJson(glm::dvec3(group.rest_translation) + origin)},
                {"restRotation", {r.x, r.y, r.z, r.w}},  // in glTF's order
                {"boundsMin", vectorJson(group.bounds_min)},
                {"boundsMax", vectorJson(group.bounds_max)},
@@ -308,7 +308,7 @@ Group readGroup(const Field& field, const Description& d) {
   Group group;
   group.name = field["name"].text();
   if (field.has("node")) group.node = static_cast<std::int32_t>(field["node"].index(d.nodes.size()));
-  group.rest_translation = field["restTranslation"].vector<glm::vec3>();
+  group.rest_translation = glm::vec3(field["restTranslation"].vector<glm::dvec3>() - d.origin);
   const auto r = field["restRotation"].vector<glm::vec4>();
   group.rest_rotation = glm::quat(r.w, r.x, r.y, r.z);
   if (std::abs(glm::dot(r, r) - 1.0f) > 1e-3f) field["restRotation"].fault("is not a unit quaternion");
@@ -409,7 +409,7 @@ Json writeTransfer(const Description& d) {
                         {"bufferView", payload.view},
                         {"rawLength", payload.raw_length},
                         {"priority", payload.priority}});
-  for (const Group& group : d.groups) groups.push_back(groupJson(group));
+  for (const Group& group : d.groups) groups.push_back(groupJson(group, d.origin));
   for (const Draw& draw : d.draws) {
     draws.push_back({{"node", draw.node},
                      {"primitive", draw.primitive},
@@ -423,17 +423,19 @@ Json writeTransfer(const Description& d) {
   for (const BrdfTableEntry& entry : d.brdf_tables)
     tables.push_back(
         {{"family", word(entry.family, kBrdfFamilies)}, {"name", entry.name}, {"payload", entry.payload}});
-  return {{"version", d.version},
-          {"generator",
-           {{"program", d.generator.program},
-            {"version", d.generator.version},
-            {"isa", d.generator.isa},
-            {"settings", d.generator.settings}}},
-          {"checksums", checksums},
-          {"payloads", payloads},
-          {"brdfTables", tables},
-          {"groups", groups},
-          {"draws", draws}};
+  Json json = {{"version", d.version},
+               {"generator",
+                {{"program", d.generator.program},
+                 {"version", d.generator.version},
+                 {"isa", d.generator.isa},
+                 {"settings", d.generator.settings}}},
+               {"checksums", checksums},
+               {"payloads", payloads},
+               {"brdfTables", tables},
+               {"groups", groups},
+               {"draws", draws}};
+  if (d.origin != glm::dvec3(0.0)) json["origin"] = vectorJson(d.origin);
+  return json;
 }
 
 void readTransfer(const Field& extension, Description& d) {

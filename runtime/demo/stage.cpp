@@ -35,7 +35,7 @@ Result<Stage> Stage::create(const Options& options, lighting::Environment enviro
     if (const auto opened = stage.world_.open(path); !opened) return failAgain(opened.error());
   stage.world_.scaleLamps(options.lamps);
   ecs::Registry& registry = stage.world_.registry();
-  scene::addLights(registry, options.lights);
+  scene::addLights(registry, options.lights, stage.world_.origin());
   stage.environment_entity_ = scene::addEnvironment(registry);
   auto& component = registry.edit<scene::EnvironmentComponent>(stage.environment_entity_);
   component.rotation_deg = options.rotate_light_deg;

@@ -207,6 +207,11 @@ void Scene::setAnimationTime(float seconds) {
   state_->world.setAnimationTime(seconds);
 }
 
+std::array<double, 3> Scene::origin() const {
+  const glm::dvec3& origin = state_->world.origin();
+  return {origin.x, origin.y, origin.z};
+}
+
 Box Scene::bounds() const {
   state_->world.updateTransforms();
   const scene::Box box = scene::worldBounds(state_->world.registry());

@@ -29,17 +29,18 @@ glm::quat facing(glm::vec3 direction) {
   return glm::quat(glm::normalize(glm::dquat(w, axis.x, axis.y, axis.z)));
 }
 
-std::vector<ecs::Entity> addLights(ecs::Registry& registry, std::span<const spec::Light> lights) {
+std::vector<ecs::Entity> addLights(ecs::Registry& registry, std::span<const spec::Light> lights,
+                                   const glm::dvec3& origin) {
   std::vector<ecs::Entity> entities;
-  for (const spec::LocalLight& light : spec::localLights(lights)) {
+  for (const spec::LocalLight& light : spec::localLights(lights, origin)) {
     const ecs::Entity entity = entities.emplace_back(registry.create());
     Transform place;
     if (const auto* sphere = std::get_if<spec::SphereLight>(&light)) {
-      place.translation = sphere->position_ws;
+      place.translation = glm::vec3(sphere->position_ws);
       registry.emplace<LocalLightComponent>(entity,
                                             lightOf(Kind::Sphere, sphere->radius_m, sphere->radiance));
     } else if (const auto* disc = std::get_if<spec::DiscLight>(&light)) {
-      place.translation = disc->position_ws;
+      place.translation = glm::vec3(disc->position_ws);
       place.rotation = facing(disc->normal_ws);
       registry.emplace<LocalLightComponent>(entity, lightOf(Kind::Disc, disc->radius_m, disc->radiance));
     }

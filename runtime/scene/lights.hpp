@@ -11,9 +11,10 @@
 
 namespace lambent::scene {
 
-// Adds an entity for each local light (spec::localLights), in their order. The Transform of a disc rotates -Z
-// to the direction in which it shines.
-std::vector<ecs::Entity> addLights(ecs::Registry& registry, std::span<const spec::Light> lights);
+// Adds an entity for each local light (spec::localLights), in their order, at positions that count from the
+// origin. The Transform of a disc rotates -Z to the direction in which it shines.
+std::vector<ecs::Entity> addLights(ecs::Registry& registry, std::span<const spec::Light> lights,
+                                   const glm::dvec3& origin = glm::dvec3(0.0));
 
 // Returns the smallest rotation that takes -Z, along which lights shine, to the direction, which is not 0.
 glm::quat facing(glm::vec3 direction);

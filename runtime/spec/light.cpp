@@ -65,30 +65,31 @@ Result<Light> parseSun(std::string_view word, std::string_view text) {
 }
 
 Result<Light> parseSphere(std::string_view word, std::string_view text) {
-  const auto values = parseNumbers(text);
+  const auto values = parseNumbers<double>(text);
   if (!values) return wrongLight(word, "is not a list of numbers", kSphereForm);
   if (values->size() != 5 && values->size() != 7)
     return wrongLight(word, "needs five or seven numbers", kSphereForm);
-  const std::vector<float>& v = *values;
+  const std::vector<float> v(values->begin(), values->end());
   if (v[3] < 0.0f) return wrongLight(word, "has a negative radius", kSphereForm);
   const auto colour = parseRadiance(std::span(v).subspan(4));
   if (!colour) return wrongLight(word, "has a radiance outside 0..1e15", kSphereForm);
-  return SphereLight{{v[0], v[1], v[2]}, v[3], *colour};
+  return SphereLight{{(*values)[0], (*values)[1], (*values)[2]}, v[3], *colour};
 }
 
 Result<Light> parseDisc(std::string_view word, std::string_view text) {
-  const auto values = parseNumbers(text);
+  const auto values = parseNumbers<double>(text);
   if (!values) return wrongLight(word, "is not a list of numbers", kDiscForm);
   if (values->size() != 8 && values->size() != 10)
     return wrongLight(word, "needs eight or ten numbers", kDiscForm);
-  const std::vector<float>& v = *values;
+  const std::vector<float> v(values->begin(), values->end());
   // In double precision squares of floats neither overflow nor underflow.
   const glm::dvec3 normal(v[3], v[4], v[5]);
   if (!(glm::length(normal) > 0.0)) return wrongLight(word, "has a normal of length 0", kDiscForm);
   if (v[6] < 0.0f) return wrongLight(word, "has a negative radius", kDiscForm);
   const auto colour = parseRadiance(std::span(v).subspan(7));
   if (!colour) return wrongLight(word, "has a radiance outside 0..1e15", kDiscForm);
-  return DiscLight{{v[0], v[1], v[2]}, glm::vec3(glm::normalize(normal)), v[6], *colour};
+  return DiscLight{
+      {(*values)[0], (*values)[1], (*values)[2]}, glm::vec3(glm::normalize(normal)), v[6], *colour};
 }
 
 }  // namespace
@@ -124,12 +125,13 @@ Result<std::vector<Light>> parseLights(std::span<const std::string> words, std::
   return lights;
 }
 
-std::vector<LocalLight> localLights(std::span<const Light> lights) {
+std::vector<LocalLight> localLights(std::span<const Light> lights, const glm::dvec3& origin) {
   std::vector<LocalLight> out;
   for (const Light& light : lights) {
     if (const auto* sphere = std::get_if<SphereLight>(&light)) out.emplace_back(*sphere);
     if (const auto* disc = std::get_if<DiscLight>(&light)) out.emplace_back(*disc);
   }
+  for (LocalLight& light : out) std::visit([&](auto& local) { local.position_ws -= origin; }, light);
   return out;
 }
 

@@ -52,14 +52,14 @@ struct SunLight {
 // Describes a sphere of uniform radiance in the scene. It lights surfaces, but is invisible to the camera and
 // casts no shadow. Radius 0 gives no light.
 struct SphereLight {
-  glm::vec3 position_ws{0.0f};
+  glm::dvec3 position_ws{0.0};
   float radius_m = 0.0f;  // >= 0
   glm::vec3 radiance{1.0f};
 };
 
 // Describes a flat disc of uniform radiance that shines to one side, and otherwise behaves like SphereLight.
 struct DiscLight {
-  glm::vec3 position_ws{0.0f};
+  glm::dvec3 position_ws{0.0};
   glm::vec3 normal_ws{0.0f, -1.0f, 0.0f};  // unit, towards the side that shines
   float radius_m = 0.0f;                   // >= 0
   glm::vec3 radiance{1.0f};
@@ -80,8 +80,10 @@ Result<Light> parseLight(std::string_view word);
 // --light-layout names; if that is empty, the pictures' shapes decide.
 Result<std::vector<Light>> parseLights(std::span<const std::string> words, std::string_view layout_word = {});
 
-// Returns the local lights in their order. loadDistantLights() handles the others.
-std::vector<LocalLight> localLights(std::span<const Light> lights);
+// Returns the local lights in their order, with positions that count from the origin, in the world of the
+// lights. loadDistantLights() handles the others.
+std::vector<LocalLight> localLights(std::span<const Light> lights,
+                                    const glm::dvec3& origin = glm::dvec3(0.0));
 
 // Parses --light-layout: lat-long, angular-map or vertical-cross.
 Result<sh::ImageLayout> parseLightLayout(std::string_view word);

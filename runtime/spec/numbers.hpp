@@ -11,7 +11,8 @@ namespace lambent::spec {
 // Parses one number. Returns nothing if there is any other character or the value is not finite.
 std::optional<float> parseNumber(std::string_view text);
 
-// Parses "A,B,C". Returns nothing if any part is not a number.
-std::optional<std::vector<float>> parseNumbers(std::string_view text);
+// Parses "A,B,C" as floats or, within their range, as doubles. Returns nothing if any part is not a number.
+template <typename Number = float>
+std::optional<std::vector<Number>> parseNumbers(std::string_view text);
 
 }  // namespace lambent::spec

@@ -125,6 +125,10 @@ class World {
   // Fails if the file is not a bundle, which status() then reports too.
   Result<void> replace(std::uint32_t bundle, const std::filesystem::path& path);
 
+  // Returns what positions count from in the world of the files, in m: the origin of the bundle that was
+  // opened when no other was open.
+  const glm::dvec3& origin() const { return origin_; }
+
   // Returns the number of slots, including closed ones, which have no description and no instance.
   std::size_t bundleCount() const { return bundles_.size(); }
   bool isOpen(std::uint32_t bundle) const { return bundle < bundles_.size() && bundles_[bundle].has_value(); }
@@ -289,7 +293,8 @@ class World {
   streaming::Residency residency_;
   ThreadPool threads_;                          // for the loaders below
   std::vector<std::optional<Bundle>> bundles_;  // indexed by slot
-  std::vector<ecs::Entity> lamp_of_draw_;       // null: not a lamp of its group
+  glm::dvec3 origin_{0.0};
+  std::vector<ecs::Entity> lamp_of_draw_;  // null: not a lamp of its group
   std::vector<scene::Box> group_bounds_;
   std::uint64_t materials_seen_ = 0, materials_version_ = 1;
   std::uint64_t max_resident_bytes_;

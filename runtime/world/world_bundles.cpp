@@ -37,6 +37,9 @@ Result<std::uint32_t> World::open(const std::filesystem::path& path, const OpenO
       std::ranges::find_if(bundles_, [](const auto& bundle) { return !bundle; }) - bundles_.begin());
   Result<bundle::Reader> opened = bundle::Reader::open(path);
   if (!opened) return failAgain(opened.error());
+  const bool first = std::ranges::none_of(bundles_, [](const auto& bundle) { return bundle.has_value(); });
+  const glm::dvec3 origin = first ? opened->description().origin : origin_;
+  opened->countFrom(origin);
   Result<streaming::Parts> parts = streaming::partsOf(*opened, limited());
   if (!parts) return failAgain(parts.error());
   Bundle bundle{.reader = std::make_shared<const bundle::Reader>(std::move(*opened)),
@@ -70,6 +73,7 @@ Result<std::uint32_t> World::open(const std::filesystem::path& path, const OpenO
   setParts(bundle, std::move(*parts));
   if (slot == bundles_.size()) bundles_.emplace_back();
   bundles_[slot].emplace(std::move(bundle));
+  origin_ = origin;
   ++bundles_version_;
   ++proxy_lods_version_;
   rebuildTables();
@@ -100,6 +104,7 @@ Result<void> World::replace(std::uint32_t bundle, const std::filesystem::path& p
   };
   Result<bundle::Reader> opened = bundle::Reader::open(path);
   if (!opened) return giveUp(opened.error());
+  opened->countFrom(origin_);
   const auto reader = std::make_shared<const bundle::Reader>(std::move(*opened));
   Result<streaming::Parts> parts = streaming::partsOf(*reader, limited());
   if (!parts) return giveUp(parts.error());

@@ -88,7 +88,7 @@ TEST(SpecLight, RefusesEverythingElseAndShowsTheForm) {
 TEST(SpecLight, ParsesLightsThatStandInTheScene) {
   const Result<Light> sphere = parseLight("sphere:1,-2,3.5,0.25,5,4,3");
   ASSERT_TRUE(sphere) << sphere.error().line();
-  EXPECT_EQ(std::get<SphereLight>(*sphere).position_ws, glm::vec3(1.0f, -2.0f, 3.5f));
+  EXPECT_EQ(std::get<SphereLight>(*sphere).position_ws, glm::dvec3(1.0, -2.0, 3.5));
   EXPECT_EQ(std::get<SphereLight>(*sphere).radius_m, 0.25f);
   EXPECT_EQ(std::get<SphereLight>(*sphere).radiance, glm::vec3(5.0f, 4.0f, 3.0f));
   EXPECT_EQ(std::get<SphereLight>(parseLight("sphere:0,1,0,0.1,7").value()).radiance, glm::vec3(7.0f));
@@ -97,7 +97,7 @@ TEST(SpecLight, ParsesLightsThatStandInTheScene) {
 
   const Result<Light> disc = parseLight("disc:1,2,3,0,-2,0,0.5,9,8,7");
   ASSERT_TRUE(disc) << disc.error().line();
-  EXPECT_EQ(std::get<DiscLight>(*disc).position_ws, glm::vec3(1.0f, 2.0f, 3.0f));
+  EXPECT_EQ(std::get<DiscLight>(*disc).position_ws, glm::dvec3(1.0, 2.0, 3.0));
   EXPECT_EQ(std::get<DiscLight>(*disc).normal_ws, glm::vec3(0.0f, -1.0f, 0.0f)) << "unit";
   EXPECT_EQ(std::get<DiscLight>(*disc).radius_m, 0.5f);
   EXPECT_EQ(std::get<DiscLight>(*disc).radiance, glm::vec3(9.0f, 8.0f, 7.0f));
@@ -108,6 +108,9 @@ TEST(SpecLight, ParsesLightsThatStandInTheScene) {
   const std::vector<LocalLight> local = localLights(lights);
   ASSERT_EQ(local.size(), 3u);
   EXPECT_TRUE(std::holds_alternative<DiscLight>(local[1]));
+  const std::vector<Light> far = {parseLight("sphere:5412345.125,0,-1,0.25,5").value()};
+  EXPECT_EQ(std::get<SphereLight>(localLights(far, {5412344.0, 0.0, 0.0})[0]).position_ws,
+            glm::dvec3(1.125, 0.0, -1.0));
   const Result<DistantLights> distant = loadDistantLights(lights);
   ASSERT_TRUE(distant);
   EXPECT_TRUE(distant->discs.empty() && distant->environment_maps.empty()) << "they do not stand at infinity";

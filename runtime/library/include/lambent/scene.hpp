@@ -4,6 +4,7 @@
 // (renderer.hpp).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -87,6 +88,8 @@ class LAMBENT_API Scene {
   void play(float seconds);
   void setAnimationTime(float seconds);
 
+  // Returns what all positions here count from, in m in the world of the files (docs/conventions.md).
+  std::array<double, 3> origin() const;
   // Returns the bounds of all bodies as they stand now, in world space; equal corners at 0 if there are none.
   // Asks every surface of the scene: keep what it returns.
   Box bounds() const;

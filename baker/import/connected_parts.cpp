@@ -1,4 +1,4 @@
-#include "baker/plan/connected_parts.hpp"
+#include "baker/import/connected_parts.hpp"
 
 #include <algorithm>
 #include <map>
