@@ -103,9 +103,11 @@ void append(std::vector<std::string>& words, const std::map<std::string, std::st
   }
 }
 
-Result<Figures> figuresOf(const spec::RgbaImage& picture, const Measurer::Reference& reference,
+Result<Figures> figuresOf(const std::filesystem::path& file, const Measurer::Reference& reference,
                           const std::string& subject) {
-  const auto error = comparePictures(picture, reference.a, &reference.b, subject);
+  const auto picture = spec::readExr(file);
+  if (!picture) return failAgain(picture.error());
+  const auto error = comparePictures(*picture, reference.a, &reference.b, subject);
   if (!error) return failAgain(error.error());
   Figures figures{.rms = error->relative_rms,
                   .percentile_99 = error->percentile_99,
@@ -243,8 +245,8 @@ Result<BakeRow> Measurer::runBake(const Setting& setting) {
   return row;
 }
 
-Result<Measurer::Drawn> Measurer::draw(const Setting& setting, const Words& words,
-                                       const std::filesystem::path& file, int frames) {
+Result<Ran> Measurer::draw(const Setting& setting, const Words& words, const std::filesystem::path& file,
+                           int frames) {
   // The bundle may have been removed since it was baked.
   if (!std::filesystem::exists(bundleOf(setting)))
     if (auto baked = runBake(setting); !baked) return failAgain(baked.error());
@@ -255,31 +257,21 @@ Result<Measurer::Drawn> Measurer::draw(const Setting& setting, const Words& word
   const auto view = viewWords();
   all.insert(all.end(), view.begin(), view.end());
   append(all, words);
-  auto ran = runProgram(job_.programs.demo, all, stop_);
-  if (!ran) return failAgain(ran.error());
-  auto picture = spec::readExr(file);
-  if (!picture) return failAgain(picture.error());
-  return Drawn{std::move(*ran), std::move(*picture)};
+  return runProgram(job_.programs.demo, all, stop_);
 }
 
-Result<MemoryRow> Measurer::memory(const Setting& setting) {
-  return known<MemoryRow>(key("memory", bakeKey(setting)), "least memory", {}, [&]() -> Result<MemoryRow> {
-    const std::filesystem::path file = job_.work / "memory.exr";
-    const auto drawn = draw(setting, {{"max-memory", "1"}}, file, 1);
-    if (!drawn) return failAgain(drawn.error());
-    std::error_code ignored;
-    std::filesystem::remove(file, ignored);
-    MemoryRow row;
-    const auto read = readReport(drawn->ran, "lambent-demo", [&](const json& report) {
-      for (const json& bundle : report.at("streaming").at("bundles")) {
-        row.least += bundle.at("bytes_resident").get<std::uint64_t>();
-        row.most += bundle.at("bytes_whole").get<std::uint64_t>();
-      }
-    });
-    if (!read) return failAgain(read.error());
-    row.most = std::max(row.least, row.most);
-    return row;
-  });
+Result<std::string> Measurer::memoryLimit(const Setting& setting, const std::filesystem::path& file) {
+  std::uint64_t least = 0, most = 0;
+  const auto read =
+      readReport(draw(setting, {{"max-memory", "1"}}, file, 1), "lambent-demo", [&](const json& report) {
+        for (const json& bundle : report.at("streaming").at("bundles")) {
+          least += bundle.at("bytes_resident").get<std::uint64_t>();
+          most += bundle.at("bytes_whole").get<std::uint64_t>();
+        }
+      });
+  if (!read) return failAgain(read.error());
+  const double planes = static_cast<double>(std::max(least, most) - least);
+  return std::to_string(least + static_cast<std::uint64_t>(setting.memory_share * planes));
 }
 
 Result<PictureRow> Measurer::drawPictures(const Setting& setting, const std::filesystem::path& file) {
@@ -289,48 +281,42 @@ Result<PictureRow> Measurer::drawPictures(const Setting& setting, const std::fil
       reference(job_.glossy ? fmt::format("{},{}", setting.bake.order, setting.bake.glossy_order)
                             : std::to_string(setting.bake.order));
   if (!of_bands) return failAgain(of_bands.error());
+  const std::filesystem::path other_file = job_.work / "other.exr";
   Words words = setting.frame_words;
   if (setting.memory_share < 1.0) {
-    const auto range = memory(setting);
-    if (!range) return failAgain(range.error());
-    words["max-memory"] = std::to_string(
-        range->least +
-        static_cast<std::uint64_t>(setting.memory_share * static_cast<double>(range->most - range->least)));
+    auto limit = memoryLimit(setting, other_file);
+    if (!limit) return failAgain(limit.error());
+    words["max-memory"] = std::move(*limit);
   }
-  const auto shown = draw(setting, words, file, job_.view.frames);
-  if (!shown) return failAgain(shown.error());
+  PictureRow row;
+  const auto read =
+      readReport(draw(setting, words, file, job_.view.frames), "lambent-demo", [&](const json& report) {
+        row.frame_ms = report.at("frame_ms").at("median").get<double>();
+        row.slowest_ms = report.at("frame_ms").at("max").get<double>();
+        row.processor_ms = report.at("frame_processor_ms").get<double>();
+        row.frames = std::max(1, job_.view.frames - 1);  // the first one also waits for what is made once
+        for (const json& pass : report.at("last_frame").at("passes")) {
+          const json& gpu = pass.at("gpu_ms");
+          row.passes.emplace_back(pass.at("name").get<std::string>(),
+                                  gpu.is_null() ? pass.at("cpu_ms").get<double>() : gpu.get<double>());
+        }
+        row.gpu_bytes = report.at("bytes_resident").get<std::uint64_t>() +
+                        report.at("key_shadow_bytes").get<std::uint64_t>();
+        row.key_lights = static_cast<int>(report.at("key_lights").size());
+        row.renderer = report.at("renderer").get<std::string>();
+      });
+  if (!read) return failAgain(read.error());
+  const auto lit = figuresOf(file, **as_light_is, setting.name());
+  if (!lit) return failAgain(lit.error());
+  row.as_light_is = *lit;
+
   // Only what bands carry: neither key lights nor mirrors of what the bands leave out.
   words.erase("quality");
   for (const char* option : {"keys", "window", "specular-environment", "reflection-probes"})
     words[option] = "off";
-  const std::filesystem::path bands_file = job_.work / "bands.exr";
-  const auto banded = draw(setting, words, bands_file, 1);
-  if (!banded) return failAgain(banded.error());
-  std::error_code ignored;
-  std::filesystem::remove(bands_file, ignored);
-
-  PictureRow row;
-  const auto read = readReport(shown->ran, "lambent-demo", [&](const json& report) {
-    row.frame_ms = report.at("frame_ms").at("median").get<double>();
-    row.slowest_ms = report.at("frame_ms").at("max").get<double>();
-    row.processor_ms = report.at("frame_processor_ms").get<double>();
-    row.frames = std::max(1, job_.view.frames - 1);  // the first one also waits for what is made once
-    for (const json& pass : report.at("last_frame").at("passes")) {
-      const json& gpu = pass.at("gpu_ms");
-      row.passes.emplace_back(pass.at("name").get<std::string>(),
-                              gpu.is_null() ? pass.at("cpu_ms").get<double>() : gpu.get<double>());
-    }
-    row.gpu_bytes =
-        report.at("bytes_resident").get<std::uint64_t>() + report.at("key_shadow_bytes").get<std::uint64_t>();
-    row.key_lights = static_cast<int>(report.at("key_lights").size());
-    row.renderer = report.at("renderer").get<std::string>();
-  });
-  if (!read) return failAgain(read.error());
-  const auto lit = figuresOf(shown->picture, **as_light_is, setting.name());
-  if (!lit) return failAgain(lit.error());
-  const auto limited = figuresOf(banded->picture, **of_bands, setting.name());
+  if (auto banded = draw(setting, words, other_file, 1); !banded) return failAgain(banded.error());
+  const auto limited = figuresOf(other_file, **of_bands, setting.name());
   if (!limited) return failAgain(limited.error());
-  row.as_light_is = *lit;
   row.as_bands_can = *limited;
   return row;
 }

@@ -67,10 +67,6 @@ class Measurer {
   Result<const Reference*> reference(const std::string& bands);
 
  private:
-  struct Drawn {
-    Ran ran;
-    spec::RgbaImage picture;
-  };
   using Words = std::map<std::string, std::string>;
 
   // Returns the row of this key, which `make` measures if it is not known, or if its file is gone.
@@ -84,11 +80,10 @@ class Measurer {
   std::vector<std::string> viewWords() const;
   Result<ReferenceRow> runReference(const std::string& bands, int seed, const std::filesystem::path& file);
   Result<BakeRow> runBake(const Setting& setting);
-  // Returns what the bundle of a setting takes on the GPU without planes, and whole.
-  Result<MemoryRow> memory(const Setting& setting);
+  // Returns the bytes on the GPU with the setting's share of the planes of transfer.
+  Result<std::string> memoryLimit(const Setting& setting, const std::filesystem::path& file);
   Result<PictureRow> drawPictures(const Setting& setting, const std::filesystem::path& file);
-  Result<Drawn> draw(const Setting& setting, const Words& words, const std::filesystem::path& file,
-                     int frames);
+  Result<Ran> draw(const Setting& setting, const Words& words, const std::filesystem::path& file, int frames);
 
   Job job_;
   Store& store_;

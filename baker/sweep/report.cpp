@@ -96,7 +96,7 @@ json costJson(const Cost& cost, std::span<const Measured> settings) {
     const Figures& figures = settings[i].picture.as_light_is;
     points.push_back({cost.of(settings[i]), figures.rms, figures.rms_spread});
   }
-  json out = {{"id", cost.id},        {"title", cost.title}, {"words", cost.words},
+  json out = {{"id", cost.id},          {"title", cost.title}, {"words", cost.words},
               {"unit", cost.unit},      {"competing", list},   {"values", json::array()},
               {"front", json::array()}, {"take", nullptr},     {"say", ""}};
   for (const Measured& m : settings) out["values"].push_back(cost.of(m));

@@ -5,7 +5,6 @@
 // the unit that the name says.
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -90,16 +89,10 @@ struct PictureRow {
   }
 };
 
-// A bundle takes this on the GPU: `least` can never be left out, `most` is all of it.
-struct MemoryRow {
-  std::uint64_t least = 0, most = 0;
-
-  static void fields(auto& row, auto&& visit) { visit("least", row.least), visit("most", row.most); }
+template <typename R>
+concept Row = requires(R& row) {
+  R::fields(row, [](const char*, const auto&) {});
 };
-
-template <typename T>
-concept Row = std::same_as<T, Figures> || std::same_as<T, ReferenceRow> || std::same_as<T, ErrorParts> ||
-    std::same_as<T, BakeRow> || std::same_as<T, PictureRow> || std::same_as<T, MemoryRow>;
 
 template <Row R>
 void to_json(nlohmann::json& out, const R& row) {

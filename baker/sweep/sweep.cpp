@@ -1,5 +1,6 @@
 #include "baker/sweep/sweep.hpp"
 
+#include <array>
 #include <fstream>
 #include <system_error>
 #include <thread>
@@ -53,30 +54,8 @@ struct Effort {
   std::uint32_t spp;
   int frames;
 };
-
-Effort effortOf(Quality quality) {
-  switch (quality) {
-    case Quality::Draft:
-      return {"320x180", 64, 6};
-    case Quality::Standard:
-      return {"480x270", 256, 9};
-    case Quality::High:
-      break;
-  }
-  return {"960x540", 1024, 17};
-}
-
-Result<void> makeFolder(const std::filesystem::path& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) return fail(folder.string(), "cannot be made: " + failed.message(), "name another folder");
-  return {};
-}
-
-// The base comes to the same with any number of key lights if there are none to find.
-bool hasNothingToTurn(const Setting& setting, const Measured& base) {
-  return setting.isOfKeyLights() && base.picture.key_lights == 0;
-}
+constexpr std::array kEfforts = {Effort{"320x180", 64, 6}, Effort{"480x270", 256, 9},
+                                 Effort{"960x540", 1024, 17}};  // by quality
 
 }  // namespace
 
@@ -99,14 +78,15 @@ Result<SweepResults> runSweep(SweepRequest request, const SweepListener& listene
   const auto settings = settingsOf(facts, request.quality, request.knobs);
   if (!settings) return failAgain(settings.error());
   const std::filesystem::path work = request.output / "work";
-  if (auto made = makeFolder(work); !made) return failAgain(made.error());
+  std::error_code failed, ignored;
+  std::filesystem::create_directories(work, failed);
+  if (failed) return fail(work.string(), "cannot be made: " + failed.message(), "name another folder");
   const std::filesystem::path file = request.output / "results.jsonl";
-  std::error_code ignored;
   if (request.force) std::filesystem::remove(file, ignored);
   auto store = Store::open(file);
   if (!store) return failAgain(store.error());
 
-  const Effort effort = effortOf(request.quality);
+  const Effort effort = kEfforts.at(static_cast<std::size_t>(request.quality));
   SweepResults results{.scene = request.scene.stem().string(),
                        .quality = request.quality,
                        .view = {.lights = request.lights,
@@ -131,7 +111,9 @@ Result<SweepResults> runSweep(SweepRequest request, const SweepListener& listene
                     *store, stop);
   for (const Setting& setting : *settings) {
     if (stop.stop_requested()) break;
-    if (!results.settings.empty() && hasNothingToTurn(setting, results.settings.front())) {
+    // The base comes to the same with any number of key lights if there are none to find.
+    if (!results.settings.empty() && setting.isOfKeyLights() &&
+        results.settings.front().picture.key_lights == 0) {
       --results.asked;
       continue;
     }
