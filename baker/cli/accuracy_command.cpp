@@ -5,18 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "baker/bake/option_rows.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
-#include "baker/sweep/advice.hpp"
-#include "baker/sweep/sweep.hpp"
-#include "baker/sweep/write_results.hpp"
-#include "runtime/base/atomic_file.hpp"
+#include "baker/sweep/report.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"
@@ -83,7 +78,7 @@ class Lines {
   void measured(std::size_t done, std::size_t all, const Measured& m) const {
     const Figures& f = m.picture.as_light_is;
     fmt::print(stderr, "{}lambent: {} of {}  {}: {} wrong, bake {}, frame {:.1f} ms, {}\n",
-               terminal_ ? "\r\033[K" : "", done, all, titleOf(m), percentText(f.rms, 2),
+               terminal_ ? "\r\033[K" : "", done, all, m.setting.name(), percentText(f.rms, 2),
                durationText(m.bake.seconds), m.picture.frame_ms,
                bytesText(static_cast<double>(m.bake.bytes)));
   }
@@ -97,49 +92,6 @@ class Lines {
   Clock::time_point start_ = Clock::now();
 };
 
-void printSweepJson(const SweepResults& results, const std::vector<std::filesystem::path>& files) {
-  using nlohmann::json;
-  json settings = json::array(), names = json::array(), advice = json::array();
-  for (const Measured& m : results.settings)
-    settings.push_back({{"knob", m.setting.knob->name},
-                        {"value", m.setting.value},
-                        {"bake", m.bake},
-                        {"picture", m.picture},
-                        {"visible", m.visible},
-                        {"beyondBands", partsOf(m).beyond_bands}});
-  for (const Cost& cost : costs()) {
-    const Advice said = adviceOn(cost, results.settings);
-    json front = json::array();
-    for (const std::size_t i : said.front) front.push_back(titleOf(results.settings[i]));
-    advice.push_back({{"cost", cost.id},
-                      {"take", said.chosen ? json(titleOf(results.settings[*said.chosen])) : json()},
-                      {"reason", said.reason},
-                      {"front", front}});
-  }
-  for (const auto& file : files) names.push_back(file.string());
-  const json all = {{"scene", results.scene},
-                    {"machine", results.machine},
-                    {"size", results.view.size},
-                    {"spp", results.view.spp},
-                    {"asked", results.asked},
-                    {"rowsMeasured", results.rows_measured},
-                    {"stopped", results.stopped},
-                    {"failures", results.failures},
-                    {"settings", settings},
-                    {"advice", advice},
-                    {"files", names}};
-  fmt::print("{}\n", all.dump(2, ' ', false, json::error_handler_t::replace));
-}
-
-void printSweep(const SweepResults& results, const std::vector<std::filesystem::path>& files) {
-  for (const Cost& cost : costs().first(2)) {
-    const Advice advice = adviceOn(cost, results.settings);
-    if (advice.chosen)
-      fmt::print("{} {}. {}\n", cost.verb, titleOf(results.settings[*advice.chosen]), advice.reason);
-  }
-  fmt::print("{}\n", files.front().string());
-}
-
 int runAccuracy(AccuracyArguments a) {
   constexpr int kWrongUsage = 2;
   a.request.quality = a.quality.quality;
@@ -147,16 +99,6 @@ int runAccuracy(AccuracyArguments a) {
     reportError(checked.error());
     return kWrongUsage;
   }
-  auto programs = findPrograms();
-  if (!programs) return reportError(programs.error());
-  a.request.programs = *programs;
-  if (a.request.scene.empty()) {
-    auto scene = findSampleScene();
-    if (!scene) return reportError(scene.error());
-    a.request.scene = *scene;
-  }
-  if (const auto readable = checkRegularFile(a.request.scene, "a scene, .gltf or .glb"); !readable)
-    return reportError(readable.error());
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
   Lines lines;
@@ -164,13 +106,18 @@ int runAccuracy(AccuracyArguments a) {
       runSweep(a.request, a.say.quiet ? SweepListener{} : lines.listener(), stop.get_token());
   if (!a.say.quiet) lines.end();
   if (!results) return reportError(results.error());
-  const auto files = writeResults(*results, a.request.output);
-  if (!files) return reportError(files.error());
-  for (const std::string& failure : results->failures) reportNotice(a.request.scene, failure);
-  if (a.json)
-    printSweepJson(*results, *files);
-  else if (!a.say.quiet)
-    printSweep(*results, *files);
+  const auto page = writeReport(*results, a.request.output);
+  if (!page) return reportError(page.error());
+  for (const std::string& failure : results->failures) reportNotice(results->scene, failure);
+  const nlohmann::json sweep = sweepJson(*results);
+  if (a.json) {
+    fmt::print("{}\n", sweep.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else if (!a.say.quiet) {
+    for (const std::size_t time : {0u, 1u})  // of a bake and of a frame
+      if (const nlohmann::json& cost = sweep.at("costs").at(time); !cost.at("take").is_null())
+        fmt::print("{}\n", cost.at("say").get<std::string>());
+    fmt::print("{}\n", page->string());
+  }
   if (results->stopped)
     return reportError(
         {a.request.output.string(),
@@ -189,9 +136,9 @@ void addAccuracyCommand(CLI::App& app, Command& run) {
       "Measure what each knob costs and how exact it makes the picture, and write a page about it");
   command->add_option("SCENE", request.scene, "The scene, .gltf or .glb; default: a sample scene");
   command
-      ->add_option(
-          "-o,--output", request.output,
-          "Folder for index.html, CSV and SVG files. What it holds of an\nearlier run is not measured again")
+      ->add_option("-o,--output", request.output,
+                   "Folder for sweep.json and index.html, which draws it. What it\nholds of an earlier run "
+                   "is not measured again")
       ->required()
       ->type_name("DIR");
   // This is an option of its own, since it also says how thoroughly to measure.
@@ -227,7 +174,7 @@ void addAccuracyCommand(CLI::App& app, Command& run) {
   command->add_flag("--allow-outside", request.allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--force", request.force, "Measure all anew");
-  command->add_flag("--json", a->json, "Print figures as JSON");
+  command->add_flag("--json", a->json, "Print sweep.json");
   addQuiet(*command, a->say);
   command_line::group(*command, "What is measured",
                       {"--quality", "--knob", "--light", "--camera", "--size", "--spp"});

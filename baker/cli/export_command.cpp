@@ -1,7 +1,12 @@
 // Implements lambent export BUNDLE -o DIR: the numbers of a bundle as arrays that NumPy reads, and a JSON
 // that says what they are (docs/python.md).
 #include <array>
+#include <bit>
+#include <cassert>
+#include <functional>
 #include <memory>
+#include <numeric>
+#include <span>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -9,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/cli/commands.hpp"
-#include "baker/cli/npy.hpp"
 #include "baker/cli/output.hpp"
 #include "lambent/bundle.hpp"
 #include "lambent/sh.hpp"
@@ -39,6 +43,34 @@ std::array<float, 3> numbers(const Vec3& v) {
   return {v.x, v.y, v.z};
 }
 
+using ArrayShape = std::vector<std::size_t>;  // its product is the number of values
+
+static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
+
+// Writes a .npy file of version 1.0, which NumPy and most tools for numbers read: little-endian, in the order
+// of C.
+template <class Value>
+Result<void> writeNpy(const fs::path& path, const ArrayShape& shape, const std::vector<Value>& values) {
+  static_assert(std::is_same_v<Value, float> || std::is_same_v<Value, std::uint32_t>);
+  assert(std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>()) == values.size());
+  constexpr const char* type = std::is_same_v<Value, float> ? "<f4" : "<u4";
+  std::string sides;
+  for (const std::size_t side : shape) sides += fmt::format("{}, ", side);
+  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, sides);
+  // The magic word, the version and the length of the header come before it; together they fill blocks of 64.
+  constexpr std::size_t kBefore = 10, kBlock = 64;
+  header.append((kBlock - (kBefore + header.size() + 1) % kBlock) % kBlock, ' ');
+  header += '\n';
+  std::string text = "\x93NUMPY";
+  text += {'\1', '\0', static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)};
+  text += header;
+  Result<AtomicFile> file = AtomicFile::open(path);
+  if (!file) return failAgain(file.error());
+  if (Result<void> done = file->write(text); !done) return done;
+  if (Result<void> done = file->write(std::as_bytes(std::span(values))); !done) return done;
+  return file->commit();
+}
+
 // Writes arrays into the folder, and keeps the first error.
 class ArrayWriter {
  public:
@@ -47,7 +79,7 @@ class ArrayWriter {
   // Returns the name under which the JSON refers to the array.
   template <class Value>
   std::string write(const std::string& name, const ArrayShape& shape, const std::vector<Value>& values) {
-    if (done_) done_ = writeNpy(folder_ / (name + ".npy"), shape, std::span<const Value>(values));
+    if (done_) done_ = writeNpy(folder_ / (name + ".npy"), shape, values);
     ++arrays_;
     return name + ".npy";
   }

@@ -15,125 +15,49 @@ namespace {
 
 using Side = Knob::Side;
 
-bool hasSurfaces(const SceneFacts& facts) {
-  return facts.surfaces;
-}
-bool isGlossy(const SceneFacts& facts) {
-  return facts.glossy;
-}
-bool hasVolumes(const SceneFacts& facts) {
-  return facts.volumes;
-}
-bool hasNeighborhoods(const SceneFacts& facts) {
-  return facts.neighborhoods;
-}
-bool hasManyBodies(const SceneFacts& facts) {
-  return facts.many_bodies;
-}
-bool hasManyProbes(const SceneFacts& facts) {
-  return facts.many_probes;
-}
-
 constexpr std::string_view kPresets = "quality", kMemory = "max-memory", kKeys = "keys",
                            kFrameQuality = "frame-quality";
 
 constexpr std::array kKnobs = {
-    Knob{.name = kPresets,
-         .title = "Presets",
-         .about = "--quality of a bake sets rays, refinement and the error of codes together.",
-         .draft_values = "draft,standard,high",
-         .values = "draft,standard,high"},
-    Knob{.name = "order",
-         .title = "Bands",
-         .about = "Bands of spherical harmonics that carry soft light: order n has n² coefficients.",
-         .draft_values = "2,3,4,5,6,8",
-         .values = "2,3,4,5,6,7,8"},
-    Knob{.name = kKeys,
-         .title = "Key lights",
-         .about = "Suns and windows that are taken out of the bands and cast shadows per pixel.",
-         .side = Side::Frame,
-         .draft_values = "off,1,4,auto,32",
-         .values = "off,1,2,4,8,auto,32",
-         .usual = "auto"},
-    Knob{.name = kFrameQuality,
-         .title = "Quality of key shadows",
-         .about = "--quality of lambent-demo: how many key lights there are and how finely they shadow.",
-         .side = Side::Frame,
-         .draft_values = "low,default,high",
-         .values = "low,default,high",
-         .usual = "default"},
-    Knob{.name = "rays",
-         .title = "Rays",
-         .about = "Rays from each sample over its hemisphere.",
-         .draft_values = "128,256,512,1024",
-         .values = "128,256,512,1024,2048,4096"},
-    Knob{.name = "bounces",
-         .title = "Bounces",
-         .about = "Interreflections between surfaces; auto stops when nothing to speak of is left.",
-         .draft_values = "0,1,2,auto",
-         .values = "0,1,2,3,4,8,auto"},
-    Knob{.name = "refine",
-         .title = "Refinement",
-         .about = "Edges are split where shadows change, until interpolation errs by less than this.",
-         .draft_values = "off,0.05,0.02,0.005",
-         .values = "off,0.05,0.02,0.01,0.005",
-         .called_for = hasSurfaces},
-    Knob{.name = "fit",
-         .title = "Fit to faces",
-         .about = "Values at vertices are fitted to what rays from inside the faces see.",
-         .draft_values = "off,on",
-         .values = "off,on",
-         .called_for = hasSurfaces},
-    Knob{.name = "codes",
-         .title = "Codes",
-         .about = "The error that compressed transfer may have.",
-         .draft_values = "0.03,0.01,0.003,0.001",
-         .values = "0.1,0.03,0.01,0.003,0.001"},
-    Knob{.name = "glossy-order",
-         .title = "Bands on glossy surfaces",
-         .about = "Bands of the light that glossy surfaces reflect.",
-         .draft_values = "4,5,6",
-         .values = "4,5,6",
-         .called_for = isGlossy},
-    Knob{.name = "volume-grid",
-         .title = "Grid of volumes",
-         .about = "Voxels along each side of the grid that holds a volume's transfer.",
-         .draft_values = "8,16,32",
-         .values = "8,16,32,48",
-         .called_for = hasVolumes},
-    Knob{.name = "neighborhood-grid",
-         .title = "Grids around bodies",
-         .about = "Points of the grid that says how a body changes the light around it.",
-         .draft_values = "16x16x4,32x32x8,64x64x8",
-         .values = "16x16x4,32x32x8,64x64x8,64x64x16",
-         .called_for = hasNeighborhoods},
-    Knob{.name = "light-probes",
-         .title = "Light probes",
-         .about = "Points of a cell at which light from nearby is sampled.",
-         .draft_values = "1,4,16,auto",
-         .values = "1,2,4,8,16,32,auto",
-         .called_for = hasManyProbes},
-    Knob{.name = "capture-size",
-         .title = "Size of captures",
-         .about = "Texels along an edge of the cube maps in which bodies see each other.",
-         .side = Side::Frame,
-         .draft_values = "4,8,16,32",
-         .values = "4,8,16,32,64",
-         .called_for = hasManyBodies},
-    Knob{.name = "capture-subsamples",
-         .title = "Supersampling of captures",
-         .about = "Subsamples along an edge of each such texel.",
-         .side = Side::Frame,
-         .draft_values = "1,4,16",
-         .values = "1,2,4,8,16",
-         .called_for = hasManyBodies},
-    Knob{.name = kMemory,
-         .title = "Streaming detail",
-         .about = "GPU memory for planes of transfer, as a share of what they take in all; meshes are always "
-                  "there.",
-         .side = Side::Frame,
-         .draft_values = "0%,50%,75%,100%",
-         .values = "0%,25%,50%,75%,90%,100%"}};
+    Knob{kPresets, "Presets", "--quality of a bake sets rays, refinement and the error of codes together.",
+         Side::Bake, nullptr, "draft,standard,high"},
+    Knob{"order", "Bands", "Bands of spherical harmonics that carry soft light: order n has n² coefficients.",
+         Side::Bake, nullptr, "2,3,4,5,6,8", "2,3,4,5,6,7,8"},
+    Knob{kKeys, "Key lights", "Suns and windows that are taken out of the bands and cast shadows per pixel.",
+         Side::Frame, nullptr, "off,1,4,auto,32", "off,1,2,4,8,auto,32", "auto"},
+    Knob{kFrameQuality, "Quality of key shadows",
+         "--quality of lambent-demo: how many key lights there are and how finely they shadow.", Side::Frame,
+         nullptr, "low,default,high", "", "default"},
+    Knob{"rays", "Rays", "Rays from each sample over its hemisphere.", Side::Bake, nullptr,
+         "128,256,512,1024", "128,256,512,1024,2048,4096"},
+    Knob{"bounces", "Bounces",
+         "Interreflections between surfaces; auto stops when nothing to speak of is left.", Side::Bake,
+         nullptr, "0,1,2,auto", "0,1,2,3,4,8,auto"},
+    Knob{"refine", "Refinement",
+         "Edges are split where shadows change, until interpolation errs by less than this.", Side::Bake,
+         &SceneFacts::surfaces, "off,0.05,0.02,0.005", "off,0.05,0.02,0.01,0.005"},
+    Knob{"fit", "Fit to faces", "Values at vertices are fitted to what rays from inside the faces see.",
+         Side::Bake, &SceneFacts::surfaces, "off,on"},
+    Knob{"codes", "Codes", "The error that compressed transfer may have.", Side::Bake, nullptr,
+         "0.03,0.01,0.003,0.001", "0.1,0.03,0.01,0.003,0.001"},
+    Knob{"glossy-order", "Bands on glossy surfaces", "Bands of the light that glossy surfaces reflect.",
+         Side::Bake, &SceneFacts::glossy, "4,5,6"},
+    Knob{"volume-grid", "Grid of volumes",
+         "Voxels along each side of the grid that holds a volume's transfer.", Side::Bake,
+         &SceneFacts::volumes, "8,16,32", "8,16,32,48"},
+    Knob{"neighborhood-grid", "Grids around bodies",
+         "Points of the grid that says how a body changes the light around it.", Side::Bake,
+         &SceneFacts::neighborhoods, "16x16x4,32x32x8,64x64x8", "16x16x4,32x32x8,64x64x8,64x64x16"},
+    Knob{"light-probes", "Light probes", "Points of a cell at which light from nearby is sampled.",
+         Side::Bake, &SceneFacts::many_probes, "1,4,16,auto", "1,2,4,8,16,32,auto"},
+    Knob{"capture-size", "Size of captures",
+         "Texels along an edge of the cube maps in which bodies see each other.", Side::Frame,
+         &SceneFacts::many_bodies, "4,8,16,32", "4,8,16,32,64"},
+    Knob{"capture-subsamples", "Supersampling of captures", "Subsamples along an edge of each such texel.",
+         Side::Frame, &SceneFacts::many_bodies, "1,4,16", "1,2,4,8,16"},
+    Knob{kMemory, "Streaming detail",
+         "GPU memory for planes of transfer, as a share of what they take in all; meshes are always there.",
+         Side::Frame, nullptr, "0%,50%,75%,100%", "0%,25%,50%,75%,90%,100%"}};
 
 std::vector<std::string> listed(std::string_view words) {
   std::vector<std::string> list;
@@ -145,17 +69,16 @@ std::vector<std::string> listed(std::string_view words) {
   return list;
 }
 
+std::vector<std::string> valuesOf(const Knob& knob, Quality quality) {
+  return listed(quality == Quality::Draft || knob.values.empty() ? knob.draft_values : knob.values);
+}
+
 // Parses "25%".
 std::optional<double> shareFrom(std::string_view word) {
   double percent = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), percent);
   if (error != std::errc{} || std::string_view(end, word.data() + word.size()) != "%") return std::nullopt;
   return percent >= 0.0 && percent <= 100.0 ? std::optional(percent / 100.0) : std::nullopt;
-}
-
-// Returns the option's name of lambent-demo for a knob.
-std::string frameOption(const Knob& knob) {
-  return knob.name == kFrameQuality ? "quality" : std::string(knob.name);
 }
 
 Result<Setting> settingOf(const Knob& knob, const std::string& value, Quality quality) {
@@ -170,7 +93,7 @@ Result<Setting> settingOf(const Knob& knob, const std::string& value, Quality qu
       return fail("--knob max-memory", fmt::format("\"{}\" is no share", value), "give one like 50%");
     setting.memory_share = *share;
   } else if (value != knob.usual) {
-    setting.frame_words.emplace(frameOption(knob), value);
+    setting.frame_words.emplace(knob.name == kFrameQuality ? kPresets : knob.name, value);
   }
   return setting;
 }
@@ -183,15 +106,15 @@ struct Asked {
 Result<Asked> understand(const std::string& word, Quality quality) {
   const std::size_t equals = word.find('=');
   const std::string name = word.substr(0, equals);
-  const Knob* knob = findKnob(name);
-  if (knob == nullptr) {
+  const auto knob = std::ranges::find(kKnobs, name, &Knob::name);
+  if (knob == kKnobs.end()) {
     std::vector<std::string_view> names;
     for (const Knob& known : kKnobs) names.push_back(known.name);
     return fail("--knob", fmt::format("\"{}\" is not known", name),
                 fmt::format("give one of {}", fmt::join(names, ", ")));
   }
-  if (equals != std::string::npos) return Asked{knob, listed(std::string_view(word).substr(equals + 1))};
-  return Asked{knob, listed(quality == Quality::Draft ? knob->draft_values : knob->values)};
+  if (equals == std::string::npos) return Asked{&*knob, valuesOf(*knob, quality)};
+  return Asked{&*knob, listed(std::string_view(word).substr(equals + 1))};
 }
 
 // Bakes with glossy surfaces have at most six bands.
@@ -217,13 +140,17 @@ std::span<const Knob> knobs() {
   return kKnobs;
 }
 
-const Knob* findKnob(std::string_view name) {
-  const auto found = std::ranges::find(kKnobs, name, &Knob::name);
-  return found == kKnobs.end() ? nullptr : &*found;
+std::string Setting::name() const {
+  return isPreset() ? value + " quality" : fmt::format("{} {}", knob->name, value);
 }
 
-std::string Setting::name() const {
-  return fmt::format("{} {}", knob->name, value);
+std::string Setting::command() const {
+  std::string words = "lambent-demo";
+  if (isBaked()) words = fmt::format("lambent bake --quality {}", qualityName(bake.quality));
+  for (const auto* options : {&bake_words, &frame_words})
+    for (const auto& [option, word] : *options) words += fmt::format(" --{} {}", option, word);
+  if (memory_share < 1.0) words += fmt::format(" --max-memory …   ({})", value);
+  return words;
 }
 
 bool Setting::isPreset() const {
@@ -244,8 +171,8 @@ Result<std::vector<Setting>> settingsOf(const SceneFacts& facts, Quality quality
   }
   if (list.empty())
     for (const Knob& knob : kKnobs)
-      if (knob.called_for == nullptr || knob.called_for(facts))
-        list.push_back({&knob, listed(quality == Quality::Draft ? knob.draft_values : knob.values)});
+      if (knob.called_for == nullptr || facts.*knob.called_for)
+        list.push_back({&knob, valuesOf(knob, quality)});
   // The base comes first.
   std::vector<Setting> settings = {*settingOf(kKnobs.front(), qualityName(quality), quality)};
   for (const Asked& one : list)

@@ -34,15 +34,14 @@ struct Knob {
   std::string_view title;  // as a heading
   std::string_view about;  // what it trades, one sentence
   Side side = Side::Bake;
-  // Its values, coarse first, separated by commas: fewer for a draft, else all.
-  std::string_view draft_values, values;
+  bool SceneFacts::*called_for = nullptr;  // null: always
+  std::string_view draft_values;           // coarse first, separated by commas
+  std::string_view values{};               // for the other qualities; empty: the same
   std::string_view usual{};  // the value that stands for the default, for which no option is given
-  bool (*called_for)(const SceneFacts&) = nullptr;  // null: always
 };
 
 // Returns the knobs in the order of the page.
 std::span<const Knob> knobs();
-const Knob* findKnob(std::string_view name);  // null if there is none
 
 // A Setting is one value of one knob, all others at their base.
 struct Setting {
@@ -53,8 +52,9 @@ struct Setting {
   std::map<std::string, std::string> frame_words;  // options of lambent-demo
   double memory_share = 1.0;                       // of the GPU memory that planes of transfer take
 
-  std::string name() const;  // "rays 512"
-  bool isPreset() const;     // a --quality of the bake
+  std::string name() const;     // as a reader knows it: "draft quality", "rays 512"
+  std::string command() const;  // a command line that gives this setting
+  bool isPreset() const;        // a --quality of the bake
   bool isBaked() const { return knob->side == Knob::Side::Bake; }
   bool isOfKeyLights() const;  // comes to nothing where no key lights are found
 };

@@ -11,8 +11,9 @@
 #include "baker/accuracy/compare.hpp"
 #include "baker/accuracy/perceptual.hpp"
 #include "baker/cache/key.hpp"
-#include "baker/sweep/exposure.hpp"
 #include "runtime/base/atomic_file.hpp"
+#include "runtime/spec/display.hpp"
+#include "runtime/spec/rec709.hpp"
 
 namespace lambent::baker {
 
@@ -24,19 +25,12 @@ using nlohmann::json;
 constexpr int kMostRuns = 3;
 constexpr double kRepeatWithinSeconds = 10.0;
 
-Result<json> parsed(const Result<Ran>& ran, const char* program) {
-  if (!ran) return failAgain(ran.error());
-  json value = json::parse(ran->out, nullptr, /*exceptions=*/false);
-  if (!value.is_object())
-    return fail(program, "printed no JSON", "see that both programs are of one version");
-  return value;
-}
-
-// Calls `read`, which takes values out of a program's JSON.
+// Calls `read`, which takes values out of the JSON that a program printed.
 template <typename Read>
-Result<void> reading(const char* program, Read&& read) {
+Result<void> readReport(const Result<Ran>& ran, const char* program, Read&& read) {
+  if (!ran) return failAgain(ran.error());
   try {
-    read();
+    read(json::parse(ran->out));
   } catch (const json::exception& wrong) {
     return fail(program, fmt::format("printed JSON of another form ({})", wrong.what()),
                 "see that both programs are of one version");
@@ -57,14 +51,8 @@ NamedTimes stagesOf(const json& report) {
   return times;
 }
 
-double secondsOf(const json& report) {
-  double seconds = 0.0;
-  for (const auto& [name, time] : stagesOf(report)) seconds += time;
-  return seconds;
-}
-
-std::optional<BakeRow::Parts> bakePartsOf(const json& report) {
-  BakeRow::Parts sum;
+ErrorParts errorPartsOf(const json& report) {
+  ErrorParts parts;
   double points = 0.0;
   for (const json& group : report.at("groups")) {
     const json& error = group.at("pictureError");
@@ -74,14 +62,34 @@ std::optional<BakeRow::Parts> bakePartsOf(const json& report) {
       const double value = error.at(name).get<double>();
       part += count * value * value;
     };
-    add(sum.noise, "samples");
-    add(sum.codes, "codes");
-    add(sum.interpolation, "interpolation");
+    add(parts.noise, "samples");
+    add(parts.codes, "codes");
+    add(parts.interpolation, "interpolation");
     points += count;
   }
-  if (!(points > 0.0)) return std::nullopt;
-  return BakeRow::Parts{std::sqrt(sum.noise / points), std::sqrt(sum.codes / points),
-                        std::sqrt(sum.interpolation / points)};
+  for (double* part : {&parts.noise, &parts.codes, &parts.interpolation})
+    *part = points > 0.0 ? std::sqrt(*part / points) : 0.0;
+  return parts;
+}
+
+// Returns the factor that brings the mean luminance of what the picture covers to a third of white. With one
+// exposure for all pictures, neither an eye nor the perceptual metric sees another brightness as an error, or
+// misses one.
+float exposureOf(const spec::RgbaImage& reference) {
+  constexpr double kMiddle = 1.0 / 3.0;
+  double sum = 0.0, covered = 0.0;
+  for (const glm::vec4& texel : reference.texels) {
+    if (!(texel.w >= spec::kLeastCoverage)) continue;
+    // Highlights are clipped on a screen and should not darken all else.
+    sum += std::min(10.0, static_cast<double>(std::max(0.0f, spec::luminanceOf(texel))));
+    covered += 1.0;
+  }
+  return sum > 0.0 ? static_cast<float>(kMiddle * covered / sum) : 1.0f;
+}
+
+spec::Rgba8Image shownWith(spec::RgbaImage picture, float exposure) {
+  for (glm::vec4& texel : picture.texels) texel = glm::vec4(glm::vec3(texel) * exposure, texel.w);
+  return spec::displayed(picture);
 }
 
 std::string shortened(const std::string& key) {
@@ -93,6 +101,21 @@ void append(std::vector<std::string>& words, const std::map<std::string, std::st
     words.push_back("--" + name);
     words.push_back(value);
   }
+}
+
+Result<Figures> figuresOf(const std::filesystem::path& file, const Measurer::Reference& reference,
+                          const std::string& subject) {
+  const auto picture = spec::readExr(file);
+  if (!picture) return failAgain(picture.error());
+  const auto error = comparePictures(*picture, reference.a, &reference.b, subject);
+  if (!error) return failAgain(error.error());
+  Figures figures{.rms = error->relative_rms,
+                  .percentile_99 = error->percentile_99,
+                  .bias = *std::ranges::max_element(error->bias, {}, [](double b) { return std::abs(b); })};
+  // d(e) = d(e²) / 2e, but never more than what all of e² drowning in noise would mean.
+  const double of_square = error->relative_square_error;
+  figures.rms_spread = std::min(std::sqrt(of_square), of_square / (2.0 * std::max(figures.rms, 1e-9)));
+  return figures;
 }
 
 }  // namespace
@@ -119,7 +142,7 @@ std::string Measurer::bakeKey(const Setting& setting) const {
   return KeyMaker().addText("bake").addText(bakes_).addText(json(setting.bake.settings()).dump()).key().hex();
 }
 
-std::string Measurer::keyOf(const Setting& setting) const {
+std::string Measurer::pictureKey(const Setting& setting) const {
   const std::string memory =
       setting.memory_share < 1.0 ? fmt::format("{} of the planes", setting.memory_share) : "0";
   return key("picture", fmt::format("{} {} {} {}", bakeKey(setting), json(setting.frame_words).dump(), memory,
@@ -130,20 +153,36 @@ std::filesystem::path Measurer::bundleOf(const Setting& setting) const {
   return job_.work / fmt::format("bake-{}.lmb.glb", shortened(bakeKey(setting)));
 }
 
-std::filesystem::path Measurer::pictureFile(const Setting& setting) const {
-  return job_.work / fmt::format("picture-{}.exr", shortened(keyOf(setting)));
-}
-
-std::string Measurer::bandsOf(const Setting& setting) const {
-  return job_.glossy ? fmt::format("{},{}", setting.bake.order, setting.bake.glossy_order)
-                     : fmt::format("{}", setting.bake.order);
-}
-
 std::vector<std::string> Measurer::viewWords() const {
   std::vector<std::string> words = {"--size", job_.view.size};
   if (!job_.view.camera.empty()) words.insert(words.end(), {"--camera", job_.view.camera});
   for (const std::string& light : job_.view.lights) words.insert(words.end(), {"--light", light});
   return words;
+}
+
+template <Row R, typename Make>
+Result<R> Measurer::known(const std::string& key, const std::string& what, const std::filesystem::path& file,
+                          Make&& make) {
+  if (auto row = store_.find<R>(key); row && (file.empty() || std::filesystem::exists(file))) return *row;
+  job_.begin(what);
+  Result<R> row = make();
+  if (!row) return row;
+  if (auto added = store_.add(key, what, *row); !added) return failAgain(added.error());
+  return row;
+}
+
+Result<ReferenceRow> Measurer::runReference(const std::string& bands, int seed,
+                                            const std::filesystem::path& file) {
+  std::vector<std::string> words = viewWords();
+  words.insert(words.begin(), {"reference", job_.scene.string(), "-o", file.string(), "--json", "--spp",
+                               std::to_string(job_.view.spp), "--seed", std::to_string(seed)});
+  if (!bands.empty()) words.insert(words.end(), {"--band-limit", bands});
+  if (job_.allow_outside) words.push_back("--allow-outside");
+  ReferenceRow row;
+  const auto read = readReport(runProgram(job_.programs.lambent, words, stop_), "lambent reference",
+                               [&](const json& report) { row.seconds = report.at("seconds").get<double>(); });
+  if (!read) return failAgain(read.error());
+  return row;
 }
 
 Result<const Measurer::Reference*> Measurer::reference(const std::string& bands) {
@@ -152,39 +191,21 @@ Result<const Measurer::Reference*> Measurer::reference(const std::string& bands)
   for (const int seed : {1, 2}) {
     const std::string row_key = key("reference", fmt::format("{} {}", bands, seed));
     const std::filesystem::path file = job_.work / fmt::format("reference-{}.exr", shortened(row_key));
-    std::optional<ReferenceRow> row = store_.find<ReferenceRow>(row_key);
-    if (!row || !std::filesystem::exists(file)) {
-      const std::string what = fmt::format(
-          "reference {}, seed {}", bands.empty() ? "of light as it is" : "of " + bands + " bands", seed);
-      job_.begin(what);
-      std::vector<std::string> words = {
-          "reference", job_.scene.string(),           "-o",     file.string(),       "--json",
-          "--spp",     std::to_string(job_.view.spp), "--seed", std::to_string(seed)};
-      if (!bands.empty()) words.insert(words.end(), {"--band-limit", bands});
-      if (job_.allow_outside) words.push_back("--allow-outside");
-      const auto view = viewWords();
-      words.insert(words.end(), view.begin(), view.end());
-      const auto report = parsed(runProgram(job_.programs.lambent, words, stop_), "lambent reference");
-      if (!report) return failAgain(report.error());
-      row.emplace();
-      if (auto read = reading("lambent reference",
-                              [&] {
-                                row->seconds = report->at("seconds").get<double>();
-                                const json& noise = report->at("standardError");
-                                row->noise = noise.is_null() ? 0.0 : noise.get<double>();
-                              });
-          !read)
-        return failAgain(read.error());
-      if (auto added = store_.add(row_key, what, *row); !added) return failAgain(added.error());
-    }
+    const std::string what = fmt::format(
+        "reference {}, seed {}", bands.empty() ? "of light as it is" : "of " + bands + " bands", seed);
+    const auto row =
+        known<ReferenceRow>(row_key, what, file, [&] { return runReference(bands, seed, file); });
+    if (!row) return failAgain(row.error());
     auto picture = spec::readExr(file);
     if (!picture) return failAgain(picture.error());
     (seed == 1 ? reference.a : reference.b) = std::move(*picture);
-    reference.row.seconds += row->seconds;
-    reference.row.noise = row->noise;
+    reference.seconds += row->seconds;
   }
-  reference.mean = meanOf(reference.a, reference.b);
-  if (bands.empty()) exposure_ = exposureOf(reference.mean);
+  spec::RgbaImage mean = reference.a;
+  for (std::size_t i = 0; i < mean.texels.size(); ++i)
+    mean.texels[i] = 0.5f * (reference.a.texels[i] + reference.b.texels[i]);
+  if (bands.empty()) exposure_ = exposureOf(mean);
+  reference.shown = shownWith(std::move(mean), exposure_);
   return &references_.emplace(bands, std::move(reference)).first->second;
 }
 
@@ -196,56 +217,36 @@ Result<BakeRow> Measurer::runBake(const Setting& setting) {
                                     "--quality", qualityName(setting.bake.quality)};
   append(words, setting.bake_words);
   if (job_.allow_outside) words.push_back("--allow-outside");
-  struct Run {
-    json report;
-    double seconds = 0.0, processor_seconds = 0.0;
-  };
-  std::vector<Run> runs;
+  std::vector<BakeRow> runs;
   for (double spent = 0.0; runs.size() < kMostRuns && (runs.empty() || spent < kRepeatWithinSeconds);) {
     const auto ran = runProgram(job_.programs.lambent, words, stop_);
-    auto report = parsed(ran, "lambent bake");
-    if (!report) return failAgain(report.error());
-    Run run{.report = std::move(*report), .processor_seconds = ran->processor_seconds};
-    if (auto read = reading("lambent bake", [&] { run.seconds = secondsOf(run.report); }); !read)
-      return failAgain(read.error());
+    BakeRow run;
+    const auto read = readReport(ran, "lambent bake", [&](const json& report) {
+      run = {.processor_seconds = ran->processor_seconds,
+             .stages = stagesOf(report),
+             .bytes = report.at("fileBytes").get<std::uint64_t>(),
+             .transfer_bytes = report.at("transferBytes").get<std::uint64_t>(),
+             .vertices = report.at("vertices").get<std::uint64_t>(),
+             .parts = errorPartsOf(report)};
+    });
+    if (!read) return failAgain(read.error());
+    for (const auto& [stage, seconds] : run.stages) run.seconds += seconds;
     spent += run.seconds;
     runs.push_back(std::move(run));
   }
-  std::ranges::sort(runs, {}, &Run::processor_seconds);
+  std::ranges::sort(runs, {}, &BakeRow::processor_seconds);
   const double processor_seconds = runs[runs.size() / 2].processor_seconds;
-  std::ranges::sort(runs, {}, &Run::seconds);
-  const Run& median = runs[runs.size() / 2];
-  BakeRow row;
-  const auto read = reading("lambent bake", [&] {
-    row = {.seconds = median.seconds,
-           .least_seconds = runs.front().seconds,
-           .most_seconds = runs.back().seconds,
-           .runs = static_cast<int>(runs.size()),
-           .processor_seconds = processor_seconds,
-           .stages = stagesOf(median.report),
-           .bytes = median.report.at("fileBytes").get<std::uint64_t>(),
-           .transfer_bytes = median.report.at("transferBytes").get<std::uint64_t>(),
-           .vertices = median.report.at("vertices").get<std::uint64_t>(),
-           .samples = median.report.at("samples").get<std::uint64_t>(),
-           .parts = bakePartsOf(median.report)};
-  });
-  if (!read) return failAgain(read.error());
+  std::ranges::sort(runs, {}, &BakeRow::seconds);
+  BakeRow row = runs[runs.size() / 2];
+  row.processor_seconds = processor_seconds;
+  row.runs = static_cast<int>(runs.size());
+  row.least_seconds = runs.front().seconds;
+  row.most_seconds = runs.back().seconds;
   return row;
 }
 
-Result<BakeRow> Measurer::bake(const Setting& setting) {
-  const std::string row_key = bakeKey(setting);
-  if (auto row = store_.find<BakeRow>(row_key)) return std::move(*row);
-  const std::string what = "bake " + setting.name();
-  job_.begin(what);
-  auto row = runBake(setting);
-  if (!row) return row;
-  if (auto added = store_.add(row_key, what, *row); !added) return failAgain(added.error());
-  return row;
-}
-
-Result<Measurer::Drawn> Measurer::draw(const Setting& setting, const Words& words,
-                                       const std::filesystem::path& file, int frames) {
+Result<Ran> Measurer::draw(const Setting& setting, const Words& words, const std::filesystem::path& file,
+                           int frames) {
   // The bundle may have been removed since it was baked.
   if (!std::filesystem::exists(bundleOf(setting)))
     if (auto baked = runBake(setting); !baked) return failAgain(baked.error());
@@ -256,117 +257,89 @@ Result<Measurer::Drawn> Measurer::draw(const Setting& setting, const Words& word
   const auto view = viewWords();
   all.insert(all.end(), view.begin(), view.end());
   append(all, words);
-  auto ran = runProgram(job_.programs.demo, all, stop_);
-  if (!ran) return failAgain(ran.error());
-  auto picture = spec::readExr(file);
-  if (!picture) return failAgain(picture.error());
-  return Drawn{std::move(*ran), std::move(*picture)};
+  return runProgram(job_.programs.demo, all, stop_);
 }
 
-Result<MemoryRow> Measurer::memory(const Setting& setting) {
-  const std::string row_key = key("memory", bakeKey(setting));
-  if (auto row = store_.find<MemoryRow>(row_key)) return *row;
-  const std::filesystem::path file = job_.work / "memory.exr";
-  const auto drawn = draw(setting, {{"max-memory", "1"}}, file, 1);
-  if (!drawn) return failAgain(drawn.error());
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
-  const auto report = parsed(drawn->ran, "lambent-demo");
-  if (!report) return failAgain(report.error());
-  MemoryRow row;
-  const auto read = reading("lambent-demo", [&] {
-    for (const json& bundle : report->at("streaming").at("bundles")) {
-      row.least += bundle.at("bytes_resident").get<std::uint64_t>();
-      row.most += bundle.at("bytes_whole").get<std::uint64_t>();
-    }
-  });
+Result<std::string> Measurer::memoryLimit(const Setting& setting, const std::filesystem::path& file) {
+  std::uint64_t least = 0, most = 0;
+  const auto read =
+      readReport(draw(setting, {{"max-memory", "1"}}, file, 1), "lambent-demo", [&](const json& report) {
+        for (const json& bundle : report.at("streaming").at("bundles")) {
+          least += bundle.at("bytes_resident").get<std::uint64_t>();
+          most += bundle.at("bytes_whole").get<std::uint64_t>();
+        }
+      });
   if (!read) return failAgain(read.error());
-  row.most = std::max(row.least, row.most);
-  if (auto added = store_.add(row_key, "least memory", row); !added) return failAgain(added.error());
-  return row;
+  const double planes = static_cast<double>(std::max(least, most) - least);
+  return std::to_string(least + static_cast<std::uint64_t>(setting.memory_share * planes));
 }
 
-Result<Figures> Measurer::compare(const spec::RgbaImage& picture, const Reference& reference,
-                                  const std::string& subject) const {
-  const auto error = comparePictures(picture, reference.a, &reference.b, subject);
-  if (!error) return failAgain(error.error());
-  Figures figures{.rms = error->relative_rms,
-                  .percentile_99 = error->percentile_99,
-                  .bias = *std::ranges::max_element(error->bias, {}, [](double b) { return std::abs(b); })};
-  // d(e) = d(e²) / 2e, but never more than what all of e² drowning in noise would mean.
-  const double of_square = error->relative_square_error;
-  figures.rms_spread = std::min(std::sqrt(of_square), of_square / (2.0 * std::max(figures.rms, 1e-9)));
-  return figures;
-}
-
-Result<PictureRow> Measurer::picture(const Setting& setting) {
-  const auto as_it_is = reference("");
-  if (!as_it_is) return failAgain(as_it_is.error());
-  const std::string row_key = keyOf(setting);
-  const std::filesystem::path file = pictureFile(setting);
-  if (auto row = store_.find<PictureRow>(row_key); row && std::filesystem::exists(file))
-    return std::move(*row);
-  const auto of_bands = reference(bandsOf(setting));
+Result<PictureRow> Measurer::drawPictures(const Setting& setting, const std::filesystem::path& file) {
+  const auto as_light_is = reference("");
+  if (!as_light_is) return failAgain(as_light_is.error());
+  const auto of_bands =
+      reference(job_.glossy ? fmt::format("{},{}", setting.bake.order, setting.bake.glossy_order)
+                            : std::to_string(setting.bake.order));
   if (!of_bands) return failAgain(of_bands.error());
-
-  const std::string what = "pictures of " + setting.name();
-  job_.begin(what);
+  const std::filesystem::path other_file = job_.work / "other.exr";
   Words words = setting.frame_words;
   if (setting.memory_share < 1.0) {
-    const auto range = memory(setting);
-    if (!range) return failAgain(range.error());
-    words["max-memory"] = std::to_string(
-        range->least +
-        static_cast<std::uint64_t>(setting.memory_share * static_cast<double>(range->most - range->least)));
+    auto limit = memoryLimit(setting, other_file);
+    if (!limit) return failAgain(limit.error());
+    words["max-memory"] = std::move(*limit);
   }
-  const auto shown = draw(setting, words, file, job_.view.frames);
-  if (!shown) return failAgain(shown.error());
+  PictureRow row;
+  const auto read =
+      readReport(draw(setting, words, file, job_.view.frames), "lambent-demo", [&](const json& report) {
+        row.frame_ms = report.at("frame_ms").at("median").get<double>();
+        row.slowest_ms = report.at("frame_ms").at("max").get<double>();
+        row.processor_ms = report.at("frame_processor_ms").get<double>();
+        row.frames = std::max(1, job_.view.frames - 1);  // the first one also waits for what is made once
+        for (const json& pass : report.at("last_frame").at("passes")) {
+          const json& gpu = pass.at("gpu_ms");
+          row.passes.emplace_back(pass.at("name").get<std::string>(),
+                                  gpu.is_null() ? pass.at("cpu_ms").get<double>() : gpu.get<double>());
+        }
+        row.gpu_bytes = report.at("bytes_resident").get<std::uint64_t>() +
+                        report.at("key_shadow_bytes").get<std::uint64_t>();
+        row.key_lights = static_cast<int>(report.at("key_lights").size());
+        row.renderer = report.at("renderer").get<std::string>();
+      });
+  if (!read) return failAgain(read.error());
+  const auto lit = figuresOf(file, **as_light_is, setting.name());
+  if (!lit) return failAgain(lit.error());
+  row.as_light_is = *lit;
+
   // Only what bands carry: neither key lights nor mirrors of what the bands leave out.
   words.erase("quality");
   for (const char* option : {"keys", "window", "specular-environment", "reflection-probes"})
     words[option] = "off";
-  const std::filesystem::path bands_file = job_.work / "bands.exr";
-  const auto banded = draw(setting, words, bands_file, 1);
-  if (!banded) return failAgain(banded.error());
-  std::error_code ignored;
-  std::filesystem::remove(bands_file, ignored);
-
-  PictureRow row;
-  const auto report = parsed(shown->ran, "lambent-demo");
-  if (!report) return failAgain(report.error());
-  const auto read = reading("lambent-demo", [&] {
-    row.frame_ms = report->at("frame_ms").at("median").get<double>();
-    row.slowest_ms = report->at("frame_ms").at("max").get<double>();
-    row.processor_ms = report->at("frame_processor_ms").get<double>();
-    row.frames = std::max(1, job_.view.frames - 1);  // the first one also waits for what is made once
-    for (const json& pass : report->at("last_frame").at("passes")) {
-      const json& gpu = pass.at("gpu_ms");
-      row.passes.emplace_back(pass.at("name").get<std::string>(),
-                              gpu.is_null() ? pass.at("cpu_ms").get<double>() : gpu.get<double>());
-    }
-    row.gpu_bytes = report->at("bytes_resident").get<std::uint64_t>() +
-                    report->at("key_shadow_bytes").get<std::uint64_t>();
-    row.key_lights = static_cast<int>(report->at("key_lights").size());
-    row.renderer = report->at("renderer").get<std::string>();
-  });
-  if (!read) return failAgain(read.error());
-  const auto lit = compare(shown->picture, **as_it_is, what);
-  if (!lit) return failAgain(lit.error());
-  const auto limited = compare(banded->picture, **of_bands, what);
+  if (auto banded = draw(setting, words, other_file, 1); !banded) return failAgain(banded.error());
+  const auto limited = figuresOf(other_file, **of_bands, setting.name());
   if (!limited) return failAgain(limited.error());
-  row.as_light_is = *lit;
   row.as_bands_can = *limited;
-  if (auto added = store_.add(row_key, what, row); !added) return failAgain(added.error());
   return row;
 }
 
-Result<double> Measurer::visible(const Setting& setting) {
-  const auto as_it_is = reference("");
-  if (!as_it_is) return failAgain(as_it_is.error());
-  const auto picture = spec::readExr(pictureFile(setting));
+Result<Measured> Measurer::measure(const Setting& setting) {
+  auto bake =
+      known<BakeRow>(bakeKey(setting), "bake " + setting.name(), {}, [&] { return runBake(setting); });
+  if (!bake) return failAgain(bake.error());
+  const auto as_light_is = reference("");
+  if (!as_light_is) return failAgain(as_light_is.error());
+  Measured measured{.setting = setting, .key = pictureKey(setting), .bake = std::move(*bake), .picture = {}};
+  const std::filesystem::path file = job_.work / fmt::format("picture-{}.exr", shortened(measured.key));
+  auto row = known<PictureRow>(measured.key, "pictures of " + setting.name(), file,
+                               [&] { return drawPictures(setting, file); });
+  if (!row) return failAgain(row.error());
+  measured.picture = std::move(*row);
+  auto picture = spec::readExr(file);
   if (!picture) return failAgain(picture.error());
-  return visibleShare(shownWith(*picture, exposure_), shownWith((*as_it_is)->mean, exposure_),
-                      setting.name());
+  measured.shown = shownWith(std::move(*picture), exposure_);
+  const auto visible = visibleShare(measured.shown, (*as_light_is)->shown, setting.name());
+  if (!visible) return failAgain(visible.error());
+  measured.visible = *visible;
+  return measured;
 }
 
 }  // namespace lambent::baker

@@ -12,8 +12,6 @@
 #include <vector>
 
 #include "baker/sweep/knobs.hpp"
-#include "baker/sweep/programs.hpp"
-#include "baker/sweep/rows.hpp"
 #include "baker/sweep/store.hpp"
 #include "runtime/base/run_program.hpp"
 #include "runtime/spec/image.hpp"
@@ -26,6 +24,21 @@ struct SweepView {
   std::string camera = {}, size = {};
   std::uint32_t spp = 64;  // of each of two references
   int frames = 5;          // over which frame times are taken
+};
+
+// The programs that a sweep runs. The baker cannot link the runtime's frame, so lambent-demo draws pictures.
+struct Programs {
+  std::filesystem::path lambent, demo;
+};
+
+// A Measured is one setting with all that is known of it.
+struct Measured {
+  Setting setting;
+  std::string key;  // equal for settings that come to the same
+  BakeRow bake;
+  PictureRow picture;
+  double visible = 0.0;         // share of the pixels that an eye sees as different from the reference
+  spec::Rgba8Image shown = {};  // the picture as a screen shows it
 };
 
 class Measurer {
@@ -42,53 +55,42 @@ class Measurer {
 
   Measurer(Job job, Store& store, std::stop_token stop);
 
-  // Two pictures with independent noise, and their mean.
+  Result<Measured> measure(const Setting& setting);
+
+  // Two pictures with independent noise.
   struct Reference {
-    ReferenceRow row;  // of both together
-    spec::RgbaImage a, b, mean;
+    double seconds = 0.0;  // of both together
+    spec::RgbaImage a, b;
+    spec::Rgba8Image shown;  // their mean as a screen shows it
   };
   // Takes the bands as `lambent reference` does; empty: light as it is. The result lives as long as this.
   Result<const Reference*> reference(const std::string& bands);
-  // Returns what `bands` means for a setting.
-  std::string bandsOf(const Setting& setting) const;
-
-  Result<BakeRow> bake(const Setting& setting);
-  Result<PictureRow> picture(const Setting& setting);
-  // Returns the share of the pixels of its picture that an eye sees as different (perceptual.hpp). The
-  // picture is there once picture() was called.
-  Result<double> visible(const Setting& setting);
-
-  // Returns where the linear picture of a setting lies.
-  std::filesystem::path pictureFile(const Setting& setting) const;
-  // Two settings with the same keys have the same rows.
-  std::string keyOf(const Setting& setting) const;
-  float exposure() const { return exposure_; }
 
  private:
-  struct Drawn {
-    Ran ran;
-    spec::RgbaImage picture;
-  };
   using Words = std::map<std::string, std::string>;
 
+  // Returns the row of this key, which `make` measures if it is not known, or if its file is gone.
+  template <Row R, typename Make>
+  Result<R> known(const std::string& key, const std::string& what, const std::filesystem::path& file,
+                  Make&& make);
   std::string key(const std::string& kind, const std::string& text) const;
   std::string bakeKey(const Setting& setting) const;
+  std::string pictureKey(const Setting& setting) const;
   std::filesystem::path bundleOf(const Setting& setting) const;
   std::vector<std::string> viewWords() const;
-  // Returns what the bundle of a setting takes on the GPU without planes, and whole.
-  Result<MemoryRow> memory(const Setting& setting);
+  Result<ReferenceRow> runReference(const std::string& bands, int seed, const std::filesystem::path& file);
   Result<BakeRow> runBake(const Setting& setting);
-  Result<Drawn> draw(const Setting& setting, const Words& words, const std::filesystem::path& file,
-                     int frames);
-  Result<Figures> compare(const spec::RgbaImage& picture, const Reference& reference,
-                          const std::string& subject) const;
+  // Returns the bytes on the GPU with the setting's share of the planes of transfer.
+  Result<std::string> memoryLimit(const Setting& setting, const std::filesystem::path& file);
+  Result<PictureRow> drawPictures(const Setting& setting, const std::filesystem::path& file);
+  Result<Ran> draw(const Setting& setting, const Words& words, const std::filesystem::path& file, int frames);
 
   Job job_;
   Store& store_;
   std::stop_token stop_;
   std::string bakes_, common_;                   // what keys of bakes depend on, and all other keys
   std::map<std::string, Reference> references_;  // by bands
-  float exposure_ = 1.0f;
+  float exposure_ = 1.0f;                        // of all pictures, by the reference of light as it is
 };
 
 }  // namespace lambent::baker

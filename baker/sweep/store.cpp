@@ -28,7 +28,7 @@ Result<Store> Store::open(const std::filesystem::path& file) {
   return store;
 }
 
-Result<void> Store::append(const std::string& key, const std::string& what, json row) {
+Result<void> Store::add(const std::string& key, const std::string& what, json row) {
   const json line = {{"key", key}, {"what", what}, {"row", row}};
   std::ofstream out(file_, std::ios::app);
   if (cut_short_) out << '\n';

@@ -1,78 +1,75 @@
 #include "baker/sweep/sweep.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
+#include <fstream>
 #include <system_error>
+#include <thread>
 
 #include <fmt/format.h>
 
 #include "baker/bake/bake.hpp"
 #include "baker/import/gltf.hpp"
-#include "baker/sweep/machine.hpp"
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/base/own_program.hpp"
 
 namespace lambent::baker {
 
 namespace {
+
+Result<Programs> findPrograms() {
+  const Result<std::filesystem::path> self = ownProgram();
+  if (!self) return failAgain(self.error());
+  Programs programs{.lambent = *self, .demo = self->parent_path() / "lambent-demo"};
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(programs.demo, ignored))
+    return fail(programs.demo.string(), "is missing, which draws the pictures that are measured",
+                "build lambent-demo, or unpack the archive lambent-demo over this one");
+  return programs;
+}
+
+Result<std::filesystem::path> findSampleScene() {
+  constexpr const char* kSampleScene = "knot.glb";
+  std::error_code ignored;
+  for (const std::filesystem::path& folder : sampleFolders())
+    if (auto scene = folder / kSampleScene; std::filesystem::is_regular_file(scene, ignored)) return scene;
+  return fail(kSampleScene, "is not beside this program, and no other SCENE is named",
+              "build the target assets, or name a scene");
+}
+
+// Returns the processor's name and its number of threads, because times of another one cannot be compared.
+std::string machineName() {
+  std::string name = "unknown processor";
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(": ");
+    if (!line.starts_with("model name") || colon == std::string::npos) continue;
+    name = line.substr(colon + 2);
+    break;
+  }
+  return fmt::format("{}, {} threads", name, std::thread::hardware_concurrency());
+}
 
 struct Effort {
   const char* size;
   std::uint32_t spp;
   int frames;
 };
-
-Effort effortOf(Quality quality) {
-  switch (quality) {
-    case Quality::Draft:
-      return {"320x180", 64, 6};
-    case Quality::Standard:
-      return {"480x270", 256, 9};
-    case Quality::High:
-      break;
-  }
-  return {"960x540", 1024, 17};
-}
-
-Result<void> makeFolder(const std::filesystem::path& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) return fail(folder.string(), "cannot be made: " + failed.message(), "name another folder");
-  return {};
-}
-
-// The base comes to the same with any number of key lights if there are none to find.
-bool hasNothingToTurn(const Setting& setting, const Measured& base) {
-  return setting.isOfKeyLights() && base.picture.key_lights == 0;
-}
-
-Result<Measured> measure(Measurer& measurer, const Setting& setting) {
-  auto bake = measurer.bake(setting);
-  if (!bake) return failAgain(bake.error());
-  auto picture = measurer.picture(setting);
-  if (!picture) return failAgain(picture.error());
-  const auto visible = measurer.visible(setting);
-  if (!visible) return failAgain(visible.error());
-  return Measured{setting,  measurer.keyOf(setting),      std::move(*bake), std::move(*picture),
-                  *visible, measurer.pictureFile(setting)};
-}
+constexpr std::array kEfforts = {Effort{"320x180", 64, 6}, Effort{"480x270", 256, 9},
+                                 Effort{"960x540", 1024, 17}};  // by quality
 
 }  // namespace
 
-ErrorParts partsOf(const Measured& measured) {
-  const double all = measured.picture.as_light_is.rms;
-  ErrorParts parts{.within_bands = std::min(measured.picture.as_bands_can.rms, all)};
-  parts.beyond_bands = std::sqrt(std::max(0.0, all * all - parts.within_bands * parts.within_bands));
-  if (!measured.bake.parts) return parts;
-  const BakeRow::Parts& said = *measured.bake.parts;
-  const double sum = std::hypot(said.noise, said.codes, said.interpolation);
-  if (!(sum > 0.0)) return parts;
-  parts.noise = parts.within_bands * said.noise / sum;
-  parts.codes = parts.within_bands * said.codes / sum;
-  parts.interpolation = parts.within_bands * said.interpolation / sum;
-  return parts;
-}
-
-Result<SweepResults> runSweep(const SweepRequest& request, const SweepListener& listener,
+Result<SweepResults> runSweep(SweepRequest request, const SweepListener& listener,
                               const std::stop_token& stop) {
+  const auto programs = findPrograms();
+  if (!programs) return failAgain(programs.error());
+  if (request.scene.empty()) {
+    auto sample = findSampleScene();
+    if (!sample) return failAgain(sample.error());
+    request.scene = std::move(*sample);
+  }
+  if (const auto readable = checkRegularFile(request.scene, "a scene, .gltf or .glb"); !readable)
+    return failAgain(readable.error());
   const auto scene = importScene(request.scene, {.allow_outside = request.allow_outside});
   if (!scene) return failAgain(scene.error());
   const auto plan = planFor(*scene, BakeOptions{.quality = request.quality});
@@ -81,14 +78,15 @@ Result<SweepResults> runSweep(const SweepRequest& request, const SweepListener& 
   const auto settings = settingsOf(facts, request.quality, request.knobs);
   if (!settings) return failAgain(settings.error());
   const std::filesystem::path work = request.output / "work";
-  if (auto made = makeFolder(work); !made) return failAgain(made.error());
+  std::error_code failed, ignored;
+  std::filesystem::create_directories(work, failed);
+  if (failed) return fail(work.string(), "cannot be made: " + failed.message(), "name another folder");
   const std::filesystem::path file = request.output / "results.jsonl";
-  std::error_code ignored;
   if (request.force) std::filesystem::remove(file, ignored);
   auto store = Store::open(file);
   if (!store) return failAgain(store.error());
 
-  const Effort effort = effortOf(request.quality);
+  const Effort effort = kEfforts.at(static_cast<std::size_t>(request.quality));
   SweepResults results{.scene = request.scene.stem().string(),
                        .quality = request.quality,
                        .view = {.lights = request.lights,
@@ -99,7 +97,7 @@ Result<SweepResults> runSweep(const SweepRequest& request, const SweepListener& 
                        .machine = machineName(),
                        .asked = settings->size()};
   std::size_t done = 0;
-  Measurer measurer({.programs = request.programs,
+  Measurer measurer({.programs = *programs,
                      .scene = request.scene,
                      .work = work,
                      .scene_digest = sceneDigest(*scene),
@@ -113,11 +111,13 @@ Result<SweepResults> runSweep(const SweepRequest& request, const SweepListener& 
                     *store, stop);
   for (const Setting& setting : *settings) {
     if (stop.stop_requested()) break;
-    if (!results.settings.empty() && hasNothingToTurn(setting, results.settings.front())) {
+    // The base comes to the same with any number of key lights if there are none to find.
+    if (!results.settings.empty() && setting.isOfKeyLights() &&
+        results.settings.front().picture.key_lights == 0) {
       --results.asked;
       continue;
     }
-    auto measured = measure(measurer, setting);
+    auto measured = measurer.measure(setting);
     if (stop.stop_requested()) break;
     if (!measured) {
       if (results.settings.empty()) return failAgain(measured.error());
@@ -130,12 +130,11 @@ Result<SweepResults> runSweep(const SweepRequest& request, const SweepListener& 
   }
   results.stopped = stop.stop_requested();
   results.rows_measured = store->added();
-  results.exposure = measurer.exposure();
   if (results.settings.empty())
     return fail("lambent", "stopped", "run it again, and it goes on from where it was");
   if (const auto reference = measurer.reference(""); reference) {
-    results.reference = (*reference)->mean;
-    results.reference_row = (*reference)->row;
+    results.reference_seconds = (*reference)->seconds;
+    results.reference_shown = (*reference)->shown;
   }
   return results;
 }

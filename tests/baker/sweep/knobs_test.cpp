@@ -75,9 +75,9 @@ TEST(Knobs, AllValuesOfAllKnobsAreUnderstoodByTheBake) {
 TEST(Knobs, TheBaseComesFirstAndOnce) {
   const auto settings = settingsOf({.surfaces = true}, Quality::Standard, {});
   ASSERT_TRUE(settings);
-  EXPECT_EQ(settings->front().name(), "quality standard");
-  EXPECT_EQ(std::ranges::count(*settings, "quality standard", &Setting::name), 1);
-  EXPECT_EQ(std::ranges::count(*settings, "quality high", &Setting::name), 1);
+  EXPECT_EQ(settings->front().name(), "standard quality");
+  EXPECT_EQ(std::ranges::count(*settings, "standard quality", &Setting::name), 1);
+  EXPECT_EQ(std::ranges::count(*settings, "high quality", &Setting::name), 1);
 }
 
 TEST(Knobs, GlossyScenesHaveAtMostSixBands) {
@@ -92,7 +92,8 @@ TEST(Knobs, AskedOnesComeWithTheValuesThatAreNamed) {
   ASSERT_TRUE(settings);
   ASSERT_EQ(settings->size(), 4u);
   EXPECT_EQ((*settings)[2].bake.rays, 300u);
-  EXPECT_EQ((*settings)[3].frame_words.at("keys"), "off");
+  EXPECT_EQ((*settings)[2].command(), "lambent bake --quality draft --rays 300");
+  EXPECT_EQ((*settings)[3].command(), "lambent-demo --keys off");
 }
 
 TEST(Knobs, TheUsualValueOfAFrameGivesNoOption) {
