@@ -21,7 +21,7 @@ namespace {
 constexpr std::array<std::size_t, 3> kLevels = {bundle::kMaxProxyTriangles, 64, 16};
 constexpr std::size_t kLeastTriangles = 4;  // per side of a part
 constexpr std::size_t kPointsPerTriangle = 128, kPointsPerPatch = 16;
-constexpr std::size_t kTrianglesPerPatch = 8;  // of the group
+constexpr std::size_t kTrianglesPerPatch = 2;  // of the group
 // Patches show no less than this share of the extent of what is seen (runtime/lighting/patches.cpp).
 constexpr float kPatchError = 2e-3f;
 // Larger surfaces are simplified to this many triangles before their silhouette is taken.
@@ -187,15 +187,18 @@ class ProxyMaker {
   // own.
   void addPatches() {
     if (proxy_.levels.empty()) return;
-    // Small bundles are not to grow by a fifth for patches that their few triangles do not need.
+    const float allowed = kPatchError * importance_.extent();
+    std::vector<SimpleMesh> simple;
+    for (const SimpleMesh& mesh : meshes_)
+      simple.push_back(simplified(mesh, std::max(mesh.triangles.size(), kLeastTriangles), allowed));
+    // Small bundles are not to grow by a fifth for patches that their few triangles do not need. Parts share
+    // what flat ones leave, such as a wide ground.
     const auto counts =
-        shares(parts_, meshes_,
+        shares(parts_, simple,
                std::min<std::size_t>(bundle::kMaxPatchTriangles, trianglesOf(meshes_) / kTrianglesPerPatch));
     if (!counts) return;
-    std::vector<SimpleMesh> simple;
-    const float allowed = kPatchError * importance_.extent();
     for (std::size_t p = 0; p < parts_.size(); ++p)
-      simple.push_back(simplified(meshes_[p], (*counts)[p], allowed));
+      if ((*counts)[p] < simple[p].triangles.size()) simple[p] = simplified(meshes_[p], (*counts)[p]);
     if (kFewer * static_cast<double>(trianglesOf(simple)) <=
         static_cast<double>(proxy_.levels.front().triangle_count))
       return;

@@ -164,15 +164,14 @@ glm::vec3 PatchTransport::direct(std::size_t patch, std::span<const glm::vec4> l
 
 float PatchTransport::meanBounced() const {
   const std::vector<glm::vec3> given_off = bounce(std::vector<glm::vec3>(patches_.size(), glm::vec3(1.0f)));
-  double bounced = 0.0, area = 0.0;
+  double bounced = 0.0;  // patches are as large as they count alike in pictures
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     glm::vec3 received(0.0f);
     for (std::uint32_t s = first_share_[i]; s < first_share_[i + 1]; ++s)
       received += shares_[s].share * given_off[shares_[s].patch];
-    bounced += double{patches_.all()[i].area} * double{largest(received)};
-    area += double{patches_.all()[i].area};
+    bounced += double{largest(received)};
   }
-  return area > 0.0 ? static_cast<float>(bounced / area) : 0.0f;
+  return static_cast<float>(bounced / static_cast<double>(std::max<std::size_t>(patches_.size(), 1)));
 }
 
 std::vector<glm::vec3> PatchTransport::bounce(std::span<const glm::vec3> direct) const {

@@ -64,8 +64,8 @@ class PatchTransport {
   // without bounces, made with the same rays as the form factors (Sloan 2002, eq. 4).
   glm::vec3 direct(std::size_t patch, std::span<const glm::vec4> light) const;
 
-  // Returns how much E/pi bounces add when 1 falls directly on every patch, averaged over their area. It is 0
-  // for an open shape.
+  // Returns how much E/pi bounces add when 1 falls directly on every patch, averaged over patches, which
+  // count alike in pictures: a room on a wide ground is a room. It is 0 for an open shape.
   float bounced() const { return bounced_; }
 
   // Returns kLinks regions for each point. Each region is about as large as its ray stands for and is wholly

@@ -243,6 +243,21 @@ TEST(PatchTransport, InAClosedSphereAllIsBounced) {
     ASSERT_NEAR(transport.direct(i, light).g, 0.0f, 1e-4f);
 }
 
+// A group whose bounces count for nothing has no links, and rooms must not count as such for the ground
+// around them.
+TEST(PatchTransport, ARoomOnAWideGroundIsARoom) {
+  RoomBuilder room;
+  room.sphere(10, 14, glm::vec3(0.5f)).wall({-200, -2, 200}, {400, 0, 0}, {0, 0, -400}, glm::vec3(0.5f));
+  bundle::CaptureProxy proxy = room.proxy();
+  proxy.patches = bundle::patchSurfaceOf(proxy);
+  proxy.patches.error_m = 0.004f;
+  for (bundle::PatchTriangle& triangle : proxy.patches.triangles) {
+    const bool ground = proxy.patches.positions[triangle.vertices[0]].y < -1.5f;
+    triangle.detail = bundle::detailOf(ground ? bundle::kLeastPatchDensity : 1.0f);
+  }
+  EXPECT_GT(PatchTransport(proxy).bounced(), 0.6f) << "by area it is 0.0001";
+}
+
 TEST(PatchTransport, ASmallBrightSpotIsMissedFromNowhere) {
   RoomBuilder room;
   room.wall({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, glm::vec3(0.5f));
