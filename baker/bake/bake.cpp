@@ -62,8 +62,7 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
                          .many_rays = kTimesFirstRays * rays,
                          .glossy = options.refinesGlossy(),
                          .most_growth = options.refineGrowth(),
-                         .most_added = options.refineAdded(),
-                         .most_wedges = options.refineWedges()};
+                         .most_added = options.refineAdded()};
     if (with_glossy) refine.most_vertices = mostGlossySamples(options.glossy_order);
     auto refined = refineMeshes({scene, plan.groups, plan.transport, alpha_maps, with_glossy, images}, refine,
                                 *split, context);

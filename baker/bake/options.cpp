@@ -23,16 +23,15 @@ struct QualityRow {
   float picture_bound, error_bound, glossy_error_bound, refine_bound;
   double refine_growth;
   std::size_t refine_added;
-  double refine_wedges;
   bool refines_glossy, fits_glossy;
   float glossy_looseness;
   int exit_bands;  // for exitOrder() with five bands of incident light
   int zstd_level;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.05f, 0.01f, 0.03f, 0.04f, 1.2, 10'000, 0.0, false, false, 0.0f, 5, 12},
-    QualityRow{"standard", 1024, 0.03f, 0.003f, 0.015f, 0.02f, 1.5, 20'000, 0.5, true, true, 1.5f, 7, 19},
-    QualityRow{"high", 4096, 0.015f, 0.001f, 0.005f, 0.01f, 4.0, 60'000, 0.5, true, true, 3.0f, 9, 19},
+    QualityRow{"draft", 256, 0.05f, 0.01f, 0.03f, 0.04f, 1.2, 10'000, false, false, 0.0f, 5, 12},
+    QualityRow{"standard", 1024, 0.03f, 0.003f, 0.015f, 0.02f, 1.5, 20'000, true, true, 1.5f, 7, 19},
+    QualityRow{"high", 4096, 0.015f, 0.001f, 0.005f, 0.01f, 4.0, 60'000, true, true, 3.0f, 9, 19},
 };
 static_assert(kQualities.back().exit_bands <= sh::kMaxFactoredOrder);
 
@@ -42,7 +41,7 @@ const QualityRow& row(Quality quality) {
 
 // Describes in words how far refinement may go.
 std::string refineMost(const QualityRow& row) {
-  return fmt::format("{} x + {}, fans {} x", row.refine_growth, row.refine_added, row.refine_wedges);
+  return fmt::format("{} x + {}", row.refine_growth, row.refine_added);
 }
 
 }  // namespace
@@ -124,10 +123,6 @@ std::size_t BakeOptions::refineAdded() const {
 
 bool BakeOptions::refinesGlossy() const {
   return picture_bound > 0.0f || row(quality).refines_glossy;
-}
-
-double BakeOptions::refineWedges() const {
-  return row(quality).refine_wedges;
 }
 
 std::uint64_t BakeOptions::effectiveMemory() const {

@@ -75,7 +75,6 @@ struct BakeOptions {
   std::size_t refineAdded() const;
   // Whether edges of glossy surfaces are split. Those of drafts are not: it costs most there and shows least.
   bool refinesGlossy() const;
-  double refineWedges() const;  // fans at glossy vertices, relative to the number of vertices
   std::uint64_t effectiveMemory() const;
   // Returns how many bytes of effectiveMemory() passes may keep, if so many are used and transfer of
   // so many diffuse and glossy samples is still to be computed.

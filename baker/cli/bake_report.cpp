@@ -176,7 +176,6 @@ nlohmann::json reportJson(const FinishedBake& bake) {
           {"refinement",
            {{"verticesBefore", r.refinement.vertices_before},
             {"verticesAfter", r.refinement.vertices_after},
-            {"fans", r.refinement.fans},
             {"errorBefore", r.refinement.error_before},
             {"errorAfter", r.refinement.error_after},
             {"rays", r.refinement.rays},
@@ -201,8 +200,7 @@ void printReport(const FinishedBake& bake) {
              r.triangles, r.samples, durationText(secondsOf(r)));
   if (r.texel_samples > 0) fmt::print("  texels    {} of the samples\n", r.texel_samples);
   if (const RefineReport& refined = r.refinement; refined.vertices_after > refined.vertices_before)
-    fmt::print("  refined   {} vertices to {}{}\n", refined.vertices_before, refined.vertices_after,
-               refined.fans > 0 ? fmt::format("; {} more values where faces disagree", refined.fans) : "");
+    fmt::print("  refined   {} vertices to {}\n", refined.vertices_before, refined.vertices_after);
   if (const BakeReport::Group* group = worstGroup(r))
     fmt::print("  pictures  {}{}\n", r.groups.size() > 1 ? fmt::format("\"{}\": ", group->name) : "",
                pictureErrorText(*group->picture_error));

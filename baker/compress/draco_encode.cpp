@@ -118,10 +118,6 @@ bundle::DracoAttributes addAttributes(draco::Mesh& out, const bundle::MeshData& 
   if (!mesh.normal_weights.empty())
     ids.normal_weight =
         addAttribute(out, Attribute::GENERIC, draco::DT_UINT8, true, quantizeWeights(mesh.normal_weights));
-  if (!mesh.fans.empty()) {
-    const std::vector<glm::vec<1, std::uint8_t>> fans(mesh.fans.begin(), mesh.fans.end());
-    ids.fan = addAttribute(out, Attribute::GENERIC, draco::DT_UINT8, false, fans);
-  }
   return ids;
 }
 

@@ -16,7 +16,6 @@ void gatherVertices(bundle::MeshData& mesh, std::span<const std::uint32_t> sourc
   gather(mesh.positions);
   gather(mesh.normals);
   gather(mesh.normal_weights);
-  gather(mesh.fans);
   gather(mesh.texcoords0);
   gather(mesh.texcoords1);
   gather(mesh.colors);

@@ -175,8 +175,8 @@ struct GroupRefiner::Whole {
   Key key;
 };
 
-GroupRefiner::GroupRefiner(const RefineProbes& probes, bool with_glossy, bool for_wedges)
-    : few_(probes.few), many_(probes.many), with_glossy_(with_glossy), for_wedges_(for_wedges) {}
+GroupRefiner::GroupRefiner(const RefineProbes& probes, bool with_glossy)
+    : few_(probes.few), many_(probes.many), with_glossy_(with_glossy) {}
 GroupRefiner::GroupRefiner(GroupRefiner&&) noexcept = default;
 GroupRefiner::~GroupRefiner() = default;
 
@@ -307,11 +307,6 @@ double GroupRefiner::relativeError() const {
 
 Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, double bound, const BakeContext& context) {
   const SampleSet samples = buildSamples(geometry, /*with_texels=*/false);
-  const std::size_t count = geometry.triangles.size();
-  if (for_wedges_) {
-    triangle_share_.assign(count, 0.0);
-    triangle_lack_.assign(count * 2 * kLackValues, 0.0f);
-  }
   if (auto placed = placeInner(geometry); !placed) return failAgain(placed.error());
   if (!measureBy(few_, geometry, samples, seenTriangles(), context)) return false;
   if (!chosen_ && relativeError() <= bound) return true;
@@ -356,7 +351,6 @@ bool GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry
 
   const ShadowProbe& probe = points.shadowProbe();
   std::vector<PointError> error_at(inner_.size());
-  std::vector<float> lack_at(for_wedges_ ? inner_.size() * 2 * kLackValues : 0);
   std::vector<std::uint8_t> seen_at(inner_.size(), 0);
   // Points that cannot be seen have no error, and unseen corners take the values of their neighbours
   // (fill.hpp).
@@ -391,9 +385,6 @@ bool GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry
       error_at[i].with_noise *= square(kGlossyCounts);
     }
     seen_at[i] = 1;
-    if (for_wedges_)
-      for (std::size_t half = 0; half < 2; ++half)
-        std::copy_n(wrong[half].begin(), kLackValues, lack_at.data() + (2 * i + half) * kLackValues);
   };
   const bool done =
       parallelRanges(inner_.size(), kPointsPerRange, context.stop, [&](std::size_t begin, std::size_t end) {
@@ -410,37 +401,7 @@ bool GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry
       if (seen_at[i] != 0) part.seen += share;
     }
   }
-  if (for_wedges_) keepLacks(triangles, seen_at, lack_at);
   return true;
-}
-
-// Keeps the mean over the points of each triangle that can be seen.
-void GroupRefiner::keepLacks(std::span<const std::uint32_t> triangles, std::span<const std::uint8_t> seen,
-                             std::span<const float> lacks) {
-  constexpr std::size_t kSize = 2 * kLackValues;
-  for (const std::uint32_t t : triangles) {
-    std::fill_n(triangle_lack_.begin() + static_cast<std::ptrdiff_t>(t * kSize), kSize, 0.0f);
-    triangle_share_[t] = 0.0;
-  }
-  const auto listed = [&](std::size_t i) {
-    return seen[i] != 0 && std::ranges::binary_search(triangles, inner_[i].triangle);
-  };
-  for (std::size_t i = 0; i < inner_.size(); ++i)
-    if (listed(i)) triangle_share_[inner_[i].triangle] += double{inner_[i].share};
-  for (std::size_t i = 0; i < inner_.size(); ++i) {
-    if (!listed(i)) continue;
-    const std::uint32_t t = inner_[i].triangle;
-    const auto share = static_cast<float>(double{inner_[i].share} / triangle_share_[t]);
-    for (std::size_t k = 0; k < kSize; ++k) triangle_lack_[t * kSize + k] += share * lacks[i * kSize + k];
-  }
-}
-
-void GroupRefiner::addLacks(const DrawGeometry& draw, FaceLacks& lacks) const {
-  const std::size_t size = 2 * kLackValues;
-  const auto from = std::span(triangle_lack_).subspan(draw.first_triangle * size, draw.triangle_count * size);
-  const auto areas = std::span(triangle_share_).subspan(draw.first_triangle, draw.triangle_count);
-  lacks.values.insert(lacks.values.end(), from.begin(), from.end());
-  lacks.areas.insert(lacks.areas.end(), areas.begin(), areas.end());
 }
 
 std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,

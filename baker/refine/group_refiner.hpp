@@ -18,7 +18,6 @@
 #include "baker/refine/marked_edges.hpp"
 #include "baker/refine/probed_points.hpp"
 #include "baker/refine/refine.hpp"
-#include "baker/refine/wedges.hpp"
 #include "baker/transport/face_points.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
@@ -35,9 +34,8 @@ struct RefineProbes {
 
 class GroupRefiner {
  public:
-  // The probes outlive this. Glossy surfaces are refined `with_glossy` alone. With `for_wedges` it also keeps
-  // what addLacks() needs: 300 bytes per triangle, and as much per probe while measuring.
-  GroupRefiner(const RefineProbes& probes, bool with_glossy, bool for_wedges);
+  // The probes outlive this. Glossy surfaces are refined `with_glossy` alone.
+  GroupRefiner(const RefineProbes& probes, bool with_glossy);
   GroupRefiner(GroupRefiner&&) noexcept;
   ~GroupRefiner();
 
@@ -66,11 +64,6 @@ class GroupRefiner {
   // Returns how many edges were marked, or nothing when stopped.
   std::optional<std::size_t> markLeaks(std::size_t group, const GroupGeometry& geometry, std::size_t& room,
                                        MarkedEdges& edges, const BakeContext& context);
-
-  // Appends what interpolation lacked inside the triangles of `draw` when last measured: values of some low
-  // bands, and what is seen of each triangle.
-  void addLacks(const DrawGeometry& draw, FaceLacks& lacks) const;
-  static constexpr std::size_t kLackValues = 36;
 
  private:
   struct Whole;      // the group before any split
@@ -109,18 +102,14 @@ class GroupRefiner {
     std::vector<double> square_error, seen;
   };
   RegionSums sumRegions() const;
-  void keepLacks(std::span<const std::uint32_t> triangles, std::span<const std::uint8_t> seen,
-                 std::span<const float> lacks);
 
   ProbedPoints few_, many_;
-  bool with_glossy_, for_wedges_;
+  bool with_glossy_;
   std::unique_ptr<Whole> whole_;
   std::unordered_map<VertexKey, float, VertexKeyHash> seen_at_;  // of the points of all rounds
   bool chosen_ = false;       // triangles were marked, so that few rays are no longer right on average
   std::vector<Inner> inner_;  // by triangle, and then by region
   std::vector<Part> parts_;   // in the same order
-  std::vector<double> triangle_share_;
-  std::vector<float> triangle_lack_;
 };
 
 }  // namespace lambent::baker

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "baker/jobs/kept_value.hpp"
-#include "baker/refine/add_wedges.hpp"
 #include "baker/refine/copies.hpp"
 #include "baker/refine/group_refiner.hpp"
 #include "baker/refine/marked_edges.hpp"
@@ -16,10 +15,6 @@
 namespace lambent::baker {
 
 namespace {
-
-// Fans are added until the error, here relative to the light of an open point, is this share of the bound:
-// most of what remains after splitting edges can only be reduced by fans, and they cost no triangles.
-constexpr double kFanShare = 0.24;
 
 // Before anything is measured, this many probes are expected of a vertex, splits included: the gallery, at
 // draft quality, takes 3.6 for each vertex that it has in the end.
@@ -57,7 +52,7 @@ Key outcomeKey(const RefineScene& from, const std::vector<GroupGeometry>& geomet
   KeyMaker key = KeyMaker::ofStage("refinement");
   key.add(from.with_glossy).add(options.bound).add(std::uint64_t{options.rays});
   key.add(std::uint64_t{options.many_rays}).add(options.rounds).add(options.glossy);
-  key.add(options.most_growth).add(std::uint64_t{options.most_added}).add(options.most_wedges);
+  key.add(options.most_growth).add(std::uint64_t{options.most_added});
   key.add(std::uint64_t{options.most_vertices}).add(std::uint64_t{meshes.size()});
   for (const auto& primitives : meshes) {
     key.add(std::uint64_t{primitives.size()});
@@ -83,7 +78,6 @@ struct Outcome {
 void write(const Outcome& outcome, ByteWriter& out) {
   const RefineReport& report = outcome.report;
   out.add(std::uint64_t{report.vertices_before}), out.add(std::uint64_t{report.vertices_after});
-  out.add(std::uint64_t{report.fans});
   out.add(report.error_before), out.add(report.error_after), out.add(report.at_limit);
   out.add(report.rays + report.rays_kept);
   for (const auto& primitives : outcome.meshes)
@@ -93,8 +87,8 @@ void write(const Outcome& outcome, ByteWriter& out) {
 // Changes nothing if the bytes are no such outcome.
 bool read(ByteReader& in, Outcome& outcome) {
   RefineReport report;
-  std::uint64_t before = 0, after = 0, fans = 0;
-  in.read(before), in.read(after), in.read(fans), in.read(report.error_before), in.read(report.error_after);
+  std::uint64_t before = 0, after = 0;
+  in.read(before), in.read(after), in.read(report.error_before), in.read(report.error_after);
   in.read(report.at_limit), in.read(report.rays_kept);
   std::vector<std::vector<bundle::MeshData>> found;
   for (const auto& primitives : outcome.meshes) {
@@ -103,7 +97,7 @@ bool read(ByteReader& in, Outcome& outcome) {
       if (!readMesh(in, mesh)) return false;
   }
   if (!in.atEnd()) return false;
-  report.vertices_before = before, report.vertices_after = after, report.fans = fans;
+  report.vertices_before = before, report.vertices_after = after;
   outcome.report = report;
   outcome.meshes = std::move(found);
   return true;
@@ -126,7 +120,7 @@ class Rounds {
         few_(options.rays),
         many_(options.many_rays) {
     for (std::size_t g = 0; g < from.groups.size(); ++g)
-      refiners_.emplace_back(RefineProbes{few_, many_}, options.glossy, options.most_wedges > 0.0);
+      refiners_.emplace_back(RefineProbes{few_, many_}, options.glossy);
   }
 
   // `geometries` are those of the groups before any split. Errors: stopped; no memory for the hierarchy.
@@ -158,7 +152,7 @@ class Rounds {
     return {};
   }
 
-  MeasuredGroups groups() const { return {from_.groups, geometries_, refiners_}; }
+  const std::vector<GroupRefiner>& refiners() const { return refiners_; }
 
  private:
   bool any(std::size_t group) const {
@@ -257,17 +251,7 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
   Rounds rounds(from, options, most, meshes, context, report);
   if (auto refined = rounds.run(std::move(geometries)); !refined) return failAgain(refined.error());
   report.vertices_after = countVertices(meshes);
-  const std::size_t most_wedges =
-      std::min(static_cast<std::size_t>(options.most_wedges * static_cast<double>(report.vertices_after)),
-               options.most_vertices - std::min(options.most_vertices, report.vertices_after));
-  if (most_wedges > 0) {
-    const auto fans =
-        addWedges(rounds.groups(), {kFanShare * double{options.bound}, most_wedges}, meshes, context.stop);
-    if (!fans) return stopped(from);
-    report.fans = *fans;
-  }
-  report.vertices_after = countVertices(meshes);
-  for (const GroupRefiner& refiner : rounds.groups().refiners)
+  for (const GroupRefiner& refiner : rounds.refiners())
     report.rays += refiner.raysTraced(), report.rays_kept += refiner.raysKept();
   keepValue(outcome_context, outcome);
   return report;

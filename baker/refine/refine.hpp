@@ -32,15 +32,11 @@ struct RefineOptions {
   double most_growth = 1.5;
   std::size_t most_added = 20'000;
   std::size_t most_vertices = std::size_t{1} << 31;
-  // This limits the fans added to vertices of glossy surfaces, relative to the number of vertices after all
-  // splits (wedges.hpp).
-  double most_wedges = 0.0;
 };
 
 struct RefineReport {
   std::size_t vertices_before = 0, vertices_after = 0;
-  std::size_t fans = 0;  // values beyond one for each position and normal
-  // These are interpolation errors of the worst group; `error_after` is measured before fans are added.
+  // These are interpolation errors of the worst group.
   double error_before = 0.0, error_after = 0.0;
   bool at_limit = false;        // of vertices or rounds, before the bound was reached
   std::uint64_t rays = 0;       // traced

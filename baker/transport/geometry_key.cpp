@@ -14,7 +14,6 @@ std::span<const T> ofDraw(const std::vector<T>& of_vertices, const DrawGeometry&
 void addShape(const GroupGeometry& geometry, KeyMaker& key) {
   key.addText("shape");
   key.addList(geometry.positions).addList(geometry.normals).addList(geometry.normal_weights);
-  key.addList(geometry.fans);
   key.addList(geometry.triangles);
   key.add(std::uint64_t{geometry.draws.size()});
   for (const DrawGeometry& draw : geometry.draws) {
@@ -63,20 +62,20 @@ void addTextureRef(const Scene& scene, const gltf::TextureRef& ref, KeyMaker& ke
 }
 
 void addMesh(const bundle::MeshData& mesh, KeyMaker& key) {
-  key.addList(mesh.positions).addList(mesh.normals).addList(mesh.normal_weights).addList(mesh.fans);
+  key.addList(mesh.positions).addList(mesh.normals).addList(mesh.normal_weights);
   key.addList(mesh.texcoords0).addList(mesh.texcoords1);
   key.addList(mesh.colors).addList(mesh.tangents).addList(mesh.indices);
 }
 
 void writeMesh(const bundle::MeshData& mesh, ByteWriter& out) {
   out.addList(mesh.positions), out.addList(mesh.normals), out.addList(mesh.normal_weights);
-  out.addList(mesh.fans), out.addList(mesh.texcoords0), out.addList(mesh.texcoords1);
+  out.addList(mesh.texcoords0), out.addList(mesh.texcoords1);
   out.addList(mesh.colors), out.addList(mesh.tangents), out.addList(mesh.indices);
 }
 
 bool readMesh(ByteReader& in, bundle::MeshData& mesh) {
   in.readList(mesh.positions), in.readList(mesh.normals), in.readList(mesh.normal_weights);
-  in.readList(mesh.fans), in.readList(mesh.texcoords0), in.readList(mesh.texcoords1);
+  in.readList(mesh.texcoords0), in.readList(mesh.texcoords1);
   in.readList(mesh.colors), in.readList(mesh.tangents);
   return in.readList(mesh.indices);
 }

@@ -88,7 +88,6 @@ void appendDraw(const PlannedDraw& draw, const ScenePrimitive& primitive, const 
     geometry.positions.push_back(glm::vec3(placed - glm::dvec3(geometry.origin)) + 0.0f);
     geometry.normals.push_back(side * unitOr(normal_matrix * mesh.normals[v], {0.0f, 1.0f, 0.0f}) + 0.0f);
     geometry.normal_weights.push_back(mesh.normal_weights.empty() ? 1.0f : mesh.normal_weights[v]);
-    geometry.fans.push_back(mesh.fans.empty() ? std::uint8_t{0} : mesh.fans[v]);
     geometry.texcoords.push_back(texcoordOf(base, mesh, v));
     geometry.emissive_texcoords.push_back(texcoordOf(emissive, mesh, v));
     geometry.colors.push_back(mesh.colors.empty() ? glm::vec4(1.0f) : mesh.colors[v]);

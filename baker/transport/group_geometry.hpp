@@ -41,7 +41,6 @@ struct GroupGeometry {
   std::vector<glm::vec3> positions;   // relative to `origin`, along the group frame's axes, metres
   std::vector<glm::vec3> normals;     // unit; negated for back draws
   std::vector<float> normal_weights;  // as in MeshData, 1 where it has none
-  std::vector<std::uint8_t> fans;     // as in MeshData, 0 where it has none
   // These are for the material's base-colour texture, transformed; 0 where it has none.
   std::vector<glm::vec2> texcoords;
   std::vector<glm::vec2> emissive_texcoords;  // for its emissive texture

@@ -60,7 +60,7 @@ Welded weld(const GroupGeometry& geometry, SampleSet& samples) {
   for (const DrawGeometry& draw : geometry.draws)
     for (std::uint32_t v = draw.first_vertex; v < draw.first_vertex + draw.vertex_count; ++v) {
       const glm::vec3 position = geometry.positions[v], normal = geometry.normals[v];
-      const auto [entry, is_new] = seen.try_emplace(vertexKey(position, normal, draw.kind, geometry.fans[v]),
+      const auto [entry, is_new] = seen.try_emplace(vertexKey(position, normal, draw.kind),
                                                     static_cast<std::uint32_t>(welded.positions.size()));
       if (is_new) {
         welded.positions.push_back(position);

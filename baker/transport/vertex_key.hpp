@@ -13,7 +13,7 @@
 
 namespace lambent::baker {
 
-using VertexKey = std::array<std::uint32_t, 8>;
+using VertexKey = std::array<std::uint32_t, 8>;  // the last is for callers
 
 struct VertexKeyHash {
   std::size_t operator()(const VertexKey& key) const {
@@ -23,8 +23,7 @@ struct VertexKeyHash {
   }
 };
 
-inline VertexKey vertexKey(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
-                           std::uint8_t fan = 0) {
+inline VertexKey vertexKey(const glm::vec3& position, const glm::vec3& normal, SampleKind kind) {
   const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
   return {bits(position.x),
           bits(position.y),
@@ -33,7 +32,7 @@ inline VertexKey vertexKey(const glm::vec3& position, const glm::vec3& normal, S
           bits(normal.y),
           bits(normal.z),
           static_cast<std::uint32_t>(kind),
-          fan};
+          0};
 }
 
 }  // namespace lambent::baker

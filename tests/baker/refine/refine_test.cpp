@@ -256,50 +256,6 @@ TEST(Refinement, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.report.error_after, many.report.error_after);
 }
 
-// Makes a polished sheet with waves of two cells and the normals of its mean plane, so that every face is
-// tilted.
-Scene foldedSheet() {
-  bundle::MeshData sheet = grid({0, 0, 0}, 4.0f, 16);
-  for (std::size_t i = 0; i < sheet.positions.size(); ++i)
-    if (i % 17 % 2 == 1) sheet.positions[i].y = 0.1f;
-  Scene scene = sceneOf({sheet});
-  scene.materials[0].metallic = 1.0f;
-  return scene;
-}
-
-TEST(Refinement, GivesTheFacesOfAFoldedSheetValuesApart) {
-  const RefineOptions without{.bound = 0.05f, .rounds = 0};
-  RefineOptions with = without;
-  with.most_wedges = 0.5;
-  const Refined shared = refined(foldedSheet(), without, /*with_glossy=*/true),
-                apart = refined(foldedSheet(), with, /*with_glossy=*/true);
-  EXPECT_EQ(shared.report.fans, 0u);
-  EXPECT_GT(apart.report.fans, 50u);
-  EXPECT_LE(apart.report.fans, 145u);
-  EXPECT_EQ(apart.report.vertices_after, shared.report.vertices_after + apart.report.fans);
-  EXPECT_EQ(apart.meshes[0][0].indices.size(), shared.meshes[0][0].indices.size());
-  // Diffuse surfaces average what is near the horizon, and pay for none.
-  EXPECT_EQ(refined(foldedSheet(), with, /*with_glossy=*/false).report.fans, 0u);
-}
-
-TEST(Refinement, GivesFansToWhatIsDrawnOnceOnly) {
-  Scene scene = foldedSheet();
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(scene.nodes.front());
-  scene.nodes.back().parent_from_node = glm::translate(glm::mat4(1.0f), glm::vec3(10.0f, 0.0f, 0.0f));
-  EXPECT_EQ(refined(scene, {.bound = 0.05f, .rounds = 0, .most_wedges = 0.5}, true).report.fans, 0u);
-}
-
-TEST(Refinement, OfFansIsTheSameForAnyNumberOfThreads) {
-  Refined one, many;
-  const RefineOptions options{.bound = 0.05f, .rounds = 1, .most_wedges = 0.5};
-  withThreads(1, [&] { one = refined(foldedSheet(), options, true); });
-  withThreads(0, [&] { many = refined(foldedSheet(), options, true); });
-  EXPECT_GT(one.report.fans, 0u);
-  EXPECT_EQ(one.meshes[0][0].fans, many.meshes[0][0].fans);
-  EXPECT_EQ(one.meshes[0][0].indices, many.meshes[0][0].indices);
-}
-
 TEST(ShadowProbe, OfAClosedBoxMissesAllOfTheLight) {
   const testing::Transport t(sceneOf({testing::flipped(box({0, 0, 0}, {2, 2, 2}, 1))}));
   const ShadowProbe probe(1024);

@@ -21,31 +21,6 @@ TEST(Samples, AreSharedByVerticesOfOnePositionAndNormal) {
   EXPECT_EQ(Transport(sceneOf({box({0, 0, 0}, {1, 1, 1}, 1)})).samples.size(), 24u);
 }
 
-TEST(Samples, OfFansLookFromTheirOwnFacesOnly) {
-  bundle::MeshData sheet = grid({0, 0, 0}, 1.0f, 2);  // eight triangles; the middle is vertex 4
-  sheet.fans.assign(sheet.positions.size() + 1, 0);
-  sheet.positions.push_back(sheet.positions[4]);
-  sheet.normals.push_back(sheet.normals[4]);
-  sheet.texcoords0.push_back(sheet.texcoords0[4]);
-  sheet.fans.back() = 1;
-  std::size_t moved = 0;
-  for (std::size_t i = 0; i < 12; ++i)  // of the first four triangles
-    if (sheet.indices[i] == 4) sheet.indices[i] = 9, ++moved;
-  ASSERT_EQ(moved, 3u);
-  const Transport t(sceneOf({sheet}));
-  ASSERT_EQ(t.samples.size(), 10u);
-  std::size_t origins = 0;
-  for (std::size_t v = 0; v < t.geometry.positions.size(); ++v)
-    if (glm::length(t.geometry.positions[v]) == 0.0f) {
-      const auto own = t.samples.originsOf(t.samples.vertex_sample[v]);
-      EXPECT_EQ(own.size(), 3u);
-      for (const SampleOrigin& origin : own)
-        EXPECT_EQ(origin.position.z < 0.0f, t.geometry.fans[v] == 1) << "on the side of its own faces";
-      origins += own.size();
-    }
-  EXPECT_EQ(origins, 6u);
-}
-
 TEST(Samples, KeepEveryVertexWhereItIs) {
   const Transport t(sceneOf({box({1, 2, 3}, {1, 2, 3}, 3)}));
   for (std::size_t v = 0; v < t.geometry.positions.size(); ++v) {
