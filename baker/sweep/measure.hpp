@@ -15,7 +15,7 @@
 #include "baker/sweep/programs.hpp"
 #include "baker/sweep/rows.hpp"
 #include "baker/sweep/store.hpp"
-#include "runtime/base/run_program.hpp"
+#include "runtime/base/process.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::baker {

@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-#include "runtime/base/own_program.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::baker {
 

@@ -9,7 +9,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include "runtime/base/parallel.hpp"
+#include "runtime/base/threads.hpp"
 #include "runtime/shadows/shadowed_light_record.hpp"
 #include "runtime/shadows/shadowed_light_ref.hpp"
 

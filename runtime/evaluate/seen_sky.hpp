@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
-#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/evaluate/seen_sky_kernels.h"
 #include "runtime/evaluate/transfer_table.hpp"

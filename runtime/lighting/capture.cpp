@@ -13,7 +13,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/base/parallel.hpp"
+#include "runtime/base/threads.hpp"
 #include "runtime/lighting/capture_combine.hpp"
 #include "runtime/lighting/capture_shared.h"
 #include "runtime/lighting/capture_table.hpp"

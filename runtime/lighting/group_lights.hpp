@@ -18,7 +18,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/base/keyed_state.hpp"
+#include "runtime/base/change_gate.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/sh/cached_window.hpp"

@@ -19,7 +19,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
-#include "runtime/base/keyed_state.hpp"
+#include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/lighting/capture.hpp"
 #include "runtime/lighting/environment.hpp"

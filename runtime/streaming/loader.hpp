@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "runtime/base/result.hpp"
-#include "runtime/base/thread_pool.hpp"
+#include "runtime/base/threads.hpp"
 #include "runtime/bundle/reader.hpp"
 #include "runtime/streaming/load_request.hpp"
 #include "runtime/streaming/loaded_chunk.hpp"

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
-#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
 #include "runtime/evaluate/transfer_table.hpp"

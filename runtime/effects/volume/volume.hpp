@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
-#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/glossy/glossy.hpp"

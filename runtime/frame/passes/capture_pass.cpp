@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
-#include "runtime/base/keyed_state.hpp"
 #include "runtime/bounces/patch_bounces.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"

@@ -1,8 +1,11 @@
-#include "runtime/base/run_program.hpp"
+#include "runtime/base/process.hpp"
 
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
 #include <system_error>
 
 #include <fcntl.h>
@@ -11,6 +14,9 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#if __has_include(<malloc.h>)
+#include <malloc.h>
+#endif
 
 namespace lambent {
 
@@ -129,6 +135,78 @@ Result<Ran> runProgram(const std::filesystem::path& program, const std::vector<s
   const std::string name = program.filename().string(), said = lastLine(ran->err);
   if (!said.empty()) return fail(name + (words.empty() ? "" : " " + words.front()), "failed: " + said);
   return fail(name, "ended with code " + std::to_string(ran->exit_code));
+}
+
+namespace fs = std::filesystem;
+
+Result<fs::path> ownProgram() {
+  std::error_code failed;
+  fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  if (failed) return fail("/proc/self/exe", "does not name this program: " + failed.message());
+  return program;
+}
+
+std::vector<fs::path> sampleFolders(const fs::path& program) {
+  std::vector<fs::path> folders;
+  std::error_code ignored;
+  const fs::path above = program.parent_path().parent_path();
+  for (const char* place : {"share/lambent/scenes", "share/lambent/probes", "assets"})
+    if (fs::is_directory(above / place, ignored)) folders.push_back(above / place);
+  return folders;
+}
+
+namespace {
+
+struct Pages {
+  std::uint64_t reserved = 0, resident = 0;
+};
+
+Pages pagesNow() {
+  std::ifstream file("/proc/self/statm");
+  Pages pages;
+  file >> pages.reserved >> pages.resident;
+  return pages;
+}
+
+std::uint64_t bytesOf(std::uint64_t pages) {
+  const long page_bytes = ::sysconf(_SC_PAGESIZE);
+  return page_bytes > 0 ? pages * static_cast<std::uint64_t>(page_bytes) : 0;
+}
+
+}  // namespace
+
+std::uint64_t addressSpaceBytes() {
+  return bytesOf(pagesNow().reserved);
+}
+
+std::uint64_t residentBytes() {
+  return bytesOf(pagesNow().resident);
+}
+
+std::uint64_t peakBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::uint64_t{1024} * static_cast<std::uint64_t>(usage.ru_maxrss);
+}
+
+void returnFreedMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+std::uint64_t machineBytes() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES);
+  return pages > 0 ? bytesOf(static_cast<std::uint64_t>(pages)) : 0;
+}
+
+Result<void> flushStandardOutput() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return {};
+  const int why = errno;
+  return fail("standard output",
+              std::string("cannot be written") + (why != 0 ? std::string(": ") + std::strerror(why) : ""),
+              "free some space or send it elsewhere");
 }
 
 }  // namespace lambent

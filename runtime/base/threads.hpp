@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 
 namespace lambent {
 
@@ -11,5 +12,23 @@ namespace lambent {
 // further `worth` parts get a helper thread, up to the number of processors and at most 16 threads. The call
 // does not wait for helpers that have not started yet. It may be made from any thread. Parts must not throw.
 void inParallel(std::size_t count, std::size_t worth, const std::function<void(std::size_t)>& part);
+
+// Keeps threads for tasks that may block. Starting a thread costs the caller up to a millisecond, which is
+// much of a frame, so threads are reused.
+class ThreadPool {
+ public:
+  ThreadPool();
+  ~ThreadPool();  // waits for all tasks
+  ThreadPool(ThreadPool&&) noexcept;
+  ThreadPool& operator=(ThreadPool&&) noexcept;
+
+  // Calls work() at once on a thread of its own: an idle thread if there is one, else a new one. `work` must
+  // not throw. This may be called from any thread.
+  void run(std::function<void()> work);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace lambent
