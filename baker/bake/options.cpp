@@ -11,7 +11,7 @@
 #include "baker/bake/picture_budget.hpp"
 #include "runtime/base/process.hpp"
 #include "runtime/sh/gaunt.hpp"
-#include "runtime/sh/zonal_factors.hpp"
+#include "runtime/sh/zonal.hpp"
 
 namespace lambent::baker {
 

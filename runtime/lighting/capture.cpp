@@ -18,7 +18,7 @@
 #include "runtime/lighting/capture_shared.h"
 #include "runtime/lighting/capture_table.hpp"
 #include "runtime/lighting/shaders.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/projection.hpp"
 
 namespace lambent::lighting {

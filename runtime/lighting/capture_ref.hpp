@@ -17,7 +17,7 @@
 #include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/capture_queries.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/projection.hpp"
 
 namespace lambent::lighting::capture {

@@ -17,7 +17,7 @@
 #include "runtime/lighting/capture_table.hpp"
 #include "runtime/lighting/shaders.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 
 namespace lambent::lighting {
 

@@ -21,7 +21,7 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/lighting/environment.hpp"
-#include "runtime/sh/cached_window.hpp"
+#include "runtime/sh/window.hpp"
 
 namespace lambent::lighting {
 

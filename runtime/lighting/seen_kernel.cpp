@@ -10,7 +10,7 @@
 #include "runtime/bundle/brdf_table.hpp"
 #include "runtime/lighting/prefiltered_lobe.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/zonal_factors.hpp"
+#include "runtime/sh/zonal.hpp"
 
 namespace lambent::lighting {
 

@@ -11,7 +11,7 @@
 #include <glm/vec4.hpp>
 
 #include "runtime/lighting/shaders.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 
 namespace lambent::lighting {
 

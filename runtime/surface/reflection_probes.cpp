@@ -36,8 +36,8 @@ std::uint32_t groupsOf(std::uint32_t texels) {
 }  // namespace
 
 spec::View probeFaceView(const glm::vec3& place_ws, int face, float near_m, float far_m) {
-  // The axes of texels are those of runtime/sh/cube_map.hpp. Row 0 of a picture is at the bottom, so "up" is
-  // where rows of the face go.
+  // The axes of texels are those of runtime/sh/image_layout.hpp. Row 0 of a picture is at the bottom, so "up"
+  // is where rows of the face go.
   static constexpr std::array<glm::vec3, 6> kForward = {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0),
                                                         glm::vec3(0, 1, 0), glm::vec3(0, -1, 0),
                                                         glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)};

@@ -16,7 +16,7 @@
 #include <glm/vec4.hpp>
 
 #include "runtime/bundle/brdf_table.hpp"
-#include "runtime/sh/zonal_factors.hpp"
+#include "runtime/sh/zonal.hpp"
 #include "runtime/streaming/brdf_texture.hpp"
 
 namespace lambent::effects::glossy::ref {

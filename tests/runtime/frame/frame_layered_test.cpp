@@ -12,7 +12,7 @@
 #include "runtime/lighting/seen_kernel.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/zonal_factors.hpp"
+#include "runtime/sh/zonal.hpp"
 #include "runtime/transfer/seen_sky_ref.hpp"
 #include "tests/runtime/frame/ggx_table.hpp"
 #include "tests/support/frame/bundle_builder.hpp"

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/lighting/capture_closed.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "tests/runtime/lighting/capture_scenes.hpp"
 
 namespace lambent::lighting {
