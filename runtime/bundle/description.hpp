@@ -68,7 +68,7 @@ struct Image {
 
 // Tells what a payload's bytes mean; docs/format.md has the byte tables.
 enum class PayloadType : std::uint8_t {
-  VertexWeights,  // samples and weights of each vertex (vertex_rows.hpp)
+  VertexWeights,  // samples and weights of each vertex (weights.hpp)
   Codebook,       // means, axes and quantization steps of the clusters of a cell (codebook.hpp)
   ClusterIds,     // cluster of each sample
   WeightPlane,    // one quantized weight per sample of the clusters that have this axis

@@ -18,8 +18,7 @@
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/indices.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/transfer/light_weights.hpp"
-#include "runtime/transfer/vertex_rows.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::bundle {
 

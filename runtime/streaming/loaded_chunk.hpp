@@ -11,7 +11,7 @@
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/bundle/reader.hpp"
 #include "runtime/streaming/brdf_texture.hpp"
-#include "runtime/transfer/light_weights.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::streaming {
 

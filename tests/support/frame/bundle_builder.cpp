@@ -12,7 +12,7 @@
 #include "runtime/bundle/importance_code.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
-#include "runtime/transfer/vertex_rows.hpp"
+#include "runtime/transfer/weights.hpp"
 #include "tests/support/frame/bundle_store.hpp"
 
 namespace lambent::testing {
