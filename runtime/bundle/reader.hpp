@@ -16,7 +16,6 @@
 #include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/indices.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/transfer/weights.hpp"
 

@@ -12,7 +12,6 @@
 
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/indices.hpp"
 #include "runtime/gpu/arena.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/streaming/brdf_texture.hpp"
