@@ -13,7 +13,6 @@
 #include "runtime/demo/run.hpp"
 #include "runtime/demo/stage.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/gpu/plain_text.hpp"
 #include "runtime/gpu/window.hpp"
 
 namespace lambent::demo {

@@ -15,7 +15,6 @@
 #include "runtime/evaluate/seen_sky_kernels.h"
 #include "runtime/evaluate/transfer_table.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/gpu/work_list.hpp"
 
 namespace lambent::evaluate {
 

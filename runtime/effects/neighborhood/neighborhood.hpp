@@ -16,7 +16,6 @@
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/neighborhood/atlas.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/gpu/work_list.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
 

@@ -17,7 +17,6 @@
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/volume/volume_shared.h"
 #include "runtime/gpu/program.hpp"
-#include "runtime/gpu/work_list.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
 
