@@ -7,11 +7,10 @@
 #include <utility>
 #include <vector>
 
+#define GLFW_INCLUDE_NONE  // epoxy declares OpenGL's functions
 #include <GLFW/glfw3.h>
 #include <epoxy/gl.h>
 #include <stb/stb_easy_font.h>
-
-#define GLFW_INCLUDE_NONE  // epoxy declares OpenGL's functions
 
 namespace lambent::gpu {
 

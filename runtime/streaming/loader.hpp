@@ -14,7 +14,6 @@
 #include "runtime/base/threads.hpp"
 #include "runtime/bundle/reader.hpp"
 #include "runtime/streaming/load_request.hpp"
-#include "runtime/streaming/loaded_chunk.hpp"
 
 namespace lambent::streaming {
 

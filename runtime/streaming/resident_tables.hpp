@@ -15,7 +15,7 @@
 #include "runtime/gpu/arena.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/streaming/brdf_texture.hpp"
-#include "runtime/streaming/image_uses.hpp"
+#include "runtime/streaming/images.hpp"
 
 namespace lambent::streaming {
 
@@ -88,7 +88,7 @@ struct ResidentVolume {
   bundle::VolumeGrid grid;
   std::uint32_t outputs = 1;        // outputs of its samples
   gpu::Texture density;             // share of grid.density_max in red; empty until loaded
-  std::vector<float> block_maxima;  // volume_blocks.hpp; kept in memory of the CPU
+  std::vector<float> block_maxima;  // load_request.hpp; kept in memory of the CPU
   gpu::Buffer voxels;               // voxel of the transfer grid for each sample; empty until loaded
   std::uint32_t sample_count = 0;
   std::uint64_t version = 0;

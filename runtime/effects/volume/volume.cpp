@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "runtime/effects/volume/shaders.hpp"
-#include "runtime/streaming/volume_blocks.hpp"
+#include "runtime/streaming/load_request.hpp"
 
 namespace lambent::effects::volume {
 
