@@ -9,8 +9,8 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "runtime/lighting/local_light.hpp"
 #include "runtime/lighting/patches.hpp"
-#include "runtime/lighting/shadowed_light.hpp"
 #include "runtime/spec/distant_lights.hpp"
 
 namespace lambent::frame {

@@ -21,8 +21,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "runtime/lighting/local_light.hpp"
 #include "runtime/lighting/patch_transport.hpp"
-#include "runtime/lighting/shadowed_light.hpp"
 #include "runtime/spec/distant_lights.hpp"
 
 namespace lambent::frame {

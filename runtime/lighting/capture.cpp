@@ -14,9 +14,9 @@
 #include <glm/vec4.hpp>
 
 #include "runtime/base/threads.hpp"
-#include "runtime/lighting/capture_combine.hpp"
+#include "runtime/lighting/capture_queries.hpp"
 #include "runtime/lighting/capture_shared.h"
-#include "runtime/lighting/capture_table.hpp"
+#include "runtime/lighting/capture_sky.hpp"
 #include "runtime/lighting/shaders.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/projection.hpp"

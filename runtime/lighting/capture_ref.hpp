@@ -13,7 +13,6 @@
 #include <glm/mat4x4.hpp>
 
 #include "runtime/bundle/capture_proxy.hpp"
-#include "runtime/lighting/capture_combine.hpp"
 #include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/capture_queries.hpp"
 #include "runtime/sh/basis.hpp"

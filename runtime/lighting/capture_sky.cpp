@@ -14,7 +14,6 @@
 #include <glm/vec4.hpp>
 
 #include "runtime/lighting/capture_shared.h"
-#include "runtime/lighting/capture_table.hpp"
 #include "runtime/lighting/shaders.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/image_layout.hpp"

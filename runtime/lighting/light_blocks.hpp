@@ -11,7 +11,6 @@
 
 #include <glm/vec3.hpp>
 
-#include "runtime/lighting/light_loss.hpp"
 #include "runtime/lighting/light_pieces.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/spec/environment_map.hpp"

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/bundle/brdf_table.hpp"
-#include "runtime/lighting/prefiltered_lobe.hpp"
+#include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/lighting/shadowed_light.hpp"
+#include "runtime/lighting/local_light.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {

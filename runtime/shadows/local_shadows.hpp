@@ -16,7 +16,7 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/lighting/shadowed_light.hpp"
+#include "runtime/lighting/local_light.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/shadows/local_shared.h"
 #include "runtime/shadows/shadow_casters.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/lighting/shadowed_light.hpp"
+#include "runtime/lighting/local_light.hpp"
 #include "runtime/shadows/local_shared.h"
 
 namespace lambent::frame {

@@ -17,7 +17,7 @@
 #include "runtime/draws/surface_module.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/lighting/prefiltered_lobe.hpp"
+#include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/size.hpp"
 #include "runtime/surface/reflection_probes_shared.h"

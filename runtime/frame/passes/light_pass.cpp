@@ -7,7 +7,6 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/frame/passes/passes.hpp"
-#include "runtime/lighting/fewer_samples.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/lighting/incident_light.hpp"
 #include "runtime/shadows/apart_shadows.hpp"

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/lighting/capture_closed.hpp"
+#include "runtime/lighting/capture_prepared.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "tests/runtime/lighting/capture_scenes.hpp"
 
