@@ -9,7 +9,7 @@
 
 #include "runtime/bundle/importance_code.hpp"
 #include "runtime/debug/shaders.hpp"
-#include "runtime/draws/view_block.hpp"
+#include "runtime/draws/view.hpp"
 
 namespace lambent::frame {
 

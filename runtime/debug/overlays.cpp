@@ -10,7 +10,7 @@
 #include "runtime/debug/overlay_slice_shared.h"
 #include "runtime/debug/shaders.hpp"
 #include "runtime/draws/surface_shared.h"
-#include "runtime/draws/view_block.hpp"
+#include "runtime/draws/view.hpp"
 #include "runtime/effects/neighborhood/neighborhood_shared.h"
 
 namespace lambent::frame {

@@ -13,9 +13,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "runtime/base/change_gate.hpp"
-#include "runtime/draws/draw_indices.hpp"
 #include "runtime/draws/surface_record.hpp"
-#include "runtime/draws/texture_units.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/world/world.hpp"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/draws/in_view.hpp"
+#include "runtime/draws/view.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/volume/march.hpp"

@@ -1,4 +1,4 @@
-// Tells what a view cannot show because it lies beside, before or behind what the camera sees.
+// The camera as draws know it: its uniform block, and what it cannot show.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -7,6 +7,14 @@
 #include "runtime/scene/bounds.hpp"
 
 namespace lambent::frame {
+
+// The uniform block of the camera, as surface.vert and the shaders that draw over its picture read it.
+struct ViewBlock {
+  glm::mat4 view_from_world, clip_from_view;
+  glm::vec4 eye;  // see glossy_receiver.glsl
+};
+
+// Tells what a view cannot show because it lies beside, before or behind what the camera sees.
 
 // Returns whether all of the box lies on the far side of one plane of the frustum. A box that surrounds a
 // corner of the frustum may be outside and still count as in view.
