@@ -8,7 +8,6 @@
 
 #include <glm/matrix.hpp>
 
-#include "runtime/shadows/local_faces.hpp"
 #include "runtime/shadows/shaders.hpp"
 #include "runtime/shadows/shadowed_light_record.hpp"
 

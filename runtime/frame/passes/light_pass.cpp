@@ -9,7 +9,6 @@
 #include "runtime/frame/passes/passes.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/lighting/incident_light.hpp"
-#include "runtime/shadows/apart_shadows.hpp"
 #include "runtime/shadows/lit_scene.hpp"
 #include "runtime/surface/neighborhoods.hpp"
 
