@@ -23,7 +23,6 @@
 #include "runtime/surface/light_modules.hpp"
 #include "runtime/surface/neighborhoods.hpp"
 #include "runtime/surface/reflection_probes.hpp"
-#include "runtime/surface/surface_voxels.hpp"
 #include "runtime/surface/surfaces.hpp"
 
 namespace lambent::frame {
