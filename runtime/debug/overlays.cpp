@@ -5,7 +5,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "runtime/debug/overlay_keys.hpp"
 #include "runtime/debug/overlay_lines.hpp"
 #include "runtime/debug/overlay_slice_shared.h"
 #include "runtime/debug/shaders.hpp"
