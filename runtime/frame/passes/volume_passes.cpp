@@ -8,7 +8,7 @@
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/volume/march.hpp"
 #include "runtime/effects/volume/volume.hpp"
-#include "runtime/frame/passes/passes.hpp"
+#include "runtime/frame/pass_list.hpp"
 
 namespace lambent::frame {
 

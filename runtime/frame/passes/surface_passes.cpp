@@ -1,5 +1,4 @@
-// Captures rooms as the mirrors in them show them, again only when light or scene changed. Rooms are rigid
-// groups that hide most of the sky and have mirrors in them; others cost nothing.
+// The passes that draw surfaces: into reflection probes, and into the picture.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -12,21 +11,59 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/bounces/patch_bounces.hpp"
+#include "runtime/debug/data_view.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
-#include "runtime/frame/passes/passes.hpp"
-#include "runtime/frame/passes/prepare_surfaces.hpp"
+#include "runtime/evaluate/seen_sky.hpp"
+#include "runtime/frame/frame_pass.hpp"
+#include "runtime/frame/pass_list.hpp"
 #include "runtime/lighting/prefiltered_environment.hpp"
+#include "runtime/lighting/sky.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/shadows/key_shadows.hpp"
+#include "runtime/shadows/lit_scene.hpp"
 #include "runtime/shadows/local_shadows.hpp"
 #include "runtime/surface/light_modules.hpp"
 #include "runtime/surface/neighborhoods.hpp"
+#include "runtime/surface/proxy_lods.hpp"
 #include "runtime/surface/reflection_probes.hpp"
 #include "runtime/surface/surfaces.hpp"
 
 namespace lambent::frame {
 
+namespace {
+
+// Prepares surfaces for a view, as the settings of the frame say. The pass must read World, Diffuse and
+// SeenSky, and write the prefiltered environment.
+
+Result<void> prepareSurfaces(FrameContext& frame, Surfaces& surfaces, const SurfaceModules& modules,
+                             const spec::View& view, SurfaceView shown);
+
+}  // namespace
+
+Result<void> prepareSurfaces(FrameContext& frame, Surfaces& surfaces, const SurfaceModules& modules,
+                             const spec::View& view, SurfaceView shown) {
+  surfaces.setView(shown);
+  const FrameSettings& settings = frame.settings();
+  auto& prefiltered = frame.write<std::optional<lighting::PrefilteredEnvironment>>();
+  if (prefiltered && settings.residual) {
+    std::uint32_t order = 1;
+    for (const streaming::ResidentGroup& group : frame.world.residency().groups())
+      order = std::max(order, group.order);
+    order = std::min(order, settings.order);
+    prefiltered->update(frame.environment, static_cast<int>(order), settings.window, frame.counters());
+  }
+  return surfaces.prepare(frame.world, frame.read<effects::diffuse::Diffuse>(), view,
+                          {.options = {.diffuse = settings.diffuse,
+                                       .glossy = settings.glossy,
+                                       .glossy_bands = settings.glossy_order},
+                           .seen_sky = &frame.read<evaluate::SeenSky>(),
+                           .modules = modules},
+                          frame.counters());
+}
+
+// Captures rooms as the mirrors in them show them, again only when light or scene changed. Rooms are rigid
+// groups that hide most of the sky and have mirrors in them; others cost nothing.
 namespace {
 
 using effects::diffuse::Diffuse;
@@ -233,6 +270,102 @@ MadePass makeReflectionProbesPass(const PassSetup& setup) {
   Result<SurfaceVoxelizer> voxelizer = SurfaceVoxelizer::create();
   if (!voxelizer) return failAgain(voxelizer.error());
   return std::make_unique<ReflectionProbesPass>(std::move(*voxelizer), std::move(*probes), setup.board);
+}
+
+// Draws surfaces, proxies of bundles that are not resident, the sky and blended surfaces, as linear radiance.
+// In views of transfer it draws numbers instead of light.
+namespace {
+
+using effects::diffuse::Diffuse;
+using lighting::GroupLights;
+using lighting::Sky;
+using Prefiltered = std::optional<lighting::PrefilteredEnvironment>;
+
+class RasterPass final : public FramePass {
+ public:
+  RasterPass(Surfaces surfaces, Blackboard& board)
+      : FramePass(
+            {.name = "raster",
+             .reads = resources<World, LitScene, GroupLights, Diffuse, Neighborhoods, PatchBounces, Sky,
+                                evaluate::SeenSky, Prefiltered, LocalShadows, KeyShadows, ReflectionProbes>(),
+             .writes = resources<PictureTargets, Surfaces, std::optional<DataView>, Prefiltered, LocalShadows,
+                                 KeyShadows>(),
+             .causes = kPictureCauses,
+             .counts = {"draws_out_of_view"}}),
+        surfaces_(std::move(surfaces)),
+        modules_(board.get<SurfaceModules>()) {
+    board.offer(surfaces_);
+    board.offer(data_view_);
+  }
+
+  Result<void> update(FrameContext& frame) override {
+    frame.because();
+    // Surfaces are prepared even if numbers are drawn, because picking reads them.
+    if (Result<void> done = prepareSurfaces(frame, surfaces_, modules_, *frame.view, frame.options.view.view);
+        !done)
+      return done;
+    if (showsTransfer(frame.options.view.view)) return drawNumbers(frame);
+    frame.count("draws_out_of_view", surfaces_.countOutOfView());
+    data_view_.reset();
+    return drawLight(frame);
+  }
+
+ private:
+  Result<void> drawNumbers(FrameContext& frame) {
+    if (!data_view_) data_view_.emplace(/*numbers=*/frame.options.linear());
+    if (Result<void> done = data_view_->update(frame.world, frame.read<GroupLights>(), frame.options.view,
+                                               frame.settings().transfer, frame.counters());
+        !done)
+      return done;
+    clearTargets(frame);
+    return data_view_->draw(frame.world, *frame.view, frame.counters());
+  }
+
+  Result<void> drawLight(FrameContext& frame) {
+    const spec::View& view = *frame.view;
+    const SurfaceView shown = frame.options.view.view;
+    frame.write<LocalShadows>().bind(view, frame.targets.size());
+    frame.write<KeyShadows>().bind(view, frame.targets.size());
+    clearTargets(frame);
+    surfaces_.drawOpaque(frame.world, frame.counters());
+    if (shown == SurfaceView::Final || shown == SurfaceView::Wireframe) {
+      if (Result<void> done =
+              proxy_lods_.prepare(frame.world, frame.environment, frame.read<LitScene>().lights,
+                                  {.order = frame.settings().order,
+                                   .window = frame.settings().window,
+                                   .diffuse = frame.settings().diffuse},
+                                  frame.counters());
+          !done)
+        return done;
+      proxy_lods_.draw(view, frame.counters());
+    }
+    if (showsLight(shown) && frame.options.show_sky) {
+      frame.read<Sky>().draw(frame.environment, view.view_from_world, view.clip_from_view,
+                             frame.targets.size().height, frame.counters());
+      glDepthFunc(GL_LESS);
+    }
+    surfaces_.drawBlended(frame.world, frame.counters());
+    return {};
+  }
+
+  static void clearTargets(FrameContext& frame) {
+    // Pictures of numbers and directions have a dark grey behind them that no value has.
+    constexpr float kGrey = 0.012f;
+    frame.targets.bindCleared(showsLight(frame.options.view.view) || frame.options.linear() ? 0.0f : kGrey);
+  }
+
+  Surfaces surfaces_;
+  const SurfaceModules& modules_;
+  ProxyLods proxy_lods_;
+  std::optional<DataView> data_view_;  // made while a view shows transfer
+};
+
+}  // namespace
+
+MadePass makeRasterPass(const PassSetup& setup) {
+  Result<Surfaces> surfaces = Surfaces::create(/*finest_texels=*/setup.options.linear());
+  if (!surfaces) return failAgain(surfaces.error());
+  return std::make_unique<RasterPass>(std::move(*surfaces), setup.board);
 }
 
 }  // namespace lambent::frame

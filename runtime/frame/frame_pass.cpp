@@ -1,4 +1,4 @@
-#include "runtime/frame/step_counts.hpp"
+#include "runtime/frame/frame_pass.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -25,6 +25,15 @@ std::uint64_t StepCounts::operator[](std::string_view name) const {
   const auto found = std::ranges::find(counts_, name, &Count::name);
   assert(found != counts_.end());
   return found->value;
+}
+
+void FrameContext::because(std::string_view otherwise) const {
+  scope->because(log.of(pass->causes, otherwise));
+}
+
+bool FrameContext::declares(std::type_index type, bool to_write) const {
+  const auto has = [&](const Resources& types) { return std::ranges::find(types, type) != types.end(); };
+  return has(pass->writes) || (!to_write && (has(pass->reads) || has(pass->reads_before)));
 }
 
 }  // namespace lambent::frame
