@@ -1,5 +1,4 @@
-// Saves the OpenGL state of the program that hosts the library, gives Lambent's passes the state that they
-// count on, and restores the program's at the end of its life. Render thread only.
+// What renderer.cpp and scene.cpp share: what a Scene owns, and the OpenGL state of the host.
 #pragma once
 
 #include <array>
@@ -8,8 +7,25 @@
 
 #include <epoxy/gl.h>
 
+#include "lambent/scene.hpp"
+#include "runtime/gpu/context.hpp"
+#include "runtime/lighting/environment.hpp"
+#include "runtime/world/world.hpp"
+
+namespace lambent {
+
+// Holds what a Scene of the library owns, for scene.cpp and renderer.cpp.
+struct Scene::State {
+  frame::World world;
+  lighting::Environment environment;
+};
+
+}  // namespace lambent
+
 namespace lambent::library {
 
+// Saves the OpenGL state of the program that hosts the library, gives Lambent's passes the state that they
+// count on, and restores the program's at the end of its life. Render thread only.
 class HostState {
  public:
   HostState();

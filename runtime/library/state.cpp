@@ -1,4 +1,4 @@
-#include "runtime/library/host_state.hpp"
+#include "runtime/library/state.hpp"
 
 namespace lambent::library {
 
