@@ -1,14 +1,15 @@
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "runtime/demo/camera.hpp"
-#include "runtime/demo/numbered_path.hpp"
 #include "runtime/demo/report.hpp"
-#include "runtime/demo/run.hpp"
 #include "runtime/demo/stage.hpp"
 #include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/frame.hpp"
@@ -16,6 +17,28 @@
 #include "runtime/spec/image.hpp"
 
 namespace lambent::demo {
+
+namespace {
+
+// Names the pictures of a sequence: a run of # in the file name stands for the frame's number with as many
+// digits.
+
+bool isNumbered(const std::filesystem::path& path) {
+  return path.filename().string().find('#') != std::string::npos;
+}
+
+// Returns, for "frame-###.png" and 7, "frame-007.png". Only the first run counts; a path without one is
+// unchanged.
+std::filesystem::path numberedPath(const std::filesystem::path& path, std::uint32_t number) {
+  std::string name = path.filename().string();
+  const std::size_t first = name.find('#');
+  if (first == std::string::npos) return path;
+  const std::size_t end = std::min(name.find_first_not_of('#', first), name.size());
+  name.replace(first, end - first, fmt::format("{:0{}}", number, end - first));
+  return path.parent_path() / name;
+}
+
+}  // namespace
 
 namespace {
 
