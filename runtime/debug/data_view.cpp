@@ -8,7 +8,7 @@
 #include <glm/vec2.hpp>
 
 #include "runtime/bundle/importance_code.hpp"
-#include "runtime/debug/shaders.hpp"
+#include "runtime/debug/overlays.hpp"
 #include "runtime/draws/view.hpp"
 
 namespace lambent::frame {

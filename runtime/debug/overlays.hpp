@@ -29,6 +29,9 @@
 
 namespace lambent::frame {
 
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kDebugShaders[9];
+
 // Describes what overlays read of a frame, as references that are valid during one draw. Types only.
 struct OverlayScene {
   World& world;

@@ -8,7 +8,6 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/debug/overlays.hpp"
-#include "runtime/debug/shaders.hpp"
 #include "runtime/scene/bounds.hpp"
 
 namespace lambent::frame {

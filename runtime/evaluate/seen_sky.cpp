@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/evaluate/shaders.hpp"
+#include "runtime/evaluate/transfer_table.hpp"
 #include "runtime/lighting/seen_kernel.hpp"
 
 namespace lambent::evaluate {

@@ -17,7 +17,7 @@
 #include "runtime/lighting/capture_queries.hpp"
 #include "runtime/lighting/capture_shared.h"
 #include "runtime/lighting/capture_sky.hpp"
-#include "runtime/lighting/shaders.hpp"
+#include "runtime/lighting/sky.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/projection.hpp"
 

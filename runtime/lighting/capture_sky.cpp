@@ -14,7 +14,7 @@
 #include <glm/vec4.hpp>
 
 #include "runtime/lighting/capture_shared.h"
-#include "runtime/lighting/shaders.hpp"
+#include "runtime/lighting/sky.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/image_layout.hpp"
 

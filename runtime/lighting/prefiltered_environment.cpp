@@ -9,7 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/gpu/program.hpp"
-#include "runtime/lighting/shaders.hpp"
+#include "runtime/lighting/sky.hpp"
 #include "runtime/sh/zonal.hpp"
 
 namespace lambent::lighting {

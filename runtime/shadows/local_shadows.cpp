@@ -8,7 +8,7 @@
 
 #include <glm/matrix.hpp>
 
-#include "runtime/shadows/shaders.hpp"
+#include "runtime/shadows/shadow_casters.hpp"
 #include "runtime/shadows/shadowed_light_record.hpp"
 
 namespace lambent::frame {

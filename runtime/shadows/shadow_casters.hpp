@@ -20,6 +20,9 @@
 
 namespace lambent::frame {
 
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kShadowShaders[2];
+
 // Describes a caster. Casters that compare equal cast equal shadows.
 struct ShadowCaster {
   std::uint32_t draw = 0;

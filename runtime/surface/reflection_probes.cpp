@@ -15,7 +15,7 @@
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/lighting/prefiltered_shared.h"
 #include "runtime/surface/reflection_probes_shared.h"
-#include "runtime/surface/shaders.hpp"
+#include "runtime/surface/surface_program.hpp"
 
 namespace lambent::frame {
 

@@ -23,6 +23,9 @@
 
 namespace lambent::effects::diffuse {
 
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kDiffuseShaders[2];
+
 // Holds the tables that the kernels read, as last uploaded.
 struct Tables : evaluate::TransferTable {
   std::vector<DrawRecord> draws;  // index: residency draw

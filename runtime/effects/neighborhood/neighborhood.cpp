@@ -7,9 +7,13 @@
 
 #include <glm/common.hpp>
 
-#include "runtime/effects/neighborhood/shaders.hpp"
+#include "lambent_effects_neighborhood_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 
 namespace lambent::effects::neighborhood {
+
+const gpu::FindText kNeighborhoodShaders[2] = {&embedded::lambent_effects_neighborhood::find,
+                                               &embedded::lambent_transfer::find};
 
 AtlasLayout layOutAtlas(std::span<const GridShape> shapes, std::uint32_t max_side) {
   AtlasLayout layout;

@@ -24,6 +24,9 @@
 
 namespace lambent::effects::neighborhood {
 
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kNeighborhoodShaders[2];
+
 // Lays out the grids of all bodies in one 3D texture. Each output of a grid is a slab with one texel per grid
 // point; slabs are stacked along z and continue in a neighbouring column when that is full. There is one
 // texture for all, so that draws that receive from different bodies share a multi-draw. No GL.

@@ -22,6 +22,9 @@
 
 namespace lambent::effects::volume {
 
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kVolumeShaders[1];
+
 using evaluate::TransferMode;
 
 // Describes the arrangement of slabs in a texture: one per output, along z and, where that is full, along x.
