@@ -13,7 +13,7 @@
 
 #include "lambent_bounces_embedded.hpp"
 #include "runtime/draws/surface_record.hpp"
-#include "runtime/lighting/light_blocks.hpp"
+#include "runtime/lighting/light_pieces.hpp"
 #include "runtime/shadows/shadowed_light_record.hpp"
 
 namespace lambent::frame {

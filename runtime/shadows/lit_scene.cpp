@@ -14,7 +14,7 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/lighting/capture_queries.hpp"
-#include "runtime/lighting/light_blocks.hpp"
+#include "runtime/lighting/light_pieces.hpp"
 #include "runtime/lighting/triangle_tree.hpp"
 #include "runtime/scene/affine.hpp"
 #include "runtime/shadows/shadowed_light_choice.hpp"
