@@ -10,8 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/base/threads.hpp"
-#include "runtime/shadows/shadowed_light_record.hpp"
-#include "runtime/shadows/shadowed_light_ref.hpp"
+#include "runtime/shadows/shadowed_light.hpp"
 
 namespace lambent::frame {
 

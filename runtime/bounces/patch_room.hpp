@@ -29,7 +29,7 @@
 namespace lambent::frame {
 
 // Computes the light that falls directly on the patches of a rigid group from a local light or from key
-// lights: the closed forms with which pixels are shaded (shadowed_light_ref.hpp), times the share of the
+// lights: the closed forms with which pixels are shaded (shadowed_light.hpp), times the share of the
 // light that rays find visible. Blockers are the patches' own triangles and those of other bodies. It uses
 // several threads; results do not depend on how many. No GL.
 

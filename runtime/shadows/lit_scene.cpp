@@ -17,8 +17,8 @@
 #include "runtime/lighting/light_pieces.hpp"
 #include "runtime/lighting/triangle_tree.hpp"
 #include "runtime/scene/affine.hpp"
+#include "runtime/shadows/shadowed_light.hpp"
 #include "runtime/shadows/shadowed_light_choice.hpp"
-#include "runtime/shadows/shadowed_light_record.hpp"
 #include "runtime/world/boxes.hpp"
 
 namespace lambent::frame {

@@ -9,7 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/shadows/shadow_casters.hpp"
-#include "runtime/shadows/shadowed_light_record.hpp"
+#include "runtime/shadows/shadowed_light.hpp"
 
 namespace lambent::frame {
 

@@ -13,7 +13,7 @@
 
 #include "runtime/scene/affine.hpp"
 #include "runtime/shadows/key_region.hpp"
-#include "runtime/shadows/shadowed_light_record.hpp"
+#include "runtime/shadows/shadowed_light.hpp"
 
 namespace lambent::frame {
 
