@@ -13,7 +13,7 @@
 #include "runtime/scene/bounds.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/transfer/seen_sky_ref.hpp"
+#include "runtime/transfer/transfer_ref.hpp"
 #include "tests/runtime/frame/ggx_table.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
