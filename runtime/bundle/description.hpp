@@ -6,7 +6,9 @@
 // reader checks every index, so later code need not check again.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <compare>
 #include <cstdint>
 #include <map>
@@ -95,7 +97,7 @@ enum class PayloadType : std::uint8_t {
   BrdfTable,      // b(v) of a family of BRDFs (brdf_table.hpp)
   Density,        // extinction of a volume at its own resolution (volume_grid.hpp)
   Voxels,         // voxels of its transfer grid at which a volume has samples (volume_grid.hpp)
-  Importance,     // how much each sample of a cell matters to pictures (importance_code.hpp)
+  Importance,     // how much each sample of a cell matters to pictures (description.hpp)
 };
 
 enum class PayloadCodec : std::uint8_t { Raw, Zstd };
@@ -347,6 +349,22 @@ inline constexpr std::uint32_t kMostTexels = 2048;
 // Returns how many rows a draw has: one for each vertex, then one for each texel.
 inline std::uint32_t rowCount(const Description& description, const Draw& draw) {
   return description.meshes[draw.mesh].primitives[draw.primitive].vertex_count + draw.texels * draw.texels;
+}
+
+// One byte a sample says how much a surface matters to pictures per area, relative to the mean over its
+// group, in steps of half an octave: wide enough for all that a bake weighs by, and small once compressed.
+inline constexpr int kMeanImportanceCode = 64;
+
+// `relative` is 1 at the mean; 0 says that nobody sees anything of it, and has the code 0.
+inline std::uint8_t importanceCode(float relative) {
+  if (!(relative > 0.0f)) return 0;
+  const float code = static_cast<float>(kMeanImportanceCode) + 2.0f * std::log2(relative);
+  return static_cast<std::uint8_t>(std::clamp(std::round(code), 1.0f, 127.0f));
+}
+
+// Returns log2 of what a code other than 0 stands for.
+constexpr float importanceOctaves(std::uint8_t code) {
+  return 0.5f * static_cast<float>(code - kMeanImportanceCode);
 }
 
 }  // namespace lambent::bundle

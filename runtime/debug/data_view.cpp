@@ -7,7 +7,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
-#include "runtime/bundle/importance_code.hpp"
+#include "runtime/bundle/description.hpp"
 #include "runtime/debug/overlays.hpp"
 #include "runtime/draws/view.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "baker/compress/draco_encode.hpp"
 #include "runtime/base/normal_matrix.hpp"
-#include "runtime/bundle/importance_code.hpp"
+#include "runtime/bundle/description.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/transfer/weights.hpp"
