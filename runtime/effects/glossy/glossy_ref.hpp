@@ -1,4 +1,4 @@
-// This is the CPU twin of glossy_eval.glsl and its entry shaders, with the same names, tables and order of
+// This is the CPU twin of glossy_fill.comp and its entry shaders, with the same names, tables and order of
 // terms. Memory is laid out as on the GPU, as in diffuse_ref.hpp, whose decoding of codes it shares. No GL.
 #pragma once
 
@@ -241,7 +241,7 @@ using transfer::ref::Memory;
 
 inline constexpr float kSqrtFourPi = 3.5449077018110318f;
 
-// Returns one output of a sample in a cell without transfer, as glossy_eval.glsl does.
+// Returns one output of a sample in a cell without transfer, as glossy_fill.comp does.
 inline glm::vec4 openLight(const Memory& memory, const FillRecord& fill, uint output_index) {
   const glm::vec3 light =
       output_index < fill.coefficients ? memory.lightAt(fill.light + output_index) : glm::vec3(0.0f);
