@@ -97,7 +97,7 @@ enum class PayloadType : std::uint8_t {
   BrdfTable,      // b(v) of a family of BRDFs (brdf_table.hpp)
   Density,        // extinction of a volume at its own resolution (volume_grid.hpp)
   Voxels,         // voxels of its transfer grid at which a volume has samples (volume_grid.hpp)
-  Importance,     // how much each sample of a cell matters to pictures (description.hpp)
+  Importance,     // how much each sample of a cell matters to pictures (importanceCode())
 };
 
 enum class PayloadCodec : std::uint8_t { Raw, Zstd };

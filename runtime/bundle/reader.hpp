@@ -57,7 +57,7 @@ class Reader {
   // Returns one entry per sample of the cell. If the cell has only one light probe, all entries are
   // kOneLight.
   Result<std::vector<transfer::LightWeights>> readLightWeights(GroupIndex group, CellIndex cell) const;
-  // Returns a code per sample of the cell (description.hpp); empty if the bundle has none.
+  // Returns a code per sample of the cell (importanceCode()); empty if the bundle has none.
   Result<std::vector<std::uint8_t>> readImportance(GroupIndex group, CellIndex cell) const;
   Result<BrdfTable> readBrdfTable(std::uint32_t index) const;
   // Returns a proxy without levels if the group has none.

@@ -1,7 +1,7 @@
 // Draws overlays: a layer of display colours over the scene's depth, which is laid over the picture after
 // tone mapping (overlay_options.hpp lists them). It takes the options, the world and what the frame knows of
 // its light, and writes the bound picture, whose alpha stays. Its parts are lines (overlay_lines.hpp), light
-// probes (overlays.hpp), slices of neighborhoods and wires (data_view.hpp). Render thread only. Fails if
+// probes (ProbeMarkers), slices of neighborhoods and wires (data_view.hpp). Render thread only. Fails if
 // a shader does not compile on this device.
 #pragma once
 

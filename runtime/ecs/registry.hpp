@@ -289,7 +289,7 @@ class Registry {
     return set ? set->size() : 0;
   }
 
-  // Returns a view of the entities that have all these components (registry.hpp). `const T` gives const
+  // Returns a view of the entities that have all these components. `const T` gives const
   // references.
   template <class... Ts>
   View<Ts...> view() {

@@ -1,5 +1,5 @@
 // Owns the sky as the light capture sees it: one small box-filtered cube map in world axes for all points,
-// without suns. It takes an environment and provides, per texel (in the order of sh/cube_map.hpp), the
+// without suns. It takes an environment and provides, per texel (in the order of sh/image_layout.hpp), the
 // radiance and the weights that project it to harmonics, and the projected sum. Two dispatches remake them
 // when the environment was turned, faded or replaced. Render thread only. create() fails if a shader does not
 // compile on this device.

@@ -1,5 +1,5 @@
 // Owns what rough mirrors show of the sky beyond the few SH bands that surfaces receive: P(L) - P(L_n),
-// prefiltered with the round lobe of prefiltered_environment.hpp. L is the light without key lights, whose
+// prefiltered with a round lobe. L is the light without key lights, whose
 // highlights surfaces shade from their discs; where key lights are wide (pieces of windows or soft boxes),
 // their true shape is kept in second cube maps of all light, for mirrors that are sharp enough to show it.
 // P(L) is a cube map per set of lights with roughness along its mip levels, in the lights' own frame; it is

@@ -58,7 +58,7 @@ Result<double> relativeRms(const spec::RgbaImage& picture, const spec::RgbaImage
 // the environment, the view, settings, a row of their table and values for it. For each value it returns how
 // much the picture at rest differs from that at the row's finest value (relative RMS of linear radiance over
 // the pixels that both cover, as in baker/accuracy/compare.hpp), and the median time of each pass when
-// everything is computed (measured_frame.hpp). If the setting is the number of key lights, the light is
+// everything is computed. If the setting is the number of key lights, the light is
 // divided anew for each value. Render thread; waits for the GPU. Fails as frames do, if a value is out of its
 // range, or if nothing is lit in the view.
 using SettingOptions = MeasureOptions;

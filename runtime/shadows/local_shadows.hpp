@@ -1,4 +1,4 @@
-// Owns the shadow cubes of local lights (lighting/shadowed_light.hpp) and what the surface pass reads to
+// Owns the shadow cubes of local lights (lighting/local_light.hpp) and what the surface pass reads to
 // shade with them. It takes the world, up to kMaxShadowedLights lights, and which of them light the draws of
 // each rigid group per pixel. A cube is drawn again only when its light or something in it has moved, arrived
 // or gone; it holds all resident opaque and masked draws of all groups, both sides of each. All cubes are

@@ -80,7 +80,7 @@ struct BrdfChunk {
 struct DensityChunk {
   bundle::GroupIndex group;
   std::vector<std::byte> codes;     // VolumeGrid::bits per voxel, little endian
-  std::vector<float> block_maxima;  // load_request.hpp
+  std::vector<float> block_maxima;  // see blockMaxima()
 };
 
 struct VoxelsChunk {

@@ -199,7 +199,7 @@ struct ResidentBundle {
 
 // The tables of all bundles that are shown, in the order of their slots, or of one bundle that is staged.
 // Indices refer to tables of the same ResidentTables. Cells, volumes, groups and draws have ids that no other
-// entry of the residency ever had, so other code can keep state for them by id (base/keyed_state.hpp).
+// entry of the residency ever had, so other code can keep state for them by id (base/change_gate.hpp).
 struct ResidentTables {
   std::vector<ResidentBundle> bundles;
   std::vector<ResidentMesh> meshes;

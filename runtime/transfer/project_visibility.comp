@@ -19,6 +19,7 @@ vec4 projectVisibility(TransferRecord transfer, uint vector, uint output_index, 
   }
   return vec4(sum, vectorAt(at + output_index));
 }
+
 #include "project_clusters.glsl"
 
 layout(std430, binding = kBindGaunt) readonly buffer Gaunt { uint gaunt[]; };

@@ -1,6 +1,6 @@
 // Owns the change of the light around bodies as a texture. It takes grids of groups and their points as the
 // glossy effect has shaded them, (M - I) l in the body's frame (samples arena, cells of kind Neighborhood),
-// and writes one 3D texture of half floats with all grids (neighborhood.hpp), which receivers look up per
+// and writes one 3D texture of half floats with all grids, which receivers look up per
 // pixel (neighborhood_eval.glsl) and per vertex (neighborhood_vertices.comp). A grid is written only when its
 // points were shaded: under light that is constant relative to the body, nothing is dispatched. Without grids
 // nothing is compiled, held or dispatched. Render thread only. Fails if a kernel does not compile on this

@@ -35,12 +35,6 @@ namespace {
 
 // Prepares surfaces for a view, as the settings of the frame say. The pass must read World, Diffuse and
 // SeenSky, and write the prefiltered environment.
-
-Result<void> prepareSurfaces(FrameContext& frame, Surfaces& surfaces, const SurfaceModules& modules,
-                             const spec::View& view, SurfaceView shown);
-
-}  // namespace
-
 Result<void> prepareSurfaces(FrameContext& frame, Surfaces& surfaces, const SurfaceModules& modules,
                              const spec::View& view, SurfaceView shown) {
   surfaces.setView(shown);
@@ -62,9 +56,10 @@ Result<void> prepareSurfaces(FrameContext& frame, Surfaces& surfaces, const Surf
                           frame.counters());
 }
 
+// --- reflection probes ---
+//
 // Captures rooms as the mirrors in them show them, again only when light or scene changed. Rooms are rigid
 // groups that hide most of the sky and have mirrors in them; others cost nothing.
-namespace {
 
 using effects::diffuse::Diffuse;
 using effects::glossy::Glossy;
