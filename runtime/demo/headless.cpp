@@ -196,13 +196,8 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace
-
-namespace {
-
 // Names the pictures of a sequence: a run of # in the file name stands for the frame's number with as many
 // digits.
-
 bool isNumbered(const std::filesystem::path& path) {
   return path.filename().string().find('#') != std::string::npos;
 }
@@ -217,10 +212,6 @@ std::filesystem::path numberedPath(const std::filesystem::path& path, std::uint3
   name.replace(first, end - first, fmt::format("{:0{}}", number, end - first));
   return path.parent_path() / name;
 }
-
-}  // namespace
-
-namespace {
 
 using Clock = std::chrono::steady_clock;
 

@@ -11,9 +11,6 @@
 
 namespace lambent::frame {
 
-// Declares the functions that make the passes of the frame (frame_pass.hpp), for the list of passes. A file
-// has one pass, or two that are halves of the same effect. They fail if a shader does not compile.
-
 // Holds what passes are made from.
 struct PassSetup {
   const FrameOptions& options;
@@ -23,6 +20,8 @@ struct PassSetup {
 
 using MadePass = Result<std::unique_ptr<FramePass>>;
 
+// Each makes a pass; a file under passes/ has those of one kind of work. They fail if a shader does not
+// compile.
 MadePass makeUploadPass(const PassSetup& setup);
 MadePass makeTransformsPass(const PassSetup& setup);
 MadePass makeLightPass(const PassSetup& setup);

@@ -20,10 +20,10 @@
 
 namespace lambent::frame {
 
-// Computes the light at the groups' light probes: the environment, lights in the scene, and light between
-// bodies. It decides which carrier brings each light.
 namespace {
 
+// Computes the light at the groups' light probes: the environment, lights in the scene, and light between
+// bodies. It decides which carrier brings each light.
 using lighting::GroupLights;
 using Incident = std::optional<lighting::IncidentLight>;
 
@@ -175,15 +175,7 @@ class LightPass final : public FramePass {
   std::vector<lighting::FewerSamples> fewer_samples_;  // per group; empty: all are kept
 };
 
-}  // namespace
-
-MadePass makeLightPass(const PassSetup& setup) {
-  return std::make_unique<LightPass>(setup.board);
-}
-
 // Bounces lights among the surfaces, and key lights, by patches.
-namespace {
-
 class PatchBouncesPass final : public FramePass {
  public:
   explicit PatchBouncesPass(Blackboard& board)
@@ -221,21 +213,11 @@ class PatchBouncesPass final : public FramePass {
   BounceModule module_{bounces_};
 };
 
-}  // namespace
-
-MadePass makePatchBouncesPass(const PassSetup& setup) {
-  return std::make_unique<PatchBouncesPass>(setup.board);
-}
-
 // Updates the light between bodies: shades their capture proxies, and captures the surroundings of light
 // probes where these have changed. The result arrives with the next step.
-namespace {
-
 using effects::diffuse::Diffuse;
 using effects::diffuse::Proxies;
 using effects::glossy::Glossy;
-using lighting::GroupLights;
-using Incident = std::optional<lighting::IncidentLight>;
 
 constexpr std::size_t kAllCaptures = std::numeric_limits<std::size_t>::max();
 
@@ -330,6 +312,14 @@ class CapturePass final : public FramePass {
 };
 
 }  // namespace
+
+MadePass makeLightPass(const PassSetup& setup) {
+  return std::make_unique<LightPass>(setup.board);
+}
+
+MadePass makePatchBouncesPass(const PassSetup& setup) {
+  return std::make_unique<PatchBouncesPass>(setup.board);
+}
 
 MadePass makeCapturePass(const PassSetup& setup) {
   return std::make_unique<CapturePass>(setup.board);

@@ -10,9 +10,9 @@
 
 namespace lambent::frame {
 
-// Turns linear radiance into the picture; counts negative pixels, and clamps them for the eye.
 namespace {
 
+// Turns linear radiance into the picture; counts negative pixels, and clamps them for the eye.
 class ToneMapPass final : public FramePass {
  public:
   ToneMapPass(ToneMapper tone_mapper, Blackboard& board)
@@ -39,17 +39,7 @@ class ToneMapPass final : public FramePass {
   ToneMapper tone_mapper_;
 };
 
-}  // namespace
-
-MadePass makeToneMapPass(const PassSetup& setup) {
-  Result<ToneMapper> made = ToneMapper::create(samplesOf(setup.options.output), setup.options.linear());
-  if (!made) return failAgain(made.error());
-  return std::make_unique<ToneMapPass>(std::move(*made), setup.board);
-}
-
 // Draws overlays and wires of triangles over the finished picture.
-namespace {
-
 using effects::diffuse::Proxies;
 
 class OverlayPass final : public FramePass {
@@ -115,6 +105,12 @@ class OverlayPass final : public FramePass {
 };
 
 }  // namespace
+
+MadePass makeToneMapPass(const PassSetup& setup) {
+  Result<ToneMapper> made = ToneMapper::create(samplesOf(setup.options.output), setup.options.linear());
+  if (!made) return failAgain(made.error());
+  return std::make_unique<ToneMapPass>(std::move(*made), setup.board);
+}
 
 MadePass makeOverlayPass(const PassSetup&) {
   return std::make_unique<OverlayPass>();

@@ -14,9 +14,9 @@
 
 namespace lambent::frame {
 
-// Updates the sky, as it is seen behind all surfaces and as rough mirrors show it.
 namespace {
 
+// Updates the sky, as it is seen behind all surfaces and as rough mirrors show it.
 using lighting::PrefilteredEnvironment;
 using lighting::Sky;
 
@@ -80,21 +80,7 @@ class PrefilteredEnvironmentPass final : public FramePass {
   ChangeGate<std::uint64_t> source_;
 };
 
-}  // namespace
-
-MadePass makeSkyPass(const PassSetup& setup) {
-  Result<Sky> sky = Sky::create(setup.environment);
-  if (!sky) return failAgain(sky.error());
-  return std::make_unique<SkyPass>(std::move(*sky), setup.board);
-}
-
-MadePass makePrefilteredEnvironmentPass(const PassSetup& setup) {
-  return std::make_unique<PrefilteredEnvironmentPass>(setup.board);
-}
-
 // Draws the shadow cubes of local lights and the shadow maps of key lights, for direct light per pixel.
-namespace {
-
 class LocalShadowsPass final : public FramePass {
  public:
   explicit LocalShadowsPass(Blackboard& board)
@@ -153,6 +139,16 @@ class KeyShadowsPass final : public FramePass {
 };
 
 }  // namespace
+
+MadePass makeSkyPass(const PassSetup& setup) {
+  Result<Sky> sky = Sky::create(setup.environment);
+  if (!sky) return failAgain(sky.error());
+  return std::make_unique<SkyPass>(std::move(*sky), setup.board);
+}
+
+MadePass makePrefilteredEnvironmentPass(const PassSetup& setup) {
+  return std::make_unique<PrefilteredEnvironmentPass>(setup.board);
+}
 
 MadePass makeLocalShadowsPass(const PassSetup& setup) {
   return std::make_unique<LocalShadowsPass>(setup.board);

@@ -257,24 +257,10 @@ class ReflectionProbesPass final : public FramePass {
   ChangeGate<std::vector<std::uint64_t>, FrameSettings> seen_;
 };
 
-}  // namespace
-
-MadePass makeReflectionProbesPass(const PassSetup& setup) {
-  Result<ReflectionProbes> probes = ReflectionProbes::create();
-  if (!probes) return failAgain(probes.error());
-  Result<SurfaceVoxelizer> voxelizer = SurfaceVoxelizer::create();
-  if (!voxelizer) return failAgain(voxelizer.error());
-  return std::make_unique<ReflectionProbesPass>(std::move(*voxelizer), std::move(*probes), setup.board);
-}
-
 // Draws surfaces, proxies of bundles that are not resident, the sky and blended surfaces, as linear radiance.
 // In views of transfer it draws numbers instead of light.
-namespace {
-
-using effects::diffuse::Diffuse;
 using lighting::GroupLights;
 using lighting::Sky;
-using Prefiltered = std::optional<lighting::PrefilteredEnvironment>;
 
 class RasterPass final : public FramePass {
  public:
@@ -356,6 +342,14 @@ class RasterPass final : public FramePass {
 };
 
 }  // namespace
+
+MadePass makeReflectionProbesPass(const PassSetup& setup) {
+  Result<ReflectionProbes> probes = ReflectionProbes::create();
+  if (!probes) return failAgain(probes.error());
+  Result<SurfaceVoxelizer> voxelizer = SurfaceVoxelizer::create();
+  if (!voxelizer) return failAgain(voxelizer.error());
+  return std::make_unique<ReflectionProbesPass>(std::move(*voxelizer), std::move(*probes), setup.board);
+}
 
 MadePass makeRasterPass(const PassSetup& setup) {
   Result<Surfaces> surfaces = Surfaces::create(/*finest_texels=*/setup.options.linear());

@@ -10,9 +10,9 @@
 
 namespace lambent::frame {
 
-// Shades E/pi at every vertex whose light or transfer changed.
 namespace {
 
+// Shades E/pi at every vertex whose light or transfer changed.
 class DiffusePass final : public FramePass {
  public:
   explicit DiffusePass(Blackboard& board)
@@ -39,15 +39,7 @@ class DiffusePass final : public FramePass {
   effects::diffuse::Diffuse diffuse_;
 };
 
-}  // namespace
-
-MadePass makeDiffusePass(const PassSetup& setup) {
-  return std::make_unique<DiffusePass>(setup.board);
-}
-
 // Computes what the vertices of layered draws see of the sky, when their transfer has arrived.
-namespace {
-
 class SeenSkyPass final : public FramePass {
  public:
   explicit SeenSkyPass(Blackboard& board)
@@ -71,15 +63,7 @@ class SeenSkyPass final : public FramePass {
   evaluate::SeenSky seen_sky_;
 };
 
-}  // namespace
-
-MadePass makeSeenSkyPass(const PassSetup& setup) {
-  return std::make_unique<SeenSkyPass>(setup.board);
-}
-
 // Shades transferred light at the samples of glossy surfaces, of volumes and of grids, if any have matrices.
-namespace {
-
 class GlossyPass final : public FramePass {
  public:
   explicit GlossyPass(Blackboard& board)
@@ -108,15 +92,7 @@ class GlossyPass final : public FramePass {
   effects::glossy::Glossy glossy_;
 };
 
-}  // namespace
-
-MadePass makeGlossyPass(const PassSetup& setup) {
-  return std::make_unique<GlossyPass>(setup.board);
-}
-
 // Updates what bodies with grids change around them. The light pass has chosen which of them act on whom.
-namespace {
-
 class NeighborhoodPass final : public FramePass {
  public:
   explicit NeighborhoodPass(Blackboard& board)
@@ -164,6 +140,18 @@ class NeighborhoodPass final : public FramePass {
 };
 
 }  // namespace
+
+MadePass makeDiffusePass(const PassSetup& setup) {
+  return std::make_unique<DiffusePass>(setup.board);
+}
+
+MadePass makeSeenSkyPass(const PassSetup& setup) {
+  return std::make_unique<SeenSkyPass>(setup.board);
+}
+
+MadePass makeGlossyPass(const PassSetup& setup) {
+  return std::make_unique<GlossyPass>(setup.board);
+}
 
 MadePass makeNeighborhoodPass(const PassSetup& setup) {
   return std::make_unique<NeighborhoodPass>(setup.board);
