@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "reference/film.hpp"
-#include "runtime/base/memory.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::baker::reference {
 

@@ -8,7 +8,7 @@
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/bundle/entropy_coder.hpp"
 #include "runtime/bundle/volume_grid.hpp"
-#include "runtime/transfer/vertex_rows.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::baker {
 

@@ -16,7 +16,7 @@
 #include "baker/jobs/kept_value.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/ray_scene.hpp"
-#include "runtime/base/memory.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::baker {
 

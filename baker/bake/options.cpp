@@ -9,9 +9,9 @@
 
 #include "baker/bake/option_rows.hpp"
 #include "baker/bake/picture_budget.hpp"
-#include "runtime/base/memory.hpp"
+#include "runtime/base/process.hpp"
 #include "runtime/sh/gaunt.hpp"
-#include "runtime/sh/zonal_factors.hpp"
+#include "runtime/sh/zonal.hpp"
 
 namespace lambent::baker {
 

@@ -9,7 +9,7 @@
 #include "baker/effects/diffuse/payloads.hpp"
 #include "baker/effects/glossy/payloads.hpp"
 #include "baker/transport/sample_areas.hpp"
-#include "runtime/bundle/importance_code.hpp"
+#include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
 

@@ -14,7 +14,7 @@ struct SurfaceCells {
   // Transfers of each sample cell: that of the environment (for a glossy cell visibility, then bounced
   // light), followed by that of the group's lights if it has any.
   std::vector<std::vector<CodedTransfer>> cells;
-  std::vector<std::uint8_t> importance;  // of each sample (importance_code.hpp)
+  std::vector<std::uint8_t> importance;  // of each sample (description.hpp)
   SurfaceFigures figures;
 };
 void write(const SurfaceCells& cells, ByteWriter& out);

@@ -8,7 +8,7 @@
 #include "baker/effects/glossy/glossy_bounces.hpp"
 #include "baker/effects/glossy/inside_faces.hpp"
 #include "baker/trace/patches.hpp"
-#include "runtime/base/memory.hpp"
+#include "runtime/base/process.hpp"
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::baker {

@@ -12,7 +12,7 @@
 #include "baker/brdf/brdf.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/zonal_factors.hpp"
+#include "runtime/sh/zonal.hpp"
 
 namespace lambent::baker {
 

@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "baker/plan/smooth_dielectrics.hpp"
-#include "runtime/sh/zonal_factors.hpp"
+#include "runtime/sh/zonal.hpp"
 
 namespace lambent::baker {
 

@@ -12,9 +12,7 @@
 #include "baker/brdf/layer_albedo.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/with_order.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/sh/zonal_factors.hpp"
 
 namespace lambent::baker {
 

@@ -8,7 +8,7 @@
 
 #include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
-#include "runtime/base/memory.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::baker {
 

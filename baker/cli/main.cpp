@@ -10,9 +10,8 @@
 
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
-#include "runtime/base/standard_output.hpp"
+#include "runtime/base/process.hpp"
 #include "runtime/command_line/help.hpp"
-#include "runtime/command_line/usage_error.hpp"
 
 namespace lambent::baker {
 

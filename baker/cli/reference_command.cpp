@@ -11,7 +11,7 @@
 #include "baker/plan/counted.hpp"
 #include "reference/reference.hpp"
 #include "runtime/base/atomic_file.hpp"
-#include "runtime/base/memory.hpp"
+#include "runtime/base/process.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/spec/display.hpp"
 #include "runtime/spec/numbers.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "runtime/base/memory.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::baker {
 

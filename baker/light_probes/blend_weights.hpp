@@ -8,7 +8,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "runtime/transfer/light_weights.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::baker {
 

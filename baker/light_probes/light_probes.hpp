@@ -14,7 +14,7 @@
 
 #include "baker/plan/local_light.hpp"
 #include "baker/transport/samples.hpp"
-#include "runtime/transfer/light_weights.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::baker {
 

@@ -50,7 +50,7 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
 }
 
 std::vector<bool> shadedPerPixel(std::span<const PlannedLight> lights) {
-  // runtime/lighting/shadowed_light.hpp has so many.
+  // runtime/lighting/local_light.hpp has so many.
   constexpr std::ptrdiff_t kShadowCubes = 8;
   std::vector<bool> shaded;
   for (const PlannedLight& light : lights)

@@ -13,7 +13,7 @@
 
 #include "baker/sweep/knobs.hpp"
 #include "baker/sweep/store.hpp"
-#include "runtime/base/run_program.hpp"
+#include "runtime/base/process.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::baker {

@@ -10,7 +10,7 @@
 #include "baker/bake/bake.hpp"
 #include "baker/import/gltf.hpp"
 #include "runtime/base/atomic_file.hpp"
-#include "runtime/base/own_program.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::baker {
 

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "runtime/command_line/help.hpp"
-#include "runtime/command_line/usage_error.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/size.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "editor/commands/rows.hpp"
 #include "editor/session/key_lights.hpp"
-#include "runtime/frame/quality.hpp"
+#include "runtime/frame/frame_settings.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/numbers.hpp"
 

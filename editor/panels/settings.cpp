@@ -12,7 +12,6 @@
 #include "editor/panels/panel.hpp"
 #include "editor/ui/fitting.hpp"
 #include "runtime/frame/frame_settings.hpp"
-#include "runtime/frame/quality.hpp"
 
 namespace lambent::editor {
 

@@ -12,7 +12,7 @@
 
 #include "editor/session/assets.hpp"
 #include "runtime/base/change_gate.hpp"
-#include "runtime/base/own_program.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::editor {
 

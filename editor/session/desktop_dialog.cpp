@@ -7,7 +7,7 @@
 
 #include <unistd.h>
 
-#include "runtime/base/run_program.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::editor {
 

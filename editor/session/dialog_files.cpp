@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "editor/session/session.hpp"
-#include "runtime/base/own_program.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::editor {
 

@@ -12,7 +12,6 @@
 
 #include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/session.hpp"
-#include "runtime/lighting/light_blocks.hpp"
 #include "runtime/lighting/light_pieces.hpp"
 #include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "editor/session/session.hpp"
-#include "runtime/frame/quality.hpp"
+#include "runtime/frame/frame_settings.hpp"
 
 namespace lambent::editor {
 

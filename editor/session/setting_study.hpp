@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/measure/setting_cost.hpp"
+#include "runtime/measure/measured_frame.hpp"
 
 namespace lambent::editor {
 

@@ -13,8 +13,8 @@
 
 #include "lambent_bounces_embedded.hpp"
 #include "runtime/draws/surface_record.hpp"
-#include "runtime/lighting/light_blocks.hpp"
-#include "runtime/shadows/shadowed_light_record.hpp"
+#include "runtime/lighting/light_pieces.hpp"
+#include "runtime/shadows/shadowed_light.hpp"
 
 namespace lambent::frame {
 

@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/base/keyed_state.hpp"
+#include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/bounces/patch_room.hpp"
 #include "runtime/bounces/patch_shared.h"

@@ -6,7 +6,10 @@
 // reader checks every index, so later code need not check again.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -18,6 +21,23 @@
 #include "runtime/transfer/codebook.hpp"
 
 namespace lambent::bundle {
+
+// Indices into a bundle's description. Each kind is a type of its own, because groups, cells, transfers and
+// planes are named side by side, and numbers in the wrong order would compile. They are no indices into the
+// residency's tables either, which hold the groups and cells of all bundles.
+template <class Kind>
+struct Index {
+  constexpr Index() = default;
+  explicit constexpr Index(std::uint32_t index) : value(index) {}
+  friend constexpr auto operator<=>(const Index&, const Index&) = default;
+
+  std::uint32_t value = 0;
+};
+
+using GroupIndex = Index<struct GroupKind>;        // into Description::groups
+using CellIndex = Index<struct CellKind>;          // into Group::cells
+using TransferIndex = Index<struct TransferKind>;  // into Cell::transfers
+using PlaneIndex = Index<struct PlaneKind>;        // into CellTransfer::planes
 
 inline constexpr std::string_view kExtensionName = "LAMBENT_radiance_transfer";
 // Format versions, newest last; code asks for these names, never for a bare number.
@@ -68,7 +88,7 @@ struct Image {
 
 // Tells what a payload's bytes mean; docs/format.md has the byte tables.
 enum class PayloadType : std::uint8_t {
-  VertexWeights,  // samples and weights of each vertex (vertex_rows.hpp)
+  VertexWeights,  // samples and weights of each vertex (weights.hpp)
   Codebook,       // means, axes and quantization steps of the clusters of a cell (codebook.hpp)
   ClusterIds,     // cluster of each sample
   WeightPlane,    // one quantized weight per sample of the clusters that have this axis
@@ -77,7 +97,7 @@ enum class PayloadType : std::uint8_t {
   BrdfTable,      // b(v) of a family of BRDFs (brdf_table.hpp)
   Density,        // extinction of a volume at its own resolution (volume_grid.hpp)
   Voxels,         // voxels of its transfer grid at which a volume has samples (volume_grid.hpp)
-  Importance,     // how much each sample of a cell matters to pictures (importance_code.hpp)
+  Importance,     // how much each sample of a cell matters to pictures (importanceCode())
 };
 
 enum class PayloadCodec : std::uint8_t { Raw, Zstd };
@@ -335,6 +355,22 @@ inline constexpr std::uint32_t kMostTexels = 2048;
 // Returns how many rows a draw has: one for each vertex, then one for each texel.
 inline std::uint32_t rowCount(const Description& description, const Draw& draw) {
   return description.meshes[draw.mesh].primitives[draw.primitive].vertex_count + draw.texels * draw.texels;
+}
+
+// One byte a sample says how much a surface matters to pictures per area, relative to the mean over its
+// group, in steps of half an octave: wide enough for all that a bake weighs by, and small once compressed.
+inline constexpr int kMeanImportanceCode = 64;
+
+// `relative` is 1 at the mean; 0 says that nobody sees anything of it, and has the code 0.
+inline std::uint8_t importanceCode(float relative) {
+  if (!(relative > 0.0f)) return 0;
+  const float code = static_cast<float>(kMeanImportanceCode) + 2.0f * std::log2(relative);
+  return static_cast<std::uint8_t>(std::clamp(std::round(code), 1.0f, 127.0f));
+}
+
+// Returns log2 of what a code other than 0 stands for.
+constexpr float importanceOctaves(std::uint8_t code) {
+  return 0.5f * static_cast<float>(code - kMeanImportanceCode);
 }
 
 }  // namespace lambent::bundle

@@ -3,6 +3,8 @@
 // throw JsonFault.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -36,5 +38,23 @@ gltf::Animation readAnimation(const Field& field, const std::vector<Field>& acce
 // Fills in the keyframes from the bytes of the view, whose length must match the sizes. Returns false if
 // times do not rise or a number is not finite.
 bool loadAnimation(gltf::Animation& animation, std::span<const std::byte> bytes);
+
+// Reads a field that refers to a payload of the bundle.
+
+// Returns the index of a payload. Throws JsonFault if its type or, if given, its length is another.
+inline std::uint32_t payloadIndex(const Field& field, const Description& d, PayloadType type,
+                                  std::optional<std::uint64_t> raw_length) {
+  const std::uint32_t index = field.index(d.payloads.size());
+  if (d.payloads[index].type != type) field.fault("is a payload of another type");
+  if (raw_length && d.payloads[index].raw_length != *raw_length) field.fault("is a payload of another size");
+  return index;
+}
+
+// Writes and reads the JSON of a group's volume and neighborhood grids.
+Json volumeJson(const VolumeGrid& volume);
+Json neighborhoodJson(const NeighborhoodGrid& grid);
+
+// Reads the grids of a group whose cells have been read. Throws JsonFault if grids and cells do not agree.
+void readGrids(const Field& field, const Description& d, Group& group);
 
 }  // namespace lambent::bundle

@@ -12,7 +12,7 @@
 #include "runtime/bundle/entropy_coder.hpp"
 #include "runtime/bundle/glb.hpp"
 #include "runtime/bundle/gltf_parts.hpp"
-#include "runtime/transfer/vertex_rows.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::bundle {
 

@@ -16,10 +16,8 @@
 #include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/indices.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/transfer/light_weights.hpp"
-#include "runtime/transfer/vertex_rows.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::bundle {
 
@@ -62,7 +60,7 @@ class Reader {
   // Returns one entry per sample of the cell. If the cell has only one light probe, all entries are
   // kOneLight.
   Result<std::vector<transfer::LightWeights>> readLightWeights(GroupIndex group, CellIndex cell) const;
-  // Returns a code per sample of the cell (importance_code.hpp); empty if the bundle has none.
+  // Returns a code per sample of the cell (importanceCode()); empty if the bundle has none.
   Result<std::vector<std::uint8_t>> readImportance(GroupIndex group, CellIndex cell) const;
   Result<BrdfTable> readBrdfTable(std::uint32_t index) const;
   // Returns a proxy without levels if the group has none.

@@ -5,10 +5,9 @@
 #include <optional>
 
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/grid_json.hpp"
+#include "runtime/bundle/gltf_parts.hpp"
 #include "runtime/bundle/json_fields.hpp"
-#include "runtime/bundle/payload_field.hpp"
-#include "runtime/transfer/light_weights.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::bundle {
 

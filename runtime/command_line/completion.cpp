@@ -1,10 +1,10 @@
-#include "runtime/command_line/completion.hpp"
-
 #include <algorithm>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "runtime/command_line/help.hpp"
 
 namespace lambent::command_line {
 

@@ -3,16 +3,108 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <numeric>
+#include <optional>
 #include <sstream>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "runtime/command_line/completion.hpp"
-#include "runtime/command_line/manual_page.hpp"
-#include "runtime/command_line/option_table.hpp"
-
 namespace lambent::command_line {
+
+namespace {
+
+std::string oneParagraph(const std::string& text) {
+  std::istringstream in(text);
+  std::string out;
+  for (std::string word; in >> word;) out += (out.empty() ? "" : " ") + word;
+  return out;
+}
+
+// The library adds to the name of a type what its checks say: "S:FLOAT in [0.05 - 600]". Returns a range as
+// "0.05..600", and nothing for checks of another kind.
+std::string rangeOf(const std::string& type) {
+  const std::size_t from = type.find(" in ["), to = type.find(']', from);
+  if (from == std::string::npos || to == std::string::npos) return {};
+  std::string range = type.substr(from + 5, to - from - 5);
+  if (const std::size_t dash = range.find(" - "); dash != std::string::npos) range.replace(dash, 3, "..");
+  return range;
+}
+
+std::size_t letters(const std::string& utf8) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+}
+
+CommandEntry commandEntry(const CLI::App& app, const std::string& program) {
+  CommandEntry entry{.name = app.get_name(),
+                     .program = program,
+                     .help = oneParagraph(app.get_description()),
+                     .footer = app.get_footer(),
+                     .options = {},
+                     .commands = {}};
+  for (const CLI::Option* option :
+       app.get_options([](const CLI::Option* o) { return !o->get_group().empty(); }))
+    entry.options.push_back(entryOf(*option));
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    entry.commands.push_back(commandEntry(*command, program + " " + command->get_name()));
+  return entry;
+}
+
+}  // namespace
+
+std::vector<std::string> OptionEntry::words() const {
+  std::vector<std::string> words;
+  std::istringstream in(type);
+  for (std::string word; std::getline(in, word, '|');)
+    if (!word.empty() && std::ranges::all_of(word, [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; }))
+      words.push_back(word);
+  return words;
+}
+
+OptionEntry entryOf(const CLI::Option& option) {
+  OptionEntry entry{.group = option.get_group(),
+                    .names = {},
+                    .argument = {},
+                    .type = {},
+                    .standard = option.get_default_str(),
+                    .help = oneParagraph(option.get_description()),
+                    .required = option.get_required()};
+  if (option.get_positional()) {
+    entry.argument = option.get_name(/*positional=*/true, /*all_options=*/false);
+    if (option.get_items_expected_max() >= CLI::detail::expected_max_vector_size) entry.argument += "...";
+    return entry;
+  }
+  for (const std::string& name : option.get_snames()) entry.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) entry.names.push_back("--" + name);
+  if (option.get_type_size() != 0) {
+    const std::string type = option.get_type_name();
+    entry.type = type.substr(0, type.find(':'));
+    if (const std::string range = rangeOf(type); !range.empty()) entry.help += "; " + range;
+  }
+  return entry;
+}
+
+CommandEntry tableOf(const CLI::App& app) {
+  std::string program = app.get_name();
+  for (const CLI::App* parent = app.get_parent(); parent; parent = parent->get_parent())
+    program = parent->get_name() + " " + program;
+  return commandEntry(app, program);
+}
+
+std::string wrapped(const std::string& words, std::size_t width) {
+  std::istringstream in(words);
+  std::string text;
+  std::size_t line = 0;
+  for (std::string word; in >> word;) {
+    const std::size_t size = letters(word);
+    const bool breaks = line > 0 && line + 1 + size > width;
+    text += (breaks ? "\n" : line > 0 ? " " : "") + word;
+    line = breaks || line == 0 ? size : line + 1 + size;
+  }
+  return text;
+}
 
 namespace {
 
@@ -97,6 +189,78 @@ void finish(CLI::App& app, const std::string& version) {
       ->group("");  // hidden
   for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     finish(*command, version);
+}
+
+namespace {
+
+// Returns how many letters must be added, removed, replaced or swapped with their neighbor.
+std::size_t lettersApart(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> before2, before(b.size() + 1), row(b.size() + 1);
+  std::iota(before.begin(), before.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({before[j] + 1, row[j - 1] + 1, before[j - 1] + (a[i - 1] == b[j - 1] ? 0u : 1u)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before2[j - 2] + 1);
+    }
+    before2 = before;
+    before = row;
+  }
+  return before.back();
+}
+
+// Returns the name that the word was most likely meant to be.
+std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& names) {
+  std::size_t least = 2 + word.size() / 6;  // a word that differs by so much is another word
+  std::optional<std::string> best;
+  for (const std::string& name : names)
+    if (const std::size_t apart = lettersApart(word, name); apart < least) {
+      least = apart;
+      best = name;
+    }
+  return best;
+}
+
+std::vector<std::string> optionNames(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames())
+      if (!option->get_group().empty()) names.push_back("--" + name);  // others are hidden
+  return names;
+}
+
+std::vector<std::string> commandNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+}  // namespace
+
+Error usageError(const CLI::App& app, const CLI::ParseError& wrong) {
+  const CLI::App* command = &app;  // the one that was chosen
+  std::string program = app.get_name();
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().front();
+    program += " " + command->get_name();
+  }
+  const std::string help = "see " + program + " --help";
+  const auto unknown = [&](const std::string& word, const char* what, const std::vector<std::string>& names) {
+    const auto meant = nearest(word, names);
+    return Error{word, what, meant ? "did you mean " + *meant + "? Else " + help : help};
+  };
+  const std::vector<std::string> extra = app.remaining(/*recurse=*/true);
+  const auto option = std::ranges::find_if(extra, [](const std::string& w) { return w.starts_with('-'); });
+  const bool unexpected = wrong.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+  if (unexpected && option != extra.end())
+    return unknown(option->substr(0, option->find('=')), "is not an option", optionNames(*command));
+  if (command == &app && !extra.empty() && !commandNames(app).empty())
+    return unknown(extra.front(), "is not a command", commandNames(app));
+  if (unexpected && !extra.empty()) return {extra.front(), "is one word too many", help};
+  const std::string text = wrong.what();
+  return {{}, text, text.find("; ") == std::string::npos ? help : ""};  // else it says what to do
 }
 
 }  // namespace lambent::command_line

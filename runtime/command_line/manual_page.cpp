@@ -1,5 +1,3 @@
-#include "runtime/command_line/manual_page.hpp"
-
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
@@ -7,6 +5,8 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+
+#include "runtime/command_line/help.hpp"
 
 namespace lambent::command_line {
 

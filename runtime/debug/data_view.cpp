@@ -7,9 +7,9 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
-#include "runtime/bundle/importance_code.hpp"
-#include "runtime/debug/shaders.hpp"
-#include "runtime/draws/view_block.hpp"
+#include "runtime/bundle/description.hpp"
+#include "runtime/debug/overlays.hpp"
+#include "runtime/draws/view.hpp"
 
 namespace lambent::frame {
 

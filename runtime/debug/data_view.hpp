@@ -12,7 +12,6 @@
 #include "runtime/base/result.hpp"
 #include "runtime/debug/data_view_shared.h"
 #include "runtime/draws/surface_record.hpp"
-#include "runtime/draws/texture_units.hpp"
 #include "runtime/evaluate/transfer_values.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/spec/camera.hpp"

@@ -5,15 +5,32 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "runtime/debug/overlay_keys.hpp"
+#include "lambent_debug_embedded.hpp"
+#include "lambent_draws_embedded.hpp"
+#include "lambent_effects_neighborhood_embedded.hpp"
+#include "lambent_evaluate_embedded.hpp"
+#include "lambent_lighting_embedded.hpp"
+#include "lambent_shadows_embedded.hpp"
+#include "lambent_surface_embedded.hpp"
+#include "lambent_tone_map_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 #include "runtime/debug/overlay_lines.hpp"
 #include "runtime/debug/overlay_slice_shared.h"
-#include "runtime/debug/shaders.hpp"
 #include "runtime/draws/surface_shared.h"
-#include "runtime/draws/view_block.hpp"
+#include "runtime/draws/view.hpp"
 #include "runtime/effects/neighborhood/neighborhood_shared.h"
 
 namespace lambent::frame {
+
+const gpu::FindText kDebugShaders[9] = {&embedded::lambent_debug::find,
+                                        &embedded::lambent_draws::find,
+                                        &embedded::lambent_surface::find,
+                                        &embedded::lambent_shadows::find,
+                                        &embedded::lambent_tone_map::find,
+                                        &embedded::lambent_lighting::find,
+                                        &embedded::lambent_evaluate::find,
+                                        &embedded::lambent_transfer::find,
+                                        &embedded::lambent_effects_neighborhood::find};
 
 namespace {
 

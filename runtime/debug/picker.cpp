@@ -10,7 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "runtime/debug/shaders.hpp"
+#include "runtime/debug/overlays.hpp"
 #include "runtime/surface/surfaces.hpp"
 
 namespace lambent::frame {

@@ -15,9 +15,7 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/base/result.hpp"
-#include "runtime/draws/draw_indices.hpp"
 #include "runtime/draws/surface_record.hpp"
-#include "runtime/draws/texture_units.hpp"
 #include "runtime/ecs/entity.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/spec/camera.hpp"

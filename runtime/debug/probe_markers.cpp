@@ -1,5 +1,3 @@
-#include "runtime/debug/probe_markers.hpp"
-
 #include <algorithm>
 #include <limits>
 #include <span>
@@ -9,7 +7,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
-#include "runtime/debug/shaders.hpp"
+#include "runtime/debug/overlays.hpp"
 #include "runtime/scene/bounds.hpp"
 
 namespace lambent::frame {

@@ -7,7 +7,6 @@
 #include <glm/trigonometric.hpp>
 
 #include "runtime/base/normal_matrix.hpp"
-#include "runtime/demo/zoom.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/components.hpp"
 

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "runtime/base/atomic_file.hpp"
-#include "runtime/base/standard_output.hpp"
+#include "runtime/base/process.hpp"
 #include "runtime/demo/options.hpp"
-#include "runtime/demo/run.hpp"
+#include "runtime/demo/stage.hpp"
 #include "runtime/gpu/out_of_memory.hpp"
 
 int main(int argc, char** argv) {

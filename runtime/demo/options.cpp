@@ -10,8 +10,7 @@
 
 #include "runtime/base/lower_case.hpp"
 #include "runtime/command_line/help.hpp"
-#include "runtime/command_line/usage_error.hpp"
-#include "runtime/frame/quality.hpp"
+#include "runtime/frame/frame_settings.hpp"
 #include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
 

@@ -37,4 +37,10 @@ class Stage {
   ecs::Entity environment_entity_;
 };
 
+// Runs lambent-demo in one of two ways. Headless, it loads everything, renders, writes the picture whole or
+// not at all, and prints its path (or the report). Windowed, it shows the scene while it loads, under a light
+// that turns, until it is closed.
+Result<void> runHeadless(const Options& options);
+Result<void> runWindowed(const Options& options);
+
 }  // namespace lambent::demo

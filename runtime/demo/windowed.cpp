@@ -10,10 +10,8 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/demo/camera.hpp"
-#include "runtime/demo/run.hpp"
 #include "runtime/demo/stage.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/gpu/plain_text.hpp"
 #include "runtime/gpu/window.hpp"
 
 namespace lambent::demo {

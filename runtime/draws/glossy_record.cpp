@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
 
-#include "runtime/sh/zonal_factors.hpp"
+#include "runtime/sh/zonal.hpp"
 
 namespace lambent::frame {
 

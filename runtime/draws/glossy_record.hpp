@@ -11,7 +11,7 @@
 
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/sh/zonal_factors.hpp"
+#include "runtime/sh/zonal.hpp"
 #include "runtime/streaming/brdf_texture.hpp"
 
 namespace lambent::frame {

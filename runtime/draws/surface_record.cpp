@@ -1,5 +1,8 @@
 #include "runtime/draws/surface_record.hpp"
 
+#include <numeric>
+#include <vector>
+
 namespace lambent::frame {
 
 namespace {
@@ -96,6 +99,90 @@ SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDr
   if (textures != SurfaceTextures{})
     textures.bundle = static_cast<std::int32_t>(world.residency().draws()[draw].bundle);
   return textures;
+}
+
+namespace {
+
+gpu::Texture oneTexel(const char* label, const glm::vec4& value) {
+  // Eight bits cannot represent 0.5, so a flat normal needs more.
+  gpu::Texture texture(label, {.format = GL_RGBA16F});
+  glTextureSubImage2D(texture.id(), 0, 0, 0, 1, 1, GL_RGBA, GL_FLOAT, &value.x);
+  return texture;
+}
+
+}  // namespace
+
+TextureUnits::TextureUnits()
+    : white_(oneTexel("white", glm::vec4(1.0f))),
+      flat_(oneTexel("flat normal", glm::vec4(0.5f, 0.5f, 1.0f, 1.0f))),
+      along_tangent_(oneTexel("along the tangent", glm::vec4(1.0f, 0.5f, 1.0f, 1.0f))) {}
+
+void TextureUnits::bindOne(GLuint unit, const streaming::ResidentBundle* bundle, std::int32_t texture) {
+  const bool numbers = unit != kUnitBaseColor && unit != kUnitEmissive && unit != kUnitSpecularColor;
+  const gpu::Texture* image = unit == kUnitNormal       ? &flat_
+                              : unit == kUnitAnisotropy ? &along_tangent_
+                                                        : &white_;
+  gltf::Sampler wanted;
+  if (bundle != nullptr && texture >= 0) {
+    const gltf::Texture& described = bundle->textures[static_cast<std::size_t>(texture)];
+    wanted = described.sampler;
+    if (described.image >= 0) {
+      const auto& images = numbers ? bundle->linear_images : bundle->images;
+      const gpu::Texture& arrived = images[static_cast<std::size_t>(described.image)];
+      if (arrived) image = &arrived;
+    }
+  }
+  auto& sampler = samplers_[{wanted.wrap_s, wanted.wrap_t, wanted.mag_filter, wanted.min_filter}];
+  if (!sampler) sampler = gpu::Sampler(wanted.wrap_s, wanted.wrap_t, wanted.mag_filter, wanted.min_filter);
+  image->bind(unit);
+  glBindSampler(unit, sampler.id());
+}
+
+void TextureUnits::bind(const World& world, const SurfaceTextures& textures) {
+  const streaming::ResidentBundle* bundle =
+      textures.bundle >= 0 ? &world.residency().bundles()[static_cast<std::size_t>(textures.bundle)]
+                           : nullptr;
+  bindOne(kUnitBaseColor, bundle, textures.base_color);
+  bindOne(kUnitEmissive, bundle, textures.emissive);
+  bindOne(kUnitNormal, bundle, textures.normal);
+}
+
+void TextureUnits::bindGlossy(const World& world, const SurfaceTextures& textures, std::uint32_t bundle,
+                              std::int32_t table) {
+  const streaming::ResidentBundle* owner = &world.residency().bundles()[bundle];
+  bindOne(kUnitMetallicRoughness, owner, textures.metallic_roughness);
+  bindOne(kUnitSpecular, owner, textures.specular);
+  bindOne(kUnitSpecularColor, owner, textures.specular_color);
+  bindOne(kUnitAnisotropy, owner, textures.anisotropy);
+  owner->brdf_tables[static_cast<std::size_t>(table)].texture.bind(kUnitBrdf);
+  glBindSampler(kUnitBrdf, 0);  // the texture's own sampling is used
+}
+
+void TextureUnits::unbindSamplers() const {
+  for (GLuint unit = kUnitBaseColor; unit <= kUnitAnisotropy; ++unit) glBindSampler(unit, 0);
+}
+
+void DrawIndices::reserve(std::size_t draw_count) {
+  if (indices_.byteCount() >= 4 * draw_count) return;
+  std::vector<std::uint32_t> indices(2 * draw_count);
+  std::iota(indices.begin(), indices.end(), 0u);
+  indices_ = gpu::Buffer("draw indices", 4 * indices.size());
+  indices_.write(0, std::span<const std::uint32_t>(indices));
+  constexpr GLuint kAttribute = 0;
+  const GLuint array = vertices_.id();
+  glVertexArrayVertexBuffer(array, 0, indices_.id(), 0, 4);
+  glVertexArrayBindingDivisor(array, 0, 1);
+  glVertexArrayAttribIFormat(array, kAttribute, 1, GL_UNSIGNED_INT, 0);
+  glVertexArrayAttribBinding(array, kAttribute, 0);
+  glEnableVertexArrayAttrib(array, kAttribute);
+}
+
+void DrawIndices::draw(std::uint32_t first_command, std::uint32_t command_count, gpu::Counters& counters) {
+  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
+                              reinterpret_cast<const void*>(std::size_t{first_command} * sizeof(DrawCommand)),
+                              static_cast<GLsizei>(command_count), 0);
+  counters.draws += command_count;
+  ++counters.draw_calls;
 }
 
 }  // namespace lambent::frame

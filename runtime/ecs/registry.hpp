@@ -9,19 +9,188 @@
 // missing one.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <span>
+#include <tuple>
+#include <type_traits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "runtime/ecs/entity.hpp"
-#include "runtime/ecs/sparse_set.hpp"
-#include "runtime/ecs/view.hpp"
 
 namespace lambent::ecs {
+
+// A SparseSet holds the components of one type. Values are packed without gaps, in an order that removal
+// changes, and a table maps an entity's index to its place (4 bytes per index ever used). Look-up, insertion
+// and removal take constant time.
+//
+// Every change gives the set a new version and stores it for the entity. So a pass sees with one comparison
+// whether anything changed since it last ran, and can then find out which entities. References to values are
+// valid until the next insertion or removal.
+
+// Owns the part of a set that does not depend on the component's type.
+class SparseSetBase {
+ public:
+  virtual ~SparseSetBase() = default;
+
+  // Returns false if the entity had no component.
+  virtual bool remove(Entity entity) = 0;
+
+  bool contains(Entity entity) const { return placeOf(entity) != kNoPlace; }
+  std::size_t size() const { return entities_.size(); }
+  std::span<const Entity> entities() const { return entities_; }
+
+  // Returns a number that rises with every insertion, removal and touch; it is 0 before the first.
+  std::uint64_t version() const { return version_; }
+  // Returns the set's version when this entity's component last changed, or 0 if it has none.
+  std::uint64_t versionOf(Entity entity) const {
+    const std::uint32_t place = placeOf(entity);
+    return place == kNoPlace ? 0 : versions_[place];
+  }
+  void touch(Entity entity) {
+    const std::uint32_t place = placeOf(entity);
+    assert(place != kNoPlace && "the entity has no such component");
+    versions_[place] = ++version_;
+  }
+
+ protected:
+  static constexpr std::uint32_t kNoPlace = std::numeric_limits<std::uint32_t>::max();
+
+  std::uint32_t placeOf(Entity entity) const {
+    if (entity.index >= places_.size()) return kNoPlace;
+    const std::uint32_t place = places_[entity.index];
+    return place != kNoPlace && entities_[place] == entity ? place : kNoPlace;
+  }
+
+  void append(Entity entity);
+  // Moves the last entity into the gap. The caller must do the same with the values.
+  void removeAt(std::uint32_t place);
+
+ private:
+  std::vector<std::uint32_t> places_;    // indexed by Entity::index
+  std::vector<Entity> entities_;         // by place
+  std::vector<std::uint64_t> versions_;  // by place
+  std::uint64_t version_ = 0;
+};
+
+template <class T>
+class SparseSet final : public SparseSetBase {
+  static_assert(std::is_object_v<T> && !std::is_const_v<T> && std::is_move_assignable_v<T>);
+  static_assert(!std::is_same_v<T, bool>, "std::vector<bool> hands out no references; wrap it in a struct");
+
+ public:
+  // Adds or replaces the entity's value.
+  template <class... Args>
+  T& emplace(Entity entity, Args&&... args) {
+    // Aggregates are initialised with braces, so components need no constructors.
+    T value = [&] {
+      if constexpr (std::is_constructible_v<T, Args...>) {
+        return T(std::forward<Args>(args)...);
+      } else {
+        return T{std::forward<Args>(args)...};
+      }
+    }();
+    if (const std::uint32_t place = placeOf(entity); place != kNoPlace) {
+      touch(entity);
+      return values_[place] = std::move(value);
+    }
+    values_.push_back(std::move(value));
+    append(entity);
+    return values_.back();
+  }
+
+  bool remove(Entity entity) override {
+    const std::uint32_t place = placeOf(entity);
+    if (place == kNoPlace) return false;
+    if (place + 1 != values_.size()) values_[place] = std::move(values_.back());
+    values_.pop_back();
+    removeAt(place);
+    return true;
+  }
+
+  T* find(Entity entity) {
+    const std::uint32_t place = placeOf(entity);
+    return place == kNoPlace ? nullptr : &values_[place];
+  }
+  const T* find(Entity entity) const {
+    const std::uint32_t place = placeOf(entity);
+    return place == kNoPlace ? nullptr : &values_[place];
+  }
+
+ private:
+  std::vector<T> values_;  // by place
+};
+
+// A View iterates over the entities that have all of some components:
+//   for (auto [entity, transform, draw] : registry.view<Transform, const DrawItem>()) ...
+//
+// The loop may create, destroy, add and remove anything. It walks a list of entities that was copied from the
+// smallest set when the view was made. It visits an entity once, if it still has every component when its
+// turn comes, and does not visit entities that were added meanwhile. (Walking the set itself would skip or
+// repeat entities, since removal moves them.) References are valid until the loop body adds or removes a
+// component of that type.
+template <class... Ts>
+class View {
+  static_assert(sizeof...(Ts) > 0);
+  // A const T needs a const set.
+  template <class T>
+  using SetOf = std::conditional_t<std::is_const_v<T>, const SparseSet<std::remove_const_t<T>>, SparseSet<T>>;
+
+ public:
+  // A set is null if no entity ever had the component. The view is then empty.
+  explicit View(SetOf<Ts>*... sets) : sets_(sets...) {
+    const std::array<const SparseSetBase*, sizeof...(Ts)> all{sets...};
+    if (std::find(all.begin(), all.end(), nullptr) != all.end()) return;
+    const SparseSetBase* smallest = *std::min_element(
+        all.begin(), all.end(), [](const auto* a, const auto* b) { return a->size() < b->size(); });
+    entities_.assign(smallest->entities().begin(), smallest->entities().end());
+  }
+
+  class Iterator {
+   public:
+    Iterator(const View& view, std::size_t at) : view_(&view), at_(at) { settle(); }
+    std::tuple<Entity, Ts&...> operator*() const {
+      return std::apply(
+          [&](auto*... values) { return std::tuple<Entity, Ts&...>(view_->entities_[at_], *values...); },
+          found_);
+    }
+    Iterator& operator++() {
+      ++at_;
+      settle();
+      return *this;
+    }
+    bool operator!=(const Iterator& other) const { return at_ != other.at_; }
+
+   private:
+    // Moves from at_ to the next entity that has all components.
+    void settle() {
+      for (; at_ < view_->entities_.size(); ++at_) {
+        const Entity entity = view_->entities_[at_];
+        found_ = std::apply([&](auto*... sets) { return std::tuple<Ts*...>(sets->find(entity)...); },
+                            view_->sets_);
+        if (std::apply([](auto*... values) { return (... && (values != nullptr)); }, found_)) return;
+      }
+    }
+
+    const View* view_;
+    std::size_t at_;
+    std::tuple<Ts*...> found_;
+  };
+
+  Iterator begin() const { return Iterator(*this, 0); }
+  Iterator end() const { return Iterator(*this, entities_.size()); }
+
+ private:
+  std::tuple<SetOf<Ts>*...> sets_;
+  std::vector<Entity> entities_;
+};
 
 namespace detail {
 // A type is identified by the address of its own constant, so there is no counter and no name can collide.
@@ -120,7 +289,7 @@ class Registry {
     return set ? set->size() : 0;
   }
 
-  // Returns a view of the entities that have all these components (view.hpp). `const T` gives const
+  // Returns a view of the entities that have all these components. `const T` gives const
   // references.
   template <class... Ts>
   View<Ts...> view() {

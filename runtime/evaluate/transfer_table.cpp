@@ -2,7 +2,13 @@
 
 #include <algorithm>
 
+#include "lambent_evaluate_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
+
 namespace lambent::evaluate {
+
+const gpu::FindText kEvaluateShaders[2] = {&embedded::lambent_evaluate::find,
+                                           &embedded::lambent_transfer::find};
 
 namespace {
 

@@ -5,11 +5,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
 #include "runtime/transfer/transfer_shared.h"
 
 namespace lambent::evaluate {
+
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kEvaluateShaders[2];
 
 // Selects the block of the transfer that counts: none, light without bounces, or all light where it was
 // baked. In mode Unshadowed the groups' own lights are dark, because without transfer it is unknown where

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/evaluate/shaders.hpp"
+#include "runtime/evaluate/transfer_table.hpp"
 #include "runtime/sh/gaunt.hpp"
 
 namespace lambent::evaluate {

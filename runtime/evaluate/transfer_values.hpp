@@ -19,7 +19,6 @@
 #include "runtime/evaluate/transfer_table.hpp"
 #include "runtime/evaluate/transfer_values_shared.h"
 #include "runtime/gpu/program.hpp"
-#include "runtime/gpu/work_list.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
 

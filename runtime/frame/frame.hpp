@@ -14,12 +14,11 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/debug/picker.hpp"
-#include "runtime/frame/blackboard.hpp"
 #include "runtime/frame/frame_options.hpp"
+#include "runtime/frame/frame_pass.hpp"
 #include "runtime/frame/invalidation_log.hpp"
 #include "runtime/frame/pass_list.hpp"
 #include "runtime/frame/picture_targets.hpp"
-#include "runtime/frame/step_counts.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/spec/camera.hpp"

@@ -8,16 +8,124 @@
 // because light between bodies travels once per step.
 #pragma once
 
+#include <cassert>
+#include <cstdint>
+#include <map>
+#include <span>
 #include <string_view>
+#include <typeindex>
 #include <utility>
 #include <vector>
 
 #include "runtime/base/result.hpp"
-#include "runtime/frame/blackboard.hpp"
-#include "runtime/frame/frame_context.hpp"
+#include "runtime/frame/frame_options.hpp"
 #include "runtime/frame/invalidation_log.hpp"
+#include "runtime/frame/picture_targets.hpp"
+#include "runtime/gpu/pass_timers.hpp"
+#include "runtime/lighting/environment.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/world/world.hpp"
 
 namespace lambent::frame {
+
+// Holds what the passes of a frame share, found by its type: lights of groups, shaded samples, shadow maps. A
+// pass offers its own objects once, when it is made, and they live as long as the frame.
+
+// Lists the types that a pass reads or writes.
+using Resources = std::vector<std::type_index>;
+template <class... Types>
+Resources resources() {
+  return {std::type_index(typeid(Types))...};
+}
+
+class Blackboard {
+ public:
+  // Offers an object. There may be only one of each type.
+  template <class Type>
+  void offer(Type& object) {
+    const bool first = objects_.emplace(typeid(Type), &object).second;
+    assert(first);
+    (void)first;
+  }
+  // Returns the object of a type, which must have been offered.
+  template <class Type>
+  Type& get() const {
+    const auto found = objects_.find(typeid(Type));
+    assert(found != objects_.end());
+    return *static_cast<Type*>(found->second);
+  }
+
+ private:
+  std::map<std::type_index, void*> objects_;
+};
+
+// Counts what one step and the picture after it did, as numbers with names, such as light probes captured or
+// cells shaded. Each pass declares its names once, and two passes may share one. For a still scene the work
+// counts are 0. Reports print the whole list.
+class StepCounts {
+ public:
+  struct Count {
+    std::string_view name;  // a literal
+    std::uint64_t value = 0;
+  };
+
+  void declare(std::span<const std::string_view> names);
+  // Sets every count to 0.
+  void clear();
+  void add(std::string_view name, std::uint64_t value);
+  // Returns the count. The name must be declared, unless none is; then the result is 0.
+  std::uint64_t operator[](std::string_view name) const;
+
+  // Iterate in the order in which the names were declared.
+  auto begin() const { return counts_.begin(); }
+  auto end() const { return counts_.end(); }
+
+ private:
+  std::vector<Count> counts_;
+};
+
+// Describes the frame that a pass runs in: the world, the light, the options, what other passes keep, and
+// where the pass counts and says why it ran. It lives for one step, or one step and a picture.
+struct PassInfo;
+
+struct FrameContext {
+  World& world;
+  lighting::Environment& environment;  // only the pass for transforms changes it: its suns of the scene
+  const FrameOptions& options;
+  const spec::View* view;  // null if no picture follows
+  PictureTargets& targets;
+  InvalidationLog& log;
+  StepCounts& counts;
+  const Blackboard& board;
+  // These belong to the pass that is asked or runs.
+  const PassInfo* pass = nullptr;
+  gpu::PassTimers::Scope* scope = nullptr;
+
+  const FrameSettings& settings() const { return options.settings; }
+  // Returns the key lights whose direct light comes by shadow maps, in world axes.
+  std::span<const spec::Disc> keys() const {
+    return options.keysApart() ? environment.keys() : std::span<const spec::Disc>();
+  }
+  // Return what the pass declares that it reads, or writes.
+  template <class Type>
+  const Type& read() const {
+    assert(declares(typeid(Type), /*to_write=*/false));
+    return board.get<Type>();
+  }
+  template <class Type>
+  Type& write() const {
+    assert(declares(typeid(Type), /*to_write=*/true));
+    return board.get<Type>();
+  }
+  gpu::Counters& counters() const { return scope->counters(); }
+  void count(std::string_view name, std::uint64_t value) const { counts.add(name, value); }
+  // Says why the pass ran: states those of its causes that the log has for this step or, if there are none,
+  // `otherwise`.
+  void because(std::string_view otherwise = {}) const;
+
+ private:
+  bool declares(std::type_index type, bool to_write) const;
+};
 
 struct PassInfo {
   std::string_view name;  // name in timings

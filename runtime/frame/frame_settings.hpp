@@ -96,4 +96,18 @@ Result<void> putSetting(FrameSettings& settings, std::string_view name, std::str
 // Fails if any value is out of its row's range.
 Result<void> checkSettings(const FrameSettings& settings);
 
+// Defines named sets of settings that trade accuracy of pictures for raster time: low for weak devices, high
+// for the most accurate pictures. Settings that a set does not name stay as they are. docs/accuracy.md says
+// what each costs and how it looks. Unknown names are returned as an Error.
+
+// Returns the names that --quality takes: low, default, high.
+std::span<const std::string_view> qualityNames();
+// Returns the names of the rows of settingRows() that a quality sets.
+std::span<const std::string_view> qualitySettings();
+
+Result<void> putQuality(FrameSettings& settings, std::string_view name);
+Result<FrameSettings> settingsOfQuality(std::string_view name);
+// Returns the quality with these values of its settings, or an empty name if there is none.
+std::string_view qualityOf(const FrameSettings& settings);
+
 }  // namespace lambent::frame

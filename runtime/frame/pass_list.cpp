@@ -3,8 +3,6 @@
 #include <span>
 #include <utility>
 
-#include "runtime/frame/passes/passes.hpp"
-
 namespace lambent::frame {
 
 namespace {

@@ -1,7 +1,9 @@
 // Converts between the values that the library shows and those of the rooms.
 #pragma once
 
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat4x4.hpp>
@@ -10,6 +12,7 @@
 #include "lambent/math.hpp"
 #include "lambent/result.hpp"
 #include "runtime/base/result.hpp"
+#include "runtime/spec/light.hpp"
 
 namespace lambent::library {
 
@@ -30,6 +33,17 @@ inline Matrix4 fromGlm(const glm::mat4& m) {
   Matrix4 result;
   std::copy_n(glm::value_ptr(m), result.size(), result.begin());
   return result;
+}
+
+// Understands the words of lights at infinity, for a LightVector and for a Scene.
+
+// Fails if a word is wrong, or names a light that stands in the scene, which `refused` then says.
+inline Expected<std::vector<spec::Light>> distantLights(const std::vector<std::string>& words,
+                                                        const Failure& refused) {
+  Result<std::vector<spec::Light>> lights = spec::parseLights(words);
+  if (!lights) return failureOf(lights.error());
+  if (!spec::localLights(*lights).empty()) return refused;
+  return std::move(*lights);
 }
 
 }  // namespace lambent::library

@@ -7,8 +7,7 @@
 
 #include "runtime/frame/frame.hpp"
 #include "runtime/library/convert.hpp"
-#include "runtime/library/host_state.hpp"
-#include "runtime/library/scene_state.hpp"
+#include "runtime/library/state.hpp"
 
 namespace lambent {
 

@@ -11,9 +11,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "runtime/library/convert.hpp"
-#include "runtime/library/distant_words.hpp"
-#include "runtime/library/host_state.hpp"
-#include "runtime/library/scene_state.hpp"
+#include "runtime/library/state.hpp"
 #include "runtime/scene/affine.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/lights.hpp"

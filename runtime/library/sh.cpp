@@ -8,7 +8,6 @@
 
 #include "lambent/version.hpp"
 #include "runtime/library/convert.hpp"
-#include "runtime/library/distant_words.hpp"
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/window.hpp"

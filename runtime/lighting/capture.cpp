@@ -13,12 +13,12 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/base/parallel.hpp"
-#include "runtime/lighting/capture_combine.hpp"
+#include "runtime/base/threads.hpp"
+#include "runtime/lighting/capture_queries.hpp"
 #include "runtime/lighting/capture_shared.h"
-#include "runtime/lighting/capture_table.hpp"
-#include "runtime/lighting/shaders.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/lighting/capture_sky.hpp"
+#include "runtime/lighting/sky.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/projection.hpp"
 
 namespace lambent::lighting {

@@ -11,7 +11,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "runtime/base/finite.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 
 namespace lambent::lighting::capture {
 

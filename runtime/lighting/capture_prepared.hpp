@@ -14,6 +14,11 @@
 
 namespace lambent::lighting::capture {
 
+// Tells whether a level of a proxy consists of closed surfaces that face outwards. Then only bright sides are
+// visible from outside its box, and the dark sides need not be drawn. Levels with double-sided triangles
+// never count as closed.
+bool isClosed(const bundle::CaptureProxy& proxy, const bundle::ProxyLevel& level);
+
 // A vertex is its position as bits of three floats, then its surface id: the triangle's number in its proxy +
 // 1, kBlackId, or 0 for a vertex that is no triangle's last corner.
 using Vertex = std::array<std::uint32_t, 4>;

@@ -13,11 +13,10 @@
 #include <glm/mat4x4.hpp>
 
 #include "runtime/bundle/capture_proxy.hpp"
-#include "runtime/lighting/capture_combine.hpp"
 #include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/capture_queries.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/projection.hpp"
 
 namespace lambent::lighting::capture {

@@ -14,10 +14,9 @@
 #include <glm/vec4.hpp>
 
 #include "runtime/lighting/capture_shared.h"
-#include "runtime/lighting/capture_table.hpp"
-#include "runtime/lighting/shaders.hpp"
+#include "runtime/lighting/sky.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 
 namespace lambent::lighting {
 

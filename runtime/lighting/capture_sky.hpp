@@ -1,5 +1,5 @@
 // Owns the sky as the light capture sees it: one small box-filtered cube map in world axes for all points,
-// without suns. It takes an environment and provides, per texel (in the order of sh/cube_map.hpp), the
+// without suns. It takes an environment and provides, per texel (in the order of sh/image_layout.hpp), the
 // radiance and the weights that project it to harmonics, and the projected sum. Two dispatches remake them
 // when the environment was turned, faded or replaced. Render thread only. create() fails if a shader does not
 // compile on this device.
@@ -16,6 +16,26 @@
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/capture_scene.hpp"
 #include "runtime/lighting/environment.hpp"
+
+namespace lambent::lighting::capture {
+
+// Presents storage buffers as buffer textures to shaders that fetch whole vectors at distant places.
+
+// Binds a view of the buffer. The view is created on first use and attached again on each call, since tables
+// move when they grow.
+inline void bindTable(gpu::Handle<gpu::TextureTraits>& texture, GLuint unit, GLenum format,
+                      const gpu::Buffer& buffer) {
+  if (!texture) {
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    texture = gpu::Handle<gpu::TextureTraits>(id);
+  }
+  glTextureBuffer(texture.id(), format, buffer.id());
+  glBindTextureUnit(unit, texture.id());
+  glBindSampler(unit, 0);
+}
+
+}  // namespace lambent::lighting::capture
 
 namespace lambent::lighting {
 

@@ -1,5 +1,5 @@
 // Returns the unnormalised direction through a texel's centre in a cube map level with `size` texels per
-// edge, as runtime/sh/cube_map.hpp defines it.
+// edge, as runtime/sh/image_layout.hpp defines it.
 vec3 cubeTexelDirection(ivec3 texel, int size) {
   vec2 at = (2.0 * vec2(texel.xy) + 1.0) / float(size) - 1.0;
   switch (texel.z) {

@@ -1,10 +1,10 @@
-#include "runtime/lighting/incident_change.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <glm/geometric.hpp>
+
+#include "runtime/lighting/incident_light.hpp"
 
 namespace lambent::lighting {
 

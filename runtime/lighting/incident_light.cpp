@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "runtime/base/parallel.hpp"
+#include "runtime/base/threads.hpp"
 #include "runtime/sh/zonal.hpp"
 
 namespace lambent::lighting {

@@ -1,10 +1,10 @@
 // Divides light from infinity into key lights, which a few SH bands cannot carry (suns, and in environment
 // maps also lamps, windows and soft boxes), and the rest, which they can. It takes lights in their own frame
 // and returns the keys as uniform discs, and the lights without them; keys and rest add up to all light, per
-// channel. The loss (light_loss.hpp) decides whether there are keys and how many. Turning, fading and dimming
-// the lights later turns, fades and dims the keys but never changes which there are. Pure CPU, safe to call
-// from any thread. A large picture takes a fraction of a second, and no longer than one read of it if there
-// are no keys.
+// channel. The loss (light_pieces.hpp) decides whether there are keys and how many. Turning, fading and
+// dimming the lights later turns, fades and dims the keys but never changes which there are. Pure CPU, safe
+// to call from any thread. A large picture takes a fraction of a second, and no longer than one read of it if
+// there are no keys.
 #pragma once
 
 #include <cstdint>

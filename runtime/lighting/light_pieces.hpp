@@ -5,16 +5,62 @@
 // thread.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
-#include "runtime/lighting/light_loss.hpp"
+#include "runtime/sh/image_layout.hpp"
+#include "runtime/spec/environment_map.hpp"
 
 namespace lambent::lighting {
+
+// Computes what shaded surfaces lose when a light is limited to a few SH bands. It takes light from infinity
+// as points of luminous flux and returns one number, the loss. Pure CPU, safe to call from any thread.
+//
+// A receiver's shaded radiance is sum_i t_i L_i. Over all rotations of the receiver against the light, the
+// bands from n on of the light L contribute the variance sum_{l >= n} p_l |L_l|^2, where p_l is the power of
+// one coefficient of the transfer in band l. Transfer that is cut by a shadow's edge is a step on the sphere,
+// whose power falls as l^-2 per band and so as l^-3 per coefficient. For a clamped cosine half in shadow, p_l
+// / p_0 = 1.3 (l + 1/2)^-3; the factor 1.3 is left out here. The loss of L at order n is the standard
+// deviation of the missing part relative to the mean:
+//
+//   loss = sqrt(sum_{l = n..23} (l + 1/2)^-3 |L_l|^2) / |L_00|
+//
+// A sun alone loses 0.56 at order 5, a uniform half of the sky about 0.02, a sky like cos^2 nothing.
+
+// Holds flux in the cells of a coarse lat-long picture. A point is distributed over the four cells around it,
+// so that its position is kept.
+class FluxGrid {
+ public:
+  static constexpr int kRows = 64, kColumns = 128;
+  static constexpr int kBands = 24;  // higher bands vary faster than the cells (2.8 degrees) can resolve
+
+  // Holds the cells that a point falls into. Keep it when many grids receive the same points.
+  struct Place {
+    std::array<std::uint16_t, 4> cells{};
+    std::array<float, 4> shares{};
+  };
+  static Place place(const glm::dvec3& dir);
+
+  void add(const Place& at, double flux) {
+    for (std::size_t i = 0; i < 4; ++i) cells_[at.cells[i]] += flux * static_cast<double>(at.shares[i]);
+  }
+  double flux() const;
+  // Returns sum_{l = first_band..23} p_l |L_l|^2 / |Y_00|^2 with p_0 = 1. This is the square of a flux;
+  // divide it by the square of the flux of all light.
+  double lostPower(int first_band) const;
+
+ private:
+  std::vector<double> cells_ = std::vector<double>(std::size_t{kRows} * kColumns);
+};
+
+// Returns the loss at this order of a uniform disc that shines alone, in closed form.
+double discLoss(int order, double radius_rad);
 
 struct LightPoint {
   glm::dvec3 dir;
@@ -76,5 +122,61 @@ struct DiscDivision {
 };
 // Divides a uniform disc into pieces of about equal size.
 std::vector<DiscPiece> dividedDisc(const LightPiece& disc, const DiscDivision& division);
+
+// Searches pictures of light in blocks of texels for what is brighter than a threshold that is lowered step
+// by step. It takes environment maps and returns all their light on a FluxGrid, and points of light above the
+// threshold. Each texel is read twice, and once more when the threshold passes it, so that a whole descent
+// costs little more than one threshold. Pure CPU, one thread.
+double luminance(const glm::vec3& radiance);  // Rec.709
+
+class LightBlocks {
+ public:
+  explicit LightBlocks(std::span<const spec::EnvironmentMap> environment_maps);
+
+  double brightest() const { return brightest_; }  // luminance of the brightest texel, at least 0
+  void addTo(FluxGrid& grid) const;                // adds all light
+
+  // Sets thresholds from just below `brightest` (of all light) down to about `lowest`.
+  void setLevels(double brightest, double lowest);
+  std::size_t levels() const { return levels_.size(); }
+  double threshold(std::size_t level) const;
+  // Lowers the threshold to this level. points() then holds, for each block, what its texels have above it.
+  void lowerTo(std::size_t level);
+  std::span<const LightPoint> points() const { return points_; }
+
+ private:
+  // Describes the picture in the resolution in which it is searched: coarser or finer blocks in the same
+  // layout.
+  struct Search {
+    const spec::EnvironmentMap* environment_map;
+    int width, height;        // in blocks
+    std::uint32_t texels;     // texels along a block's edge
+    std::uint32_t parts;      // blocks along a texel's edge, if blocks are finer; else 1
+    std::size_t first_block;  // index into blocks_
+  };
+  struct Block {
+    LightPoint point;             // its flux is the flux above the threshold
+    double texel_sr = 0.0;        // solid angle of one texel, or of one part
+    double all = 0.0;             // sum of luminance over the texels
+    double light = 0.0;           // sum of luminance times solid angle over the texels above the threshold
+    double solid_angle_sr = 0.0;  // of these texels
+  };
+  struct Bright {
+    std::uint32_t block;
+    float luminance;
+  };
+  static Search searchOf(const spec::EnvironmentMap& environment_map, std::size_t first_block);
+  template <typename Visit>
+  static void eachBlock(const Search& search, Visit&& visit);
+  std::size_t levelOf(double value) const;
+
+  std::vector<Search> searches_;
+  std::vector<Block> blocks_;
+  double brightest_ = 0.0, top_ = 0.0;
+  std::vector<std::vector<Bright>> levels_;
+  std::size_t next_level_ = 0;
+  std::vector<std::uint32_t> lit_;  // blocks with texels above the threshold
+  std::vector<LightPoint> points_;  // the points of these blocks
+};
 
 }  // namespace lambent::lighting

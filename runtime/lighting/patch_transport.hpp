@@ -14,7 +14,6 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/lighting/patch_regions.hpp"
 #include "runtime/lighting/patches.hpp"
 
 namespace lambent::lighting {

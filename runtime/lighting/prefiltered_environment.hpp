@@ -1,5 +1,5 @@
 // Owns what rough mirrors show of the sky beyond the few SH bands that surfaces receive: P(L) - P(L_n),
-// prefiltered with the round lobe of prefiltered_lobe.hpp. L is the light without key lights, whose
+// prefiltered with a round lobe. L is the light without key lights, whose
 // highlights surfaces shade from their discs; where key lights are wide (pieces of windows or soft boxes),
 // their true shape is kept in second cube maps of all light, for mirrors that are sharp enough to show it.
 // P(L) is a cube map per set of lights with roughness along its mip levels, in the lights' own frame; it is
@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
@@ -17,9 +18,33 @@
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/prefiltered_shared.h"
 #include "runtime/lighting/sky.hpp"
+#include "runtime/sh/basis.hpp"
 #include "runtime/sh/window.hpp"
 
 namespace lambent::lighting {
+
+// Computes the lobe with which a rough surface blurs its reflection of the sky. It is taken to be
+// rotationally symmetric about the mirrored view, as if one looked along the normal (Karis 2013, split sum):
+// K(theta) ~ D_GGX(theta / 2) max(cos theta, 0) with integral 1, theta measured from the mirrored direction.
+// No GL.
+struct ReflectedLobe {
+  float alpha = 0.0f;             // 0: a mirror
+  float scale = 0.0f;             // K = scale * cos(theta) / (cos²(theta/2) (alpha² - 1) + 1)²
+  std::vector<float> angles_rad;  // the centres of kLobeShares equal shares of the lobe
+  // The lobe scales the bands of light by these factors: ∫ K P_l(cos theta).
+  std::array<float, sh::kMaxOrder> bands{};
+
+  float density(float cos_theta) const;
+};
+
+inline constexpr int kLobeShares = 256;
+
+// Makes the lobe for a perceptual roughness, 0..1; alpha = roughness².
+ReflectedLobe makeReflectedLobe(float roughness);
+
+// Returns the roughness of a mip level. Steps are finer where the lobe is narrow. specular_environment.glsl
+// has the inverse.
+float roughnessOfLevel(std::uint32_t level, std::uint32_t levels);
 
 class PrefilteredEnvironment {
  public:

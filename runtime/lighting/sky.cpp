@@ -10,10 +10,12 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/lighting/shaders.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "lambent_lighting_embedded.hpp"
+#include "runtime/sh/image_layout.hpp"
 
 namespace lambent::lighting {
+
+const gpu::FindText kLightingShaders[1] = {&embedded::lambent_lighting::find};
 
 namespace {
 

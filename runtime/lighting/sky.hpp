@@ -18,6 +18,9 @@
 
 namespace lambent::lighting {
 
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kLightingShaders[1];
+
 // Resamples environment maps and a constant, in their own frame, with about one texel of the cube per texel
 // of the environment maps.
 gpu::Texture skyCube(std::span<const spec::EnvironmentMap* const> environment_maps, glm::vec3 constant);

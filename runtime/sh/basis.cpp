@@ -2,8 +2,6 @@
 
 #include <cassert>
 
-#include "runtime/sh/with_order.hpp"
-
 namespace lambent::sh {
 
 namespace {

@@ -11,6 +11,7 @@
 // is off by about l e.
 #pragma once
 
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <numbers>
@@ -143,5 +144,16 @@ extern template void evaluateBatch<float>(int, const float*, const float*, const
                                           std::size_t);
 extern template void evaluateBatch<double>(int, const double*, const double*, const double*, std::size_t,
                                            double*, std::size_t);
+
+// Turns an order that is known at run time into a compile-time constant.
+
+// Calls f with std::integral_constant<int, order>. `order` is in 1..Most.
+template <int Most, typename F>
+void withOrder(int order, F&& f) {
+  assert(order >= 1 && order <= Most);
+  detail::unrolled(std::make_integer_sequence<int, Most>{}, [&](auto index) {
+    if (order == index + 1) f(std::integral_constant<int, index + 1>{});
+  });
+}
 
 }  // namespace lambent::sh

@@ -29,8 +29,8 @@ struct ProjectionReport {
 LightVector projectImage(int order, ImageLayout layout, int width, int height,
                          std::span<const glm::vec3> texels, ProjectionReport* report = nullptr);
 
-// Returns the weights of texels. The weight of texel k (in the order of cube_map.hpp) for coefficient i is
-// entry i * 6 size² + k. It is Omega (2 y(centre) - mean of y over the texel), where Omega is the texel's
+// Returns the weights of texels. The weight of texel k (in the order of image_layout.hpp) for coefficient i
+// is entry i * 6 size² + k. It is Omega (2 y(centre) - mean of y over the texel), where Omega is the texel's
 // solid angle. For box-filtered texels this cancels the leading error that y(centre) or the mean alone would
 // have. A multiple of Omega is then subtracted from coefficients 1 and up, so that uniform light gives
 // exactly constantLight.
@@ -40,7 +40,7 @@ class CubeProjector {
  public:
   CubeProjector(int order, int size);  // `size` is the number of texels along an edge, at least 1
 
-  // Projects `faces`, which has 6 * size * size finite texels in the order of cube_map.hpp.
+  // Projects `faces`, which has 6 * size * size finite texels in the order of image_layout.hpp.
   LightVector project(std::span<const glm::vec3> faces) const;
 
   int order() const { return order_; }

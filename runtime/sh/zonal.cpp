@@ -4,6 +4,11 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::sh {
 
@@ -126,6 +131,151 @@ LightVector convolved(const LightVector& light, std::span<const double> zonal) {
 
 LightVector cosineConvolved(const LightVector& light) {
   return scaledBands(light, [](int l) { return clampedCosine(l) / kPi; });
+}
+
+namespace {
+
+constexpr int kMaxAxes = 2 * kMaxFactoredOrder - 1;
+
+struct AxisAngles {
+  double theta_deg, phi_deg;
+};
+
+// These are the axes after z. They were found by random descent on the worst condition number of the band
+// matrices y_lm(a_i) up to band 5, each with its first axes: 2.1 in the plane, 3.5 on the sphere
+// (zonal_factors_test.cpp prints them). Axes for bands 6 to 8 were then added one band at a time: the
+// condition numbers are 2.7, 3.7 and 2.8 in the plane, 11.7, 7.8 and 8.4 on the sphere. Opposite axes are
+// equivalent, so all are on the upper side.
+constexpr std::array<AxisAngles, 8> kInPlane = {{{70.877, 0},
+                                                 {48.465, 180},
+                                                 {35.135, 0},
+                                                 {78.412, 180},
+                                                 {23.305, 180},
+                                                 {53.072, 0},
+                                                 {63.550, 180},
+                                                 {14.400, 0}}};
+constexpr std::array<AxisAngles, 16> kOnSphere = {{{50.897, 336.283},
+                                                   {63.950, 97.713},
+                                                   {86.128, 268.301},
+                                                   {52.917, 58.666},
+                                                   {87.912, 117.891},
+                                                   {59.783, 296.874},
+                                                   {24.865, 359.535},
+                                                   {26.242, 71.195},
+                                                   {60.488, 272.484},
+                                                   {40.970, 239.161},
+                                                   {56.490, 169.457},
+                                                   {77.150, 143.975},
+                                                   {89.900, 46.772},
+                                                   {85.606, 160.510},
+                                                   {47.222, 264.439},
+                                                   {31.317, 100.561}}};
+
+glm::dvec3 directionOf(const AxisAngles& axis) {
+  const double theta = axis.theta_deg * std::numbers::pi / 180, phi = axis.phi_deg * std::numbers::pi / 180;
+  // In the plane y must be exactly 0, but the sine of pi in double precision is not.
+  const bool in_plane = axis.phi_deg == 0 || axis.phi_deg == 180;
+  return {std::sin(theta) * std::cos(phi), in_plane ? 0.0 : std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+// Inverts a row-major count x count matrix by elimination with row pivots.
+std::vector<double> inverted(std::vector<double> matrix, std::size_t count) {
+  std::vector<double> inverse(count * count);
+  for (std::size_t i = 0; i < count; ++i) inverse[i * count + i] = 1;
+  for (std::size_t column = 0; column < count; ++column) {
+    std::size_t pivot = column;
+    for (std::size_t row = column + 1; row < count; ++row)
+      if (std::abs(matrix[row * count + column]) > std::abs(matrix[pivot * count + column])) pivot = row;
+    for (std::size_t k = 0; k < count; ++k) {
+      std::swap(matrix[pivot * count + k], matrix[column * count + k]);
+      std::swap(inverse[pivot * count + k], inverse[column * count + k]);
+    }
+    const double scale = 1 / matrix[column * count + column];
+    for (std::size_t k = 0; k < count; ++k)
+      matrix[column * count + k] *= scale, inverse[column * count + k] *= scale;
+    for (std::size_t row = 0; row < count; ++row) {
+      const double factor = matrix[row * count + column];
+      if (row == column || factor == 0) continue;
+      for (std::size_t k = 0; k < count; ++k) {
+        matrix[row * count + k] -= factor * matrix[column * count + k];
+        inverse[row * count + k] -= factor * inverse[column * count + k];
+      }
+    }
+  }
+  return inverse;
+}
+
+}  // namespace
+
+ZonalFactors::ZonalFactors(int order, bool isotropic) : order_(order), isotropic_(isotropic) {
+  assert(order >= 1 && order <= kMaxFactoredOrder);
+  std::vector<glm::dvec3> axes = {glm::dvec3(0, 0, 1)};
+  const std::span<const AxisAngles> others = isotropic ? std::span<const AxisAngles>(kInPlane) : kOnSphere;
+  for (int i = 1; i < axesOfBand(order - 1); ++i)
+    axes.push_back(directionOf(others[static_cast<std::size_t>(i - 1)]));
+  axes_.assign(axes.begin(), axes.end());
+
+  std::vector<double> y(static_cast<std::size_t>(coefficientCount(order)));
+  for (int l = 0; l < order; ++l) {
+    // The matrix y_lm(a_i) has row m and column i. Functions with axes in the plane have only m >= 0.
+    const auto count = static_cast<std::size_t>(axesOfBand(l));
+    std::vector<double> band(count * count);
+    for (std::size_t i = 0; i < count; ++i) {
+      evaluate(order, axes[i], y);
+      const auto first = static_cast<std::size_t>(coefficientIndex(l, isotropic ? 0 : -l));
+      for (std::size_t m = 0; m < count; ++m) band[m * count + i] = y[first + m];
+    }
+    const std::vector<double> inverse = inverted(std::move(band), count);
+    inverses_.insert(inverses_.end(), inverse.begin(), inverse.end());
+  }
+}
+
+ZonalFactors ZonalFactors::isotropic(int order) {
+  return ZonalFactors(order, true);
+}
+
+ZonalFactors ZonalFactors::anisotropic(int order) {
+  return ZonalFactors(order, false);
+}
+
+int ZonalFactors::weightCount() const {
+  return isotropic_ ? order_ * (order_ + 1) / 2 : order_ * order_;
+}
+
+void ZonalFactors::factor(std::span<const float> coefficients, std::span<float> weights) const {
+  assert(coefficients.size() >= static_cast<std::size_t>(weightCount()) &&
+         weights.size() >= static_cast<std::size_t>(weightCount()));
+  const double* inverse = inverses_.data();
+  std::size_t first = 0;
+  for (int l = 0; l < order_; ++l) {
+    const auto count = static_cast<std::size_t>(axesOfBand(l));
+    for (std::size_t i = 0; i < count; ++i) {
+      double sum = 0;
+      for (std::size_t m = 0; m < count; ++m)
+        sum += inverse[i * count + m] * static_cast<double>(coefficients[first + m]);
+      weights[first + i] = static_cast<float>(sum);
+    }
+    inverse += count * count;
+    first += count;
+  }
+}
+
+void ZonalFactors::expand(std::span<const float> weights, std::span<const glm::vec3> turned_axes,
+                          std::span<float> out) const {
+  const auto coefficients = static_cast<std::size_t>(coefficientCount(order_));
+  assert(weights.size() >= static_cast<std::size_t>(weightCount()) && turned_axes.size() >= axes_.size());
+  assert(out.size() >= coefficients);
+  std::fill_n(out.begin(), coefficients, 0.0f);
+  std::array<float, kMaxFactoredOrder * kMaxFactoredOrder> y;
+  for (int i = 0; i < static_cast<int>(axes_.size()); ++i) {
+    evaluate(order_, turned_axes[static_cast<std::size_t>(i)], y);
+    // Bands from l = i on use this axis if isotropic, else bands from 2l = i on.
+    for (int l = isotropic_ ? i : (i + 1) / 2; l < order_; ++l) {
+      const float weight = weights[static_cast<std::size_t>((isotropic_ ? l * (l + 1) / 2 : l * l) + i)];
+      for (int k = l * l; k < (l + 1) * (l + 1); ++k)
+        out[static_cast<std::size_t>(k)] += weight * y[static_cast<std::size_t>(k)];
+    }
+  }
 }
 
 }  // namespace lambent::sh

@@ -12,7 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/shadows/key_shared.h"
-#include "runtime/shadows/shadowed_light_ref.hpp"
+#include "runtime/shadows/shadowed_light.hpp"
 
 namespace lambent::frame::ref {
 

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "runtime/shadows/shaders.hpp"
+#include "runtime/shadows/shadow_casters.hpp"
 
 namespace lambent::frame {
 

@@ -2,7 +2,7 @@
 // receivers and as bodies, the local lights, and which carrier brings each light to each group:
 // - the group's own light column, if the light belongs to the group and stands where it stood in the bake. If
 //   its shape is known and a shadow cube is free, only its bounces go by the column, and its direct light
-//   goes per pixel (column_lights.hpp);
+//   goes per pixel (shadowed_light_choice.hpp);
 // - a shadow cube map, per pixel, if the light stands within the bounds of a group of surfaces; its bounces
 //   travel by patches;
 // - a shadow cube map, per pixel, if the light stands beside any group, within a few of its radii. It then
@@ -21,6 +21,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/lighting/incident_light.hpp"
 #include "runtime/world/world.hpp"
 
@@ -86,5 +87,14 @@ struct BodyProxies {
   std::vector<std::uint64_t> keys;
 };
 BodyProxies proxiesOf(const streaming::Residency& residency);
+
+// Finds what bodies hide of lamps that are shaded per pixel, when these bodies reach a group by their
+// neighborhood grids and are left out of its captures. Shadow cubes occlude the direct light of such lamps;
+// this gives the occlusion for their bounced light. It traces rays from the light probes to the lamps among
+// the bodies' proxies. No GL.
+
+// Fills IncidentGroup::open of all groups; their samples_ws and left_out must be final. `proxies` is indexed
+// by CaptureBody::proxy.
+void hideApart(LitScene& scene, std::span<const bundle::CaptureProxy* const> proxies);
 
 }  // namespace lambent::frame

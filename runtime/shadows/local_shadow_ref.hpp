@@ -5,7 +5,7 @@
 
 #include <glm/common.hpp>
 
-#include "runtime/shadows/shadowed_light_ref.hpp"
+#include "runtime/shadows/shadowed_light.hpp"
 
 namespace lambent::frame::ref {
 

@@ -8,9 +8,8 @@
 
 #include <glm/matrix.hpp>
 
-#include "runtime/shadows/local_faces.hpp"
-#include "runtime/shadows/shaders.hpp"
-#include "runtime/shadows/shadowed_light_record.hpp"
+#include "runtime/shadows/shadow_casters.hpp"
+#include "runtime/shadows/shadowed_light.hpp"
 
 namespace lambent::frame {
 

@@ -1,4 +1,4 @@
-// Owns the shadow cubes of local lights (lighting/shadowed_light.hpp) and what the surface pass reads to
+// Owns the shadow cubes of local lights (lighting/local_light.hpp) and what the surface pass reads to
 // shade with them. It takes the world, up to kMaxShadowedLights lights, and which of them light the draws of
 // each rigid group per pixel. A cube is drawn again only when its light or something in it has moved, arrived
 // or gone; it holds all resident opaque and masked draws of all groups, both sides of each. All cubes are
@@ -11,12 +11,14 @@
 #include <span>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/lighting/shadowed_light.hpp"
+#include "runtime/lighting/local_light.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/shadows/local_shared.h"
 #include "runtime/shadows/shadow_casters.hpp"
@@ -25,6 +27,45 @@
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
+
+// Defines the six faces of a shadow cube as local_shadow.glsl looks them up: +X, -X, +Y, -Y, +Z, -Z, each a
+// camera along its axis with a field of view of 90 degrees. Boxes are relative to the cube's centre.
+struct FaceAxes {
+  glm::vec3 right, up, forward;
+};
+
+inline FaceAxes faceAxes(std::uint32_t face) {
+  glm::vec3 forward(0.0f);
+  forward[static_cast<int>(face / 2)] = face % 2 == 1 ? -1.0f : 1.0f;
+  const glm::vec3 up = face / 2 == 1 ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+  return {glm::cross(forward, up), up, forward};
+}
+
+// Return the least and the greatest dot(axis, x) over the box.
+inline float leastAlong(const scene::Box& box, glm::vec3 axis) {
+  float sum = 0.0f;
+  for (int i = 0; i < 3; ++i) sum += axis[i] * (axis[i] > 0.0f ? box.min[i] : box.max[i]);
+  return sum;
+}
+inline float mostAlong(const scene::Box& box, glm::vec3 axis) {
+  return -leastAlong(box, -axis);
+}
+
+// Returns whether part of the box may lie in the face's frustum; at its edges it may return true for boxes
+// outside.
+inline bool faceMeets(const FaceAxes& axes, const scene::Box& box) {
+  for (const glm::vec3 side : {axes.right, -axes.right, axes.up, -axes.up})
+    if (mostAlong(box, axes.forward + side) < 0.0f) return false;
+  return true;
+}
+
+// Return the distance of the box's nearest and farthest point from the centre.
+inline float nearestDistance(const scene::Box& box) {
+  return glm::length(glm::max(glm::max(box.min, -box.max), glm::vec3(0.0f)));
+}
+inline float farthestDistance(const scene::Box& box) {
+  return glm::length(glm::max(glm::abs(box.min), glm::abs(box.max)));
+}
 
 struct LocalOptions {
   std::uint32_t size =

@@ -2,7 +2,12 @@
 
 #include <algorithm>
 
+#include "lambent_draws_embedded.hpp"
+#include "lambent_shadows_embedded.hpp"
+
 namespace lambent::frame {
+
+const gpu::FindText kShadowShaders[2] = {&embedded::lambent_shadows::find, &embedded::lambent_draws::find};
 
 namespace {
 

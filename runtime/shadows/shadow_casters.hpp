@@ -13,14 +13,15 @@
 #include <glm/mat4x4.hpp>
 
 #include "runtime/base/change_gate.hpp"
-#include "runtime/draws/draw_indices.hpp"
 #include "runtime/draws/surface_record.hpp"
-#include "runtime/draws/texture_units.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
+
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kShadowShaders[2];
 
 // Describes a caster. Casters that compare equal cast equal shadows.
 struct ShadowCaster {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/sh/zonal_factors.hpp"
+#include "runtime/sh/zonal.hpp"
 
 namespace lambent::streaming {
 

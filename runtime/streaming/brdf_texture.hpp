@@ -1,5 +1,5 @@
 // Packs a table of b(v) into a texture for shaders. The texture array holds the zonal weights of every node
-// (runtime/sh/zonal_factors.hpp) as floats, four per texel. The hardware interpolates between texels of a
+// (runtime/sh/zonal.hpp) as floats, four per texel. The hardware interpolates between texels of a
 // layer; glossy_kernel.glsl reads them. The axes of the texture are:
 //   x:     u of the view's angle (bundle::angleAxis)
 //   y:     roughness if isotropic, else azimuth

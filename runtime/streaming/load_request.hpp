@@ -6,14 +6,90 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "runtime/base/result.hpp"
+#include "runtime/bundle/capture_proxy.hpp"
+#include "runtime/bundle/mesh.hpp"
 #include "runtime/bundle/reader.hpp"
-#include "runtime/streaming/loaded_chunk.hpp"
+#include "runtime/streaming/brdf_texture.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::streaming {
+
+// Declares the items that the loader produces: parts of a bundle that are read, checked and decoded, which
+// residency.hpp puts on the GPU.
+struct MeshChunk {
+  std::uint32_t mesh = 0, primitive = 0;
+  bundle::MeshData data;
+  float mean_edge = 0.0f;  // mean length of the triangles' edges, in mesh space
+};
+
+// Holds an image from the finest level that is needed.
+struct ImageChunk {
+  std::uint32_t image = 0;
+  std::uint32_t width = 0, height = 0;  // size of that level
+  std::vector<std::uint8_t> rgba;       // row 0 is at the top; colours are sRGB-coded
+  // The level as linear numbers, if the image serves as both and the averages of numbers differ from those of
+  // colours; else empty.
+  std::vector<std::uint8_t> linear{};
+};
+
+struct WeightsChunk {
+  std::uint32_t draw = 0;
+  transfer::VertexWeights rows;
+};
+
+struct CodebookChunk {
+  bundle::GroupIndex group;
+  bundle::CellIndex cell;
+  bundle::TransferIndex transfer;
+  transfer::Codebook codebook;
+  std::vector<std::uint32_t> positions;  // sample of the cell | cluster << 16, in the order of the codes
+};
+
+struct PlaneChunk {
+  bundle::GroupIndex group;
+  bundle::CellIndex cell;
+  bundle::TransferIndex transfer;
+  bundle::PlaneIndex plane;
+  std::vector<std::byte> codes;  // 8 or 16 bits per position, little endian, as the GPU reads them
+};
+
+struct LightWeightsChunk {
+  bundle::GroupIndex group;
+  bundle::CellIndex cell;
+  std::vector<transfer::LightWeights> samples;
+};
+
+struct ProxyChunk {
+  bundle::GroupIndex group;
+  bundle::CaptureProxy proxy;
+};
+
+struct BrdfChunk {
+  std::uint32_t table = 0;  // index into Description::brdf_tables
+  bundle::BrdfTable data;
+  BrdfTexels texels;
+};
+
+struct DensityChunk {
+  bundle::GroupIndex group;
+  std::vector<std::byte> codes;     // VolumeGrid::bits per voxel, little endian
+  std::vector<float> block_maxima;  // see blockMaxima()
+};
+
+struct VoxelsChunk {
+  bundle::GroupIndex group;
+  std::vector<std::uint32_t> voxels;  // voxel of the transfer grid for each sample of the volume
+};
+
+using Ready = std::variant<MeshChunk, ImageChunk, WeightsChunk, CodebookChunk, PlaneChunk, LightWeightsChunk,
+                           ProxyChunk, BrdfChunk, DensityChunk, VoxelsChunk>;
 
 struct MeshRequest {
   std::uint32_t mesh = 0, primitive = 0;
@@ -72,5 +148,18 @@ std::optional<Result<Ready>> load(const bundle::Reader& reader, const Work& work
 
 // Returns the memory that a loaded item uses.
 std::size_t bytesOf(const Ready& ready);
+
+// Computes the largest density in blocks of 8 x 8 x 8 voxels, so that rays can skip empty blocks. The density
+// is linear between voxel centres, so the maximum of a block includes the voxels next to it.
+inline constexpr std::uint32_t kVolumeBlock = 8;  // voxels per side
+
+// Returns the number of blocks along each axis. Block b fills [8 b, 8 b + 8] in voxel coordinates.
+inline glm::uvec3 blocksOf(const glm::uvec3& size) {
+  return (size + glm::uvec3(kVolumeBlock - 1)) / kVolumeBlock;
+}
+
+// Returns the maxima as fractions of the largest code of `bits` (8 or 16), x fastest. `codes` are those of
+// bundle::VolumeGrid.
+std::vector<float> blockMaxima(std::span<const std::byte> codes, std::uint32_t bits, const glm::uvec3& size);
 
 }  // namespace lambent::streaming

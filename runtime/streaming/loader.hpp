@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "runtime/base/result.hpp"
-#include "runtime/base/thread_pool.hpp"
+#include "runtime/base/threads.hpp"
 #include "runtime/bundle/reader.hpp"
 #include "runtime/streaming/load_request.hpp"
-#include "runtime/streaming/loaded_chunk.hpp"
 
 namespace lambent::streaming {
 

@@ -6,9 +6,7 @@
 
 #include "runtime/gpu/arena.hpp"
 #include "runtime/streaming/brdf_texture.hpp"
-#include "runtime/streaming/image_decode.hpp"
-#include "runtime/streaming/image_levels.hpp"
-#include "runtime/streaming/image_uses.hpp"
+#include "runtime/streaming/images.hpp"
 #include "runtime/streaming/sizes.hpp"
 
 namespace lambent::streaming {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/streaming/image_levels.hpp"
+#include "runtime/streaming/images.hpp"
 #include "runtime/streaming/residency.hpp"
 
 namespace lambent::streaming {

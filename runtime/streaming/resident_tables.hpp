@@ -12,11 +12,10 @@
 
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/indices.hpp"
 #include "runtime/gpu/arena.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/streaming/brdf_texture.hpp"
-#include "runtime/streaming/image_uses.hpp"
+#include "runtime/streaming/images.hpp"
 
 namespace lambent::streaming {
 
@@ -89,7 +88,7 @@ struct ResidentVolume {
   bundle::VolumeGrid grid;
   std::uint32_t outputs = 1;        // outputs of its samples
   gpu::Texture density;             // share of grid.density_max in red; empty until loaded
-  std::vector<float> block_maxima;  // volume_blocks.hpp; kept in memory of the CPU
+  std::vector<float> block_maxima;  // load_request.hpp; kept in memory of the CPU
   gpu::Buffer voxels;               // voxel of the transfer grid for each sample; empty until loaded
   std::uint32_t sample_count = 0;
   std::uint64_t version = 0;
@@ -200,7 +199,7 @@ struct ResidentBundle {
 
 // The tables of all bundles that are shown, in the order of their slots, or of one bundle that is staged.
 // Indices refer to tables of the same ResidentTables. Cells, volumes, groups and draws have ids that no other
-// entry of the residency ever had, so other code can keep state for them by id (base/keyed_state.hpp).
+// entry of the residency ever had, so other code can keep state for them by id (base/change_gate.hpp).
 struct ResidentTables {
   std::vector<ResidentBundle> bundles;
   std::vector<ResidentMesh> meshes;

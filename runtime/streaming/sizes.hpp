@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/indices.hpp"
 #include "runtime/transfer/seen_sky_shared.h"
 
 namespace lambent::streaming {

@@ -1,14 +1,12 @@
 #include "runtime/surface/light_modules.hpp"
 
 #include "lambent_bounces_embedded.hpp"
-#include "lambent_shadows_embedded.hpp"
-#include "runtime/surface/shaders.hpp"
+#include "runtime/surface/surface_program.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShadowShaders[] = {&embedded::lambent_shadows::find};
 constexpr gpu::FindText kBounceShaders[] = {&embedded::lambent_bounces::find};
 
 constexpr SurfaceFunction kLocal[] = {

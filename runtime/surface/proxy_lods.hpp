@@ -21,7 +21,6 @@
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/local_light.hpp"
-#include "runtime/sh/cached_window.hpp"
 #include "runtime/sh/window.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/surface/proxy_lod_shared.h"

@@ -17,12 +17,27 @@
 #include "runtime/draws/surface_module.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/lighting/prefiltered_lobe.hpp"
+#include "runtime/lighting/prefiltered_environment.hpp"
+#include "runtime/lighting/probe_places.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/size.hpp"
 #include "runtime/surface/reflection_probes_shared.h"
+#include "runtime/world/world.hpp"
 
 namespace lambent::frame {
+
+// Finds the voxels that the surfaces of a rigid group pass through, from the meshes that are resident. It is
+// done once when a room arrives, and waits for the GPU. Render thread only. create() fails if the kernel does
+// not compile on this device.
+class SurfaceVoxelizer {
+ public:
+  static Result<SurfaceVoxelizer> create();
+  // Returns the voxels in the group's frame.
+  lighting::SurfaceVoxels voxelsOf(World& world, std::size_t group, gpu::Counters& counters) const;
+
+ private:
+  gpu::Program program_;
+};
 
 inline constexpr std::uint32_t kProbeFaceTexels = 128;  // along an edge of a face
 

@@ -3,7 +3,15 @@
 // that transfer brings (diffuse_receiver.glsl, normal_mapped_receiver.glsl, ggx_receiver.glsl,
 // measured_receiver.glsl), and from modules that add other light. Surfaces writes the files that join them:
 // surface_kind.glsl, receiver.glsl, received_light.glsl.
-#include "surface_look.glsl"
+#include "surface_shared.h"
+#include "surface_kind.glsl"
+
+layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
+layout(location = 0) flat in uint draw_of;
+layout(location = 1) in vec4 looks_at;      // texture coordinates; xy: base colour, zw: emission
+layout(location = 2) in vec4 vertex_color;
+
+vec4 look(sampler2D image, vec2 at) { return kFinestTexels ? textureLod(image, at, 0.0) : texture(image, at); }
 
 layout(binding = kUnitBaseColor) uniform sampler2D base_color_texture;
 layout(binding = kUnitEmissive) uniform sampler2D emissive_texture;

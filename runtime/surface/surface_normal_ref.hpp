@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/transfer/diffuse_light_ref.hpp"
+#include "runtime/transfer/transfer_ref.hpp"
 
 namespace lambent::frame::ref {
 

@@ -6,10 +6,24 @@
 
 #include <fmt/format.h>
 
-#include "runtime/surface/shaders.hpp"
+#include "lambent_draws_embedded.hpp"
+#include "lambent_effects_glossy_embedded.hpp"
+#include "lambent_effects_neighborhood_embedded.hpp"
+#include "lambent_lighting_embedded.hpp"
+#include "lambent_shadows_embedded.hpp"
+#include "lambent_surface_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 #include "runtime/transfer/seen_sky_shared.h"
 
 namespace lambent::frame {
+
+const gpu::FindText kSurfaceShaders[7] = {&embedded::lambent_surface::find,
+                                          &embedded::lambent_draws::find,
+                                          &embedded::lambent_transfer::find,
+                                          &embedded::lambent_lighting::find,
+                                          &embedded::lambent_shadows::find,
+                                          &embedded::lambent_effects_glossy::find,
+                                          &embedded::lambent_effects_neighborhood::find};
 
 namespace {
 

@@ -14,6 +14,9 @@
 
 namespace lambent::frame {
 
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kSurfaceShaders[7];
+
 struct SurfaceKind {
   bool normal_mapped = false;
   bool dark = false;          // reflects nothing

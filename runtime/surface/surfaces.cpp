@@ -7,8 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "runtime/draws/in_view.hpp"
-#include "runtime/draws/view_block.hpp"
+#include "runtime/draws/view.hpp"
 
 namespace lambent::frame {
 

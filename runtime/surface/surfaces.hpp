@@ -17,12 +17,10 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/draws/draw_indices.hpp"
 #include "runtime/draws/glossy_record.hpp"
 #include "runtime/draws/surface_module.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/surface_shared.h"
-#include "runtime/draws/texture_units.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/gpu/program.hpp"

@@ -9,9 +9,12 @@
 #include <span>
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "runtime/sh/basis.hpp"
+#include "runtime/transfer/seen_sky_shared.h"
 #include "runtime/transfer/transfer_shared.h"
 
 namespace lambent::transfer::ref {
@@ -256,6 +259,40 @@ inline RowEntry rowEntryAt(const Memory& memory, const VertexRows& rows, uint en
   const uint pair = memory.rowWordAt(samples_word + rows.entries + (entry >> 1));
   return {static_cast<float>((pair >> (16 * (entry & 1))) & 0xffff) / 65535.0f,
           memory.rowWordAt(samples_word + entry)};
+}
+
+// This is the CPU twin of diffuse_light.glsl, with the same names and order of terms. Vectors are in the
+// group's frame; light is given by real orthonormal coefficients of bands 0..2 (docs/conventions.md). No GL.
+inline glm::vec3 diffuseLight(const std::array<glm::vec3, 9>& light, glm::vec3 n) {
+  return 0.28209479f * light[0] + 0.32573501f * (n.y * light[1] + n.z * light[2] + n.x * light[3]) +
+         0.27313711f * (n.x * n.y * light[4] + n.y * n.z * light[5] + n.x * n.z * light[7]) +
+         0.07884789f * (3.0f * n.z * n.z - 1.0f) * light[6] +
+         0.13656855f * (n.x * n.x - n.y * n.y) * light[8];
+}
+
+// This is the CPU twin of seen_sky.glsl, with the same names. No GL.
+inline std::array<float, kSeenBands> seenBands(std::span<const float, kSeenCoefficients> c,
+                                               const glm::vec3& d) {
+  std::array<float, kSeenCoefficients> y;
+  sh::evaluate(static_cast<int>(kSeenBands), d, y);
+  std::array<float, kSeenBands> bands{};
+  for (std::size_t l = 0; l < bands.size(); ++l)
+    for (std::size_t k = l * l; k < (l + 1) * (l + 1); ++k) bands[l] += c[k] * y[k];
+  return bands;
+}
+
+inline float seenShare(std::span<const float, kSeenCoefficients> c, std::span<const float> weights,
+                       std::span<const glm::vec3> axes, const glm::mat3& frame) {
+  float sum = 0.0f;
+  for (std::size_t i = 0; i < kSeenBands; ++i) {
+    const std::array<float, kSeenBands> bands = seenBands(c, frame * axes[i]);
+    for (std::size_t l = i; l < kSeenBands; ++l) sum += weights[l * (l + 1) / 2 + i] * bands[l];
+  }
+  return std::clamp(sum, 0.0f, 1.0f);
+}
+
+inline float seenShareOfAll(std::span<const float, kSeenCoefficients> c) {
+  return std::clamp(3.5449077f * c[0], 0.0f, 1.0f);
 }
 
 }  // namespace lambent::transfer::ref

@@ -6,7 +6,7 @@
 
 #include <epoxy/gl.h>
 
-#include "runtime/base/memory.hpp"
+#include "runtime/base/process.hpp"
 #include "runtime/scene/components.hpp"
 #include "tests/support/frame/world_stage.hpp"
 

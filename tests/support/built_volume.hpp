@@ -16,8 +16,8 @@
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/volume_grid.hpp"
 #include "runtime/bundle/writer.hpp"
+#include "runtime/streaming/load_request.hpp"
 #include "runtime/streaming/loader.hpp"
-#include "runtime/streaming/volume_blocks.hpp"
 #include "tests/support/frame/bundle_store.hpp"
 
 namespace lambent::testing {

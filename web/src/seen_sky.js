@@ -1,6 +1,6 @@
 // How much of the sky a smooth dielectric's mirror sees, from the bands t_k = (1/π) ∫ V max(n·s, 0) y_k ds of transfer
 // without bounces. Weights b of least squares make Σ b_k t_k as near to the lobe about the mirrored direction as it gets
-// (runtime/lighting/seen_kernel.hpp).
+// (runtime/evaluate/seen_sky.hpp).
 import { DataArrayTexture, DataUtils, HalfFloatType, LinearFilter, RGBAFormat } from 'three';
 import { floatList } from './gpu_textures.js';
 import { lobeDensity } from './lobe.js';

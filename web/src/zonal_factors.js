@@ -1,5 +1,5 @@
 // Writes functions on the sphere as sums of zonal functions about a few axes, so that they turn without a rotation
-// matrix (Nowrouzezahrai, Simari and Fiume 2012). The axes are those of runtime/sh/zonal_factors.cpp.
+// matrix (Nowrouzezahrai, Simari and Fiume 2012). The axes are those of runtime/sh/zonal.cpp.
 import { evaluateBasis } from './sh.js';
 
 // Axes after z, in degrees: theta, phi.

@@ -5,7 +5,7 @@
 #include <link.h>
 
 #include "baker/import/openimageio/module.hpp"
-#include "runtime/base/own_program.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::baker {
 namespace {

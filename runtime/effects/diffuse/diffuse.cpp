@@ -4,9 +4,13 @@
 
 #include <fmt/format.h>
 
-#include "runtime/effects/diffuse/shaders.hpp"
+#include "lambent_effects_diffuse_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 
 namespace lambent::effects::diffuse {
+
+const gpu::FindText kDiffuseShaders[2] = {&embedded::lambent_effects_diffuse::find,
+                                          &embedded::lambent_transfer::find};
 
 static_assert(transfer::kLightStride == lighting::GroupLights::kStride &&
               transfer::kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);

@@ -14,16 +14,17 @@
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
-#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
 #include "runtime/evaluate/transfer_table.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/gpu/work_list.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
 
 namespace lambent::effects::diffuse {
+
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kDiffuseShaders[2];
 
 // Holds the tables that the kernels read, as last uploaded.
 struct Tables : evaluate::TransferTable {

@@ -15,7 +15,6 @@
 #include <glm/vec4.hpp>
 
 #include "runtime/effects/diffuse/diffuse_shared.h"
-#include "runtime/transfer/diffuse_light_ref.hpp"
 #include "runtime/transfer/transfer_ref.hpp"
 
 namespace lambent::effects::diffuse::ref {

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/effects/diffuse/shaders.hpp"
+#include "runtime/effects/diffuse/diffuse.hpp"
 
 namespace lambent::effects::diffuse {
 

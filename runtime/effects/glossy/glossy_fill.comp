@@ -7,9 +7,15 @@ layout(std430, binding = kBindLights) readonly buffer Lights { vec4 lights[]; };
 layout(std430, binding = kBindFills) readonly buffer Fills { FillRecord fills[]; };
 layout(std430, binding = kBindSamples) writeonly buffer Samples { vec4 samples[]; };
 
-#include "glossy_eval.glsl"
+const float kSqrtFourPi = 3.5449077018110318;
 
 vec3 lightAt(uint index) { return lights[index].rgb; }
+
+// Returns one output of an open sample: all of the light, and visibility 1. For a neighborhood both are 0, no change.
+vec4 openLight(FillRecord fill, uint output_index) {
+  vec3 light = output_index < fill.coefficients ? lightAt(fill.light + output_index) : vec3(0.0);
+  return vec4(light, output_index == 0u && fill.open != 0u ? kSqrtFourPi : 0.0);
+}
 
 void main() {
   uint index = gl_WorkGroupID.x + gl_WorkGroupID.y * kMaxWorkGroupsX;

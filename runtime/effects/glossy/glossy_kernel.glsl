@@ -1,12 +1,12 @@
 // Computes what a glossy surface sends towards a view: the transferred light at its place, weighed by b(v) turned to
-// its frame. It holds the mathematics only and no bindings; glossy_kernel_ref.hpp is its CPU twin, term by term.
+// its frame. It holds the mathematics only and no bindings; glossy_ref.hpp is its CPU twin, term by term.
 // Vectors are unit vectors in the group's frame. The entry shader defines:
 //   LAMBENT_BANDS        bands of the transferred light: 4, 5 or 6
 //   LAMBENT_ANISOTROPIC  set if the table has azimuths
 //   LAMBENT_MEASURED     set for three lobes, red, green and blue; otherwise two, which F0 and F90 multiply
 //   LAMBENT_ZONAL_AXES   axes of sh::ZonalFactors, as vec3[](...)
 // b turned to the frame is a sum of zonal functions, each about one axis a_i of the local frame turned to the group's
-// (runtime/sh/zonal_factors.hpp). A zonal function times the light is the light's band in the direction of its axis:
+// (runtime/sh/zonal.hpp). A zonal function times the light is the light's band in the direction of its axis:
 //   sum_k c_k l'_k = sum_l sum_i w_l,i L_l(a_i),   L_l(a) = sum_m y_lm(a) l'_lm.
 
 const int kBands = LAMBENT_BANDS, kCoefficients = kBands * kBands;

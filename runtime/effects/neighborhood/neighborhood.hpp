@@ -1,7 +1,7 @@
 // Owns the change of the light around bodies as a texture. It takes grids of groups and their points as the
 // glossy effect has shaded them, (M - I) l in the body's frame (samples arena, cells of kind Neighborhood),
-// and writes one 3D texture of half floats with all grids (atlas.hpp), which receivers look up per pixel
-// (neighborhood_eval.glsl) and per vertex (neighborhood_vertices.comp). A grid is written only when its
+// and writes one 3D texture of half floats with all grids, which receivers look up per
+// pixel (neighborhood_eval.glsl) and per vertex (neighborhood_vertices.comp). A grid is written only when its
 // points were shaded: under light that is constant relative to the body, nothing is dispatched. Without grids
 // nothing is compiled, held or dispatched. Render thread only. Fails if a kernel does not compile on this
 // device.
@@ -9,18 +9,40 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
-#include "runtime/effects/neighborhood/atlas.hpp"
+#include "runtime/effects/neighborhood/neighborhood_shared.h"
 #include "runtime/gpu/program.hpp"
-#include "runtime/gpu/work_list.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
 
 namespace lambent::effects::neighborhood {
+
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kNeighborhoodShaders[2];
+
+// Lays out the grids of all bodies in one 3D texture. Each output of a grid is a slab with one texel per grid
+// point; slabs are stacked along z and continue in a neighbouring column when that is full. There is one
+// texture for all, so that draws that receive from different bodies share a multi-draw. No GL.
+struct GridShape {
+  glm::uvec3 size{1};
+  std::uint32_t outputs = 9;
+};
+
+struct AtlasLayout {
+  glm::uvec3 size{0};             // in texels; 0: nothing was placed
+  std::vector<GridPlace> places;  // one per shape; outputs is 0 if there was no room
+};
+
+// Places large grids first. `max_side` is the limit of a 3D texture on this device; OpenGL 4.5 guarantees
+// 2048.
+AtlasLayout layOutAtlas(std::span<const GridShape> shapes, std::uint32_t max_side);
 
 struct Grid {
   std::uint32_t group = 0;  // index of its group in the residency

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/effects/neighborhood/shaders.hpp"
+#include "runtime/effects/neighborhood/neighborhood.hpp"
 #include "runtime/sh/rotation.hpp"
 
 namespace lambent::effects::neighborhood {

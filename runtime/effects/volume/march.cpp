@@ -9,7 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include "runtime/base/finite.hpp"
-#include "runtime/effects/volume/shaders.hpp"
+#include "runtime/effects/volume/volume.hpp"
 #include "runtime/transfer/codebook.hpp"
 
 namespace lambent::effects::volume {

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
-#include "runtime/effects/volume/shaders.hpp"
-#include "runtime/streaming/volume_blocks.hpp"
+#include "lambent_effects_volume_embedded.hpp"
+#include "runtime/streaming/load_request.hpp"
 
 namespace lambent::effects::volume {
+
+const gpu::FindText kVolumeShaders[1] = {&embedded::lambent_effects_volume::find};
 
 static_assert(kBlock == streaming::kVolumeBlock && kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
 

@@ -12,17 +12,18 @@
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
-#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/volume/volume_shared.h"
 #include "runtime/gpu/program.hpp"
-#include "runtime/gpu/work_list.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
 
 namespace lambent::effects::volume {
+
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kVolumeShaders[1];
 
 using evaluate::TransferMode;
 

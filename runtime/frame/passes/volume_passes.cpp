@@ -3,12 +3,12 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/draws/in_view.hpp"
+#include "runtime/draws/view.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/volume/march.hpp"
 #include "runtime/effects/volume/volume.hpp"
-#include "runtime/frame/passes/passes.hpp"
+#include "runtime/frame/pass_list.hpp"
 
 namespace lambent::frame {
 

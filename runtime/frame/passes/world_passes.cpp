@@ -3,7 +3,7 @@
 #include <chrono>
 #include <optional>
 
-#include "runtime/frame/passes/passes.hpp"
+#include "runtime/frame/pass_list.hpp"
 #include "runtime/shadows/lit_scene.hpp"
 #include "runtime/world/frame_times.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "baker/bake/bake.hpp"
 #include "baker/cache/cache.hpp"
-#include "runtime/base/memory.hpp"
+#include "runtime/base/process.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
 

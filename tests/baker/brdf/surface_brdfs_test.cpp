@@ -12,7 +12,6 @@
 
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/sh/zonal_factors.hpp"
 #include "tests/baker/brdf/quadrature.hpp"
 #include "tests/runtime/sh/sphere.hpp"
 #include "tests/support/shapes.hpp"

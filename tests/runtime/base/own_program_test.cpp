@@ -1,7 +1,6 @@
-#include "runtime/base/own_program.hpp"
-
 #include <gtest/gtest.h>
 
+#include "runtime/base/process.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace lambent {

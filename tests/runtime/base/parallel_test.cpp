@@ -1,10 +1,10 @@
-#include "runtime/base/parallel.hpp"
-
 #include <atomic>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "runtime/base/threads.hpp"
 
 namespace lambent {
 

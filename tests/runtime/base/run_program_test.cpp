@@ -1,6 +1,6 @@
-#include "runtime/base/run_program.hpp"
-
 #include <gtest/gtest.h>
+
+#include "runtime/base/process.hpp"
 
 namespace lambent {
 namespace {

@@ -1,11 +1,11 @@
-#include "runtime/base/thread_pool.hpp"
-
 #include <latch>
 #include <mutex>
 #include <set>
 #include <thread>
 
 #include <gtest/gtest.h>
+
+#include "runtime/base/threads.hpp"
 
 namespace lambent {
 

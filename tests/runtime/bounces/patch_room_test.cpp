@@ -8,7 +8,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/bounces/patch_light.hpp"
 #include "tests/runtime/lighting/rooms.hpp"
 
 namespace lambent::frame {

@@ -6,10 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/command_line/completion.hpp"
 #include "runtime/command_line/help.hpp"
-#include "runtime/command_line/manual_page.hpp"
-#include "runtime/command_line/option_table.hpp"
 
 namespace lambent::command_line {
 namespace {

@@ -5,7 +5,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/debug/overlay_keys.hpp"
 #include "runtime/debug/overlay_lines.hpp"
 #include "runtime/scene/lights.hpp"
 #include "tests/support/frame/view_stage.hpp"

@@ -1,7 +1,7 @@
 // Tests the limits of the wheel in lambent-demo.
-#include "runtime/demo/zoom.hpp"
-
 #include <gtest/gtest.h>
+
+#include "runtime/demo/camera.hpp"
 
 namespace lambent::demo {
 namespace {

@@ -1,5 +1,3 @@
-#include "runtime/ecs/view.hpp"
-
 #include <set>
 #include <type_traits>
 #include <vector>

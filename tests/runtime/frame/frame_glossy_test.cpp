@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "baker/brdf/brdf.hpp"
-#include "runtime/effects/glossy/glossy_kernel_ref.hpp"
+#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "tests/runtime/frame/ggx_table.hpp"

@@ -7,13 +7,13 @@
 #include <unistd.h>
 
 #include "baker/brdf/brdf.hpp"
-#include "runtime/effects/glossy/glossy_kernel_ref.hpp"
+#include "runtime/effects/glossy/glossy_ref.hpp"
+#include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/lighting/seen_kernel.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/zonal_factors.hpp"
-#include "runtime/transfer/seen_sky_ref.hpp"
+#include "runtime/sh/zonal.hpp"
+#include "runtime/transfer/transfer_ref.hpp"
 #include "tests/runtime/frame/ggx_table.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
@@ -94,15 +94,15 @@ spec::RgbaImage pictureOf(const BundleBuilder& builder, const spec::OrbitCamera&
 }
 
 // Looks the weights of the kernel up as the GPU does.
-std::vector<float> seenWeights(const lighting::SeenKernel& kernel, float cosine, float roughness) {
-  const glm::vec2 nodes(lighting::kSeenCosines, lighting::kSeenRoughnesses);
+std::vector<float> seenWeights(const evaluate::SeenKernel& kernel, float cosine, float roughness) {
+  const glm::vec2 nodes(evaluate::kSeenCosines, evaluate::kSeenRoughnesses);
   const glm::vec2 place = glm::vec2(bundle::angleAxis(cosine), roughness) * (nodes - 1.0f);
   const glm::vec2 low = glm::min(glm::floor(place), nodes - 2.0f), part = place - low;
   std::vector<float> weights;
-  for (std::uint32_t layer = 0; layer < lighting::kSeenLayers; ++layer) {
+  for (std::uint32_t layer = 0; layer < evaluate::kSeenLayers; ++layer) {
     const auto at = [&](float x, float y) {
-      return kernel.texels[(layer * lighting::kSeenRoughnesses + static_cast<std::size_t>(y)) *
-                               lighting::kSeenCosines +
+      return kernel.texels[(layer * evaluate::kSeenRoughnesses + static_cast<std::size_t>(y)) *
+                               evaluate::kSeenCosines +
                            static_cast<std::size_t>(x)];
     };
     const glm::vec4 four =
@@ -114,7 +114,7 @@ std::vector<float> seenWeights(const lighting::SeenKernel& kernel, float cosine,
 }
 
 float seenAbout(const Vector& seen, const glm::vec3& normal, const glm::vec3& mirrored, float roughness) {
-  static const lighting::SeenKernel kernel = lighting::makeSeenKernel();
+  static const evaluate::SeenKernel kernel = evaluate::makeSeenKernel();
   static const sh::ZonalFactors factors = sh::ZonalFactors::isotropic(static_cast<int>(transfer::kSeenBands));
   const auto view = effects::glossy::ref::localView(true, normal, {}, mirrored);
   return transfer::ref::seenShare(seen, seenWeights(kernel, view.cos_theta, roughness), factors.axes(),

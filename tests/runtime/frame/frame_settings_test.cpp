@@ -7,8 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/draws/glossy_record.hpp"
-#include "runtime/frame/quality.hpp"
-#include "runtime/lighting/fewer_samples.hpp"
+#include "runtime/lighting/group_lights.hpp"
 #include "runtime/world/material_rebake.hpp"
 #include "tests/support/material_values.hpp"
 

@@ -3,9 +3,8 @@
 #include "runtime/gpu/arena.hpp"
 #include "runtime/gpu/out_of_memory.hpp"
 #include "runtime/gpu/pass_timers.hpp"
-#include "runtime/gpu/plain_text.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/gpu/work_list.hpp"
+#include "runtime/gpu/window.hpp"
 #include "tests/support/gl_seam.hpp"
 #include "tests/support/gpu_context.hpp"
 

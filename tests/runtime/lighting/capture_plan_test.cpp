@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/lighting/capture_closed.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/lighting/capture_prepared.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "tests/runtime/lighting/capture_scenes.hpp"
 
 namespace lambent::lighting {

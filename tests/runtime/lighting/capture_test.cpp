@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/lighting/capture_fixture.hpp"

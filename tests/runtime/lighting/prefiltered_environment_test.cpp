@@ -8,8 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "runtime/lighting/prefiltered_lobe.hpp"
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/support/differences.hpp"

@@ -1,8 +1,7 @@
 // Tests the measured cost and error of settings, beside a frame that goes on unchanged.
-#include "runtime/measure/setting_cost.hpp"
-
 #include <gtest/gtest.h>
 
+#include "runtime/measure/measured_frame.hpp"
 #include "tests/support/frame/live_stage.hpp"
 #include "tests/support/gpu_context.hpp"
 

@@ -1,9 +1,8 @@
-#include "runtime/sh/cached_window.hpp"
-
 #include <limits>
 
 #include <gtest/gtest.h>
 
+#include "runtime/sh/window.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/sh/sphere.hpp"
 

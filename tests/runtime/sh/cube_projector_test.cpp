@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/sh/sphere.hpp"

@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/sh/cube_map.hpp"
 #include "tests/runtime/sh/sphere.hpp"
 
 namespace lambent::sh {

@@ -1,5 +1,3 @@
-#include "runtime/sh/zonal_factors.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -7,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/sh/rotation.hpp"
+#include "runtime/sh/zonal.hpp"
 #include "tests/runtime/sh/sphere.hpp"
 
 namespace lambent::sh {

@@ -16,7 +16,7 @@
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/shadows/key_shadows.hpp"
-#include "runtime/shadows/shadowed_light_ref.hpp"
+#include "runtime/shadows/shadowed_light.hpp"
 #include "tests/runtime/shadows/key_stage.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/frame/bundle_builder.hpp"

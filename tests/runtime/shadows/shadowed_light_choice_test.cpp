@@ -7,8 +7,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/shadows/column_lights.hpp"
-
 namespace lambent::frame {
 namespace {
 

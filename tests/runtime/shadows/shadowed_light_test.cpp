@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "runtime/sh/basis.hpp"
-#include "runtime/shadows/local_faces.hpp"
 #include "runtime/shadows/local_shadow_ref.hpp"
+#include "runtime/shadows/local_shadows.hpp"
 #include "tests/runtime/shadows/random.hpp"
 
 namespace lambent::frame {

@@ -1,8 +1,8 @@
-#include "runtime/streaming/image_levels.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "runtime/streaming/images.hpp"
 
 namespace lambent::streaming {
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/base/thread_pool.hpp"
+#include "runtime/base/threads.hpp"
 #include "runtime/bundle/reader.hpp"
 #include "runtime/streaming/loader.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"

@@ -16,7 +16,7 @@
 #include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/entropy_coder.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/transfer/vertex_rows.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::streaming::testing {
 namespace {

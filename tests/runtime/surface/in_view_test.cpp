@@ -1,8 +1,8 @@
 // Tests what counts as out of view.
-#include "runtime/draws/in_view.hpp"
-
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+
+#include "runtime/draws/view.hpp"
 
 namespace lambent::frame {
 namespace {

@@ -7,10 +7,10 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/draws/draw_indices.hpp"
 #include "runtime/draws/glossy_record.hpp"
+#include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/surface_shared.h"
-#include "runtime/effects/glossy/glossy_kernel_ref.hpp"
+#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/surface/surface_normal_ref.hpp"
 #include "runtime/surface/surface_program.hpp"

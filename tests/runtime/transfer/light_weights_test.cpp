@@ -1,6 +1,6 @@
-#include "runtime/transfer/light_weights.hpp"
-
 #include <gtest/gtest.h>
+
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::transfer {
 namespace {

@@ -1,11 +1,10 @@
-#include "runtime/transfer/vertex_rows.hpp"
-
 #include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "runtime/bundle/entropy_coder.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::transfer {
 namespace {

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/streaming/image_levels.hpp"
+#include "runtime/streaming/images.hpp"
 #include "tests/support/frame/world_stage.hpp"
 
 namespace lambent::frame {

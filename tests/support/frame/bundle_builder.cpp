@@ -9,10 +9,10 @@
 
 #include "baker/compress/draco_encode.hpp"
 #include "runtime/base/normal_matrix.hpp"
-#include "runtime/bundle/importance_code.hpp"
+#include "runtime/bundle/description.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
-#include "runtime/transfer/vertex_rows.hpp"
+#include "runtime/transfer/weights.hpp"
 #include "tests/support/frame/bundle_store.hpp"
 
 namespace lambent::testing {

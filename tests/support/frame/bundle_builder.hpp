@@ -56,7 +56,7 @@ class BundleBuilder {
   // Adds a light of the group that gives `transfer` times its radiance to every sample. Bundles with normal
   // maps are not supported.
   BundleBuilder& lamp(const bundle::GroupLight& light, float transfer);
-  // Says how much samples matter to pictures, from their normals in the group frame (importance_code.hpp).
+  // Says how much samples matter to pictures, from their normals in the group frame (description.hpp).
   BundleBuilder& importance(std::function<float(const glm::vec3&)> relative);
   BundleBuilder& groupRotation(const glm::quat& rest_rotation);
   // Adds a volume in a group of its own, after the meshes' group if there are meshes.

@@ -12,7 +12,7 @@
 #include "runtime/bundle/volume_grid.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/transfer/vertex_rows.hpp"
+#include "runtime/transfer/weights.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/frame/bundle_store.hpp"
 

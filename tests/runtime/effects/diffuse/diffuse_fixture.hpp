@@ -12,7 +12,7 @@
 
 #include "runtime/bundle/description.hpp"
 #include "runtime/streaming/loader.hpp"
-#include "runtime/transfer/vertex_rows.hpp"
+#include "runtime/transfer/weights.hpp"
 
 namespace lambent::testing {
 

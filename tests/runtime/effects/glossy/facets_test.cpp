@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/brdf/brdf.hpp"
-#include "runtime/effects/glossy/glossy_kernel_ref.hpp"
+#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
 

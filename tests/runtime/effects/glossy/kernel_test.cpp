@@ -2,7 +2,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/effects/glossy/glossy_kernel_ref.hpp"
+#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"

@@ -1,12 +1,12 @@
 // Tests the packing of grids in one texture: nothing overlaps, nothing exceeds the texture.
 
-#include "runtime/effects/neighborhood/atlas.hpp"
-
 #include <random>
 #include <set>
 #include <tuple>
 
 #include <gtest/gtest.h>
+
+#include "runtime/effects/neighborhood/neighborhood.hpp"
 
 namespace lambent::effects::neighborhood {
 

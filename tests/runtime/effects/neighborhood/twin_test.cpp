@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/effects/neighborhood/atlas.hpp"
+#include "runtime/effects/neighborhood/neighborhood.hpp"
 #include "runtime/effects/neighborhood/neighborhood_ref.hpp"
 #include "runtime/sh/zonal.hpp"
 

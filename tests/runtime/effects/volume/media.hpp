@@ -10,7 +10,7 @@
 
 #include "runtime/effects/volume/march.hpp"
 #include "runtime/effects/volume/volume_ref.hpp"
-#include "runtime/streaming/volume_blocks.hpp"
+#include "runtime/streaming/load_request.hpp"
 #include "tests/support/built_volume.hpp"
 
 namespace lambent::effects::volume::testing {
