@@ -13,7 +13,7 @@
 #include <imgui_stdlib.h>
 
 #include "editor/document/actions.hpp"
-#include "editor/document/field_use.hpp"
+#include "editor/document/field_edits.hpp"
 #include "editor/panels/field_words.hpp"
 #include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "editor/document/number_edit.hpp"
+#include "editor/document/field_edits.hpp"
 #include "editor/session/field_edit_state.hpp"
 
 namespace lambent::editor {

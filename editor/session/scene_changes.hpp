@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "baker/import/scene_edits.hpp"
-#include "editor/document/baseline.hpp"
 #include "editor/document/history.hpp"
+#include "editor/document/overrides.hpp"
 #include "editor/session/scenes.hpp"
 
 namespace lambent::editor {

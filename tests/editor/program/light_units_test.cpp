@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "editor/document/field_use.hpp"
+#include "editor/document/field_edits.hpp"
 #include "editor/session/new_lights.hpp"
 #include "tests/editor/program/windowless.hpp"
 
