@@ -4,9 +4,9 @@
 
 #include <optional>
 
-#include "editor/gizmo/fine_pointer.hpp"
 #include "editor/gizmo/gizmo.hpp"
 #include "editor/gizmo/light_gizmo.hpp"
+#include "editor/gizmo/projection.hpp"
 #include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/suns.hpp"
 
