@@ -2,7 +2,7 @@
 #include <array>
 
 #include "editor/commands/rows.hpp"
-#include "editor/session/camera_views.hpp"
+#include "editor/session/viewing.hpp"
 
 namespace lambent::editor {
 

@@ -2,7 +2,7 @@
 
 #include "editor/commands/rows.hpp"
 #include "editor/document/snapshot.hpp"
-#include "editor/session/new_lights.hpp"
+#include "editor/session/local_lights.hpp"
 #include "runtime/spec/numbers.hpp"
 
 namespace lambent::editor {

@@ -1,7 +1,7 @@
 #include <array>
 
 #include "editor/commands/rows.hpp"
-#include "editor/session/file_questions.hpp"
+#include "editor/session/files.hpp"
 
 namespace lambent::editor {
 

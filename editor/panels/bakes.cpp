@@ -9,7 +9,7 @@
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/panels/text.hpp"
-#include "editor/session/scene_status.hpp"
+#include "editor/session/status.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {

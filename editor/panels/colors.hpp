@@ -4,7 +4,7 @@
 #include <imgui.h>
 
 #include "editor/session/log.hpp"
-#include "editor/session/scene_status.hpp"
+#include "editor/session/status.hpp"
 
 namespace lambent::editor {
 

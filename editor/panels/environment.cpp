@@ -11,7 +11,7 @@
 #include "editor/panels/fields.hpp"
 #include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/session/environment_map_shelf.hpp"
+#include "editor/session/assets.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 #include "runtime/spec/light.hpp"

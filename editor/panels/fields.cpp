@@ -18,7 +18,7 @@
 #include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/session/field_numbers.hpp"
-#include "editor/session/light_units.hpp"
+#include "editor/session/local_lights.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {

@@ -11,7 +11,6 @@
 #include "editor/commands/command.hpp"
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/session/scene_status.hpp"
 #include "editor/session/status.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "editor/document/field_edits.hpp"
-#include "editor/session/field_edit_state.hpp"
+#include "editor/session/field_numbers.hpp"
 
 namespace lambent::editor {
 

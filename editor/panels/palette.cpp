@@ -7,7 +7,7 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/session/word_search.hpp"
+#include "editor/session/names.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 

@@ -11,7 +11,7 @@
 #include "editor/panels/manipulate.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/render/renderer.hpp"
-#include "editor/session/camera_views.hpp"
+#include "editor/session/viewing.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 

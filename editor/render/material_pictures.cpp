@@ -2,7 +2,7 @@
 
 #include <epoxy/gl.h>
 
-#include "editor/session/material_preview.hpp"
+#include "editor/session/materials.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::editor {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "editor/session/small_pictures.hpp"
+#include "editor/session/asset_pictures.hpp"
 #include "runtime/scene/bounds.hpp"
 
 namespace lambent::editor {

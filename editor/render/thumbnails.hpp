@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "editor/session/scene_part.hpp"
+#include "editor/session/asset_pictures.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/base/change_gate.hpp"
 #include "runtime/gpu/objects.hpp"

@@ -1,6 +1,4 @@
 // Tests the units of lights against closed forms, and the lights that a user adds.
-#include "editor/session/light_units.hpp"
-
 #include <cmath>
 #include <numbers>
 
@@ -8,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "editor/document/field_edits.hpp"
-#include "editor/session/new_lights.hpp"
+#include "editor/session/local_lights.hpp"
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {

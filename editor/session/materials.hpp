@@ -1,6 +1,6 @@
 // Finds what an object is made of: its primitives and their materials, and what materials look like. Panels
-// ask for pictures of materials by their entities; the renderer makes them (editor/render/material_pictures).
-// Main thread.
+// ask for pictures of materials by their entities; the renderer makes them (editor/render/thumbnails). Main
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/bundle/material_fields.hpp"
 #include "runtime/ecs/registry.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/spec/image.hpp"
 
 namespace lambent::editor {
 
@@ -46,5 +48,9 @@ struct PrimitiveFacts {
   std::uint32_t vertices = 0, triangles = 0;
 };
 PrimitiveFacts factsOf(const Session& session, const scene::DrawItem& draw);
+
+// Draws a sphere of a material: its factors under a lamp and a simple sky, without textures. Returns a square
+// picture with row 0 at the top, transparent around the sphere.
+spec::Rgba8Image previewOf(const gltf::MaterialFactors& material, std::uint32_t size);
 
 }  // namespace lambent::editor

@@ -1,13 +1,24 @@
-// Implements the part of Scenes that offers bakes which an earlier session left unfinished.
+// Implements the part of Scenes that bakes them, and offers bakes that an earlier session left unfinished.
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "baker/bake/bake.hpp"
+#include "baker/bake/option_rows.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "editor/session/scenes.hpp"
 
 namespace lambent::editor {
+
+Result<void> Scenes::setOption(std::size_t index, std::string_view name, std::string_view word) {
+  SceneEntry& entry = entries_[index];
+  baker::BakeOptions options = entry.options;
+  if (auto done = baker::putOption(options, name, word); !done) return done;
+  if (auto checked = baker::checkRequest(options, entry.bundle); !checked) return checked;
+  entry.options = options;
+  return {};
+}
 
 namespace {
 
