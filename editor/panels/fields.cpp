@@ -14,9 +14,9 @@
 
 #include "editor/document/actions.hpp"
 #include "editor/document/field_edits.hpp"
-#include "editor/panels/field_words.hpp"
 #include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/panels/text.hpp"
 #include "editor/session/field_numbers.hpp"
 #include "editor/session/local_lights.hpp"
 #include "editor/ui/fitting.hpp"

@@ -1,5 +1,5 @@
 // Draws a number that is dragged or typed, with the modifiers that the gizmos have, too: Shift is finer, Ctrl
-// goes in steps, Alt is coarser. A click opens a text field that calculates (document/number_edit.hpp). The
+// goes in steps, Alt is coarser. A click opens a text field that calculates (document/field_edits.hpp). The
 // edit is returned, not applied, so that it can reach several entities.
 #pragma once
 

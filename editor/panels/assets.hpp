@@ -1,5 +1,5 @@
-// Draws assets as tiles: a picture with the name below it. Part of the Assets panel, the Environment panel
-// and the start page.
+// Draws assets as tiles: a picture with the name below it. The Assets panel, the Environment panel and the
+// start page have them.
 #pragma once
 
 #include "editor/session/session.hpp"
