@@ -1,15 +1,22 @@
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+#include <utility>
 
 #include "editor/commands/rows.hpp"
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
 
 namespace lambent::editor {
 
 std::span<const Command> commandList() {
   static const std::vector<Command> list = [] {
     std::vector<Command> all;
-    for (const auto rows : {fileCommands(), assetCommands(), editCommands(), createCommands(), viewCommands(),
-                            handleCommands(), cameraCommands(), lightCommands(), keyCommands(),
-                            bakeCommands(), layoutCommands(), helpCommands(), stateCommands()})
+    for (const auto rows :
+         {fileCommands(), editCommands(), createCommands(), viewCommands(), handleCommands(),
+          cameraCommands(), lightCommands(), bakeCommands(), layoutCommands(), stateCommands()})
       all.insert(all.end(), rows.begin(), rows.end());
     return all;
   }();
@@ -43,6 +50,55 @@ Result<nlohmann::json> runCommand(Session& session, std::string_view id, Words w
 
 void runOrLog(Session& session, std::string_view id, Words words) {
   if (const auto done = runCommand(session, id, words); !done) session.log.error(done.error());
+}
+
+namespace {
+
+constexpr std::array kNamed = {
+    std::pair{"Delete", GLFW_KEY_DELETE}, std::pair{"Escape", GLFW_KEY_ESCAPE},
+    std::pair{"Space", GLFW_KEY_SPACE},   std::pair{"Enter", GLFW_KEY_ENTER},
+    std::pair{"Tab", GLFW_KEY_TAB},       std::pair{"Home", GLFW_KEY_HOME},
+    std::pair{"Left", GLFW_KEY_LEFT},     std::pair{"Right", GLFW_KEY_RIGHT},
+    std::pair{"Up", GLFW_KEY_UP},         std::pair{"Down", GLFW_KEY_DOWN},
+    std::pair{",", GLFW_KEY_COMMA},       std::pair{"Backspace", GLFW_KEY_BACKSPACE}};
+
+int keyOf(std::string_view name) {
+  for (const auto& [word, key] : kNamed)
+    if (name == word) return key;
+  if (name.size() == 1 && std::isalnum(static_cast<unsigned char>(name[0])))
+    return std::toupper(static_cast<unsigned char>(name[0]));  // GLFW's keys are ASCII there
+  if (name.size() >= 2 && name[0] == 'F' && name.find_first_not_of("0123456789", 1) == name.npos) {
+    const int number = std::stoi(std::string(name.substr(1, 2)));
+    if (number >= 1 && number <= 12) return GLFW_KEY_F1 + number - 1;
+  }
+  return -1;
+}
+
+}  // namespace
+
+Result<Shortcut> parseShortcut(std::string_view text) {
+  Shortcut shortcut;
+  std::string_view rest = text;
+  while (true) {
+    const std::size_t plus = rest.find('+');
+    const std::string_view word = rest.substr(0, plus);
+    if (plus == rest.npos) {
+      shortcut.key = keyOf(word);
+      if (shortcut.key >= 0) return shortcut;
+      return fail("key", fmt::format("\"{}\" is not known", text),
+                  "give keys like Ctrl+Shift+S, F5 or Delete");
+    }
+    if (word == "Ctrl")
+      shortcut.ctrl = true;
+    else if (word == "Shift")
+      shortcut.shift = true;
+    else if (word == "Alt")
+      shortcut.alt = true;
+    else
+      return fail("key", fmt::format("\"{}\" is not known", text),
+                  "give keys like Ctrl+Shift+S, F5 or Delete");
+    rest.remove_prefix(plus + 1);
+  }
 }
 
 }  // namespace lambent::editor

@@ -2,7 +2,7 @@
 
 #include "editor/commands/rows.hpp"
 #include "editor/document/snapshot.hpp"
-#include "editor/session/new_lights.hpp"
+#include "editor/session/local_lights.hpp"
 #include "runtime/spec/numbers.hpp"
 
 namespace lambent::editor {
@@ -65,14 +65,7 @@ Answer empty(Session& session, Words words) {
 
 constexpr Command row(const char* id, const char* title, const char* help,
                       Result<nlohmann::json> (*run)(Session&, Words)) {
-  return {.id = id,
-          .title = title,
-          .menu = "Create",
-          .shortcut = "",
-          .help = help,
-          .arguments = "[X Y Z]",
-          .most_words = 3,
-          .run = run};
+  return withWords("[X Y Z]", 0, 3, item("Create", id, title, "", help, run));
 }
 
 using LampKind = scene::LocalLightComponent::Kind;

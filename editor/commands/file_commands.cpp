@@ -1,7 +1,7 @@
 #include <array>
 
 #include "editor/commands/rows.hpp"
-#include "editor/session/file_questions.hpp"
+#include "editor/session/files.hpp"
 
 namespace lambent::editor {
 
@@ -64,67 +64,61 @@ Answer quit(Session& session, Words) {
 
 constexpr std::size_t kMostFiles = 1000;
 
+Answer assets(Session& session, Words words) {
+  session.assets.updateNow(session);
+  if (!words.empty()) session.assets.search = words[0];
+  Answer answer = nlohmann::json::array();
+  for (const AssetGroup& group : session.assets.groups())
+    for (const Asset& asset : group.assets)
+      if (matches(asset, session.assets.search))
+        answer->push_back({{"name", asset.file.filename().string()},
+                           {"kind", kindWord(asset.kind)},
+                           {"file", asset.file.string()},
+                           {"bytes", asset.bytes},
+                           {"group", group.title}});
+  return answer;
+}
+
+Answer useAsset(Session& session, Words words) {
+  std::optional<Asset> asset = assetAt(words[0]);
+  if (!asset) {
+    session.assets.updateNow(session);
+    if (const Asset* listed = session.assets.find(words[0])) asset = *listed;
+  }
+  if (!asset) return fail(words[0], "is no asset", "\"assets\" lists them");
+  if (asset->kind == AssetKind::EnvironmentMap)
+    return runCommand(session, "environment-map", std::array{asset->file.string()});
+  return answerOf(session.files.open({asset->file}));
+}
+
 constexpr std::array kFileRows = {
-    Command{.id = "new",
-            .title = "New world",
-            .menu = "File",
-            .shortcut = "Ctrl+N",
-            .help = "Close everything and begin anew",
-            .arguments = "",
-            .run = &newWorld},
-    Command{.id = "open",
-            .title = "Open...",
-            .menu = "File",
-            .shortcut = "Ctrl+O",
-            .help = "Open scenes (.gltf, .glb), bundles (.lmb.glb) or a world (.json)",
-            .arguments = "FILE...",
-            .least_words = 1,
-            .most_words = kMostFiles,
-            .run = &open},
-    Command{.id = "watch",
-            .title = "Open and watch a folder...",
-            .menu = "File",
-            .shortcut = "Ctrl+Shift+O",
-            .help = "Open all scenes of a folder, and bake what comes or changes there",
-            .arguments = "FOLDER",
-            .least_words = 1,
-            .most_words = 1,
-            .run = &watch},
+    item("File", "new", "New world", "Ctrl+N", "Close everything and begin anew", &newWorld),
+    withWords("FILE...", 1, kMostFiles,
+              item("File", "open", "Open...", "Ctrl+O",
+                   "Open scenes (.gltf, .glb), bundles (.lmb.glb) or a world (.json)", &open)),
+    withWords("FOLDER", 1, 1,
+              item("File", "watch", "Open and watch a folder...", "Ctrl+Shift+O",
+                   "Open all scenes of a folder, and bake what comes or changes there", &watch)),
     separator("File"),
-    Command{.id = "save",
-            .title = "Save world",
-            .menu = "File",
-            .shortcut = "Ctrl+S",
-            .help = "Save what was edited, and which bundles stand here",
-            .arguments = "[FILE]",
-            .most_words = 1,
-            .run = &save},
-    Command{.id = "save-as",
-            .title = "Save world as...",
-            .menu = "File",
-            .shortcut = "Ctrl+Shift+S",
-            .help = "Save the world under another name",
-            .arguments = "FILE",
-            .least_words = 1,
-            .most_words = 1,
-            .run = &saveAs},
+    withWords("[FILE]", 0, 1,
+              item("File", "save", "Save world", "Ctrl+S",
+                   "Save what was edited, and which bundles stand here", &save)),
+    withWords("FILE", 1, 1,
+              item("File", "save-as", "Save world as...", "Ctrl+Shift+S", "Save the world under another name",
+                   &saveAs)),
     separator("File"),
-    Command{.id = "close",
-            .title = "Close scene",
-            .menu = "File",
-            .shortcut = "Ctrl+W",
-            .help = "Take the scene that is selected out of the world; its files stay, undo brings it back",
-            .arguments = "[SCENE]",
-            .most_words = 1,
-            .run = &close,
-            .enabled = &anyOpen},
-    Command{.id = "quit",
-            .title = "Quit",
-            .menu = "File",
-            .shortcut = "Ctrl+Q",
-            .help = "End the editor; bakes go on where they were when it starts again",
-            .arguments = "",
-            .run = &quit},
+    enabled(&anyOpen,
+            withWords(
+                "[SCENE]", 0, 1,
+                item("File", "close", "Close scene", "Ctrl+W",
+                     "Take the scene that is selected out of the world; its files stay, undo brings it back",
+                     &close))),
+    item("File", "quit", "Quit", "Ctrl+Q", "End the editor; bakes go on where they were when it starts again",
+         &quit),
+    scripted("assets", "Environment maps, scenes, bundles and worlds to choose from, searched", "[SEARCH]", 0,
+             1, &assets),
+    scripted("use-asset", "Light from this environment map; open this scene, bundle or world", "FILE", 1, 1,
+             &useAsset),
 };
 
 }  // namespace

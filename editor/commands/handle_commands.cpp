@@ -82,30 +82,24 @@ bool snaps(const Session& session) {
   return session.handles.gizmo.options.snap;
 }
 
-constexpr Command withWords(const char* arguments, std::size_t most, Command command) {
-  command.arguments = arguments;
-  command.most_words = most;
-  return command;
-}
-
 constexpr std::array kHandleRows = {
     separator("View"),
-    toggle("View", "move", "Move", "W", "Handles that move what is selected", &mode<GizmoMode::Move>,
-           &isMode<GizmoMode::Move>),
-    toggle("View", "turn", "Turn", "E", "Handles that turn what is selected", &mode<GizmoMode::Rotate>,
-           &isMode<GizmoMode::Rotate>),
-    toggle("View", "scale", "Scale", "R", "Handles that scale what is selected", &mode<GizmoMode::Scale>,
-           &isMode<GizmoMode::Scale>),
-    toggle("View", "local-axes", "Local axes", "X",
-           "Handles along the axes of what is selected, not of the world", &space, &isLocal),
-    withWords("[primary|center|each]", 1,
-              toggle("View", "pivot", "Next pivot", "Z",
-                     "Turn and scale about the last selected, the middle of all, or each about itself",
-                     &pivot, nullptr)),
-    withWords("[METRES [DEGREES [FACTOR]]]", 3,
-              toggle("View", "snap", "Snap", "Y", "Drags go in steps; Ctrl does so for one drag, or frees it",
-                     &snap, &snaps)),
-    toggle("View", "gizmos", "Handles", "G", "Show handles at all", &gizmos, &gizmosShown),
+    toggle(&isMode<GizmoMode::Move>,
+           item("View", "move", "Move", "W", "Handles that move what is selected", &mode<GizmoMode::Move>)),
+    toggle(&isMode<GizmoMode::Rotate>,
+           item("View", "turn", "Turn", "E", "Handles that turn what is selected", &mode<GizmoMode::Rotate>)),
+    toggle(&isMode<GizmoMode::Scale>, item("View", "scale", "Scale", "R",
+                                           "Handles that scale what is selected", &mode<GizmoMode::Scale>)),
+    toggle(&isLocal, item("View", "local-axes", "Local axes", "X",
+                          "Handles along the axes of what is selected, not of the world", &space)),
+    withWords(
+        "[primary|center|each]", 0, 1,
+        item("View", "pivot", "Next pivot", "Z",
+             "Turn and scale about the last selected, the middle of all, or each about itself", &pivot)),
+    withWords("[METRES [DEGREES [FACTOR]]]", 0, 3,
+              toggle(&snaps, item("View", "snap", "Snap", "Y",
+                                  "Drags go in steps; Ctrl does so for one drag, or frees it", &snap))),
+    toggle(&gizmosShown, item("View", "gizmos", "Handles", "G", "Show handles at all", &gizmos)),
 };
 
 }  // namespace

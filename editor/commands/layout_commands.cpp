@@ -1,4 +1,3 @@
-// Implements the commands for the parts of the window: which docks there are, and which panels they hold.
 #include <array>
 
 #include "editor/commands/rows.hpp"
@@ -92,36 +91,71 @@ Answer movePanel(Session& session, Words words) {
   return nullptr;
 }
 
+Answer shortcuts(Session& session, Words) {
+  session.window.keys = true;
+  return nullptr;
+}
+
+Answer palette(Session& session, Words) {
+  session.window.palette = true;
+  session.window.palette_words.clear();
+  return nullptr;
+}
+
+Answer about(Session& session, Words) {
+  Dialog show;
+  show.kind = Dialog::Kind::Confirm;
+  show.title = "Lambent " LAMBENT_VERSION;
+  show.question =
+      "Bake a glTF scene once, light it any way you like.\n"
+      "Precomputed radiance transfer: Sloan, Kautz and Snyder, SIGGRAPH 2002.";
+  show.yes = "Close", show.no = "OK";
+  session.window.dialog = std::move(show);
+  return nullptr;
+}
+
+Answer commands(Session&, Words) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Command& command : commandList())
+    if (*command.id != '\0')
+      rows.push_back({{"id", command.id},
+                      {"arguments", command.arguments},
+                      {"help", command.help},
+                      {"menu", command.menu},
+                      {"title", command.title},
+                      {"shortcut", command.shortcut}});
+  return rows;
+}
+
 constexpr std::array kLayoutRows = {
-    toggle("Window", "view-only", "Picture only", "F11",
-           "The view fills the window; again, all panels are back", &viewOnly, &isViewOnly),
+    toggle(&isViewOnly, item("Window", "view-only", "Picture only", "F11",
+                             "The view fills the window; again, all panels are back", &viewOnly)),
     separator("Window"),
-    toggle("Window", "layout-lighting", "Layout for lighting", "",
-           "The environment on the left, the inspector on the right", &named<1>, nullptr),
-    toggle("Window", "layout-baking", "Layout for baking", "",
-           "Bakes with more room, and the plan of the bake", &named<2>, nullptr),
-    toggle("Window", "layout-default", "Reset layout", "", "All panels are back where they were at first",
-           &named<0>, nullptr),
-    Command{.id = "save-layout",
-            .title = "Save layout as...",
-            .menu = "Window",
-            .shortcut = "",
-            .help = "Keep the present layout under a name, which this menu then lists",
-            .arguments = "NAME",
-            .least_words = 1,
-            .most_words = 1,
-            .run = &saveLayout},
+    item("Window", "layout-lighting", "Layout for lighting", "",
+         "The environment on the left, the inspector on the right", &named<1>),
+    item("Window", "layout-baking", "Layout for baking", "", "Bakes with more room, and the plan of the bake",
+         &named<2>),
+    item("Window", "layout-default", "Reset layout", "", "All panels are back where they were at first",
+         &named<0>),
+    withWords("NAME", 1, 1,
+              item("Window", "save-layout", "Save layout as...", "",
+                   "Keep the present layout under a name, which this menu then lists", &saveLayout)),
     scripted("delete-layout", "Forget a layout that was saved", "NAME", 1, 1, &deleteLayout),
     scripted("layout", "A layout by its name", "default|lighting|baking|NAME", 1, 1, &useLayout),
     separator("Window"),
-    toggle("Window", "left-panels", "Left panels", "", "The scene tree", &dock<Dock::Left>,
-           &docked<Dock::Left>),
-    toggle("Window", "right-panels", "Right panels", "", "Inspector, light, settings", &dock<Dock::Right>,
-           &docked<Dock::Right>),
-    toggle("Window", "bottom-panels", "Bottom panels", "", "Bakes, assets, cost, streaming, log",
-           &dock<Dock::Bottom>, &docked<Dock::Bottom>),
+    toggle(&docked<Dock::Left>,
+           item("Window", "left-panels", "Left panels", "", "The scene tree", &dock<Dock::Left>)),
+    toggle(&docked<Dock::Right>, item("Window", "right-panels", "Right panels", "",
+                                      "Inspector, light, settings", &dock<Dock::Right>)),
+    toggle(&docked<Dock::Bottom>, item("Window", "bottom-panels", "Bottom panels", "",
+                                       "Bakes, assets, cost, streaming, log", &dock<Dock::Bottom>)),
     scripted("panel", "Bring a panel up", "NAME", 1, 1, &panel),
     scripted("move-panel", "A panel stands there from now on", "NAME left|right|below", 2, 2, &movePanel),
+    item("Help", "shortcuts", "Keys and pointer", "F1", "All keys, and what the pointer does in the view",
+         &shortcuts),
+    item("Help", "palette", "Command palette", "Ctrl+P", "Find a command by its words, and run it", &palette),
+    item("Help", "about", "About", "", "Version and origin", &about),
+    item("Help", "commands", "", "", "All commands, as JSON", &commands),
 };
 
 }  // namespace

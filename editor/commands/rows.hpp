@@ -20,11 +20,8 @@ std::span<const Command> viewCommands();
 std::span<const Command> handleCommands();
 std::span<const Command> cameraCommands();
 std::span<const Command> layoutCommands();
-std::span<const Command> assetCommands();
 std::span<const Command> lightCommands();
-std::span<const Command> keyCommands();
 std::span<const Command> bakeCommands();
-std::span<const Command> helpCommands();
 std::span<const Command> stateCommands();  // commands by which scripts ask about the editor's state
 
 using Answer = Result<nlohmann::json>;
@@ -36,31 +33,40 @@ constexpr Command separator(const char* menu) {
   return {.id = "", .title = "-", .menu = menu, .shortcut = "", .help = "", .arguments = ""};
 }
 
-// Makes a menu item that is checked while `is` says so, or never if there is none.
-constexpr Command toggle(const char* menu, const char* id, const char* title, const char* shortcut,
-                         const char* help, Answer (*run)(Session&, Words), bool (*is)(const Session&)) {
+// Makes a menu item.
+constexpr Command item(const char* menu, const char* id, const char* title, const char* shortcut,
+                       const char* help, Answer (*run)(Session&, Words)) {
   return {.id = id,
           .title = title,
           .menu = menu,
           .shortcut = shortcut,
           .help = help,
           .arguments = "",
-          .run = run,
-          .checked = is};
+          .run = run};
+}
+
+// Makes a menu item that is checked while `is` says so.
+constexpr Command toggle(bool (*is)(const Session&), Command command) {
+  command.checked = is;
+  return command;
+}
+
+// Makes a command that can be run only while `is` says so.
+constexpr Command enabled(bool (*is)(const Session&), Command command) {
+  command.enabled = is;
+  return command;
+}
+
+// Makes a command that takes words.
+constexpr Command withWords(const char* arguments, std::size_t least, std::size_t most, Command command) {
+  command.arguments = arguments, command.least_words = least, command.most_words = most;
+  return command;
 }
 
 // Makes a command for scripts only, without menu item and shortcut.
 constexpr Command scripted(const char* id, const char* help, const char* arguments, std::size_t least,
                            std::size_t most, Answer (*run)(Session&, Words)) {
-  return {.id = id,
-          .title = "",
-          .menu = "Script",
-          .shortcut = "",
-          .help = help,
-          .arguments = arguments,
-          .least_words = least,
-          .most_words = most,
-          .run = run};
+  return withWords(arguments, least, most, item("Script", id, "", "", help, run));
 }
 
 // Also accepts the id that the command had before version 0.11.

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "editor/commands/rows.hpp"
+#include "editor/session/viewing.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/spec/numbers.hpp"
 
@@ -130,77 +131,74 @@ Answer time(Session& session, Words words) {
 using O = frame::OverlayOptions;
 
 constexpr std::array kViewRows = {
-    toggle("View", "view-final", "Final", "1", "The light as it is", &show<SurfaceView::Final>,
-           &shows<SurfaceView::Final>),
-    toggle("View", "view-irradiance", "Irradiance", "2", "What arrives at surfaces, without their own color",
-           &show<SurfaceView::Irradiance>, &shows<SurfaceView::Irradiance>),
-    toggle("View", "view-dc", "Average visibility", "3", "What of uniform light arrives",
-           &show<SurfaceView::TransferDc>, &shows<SurfaceView::TransferDc>),
-    toggle("View", "view-band", "One SH band", "4", "Energy of one band of the transfer",
-           &show<SurfaceView::TransferBand>, &shows<SurfaceView::TransferBand>),
-    toggle("View", "view-error", "Coding error", "5",
-           "What coding the transfer costs, as the bake measured it", &show<SurfaceView::ErrorEstimate>,
-           &shows<SurfaceView::ErrorEstimate>),
-    toggle("View", "view-importance", "Importance", "6",
-           "How much the bake took surfaces to matter to pictures", &show<SurfaceView::Importance>,
-           &shows<SurfaceView::Importance>),
-    toggle("View", "view-clusters", "Clusters", "7", "Which samples are coded together",
-           &show<SurfaceView::ClusterIds>, &shows<SurfaceView::ClusterIds>),
-    toggle("View", "view-normals", "Normals", "8", "Shading normals", &show<SurfaceView::Normals>,
-           &shows<SurfaceView::Normals>),
-    toggle("View", "view-wireframe", "Wireframe", "9", "The triangles over the picture",
-           &show<SurfaceView::Wireframe>, &shows<SurfaceView::Wireframe>),
+    toggle(&shows<SurfaceView::Final>,
+           item("View", "view-final", "Final", "1", "The light as it is", &show<SurfaceView::Final>)),
+    toggle(&shows<SurfaceView::Irradiance>,
+           item("View", "view-irradiance", "Irradiance", "2",
+                "What arrives at surfaces, without their own color", &show<SurfaceView::Irradiance>)),
+    toggle(&shows<SurfaceView::TransferDc>,
+           item("View", "view-dc", "Average visibility", "3", "What of uniform light arrives",
+                &show<SurfaceView::TransferDc>)),
+    toggle(&shows<SurfaceView::TransferBand>,
+           item("View", "view-band", "One SH band", "4", "Energy of one band of the transfer",
+                &show<SurfaceView::TransferBand>)),
+    toggle(&shows<SurfaceView::ErrorEstimate>, item("View", "view-error", "Coding error", "5",
+                                                    "What coding the transfer costs, as the bake measured it",
+                                                    &show<SurfaceView::ErrorEstimate>)),
+    toggle(&shows<SurfaceView::Importance>,
+           item("View", "view-importance", "Importance", "6",
+                "How much the bake took surfaces to matter to pictures", &show<SurfaceView::Importance>)),
+    toggle(&shows<SurfaceView::ClusterIds>,
+           item("View", "view-clusters", "Clusters", "7", "Which samples are coded together",
+                &show<SurfaceView::ClusterIds>)),
+    toggle(&shows<SurfaceView::Normals>,
+           item("View", "view-normals", "Normals", "8", "Shading normals", &show<SurfaceView::Normals>)),
+    toggle(&shows<SurfaceView::Wireframe>,
+           item("View", "view-wireframe", "Wireframe", "9", "The triangles over the picture",
+                &show<SurfaceView::Wireframe>)),
     scripted("view", "What surfaces show", "NAME[:BAND]", 1, 1, &setView),
     separator("View"),
-    toggle("View", "unshadowed", "Unshadowed", "Shift+1", "Light without shadows or bounces", &transfer<0>,
-           &transfers<0>),
-    toggle("View", "shadowed", "Shadowed", "Shift+2", "With shadows, without bounces", &transfer<1>,
-           &transfers<1>),
-    toggle("View", "full", "Shadows and bounces", "Shift+3", "All that was baked", &transfer<2>,
-           &transfers<2>),
+    toggle(&transfers<0>, item("View", "unshadowed", "Unshadowed", "Shift+1",
+                               "Light without shadows or bounces", &transfer<0>)),
+    toggle(&transfers<1>,
+           item("View", "shadowed", "Shadowed", "Shift+2", "With shadows, without bounces", &transfer<1>)),
+    toggle(&transfers<2>,
+           item("View", "full", "Shadows and bounces", "Shift+3", "All that was baked", &transfer<2>)),
     scripted("setting", "A setting of the frame, as the panel has them", "NAME VALUE", 2, 2, &setting),
     separator("View"),
-    toggle("View", "split", "Reference beside", "F8",
-           "The path-traced picture beside this one, refined in the background", &split<SplitView::Beside>,
-           &isSplit<SplitView::Beside>),
-    toggle("View", "heat", "Difference from the reference", "Shift+F8",
-           "Where the picture differs, and by how much", &split<SplitView::Heat>, &isSplit<SplitView::Heat>),
+    toggle(&isSplit<SplitView::Beside>,
+           item("View", "split", "Reference beside", "F8",
+                "The path-traced picture beside this one, refined in the background",
+                &split<SplitView::Beside>)),
+    toggle(&isSplit<SplitView::Heat>,
+           item("View", "heat", "Difference from the reference", "Shift+F8",
+                "Where the picture differs, and by how much", &split<SplitView::Heat>)),
     scripted("reference-samples", "Samples a pixel at which the reference ends", "N", 1, 1, &samples),
     scripted("reference-bands", "Light of the reference in so many bands only", "N|off", 1, 1, &bands),
     separator("View"),
-    formerly("overlay-light-samples", toggle("View", "overlay-light-probes", "Light probes", "",
-                                             "What is captured where, and its harmonics as a ball",
-                                             &overlay<&O::light_probes>, &hasOverlay<&O::light_probes>)),
-    toggle("View", "overlay-neighborhoods", "Shadows around bodies", "", "What bodies change around them",
-           &overlay<&O::neighborhoods>, &hasOverlay<&O::neighborhoods>),
-    toggle("View", "overlay-volumes", "Volume bounds", "", "The boxes of volumes", &overlay<&O::volumes>,
-           &hasOverlay<&O::volumes>),
-    toggle("View", "overlay-groups", "Group bounds", "", "The boxes of rigid groups", &overlay<&O::groups>,
-           &hasOverlay<&O::groups>),
-    toggle("View", "overlay-lights", "Lights", "", "Where lights stand, and where they shine",
-           &overlay<&O::lights>, &hasOverlay<&O::lights>),
-    toggle("View", "overlay-keys", "Key lights", "",
-           "Where key lights stand on the sky, and what their shadow maps show", &overlay<&O::keys>,
-           &hasOverlay<&O::keys>),
+    formerly("overlay-light-samples",
+             toggle(&hasOverlay<&O::light_probes>,
+                    item("View", "overlay-light-probes", "Light probes", "",
+                         "What is captured where, and its harmonics as a ball", &overlay<&O::light_probes>))),
+    toggle(&hasOverlay<&O::neighborhoods>,
+           item("View", "overlay-neighborhoods", "Shadows around bodies", "",
+                "What bodies change around them", &overlay<&O::neighborhoods>)),
+    toggle(&hasOverlay<&O::volumes>, item("View", "overlay-volumes", "Volume bounds", "",
+                                          "The boxes of volumes", &overlay<&O::volumes>)),
+    toggle(&hasOverlay<&O::groups>, item("View", "overlay-groups", "Group bounds", "",
+                                         "The boxes of rigid groups", &overlay<&O::groups>)),
+    toggle(&hasOverlay<&O::lights>, item("View", "overlay-lights", "Lights", "",
+                                         "Where lights stand, and where they shine", &overlay<&O::lights>)),
+    toggle(&hasOverlay<&O::keys>,
+           item("View", "overlay-keys", "Key lights", "",
+                "Where key lights stand on the sky, and what their shadow maps show", &overlay<&O::keys>)),
     separator("View"),
-    Command{.id = "frame",
-            .title = "Frame selection",
-            .menu = "View",
-            .shortcut = "F",
-            .help = "What is selected fills the picture",
-            .arguments = "",
-            .run = &frameSelected},
-    Command{.id = "frame-all",
-            .title = "Frame all",
-            .menu = "View",
-            .shortcut = "Home",
-            .help = "All fills the picture",
-            .arguments = "",
-            .run = &frameAll},
-    toggle("View", "orthographic", "Orthographic", "O", "A view without perspective", &ortho, &isOrtho),
+    item("View", "frame", "Frame selection", "F", "What is selected fills the picture", &frameSelected),
+    item("View", "frame-all", "Frame all", "Home", "All fills the picture", &frameAll),
+    toggle(&isOrtho, item("View", "orthographic", "Orthographic", "O", "A view without perspective", &ortho)),
     scripted("camera", "Look from there: orbit:AZ,EL,DIST,FOV, pose:... or a camera's name", "CAMERA", 1, 1,
              &setCamera),
-    toggle("View", "play", "Play animations", "Space", "Animations run", &play, &plays),
+    toggle(&plays, item("View", "play", "Play animations", "Space", "Animations run", &play)),
     scripted("time", "Where animations stand", "SECONDS", 1, 1, &time),
 };
 
@@ -208,6 +206,68 @@ constexpr std::array kViewRows = {
 
 std::span<const Command> viewCommands() {
   return kViewRows;
+}
+
+namespace {
+
+bool cameraSelected(const Session& session) {
+  return session.document.registry().alive(selectedCamera(session));
+}
+
+// Returns the selected camera, or else the one whose picture is kept.
+ecs::Entity cameraAtHand(const Session& session) {
+  return cameraSelected(session) ? selectedCamera(session) : shownCamera(session);
+}
+bool anyCamera(const Session& session) {
+  return session.document.registry().alive(cameraAtHand(session));
+}
+
+Answer look(Session& session, Words) {
+  lookThrough(session, cameraAtHand(session));
+  return nullptr;
+}
+Answer keep(Session& session, Words) {
+  ecs::Entity& kept = session.viewing.kept_camera;
+  const ecs::Entity selected = selectedCamera(session);  // none gives up the kept one
+  kept = kept == selected ? ecs::Entity{} : selected;
+  return nullptr;
+}
+bool keeps(const Session& session) {
+  return session.document.registry().alive(session.viewing.kept_camera);
+}
+bool mayKeep(const Session& session) {
+  return cameraSelected(session) || keeps(session);
+}
+Answer place(Session& session, Words) {
+  return answerOf(placeAtView(session, selectedCamera(session)));
+}
+Answer preview(Session& session, Words) {
+  session.preferences.camera_preview = !session.preferences.camera_preview;
+  return nullptr;
+}
+bool previews(const Session& session) {
+  return session.preferences.camera_preview;
+}
+
+constexpr std::array kCameraRows = {
+    separator("View"),
+    enabled(&anyCamera,
+            item("View", "look-through", "Look through this camera", "C",
+                 "The view goes where the selected camera stands, or the one whose picture is kept", &look)),
+    enabled(&cameraSelected, item("View", "camera-to-view", "Camera to view", "Shift+C",
+                                  "The selected camera goes where the view is", &place)),
+    toggle(&previews, item("View", "camera-preview", "Camera preview", "",
+                           "An inset in the view shows what a selected camera sees", &preview)),
+    enabled(&mayKeep,
+            toggle(&keeps,
+                   item("View", "keep-camera", "Keep this camera's picture", "",
+                        "The inset stays while other things are selected and edited: a second view", &keep))),
+};
+
+}  // namespace
+
+std::span<const Command> cameraCommands() {
+  return kCameraRows;
 }
 
 }  // namespace lambent::editor

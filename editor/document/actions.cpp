@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "editor/document/copies.hpp"
 #include "runtime/scene/components.hpp"
 
 namespace lambent::editor {

@@ -1,5 +1,5 @@
-// Implements the edit commands of menus: duplicate, reset, copy and paste, each as one step of the history. A
-// copy is JSON text for the system's clipboard, so it can be pasted into another program
+// Implements the edit commands of menus: duplicate, reset, copy and paste, each as one step of the history.
+// A copy is JSON text for the system's clipboard, so it can be pasted into another program
 // (docs/world-file.md). An error says what is wrong and changes nothing.
 #pragma once
 
@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "editor/document/baseline.hpp"
 #include "editor/document/history.hpp"
+#include "editor/document/overrides.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::editor {
@@ -53,5 +53,13 @@ Result<void> pasteComponent(Document& document, History& history, std::span<cons
 // Creates the copied entities below `parent` (none: at the top of the world) and returns the topmost ones.
 Result<std::vector<ecs::Entity>> pasteEntities(Document& document, History& history, ecs::Entity parent,
                                                std::string_view text);
+
+// Returns snapshots of the entities and their descendants, parents first. Errors: those of duplicate().
+Result<std::vector<EntitySnapshot>> copiesOf(const Document& document, std::span<const ecs::Entity> entities);
+
+// Creates entities from the snapshots as one step of the history. Returns those whose parent is not among
+// them.
+Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history,
+                                            std::vector<EntitySnapshot> copies, std::string name);
 
 }  // namespace lambent::editor

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "editor/document/actions.hpp"
-#include "editor/document/copies.hpp"
 #include "editor/document/value_json.hpp"
 
 namespace lambent::editor {

@@ -40,12 +40,6 @@ Document::Document(ecs::Registry& registry, std::optional<std::uint64_t> seed) :
   }
 }
 
-void Document::attach(ecs::Registry& registry) {
-  registry_ = &registry;
-  entities_.clear();
-  indexed_version_ = 0;
-}
-
 void Document::setWorld(WorldState world) {
   if (world == world_) return;
   world_ = std::move(world);

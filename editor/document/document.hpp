@@ -1,11 +1,12 @@
 // Holds the world that is edited: a registry that frame::World owns, the rest of the world as a WorldState,
 // and the ids of its entities. Entities are identified by StableId. Bundles bring the ids of their entities;
 // an entity that a person makes gets a new id and the component Created. Entity handles may change (undo
-// creates entities anew, bundles are reloaded) but ids do not, so selection, history and files store ids. One
-// thread.
+// creates entities anew, bundles are reloaded) but ids do not, so selection, history and files store ids.
+// One thread.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,11 +15,41 @@
 
 #include <glm/mat4x4.hpp>
 
-#include "editor/document/world_state.hpp"
 #include "runtime/ecs/registry.hpp"
 #include "runtime/scene/stable_id.hpp"
 
 namespace lambent::editor {
+
+// Holds what this version does not know, as JSON text by key. It is kept and written back.
+using UnknownFields = std::map<std::string, std::string>;
+
+struct BundleEntry {
+  std::string path;            // relative to the world file's folder, or absolute; '/' between folders
+  std::string id;              // the bundle's part of a StableId (scene::InstantiateOptions::bundle_id)
+  std::uint32_t instance = 0;  // distinguishes bundles of the same id
+  std::string source;          // the glTF file that it was baked from, a path like `path`; empty: unknown
+  std::map<std::string, std::string> bake_options;  // by name, as in Description::bake_options
+  UnknownFields unknown;
+  bool operator==(const BundleEntry&) const = default;
+};
+
+// Holds all of a world except its entities. It is a plain value: the history stores it before and after a
+// step, world files store it, and the program follows it. Words are those of the command line
+// (docs/conventions.md). Paths are as in the world file.
+struct WorldState {
+  std::vector<BundleEntry> bundles;
+  // Distant lights, in the words of --light and --fade-light. Lights within the scene are entities;
+  // intensity, rotation and fade are fields of the EnvironmentComponent.
+  std::vector<std::string> lights, fade_lights;
+  // Edits of key lights that were found in the environment maps among these lights, in the words of
+  // --edit-key.
+  std::vector<std::string> key_edits;
+  std::optional<float> exposure_ev;             // none: automatic
+  std::string camera;                           // a camera word; empty: the program chooses
+  std::map<std::string, std::string> settings;  // of the frame, by option name
+  std::map<std::string, std::string> view;      // of the editor: free camera, panels
+  bool operator==(const WorldState&) const = default;
+};
 
 using scene::StableId;
 
@@ -39,14 +70,12 @@ std::optional<StableId> parseId(std::string_view text);
 class Document {
  public:
   // seed: determines the ids of new entities. By default it differs each time, so that the worlds of two
-  // people can be merged. The registry must outlive the document, unless attach() replaces it.
+  // people can be merged. The registry must outlive the document.
   explicit Document(ecs::Registry& registry, std::optional<std::uint64_t> seed = {});
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
   ecs::Registry& registry() const { return *registry_; }
-  // Edits this registry from now on. The program calls it after it has created its world anew.
-  void attach(ecs::Registry& registry);
 
   const WorldState& world() const { return world_; }
   // Sets the state without a step in the history, as when a file is opened. Raises worldVersion() if the

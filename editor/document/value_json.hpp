@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "editor/document/world_state.hpp"
+#include "editor/document/document.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/scene/reflection.hpp"
 

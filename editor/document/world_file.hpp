@@ -13,7 +13,6 @@
 #include <string_view>
 #include <vector>
 
-#include "editor/document/baseline.hpp"
 #include "editor/document/document.hpp"
 #include "editor/document/overrides.hpp"
 #include "runtime/base/result.hpp"

@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "editor/gizmo/shapes2d.hpp"
+#include "editor/gizmo/projection.hpp"
 
 namespace lambent::editor {
 namespace {

@@ -15,7 +15,6 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
-#include "editor/gizmo/painting.hpp"
 #include "editor/gizmo/projection.hpp"
 #include "runtime/scene/components.hpp"
 

@@ -8,7 +8,7 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 
-#include "editor/gizmo/shapes2d.hpp"
+#include "editor/gizmo/projection.hpp"
 #include "runtime/scene/reflection.hpp"
 
 namespace lambent::editor {

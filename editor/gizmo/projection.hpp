@@ -1,9 +1,12 @@
-// Maps world points to pixels of one view, and pixels to rays. Pixels count from the top left corner of the
-// window, y down, as in Dear ImGui. Views can be perspective or orthographic. It computes in double
-// precision, because handles are dragged by single pixels even far from the origin.
+// Maps world points to pixels of one view, and pixels to rays, and measures and draws lines and polygons in
+// pixels. Pixels count from the top left corner of the window, y down, as in Dear ImGui. Views can be
+// perspective or orthographic. It computes in double precision, because handles are dragged by single pixels
+// even far from the origin.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
@@ -58,6 +61,47 @@ class Projection {
   glm::dmat4 clip_from_world_{1.0}, world_from_clip_{1.0};
   glm::dvec3 eye_{0.0}, right_{1.0, 0.0, 0.0}, up_{0.0, 1.0, 0.0}, back_{0.0, 0.0, 1.0};
   bool perspective_ = true;
+};
+
+// Describes what gizmos paint, back to front, for ImDrawList or another canvas: a line or a filled polygon
+// in pixels.
+struct Stroke {
+  std::vector<glm::vec2> points;
+  std::uint32_t color = 0xffffffff;  // ABGR, alpha on top, as IM_COL32 packs it
+  float width_px = 1.0f;             // of lines
+  bool closed = false;               // the last point joins the first
+  bool filled = false;               // a convex polygon
+};
+
+using Painting = std::vector<Stroke>;
+
+constexpr std::uint32_t rgba(unsigned red, unsigned green, unsigned blue, unsigned alpha = 255) {
+  return red | green << 8 | blue << 16 | alpha << 24;
+}
+
+double distanceToLine(const std::vector<glm::dvec2>& points, const glm::dvec2& pixel);
+// Returns the distance in pixels, 0 inside the polygon.
+double distanceToPolygon(const std::vector<glm::dvec2>& points, const glm::dvec2& pixel);
+// Returns some dozen points on the line, or inside the polygon; none where there are fewer than two points.
+std::vector<glm::dvec2> samplesOf(const std::vector<glm::dvec2>& points, bool filled);
+// Draws the end of an axis: an arrow head, or a box.
+Stroke tip(const glm::dvec2& from, const glm::dvec2& to, bool arrow, std::uint32_t color);
+// Draws a small filled disc.
+Stroke dot(const glm::dvec2& center, double radius, std::uint32_t color);
+
+// Follows the pointer during a drag, at a tenth of its way while the user holds the key for fine movements.
+class FinePointer {
+ public:
+  void press(glm::vec2 pixel) { pointer_ = at_ = pixel; }
+  // Returns the pixel that counts for the drag when the pointer is at `pixel`.
+  glm::vec2 moved(glm::vec2 pixel, bool fine) {
+    at_ += (fine ? 0.1f : 1.0f) * (pixel - pointer_);
+    pointer_ = pixel;
+    return at_;
+  }
+
+ private:
+  glm::vec2 pointer_{0.0f}, at_{0.0f};
 };
 
 }  // namespace lambent::editor

@@ -13,7 +13,6 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "editor/gizmo/painting.hpp"
 #include "editor/gizmo/projection.hpp"
 #include "runtime/base/result.hpp"
 

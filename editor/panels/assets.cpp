@@ -1,4 +1,6 @@
-// Draws the Assets panel: what can be opened or used as light, with pictures.
+#include "editor/panels/assets.hpp"
+
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -7,12 +9,91 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/panels/asset_tile.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/panels/text.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
+
+namespace {
+
+constexpr float kShape = 16.0f / 9.0f;  // of the picture
+
+ImU32 colorOf(AssetKind kind) {
+  switch (kind) {
+    case AssetKind::EnvironmentMap:
+      return IM_COL32(70, 105, 150, 255);
+    case AssetKind::Scene:
+      return IM_COL32(95, 95, 100, 255);
+    case AssetKind::Bundle:
+      return IM_COL32(140, 100, 50, 255);
+    case AssetKind::World:
+      return IM_COL32(70, 120, 75, 255);
+  }
+  return 0;
+}
+
+ImVec2 sizeOfText(const std::string& text) {
+  return ImGui::CalcTextSize(text.c_str());
+}
+
+// Fills the rectangle with the middle of the picture.
+void drawAssetPicture(const AssetPictures::Picture& picture, const ImVec2& low, const ImVec2& high) {
+  ImVec2 cut(0.0f, 0.0f);
+  if (picture.aspect > kShape)
+    cut.x = 0.5f * (1.0f - kShape / picture.aspect);
+  else
+    cut.y = 0.5f * (1.0f - picture.aspect / kShape);
+  ImGui::GetWindowDrawList()->AddImage(textureOf(picture.texture), low, high, cut,
+                                       ImVec2(1.0f - cut.x, 1.0f - cut.y));
+}
+
+// Writes a word over the lower left corner of a picture.
+void drawCornerSign(const std::string& word, const ImVec2& corner) {
+  const ImVec2 text = sizeOfText(word);
+  const ImVec2 at(corner.x + em(0.25f), corner.y - text.y - em(0.1f));
+  ImDrawList* canvas = ImGui::GetWindowDrawList();
+  canvas->AddRectFilled(ImVec2(corner.x, at.y - em(0.1f)), ImVec2(at.x + text.x + em(0.25f), corner.y),
+                        IM_COL32(0, 0, 0, 150));
+  canvas->AddText(at, IM_COL32(225, 225, 225, 255), word.c_str());
+}
+
+}  // namespace
+
+bool drawAssetTile(Session& session, const Asset& asset, float width_ems, bool selected) {
+  const float width = std::max(em(2.0f), std::min(em(width_ems), ImGui::GetContentRegionAvail().x));
+  const float height = width / kShape, line = ImGui::GetTextLineHeight();
+  const ImVec2 low = ImGui::GetCursorScreenPos(), high(low.x + width, low.y + height);
+  const bool clicked = ImGui::InvisibleButton(asset.file.c_str(), ImVec2(width, height + line + em(0.2f)));
+  if (!ImGui::IsItemVisible()) return clicked;
+  ImDrawList* canvas = ImGui::GetWindowDrawList();
+  const AssetPictures::Picture& picture = session.asset_pictures.of(asset);
+  const std::string kind(kindWord(asset.kind));
+  if (picture.texture != 0) {
+    drawAssetPicture(picture, low, high);
+    // A picture shows by itself that it is an environment map.
+    if (asset.kind != AssetKind::EnvironmentMap) drawCornerSign(kind, ImVec2(low.x, high.y));
+  } else {
+    canvas->AddRectFilled(low, high, colorOf(asset.kind));
+    const std::string words = ellipsized(picture.error.empty() ? kind : "cannot be read", width - em(0.4f));
+    const ImVec2 text = sizeOfText(words);
+    canvas->AddText(ImVec2(low.x + 0.5f * (width - text.x), low.y + 0.5f * (height - text.y)),
+                    IM_COL32(235, 235, 235, 255), words.c_str());
+  }
+  if (selected || ImGui::IsItemHovered())
+    canvas->AddRect(low, high, ImGui::GetColorU32(selected ? kColorOfKeyboardCursor : ImGuiCol_SliderGrab),
+                    0.0f, 0, em(0.15f));
+  canvas->AddText(ImVec2(low.x, high.y + em(0.1f)), ImGui::GetColorU32(ImGuiCol_Text),
+                  ellipsized(nameOf(asset), width).c_str());
+  return clicked;
+}
+
+std::string describe(Session& session, const Asset& asset) {
+  const std::string& error = session.asset_pictures.of(asset).error;
+  return fmt::format("{}\n{}, {}{}{}", asset.file.string(), kindWord(asset.kind),
+                     bytesText(static_cast<double>(asset.bytes)), error.empty() ? "" : "\n", error);
+}
 
 namespace {
 

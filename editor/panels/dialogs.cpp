@@ -5,8 +5,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/panels/text.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 

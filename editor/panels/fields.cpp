@@ -13,12 +13,12 @@
 #include <imgui_stdlib.h>
 
 #include "editor/document/actions.hpp"
-#include "editor/document/field_use.hpp"
-#include "editor/panels/field_words.hpp"
+#include "editor/document/field_edits.hpp"
 #include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/panels/text.hpp"
 #include "editor/session/field_numbers.hpp"
-#include "editor/session/light_units.hpp"
+#include "editor/session/local_lights.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {

@@ -9,9 +9,10 @@
 
 namespace lambent::editor {
 
-// Draws a table of the fields that all entities use (document/field_use.hpp). Values that differ are shown as
-// a dash. An edit reaches all entities: a drag shifts their numbers by the same amount, and those of lights'
-// strength by the same factor; what is typed or chosen sets all alike. The last entity is the primary one.
+// Draws a table of the fields that all entities use (document/field_edits.hpp). Values that differ are shown
+// as a dash. An edit reaches all entities: a drag shifts their numbers by the same amount, and those of
+// lights' strength by the same factor; what is typed or chosen sets all alike. The last entity is the primary
+// one.
 void drawFields(Session& session, Marks& marks, const scene::ComponentInfo& component,
                 std::span<const ecs::Entity> entities);
 

@@ -1,5 +1,3 @@
-#include "editor/panels/manipulate.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +7,7 @@
 #include <glm/trigonometric.hpp>
 #include <imgui.h>
 
+#include "editor/panels/panel.hpp"
 #include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {

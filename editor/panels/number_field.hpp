@@ -1,12 +1,12 @@
 // Draws a number that is dragged or typed, with the modifiers that the gizmos have, too: Shift is finer, Ctrl
-// goes in steps, Alt is coarser. A click opens a text field that calculates (document/number_edit.hpp). The
+// goes in steps, Alt is coarser. A click opens a text field that calculates (document/field_edits.hpp). The
 // edit is returned, not applied, so that it can reach several entities.
 #pragma once
 
 #include <optional>
 
-#include "editor/document/number_edit.hpp"
-#include "editor/session/field_edit_state.hpp"
+#include "editor/document/field_edits.hpp"
+#include "editor/session/field_numbers.hpp"
 
 namespace lambent::editor {
 

@@ -3,9 +3,11 @@
 // need a Dear ImGui context; only the view also needs a window and OpenGL.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
+#include "editor/gizmo/projection.hpp"
 #include "editor/session/session.hpp"
 #include "editor/ui/marks.hpp"
 
@@ -28,13 +30,11 @@ Dock dockOf(const WindowLayout& layout, const Panel& panel);
 void drawSceneTree(Session& session, Marks& marks);
 void drawInspector(Session& session, Marks& marks);
 void drawEnvironment(Session& session, Marks& marks);
-void drawKeyLights(Session& session, Marks& marks);  // part of drawEnvironment
 // Part of drawEnvironment and of the inspector of lights. Its widgets have marks that begin with `mark`.
 void drawExposure(Session& session, Marks& marks, const std::string& mark);
 void drawSettings(Session& session, Marks& marks);
 void drawPlan(Session& session, Marks& marks);
 void drawBakes(Session& session, Marks& marks);
-void drawBakeOptions(Session& session, Marks& marks, std::size_t scene);  // part of drawBakes
 void drawAssets(Session& session, Marks& marks);
 void drawCost(Session& session, Marks& marks);
 void drawAccuracy(Session& session, Marks& marks);
@@ -51,6 +51,12 @@ void drawStartPage(Session& session, Marks& marks);  // in the view while the wo
 void drawDialogs(Session& session, Marks& marks);
 void drawKeys(Session& session, Marks& marks);
 void drawPalette(Session& session, Marks& marks);
+inline constexpr float kClickPixels = 4.0f;  // a press in the view that moves no further is a click
+// Handles the pointer in the view, except for the camera: it picks entities, drags the handles of the
+// selection and of lights, and drags suns over the sky. Every drag is one step of the history. Call it right
+// after the view's own widget. Returns the pixel at which the user clicked to pick something, from the view's
+// top left corner, or none if there was no such click.
+std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewport& viewport, bool hovered);
 // Draws the items of a menu about what is selected, for rows of the tree and the view.
 void drawSelectionMenu(Session& session, Marks& marks);
 

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/panels/text.hpp"
 #include "editor/session/names.hpp"
 #include "editor/ui/fitting.hpp"
 

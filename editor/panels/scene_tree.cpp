@@ -7,8 +7,8 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/document/tree.hpp"
-#include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/panels/text.hpp"
 #include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {

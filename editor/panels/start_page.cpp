@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/panels/asset_tile.hpp"
+#include "editor/panels/assets.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/ui/fitting.hpp"
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/panels/text.hpp"
 #include "editor/ui/fitting.hpp"

@@ -6,12 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/panels/asset_tile.hpp"
-#include "editor/panels/colors.hpp"
-#include "editor/panels/manipulate.hpp"
+#include "editor/panels/assets.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/panels/text.hpp"
 #include "editor/render/renderer.hpp"
-#include "editor/session/camera_views.hpp"
+#include "editor/session/viewing.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 

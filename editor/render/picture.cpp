@@ -1,12 +1,108 @@
 #include "editor/render/picture.hpp"
 
+#include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "editor/document/selection.hpp"
+#include "editor/session/viewing.hpp"
 #include "runtime/effects/volume/volume.hpp"
 
 namespace lambent::editor {
+
+PictureClock::Query PictureClock::timestamp() {
+  if (free_.empty()) {
+    GLuint id = 0;
+    glCreateQueries(GL_TIMESTAMP, 1, &id);
+    free_.emplace_back(id);
+  }
+  Query query = std::move(free_.back());
+  free_.pop_back();
+  glQueryCounter(query.id(), GL_TIMESTAMP);
+  return query;
+}
+
+void PictureClock::begin() {
+  begun_ = std::chrono::steady_clock::now();
+  first_ = timestamp();
+}
+
+void PictureClock::end(bool whole) {
+  const std::chrono::duration<double, std::milli> cpu = std::chrono::steady_clock::now() - begun_;
+  Query last = timestamp();
+  pictures_.push_back({std::move(first_), std::move(last), cpu.count(), whole});
+  glFlush();  // otherwise a driver may hold the commands back until something else is drawn
+}
+
+std::optional<PictureClock::Time> PictureClock::take() {
+  if (pictures_.empty()) return std::nullopt;
+  Picture& oldest = pictures_.front();
+  GLint ready = 0;
+  glGetQueryObjectiv(oldest.last.id(), GL_QUERY_RESULT_AVAILABLE, &ready);
+  if (ready == 0) return std::nullopt;
+  GLuint64 from_ns = 0, to_ns = 0;
+  glGetQueryObjectui64v(oldest.first.id(), GL_QUERY_RESULT, &from_ns);
+  glGetQueryObjectui64v(oldest.last.id(), GL_QUERY_RESULT, &to_ns);
+  const double gpu_ms = 1e-6 * static_cast<double>(to_ns - std::min(from_ns, to_ns));
+  const Time time{std::max(gpu_ms, oldest.cpu_ms), oldest.whole};
+  free_.push_back(std::move(oldest.first));
+  free_.push_back(std::move(oldest.last));
+  pictures_.pop_front();
+  return time;
+}
+
+namespace {
+
+// The preview takes this share of the view's width, within limits in pixels.
+constexpr float kShare = 0.3f;
+constexpr float kLeastWidth = 128.0f, kMostWidth = 480.0f, kMostHeight = 360.0f;
+
+spec::Size sizeOf(const Session& session, float aspect) {
+  const float width =
+      std::clamp(kShare * static_cast<float>(session.viewing.size.width), kLeastWidth, kMostWidth);
+  const float height = std::clamp(width / aspect, 16.0f, kMostHeight);
+  return {static_cast<std::uint32_t>(std::max(16.0f, std::min(width, height * aspect))),
+          static_cast<std::uint32_t>(height)};
+}
+
+}  // namespace
+
+bool CameraPreview::due(Session& session, std::uint64_t edits, bool stale) {
+  const ecs::Entity camera = shownCamera(session);
+  if (!session.document.registry().alive(camera)) {
+    texture_ = {};
+    camera_ = {};
+    session.picture.preview_waits = false;
+    return false;
+  }
+  if (!(camera == camera_) || edits != edits_) stale_ = true;
+  stale_ = stale_ || stale;
+  camera_ = camera, edits_ = edits;
+  session.picture.preview_waits = stale_;
+  return stale_ && session.picture.settled && !session.viewing.scale.coarse();
+}
+
+Result<void> CameraPreview::draw(Session& session, frame::Frame& frame) {
+  stale_ = session.picture.preview_waits = false;
+  const float aspect = aspectOf(session, camera_);
+  const spec::Size size = sizeOf(session, aspect);
+  const auto view = viewOfCamera(session, camera_, aspect);
+  if (!view) return failAgain(view.error());
+  Stage& stage = session.stage;
+  frame::FrameSettings settings = stage.settings();
+  settings.exposure_ev = session.picture.exposure_ev;  // as the view beside it
+  if (auto set = frame.setSettings(settings); !set) return set;
+  frame.resize(size);
+  frame.setView({});
+  frame.setOverlays({});
+  if (auto drawn = frame.render(stage.world(), stage.environment(), *view); !drawn) return drawn;
+  const gpu::TextureDesc& desc = frame.picture().desc();
+  if (!texture_ || texture_.desc().width != desc.width || texture_.desc().height != desc.height)
+    texture_ =
+        gpu::Texture("camera preview", {.format = desc.format, .width = desc.width, .height = desc.height});
+  glCopyImageSubData(frame.picture().id(), GL_TEXTURE_2D, 0, 0, 0, 0, texture_.id(), GL_TEXTURE_2D, 0, 0, 0,
+                     0, static_cast<GLsizei>(desc.width), static_cast<GLsizei>(desc.height), 1);
+  return {};
+}
 
 namespace {
 

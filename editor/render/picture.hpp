@@ -4,14 +4,73 @@
 // with a current OpenGL context. Errors: no OpenGL 4.5; later errors are logged.
 #pragma once
 
+#include <chrono>
+#include <deque>
 #include <optional>
+#include <vector>
 
-#include "editor/render/camera_preview.hpp"
-#include "editor/render/picture_clock.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/frame/frame.hpp"
+#include "runtime/gpu/objects.hpp"
 
 namespace lambent::editor {
+
+// Measures how long the GPU and the CPU take for pictures, without waiting for either: it puts timestamp
+// queries around each picture and reads them in a later frame, once they are available. It also tells
+// whether the GPU still works on a picture.
+class PictureClock {
+ public:
+  struct Time {
+    // From the first command to the last on the GPU, or the CPU's time if that was longer.
+    double milliseconds = 0.0;
+    bool whole = true;  // the argument of end()
+  };
+
+  // Call these before and after the commands of a picture. whole: it has full resolution.
+  void begin();
+  void end(bool whole);
+  // Returns the time of the oldest finished picture that was not returned before.
+  std::optional<Time> take();
+  bool inFlight() const { return !pictures_.empty(); }
+
+ private:
+  struct QueryTraits {
+    static void destroy(GLuint id) { glDeleteQueries(1, &id); }
+  };
+  using Query = gpu::Handle<QueryTraits>;
+  struct Picture {
+    Query first, last;
+    double cpu_ms = 0.0;
+    bool whole = true;
+  };
+  Query timestamp();
+
+  std::deque<Picture> pictures_;  // oldest first
+  std::vector<Query> free_;
+  Query first_;
+  std::chrono::steady_clock::time_point begun_;
+};
+
+// Draws what the selected camera, or one that is kept, sees into a small picture of its own, by the frame of
+// the main picture: a second frame would keep light probes, captures and shading of its own. The main
+// picture must be drawn anew afterwards. It draws only when something in it changed: while the world comes
+// to rest, and while main pictures are slow and move, it waits.
+class CameraPreview {
+ public:
+  // Returns whether the preview is to be drawn now. edits: a number that rises with edits and selections.
+  // stale: the main picture changes by something else than edits and its view.
+  bool due(Session& session, std::uint64_t edits, bool stale);
+  // Draws it. Errors: those of the camera and the frame.
+  Result<void> draw(Session& session, frame::Frame& frame);
+  // Returns the picture, with row 0 at the bottom, or one without handle if no camera is shown.
+  const gpu::Texture& texture() const { return texture_; }
+
+ private:
+  gpu::Texture texture_;
+  ecs::Entity camera_;
+  std::uint64_t edits_ = 0;
+  bool stale_ = true;
+};
 
 class Picture {
  public:

@@ -1,12 +1,12 @@
-// Owns the textures of the assets' pictures, which the session finds on the CPU, and takes pictures of scenes
-// and worlds from the view. Main thread, with a current OpenGL context.
+// Owns the textures of small pictures: those of assets, which the session finds on the CPU or which are
+// taken from the view, and those of materials. Main thread, with a current OpenGL context.
 #pragma once
 
 #include <filesystem>
 #include <map>
 #include <vector>
 
-#include "editor/session/scene_part.hpp"
+#include "editor/session/asset_pictures.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/base/change_gate.hpp"
 #include "runtime/gpu/objects.hpp"
@@ -36,6 +36,21 @@ class Thumbnails {
   // Tells when the view's picture must be taken: it compares the files that it shows and the version of the
   // scenes.
   ChangeGate<std::vector<Shown>, std::uint64_t> taken_;
+};
+
+// Makes the pictures of the materials that panels ask for: a sphere of each, drawn anew when the material
+// changes, and its textures as they are on the GPU.
+class MaterialPainter {
+ public:
+  // Answers what panels wanted in the last frame. Call it once a frame.
+  void update(Session& session);
+
+ private:
+  struct Preview {
+    std::uint64_t version = 0;  // of the component that is on the picture
+    gpu::Texture texture;
+  };
+  std::map<ecs::Entity, Preview> previews_;
 };
 
 }  // namespace lambent::editor

@@ -1,7 +1,7 @@
-// Runs scripts that drive the editor (--script FILE). A line is a command of the command list with its words,
-// an input to the window (click or drag at a mark, key, text, wheel, dropped file), a screenshot, or a wait.
-// Each frame runs lines until one has to wait. Each answer is a line of JSON. A line that fails ends the
-// script, unless it begins with "try". docs/editor.md lists the lines.
+// Runs scripts that drive the editor (--script FILE). A line is a command of the command list with its
+// words, an input to the window (click or drag at a mark, key, text, wheel, dropped file), a screenshot, or
+// a wait. Each frame runs lines until one has to wait. Each answer is a line of JSON. A line that fails ends
+// the script, unless it begins with "try". docs/editor.md lists the lines.
 #pragma once
 
 #include <chrono>

@@ -1,17 +1,160 @@
 #include "editor/session/asset_pictures.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
-#include <optional>
+#include <span>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "editor/session/picture_cache.hpp"
-#include "editor/session/small_pictures.hpp"
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "baker/cache/bytes.hpp"
+#include "editor/gizmo/projection.hpp"
 
 namespace lambent::editor {
+
+namespace {
+
+constexpr std::uint32_t kMapWidth = 128, kMapHeight = 64;
+constexpr std::uint32_t kViewWidth = 192, kViewHeight = 108;
+static_assert(kViewWidth == kSmallPictureShape * kViewHeight);
+
+std::uint8_t coded(float value) {
+  const float clamped = std::clamp(value, 0.0f, 1.0f);
+  return static_cast<std::uint8_t>(255.0f * std::pow(clamped, 1.0f / 2.2f) + 0.5f);
+}
+
+}  // namespace
+
+spec::Rgba8Image smallPictureOf(const spec::RgbImage& environment_map) {
+  std::vector<glm::vec3> texels;
+  std::vector<float> brightness;
+  for (std::uint32_t y = 0; y < kMapHeight; ++y)
+    for (std::uint32_t x = 0; x < kMapWidth; ++x) {
+      const std::size_t from_x = (2 * std::size_t{x} + 1) * environment_map.width / (2 * kMapWidth);
+      const std::size_t from_y = (2 * std::size_t{y} + 1) * environment_map.height / (2 * kMapHeight);
+      texels.push_back(environment_map.texels[from_y * environment_map.width + from_x]);
+      const float luminance = glm::dot(texels.back(), glm::vec3(0.2126f, 0.7152f, 0.0722f));
+      brightness.push_back(std::isfinite(luminance) ? luminance : 0.0f);
+    }
+  const auto median = brightness.begin() + kMapWidth * kMapHeight / 2;
+  std::nth_element(brightness.begin(), median, brightness.end());
+  const float scale = 0.22f / std::max(1e-6f, *median);
+  spec::Rgba8Image made{kMapWidth, kMapHeight, {}};
+  for (const glm::vec3& texel : texels)
+    for (const float value : {texel.r, texel.g, texel.b, 1.0f / scale})
+      made.texels.push_back(std::isfinite(value) ? coded(scale * value) : std::uint8_t{255});
+  return made;
+}
+
+spec::Rgba8Image smallPictureOf(const spec::Rgba8Image& view) {
+  // The part of the view that is shown: as wide or as high as the view, and in the shape of the small
+  // picture.
+  const std::uint32_t width = std::min(view.width, view.height * kViewWidth / kViewHeight);
+  const std::uint32_t height = std::min(view.height, view.width * kViewHeight / kViewWidth);
+  const std::uint32_t left = (view.width - width) / 2, top = (view.height - height) / 2;
+  spec::Rgba8Image made{kViewWidth, kViewHeight, {}};
+  for (std::uint32_t y = 0; y < kViewHeight; ++y)
+    for (std::uint32_t x = 0; x < kViewWidth; ++x) {
+      const std::uint32_t x_begin = left + x * width / kViewWidth, y_begin = top + y * height / kViewHeight;
+      const std::uint32_t x_end = std::max(x_begin + 1, left + (x + 1) * width / kViewWidth);
+      const std::uint32_t y_end = std::max(y_begin + 1, top + (y + 1) * height / kViewHeight);
+      std::array<std::uint32_t, 3> sum{};
+      for (std::uint32_t from_y = y_begin; from_y < y_end; ++from_y)
+        for (std::uint32_t from_x = x_begin; from_x < x_end; ++from_x)
+          for (std::size_t channel = 0; channel < 3; ++channel)
+            sum[channel] += view.texels[4 * (std::size_t{from_y} * view.width + from_x) + channel];
+      const std::uint32_t count = (x_end - x_begin) * (y_end - y_begin);
+      for (const std::uint32_t channel : sum)
+        made.texels.push_back(static_cast<std::uint8_t>((channel + count / 2) / count));
+      made.texels.push_back(255);
+    }
+  return made;
+}
+
+namespace {
+
+constexpr double kMargin = 0.1;        // on each side, as a share of the box's extent there
+constexpr double kLeastPixels = 48.0;  // the longer side of what is shown
+
+}  // namespace
+
+std::optional<PicturePart> partWithBox(const spec::View& view, const spec::Size& size,
+                                       const scene::Box& box) {
+  if (box.empty()) return std::nullopt;
+  const glm::dvec2 whole(size.width, size.height);
+  const Projection projection(view, {0.0f, 0.0f, static_cast<float>(whole.x), static_cast<float>(whole.y)});
+  glm::dvec2 low = whole, high(0.0);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 place((corner & 1) != 0 ? box.max.x : box.min.x,
+                           (corner & 2) != 0 ? box.max.y : box.min.y,
+                           (corner & 4) != 0 ? box.max.z : box.min.z);
+    const auto pixel = projection.toScreen(place);
+    if (!pixel || pixel->x < 0.0 || pixel->y < 0.0 || pixel->x > whole.x || pixel->y > whole.y)
+      return std::nullopt;
+    low = glm::min(low, *pixel), high = glm::max(high, *pixel);
+  }
+  const glm::dvec2 extent = high - low;
+  if (std::max(extent.x, extent.y) < kLeastPixels) return std::nullopt;
+  // The shape is that of small pictures, which would cut the box otherwise, as far as the picture reaches.
+  glm::dvec2 wanted = (1.0 + 2.0 * kMargin) * extent;
+  wanted = glm::min(
+      glm::max(wanted, glm::dvec2(wanted.y * kSmallPictureShape, wanted.x / kSmallPictureShape)), whole);
+  const glm::dvec2 begin = glm::clamp(0.5 * (low + high - wanted), glm::dvec2(0.0), whole - wanted);
+  return PicturePart{static_cast<std::uint32_t>(begin.x), static_cast<std::uint32_t>(begin.y),
+                     static_cast<std::uint32_t>(wanted.x), static_cast<std::uint32_t>(wanted.y)};
+}
+
+namespace {
+
+// Rises when pictures are made or written in another way.
+constexpr std::uint32_t kPictureVersion = 1;
+
+baker::Key keyOf(const Asset& asset) {
+  return baker::KeyMaker()
+      .addText("picture of an asset")
+      .add(kPictureVersion)
+      .addText(asset.file.string())
+      .add(asset.bytes)
+      .add(std::int64_t{asset.written.time_since_epoch().count()})
+      .key();
+}
+
+}  // namespace
+
+PictureCache::PictureCache(const std::filesystem::path& folder, std::uint64_t most_bytes) {
+  if (folder.empty()) return;
+  if (auto cache = baker::Cache::open(folder, most_bytes)) cache_ = std::move(*cache);
+}
+
+std::optional<spec::Rgba8Image> PictureCache::find(const Asset& asset) const {
+  if (!cache_) return std::nullopt;
+  const auto bytes = cache_->find(keyOf(asset));
+  if (!bytes) return std::nullopt;
+  baker::ByteReader reader(*bytes);
+  spec::Rgba8Image picture;
+  const bool read =
+      reader.read(picture.width) && reader.read(picture.height) && reader.readList(picture.texels);
+  if (!read || picture.texels.size() != std::size_t{4} * picture.width * picture.height) return std::nullopt;
+  return picture;
+}
+
+void PictureCache::put(const Asset& asset, const spec::Rgba8Image& picture) {
+  if (!cache_) return;
+  baker::ByteWriter writer;
+  writer.add(picture.width);
+  writer.add(picture.height);
+  writer.addList(picture.texels);
+  // Pictures that were used a moment ago may go, too, since they can be made again.
+  cache_->beginBake();
+  cache_->put(keyOf(asset), writer.bytes());
+}
 
 namespace {
 

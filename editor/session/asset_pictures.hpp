@@ -1,19 +1,57 @@
 // Brings the pictures of assets: those of environment maps are made of their files, those of scenes, bundles
-// and worlds are what the view showed of them last, or else a PNG of their name that lies beside them. Panels
-// ask for them; a thread finds them on disk or makes them, in the order in which they were asked for. The
-// renderer turns them into textures (editor/render/thumbnails). Main thread.
+// and worlds are what the view showed of them last, or else a PNG of their name that lies beside them.
+// Panels ask for them; a thread finds them on disk or makes them, in the order in which they were asked for.
+// The renderer turns them into textures (editor/render/thumbnails). AssetPictures belongs to the main
+// thread.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "baker/cache/cache.hpp"
 #include "editor/session/assets.hpp"
+#include "runtime/scene/bounds.hpp"
+#include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
+#include "runtime/spec/size.hpp"
 
 namespace lambent::editor {
+
+// Exposes the environment map so that its median becomes middle grey.
+spec::Rgba8Image smallPictureOf(const spec::RgbImage& environment_map);
+// Averages the middle of a picture, which is cut to the shape of the small one. Alpha becomes 1.
+spec::Rgba8Image smallPictureOf(const spec::Rgba8Image& view);
+inline constexpr double kSmallPictureShape = 16.0 / 9.0;  // width / height of pictures of views
+
+struct PicturePart {
+  std::uint32_t left = 0, top = 0, width = 0, height = 0;  // in pixels
+  bool operator==(const PicturePart&) const = default;
+};
+
+// Returns the part around the box, with a margin and in the shape of small pictures, or nothing if a corner
+// of the box is not in the picture or the part would be too small to recognise.
+std::optional<PicturePart> partWithBox(const spec::View& view, const spec::Size& size, const scene::Box& box);
+
+inline constexpr std::uint64_t kPictureCacheBytes = std::uint64_t{32} << 20;  // about 400 views
+
+// Keeps small pictures on disk, within a number of bytes: those that were not used for longest go first. A
+// picture belongs to a file as it was, by path, size and time, so a file that changed has none. Nothing
+// fails: what cannot be kept is not found again.
+class PictureCache {
+ public:
+  // Without a folder, or if it cannot be made, nothing is kept.
+  explicit PictureCache(const std::filesystem::path& folder, std::uint64_t most_bytes = kPictureCacheBytes);
+
+  std::optional<spec::Rgba8Image> find(const Asset& asset) const;
+  void put(const Asset& asset, const spec::Rgba8Image& picture);
+
+ private:
+  std::optional<baker::Cache> cache_;
+};
 
 class AssetPictures {
  public:

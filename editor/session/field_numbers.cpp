@@ -4,9 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <glm/gtc/quaternion.hpp>
-
-#include "editor/session/light_units.hpp"
+#include "editor/session/local_lights.hpp"
+#include "editor/session/session.hpp"
 
 namespace lambent::editor {
 

@@ -1,13 +1,51 @@
 // Converts values of fields to the numbers that an artist reads and drags, and back: angles in degrees,
-// rotations as angles about x, y and z, the strength of lights in the chosen unit. All functions are pure.
+// rotations as angles about x, y and z, the strength of lights in the chosen unit. It also holds what the
+// inspector must know from one frame to the next while a field is edited.
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
-#include "editor/session/session.hpp"
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
 #include "runtime/scene/reflection.hpp"
 
 namespace lambent::editor {
+
+class Session;
+
+// Holds the angles of the rotation that a field shows. Many angles give one rotation, so a field that made
+// them anew from the rotation in each frame would jump to others while it is dragged beyond 90 degrees.
+struct HeldAngles {
+  glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
+  glm::vec3 degrees{0.0f};
+};
+
+// Holds a number while its widget is active. An edit is always relative to the number at the beginning, so
+// that steps do not add up rounding errors and a drag that comes back restores it.
+struct HeldNumber {
+  std::uint32_t widget = 0;  // id; 0: none
+  double start = 0.0;
+  double dragged = 0.0;  // where the pointer has dragged it, before it snaps to steps
+  double told = 0.0;     // the number of the last edit
+  std::string text;      // what a text field began with; empty: none is open
+  std::string typed;     // the text of the last edit
+};
+
+// Holds the field's values of the selected entities as they were when its widget became active, each also as
+// the numbers that the widget shows.
+struct HeldField {
+  std::vector<scene::Value> values;
+  std::vector<std::vector<double>> numbers;
+};
+
+struct FieldEditState {
+  HeldAngles angles;
+  HeldNumber number;
+  HeldField field;
+};
 
 bool isStrengthOfLight(const scene::FieldInfo& field);
 // Returns whether the field is edited as one number or three. Colors and choices are not.

@@ -59,4 +59,11 @@ class Files {
   std::optional<WorldFile> loaded_;  // the file as it was loaded: its unknown parts are saved again
 };
 
+// Returns the folder in which dialogs begin: that of the world, of the scene that is open, or of what was
+// opened last.
+std::filesystem::path startFolder(const Session& session);
+// Opens a dialog that asks for the world's file, saves it there, and then calls `then` if there is one.
+// Nothing is called if the dialog is cancelled or the world cannot be saved, which is logged.
+void askWhereToSave(Session& session, std::function<void(Session&)> then = {});
+
 }  // namespace lambent::editor

@@ -1,13 +1,23 @@
 #include "editor/session/names.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "editor/session/session.hpp"
+#include "runtime/base/lower_case.hpp"
 
 namespace lambent::editor {
+
+bool holdsWords(std::string_view text, std::string_view search) {
+  const std::string low = lowerCase(text);
+  std::istringstream words(lowerCase(search));
+  for (std::string word; words >> word;)
+    if (low.find(word) == std::string::npos) return false;
+  return true;
+}
 
 Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std::string& word) {
   TreeQuery query;

@@ -1,8 +1,10 @@
-// Resolves words of scripts and menus: entities by name, id or search, scenes by id or number.
+// Resolves words of scripts and menus: entities by name, id or search, scenes by id or number. Lists are
+// filtered by words, in any order and case.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "editor/document/snapshot.hpp"
@@ -12,6 +14,8 @@ namespace lambent::editor {
 
 class Session;
 
+// Returns whether all words of the search are parts of the text.
+bool holdsWords(std::string_view text, std::string_view search);
 // Returns all matches, or an error if there is none. A match of the whole name wins over matches of parts.
 Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std::string& word);
 // Returns the scene of the primary selected entity, else the first scene, or none if no scene is open.

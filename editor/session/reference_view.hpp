@@ -1,11 +1,12 @@
-// Owns the path-traced reference beside the runtime's picture. It is traced in the background from all scenes
-// that are shown, as the world has them (placement, moved nodes, edited materials, lights, camera), pass by
-// pass, and starts anew when anything changes. notice() says why a scene cannot be traced. The renderer
-// (editor/render) shows its snapshots and reports how they differ from the runtime's own linear picture. Main
-// thread; tracing runs on others.
+// Owns the path-traced reference beside the runtime's picture. It is traced in the background from all
+// scenes that are shown, as the world has them (placement, moved nodes, edited materials, lights, camera),
+// pass by pass, and starts anew when anything changes. notice() says why a scene cannot be traced. The
+// renderer (editor/render) shows its snapshots and reports how they differ from the runtime's own linear
+// picture. Main thread; tracing runs on others.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <future>
 #include <memory>
 #include <optional>
@@ -14,15 +15,51 @@
 #include <vector>
 
 #include "baker/accuracy/difference.hpp"
-#include "editor/session/reference_scene.hpp"
+#include "baker/import/scene.hpp"
+#include "baker/import/scene_edits.hpp"
+#include "editor/document/document.hpp"
 #include "reference/progressive.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/distant_lights.hpp"
+#include "runtime/spec/light.hpp"
 #include "runtime/spec/size.hpp"
 
 namespace lambent::editor {
 
 class Session;
+
+// Identifies a scene that is shown, and its edits and placement.
+struct ReferencePart {
+  std::filesystem::path source;
+  std::filesystem::file_time_type time;
+  std::string name;
+  baker::SceneEdits edits;
+  glm::mat4 world_from_scene{1.0f};
+  glm::dvec3 origin{0.0};  // of the world, frame::World::origin()
+  bool operator==(const ReferencePart&) const = default;
+};
+
+struct ReferenceLamps {
+  struct Lamp {
+    gltf::Light light;
+    glm::mat4 world_from_node{1.0f};
+  };
+  std::vector<Lamp> lamps;
+
+  std::string text() const;  // equal texts mean equal lamps
+};
+
+// Returns the point, spot and directional lights of the world that belong to no bundle.
+ReferenceLamps lampsOf(const ecs::Registry& registry, const Document& document);
+void addLamps(const ReferenceLamps& lamps, baker::Scene& scene);
+
+// Joins all parts into one scene, with animations at this time in seconds. It is slow and may run on any
+// thread. Errors: those of importing a part.
+Result<baker::Scene> makeReferenceScene(const std::vector<ReferencePart>& parts, const ReferenceLamps& lamps,
+                                        float animation_s);
+
+// Returns the spherical and disc lights that a person has added to the world.
+std::vector<spec::Light> shapesOf(const ecs::Registry& registry, const Document& document);
 
 enum class SplitView : std::uint8_t { Off, Beside, Heat };
 

@@ -1,18 +1,70 @@
 #include "editor/session/scene_changes.hpp"
 
-#include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
+#include <glm/matrix.hpp>
 
-#include "editor/session/moved_parts.hpp"
-#include "editor/session/node_edits.hpp"
+#include "editor/document/document.hpp"
+#include "runtime/base/finite.hpp"
+#include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/materials.hpp"
 #include "runtime/world/material_rebake.hpp"
 
 namespace lambent::editor {
 
+bool samePlace(const glm::mat4& a, const glm::mat4& b) {
+  constexpr float kRounding = 1e-5f, kMetre = 1.0f;
+  float axes = 0.0f, place = kMetre;
+  for (int row = 0; row < 3; ++row) {
+    place = std::max(place, std::abs(b[3][row]));
+    for (int column = 0; column < 3; ++column) axes = std::max(axes, std::abs(b[column][row]));
+  }
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (!(std::abs(a[column][row] - b[column][row]) <= kRounding * (column < 3 ? axes : place)))
+        return false;
+  return true;
+}
+
+void addNodeEdits(const ecs::Registry& registry, const bundle::Description& description,
+                  const scene::SceneInstance& instance, baker::SceneEdits& edits) {
+  for (std::uint32_t i = 0; i < description.nodes.size(); ++i) {
+    const gltf::Node& node = description.nodes[i];
+    const auto* transform = registry.tryGet<scene::Transform>(instance.nodes[i]);
+    if (!transform || node.animated) continue;
+    const ecs::Entity parent =
+        node.parent < 0 ? instance.root : instance.nodes[static_cast<std::size_t>(node.parent)];
+    glm::mat4 now = scene::localMatrix(*transform);
+    if (transform->parent != parent)
+      now = glm::mat4(glm::inverse(glm::dmat4(worldFromNode(registry, parent))) *
+                      glm::dmat4(worldFromNode(registry, instance.nodes[i])));
+    // Below a flat parent no Transform gives it that place; it stays where the scene has it.
+    if (isFinite(now) && !samePlace(now, node.parent_from_node)) edits.nodes.push_back({i, node.name, now});
+  }
+}
+
 namespace {
+
+// Adds a sentence for each node that moved within its rigid group since the bake: the group's transfer still
+// has it in the old place. A group that moved as a whole needs none.
+void addMovedParts(const ecs::Registry& registry, const bundle::Description& description,
+                   const scene::SceneInstance& instance, std::vector<std::string>& sentences) {
+  const std::vector<glm::mat4> rest = gltf::worldTransforms(description.nodes);
+  std::set<std::uint32_t> told;
+  for (const bundle::Draw& draw : description.draws) {
+    const auto* group = registry.tryGet<scene::RigidGroupComponent>(instance.groups[draw.group]);
+    const auto* node = registry.tryGet<scene::WorldTransform>(instance.nodes[draw.node]);
+    if (!group || !node || samePlace(node->world_from_node, group->world_from_rest * rest[draw.node]))
+      continue;
+    if (!told.insert(draw.node).second) continue;
+    sentences.push_back(
+        fmt::format("{}: moved within its rigid group, whose shadows and bounces still have it in "
+                    "its old place",
+                    description.nodes[draw.node].name));
+  }
+}
 
 void addLights(const ecs::Registry& registry, const bundle::Description& description,
                const scene::SceneInstance& instance, baker::SceneEdits& edits) {

@@ -10,12 +10,30 @@
 #include <utility>
 #include <vector>
 
+#include <glm/mat4x4.hpp>
+
 #include "baker/import/scene_edits.hpp"
-#include "editor/document/baseline.hpp"
 #include "editor/document/history.hpp"
+#include "editor/document/overrides.hpp"
 #include "editor/session/scenes.hpp"
+#include "runtime/bundle/description.hpp"
+#include "runtime/ecs/registry.hpp"
+#include "runtime/scene/instantiate.hpp"
 
 namespace lambent::editor {
+
+// Returns whether two matrices describe the same placement, up to the rounding of matrices that were
+// decomposed and composed again. All callers use this one rule, so that what is shown as moved is also an
+// edit of the next bake. Translations may differ by 10 um, or by 10^-5 of the largest coordinate if that is
+// beyond 1 m; the other entries may differ by 10^-5 of the largest of them.
+bool samePlace(const glm::mat4& a, const glm::mat4& b);
+
+// Converts the present Transforms of a bundle's nodes to edits of the scene that it is baked from. A node
+// that was reparented stays in its place in the scene's own tree, because its StableId is made from that
+// path, and the bake moves it to its place in the world. That it follows its new parent is known to the
+// editor and the world file only.
+void addNodeEdits(const ecs::Registry& registry, const bundle::Description& description,
+                  const scene::SceneInstance& instance, baker::SceneEdits& edits);
 
 class SceneChanges {
  public:

@@ -14,7 +14,7 @@
 #include "baker/import/scene_edits.hpp"
 #include "baker/pipeline/bake_queue.hpp"
 #include "baker/pipeline/source_watch.hpp"
-#include "editor/document/world_state.hpp"
+#include "editor/document/document.hpp"
 #include "editor/session/log.hpp"
 #include "runtime/world/world.hpp"
 

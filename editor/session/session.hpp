@@ -5,7 +5,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,28 +15,26 @@
 #include "editor/document/history.hpp"
 #include "editor/document/selection.hpp"
 #include "editor/document/tree.hpp"
-#include "editor/session/asset_browser.hpp"
+#include "editor/gizmo/gizmo.hpp"
+#include "editor/gizmo/light_gizmo.hpp"
+#include "editor/gizmo/projection.hpp"
+#include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/asset_pictures.hpp"
-#include "editor/session/clipboard.hpp"
-#include "editor/session/environment_map_shelf.hpp"
-#include "editor/session/field_edit_state.hpp"
+#include "editor/session/assets.hpp"
+#include "editor/session/dialog.hpp"
+#include "editor/session/field_numbers.hpp"
 #include "editor/session/files.hpp"
-#include "editor/session/handles.hpp"
+#include "editor/session/key_lights.hpp"
 #include "editor/session/log.hpp"
-#include "editor/session/object_materials.hpp"
-#include "editor/session/picture_facts.hpp"
-#include "editor/session/plans.hpp"
-#include "editor/session/playback.hpp"
+#include "editor/session/materials.hpp"
 #include "editor/session/preferences.hpp"
-#include "editor/session/quality_study.hpp"
 #include "editor/session/reference_view.hpp"
 #include "editor/session/scene_changes.hpp"
 #include "editor/session/scene_steps.hpp"
 #include "editor/session/scenes.hpp"
-#include "editor/session/setting_study.hpp"
 #include "editor/session/stage.hpp"
+#include "editor/session/studies.hpp"
 #include "editor/session/viewing.hpp"
-#include "editor/session/window_requests.hpp"
 
 namespace lambent::editor {
 
@@ -47,6 +47,37 @@ struct SessionOptions {
   unsigned threads = 0;  // for bakes; 0: all but one
   bool bake = true;
   baker::Quality quality = baker::Quality::Standard;
+};
+
+// Holds the state of the gizmos between frames: the handles that move, turn and scale the selection, shape
+// lights, and drag suns. editor/panels/manipulate.cpp drives them.
+struct Handles {
+  bool shown = true;
+  Gizmo gizmo;
+  LightGizmo light_gizmo;
+  SunGizmo sun_gizmo;
+  FinePointer pointer;
+  std::optional<SunOnSky> sun_taken;  // the sun as it was when its drag began
+};
+
+// Holds whether the world's animations are playing, and their time.
+struct Playback {
+  bool playing = false;
+  float time_s = 0.0f;
+};
+
+// Holds the text that was copied last: in the system's clipboard if a window has set its functions, else in
+// `text`.
+struct Clipboard {
+  std::function<void(const std::string&)> put_system;
+  std::function<std::string()> get_system;
+  std::string text;
+
+  void put(const std::string& value) {
+    text = value;
+    if (put_system) put_system(value);
+  }
+  std::string get() const { return get_system ? get_system() : text; }
 };
 
 class Session {

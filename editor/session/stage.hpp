@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/document/world_state.hpp"
+#include "editor/document/document.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/world/world.hpp"

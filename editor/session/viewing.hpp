@@ -1,23 +1,68 @@
-// Holds how the world is viewed: the camera and its goal, what surfaces show, and the overlays. Pointer input
-// and command words come in; a spec::View for each picture goes out. World files store it in
-// WorldState::view.
+// Holds how the world is viewed: the camera and its goal, what surfaces show, the overlays, and what is
+// known about the last picture. Pointer input and command words come in; a spec::View for each picture goes
+// out. World files store it in WorldState::view.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "editor/document/document.hpp"
 #include "editor/gizmo/camera_control.hpp"
-#include "editor/session/picture_scale.hpp"
 #include "runtime/debug/overlay_options.hpp"
+#include "runtime/frame/frame.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/spec/size.hpp"
 #include "runtime/surface/views.hpp"
+#include "runtime/world/frame_times.hpp"
 
 namespace lambent::editor {
+
+class Session;
+
+// Chooses the resolution of pictures, in pixels per window pixel along an edge: the one that the user asked
+// for, or a lower one while the picture moves if full pictures take long. It does not use the GPU; the
+// renderer reports the times.
+class PictureScale {
+ public:
+  float whole = 1.0f;  // the user's choice, 0.25..2
+
+  // Returns the scale of the next picture.
+  float now() const { return coarse_ ? whole * moving_ : whole; }
+  bool coarse() const { return coarse_; }
+  // Call this when a picture was rendered. moves: another will follow soon, and may be coarse.
+  void drawn(bool moves) { coarse_ = moves && moving_ < 1.0f; }
+  // Call this with the time of a picture at full resolution.
+  void wholeTook(double milliseconds);
+  // Call this when nothing moves any more. The next picture has full resolution. Returns whether the last did
+  // not.
+  bool settle();
+
+ private:
+  float moving_ = 1.0f;  // factor on `whole` while the picture moves
+  bool coarse_ = false;
+};
+
+// Holds what is known about the last picture. The renderer writes it; commands and panels read it. Before
+// the first picture everything is zero.
+struct PictureFacts {
+  frame::StepCounts counts;
+  frame::ViewLegend legend;
+  std::vector<gpu::PassTime> passes;  // of the newest frame whose times are all known
+  std::uint64_t volume_bytes = 0;     // GPU memory that the frame keeps for volumes
+  frame::FrameTimes times;            // from the first command to the last
+  std::uint64_t drawn = 0;            // how many pictures there were
+  bool settled = false;               // everything is loaded, and the light did not change in the last frame
+  bool in_flight = false;             // the GPU still works on the last picture
+  bool preview_waits = false;         // the inset of the selected camera is to be drawn anew
+  // These belong to the last picture that the GPU has finished.
+  std::uint32_t negative_pixels = 0;
+  float exposure_ev = 0.0f;
+};
 
 class Viewing {
  public:
@@ -62,5 +107,21 @@ class Viewing {
 
   std::string pose_followed_;
 };
+
+// ---- Cameras that stand in the world.
+
+// Returns the primary selected entity if it is a camera, or none.
+ecs::Entity selectedCamera(const Session& session);
+// Returns the camera whose picture the view shows as an inset: the selected one, as far as the preferences
+// want that, or else the one that is kept, or none.
+ecs::Entity shownCamera(const Session& session);
+// Returns width over height of the camera's picture: its own, or that of the view.
+float aspectOf(const Session& session, ecs::Entity camera);
+// Returns what the camera sees. Errors: its matrix is singular.
+Result<spec::View> viewOfCamera(const Session& session, ecs::Entity camera, float aspect);
+// Moves the editor's view to the camera. Its roll is lost.
+void lookThrough(Session& session, ecs::Entity camera);
+// Places the camera where the view is and gives it the view's angle, as one step.
+Result<void> placeAtView(Session& session, ecs::Entity camera);
 
 }  // namespace lambent::editor

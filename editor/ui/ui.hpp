@@ -69,4 +69,7 @@ class Ui {
   std::unique_ptr<State> state_;
 };
 
+// Styles the current Dear ImGui context. scale: a factor on the size of text and widgets.
+void setLooks(float scale);
+
 }  // namespace lambent::editor

@@ -1,8 +1,8 @@
-#include "editor/document/number_edit.hpp"
-
 #include <string>
 
 #include <gtest/gtest.h>
+
+#include "editor/document/field_edits.hpp"
 
 namespace lambent::editor {
 namespace {

@@ -8,7 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
-#include "editor/gizmo/fine_pointer.hpp"
+#include "editor/gizmo/projection.hpp"
 #include "runtime/scene/affine.hpp"
 #include "tests/support/differences.hpp"
 #include "views.hpp"

@@ -10,8 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "editor/session/asset_pictures.hpp"
-#include "editor/session/picture_cache.hpp"
-#include "editor/session/small_pictures.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"

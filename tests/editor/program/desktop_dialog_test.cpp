@@ -1,9 +1,8 @@
 // Tests the desktop's file dialogs with a program in PATH that answers in their place.
-#include "editor/session/desktop_dialog.hpp"
-
 #include <cstdlib>
 #include <fstream>
 
+#include "editor/session/dialog.hpp"
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {

@@ -1,8 +1,7 @@
 // Tests what a dialog for files lists.
-#include "editor/session/dialog_files.hpp"
-
 #include <fstream>
 
+#include "editor/session/dialog.hpp"
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {

@@ -1,14 +1,12 @@
 // Tests the units of lights against closed forms, and the lights that a user adds.
-#include "editor/session/light_units.hpp"
-
 #include <cmath>
 #include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "editor/document/field_use.hpp"
-#include "editor/session/new_lights.hpp"
+#include "editor/document/field_edits.hpp"
+#include "editor/session/local_lights.hpp"
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {

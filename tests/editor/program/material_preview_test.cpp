@@ -1,7 +1,7 @@
 // Tests the spheres that show materials.
-#include "editor/session/material_preview.hpp"
-
 #include <gtest/gtest.h>
+
+#include "editor/session/materials.hpp"
 
 namespace lambent::editor {
 namespace {

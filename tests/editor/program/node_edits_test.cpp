@@ -1,10 +1,8 @@
-#include "editor/session/node_edits.hpp"
-
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include "editor/document/history.hpp"
-#include "editor/session/same_place.hpp"
+#include "editor/session/scene_changes.hpp"
 #include "tests/editor/document/small_world.hpp"
 
 namespace lambent::editor {

@@ -1,6 +1,6 @@
-#include "editor/session/picture_scale.hpp"
-
 #include <gtest/gtest.h>
+
+#include "editor/session/viewing.hpp"
 
 namespace lambent::editor {
 namespace {

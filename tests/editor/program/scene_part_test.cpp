@@ -1,9 +1,9 @@
 // Tests which part of the view becomes the small picture of a scene.
-#include "editor/session/scene_part.hpp"
-
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <gtest/gtest.h>
+
+#include "editor/session/asset_pictures.hpp"
 
 namespace lambent::editor {
 namespace {

@@ -1,0 +1,168 @@
+#include "editor/session/studies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "baker/bake/bake.hpp"
+#include "baker/import/gltf.hpp"
+#include "editor/session/session.hpp"
+#include "runtime/frame/frame_settings.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+// A sweep has about this many values, in equal steps of an integer or of a logarithm.
+constexpr int kMostValues = 6;
+
+std::vector<double> valuesOf(const frame::SettingRow& row) {
+  using Kind = frame::SettingRow::Kind;
+  std::vector<double> values;
+  const double least = std::max(row.least, row.kind == Kind::Real ? 1e-2 : 1.0);
+  if (row.kind == Kind::Switch || row.kind == Kind::Choice) {
+    for (double value = row.least; value <= row.greatest; value += 1.0) values.push_back(value);
+    return values;
+  }
+  const double most = std::min(row.greatest, 4096.0);
+  if (row.kind == Kind::Whole && most - least < kMostValues) {
+    for (double value = least; value <= most; value += 1.0) values.push_back(value);
+    return values;
+  }
+  for (int i = 0; i < kMostValues; ++i) {
+    const double value = least * std::pow(most / least, i / double{kMostValues - 1});
+    values.push_back(row.kind == Kind::Whole ? std::round(value) : value);
+  }
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+}  // namespace
+
+void SettingStudy::measureAll() {
+  waiting_.clear();
+  for (const frame::SettingRow& row : frame::settingRows())
+    if (row.finest) waiting_.insert(waiting_.begin(), {std::string(row.name), false});
+}
+
+void SettingStudy::sweep(std::string name) {
+  waiting_.insert(waiting_.begin(), {std::move(name), true});
+}
+
+void SettingStudy::update(Session& session) {
+  if (waiting_.empty() || !session.atRest()) return;
+  const Task task = std::move(waiting_.back());
+  waiting_.pop_back();
+  const frame::SettingRow* row = frame::findSetting(task.name);
+  if (!row || !row->finest) return;
+  const frame::FrameSettings& settings = session.stage.settings();
+  const spec::Size size{
+      320, std::max(1u, 320 * session.viewing.size.height / std::max(1u, session.viewing.size.width))};
+  Stage& stage = session.stage;
+  if (task.sweep) {
+    auto points = frame::sweepSetting({stage.world(), stage.environment(), session.viewing.shown_view},
+                                      settings, *row, valuesOf(*row), {.size = size, .repeats = 3});
+    if (points)
+      rows_[task.name].sweep = std::move(*points);
+    else
+      session.log.error(points.error());
+  } else {
+    auto cost = frame::measureSetting({stage.world(), stage.environment(), session.viewing.shown_view},
+                                      settings, *row, {.size = size, .repeats = 3});
+    if (cost)
+      rows_[task.name].cost = std::move(*cost);
+    else
+      session.log.error(cost.error());
+  }
+  session.viewing.changed = true;
+}
+
+namespace {
+
+constexpr std::uint32_t kMostWidth = 640;
+
+}  // namespace
+
+void QualityStudy::measure() {
+  const auto names = frame::qualityNames();
+  waiting_.assign(names.begin(), names.end());
+}
+
+void QualityStudy::update(Session& session) {
+  if (waiting_.empty() || !session.atRest()) return;
+  Stage& stage = session.stage;
+  if (waiting_.size() == frame::qualityNames().size()) {
+    rows_.clear();
+    view_ = session.viewing.shown_view;
+    const spec::Size whole = session.viewing.size;
+    size_.width = std::min(whole.width, kMostWidth);
+    size_.height = std::max(1u, size_.width * whole.height / whole.width);
+  }
+  const std::string name = std::move(waiting_.back());
+  waiting_.pop_back();
+  frame::FrameSettings settings = stage.settings();
+  // The environment decides the number of key lights, so it must follow.
+  lighting::Environment environment = stage.environment();
+  const auto measured = [&]() -> Result<Row> {
+    if (auto put = frame::putQuality(settings, name); !put) return failAgain(put.error());
+    environment.setMostKeys(settings.mostKeys());
+    auto frame =
+        frame::measureFrame({stage.world(), environment, view_}, settings, {.size = size_, .repeats = 3});
+    if (!frame) return failAgain(frame.error());
+    Row row{.quality = name, .error = 0.0, .cost = std::move(frame->cost)};
+    if (rows_.empty()) {
+      highest_ = std::move(frame->picture);
+      return row;
+    }
+    const auto error = frame::relativeRms(frame->picture, highest_);
+    if (!error) return failAgain(error.error());
+    row.error = *error;
+    return row;
+  }();
+  session.viewing.changed = true;
+  if (!measured) {
+    waiting_.clear();
+    return session.log.error(measured.error());
+  }
+  rows_.insert(rows_.begin(), *measured);
+}
+
+namespace {
+
+Result<ScenePlan> make(const std::filesystem::path& scene, const baker::BakeOptions& options) {
+  try {
+    auto imported = baker::importScene(scene, {});
+    if (!imported) return failAgain(imported.error());
+    auto plan = baker::planFor(*imported, options);
+    if (!plan) return failAgain(plan.error());
+    return ScenePlan{std::move(*plan), std::move(imported->warnings)};
+  } catch (const std::exception& error) {
+    return fail(scene.string(), error.what());
+  }
+}
+
+}  // namespace
+
+const Result<ScenePlan>* Plans::find(const std::filesystem::path& scene, const baker::BakeOptions& options) {
+  std::error_code ignored;
+  const auto time = std::filesystem::last_write_time(scene, ignored);
+  Entry& entry = entries_[scene];
+  const bool ready =
+      entry.coming.valid() && entry.coming.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  if (ready) entry.plan = entry.coming.get();
+  const bool current = entry.time == time && entry.settings == options.settings();
+  if (!current && !entry.coming.valid()) {
+    entry.time = time, entry.settings = options.settings();
+    entry.coming = std::async(std::launch::async, make, scene, options);
+  }
+  return entry.plan ? &*entry.plan : nullptr;
+}
+
+bool Plans::busy() const {
+  return std::ranges::any_of(entries_, [](const auto& entry) {
+    const auto& coming = entry.second.coming;
+    return coming.valid() && coming.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  });
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,106 @@
+// Finds out on request what the present view costs with other settings and qualities, and what a bake of a
+// scene would simulate. The studies of the frame measure one thing a frame, so that the editor stays
+// responsive; their update() needs a current OpenGL context, and the renderer calls it. Main thread.
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "baker/bake/options.hpp"
+#include "baker/plan/effect_plan.hpp"
+#include "runtime/base/result.hpp"
+#include "runtime/measure/measured_frame.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/image.hpp"
+#include "runtime/spec/size.hpp"
+
+namespace lambent::editor {
+
+class Session;
+
+// Measures what each setting of the frame costs in time and in error.
+class SettingStudy {
+ public:
+  // Starts measuring every setting at its present value.
+  void measureAll();
+  // Starts measuring one setting at values from its coarsest to its finest.
+  void sweep(std::string name);
+  // Measures one setting if everything is loaded and at rest. Call it once a frame.
+  void update(Session& session);
+  bool busy() const { return !waiting_.empty(); }
+
+  struct Row {
+    frame::SettingCost cost;
+    std::vector<frame::SettingPoint> sweep;  // by increasing value; empty: not requested
+  };
+  const std::map<std::string, Row, std::less<>>& rows() const { return rows_; }
+
+ private:
+  struct Task {
+    std::string name;
+    bool sweep = false;
+  };
+  std::vector<Task> waiting_;  // the last is the next
+  std::map<std::string, Row, std::less<>> rows_;
+};
+
+// Measures what each quality (frame/quality.hpp) costs in time and in error, the highest first. The error is
+// the relative RMS of linear radiance against the picture at high quality, whose own errors only the
+// reference shows.
+class QualityStudy {
+ public:
+  // Starts measuring, with the view, light and settings at the next update().
+  void measure();
+  // Measures one quality if everything is loaded and at rest. Call it once a frame.
+  void update(Session& session);
+  bool busy() const { return !waiting_.empty(); }
+
+  struct Row {
+    std::string quality;
+    double error = 0.0;  // relative to the highest quality, where it is 0
+    frame::FrameCost cost;
+  };
+  // Returns the results so far, from the lowest quality to the highest.
+  const std::vector<Row>& rows() const { return rows_; }
+  // Returns the size of the measured pictures: the view's, or smaller if the view is large.
+  const spec::Size& size() const { return size_; }
+  const spec::View& view() const { return view_; }
+
+ private:
+  std::vector<std::string> waiting_;  // the last is the next
+  std::vector<Row> rows_;
+  spec::RgbaImage highest_;
+  spec::Size size_{};
+  spec::View view_;
+};
+
+struct ScenePlan {
+  baker::EffectPlan plan;
+  std::vector<std::string> warnings;  // of the importer
+};
+
+// Computes the plans of scenes (as `lambent plan` does) on another thread: what a bake simulates, what not,
+// and why. A plan is computed when a panel asks for it and kept until the scene's file or options change.
+class Plans {
+ public:
+  // Returns the plan, or null while it is being computed.
+  const Result<ScenePlan>* find(const std::filesystem::path& scene, const baker::BakeOptions& options);
+
+  // Returns whether one is being computed.
+  bool busy() const;
+
+ private:
+  struct Entry {
+    std::filesystem::file_time_type time;
+    std::map<std::string, std::string> settings;
+    std::future<Result<ScenePlan>> coming;
+    std::optional<Result<ScenePlan>> plan;
+  };
+  std::map<std::filesystem::path, Entry> entries_;
+};
+
+}  // namespace lambent::editor
