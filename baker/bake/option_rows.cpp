@@ -120,7 +120,7 @@ constexpr std::tuple kRows{
         .setting = "pictureBound",
         .kind = "E",
         .member = &B::picture_bound,
-        .help = "Bound on the error of pictures of diffuse surfaces, relative RMS over real lights, by rays, "
+        .help = "Bound on the error of pictures of surfaces, relative RMS over real lights, by rays, "
                 "interpolation and codes together. The bake chooses --rays, --refine and --codes, as far as "
                 "they are not given, and says what it reached",
         .words = {{{"none", 0.0f}}},

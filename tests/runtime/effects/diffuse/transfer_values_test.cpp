@@ -21,7 +21,7 @@ struct Asked {
     std::vector<float> of_cells;
     for (std::size_t c = 0; c < residency.cells().size(); ++c)
       of_cells.push_back(0.25f * static_cast<float>(c));
-    return values.update(residency, lights, question, of_cells, counters);
+    return values.update(residency, lights, question, of_cells, {}, counters);
   }
 };
 
