@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "baker/bake/picture_budget.hpp"
 #include "baker/brdf/kernel_power.hpp"
@@ -108,16 +107,19 @@ std::vector<CodedTransfer> CellCoder::codeDiffuse(const SampleCell& cell, Surfac
   return coded;
 }
 
-// Codes the importance of samples per area, relative to the mean.
+// Codes the importance of samples per area, relative to its mean over pictures.
 std::vector<std::uint8_t> importanceCodes(const GroupScene& group) {
   const std::vector<float>& shares = group.view().importance->shares;
   const std::vector<float> areas = sampleAreas(group.geometry, group.samples);
-  const double all_shares = std::reduce(shares.begin(), shares.end(), 0.0);
-  const double all_areas = std::reduce(areas.begin(), areas.end(), 0.0);
-  const auto mean = static_cast<float>(all_areas > 0.0 ? all_shares / all_areas : 0.0);
+  std::vector<double> densities;
+  double sum = 0.0, all = 0.0;
+  for (std::size_t s = 0; s < shares.size(); ++s) {
+    densities.push_back(areas[s] > 0.0f ? double{shares[s]} / double{areas[s]} : 0.0);
+    sum += double{shares[s]} * densities[s], all += double{shares[s]};
+  }
   std::vector<std::uint8_t> codes;
-  for (std::size_t s = 0; s < shares.size(); ++s)
-    codes.push_back(bundle::importanceCode(mean * areas[s] > 0.0f ? shares[s] / (mean * areas[s]) : 0.0f));
+  for (const double density : densities)
+    codes.push_back(bundle::importanceCode(sum > 0.0 ? static_cast<float>(density * all / sum) : 0.0f));
   return codes;
 }
 

@@ -357,8 +357,8 @@ inline std::uint32_t rowCount(const Description& description, const Draw& draw) 
   return description.meshes[draw.mesh].primitives[draw.primitive].vertex_count + draw.texels * draw.texels;
 }
 
-// One byte a sample says how much a surface matters to pictures per area, relative to the mean over its
-// group, in steps of half an octave: wide enough for all that a bake weighs by, and small once compressed.
+// One byte a sample says how much a surface matters to pictures per area, relative to its mean over
+// pictures, in steps of half an octave: wide enough for all that a bake weighs by, and small once compressed.
 inline constexpr int kMeanImportanceCode = 64;
 
 // `relative` is 1 at the mean; 0 says that nobody sees anything of it, and has the code 0.

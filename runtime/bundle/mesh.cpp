@@ -165,12 +165,6 @@ Result<MeshData> extract(const draco::Mesh& mesh, const DracoAttributes& attribu
       done = fail(subject, "has weights of normals, but no normals", kReencode);
     for (const glm::vec1& weight : weights) data.normal_weights.push_back(glm::clamp(weight.x, 1e-3f, 1.0f));
   }
-  if (done && attributes.fan >= 0) {
-    std::vector<glm::vec1> fans;
-    done = take(fans, attributes.fan, "fans");
-    for (const glm::vec1& fan : fans)
-      data.fans.push_back(static_cast<std::uint8_t>(glm::clamp(fan.x, 0.0f, 255.0f)));
-  }
   if (done) done = normalize(data.normals, subject);
   if (done) done = normalize(data.tangents, subject);
   if (!done) return failAgain(std::move(done.error()));

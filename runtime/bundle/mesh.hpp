@@ -24,9 +24,6 @@ struct MeshData {
   // splits an edge has the mean of two normals, which is shorter than they are. Its weight keeps that length,
   // so that normals along the edge interpolate as before the split.
   std::vector<float> normal_weights = {};
-  // Distinguishes vertices that share position and normal but have transfer of their own. Each belongs to one
-  // fan of the faces around the point. All are 0 if empty.
-  std::vector<std::uint8_t> fans = {};
   std::vector<glm::vec2> texcoords0;
   std::vector<glm::vec2> texcoords1;
   std::vector<glm::vec4> colors;       // linear, 0..1

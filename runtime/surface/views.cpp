@@ -73,8 +73,8 @@ ViewLegend legendOf(const ViewChoice& choice, float largest_error) {
       legend.max = largest_error > 0.0f ? largest_error : 0.01f;
       break;
     case SurfaceView::Importance:
-      legend.unit = "times the mean, log2";
-      legend.min = -6.0f, legend.max = 6.0f;
+      legend.unit = "times the mean of pictures, log2";
+      legend.min = -8.0f, legend.max = 2.0f;
       break;
     case SurfaceView::Irradiance:
       legend.unit = "E/pi, radiance";

@@ -92,12 +92,12 @@ TEST_F(SharedScenes, BakeAndShowOrAreRefusedInOneRightLine) {
   for (const std::filesystem::path& file : files) {
     const std::string name = file.generic_string();
     if (kTooLong.contains(name)) continue;
-    // Few rays, bands and bounces suffice to see that scenes bake. The cache keeps tables of BRDFs, and what
-    // variants of a model have in common.
+    // Few rays, bands and bounces, and no splits, suffice to see that scenes bake. The cache keeps tables of
+    // BRDFs, and what variants of a model have in common.
     const Outcome baked =
         run(LAMBENT_PROGRAM, {"bake", (scenes / file).string(), "-o", bundle.string(), "--quality", "draft",
                               "--rays", "128", "--bounces", "2", "--order", "3", "--glossy-order", "4",
-                              "--cache", (folder / "cache").string()});
+                              "--refine", "off", "--cache", (folder / "cache").string()});
     const auto refused = kRefused.find(name);
     if (refused != kRefused.end() || isPointsOrLines(name)) {
       const std::string why = refused != kRefused.end() ? refused->second : "has no triangles";

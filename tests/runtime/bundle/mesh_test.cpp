@@ -150,24 +150,6 @@ TEST(DracoMesh, WeightsOfNormalsKeepWithinHalfOf255thsAndNormalsTakeThem) {
   EXPECT_TRUE(encoded(bump(12)).decoded.normal_weights.empty());  // where nothing was split
 }
 
-TEST(DracoMesh, VerticesThatDifferByTheirFanAloneStayApart) {
-  MeshData mesh = bump(4);
-  mesh.fans.assign(mesh.positions.size(), 0);
-  const std::uint32_t inner = mesh.indices[mesh.indices.size() / 2];
-  const auto copy = static_cast<std::uint32_t>(mesh.positions.size());
-  mesh.positions.push_back(mesh.positions[inner]);
-  mesh.normals.push_back(mesh.normals[inner]);
-  mesh.texcoords0.push_back(mesh.texcoords0[inner]);
-  mesh.fans.push_back(3);
-  for (std::size_t i = mesh.indices.size() / 2; i < mesh.indices.size(); ++i)
-    if (mesh.indices[i] == inner) mesh.indices[i] = copy;
-  const EncodedMesh out = encoded(mesh);
-  ASSERT_EQ(out.decoded.fans.size(), out.decoded.positions.size());
-  EXPECT_EQ(std::count(out.decoded.fans.begin(), out.decoded.fans.end(), 3), 1);
-  EXPECT_EQ(out.decoded.indices.size(), mesh.indices.size());
-  EXPECT_TRUE(encoded(bump(4)).decoded.fans.empty());
-}
-
 TEST(DracoMesh, TexcoordsAndColorsKeepTheirBounds) {
   MeshData mesh = bump(12);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
