@@ -8,7 +8,7 @@
 #include "baker/bake/result_bytes.hpp"
 #include "baker/bake/surface_cells.hpp"
 #include "baker/effects/neighborhood/surface_body.hpp"
-#include "baker/jobs/kept_value.hpp"
+#include "baker/jobs/stage.hpp"
 #include "baker/proxy/capture_proxy.hpp"
 #include "baker/transport/sample_areas.hpp"
 

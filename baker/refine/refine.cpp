@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "baker/jobs/kept_value.hpp"
+#include "baker/jobs/stage.hpp"
 #include "baker/refine/copies.hpp"
 #include "baker/refine/group_refiner.hpp"
 #include "baker/refine/marked_edges.hpp"
