@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "baker/bake/scene_bake.hpp"
-#include "baker/compress/baked_grids.hpp"
+#include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/jobs/bake_context.hpp"
