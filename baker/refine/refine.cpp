@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "baker/jobs/stage.hpp"
-#include "baker/refine/copies.hpp"
 #include "baker/refine/group_refiner.hpp"
 #include "baker/refine/marked_edges.hpp"
-#include "baker/refine/shadow_probe.hpp"
+#include "baker/refine/probed_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 
 namespace lambent::baker {
