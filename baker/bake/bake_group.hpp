@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "baker/bake/scene_bake.hpp"
+#include "baker/bake/group_scene.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/jobs/bake_context.hpp"
