@@ -8,7 +8,7 @@
 #include "baker/cli/bake_report.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/guess_seconds.hpp"
-#include "baker/pipeline/progress_record.hpp"
+#include "baker/pipeline/whole_progress.hpp"
 #include "runtime/base/atomic_file.hpp"
 
 namespace lambent::baker {
