@@ -5,7 +5,6 @@
 
 #include "assets/scenes.hpp"
 #include "assets/shapes.hpp"
-#include "assets/torus_knot.hpp"
 
 namespace lambent::assets {
 

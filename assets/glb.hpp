@@ -12,7 +12,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
-#include "assets/mesh.hpp"
+#include "assets/shapes.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::assets {

@@ -6,7 +6,6 @@
 #include "assets/scenes.hpp"
 #include "assets/shapes.hpp"
 #include "assets/teapot.hpp"
-#include "assets/torus_knot.hpp"
 
 namespace lambent::assets {
 

@@ -3,12 +3,28 @@
 // spheres are closed.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
-#include "assets/mesh.hpp"
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 namespace lambent::assets {
+
+// Declares the triangle mesh of the scene generator: in metres, +Y up, counter-clockwise seen from outside.
+// Only the generator uses it; the programs read the glTF files that it writes.
+struct Mesh {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;    // unit length
+  std::vector<glm::vec2> texcoords;  // empty or one per vertex
+  std::vector<std::uint32_t> indices;
+};
+
+// Appends `more`, transformed by a matrix without shear. Both must have texture coordinates, or neither.
+void append(Mesh& mesh, const Mesh& more, const glm::mat4& place = glm::mat4(1.0f));
 
 // Makes a flat quad of cells_u x cells_v cells; its normal is edge_u x edge_v. Texture coordinates are in
 // metres.
@@ -33,5 +49,18 @@ struct SurfacePoint {
   glm::vec3 position, normal;
 };
 Mesh surface(int cells_u, int cells_v, const std::function<SurfacePoint(double u, double v)>& point);
+
+// Makes a round tube around the (p, q) torus knot, which winds p times about the axis +Y and q times through
+// the hole.
+struct TorusKnot {
+  int p = 2, q = 3;
+  float ring_radius = 1.0f;   // of the torus that the knot winds on
+  float torus_radius = 0.4f;  // of the tube of that torus
+  float tube_radius = 0.15f;
+  int cells_along = 300, cells_around = 24;
+};
+
+// Makes a closed mesh with analytic normals.
+Mesh torusKnot(const TorusKnot& knot);
 
 }  // namespace lambent::assets

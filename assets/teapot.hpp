@@ -4,7 +4,7 @@
 // there.
 #pragma once
 
-#include "assets/mesh.hpp"
+#include "assets/shapes.hpp"
 
 namespace lambent::assets {
 

@@ -4,6 +4,8 @@
 // only the loader of measured files with baker/brdf, so that it can reveal mistakes there.
 #pragma once
 
+#include <vector>
+
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -49,6 +51,25 @@ struct Reflector {
 
   // The matrix is orthonormal, so its transpose is its inverse.
   glm::vec3 toLocal(const glm::vec3& world) const { return world * world_from_local; }
+};
+
+// Tabulates the directional albedo of the GGX lobe by view direction, roughness and anisotropy, as the two
+// factors of F0 and F90. The diffuse part of a material is reduced by this albedo. The reference integrates
+// the table itself, with an error of 0.1 % (anisotropic: 0.5 %).
+
+class AlbedoTable {
+ public:
+  AlbedoTable() = default;
+  static AlbedoTable build(bool anisotropic);
+
+  bool empty() const { return values_.empty(); }
+  // Returns the factors of F0 and F90. `view` is a unit vector in local space with z > 0; roughness and
+  // strength are 0..1.
+  glm::vec2 at(const glm::vec3& view, float roughness, float strength) const;
+
+ private:
+  std::size_t angles_ = 0, azimuths_ = 1, roughnesses_ = 0, strengths_ = 1;
+  std::vector<glm::vec2> values_;  // [strength][roughness][azimuth][angle]
 };
 
 }  // namespace lambent::baker::reference

@@ -5,17 +5,52 @@
 // (little) endian.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
-#include "reference/integrator.hpp"
+#include "baker/jobs/progress.hpp"
+#include "reference/options.hpp"
+#include "reference/traced_scene.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::baker::reference {
+
+struct PixelSum {
+  std::array<glm::dvec3, 2> replicas{};  // sum of the samples of each replica
+  double alpha = 0.0;                    // coverage; not a sum
+  // Depth of the first opaque surface along the camera's axis, in metres; not a sum.
+  double depth = std::numeric_limits<double>::infinity();
+  std::uint64_t rays = 0;
+};
+
+// Traces the paths of one pixel. At every vertex it samples one direction from the BRDF (for a diffuse
+// surface, from the cosine), one direction towards discs and environment maps, one towards each sphere and
+// disc light in the scene, one point on an emissive triangle, and one punctual light, combined by multiple
+// importance sampling (Veach's power heuristic). At a vertex in a volume the phase function replaces the
+// BRDF. With `--band-limit IN,OUT` the first hit's response to the unoccluded sky is exact, and paths only
+// find what is blocked. The transmittance of volumes along eye rays is exact, too, so coverage has no noise.
+//
+// All samples of a pixel in one call advance together, so that their rays are traced in packets. Samples
+// alternate between two independent replicas, which gives an unbiased error estimate of their mean. One
+// Integrator serves all threads.
+class Integrator {
+ public:
+  Integrator(const World& world, const Options& options) : world_(world), options_(options) {}
+
+  // Traces samples first..first + count - 1 of the pixel. Even samples belong to replica 0.
+  PixelSum pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first, std::uint32_t count) const;
+
+ private:
+  const World& world_;
+  const Options& options_;
+};
 
 class Film {
  public:
@@ -64,5 +99,24 @@ class Film {
   std::vector<std::uint64_t> rays_;  // by row
   std::vector<Pixel> pixels_;
 };
+
+// Fills a film in passes of samples. The boundaries of passes affect the last bits of a picture (rounding of
+// sums, ray packets) and, with a band limit, its kernels. render() and ProgressiveReference both use these
+// functions, so that their pictures are equal.
+
+// Returns the number of samples per pixel in one pass.
+std::uint32_t samplesInPass(const Options& options, const Volumes& volumes);
+
+// The number of rows traced between two checks of the clock.
+inline constexpr std::uint32_t kRowsAtOnce = 32;
+
+struct Rows {
+  std::uint32_t first, last;  // [first, last)
+};
+
+// Brings rows to `samples` per pixel, in parallel. Returns false if stopped; unfinished rows
+// are dropped, so stopping takes no longer than a few pixels.
+bool addSamples(const Integrator& integrator, Film& film, const Rows& rows, std::uint32_t samples,
+                Progress& progress, const std::stop_token& stop);
 
 }  // namespace lambent::baker::reference

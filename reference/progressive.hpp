@@ -15,6 +15,7 @@
 #include "baker/jobs/progress.hpp"
 #include "reference/reference.hpp"
 #include "runtime/spec/image.hpp"
+#include "runtime/spec/size.hpp"
 
 namespace lambent::baker::reference {
 
@@ -68,5 +69,10 @@ class ProgressiveReference {
   class Worker;
   std::unique_ptr<Worker> worker_;
 };
+
+// Enlarges a small picture by bilinear interpolation between pixel centres, for previews. The result has no
+// depths, because they cannot be interpolated across edges.
+
+spec::RgbaImage enlarged(const spec::RgbaImage& image, const spec::Size& size);
 
 }  // namespace lambent::baker::reference

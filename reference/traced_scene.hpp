@@ -8,10 +8,26 @@
 #include <string>
 #include <vector>
 
-#include "reference/world.hpp"
+#include "reference/camera.hpp"
+#include "reference/environment.hpp"
+#include "reference/lamps.hpp"
+#include "reference/ray_tracer.hpp"
+#include "reference/volumes.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker::reference {
+
+// Bundles references to everything that paths of one picture need.
+struct World {
+  const Surfaces& surfaces;
+  const RayTracer& rays;
+  const Environment& environment;
+  const EmissiveTriangles& emissive;
+  const std::vector<PunctualLight>& punctual;
+  const std::vector<spec::LocalLight>& shapes;
+  const Volumes& volumes;
+  EyeRays eye;
+};
 
 class TracedScene {
  public:

@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "reference/panes.hpp"
 #include "reference/walk.hpp"
 #include "reference/warp.hpp"
 

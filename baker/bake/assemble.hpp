@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "baker/bake/bake_group.hpp"
-#include "baker/bake/scene_bake.hpp"
+#include "baker/bake/group_scene.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/writer.hpp"
 

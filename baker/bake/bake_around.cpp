@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "baker/effects/neighborhood/bake_neighborhood.hpp"
-#include "baker/jobs/kept_value.hpp"
+#include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
 

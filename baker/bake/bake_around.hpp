@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "baker/bake/scene_bake.hpp"
-#include "baker/compress/baked_grids.hpp"
+#include "baker/bake/group_scene.hpp"
+#include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/jobs/bake_context.hpp"

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "baker/bake/scene_bake.hpp"
-#include "baker/compress/baked_grids.hpp"
+#include "baker/bake/group_scene.hpp"
 #include "baker/compress/cpca.hpp"
+#include "baker/compress/kept_transfer.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/light_probes/light_probes.hpp"
 #include "baker/plan/group_lights.hpp"

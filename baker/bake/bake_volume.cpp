@@ -13,7 +13,7 @@
 #include "baker/effects/neighborhood/volume_body.hpp"
 #include "baker/effects/volume/marched_volume.hpp"
 #include "baker/effects/volume/volume_transfer.hpp"
-#include "baker/jobs/kept_value.hpp"
+#include "baker/jobs/stage.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "runtime/base/process.hpp"

@@ -12,7 +12,28 @@
 
 #include <glm/vec3.hpp>
 
+#include "runtime/bundle/description.hpp"
+
 namespace lambent::baker {
+
+// Divides a bound on the error of pictures (BakeOptions::picture_bound) among its three causes: noise of
+// rays, interpolation between vertices, and codes. Squares of the three add up. Rays and refinement come from
+// the bound alone; codes come last and get what the others left. All functions are pure.
+
+// The parts of the bound that codes, and codes of glossy surfaces, get before more is known. Codes take few:
+// half their error costs a bit a weight, half the noise four times the rays.
+inline constexpr float kCodesShare = 0.35f, kGlossyCodesShare = 0.7f;
+
+// Returns the rays of a sample, and the bound on refinement, with which most pictures meet theirs.
+std::uint32_t raysFor(float picture_bound);
+float refineBoundFor(float picture_bound);
+
+// Returns the bound on codes with which pictures meet theirs, if codes err at eyes as they do everywhere.
+float codesBound(const bundle::PictureError& without_codes, float picture_bound);
+// Returns that on codes of glossy surfaces beside it: theirs are dearer for the same error.
+float glossyCodesBound(float codes_bound);
+// Returns a better one after codes with `bound` showed this, or nothing if they are as they should be.
+std::optional<float> nextCodesBound(float bound, const bundle::PictureError& shown, float picture_bound);
 
 enum class Quality : std::uint8_t { Draft, Standard, High };
 
@@ -27,7 +48,7 @@ struct BakeOptions {
   // single scattering in volumes; any other value computes all scattering there.
   int bounces = -1;
   // Bounds the error of pictures, relative RMS, by rays, interpolation and codes together. The bake chooses
-  // those of the three that are not given (picture_budget.hpp). 0: they are as the quality says.
+  // those of the three that are not given (raysFor(), codesBound()). 0: they are as the quality says.
   float picture_bound = 0.0f;
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: as picture_bound or the quality says
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: no limit
@@ -39,8 +60,8 @@ struct BakeOptions {
   // against the light that arrives. 0: no edges are split; negative: as the quality says.
   float refine_bound = -1.0f;
   // True if values at vertices are those with which interpolation over the faces shows light best
-  // (bake/fit_vertices.hpp), and not what the vertices see. Unset: they are, except on glossy surfaces of
-  // drafts.
+  // (bake/surface_transport.hpp), and not what the vertices see. Unset: they are, except on glossy surfaces
+  // of drafts.
   std::optional<bool> fit = {};
   int light_probes = 0;        // per cell, 1..32; 0: chosen by how near light comes (local_light.hpp)
   glm::uvec3 volume_grid{32};  // voxels of a volume's transfer, 1..256 along each axis

@@ -1,6 +1,6 @@
 // Measures how wrong pictures show the surfaces of a group: relative RMS of the light that leaves them
 // towards eyes, over real skies that the bake's bands carry, with the group's lamps as bright as in the file.
-// At points that eyes see (view_points.hpp), the light that vertices, codes and interpolation show is
+// At points that eyes see (picture_sums.hpp), the light that vertices, codes and interpolation show is
 // compared with what many rays from the point itself find, all bounces included. What few bands cannot show,
 // of light or of a highlight, is no part of it, and neither is the light of lamps on glossy surfaces, nor the
 // detail of normal maps.
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "baker/bake/group_scene.hpp"
-#include "baker/bake/view_points.hpp"
+#include "baker/bake/picture_sums.hpp"
 #include "baker/cache/bytes.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/effects/diffuse/bounces.hpp"

@@ -1,21 +1,144 @@
-// Implements lambent bake SCENE [-o OUT.lmb.glb], --watch DIR, --resume; bake_folder.cpp bakes folders.
+// Implements lambent bake SCENE [-o OUT.lmb.glb], --watch DIR, --resume. SCENE may be a folder.
+#include <chrono>
+#include <cstdio>
 #include <memory>
 #include <optional>
+#include <string>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "baker/bake/option_rows.hpp"
 #include "baker/cli/bake_report.hpp"
 #include "baker/cli/bake_scene.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/source_watch.hpp"
+#include "baker/plan/counted.hpp"
 #include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
+
+// Adds the options of a bake to the command line. The library parses the words, and the table of options says
+// what they mean.
+
+namespace {
+
+CLI::Option* add(CLI::App& command, std::string_view name, const OptionRow& row, BakeOptions& options) {
+  CLI::Option* option = command.add_option_function<std::string>(
+      "--" + std::string(name), [&options, &row](const std::string& word) { row.put(options, word); },
+      row.help);
+  option->type_name(std::string(row.kind))->group(std::string(row.group));
+  option->check(CLI::Validator(
+      [&row](const std::string& word) {
+        BakeOptions tried;
+        const auto put = row.put(tried, word);
+        return put ? std::string() : put.error().problem + "; " + put.error().hint;
+      },
+      ""));
+  return option;
+}
+
+void add(CLI::App& command, const OptionRow& row, BakeOptions& options) {
+  CLI::Option* option = add(command, row.name, row, options);
+  if (row.shows_default) option->default_str(row.word(BakeOptions{}));
+  if (!row.former.empty()) add(command, row.former, row, options)->group("");  // hidden in the help
+}
+
+}  // namespace
+
+void addBakeOptions(CLI::App& command, BakeOptions& options) {
+  for (const OptionRow& row : optionRows()) add(command, row, options);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+double secondsSince(std::chrono::steady_clock::time_point begun) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
+// Counts and prints what came of each scene.
+class FolderReport {
+ public:
+  explicit FolderReport(const BakeArguments& arguments) : arguments_(arguments) {}
+
+  void failed(const fs::path& scene, const Error& error) {
+    ++failed_;
+    // Errors of options and outputs do not name the scene.
+    reportError(error.subject == scene.string() ? error : Error{scene.string(), error.line(), {}});
+    json_.push_back({{"scene", scene.string()}, {"error", error.line()}});
+  }
+  void baked(const BakeArguments& one, const BakeOutcome& outcome, double seconds) {
+    ++(outcome ? baked_ : up_to_date_);
+    missed_ |= failsStrictly(one, outcome);
+    if (!arguments_.json) {
+      say("{}: {}", one.scene.string(),
+          outcome ? fmt::format("{} in {}, {}", one.output.string(), durationText(seconds),
+                                bytesText(static_cast<double>(outcome->file_bytes)))
+                  : one.output.string() + " is up to date");
+      return;
+    }
+    json_.push_back(outcomeJson(one, outcome));
+    json_.back()["scene"] = one.scene.string();
+  }
+  // Prints the last line, or the array, and returns the exit code.
+  int end(std::size_t scenes) const {
+    const std::size_t missing = scenes - baked_ - up_to_date_ - failed_;
+    if (arguments_.json)
+      fmt::print("{}\n", json_.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    else
+      say("{}: {} baked, {} up to date, {} failed{} in {}", counted(scenes, "scene"), baked_, up_to_date_,
+          failed_, missing > 0 ? fmt::format(", {} not begun", missing) : "",
+          durationText(secondsSince(begun_)));
+    return failed_ + missing > 0 || missed_ ? 1 : 0;
+  }
+
+ private:
+  template <class... Words>
+  void say(fmt::format_string<Words...> text, Words&&... words) const {
+    if (arguments_.say.quiet) return;
+    fmt::print("{}\n", fmt::format(text, std::forward<Words>(words)...));
+    std::fflush(stdout);
+  }
+
+  const BakeArguments& arguments_;
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+  std::size_t baked_ = 0, up_to_date_ = 0, failed_ = 0;
+  bool missed_ = false;  // a bound that bakes are held to
+  nlohmann::json json_ = nlohmann::json::array();
+};
+
+}  // namespace
+
+int bakeFolder(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
+  const std::vector<fs::path> scenes = scenesIn(a.scene);
+  if (scenes.empty())
+    return reportError({a.scene.string(), "has no scenes in it", "name a folder of .gltf or .glb files"});
+  FolderOutputs outputs(a.scene, a.output);
+  FolderReport report(a);
+  for (std::size_t i = 0; i < scenes.size() && !stop.stop_requested(); ++i) {
+    const auto begun = std::chrono::steady_clock::now();
+    const auto output = outputs.outputOf(scenes[i]);
+    if (!output) {
+      report.failed(scenes[i], output.error());
+      continue;
+    }
+    BakeArguments one = a;
+    one.scene = scenes[i];
+    one.output = *output;
+    one.say.label = fmt::format("{} of {}  {}  ", i + 1, scenes.size(), scenes[i].filename().string());
+    if (const auto outcome = bakeScene(one, cache, stop))
+      report.baked(one, *outcome, secondsSince(begun));
+    else
+      report.failed(scenes[i], outcome.error());
+  }
+  return report.end(scenes.size());
+}
 
 namespace {
 

@@ -8,7 +8,8 @@
 #include "baker/cli/bake_report.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/guess_seconds.hpp"
-#include "baker/pipeline/progress_record.hpp"
+#include "baker/pipeline/source_watch.hpp"
+#include "baker/pipeline/whole_progress.hpp"
 #include "runtime/base/atomic_file.hpp"
 
 namespace lambent::baker {
@@ -89,6 +90,27 @@ bool failsStrictly(const BakeArguments& a, const BakeOutcome& outcome) {
 nlohmann::json outcomeJson(const BakeArguments& a, const BakeOutcome& outcome) {
   if (!outcome) return {{"output", a.output.string()}, {"upToDate", true}};
   return reportJson({a.output, a.options, *outcome});
+}
+
+namespace fs = std::filesystem;
+
+Result<fs::path> FolderOutputs::outputOf(const fs::path& scene) {
+  fs::path output = bundleBeside(scene);
+  if (!output_.empty())
+    output =
+        (output_ / scene.parent_path().lexically_relative(folder_)).lexically_normal() / output.filename();
+  const auto [entry, added] = scene_of_.try_emplace(output, scene);
+  if (!added && entry->second != scene)
+    return fail(scene.string(),
+                fmt::format("would be baked to {}, where {} is", output.string(), entry->second.string()),
+                "rename one of them");
+  std::error_code ignored;  // the bake reports that it cannot write
+  fs::create_directories(output.parent_path(), ignored);
+  return output;
+}
+
+void FolderOutputs::forget(const fs::path& scene) {
+  std::erase_if(scene_of_, [&](const auto& entry) { return entry.second == scene; });
 }
 
 }  // namespace lambent::baker

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -14,6 +15,7 @@
 #include "baker/cache/cache.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/pipeline/journal.hpp"
+#include "runtime/base/result.hpp"
 
 namespace lambent::baker {
 
@@ -52,5 +54,24 @@ int bakeFolder(const BakeArguments& arguments, std::optional<Cache>& cache, cons
 // Bakes every scene of the folder `arguments.watch`, then again what changes, until it is interrupted.
 // Returns the exit code: 1 if a scene is broken or its last bake failed.
 int watchFolder(const BakeArguments& arguments, Cache* cache);
+
+// Says where each scene of a folder is baked to, for --watch and for bakes of folders: beside the scene, or
+// under a folder for bundles that mirrors the scenes' own.
+
+class FolderOutputs {
+ public:
+  // With an empty `output` bundles lie beside their scenes.
+  FolderOutputs(std::filesystem::path folder, std::filesystem::path output)
+      : folder_(std::move(folder)), output_(std::move(output)) {}
+
+  // Returns the bundle, whose folder it makes. Fails if another scene, as a.gltf beside a.glb, has it.
+  Result<std::filesystem::path> outputOf(const std::filesystem::path& scene);
+  // Gives the bundle of a scene that is gone to others.
+  void forget(const std::filesystem::path& scene);
+
+ private:
+  std::filesystem::path folder_, output_;
+  std::map<std::filesystem::path, std::filesystem::path> scene_of_;  // by output
+};
 
 }  // namespace lambent::baker

@@ -1,22 +1,246 @@
 // Implements lambent plan SCENE.
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "baker/bake/bake.hpp"
 #include "baker/bake/option_rows.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
-#include "baker/cli/plan_text.hpp"
+#include "baker/decisions/decisions.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/import/scene.hpp"
+#include "baker/pipeline/guess_seconds.hpp"
+#include "baker/plan/counted.hpp"
+#include "baker/plan/effect_plan.hpp"
 #include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
 
 namespace {
+
+// Prints a plan as text that fits one screen: warnings first, then effects and the largest groups, whose
+// primitives are summed up by decision. All of it is in --verbose.
+
+// A plan with all that is reported about it.
+struct PlanReport {
+  const Scene& scene;
+  const EffectPlan& plan;
+  const std::vector<GroupDecisions>& decisions;  // one per group
+  const BakeGuess& guess;
+};
+
+struct GroupSize {
+  std::size_t vertices = 0, triangles = 0;
+};
+
+// PlanLines of a screen, and of these at most so many for warnings and for local lights.
+constexpr std::size_t kMostLines = 40, kMostSentences = 6, kMostNames = 3;
+constexpr const char* kRest = "lambent plan --verbose lists them";
+
+using PlanLines = std::vector<std::string>;
+
+// Empty for the default material and for one without a name.
+std::string materialName(const Scene& scene, std::int32_t material) {
+  return material < 0 ? "" : scene.materials[static_cast<std::size_t>(material)].name;
+}
+
+std::string choiceText(Choice choice) {
+  return choice == Choice::Baked ? "baked" : "left out";
+}
+
+// Returns "light probes" for lightProbes.
+std::string wordsOf(const std::string& effect) {
+  std::string words;
+  for (const char letter : effect) {
+    if (std::isupper(static_cast<unsigned char>(letter))) words += ' ';
+    words += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  }
+  return words;
+}
+
+void addDecisions(const std::vector<Decision>& decisions, const char* indent, PlanLines& lines) {
+  for (const Decision& d : decisions)
+    if (d.choice != Choice::Absent)  // --json has those too
+      lines.push_back(
+          fmt::format("{}{:<16} {}: {}", indent, wordsOf(d.effect), choiceText(d.choice), d.reason));
+}
+
+const ScenePrimitive& primitiveOf(const Scene& scene, const PlannedDraw& draw) {
+  return scene.meshes[draw.mesh].primitives[draw.primitive];
+}
+
+GroupSize sizeOf(const Scene& scene, const RigidGroup& group) {
+  GroupSize size;
+  for (const PlannedDraw& draw : group.draws) {
+    const bundle::MeshData& mesh = primitiveOf(scene, draw).mesh;
+    size.vertices += mesh.positions.size();
+    size.triangles += mesh.indices.size() / 3;
+  }
+  return size;
+}
+
+std::string shownMaterial(const Scene& scene, const PlannedDraw& draw) {
+  const std::int32_t material = primitiveOf(scene, draw).material;
+  const std::string name = materialName(scene, material);
+  return material < 0 ? "the default material" : name.empty() ? fmt::format("material {}", material) : name;
+}
+
+void addPrimitives(const Scene& scene, const RigidGroup& group, const GroupDecisions& of, PlanLines& lines) {
+  for (const PrimitiveDecisions& primitive : of.primitives) {
+    const PlannedDraw& draw = group.draws[primitive.draw];
+    const std::string& mesh = scene.meshes[draw.mesh].name;
+    lines.push_back(fmt::format("      {}, primitive {} of {}{}",
+                                mesh.empty() ? fmt::format("mesh {}", draw.mesh) : mesh, draw.primitive,
+                                shownMaterial(scene, draw), draw.back ? ", back" : ""));
+    addDecisions(primitive.decisions, "        ", lines);
+  }
+}
+
+double areaOf(const Scene& scene, const PlannedDraw& draw) {
+  const bundle::MeshData& mesh = primitiveOf(scene, draw).mesh;
+  const auto corner = [&](std::size_t i) {
+    return glm::dvec3(draw.group_from_mesh * glm::vec4(mesh.positions[mesh.indices[i]], 1.0f));
+  };
+  double area = 0.0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    area += 0.5 * glm::length(glm::cross(corner(i + 1) - corner(i), corner(i + 2) - corner(i)));
+  return area;
+}
+
+// The draws of a group about which the same was decided, those of the largest area first.
+struct Alike {
+  const Decision* least = nullptr;  // of the least first figure
+  const Decision* most = nullptr;
+  std::size_t draws = 0;
+  double area = 0.0;
+  std::vector<std::string> materials = {};
+};
+
+std::string figureText(const Figure& figure) {
+  return figure.unit == "%" ? percentText(figure.value / 100.0) : fmt::format("{:.2g}", figure.value);
+}
+
+std::string alikeText(const Alike& alike, std::size_t draws, double area) {
+  std::string text =
+      fmt::format("      {:<16} {}", wordsOf(alike.least->effect), choiceText(alike.least->choice));
+  if (draws > 1) {
+    const std::size_t named = std::min(alike.materials.size(), kMostNames);
+    text +=
+        fmt::format(" for {} of {}, {} of the area ({}{})", alike.draws, counted(draws, "draw"),
+                    percentText(alike.area / std::max(area, 1e-30)),
+                    fmt::join(alike.materials.begin(), alike.materials.begin() + std::ptrdiff_t(named), ", "),
+                    named < alike.materials.size()
+                        ? fmt::format(" and {}", counted(alike.materials.size() - named, "more material"))
+                        : "");
+  }
+  text += ": " + alike.least->reason;
+  if (alike.most->reason != alike.least->reason)
+    text += " (up to " + figureText(alike.most->figures[0]) + ")";
+  return text;
+}
+
+// Adds a line for each decision about draws of the group.
+void addAlike(const Scene& scene, const RigidGroup& group, const GroupDecisions& of, PlanLines& lines) {
+  std::vector<double> areas;
+  for (const PlannedDraw& draw : group.draws) areas.push_back(areaOf(scene, draw));
+  std::vector<std::size_t> order(of.primitives.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(),
+                           [&](std::size_t i) { return areas[of.primitives[i].draw]; });
+  const auto figure = [](const Decision& d) { return d.figures.empty() ? 0.0 : d.figures[0].value; };
+  std::vector<Alike> all;
+  for (const std::size_t i : order)
+    for (const Decision& d : of.primitives[i].decisions) {
+      if (d.choice == Choice::Absent) continue;
+      auto alike = std::ranges::find_if(all, [&](const Alike& known) {
+        return known.least->effect == d.effect && known.least->choice == d.choice;
+      });
+      if (alike == all.end()) alike = all.insert(alike, {.least = &d, .most = &d});
+      if (figure(d) < figure(*alike->least)) alike->least = &d;
+      if (figure(d) > figure(*alike->most)) alike->most = &d;
+      const PlannedDraw& draw = group.draws[of.primitives[i].draw];
+      ++alike->draws, alike->area += areas[of.primitives[i].draw];
+      const std::string material = shownMaterial(scene, draw);
+      if (std::ranges::find(alike->materials, material) == alike->materials.end())
+        alike->materials.push_back(material);
+    }
+  const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
+  for (const Alike& alike : all) lines.push_back(alikeText(alike, of.primitives.size(), area));
+}
+
+PlanLines groupLines(const PlanReport& report, std::size_t g, bool verbose) {
+  const RigidGroup& group = report.plan.groups[g];
+  PlanLines lines;
+  if (group.volume >= 0) {
+    const std::string within =
+        group.within < 0 ? ""
+                         : " among the surfaces of " + report.plan.groups[std::size_t(group.within)].name;
+    lines.push_back(fmt::format("    {}: a volume{}", group.name, within));
+  } else {
+    const GroupSize size = sizeOf(report.scene, group);
+    lines.push_back(fmt::format("    {}: {}, {} vertices, {} triangles", group.name,
+                                counted(group.draws.size(), "draw"), size.vertices, size.triangles));
+  }
+  addDecisions(report.decisions[g].decisions, "      ", lines);
+  (verbose ? addPrimitives : addAlike)(report.scene, group, report.decisions[g], lines);
+  return lines;
+}
+
+void addSentences(const char* title, const std::vector<std::string>& sentences, bool verbose,
+                  PlanLines& lines) {
+  if (sentences.empty()) return;
+  lines.push_back(fmt::format("  {}", title));
+  const std::size_t shown = verbose ? sentences.size() : std::min(sentences.size(), kMostSentences);
+  for (std::size_t i = 0; i < shown; ++i) lines.push_back("    " + sentences[i]);
+  if (shown < sentences.size())
+    lines.push_back(fmt::format("    and {} more; {}", sentences.size() - shown, kRest));
+}
+
+// The largest groups come first.
+void addGroups(const PlanReport& report, bool verbose, PlanLines& lines) {
+  std::vector<std::size_t> order(report.plan.groups.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto triangles = [&](std::size_t g) { return sizeOf(report.scene, report.plan.groups[g]).triangles; };
+  std::ranges::stable_sort(order, std::greater(), triangles);
+  lines.emplace_back("  rigid groups");
+  std::size_t shown = 0, rest = 0;
+  for (; shown < order.size(); ++shown) {
+    const PlanLines of = groupLines(report, order[shown], verbose);
+    if (!verbose && shown > 0 && lines.size() + of.size() >= kMostLines) break;
+    lines.insert(lines.end(), of.begin(), of.end());
+  }
+  for (std::size_t i = shown; i < order.size(); ++i) rest += triangles(order[i]);
+  if (shown < order.size())
+    lines.push_back(fmt::format("    and {} of {} triangles; {}", counted(order.size() - shown, "more group"),
+                                rest, kRest));
+}
+
+void printPlan(const PlanReport& report, bool verbose) {
+  const EffectPlan& plan = report.plan;
+  PlanLines lines = {report.scene.source.string()};
+  addSentences("warnings", plan.left_out, verbose, lines);
+  lines.emplace_back("  effects");
+  for (const EffectChoice& choice : plan.effects)
+    lines.push_back(
+        fmt::format("    {:<12} {}: {}", choice.effect, choice.baked ? "baked" : "not baked", choice.reason));
+  addSentences("local lights", plan.shadowed_lights, verbose, lines);
+  const BakeGuess& guess = report.guess;
+  lines.push_back(fmt::format("  about {} samples, {} rays, {}, {} of memory for transfer",
+                              countText(guess.samples), countText(guess.rays),
+                              durationText(sumSeconds(guess.seconds)), bytesText(guess.memory_bytes)));
+  addGroups(report, verbose, lines);
+  for (const std::string& line : lines) fmt::print("{}\n", line);
+}
 
 struct PlanArguments {
   std::filesystem::path scene;

@@ -7,7 +7,6 @@
 
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
-#include "baker/web_view/browser.hpp"
 #include "baker/web_view/file_server.hpp"
 #include "baker/web_view/viewer_files.hpp"
 #include "runtime/base/atomic_file.hpp"

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/cli/bake_scene.hpp"
-#include "baker/cli/folder_outputs.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/pipeline/bake_queue.hpp"
 #include "baker/pipeline/source_watch.hpp"

@@ -1,6 +1,6 @@
 #include "baker/compress/kept_transfer.hpp"
 
-#include "baker/jobs/kept_value.hpp"
+#include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
 

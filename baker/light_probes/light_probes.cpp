@@ -8,7 +8,6 @@
 
 #include "baker/jobs/parallel.hpp"
 #include "baker/light_probes/blend_weights.hpp"
-#include "baker/light_probes/fit_points.hpp"
 #include "baker/light_probes/light_points.hpp"
 #include "runtime/bundle/description.hpp"
 

@@ -13,7 +13,6 @@
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/journal.hpp"
-#include "baker/pipeline/progress_record.hpp"
 #include "baker/pipeline/whole_progress.hpp"
 
 namespace lambent::baker {

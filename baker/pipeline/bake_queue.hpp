@@ -1,5 +1,5 @@
 // The room baker/pipeline bakes in the background. The queue takes requests and works on one step at a time,
-// on a worker thread of its own: every job first unshadowed, then coarse, then final (preview_levels.hpp), so
+// on a worker thread of its own: every job first unshadowed, then coarse, then final (bake_request.hpp), so
 // that everything appears before any of it gets good. Among jobs at the same preview level, the latest
 // request comes first. A job that arrives while a final bake runs goes before it, which costs nothing if a
 // cache keeps the interrupted work. Only the final bundle is written under its own name; previews go into the
@@ -23,7 +23,6 @@
 #include "baker/bake/bake.hpp"
 #include "baker/cache/cache.hpp"
 #include "baker/pipeline/bake_request.hpp"
-#include "baker/pipeline/preview_levels.hpp"
 
 namespace lambent::baker {
 

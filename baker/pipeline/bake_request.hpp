@@ -8,12 +8,30 @@
 #include <optional>
 #include <string>
 
+#include "baker/bake/bake.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/import/import_options.hpp"
 #include "baker/import/scene_edits.hpp"
-#include "baker/pipeline/preview_levels.hpp"
 
 namespace lambent::baker {
+
+// A scene gets better in preview levels: at once unshadowed, then coarse transfer, then what was asked for.
+// Each is a complete bundle. Only this file decides with which options a level is baked.
+
+enum class PreviewLevel : std::uint8_t {
+  Unshadowed,  // traces no rays (bake_unshadowed.hpp)
+  Coarse,      // few rays, one bounce, no refinement; takes seconds
+  Final        // the options that were asked for
+};
+
+const char* previewLevelName(PreviewLevel preview_level);  // "unshadowed", "coarse", "final"
+
+// Returns the options of a level for a bake that asked for `asked`; they are never finer than those.
+BakeOptions previewLevelOptions(PreviewLevel preview_level, const BakeOptions& asked);
+
+// Bakes `scene` at one level, where `asked` holds the final options. Errors: those of bake().
+Result<BakeReport> bakePreviewLevel(PreviewLevel preview_level, const Scene& scene, const BakeOptions& asked,
+                                    const std::filesystem::path& output, const BakeContext& context);
 
 struct BakeRequest {
   std::filesystem::path scene, output;  // as given; the journal makes them absolute

@@ -12,6 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "baker/bake/options.hpp"
+#include "baker/cache/cache.hpp"
+#include "baker/cache/key.hpp"
+#include "baker/import/scene.hpp"
 #include "baker/jobs/progress.hpp"
 
 namespace lambent::baker {
@@ -33,7 +37,7 @@ JobSeconds jobSeconds(const PartSeconds& expected, std::span<const Progress::Sta
 
 class WholeProgress {
  public:
-  // `share` is that which an earlier run of the same job had reached (progress_record.hpp). `others` are jobs
+  // `share` is that which an earlier run of the same job had reached (findProgress()). `others` are jobs
   // that count as parts of this one: a preview counts with the bake that follows.
   explicit WholeProgress(PartSeconds expected, double share = 0.0, JobSeconds others = {})
       : expected_(std::move(expected)), share_(share), others_(others) {}
@@ -62,5 +66,15 @@ class ProgressWatch {
  private:
   std::jthread thread_;
 };
+
+// Records how far a bake is, so that a later run that goes on with it begins to count where it was. The
+// record lies in the cache beside the results that it counts, under the same scene and options. A record is
+// no promise: a bake that was killed may have kept less than it counts, and takes longer than it says.
+
+Key progressKey(const Scene& scene, const BakeOptions& options);
+// Returns the share that was reached, 0..1; 0 if there is no record.
+double findProgress(const Key& key, const Cache& cache);
+// Keeps the record while the result lives. The cache must outlive it too.
+ProgressWatch keepProgress(const Progress& progress, WholeProgress whole, Cache& cache, const Key& key);
 
 }  // namespace lambent::baker

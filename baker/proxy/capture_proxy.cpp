@@ -11,7 +11,6 @@
 
 #include "baker/proxy/parts.hpp"
 #include "baker/proxy/shine.hpp"
-#include "baker/proxy/silhouette.hpp"
 #include "baker/proxy/simplify.hpp"
 
 namespace lambent::baker {

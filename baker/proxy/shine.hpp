@@ -11,7 +11,6 @@
 #include <glm/vec3.hpp>
 
 #include "baker/proxy/parts.hpp"
-#include "baker/proxy/surface_points.hpp"
 #include "baker/transport/samples.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
 

@@ -14,7 +14,6 @@
 
 #include "baker/importance/importance.hpp"
 #include "baker/jobs/bake_context.hpp"
-#include "baker/refine/face_cuts.hpp"
 #include "baker/refine/marked_edges.hpp"
 #include "baker/refine/probed_points.hpp"
 #include "baker/refine/refine.hpp"

@@ -5,11 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "baker/jobs/kept_value.hpp"
-#include "baker/refine/copies.hpp"
+#include "baker/jobs/stage.hpp"
 #include "baker/refine/group_refiner.hpp"
 #include "baker/refine/marked_edges.hpp"
-#include "baker/refine/shadow_probe.hpp"
+#include "baker/refine/probed_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 
 namespace lambent::baker {

@@ -21,4 +21,8 @@ Result<ServedFiles> viewerFiles(const std::filesystem::path& web);
 // Returns share/lambent/web beside the folder of this program. In a build folder it is a link to the sources.
 Result<std::filesystem::path> findWebFolder();
 
+// Asks xdg-open to show an address and does not wait for it. Returns false where there is no display or no
+// xdg-open. An interrupt from the terminal does not reach the browser.
+bool openBrowser(const std::string& address);
+
 }  // namespace lambent::baker

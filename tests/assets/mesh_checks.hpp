@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "assets/mesh.hpp"
+#include "assets/shapes.hpp"
 
 namespace lambent::assets {
 

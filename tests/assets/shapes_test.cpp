@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "assets/torus_knot.hpp"
 #include "tests/assets/mesh_checks.hpp"
 
 namespace lambent::assets {

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "reference/enlarge.hpp"
 #include "reference/light_cache.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/reference/measure.hpp"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/digest.hpp"
-#include "reference/shape_lights.hpp"
+#include "reference/lamps.hpp"
 #include "tests/reference/measure.hpp"
 
 namespace lambent::baker::reference {

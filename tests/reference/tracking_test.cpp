@@ -288,7 +288,7 @@ TEST(Tracking, StaysWithinZeroAndOneForAnyDensity) {
       EXPECT_TRUE(through >= 0.0 && through <= 1.0);
       const auto met = volumes.collide(ray, kFar, random);
       EXPECT_EQ(met.has_value(), density > 1.0f);
-      // A voxel stands for at most 256 free paths, however dense it is (grid_medium.cpp); no path here is ten
+      // A voxel stands for at most 256 free paths, however dense it is (volumes.cpp); no path here is ten
       // long.
       if (met) {
         EXPECT_TRUE(met->t >= 0.5 && met->t < 0.505) << met->t;

@@ -4,7 +4,7 @@
 
 #include "baker/effects/neighborhood/fit_between_points.hpp"
 #include "baker/effects/neighborhood/receiver_meter.hpp"
-#include "baker/jobs/kept_value.hpp"
+#include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "baker/cache/bytes.hpp"
-#include "baker/compress/baked_grids.hpp"
+#include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/code_change.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"

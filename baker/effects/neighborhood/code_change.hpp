@@ -6,7 +6,6 @@
 
 #include <vector>
 
-#include "baker/compress/baked_grids.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/grid_change.hpp"
 

@@ -8,8 +8,8 @@
 #include "baker/effects/volume/phased_light.hpp"
 #include "baker/effects/volume/scatter_light.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
-#include "baker/jobs/kept_value.hpp"
 #include "baker/jobs/parallel.hpp"
+#include "baker/jobs/stage.hpp"
 #include "runtime/sh/gaunt.hpp"
 
 namespace lambent::baker {

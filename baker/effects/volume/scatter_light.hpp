@@ -8,7 +8,7 @@
 #include "baker/effects/volume/gmres.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/volume_transfer.hpp"
-#include "baker/jobs/kept_value.hpp"
+#include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
 

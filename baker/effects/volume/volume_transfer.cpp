@@ -10,7 +10,6 @@
 #include "baker/effects/volume/scatter_light.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
-#include "baker/jobs/kept_value.hpp"
 #include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {

@@ -1,9 +1,8 @@
-#include "baker/bake/fit_vertices.hpp"
-
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "baker/bake/surface_transport.hpp"
 #include "baker/effects/diffuse/bounce_gather.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/jobs/parallel.hpp"

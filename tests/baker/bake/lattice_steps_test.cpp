@@ -1,6 +1,4 @@
 // Tests that small things keep their shapes on the way to disk beside large ones.
-#include "baker/bake/lattice_steps.hpp"
-
 #include <algorithm>
 #include <cmath>
 

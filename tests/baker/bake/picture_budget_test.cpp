@@ -1,9 +1,9 @@
 // Tests how a bound on the error of pictures is divided among rays, refinement and codes.
-#include "baker/bake/picture_budget.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "baker/bake/options.hpp"
 
 namespace lambent::baker {
 namespace {

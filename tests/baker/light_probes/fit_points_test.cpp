@@ -1,5 +1,3 @@
-#include "baker/light_probes/fit_points.hpp"
-
 #include <cmath>
 
 #include <glm/geometric.hpp>

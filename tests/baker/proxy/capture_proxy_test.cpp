@@ -8,8 +8,8 @@
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb/stb_image_write.h>
 
+#include "assets/shapes.hpp"
 #include "assets/teapot.hpp"
-#include "assets/torus_knot.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"

@@ -5,8 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "baker/proxy/silhouette.hpp"
-#include "baker/proxy/surface_points.hpp"
+#include "baker/proxy/parts.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/jobs/parallel.hpp"
-#include "baker/refine/shadow_probe.hpp"
+#include "baker/refine/probed_points.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
