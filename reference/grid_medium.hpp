@@ -16,7 +16,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
-#include "baker/import/volume.hpp"
+#include "baker/import/scene.hpp"
 #include "reference/ray_tracer.hpp"
 
 namespace lambent::baker::reference {

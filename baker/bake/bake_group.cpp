@@ -7,10 +7,10 @@
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/result_bytes.hpp"
 #include "baker/bake/surface_cells.hpp"
-#include "baker/effects/neighborhood/surface_body.hpp"
+#include "baker/effects/neighborhood/bodies.hpp"
 #include "baker/jobs/kept_value.hpp"
 #include "baker/proxy/capture_proxy.hpp"
-#include "baker/transport/sample_areas.hpp"
+#include "baker/transport/face_points.hpp"
 
 namespace lambent::baker {
 

@@ -1,7 +1,7 @@
 #include "baker/bake/fit_vertices.hpp"
 
-#include "baker/effects/diffuse/inside_faces.hpp"
-#include "baker/effects/glossy/inside_faces.hpp"
+#include "baker/effects/diffuse/traced_points.hpp"
+#include "baker/effects/glossy/traced_points.hpp"
 
 namespace lambent::baker {
 

@@ -5,7 +5,7 @@
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/import/image.hpp"
-#include "baker/transport/alpha_map.hpp"
+#include "baker/transport/surface_colors.hpp"
 
 namespace lambent::baker {
 

@@ -9,7 +9,7 @@
 
 #include "baker/bake/lattice_steps.hpp"
 #include "baker/bake/result_bytes.hpp"
-#include "baker/import/subdivide.hpp"
+#include "baker/import/mesh_edits.hpp"
 #include "baker/jobs/kept_value.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/transport/geometry_key.hpp"

@@ -6,9 +6,9 @@
 
 #include "baker/bake/picture_budget.hpp"
 #include "baker/brdf/kernel_power.hpp"
-#include "baker/effects/diffuse/payloads.hpp"
-#include "baker/effects/glossy/payloads.hpp"
-#include "baker/transport/sample_areas.hpp"
+#include "baker/effects/diffuse/diffuse.hpp"
+#include "baker/effects/glossy/glossy.hpp"
+#include "baker/transport/face_points.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "baker/bake/options.hpp"
-#include "baker/import/import_options.hpp"
 #include "baker/import/scene_edits.hpp"
+#include "baker/import/scene_files.hpp"
 #include "baker/pipeline/preview_levels.hpp"
 
 namespace lambent::baker {

@@ -2,8 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "baker/import/container.hpp"
-#include "baker/import/uri.hpp"
+#include "baker/import/scene_files.hpp"
 #include "baker/pipeline/source_watch.hpp"
 
 namespace lambent::baker {

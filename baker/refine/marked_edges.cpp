@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "baker/import/subdivide.hpp"
+#include "baker/import/mesh_edits.hpp"
 
 namespace lambent::baker {
 

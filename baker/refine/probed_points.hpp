@@ -13,9 +13,9 @@
 #include "baker/jobs/bake_context.hpp"
 #include "baker/refine/shadow_probe.hpp"
 #include "baker/refine/surface_light.hpp"
+#include "baker/transport/geometry_key.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
-#include "baker/transport/vertex_key.hpp"
 
 namespace lambent::baker {
 

@@ -9,7 +9,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "baker/compress/light_weights.hpp"
-#include "baker/transport/frame.hpp"
+#include "baker/transport/direction_table.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal.hpp"

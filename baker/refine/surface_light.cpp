@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/transport/frame.hpp"
+#include "baker/transport/direction_table.hpp"
 
 namespace lambent::baker {
 

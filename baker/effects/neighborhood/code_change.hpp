@@ -8,7 +8,7 @@
 
 #include "baker/compress/baked_grids.hpp"
 #include "baker/compress/kept_transfer.hpp"
-#include "baker/effects/neighborhood/grid_change.hpp"
+#include "baker/effects/neighborhood/light_change.hpp"
 
 namespace lambent::baker {
 
