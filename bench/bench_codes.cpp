@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "baker/compress/cpca.hpp"
-#include "baker/effects/diffuse/payloads.hpp"
+#include "baker/effects/diffuse/diffuse.hpp"
 #include "bench/coded_bytes.hpp"
 #include "bench/group_workload.hpp"
 

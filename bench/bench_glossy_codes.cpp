@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "baker/brdf/kernel_power.hpp"
+#include "baker/effects/glossy/glossy.hpp"
 #include "baker/effects/glossy/glossy_bounces.hpp"
 #include "baker/effects/glossy/glossy_direct.hpp"
-#include "baker/effects/glossy/payloads.hpp"
 #include "bench/coded_bytes.hpp"
 #include "bench/group_workload.hpp"
 

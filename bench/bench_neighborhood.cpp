@@ -8,8 +8,8 @@
 #include <cstring>
 #include <random>
 
-#include "baker/effects/neighborhood/bake_neighborhood.hpp"
-#include "baker/effects/neighborhood/surface_body.hpp"
+#include "baker/effects/neighborhood/bodies.hpp"
+#include "baker/effects/neighborhood/neighborhood.hpp"
 #include "bench/coded_bytes.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/neighborhood.hpp"

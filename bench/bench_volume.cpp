@@ -7,9 +7,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "baker/effects/volume/sphere_table.hpp"
-#include "baker/effects/volume/volume_transfer.hpp"
-#include "baker/import/procedural_cloud.hpp"
+#include "baker/effects/volume/first_light.hpp"
+#include "baker/effects/volume/volume.hpp"
+#include "baker/import/density_file.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "baker/compress/cpca.hpp"
-#include "baker/effects/diffuse/payloads.hpp"
+#include "baker/effects/diffuse/diffuse.hpp"
 #include "runtime/bundle/entropy_coder.hpp"
 
 namespace lambent {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "baker/compress/cpca.hpp"
-#include "baker/effects/diffuse/payloads.hpp"
+#include "baker/effects/diffuse/diffuse.hpp"
 #include "bench/group_workload.hpp"
 
 namespace {

@@ -19,7 +19,6 @@
 #include <glm/vec2.hpp>
 
 #include "baker/import/scene.hpp"
-#include "baker/import/volume.hpp"
 #include "reference/ray_tracer.hpp"
 #include "reference/sampler.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "baker/effects/neighborhood/bake_neighborhood.hpp"
+#include "baker/effects/neighborhood/neighborhood.hpp"
 #include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {

@@ -13,12 +13,12 @@
 #include "baker/brdf/kernel_power.hpp"
 #include "baker/cache/bytes.hpp"
 #include "baker/compress/kept_transfer.hpp"
-#include "baker/effects/diffuse/payloads.hpp"
-#include "baker/effects/glossy/payloads.hpp"
-#include "baker/effects/neighborhood/surface_body.hpp"
+#include "baker/effects/diffuse/diffuse.hpp"
+#include "baker/effects/glossy/glossy.hpp"
+#include "baker/effects/neighborhood/bodies.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/proxy/capture_proxy.hpp"
-#include "baker/transport/sample_areas.hpp"
+#include "baker/transport/face_points.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {

@@ -9,7 +9,7 @@
 #include "baker/bake/bake_group.hpp"
 #include "baker/bake/bake_volume.hpp"
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/effects/volume/volume_transfer.hpp"
+#include "baker/effects/volume/volume.hpp"
 #include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {

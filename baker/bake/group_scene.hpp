@@ -13,7 +13,7 @@
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/import/image.hpp"
 #include "baker/jobs/bake_context.hpp"
-#include "baker/transport/alpha_map.hpp"
+#include "baker/transport/surface_colors.hpp"
 
 namespace lambent::baker {
 

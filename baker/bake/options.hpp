@@ -65,7 +65,7 @@ struct BakeOptions {
   std::optional<bool> fit = {};
   int light_probes = 0;        // per cell, 1..32; 0: chosen by how near light comes (local_light.hpp)
   glm::uvec3 volume_grid{32};  // voxels of a volume's transfer, 1..256 along each axis
-  // auto: what the scene calls for; all: also what the plan leaves out (planned_transport.hpp); or a list.
+  // auto: what the scene calls for; all: also what the plan leaves out (effect_plan.hpp); or a list.
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // limit on what passes keep in memory; 0: half of the machine's

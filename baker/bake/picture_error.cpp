@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "baker/bake/picture_sums.hpp"
-#include "baker/effects/diffuse/incident_basis.hpp"
+#include "baker/effects/diffuse/hemisphere.hpp"
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -38,7 +38,7 @@ class Arriving {
   bool perPixel(std::size_t lamp) const { return per_pixel_[lamp]; }
 
   // Adds `weight` times a sample's vector, which is laid out as in a TransferField. A vector of nine outputs
-  // is evaluated at `normal` (incident_basis.hpp).
+  // is evaluated at `normal` (hemisphere.hpp).
   void add(std::span<const float> vector, std::size_t channels, const glm::vec3& normal, float weight,
            Lamps lamps, std::span<float> out) const {
     const std::size_t outputs = vector.size() / (channels * columns());

@@ -12,7 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "baker/importance/importance.hpp"
-#include "baker/trace/traced_scene.hpp"
+#include "baker/trace/traced_samples.hpp"
 #include "baker/transport/face_points.hpp"
 #include "runtime/bundle/description.hpp"
 

@@ -16,7 +16,7 @@
 #include "baker/bake/result_bytes.hpp"
 #include "baker/compress/draco_encode.hpp"
 #include "baker/import/details.hpp"
-#include "baker/import/subdivide.hpp"
+#include "baker/import/mesh_edits.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/transport/geometry_key.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "baker/effects/diffuse/inside_faces.hpp"
+#include "baker/effects/diffuse/traced_points.hpp"
 #include "baker/effects/glossy/glossy_bounces.hpp"
-#include "baker/effects/glossy/inside_faces.hpp"
+#include "baker/effects/glossy/traced_points.hpp"
 #include "baker/trace/patches.hpp"
 #include "runtime/base/process.hpp"
 #include "runtime/sh/basis.hpp"

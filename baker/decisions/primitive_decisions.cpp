@@ -5,7 +5,6 @@
 
 #include "baker/decisions/decisions.hpp"
 #include "baker/plan/counted.hpp"
-#include "baker/plan/lobe_energy.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/trace/mirror_paths.hpp"
 

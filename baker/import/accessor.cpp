@@ -1,5 +1,3 @@
-#include "baker/import/accessor.hpp"
-
 #include <algorithm>
 #include <cassert>
 #include <cstring>
@@ -9,7 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/import/hints.hpp"
+#include "baker/import/document.hpp"
+#include "baker/import/error_text.hpp"
 #include "baker/import/tinygltf.hpp"
 
 namespace lambent::baker {

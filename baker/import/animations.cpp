@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/import/accessor.hpp"
 #include "baker/import/convert.hpp"
-#include "baker/import/hints.hpp"
+#include "baker/import/document.hpp"
+#include "baker/import/error_text.hpp"
 
 namespace lambent::baker {
 namespace {

@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "baker/import/import_options.hpp"
+#include "baker/import/scene_files.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker {

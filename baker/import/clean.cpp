@@ -2,14 +2,34 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "baker/import/convert.hpp"
-#include "baker/import/gather_vertices.hpp"
+#include "baker/import/mesh_edits.hpp"
 #include "runtime/base/finite.hpp"
 
 namespace lambent::baker {
+
+void gatherVertices(bundle::MeshData& mesh, std::span<const std::uint32_t> sources) {
+  const auto gather = [&](auto& values) {
+    if (values.empty()) return;
+    std::remove_reference_t<decltype(values)> gathered;
+    gathered.reserve(sources.size());
+    for (const std::uint32_t v : sources) gathered.push_back(values[v]);
+    values = std::move(gathered);
+  };
+  gather(mesh.positions);
+  gather(mesh.normals);
+  gather(mesh.normal_weights);
+  gather(mesh.texcoords0);
+  gather(mesh.texcoords1);
+  gather(mesh.colors);
+  gather(mesh.tangents);
+}
+
 namespace {
 
 using bundle::MeshData;

@@ -2,6 +2,7 @@
 // the file, at voxel centres; extras.lambent.volume says what they mean (volumes.cpp).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -31,5 +32,12 @@ Result<DensityGrid> readNrrd(const std::filesystem::path& file);
 
 // Errors name `subject`.
 Result<void> checkGridSize(const glm::u64vec3& size, const std::string& subject);
+
+// Makes a fair-weather cloud from a formula, for scenes that ship without files: flat below, with billows on
+// billows above. The same seed gives the same cloud.
+
+// Returns 96 x 64 x 96 voxels of size 1/64, centred at the origin, y up; densities are 0..1, and 0 at all
+// faces.
+DensityGrid proceduralCloud(std::uint32_t seed);
 
 }  // namespace lambent::baker

@@ -14,9 +14,8 @@
 
 #include "baker/import/buffer_source.hpp"
 #include "baker/import/check.hpp"
-#include "baker/import/container.hpp"
-#include "baker/import/hints.hpp"
-#include "baker/import/reason.hpp"
+#include "baker/import/error_text.hpp"
+#include "baker/import/scene_files.hpp"
 #include "baker/import/tinygltf.hpp"
 
 namespace lambent::baker {

@@ -7,8 +7,8 @@
 
 #include <filesystem>
 
-#include "baker/import/import_options.hpp"
 #include "baker/import/scene.hpp"
+#include "baker/import/scene_files.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <glm/mat3x3.hpp>
 
-#include "baker/import/container.hpp"
+#include "baker/import/scene_files.hpp"
 
 namespace lambent::baker {
 namespace {

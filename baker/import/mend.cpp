@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string_view>
 
+#include "baker/import/check.hpp"
+
 namespace lambent::baker {
+
 namespace {
 
 using nlohmann::json;
@@ -130,6 +134,209 @@ void mendMembers(const Entry& root) {
     accessor.json.erase("max");
   });
   if (root.json.is_object()) mendTree(root.json, "", root.warnings);
+}
+
+// Mends primitives, animations, and what nothing reads. Bytes are not read here: what is out of bounds is
+// refused by the checks.
+
+namespace {
+
+using nlohmann::json;
+
+// Attributes that may be missing, with the types that they may have.
+struct Optional {
+  const char* semantic;
+  std::array<const char*, 2> types;
+};
+constexpr std::array kOptional = {Optional{"NORMAL", {"VEC3", "VEC3"}}, Optional{"TANGENT", {"VEC4", "VEC4"}},
+                                  Optional{"TEXCOORD_0", {"VEC2", "VEC2"}},
+                                  Optional{"TEXCOORD_1", {"VEC2", "VEC2"}},
+                                  Optional{"COLOR_0", {"VEC3", "VEC4"}}};
+
+bool isRead(std::string_view semantic) {
+  return semantic == "POSITION" || semantic.starts_with("JOINTS_") || semantic.starts_with("WEIGHTS_") ||
+         std::ranges::any_of(kOptional, [&](const Optional& row) { return row.semantic == semantic; });
+}
+
+// Returns the member of a member ..., or null.
+const json& memberOf(const json& owner, std::initializer_list<const char*> keys) {
+  static const json kNone;
+  const json* place = &owner;
+  for (const char* key : keys) {
+    const auto found = place->is_object() ? place->find(key) : place->end();
+    if (found == place->end()) return kNone;
+    place = &*found;
+  }
+  return *place;
+}
+
+// Returns the accessor that a member names, if there is one.
+json* accessorOf(const Entry& root, const json& owner, const char* key) {
+  json* accessors = root.find("accessors");
+  const auto number = owner.find(key);
+  if (accessors == nullptr || !accessors->is_array() || number == owner.end() ||
+      !number->is_number_unsigned() || number->get<std::size_t>() >= accessors->size())
+    return nullptr;
+  json& accessor = (*accessors)[number->get<std::size_t>()];
+  return accessor.is_object() ? &accessor : nullptr;
+}
+
+bool isEmpty(const json* accessor) {
+  return accessor != nullptr && accessor->contains("count") && (*accessor)["count"] == 0;
+}
+
+// glTF has one meaning for colors in integers: shares of the largest one.
+void flagColors(const Entry& primitive, const json& attributes, json& colors) {
+  constexpr int kFloat = 5126;
+  if (colors.value("componentType", json()) == kFloat || colors.value("normalized", json()) == true) return;
+  primitive.warn(fmt::format("its colors in accessor {} are not flagged as normalized but are read so",
+                             attributes["COLOR_0"].dump()));
+  colors["normalized"] = true;
+}
+
+void mendAttributes(const Entry& root, const Entry& primitive, json& attributes) {
+  for (auto item = attributes.begin(); item != attributes.end();)
+    item = isRead(item.key()) ? std::next(item) : attributes.erase(item);
+  const json* positions = accessorOf(root, attributes, "POSITION");
+  if (positions == nullptr) return;
+  const json count = positions->value("count", json());
+  for (const Optional& row : kOptional) {
+    json* accessor = accessorOf(root, attributes, row.semantic);
+    if (accessor == nullptr) continue;
+    const json type = accessor->value("type", json()), here = accessor->value("count", json());
+    if (std::ranges::find(row.types, type) == row.types.end() || here != count) {
+      primitive.warn(fmt::format("{} has {} elements of {} for {} vertices and is left out", row.semantic,
+                                 here.dump(), type.dump(), count.dump()));
+      attributes.erase(row.semantic);
+    } else if (std::string_view(row.semantic) == "COLOR_0") {
+      flagColors(primitive, attributes, *accessor);
+    }
+  }
+}
+
+void mendPrimitive(const Entry& root, const Entry& primitive) {
+  const auto attributes = primitive.object("attributes");
+  if (attributes) mendAttributes(root, primitive, attributes->json);
+  const bool empty = attributes && (isEmpty(accessorOf(root, attributes->json, "POSITION")) ||
+                                    isEmpty(accessorOf(root, primitive.json, "indices")));
+  // The conversion says that it has no geometry.
+  if (empty)
+    for (const char* key : {"indices", "targets", "extensions"}) primitive.json.erase(key);
+  if (empty || !attributes) primitive.json["attributes"] = json::object();
+}
+
+void mendChannels(const Entry& animation) {
+  json* channels = animation.find("channels");
+  if (channels == nullptr || !channels->is_array()) return;
+  std::size_t number = 0;
+  std::erase_if(channels->get_ref<json::array_t&>(), [&](const json& channel) {
+    const std::size_t c = number++;
+    const bool target = memberOf(channel, {"target"}).is_object(),
+               sampler = !memberOf(channel, {"sampler"}).is_null();
+    if (!target || !sampler)
+      animation.warn(fmt::format("channel {} has no {} and is left out", c, target ? "sampler" : "target"));
+    return !target || !sampler;
+  });
+}
+
+// Collects the numbers under some keys of an object.
+void collect(const json& owner, std::initializer_list<const char*> keys, std::set<std::size_t>& used) {
+  if (!owner.is_object()) return;
+  for (const char* key : keys)
+    if (const auto value = owner.find(key); value != owner.end() && value->is_number_unsigned())
+      used.insert(value->get<std::size_t>());
+}
+void collectAll(const json& owner, std::set<std::size_t>& used) {
+  if (owner.is_object())
+    for (const json& value : owner)
+      if (value.is_number_unsigned()) used.insert(value.get<std::size_t>());
+}
+
+std::set<std::size_t> usedAccessors(const Entry& root) {
+  std::set<std::size_t> used;
+  for (const json& mesh : memberOf(root.json, {"meshes"}))
+    for (const json& primitive : memberOf(mesh, {"primitives"})) {
+      collect(primitive, {"indices"}, used);
+      collectAll(memberOf(primitive, {"attributes"}), used);
+      for (const json& target : memberOf(primitive, {"targets"})) collectAll(target, used);
+    }
+  for (const json& animation : memberOf(root.json, {"animations"}))
+    for (const json& sampler : memberOf(animation, {"samplers"})) collect(sampler, {"input", "output"}, used);
+  for (const json& skin : memberOf(root.json, {"skins"})) collect(skin, {"inverseBindMatrices"}, used);
+  for (const json& node : memberOf(root.json, {"nodes"}))
+    collectAll(memberOf(node, {"extensions", "EXT_mesh_gpu_instancing", "attributes"}), used);
+  return used;
+}
+
+std::set<std::size_t> usedViews(const Entry& root) {
+  std::set<std::size_t> used;
+  for (const json& accessor : memberOf(root.json, {"accessors"})) {
+    collect(accessor, {"bufferView"}, used);
+    for (const char* part : {"indices", "values"})
+      collect(memberOf(accessor, {"sparse", part}), {"bufferView"}, used);
+  }
+  for (const json& image : memberOf(root.json, {"images"})) collect(image, {"bufferView"}, used);
+  for (const json& mesh : memberOf(root.json, {"meshes"}))
+    for (const json& primitive : memberOf(mesh, {"primitives"}))
+      collect(memberOf(primitive, {"extensions", "KHR_draco_mesh_compression"}), {"bufferView"}, used);
+  return used;
+}
+
+// Puts `empty` in place of the objects of a list that nothing reads and that `check` refuses.
+template <typename Check>
+void emptyUnused(const Entry& root, const char* key, const char* what, const std::set<std::size_t>& used,
+                 const json& empty, Check check) {
+  json* list = root.find(key);
+  if (list == nullptr || !list->is_array()) return;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    if (used.contains(i)) continue;
+    const std::string name = fmt::format("{} {}", what, i);
+    try {
+      check(Object{(*list)[i], name});
+    } catch (const BrokenField& broken) {
+      root.warnings.push_back(broken.problem + ", but nothing reads it");
+      (*list)[i] = empty;
+    }
+  }
+}
+
+}  // namespace
+
+void mendPrimitives(const Entry& root) {
+  forEachEntry(root, "meshes", "mesh", [&](const Entry& mesh) {
+    forEachEntry(mesh, "primitives", (mesh.name + ", primitive").c_str(),
+                 [&](const Entry& primitive) { mendPrimitive(root, primitive); });
+  });
+  forEachEntry(root, "accessors", "accessor", [](const Entry& accessor) {
+    if (memberOf(accessor.json, {"sparse", "count"}) == 0) accessor.leaveOut("sparse", "replaces nothing");
+  });
+  forEachEntry(root, "bufferViews", "bufferView", [](const Entry& view) {
+    if (const json* stride = view.find("byteStride"); stride != nullptr && *stride == 0)
+      view.leaveOut("byteStride", "is 0");
+  });
+}
+
+void mendAnimations(const Entry& root) {
+  forEachEntry(root, "animations", "animation", [](const Entry& animation) {
+    forEachEntry(animation, "samplers", (animation.name + ", sampler").c_str(), [](const Entry& sampler) {
+      const json* word = sampler.find("interpolation");
+      if (word != nullptr && *word != "LINEAR" && *word != "STEP" && *word != "CUBICSPLINE")
+        sampler.leaveOut("interpolation", fmt::format("is {}", word->dump()));
+    });
+    mendChannels(animation);
+  });
+}
+
+void mendUnused(const Entry& root) {
+  const Root checked{{root.json, "the document"}};
+  emptyUnused(root, "accessors", "accessor", usedAccessors(root),
+              {{"componentType", 5126u}, {"count", 0u}, {"type", "SCALAR"}},
+              [&](const Object& accessor) { checkAccessor(accessor, checked); });
+  emptyUnused(root, "bufferViews", "bufferView", usedViews(root), {{"buffer", 0u}, {"byteLength", 0u}},
+              [&](const Object& view) {
+                checkView(view, checked);
+                if (view.required("byteLength") == 0) throw BrokenField{view.name + " has no bytes"};
+              });
 }
 
 }  // namespace lambent::baker

@@ -10,13 +10,12 @@
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
-#include "baker/import/accessor.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/details.hpp"
-#include "baker/import/hints.hpp"
-#include "baker/import/placed_box.hpp"
+#include "baker/import/document.hpp"
+#include "baker/import/error_text.hpp"
+#include "baker/import/mesh_edits.hpp"
 #include "baker/import/primitives.hpp"
-#include "baker/import/tangents.hpp"
 #include "baker/import/texture_transfer.hpp"
 #include "baker/import/tinygltf.hpp"
 

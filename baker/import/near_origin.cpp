@@ -11,7 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include "baker/import/convert.hpp"
-#include "baker/import/placed_box.hpp"
+#include "baker/import/details.hpp"
 
 namespace lambent::baker {
 

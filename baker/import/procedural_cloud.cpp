@@ -1,5 +1,3 @@
-#include "baker/import/procedural_cloud.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/vec4.hpp>
+
+#include "baker/import/density_file.hpp"
 
 namespace lambent::baker {
 namespace {

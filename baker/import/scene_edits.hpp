@@ -60,4 +60,10 @@ void applyEdits(const SceneEdits& edits, Scene& scene);
 std::string editsText(const SceneEdits& edits);
 std::optional<SceneEdits> readEdits(const std::string& text);
 
+// Joins several scenes into one, each at its place in the world, for a picture of everything that is shown.
+
+// Appends all of `from` to `to`, below a new node called `name` at `world_from_scene`. Indices and the source
+// of `to` stay unchanged.
+void joinScene(Scene from, const std::string& name, const glm::mat4& world_from_scene, Scene& to);
+
 }  // namespace lambent::baker

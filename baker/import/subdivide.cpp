@@ -1,5 +1,3 @@
-#include "baker/import/subdivide.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -7,6 +5,8 @@
 #include <tuple>
 #include <unordered_map>
 #include <utility>
+
+#include "baker/import/mesh_edits.hpp"
 
 namespace lambent::baker {
 namespace {

@@ -1,5 +1,3 @@
-#include "baker/import/tangents.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/import/gather_vertices.hpp"
+#include "baker/import/mesh_edits.hpp"
 
 namespace lambent::baker {
 

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "baker/import/check_fields.hpp"
+#include "baker/import/check.hpp"
 
 namespace lambent::baker {
 

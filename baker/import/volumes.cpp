@@ -11,8 +11,7 @@
 
 #include "baker/import/convert.hpp"
 #include "baker/import/density_file.hpp"
-#include "baker/import/procedural_cloud.hpp"
-#include "baker/import/uri.hpp"
+#include "baker/import/scene_files.hpp"
 
 namespace lambent::baker {
 namespace {

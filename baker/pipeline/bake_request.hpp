@@ -10,7 +10,7 @@
 
 #include "baker/bake/bake.hpp"
 #include "baker/bake/options.hpp"
-#include "baker/import/import_options.hpp"
+#include "baker/import/scene_files.hpp"
 #include "baker/import/scene_edits.hpp"
 
 namespace lambent::baker {

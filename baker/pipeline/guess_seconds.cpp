@@ -12,7 +12,6 @@
 #include <glm/matrix.hpp>
 
 #include "baker/plan/motion.hpp"
-#include "baker/plan/moved_triangles.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 
 namespace lambent::baker {

@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "baker/import/import_options.hpp"
+#include "baker/import/scene_files.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker {

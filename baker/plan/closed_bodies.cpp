@@ -15,7 +15,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "baker/import/connected_parts.hpp"
+#include "baker/import/details.hpp"
 #include "baker/plan/corner_numbers.hpp"
 
 namespace lambent::baker {

@@ -1,13 +1,161 @@
 #include "baker/plan/effect_plan.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
+#include "baker/import/details.hpp"
 #include "baker/plan/closed_bodies.hpp"
+#include "baker/plan/counted.hpp"
+#include "baker/plan/smooth_dielectrics.hpp"
 
 namespace lambent::baker {
+
+namespace {
+
+// Comparisons of a face with a vertex; about as many take a second.
+constexpr double kMostComparisons = 3e8;
+
+using Triangle = std::array<glm::dvec3, 3>;
+
+// A Body is a group's surfaces in the group's frame.
+struct Body {
+  std::vector<glm::dvec3> points;
+  std::vector<double> sizes;        // of what is coded together with each point, m
+  std::vector<Triangle> triangles;  // counter-clockwise seen from outside
+  double diagonal = 0.0;
+};
+
+Body bodyOf(const Scene& scene, const RigidGroup& group) {
+  Body body;
+  glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+  for (const PlannedDraw& draw : group.draws) {
+    const bundle::MeshData& mesh = scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
+    const auto place = [&](const glm::vec3& p) {
+      return glm::dvec3(glm::dmat4(draw.group_from_mesh) * glm::dvec4(glm::dvec3(p), 1.0));
+    };
+    for (const glm::vec3& p : mesh.positions) {
+      body.points.push_back(place(p));
+      low = glm::min(low, body.points.back()), high = glm::max(high, body.points.back());
+    }
+    const bool turned = draw.back != (glm::determinant(glm::mat3(draw.group_from_mesh)) < 0.0f);
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      Triangle triangle;
+      for (std::size_t c = 0; c < 3; ++c) triangle[c] = place(mesh.positions[mesh.indices[i + c]]);
+      if (turned) std::swap(triangle[1], triangle[2]);
+      body.triangles.push_back(triangle);
+    }
+  }
+  if (body.points.empty()) return body;
+  body.diagonal = glm::distance(low, high);
+  for (const PlannedDraw& draw : group.draws) {
+    const bundle::MeshData& mesh = scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
+    const std::size_t first = body.sizes.size();
+    body.sizes.resize(first + mesh.positions.size(), body.diagonal);
+    const auto scale =
+        static_cast<float>(std::cbrt(std::abs(glm::determinant(glm::dmat3(draw.group_from_mesh)))));
+    if (!bends(static_cast<float>(0.2 * kLevel * body.diagonal), scale * detailOf(mesh))) continue;
+    // It has a lattice of its own.
+    low = glm::dvec3(std::numeric_limits<double>::max()), high = -low;
+    for (std::size_t i = first; i < body.sizes.size(); ++i)
+      low = glm::min(low, body.points[i]), high = glm::max(high, body.points[i]);
+    std::fill(body.sizes.begin() + static_cast<std::ptrdiff_t>(first), body.sizes.end(),
+              glm::distance(low, high));
+  }
+  return body;
+}
+
+struct Plane {
+  glm::dvec3 normal{0.0};
+  double offset = 0.0;
+
+  double heightOf(const glm::dvec3& p) const { return glm::dot(normal, p) - offset; }
+};
+
+// Returns how far vertices stand above the planes of faces, relative to their sizes: the most, or the first
+// that is more than kLevel, or -1 if there is too much to compare.
+double heightAboveFaces(const Body& body) {
+  if (body.points.empty()) return 0.0;
+  const double level = kLevel * std::ranges::min(body.sizes);
+  double highest = 0.0, compared = 0.0;
+  Plane last;
+  bool any = false;
+  for (const Triangle& triangle : body.triangles) {
+    const glm::dvec3 area = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+    const double twice = glm::length(area);
+    if (!(twice > 0.0)) continue;
+    const Plane plane{area / twice, glm::dot(area / twice, triangle[0])};
+    // Neighbours in a flat part of the surface share a plane.
+    const auto in_last = [&](const glm::dvec3& p) { return std::abs(last.heightOf(p)) < 0.01 * level; };
+    if (any && glm::dot(plane.normal, last.normal) > 0.0 && std::ranges::all_of(triangle, in_last)) continue;
+    last = plane, any = true;
+    compared += static_cast<double>(body.points.size());
+    if (compared > kMostComparisons) return -1.0;
+    for (std::size_t i = 0; i < body.points.size(); ++i) {
+      if (body.sizes[i] > 0.0) highest = std::max(highest, plane.heightOf(body.points[i]) / body.sizes[i]);
+      if (highest > kLevel) return highest;
+    }
+  }
+  return highest;
+}
+
+// Returns a bound on what a surface of the material reflects of the light that arrives. Textures and colours
+// of vertices only darken it.
+double mostReflected(const Scene& scene, std::int32_t index) {
+  if (index < 0) return 1.0;  // the default material is white
+  const gltf::Material& material = scene.materials[static_cast<std::size_t>(index)];
+  if (material.unlit) return 0.0;
+  if (hasMatrices(material)) return 1.0;
+  glm::vec3 albedo(material.base_color);
+  if (isSmoothDielectric(material)) albedo = albedoUnderLayer(albedo, meanSpecularAlbedo(material));
+  return std::clamp(double{std::max({albedo.r, albedo.g, albedo.b})}, 0.0, 1.0);
+}
+
+PlannedTransport transportOf(const Scene& scene, const RigidGroup& group) {
+  PlannedTransport planned;
+  if (group.volume >= 0) {
+    planned.shadows_reason = "a medium hides light within itself";
+    planned.bounces_reason = "a medium scatters light";
+    return planned;
+  }
+  planned.height = heightAboveFaces(bodyOf(scene, group));
+  planned.shadows = planned.height < 0.0 || planned.height > kLevel;
+  planned.most_reflected = 0.0;
+  for (const PlannedDraw& draw : group.draws)
+    planned.most_reflected =
+        std::max(planned.most_reflected,
+                 mostReflected(scene, scene.meshes[draw.mesh].primitives[draw.primitive].material));
+  planned.bounces = planned.shadows && planned.most_reflected > kBlack;
+  if (planned.height < 0.0)
+    planned.shadows_reason = "it has too many faces to prove that none sees another";
+  else if (planned.shadows)
+    planned.shadows_reason =
+        fmt::format("a vertex lies {} of the group's size above a face", percentText(planned.height));
+  else
+    planned.shadows_reason = fmt::format(
+        "no vertex lies above the plane of a face, to {} of the group's size", percentText(kLevel, 3));
+  if (!planned.shadows)
+    planned.bounces_reason = "no surface sees another";
+  else
+    planned.bounces_reason =
+        fmt::format("its brightest surface reflects up to {} of light", percentText(planned.most_reflected));
+  return planned;
+}
+
+}  // namespace
+
+std::vector<PlannedTransport> planTransport(const Scene& scene, const std::vector<RigidGroup>& groups) {
+  std::vector<PlannedTransport> planned;
+  for (const RigidGroup& group : groups) planned.push_back(transportOf(scene, group));
+  return planned;
+}
 
 namespace {
 

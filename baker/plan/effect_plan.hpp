@@ -1,8 +1,7 @@
-// The room baker/plan decides what will be baked for a scene, what will not, and why: only the effects that a
-// scene calls for are simulated. A scene comes in; its rigid groups, their lights, light probes and
-// neighborhoods, and a reason for each choice go out. Each effect decides for itself whether the scene calls
-// for it (baker/effects/effect_list.hpp), and `lambent plan` prints the outcome. Planning is deterministic,
-// runs on the calling thread and has no errors.
+// Decides by bounds, without rays, which light inside a rigid group has to be traced. Where no part of a
+// group rises above the face of another, as on a convex body or a plane, nothing hides light and no light
+// bounces; where all surfaces are black, nothing bounces either. The scene and its groups come in, a decision
+// with its reason for each group goes out.
 #pragma once
 
 #include <span>
@@ -13,10 +12,38 @@
 #include "baker/import/scene.hpp"
 #include "baker/plan/local_light.hpp"
 #include "baker/plan/neighborhoods.hpp"
-#include "baker/plan/planned_transport.hpp"
 #include "baker/plan/rigid_groups.hpp"
 
 namespace lambent::baker {
+
+struct PlannedTransport {
+  // True if parts of the group may hide light from each other, so that rays are traced from its samples.
+  bool shadows = true;
+  bool bounces = true;  // true if light may bounce between its surfaces; false without shadows
+  // Each is a phrase that is true either way.
+  std::string shadows_reason, bounces_reason;
+  // How far a vertex stands above the plane of a face, relative to the group's diagonal, or to the
+  // primitive's if that is small enough for a lattice of its own (import/details.hpp); with shadows, of the
+  // first that counts, or -1 if there were too many faces to look at.
+  double height = 0.0;
+  double most_reflected = 1.0;  // share of light that the brightest surface may reflect, from factors alone
+};
+
+// Vertices this far above a face, relative to the same diagonal, do not count. The lattice of coded positions
+// is about as fine.
+inline constexpr double kLevel = 2e-5;
+// Surfaces that reflect less are black: of their light at most this share bounces, which is less than any
+// quality of bakes leaves out.
+inline constexpr double kBlack = 3e-4;
+
+// Returns one entry per group. Volumes have shadows and bounces, since media hide and scatter light.
+std::vector<PlannedTransport> planTransport(const Scene& scene, const std::vector<RigidGroup>& groups);
+
+// The room baker/plan decides what will be baked for a scene, what will not, and why: only the effects that a
+// scene calls for are simulated. A scene comes in; its rigid groups, their lights, light probes and
+// neighborhoods, and a reason for each choice go out. Each effect decides for itself whether the scene calls
+// for it (baker/effects/effect_list.hpp), and `lambent plan` prints the outcome. Planning is deterministic,
+// runs on the calling thread and has no errors.
 
 struct EffectChoice {
   std::string effect;

@@ -1,10 +1,125 @@
 #include "baker/plan/group_lights.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
 
-#include "baker/plan/lamp_spheres.hpp"
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "baker/import/details.hpp"
+#include "baker/plan/corner_numbers.hpp"
 
 namespace lambent::baker {
+
+namespace {
+
+// No face of a sphere-like part lies nearer to its center than this share of the farthest corner's distance.
+// An icosahedron has 0.79, a cube has 0.58.
+constexpr float kLeastRoundness = 0.7f;
+// More triangles than a lamp has would take long for nothing.
+constexpr std::size_t kMostTriangles = 200'000;
+
+// Holds the emitting triangles of a material in a group.
+struct Emitter {
+  std::vector<glm::vec3> corners;
+  std::vector<CornerTriangle> triangles;  // wound so that they emit towards the right hand
+  bool both_sides = false;
+};
+
+// Returns the corners of the triangles, three for each, or nothing if there are too many.
+std::vector<glm::vec3> cornersOf(const Scene& scene, const RigidGroup& group, std::uint32_t material) {
+  std::vector<glm::vec3> corners;
+  for (const PlannedDraw& draw : group.draws) {
+    const ScenePrimitive& primitive = scene.meshes[draw.mesh].primitives[draw.primitive];
+    if (draw.back || primitive.material != static_cast<std::int32_t>(material)) continue;
+    if (corners.size() + primitive.mesh.indices.size() > 3 * kMostTriangles) return {};
+    for (const std::uint32_t index : primitive.mesh.indices)
+      corners.emplace_back(draw.group_from_mesh * glm::vec4(primitive.mesh.positions[index], 1.0f));
+    if (glm::determinant(glm::mat3(draw.group_from_mesh)) >= 0.0f) continue;
+    const std::size_t first = corners.size() - primitive.mesh.indices.size();
+    for (std::size_t i = first; i + 2 < corners.size(); i += 3) std::swap(corners[i + 1], corners[i + 2]);
+  }
+  return corners;
+}
+
+Emitter emitterOf(const Scene& scene, const RigidGroup& group, std::uint32_t material) {
+  const std::vector<glm::vec3> corners = cornersOf(scene, group, material);
+  if (corners.empty()) return {};
+  glm::vec3 low = corners[0], high = corners[0];
+  for (const glm::vec3& corner : corners) {
+    low = glm::min(low, corner);
+    high = glm::max(high, corner);
+  }
+  Emitter emitter;
+  emitter.both_sides = scene.materials[material].double_sided;
+  const double tolerance = kSameCorner * double{glm::distance(low, high)};
+  if (!(tolerance > 0.0) || !std::isfinite(tolerance)) return {};
+  CornerNumbers numbers(tolerance);
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    const CornerTriangle triangle = {numbers.numberOf(corners[i]), numbers.numberOf(corners[i + 1]),
+                                     numbers.numberOf(corners[i + 2])};
+    // Triangles without area, as at the poles of spheres, neither emit nor connect anything.
+    if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
+      emitter.triangles.push_back(triangle);
+  }
+  emitter.corners = numbers.places();
+  return emitter;
+}
+
+// Returns the sphere of one part; its radius is 0 if the part is no sphere.
+bundle::LampSphere sphereOf(const Emitter& emitter, const std::vector<std::size_t>& part) {
+  if (part.size() < 8 || !isClosed(emitter.triangles, part)) return {};
+  const auto corner = [&](std::size_t t, std::size_t c) {
+    return glm::dvec3(emitter.corners[emitter.triangles[t][c]]);
+  };
+  // The center is that of the surface, so it does not depend on how it is divided.
+  glm::dvec3 center(0.0);
+  double area = 0.0;
+  for (const std::size_t t : part) {
+    const double twice = glm::length(glm::cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)));
+    center += twice / 6.0 * (corner(t, 0) + corner(t, 1) + corner(t, 2));
+    area += 0.5 * twice;
+  }
+  if (!(area > 0.0)) return {};
+  center /= area;
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0.0;
+  int outwards = 0, inwards = 0;
+  for (const std::size_t t : part) {
+    const glm::dvec3 normal = glm::cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
+    const double length = glm::length(normal);
+    for (std::size_t c = 0; c < 3; ++c) farthest = std::max(farthest, glm::distance(center, corner(t, c)));
+    if (!(length > 0.0)) continue;
+    const double height = glm::dot(normal / length, corner(t, 0) - center);
+    ++(height > 0.0 ? outwards : inwards);
+    nearest = std::min(nearest, std::abs(height));
+  }
+  const bool even = inwards == 0 || (emitter.both_sides && outwards == 0);
+  if (!even || !(nearest >= double{kLeastRoundness} * farthest)) return {};
+  const double radius = std::sqrt(area / (4.0 * std::numbers::pi));
+  return {.center = glm::vec3(center),
+          .radius_m = static_cast<float>(radius),
+          .body_radius_m = static_cast<float>(std::max(radius, farthest))};
+}
+
+}  // namespace
+
+std::vector<bundle::LampSphere> findLampSpheres(const Scene& scene, const RigidGroup& group,
+                                                std::uint32_t material) {
+  if (scene.materials[material].emissive_texture.texture >= 0) return {};
+  const Emitter emitter = emitterOf(scene, group, material);
+  const std::vector<std::vector<std::size_t>> parts =
+      connectedParts(emitter.triangles, emitter.corners.size());
+  if (parts.size() > bundle::kMaxLampSpheres) return {};
+  std::vector<bundle::LampSphere> spheres;
+  for (const std::vector<std::size_t>& part : parts) {
+    spheres.push_back(sphereOf(emitter, part));
+    if (!(spheres.back().radius_m > 0.0f)) return {};
+  }
+  return spheres;
+}
 
 std::int32_t groupRootOf(const Scene& scene, std::uint32_t node) {
   auto at = static_cast<std::int32_t>(node);

@@ -1,6 +1,6 @@
-// Finds the lights that belong to a rigid group: emissive materials on its surfaces, and point and spot
-// lights on nodes that move with it. Light from infinity cannot describe them, so each becomes a column of
-// the group's transfer at unit strength, and can be dimmed and recoloured live.
+// Finds out whether an emissive material shines as a few spheres, such as bulbs and glowing balls. The direct
+// light of spheres can be shaded per pixel, which shows the sharp shadows that values at vertices blur. What
+// a scene's material emits in a rigid group comes in, spheres in the group's frame come out.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,22 @@
 
 namespace lambent::baker {
 
+// Returns the spheres, at most bundle::kMaxLampSpheres, or nothing if the material has an emissive texture or
+// if any part of its surfaces in the group is not about a sphere that is closed and emits outwards.
+std::vector<bundle::LampSphere> findLampSpheres(const Scene& scene, const RigidGroup& group,
+                                                std::uint32_t material);
+
+// Finds the lights that belong to a rigid group: emissive materials on its surfaces, and point and spot
+// lights on nodes that move with it. Light from infinity cannot describe them, so each becomes a column of
+// the group's transfer at unit strength, and can be dimmed and recoloured live.
+
 struct PlannedLight {
   enum class Kind : std::uint8_t { Material, Node };
   Kind kind = Kind::Material;
   std::uint32_t index = 0;  // into the scene's materials or nodes
   glm::vec3 color{1.0f};    // strength as in the file: radiance, or colour x intensity of a punctual light
   glm::mat4 group_from_node{1.0f};  // used for punctual lights only
-  // Used for materials only: the spheres as which it emits, if it does (lamp_spheres.hpp).
+  // Used for materials only: the spheres as which it emits, if it does (group_lights.hpp).
   std::vector<bundle::LampSphere> spheres{};
 };
 

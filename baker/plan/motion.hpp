@@ -2,6 +2,8 @@
 // lamps. The rest of the plan uses this to find out what can come near what.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <set>
@@ -16,6 +18,7 @@
 #include "baker/import/scene.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/plan/rigid_groups.hpp"
+#include "runtime/bundle/mesh.hpp"
 
 namespace lambent::baker {
 
@@ -74,5 +77,18 @@ class Motion {
   std::vector<std::set<std::int32_t>> shining_;              // emissive materials, by group
   float duration_s_ = 0.0f;
 };
+
+// Goes through the triangles of a mesh where a node places them.
+
+// Calls tell(corners) with each triangle, moved by the matrix. Vertices are moved once, since triangles share
+// them.
+template <typename Tell>
+void eachTriangle(const bundle::MeshData& mesh, const glm::mat4& matrix, const Tell& tell) {
+  std::vector<glm::vec3> moved;
+  moved.reserve(mesh.positions.size());
+  for (const glm::vec3& p : mesh.positions) moved.emplace_back(matrix * glm::vec4(p, 1.0f));
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    tell(std::array{moved[mesh.indices[i]], moved[mesh.indices[i + 1]], moved[mesh.indices[i + 2]]});
+}
 
 }  // namespace lambent::baker

@@ -1,11 +1,11 @@
-// Decides which groups get neighborhood transfer, and for which receivers. Groups that get it are those that
-// extras.lambent.neighborhood names, volumes with surfaces in reach, bodies that move about on another group
-// of more than twice their size, and bodies that can be moved there by hand. If there are too many such
-// bodies, none of them gets it, because light probes that see them all cost less than a grid for each. Light
-// probes leave out what a neighborhood carries.
+// A FacingArea says which way surfaces face: it holds the sum of their areas times y_k of their normals in
+// five bands. Five bands are enough for the mean square over these surfaces of any irradiance, because
+// irradiance has three bands and so its square has five. A surface that may face anywhere adds to band 0
+// only.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,10 +13,20 @@
 #include <glm/vec3.hpp>
 
 #include "baker/import/scene.hpp"
-#include "baker/plan/facing_area.hpp"
 #include "baker/plan/rigid_groups.hpp"
 
 namespace lambent::baker {
+
+using FacingArea = std::array<float, 25>;
+
+void addFacing(FacingArea& sum, const glm::vec3& normal, float area);
+void addFacingAnywhere(FacingArea& sum, float area);
+
+// Decides which groups get neighborhood transfer, and for which receivers. Groups that get it are those that
+// extras.lambent.neighborhood names, volumes with surfaces in reach, bodies that move about on another group
+// of more than twice their size, and bodies that can be moved there by hand. If there are too many such
+// bodies, none of them gets it, because light probes that see them all cost less than a grid for each. Light
+// probes leave out what a neighborhood carries.
 
 // The plan chooses at most this many neighborhoods by itself, not counting those of volumes.
 inline constexpr std::size_t kMostNeighborhoods = 8;

@@ -1,7 +1,4 @@
-// Decides which surfaces get transfer matrices. Matrices give highlights in a few bands. What a dielectric
-// reflects is little beside its diffuse light, and few bands blur what a smooth one reflects, so such a
-// surface has diffuse transfer, and the runtime adds a specular layer: the prefiltered environment, hidden as
-// far as the transfer knows (docs/design/glossy.md, "Smooth dielectrics").
+// Measures how much of a highlight few bands can represent.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -9,6 +6,16 @@
 #include "runtime/bundle/gltf_types.hpp"
 
 namespace lambent::baker {
+
+// Returns the share of the energy (integral of the square over directions) of the GGX lobe times cosine, seen
+// along the normal, that lies in the first `order` bands: near 1 for rough surfaces, towards 0 for mirrors.
+// Roughness is glTF's, 0..1.
+double lobeEnergyShare(double roughness, int order);
+
+// Decides which surfaces get transfer matrices. Matrices give highlights in a few bands. What a dielectric
+// reflects is little beside its diffuse light, and few bands blur what a smooth one reflects, so such a
+// surface has diffuse transfer, and the runtime adds a specular layer: the prefiltered environment, hidden as
+// far as the transfer knows (docs/design/glossy.md, "Smooth dielectrics").
 
 // Returns whether the material is a smooth dielectric: a GGX layer without direction over a diffuse base, for
 // which five bands carry too little of the highlight. A texture of roughness can only make it smoother.

@@ -11,8 +11,8 @@
 #include <glm/geometric.hpp>
 
 #include "baker/jobs/parallel.hpp"
+#include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
-#include "baker/transport/sample_areas.hpp"
 
 namespace lambent::baker {
 
@@ -72,7 +72,8 @@ std::vector<InnerPoint> innerPoints(int n) {
   return points;
 }
 
-// Gives samples that cannot be seen the most light of their neighbours, as fill.hpp may, and of theirs.
+// Gives samples that cannot be seen the most light of their neighbours, as transfer_field.hpp may, and of
+// theirs.
 void lightUnseen(const GroupGeometry& geometry, const SampleSet& samples,
                  std::span<const std::uint32_t> triangles, std::span<const std::uint8_t> seen,
                  std::vector<float>& light) {
@@ -353,7 +354,7 @@ bool GroupRefiner::measureBy(ProbedPoints& points, const GroupGeometry& geometry
   std::vector<PointError> error_at(inner_.size());
   std::vector<std::uint8_t> seen_at(inner_.size(), 0);
   // Points that cannot be seen have no error, and unseen corners take the values of their neighbours
-  // (fill.hpp).
+  // (transfer_field.hpp).
   const auto measureAt = [&](std::size_t i) {
     const Inner& inner = inner_[i];
     if (number[i] == kUnused || !points.seen(number[i])) return;

@@ -8,8 +8,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/import/subdivide.hpp"
-#include "baker/transport/sample_areas.hpp"
+#include "baker/import/mesh_edits.hpp"
+#include "baker/transport/face_points.hpp"
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {

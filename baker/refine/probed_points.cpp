@@ -11,7 +11,7 @@
 
 #include "baker/compress/light_weights.hpp"
 #include "baker/jobs/stage.hpp"
-#include "baker/transport/frame.hpp"
+#include "baker/transport/direction_table.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"

@@ -18,7 +18,7 @@
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/seen_origins.hpp"
-#include "baker/transport/vertex_key.hpp"
+#include "baker/transport/geometry_key.hpp"
 
 namespace lambent::baker {
 

@@ -14,9 +14,9 @@
 #include "baker/import/image.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/jobs/bake_context.hpp"
-#include "baker/plan/planned_transport.hpp"
+#include "baker/plan/effect_plan.hpp"
 #include "baker/plan/rigid_groups.hpp"
-#include "baker/transport/alpha_map.hpp"
+#include "baker/transport/surface_colors.hpp"
 #include "runtime/bundle/mesh.hpp"
 
 namespace lambent::baker {

@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/transport/frame.hpp"
+#include "baker/transport/direction_table.hpp"
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::baker {

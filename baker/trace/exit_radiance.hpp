@@ -14,7 +14,7 @@
 
 #include "baker/jobs/bake_context.hpp"
 #include "baker/trace/hits.hpp"
-#include "baker/trace/patch_light.hpp"
+#include "baker/trace/patches.hpp"
 #include "baker/trace/transfer_field.hpp"
 #include "baker/transport/direction_table.hpp"
 #include "baker/transport/group_geometry.hpp"

@@ -5,13 +5,16 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
 
 struct TransferField {
   int order = 5;
-  std::uint32_t outputs = 1;   // 9: transferred light in bands 0..2, for any normal (incident_basis.hpp)
+  std::uint32_t outputs = 1;   // 9: transferred light in bands 0..2, for any normal (hemisphere.hpp)
   std::uint32_t channels = 1;  // 1 if red, green and blue are the same, else 3
   std::uint32_t columns = 25;
   std::vector<float> vectors;  // [((sample * outputs + output) * channels + channel) * columns + column]
@@ -36,5 +39,31 @@ struct TransferField {
     return std::span(vectors).subspan(sample * vectorSize(), vectorSize());
   }
 };
+
+// Packs direct transfer of ranges of samples into bytes. Light of the environment has no colour before it is
+// reflected, unless it passes coloured panes, nor has that of grey lamps: what is the same for red, green and
+// blue is kept once, so that traced results stay valid when a grey scene becomes a coloured one.
+
+// Says which columns are the same in all channels: those of the environment, and those after them.
+struct GreyColumns {
+  bool sky, lights;
+};
+
+// Returns the direct transfer of a field as an output of a stage; its rows (rowOfItem) are samples.
+Output directRows(TransferField& field, GreyColumns grey, std::ptrdiff_t first_row = 0);
+
+// Fills in samples that lie inside or under something. They are dark, and interpolated, that darkness would
+// leak out along the contact. They take the mean of their valid neighbours instead, layer by layer.
+
+// `edges` are those of sampleEdges(). Returns how many samples were filled. Samples that no valid sample is
+// connected to keep their value.
+std::uint32_t fillFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
+                                 std::vector<std::uint8_t> valid, TransferField& field);
+
+// Does the same for the samples from `first` on alone, with `size` values each; edges to other samples do not
+// count. `valid` has one entry for each sample of the whole set.
+std::uint32_t fillStretchFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
+                                        const std::vector<std::uint8_t>& valid, std::size_t first,
+                                        std::size_t size, std::span<float> values);
 
 }  // namespace lambent::baker

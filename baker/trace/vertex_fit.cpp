@@ -9,7 +9,7 @@
 #include <Eigen/SparseCore>
 
 #include "baker/jobs/parallel.hpp"
-#include "baker/transport/sample_areas.hpp"
+#include "baker/transport/face_points.hpp"
 
 namespace lambent::baker {
 

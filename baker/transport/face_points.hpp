@@ -1,5 +1,4 @@
-// Makes samples inside faces, beside those at vertices. Transfer at them is what interpolation over the faces
-// is fitted to (trace/vertex_fit.hpp).
+// Measures triangles, and how much of the surface each sample stands for.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +9,20 @@
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
+
+// Returns a normal that is twice the triangle's area long, in square metres.
+glm::vec3 areaNormal(const GroupGeometry& geometry, const glm::uvec3& corners);
+// Returns square metres.
+double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners);
+// Returns metres.
+float longestEdge(const GroupGeometry& geometry, const glm::uvec3& corners);
+
+// Returns square metres per sample; a third of each triangle goes to each of its corners, or all of it in
+// equal parts to its texels. Both sides of a double-sided surface count.
+std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples);
+
+// Makes samples inside faces, beside those at vertices. Transfer at them is what interpolation over the faces
+// is fitted to (trace/vertex_fit.hpp).
 
 struct FacePoints {
   SampleSet samples;                     // without vertices and cells

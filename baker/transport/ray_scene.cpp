@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "baker/embree/embree.hpp"
-#include "baker/transport/flipped_faces.hpp"
+#include "baker/transport/group_geometry.hpp"
 #include "baker/transport/ray_packets.hpp"
 
 #if defined(__SSE2__)

@@ -1,7 +1,7 @@
 // The room baker/transport owns a group's geometry, samples, ray directions and surface colours, and this
 // file owns visibility inside the group, by Embree. A group's geometry and the scene's materials come in;
 // masks of blocked rays and first hits go out. Solid surfaces and single-sided back faces block rays, except
-// flipped faces (flipped_faces.hpp); alphaMode MASK blocks where its alpha says so, and alphaMode BLEND and
+// flipped faces (group_geometry.hpp); alphaMode MASK blocks where its alpha says so, and alphaMode BLEND and
 // panes (KHR_materials_transmission) block nothing: panesOn() finds the latter (panes.hpp). All rays of one
 // sample are traced in packets of sixteen sorted directions, which was measured to be 1.2 to 2.8 times as
 // fast as single rays or one direction over many samples. Calls are safe from any thread; only build() can
@@ -16,11 +16,11 @@
 
 #include <glm/mat3x3.hpp>
 
-#include "baker/transport/alpha_map.hpp"
 #include "baker/transport/direction_table.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/ray_packets.hpp"
 #include "baker/transport/samples.hpp"
+#include "baker/transport/surface_colors.hpp"
 
 namespace lambent::baker {
 

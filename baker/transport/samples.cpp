@@ -10,9 +10,8 @@
 #include <glm/geometric.hpp>
 
 #include "baker/transport/face_points.hpp"
-#include "baker/transport/sample_areas.hpp"
+#include "baker/transport/geometry_key.hpp"
 #include "baker/transport/texel_samples.hpp"
-#include "baker/transport/vertex_key.hpp"
 
 namespace lambent::baker {
 

@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/transport/sample_areas.hpp"
+#include "baker/transport/face_points.hpp"
 
 namespace lambent::baker {
 

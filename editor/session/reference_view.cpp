@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "baker/import/gltf.hpp"
-#include "baker/import/join_scenes.hpp"
+#include "baker/import/scene_edits.hpp"
 #include "editor/session/session.hpp"
 #include "reference/reference.hpp"
 #include "runtime/scene/components.hpp"

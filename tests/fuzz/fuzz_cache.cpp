@@ -1,7 +1,7 @@
 // Reads cache entries and what is stored in them.
 #include "baker/cache/bytes.hpp"
 #include "baker/cache/entry_file.hpp"
-#include "baker/trace/hit_bytes.hpp"
+#include "baker/trace/hits.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "tests/fuzz/input_file.hpp"
 

@@ -2,7 +2,7 @@
 #include "tests/support/neighborhood.hpp"
 
 #include "baker/bake/bake.hpp"
-#include "baker/effects/neighborhood/fit_between_points.hpp"
+#include "baker/effects/neighborhood/grid_placement.hpp"
 #include "runtime/bundle/reader.hpp"
 #include "tests/support/program.hpp"
 

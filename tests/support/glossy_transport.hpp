@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "baker/effects/glossy/glossy_bounces.hpp"
-#include "baker/effects/glossy/inside_faces.hpp"
+#include "baker/effects/glossy/traced_points.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "baker/effects/neighborhood/bake_neighborhood.hpp"
-#include "baker/effects/neighborhood/point_change.hpp"
+#include "baker/effects/neighborhood/light_change.hpp"
+#include "baker/effects/neighborhood/neighborhood.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/shapes.hpp"

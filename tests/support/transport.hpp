@@ -11,7 +11,7 @@
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/plan/rigid_groups.hpp"
-#include "baker/transport/frame.hpp"
+#include "baker/transport/direction_table.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "runtime/sh/basis.hpp"
 

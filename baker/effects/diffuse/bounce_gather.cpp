@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/transport/frame.hpp"
+#include "baker/transport/direction_table.hpp"
 #include "runtime/sh/rotation.hpp"
 
 namespace lambent::baker {

@@ -11,13 +11,12 @@
 
 #include "baker/compress/light_weights.hpp"
 #include "baker/effects/diffuse/bounce_gather.hpp"
-#include "baker/effects/diffuse/inside_faces.hpp"
+#include "baker/effects/diffuse/traced_points.hpp"
 #include "baker/jobs/stage.hpp"
-#include "baker/trace/fill.hpp"
-#include "baker/trace/patch_light.hpp"
 #include "baker/trace/patches.hpp"
-#include "baker/transport/frame.hpp"
-#include "baker/transport/sample_areas.hpp"
+#include "baker/trace/transfer_field.hpp"
+#include "baker/transport/direction_table.hpp"
+#include "baker/transport/face_points.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 

@@ -7,7 +7,7 @@
 // more: a final gather, in place of a gather per pass. The surface's albedo rho is textured and coloured; the
 // receiver's own is left out. A final gather that carries less than a hundredth of all light goes over every
 // fourth ray. Where direct light was fitted, both gathers go over the points inside faces too, and what they
-// bring to vertices is fitted to these (inside_faces.hpp): in rooms most light bounces, and changes within
+// bring to vertices is fitted to these (traced_points.hpp): in rooms most light bounces, and changes within
 // faces.
 #pragma once
 

@@ -1,20 +1,81 @@
 #include "baker/effects/diffuse/direct.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numbers>
+#include <span>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
-#include "baker/effects/diffuse/lambert_receiver.hpp"
-#include "baker/trace/field_bytes.hpp"
-#include "baker/trace/fill.hpp"
-#include "baker/trace/traced_ranges.hpp"
-#include "baker/transport/frame.hpp"
+#include "baker/effects/diffuse/hemisphere.hpp"
+#include "baker/trace/emitters.hpp"
+#include "baker/trace/traced_samples.hpp"
+#include "baker/trace/transfer_field.hpp"
+#include "baker/transport/direction_table.hpp"
 #include "runtime/sh/rotation.hpp"
 
 namespace lambent::baker {
 
 namespace {
+
+// Receives the light of a group's emitters at a diffuse sample: E/pi at its own normal and, if the surface
+// has a normal map, the nine values of hemisphere.hpp.
+
+// LightSums are the columns to which light of one sample is added: values[(output * channels + channel) *
+// columns + first_column + k].
+struct LightSums {
+  std::span<float> scalar;    // one output: E/pi at the sample's normal
+  std::span<float> incident;  // nine outputs, local frame; empty for plain samples
+  std::uint32_t channels = 1, columns = 0, first_column = 0;
+
+  void add(std::uint32_t light, glm::vec3 radiance, float weight,
+           const std::array<float, kIncident>* incident_weights) const;
+};
+
+// A LambertReceiver adds up E/pi, and the nine values of normal-mapped samples.
+class LambertReceiver : public LightReceiver {
+ public:
+  LambertReceiver(const Hemisphere& hemisphere, const LightSums& sums)
+      : hemisphere_(hemisphere), sums_(sums) {}
+  glm::vec3 direction(std::size_t ray) const override { return hemisphere_.direction(ray); }
+  float raysPerSteradian(float cosine) const override { return hemisphere_.raysPerSteradian(cosine); }
+  void addAlong(std::size_t ray, std::uint32_t light, glm::vec3 radiance) override;
+  void addFrom(glm::vec3 local, std::uint32_t light, glm::vec3 radiance) override;
+
+ private:
+  const Hemisphere& hemisphere_;
+  LightSums sums_;
+};
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+void LightSums::add(std::uint32_t light, glm::vec3 radiance, float weight,
+                    const std::array<float, kIncident>* incident_weights) const {
+  for (std::uint32_t c = 0; c < channels; ++c) {
+    const float value = radiance[static_cast<int>(c)];
+    const std::size_t at = std::size_t{c} * columns + first_column + light;
+    scalar[at] += weight * value;
+    if (!incident_weights) continue;
+    for (std::size_t j = 0; j < kIncident; ++j)
+      incident[j * channels * columns + at] += (*incident_weights)[j] * value;
+  }
+}
+
+void LambertReceiver::addAlong(std::size_t ray, std::uint32_t light, glm::vec3 radiance) {
+  sums_.add(light, radiance, static_cast<float>(hemisphere_.weight(ray)),
+            hemisphere_.hasIncident() ? &hemisphere_.incidentWeight(ray) : nullptr);
+}
+
+void LambertReceiver::addFrom(glm::vec3 local, std::uint32_t light, glm::vec3 radiance) {
+  if (hemisphere_.hasIncident()) {
+    const auto incident = hemisphere_.incident(local);
+    sums_.add(light, radiance, local.z / kPi, &incident);
+  } else {
+    sums_.add(light, radiance, local.z / kPi, nullptr);
+  }
+}
 
 constexpr int kIncidentOrder = 3;
 

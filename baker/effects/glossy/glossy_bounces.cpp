@@ -10,11 +10,11 @@
 #include <glm/geometric.hpp>
 
 #include "baker/compress/light_weights.hpp"
-#include "baker/effects/glossy/inside_faces.hpp"
+#include "baker/effects/glossy/traced_points.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/jobs/stage.hpp"
-#include "baker/trace/fill.hpp"
-#include "baker/transport/frame.hpp"
+#include "baker/trace/transfer_field.hpp"
+#include "baker/transport/direction_table.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"

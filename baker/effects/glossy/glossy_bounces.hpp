@@ -1,3 +1,26 @@
+// Describes to light transport how glossy surfaces reflect: L_out(q -> v) = Σ_k c_k(v) l'_k
+// (surface_brdfs.hpp). Kernels are passed in as a function, so that the passes know no materials.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include <glm/vec3.hpp>
+
+#include "baker/effects/diffuse/bounces.hpp"
+#include "baker/effects/glossy/glossy_direct.hpp"
+
+namespace lambent::baker {
+
+struct ExitKernels {
+  bool grey = true;  // red, green and blue are the same
+  // Computes the kernel towards the unit direction `to` (group frame, away from the surface) of the point
+  // with barycentric weights u, v of corners 1 and 2: out[channel * order_out² + k], three channels, of at
+  // most as many bands as the surfaces have. May be called from any thread.
+  std::function<void(std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out)> at;
+};
+
 // Computes light between diffuse and glossy surfaces, both ways (Sloan 2002, section 4, passes b >= 1). The
 // light that leaves a glossy point q towards p is c(q, v)^T M_q^(b-1), with c the exit kernel of q; light
 // that a glossy sample receives along d is added to M_p^b as w (y_i(d) + y_i(mirrored d)). A GlossyBounces is
@@ -13,13 +36,6 @@
 // Peak memory per sample: `bounced` (2.5 KB x channels for 5 x 5), and two matrices of all bands (4.9 KB x
 // channels each for 7 x 5, 8.1 KB for 9 x 5) including the first pass; while a pass is fitted to points
 // inside faces, one more for each of them.
-#pragma once
-
-#include "baker/effects/diffuse/bounces.hpp"
-#include "baker/effects/glossy/exit_kernels.hpp"
-#include "baker/effects/glossy/glossy_direct.hpp"
-
-namespace lambent::baker {
 
 // GlossyMatrices are the matrices of all glossy samples: [sample][channel][output][column].
 struct GlossyMatrices {

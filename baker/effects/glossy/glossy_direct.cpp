@@ -6,10 +6,9 @@
 
 #include "baker/jobs/parallel.hpp"
 #include "baker/jobs/stage.hpp"
-#include "baker/trace/fill.hpp"
-#include "baker/trace/sample_visibility.hpp"
-#include "baker/trace/traced_ranges.hpp"
-#include "baker/transport/frame.hpp"
+#include "baker/trace/traced_samples.hpp"
+#include "baker/trace/transfer_field.hpp"
+#include "baker/transport/direction_table.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -227,7 +226,7 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
   const bool keep_hits = pass.plain().settings().keep_hits;
   GlossyDirect result{.field = pass.shape(), .hits = HitStore(count, keep_hits ? hit_memory : 0)};
   GlossyField& field = result.field;
-  // For grey lamps the first channel stands for all (field_bytes.hpp).
+  // For grey lamps the first channel stands for all (transfer_field.hpp).
   const std::size_t lights = field.light_columns, channel = squared(field.order_out) * lights,
                     per_sample = field.channels * channel,
                     kept_lights = pass.scene().colors.greyEmission() ? channel : per_sample;

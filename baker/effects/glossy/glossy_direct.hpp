@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "baker/effects/diffuse/direct.hpp"
-#include "baker/effects/glossy/glossy_hemisphere.hpp"
 #include "baker/effects/glossy/glossy_transport.hpp"
 #include "runtime/sh/gaunt.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "baker/compress/kept_transfer.hpp"
-#include "baker/effects/neighborhood/grid_change.hpp"
+#include "baker/effects/neighborhood/light_change.hpp"
 
 namespace lambent::baker {
 

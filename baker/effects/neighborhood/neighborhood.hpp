@@ -1,11 +1,88 @@
-// Decides whether a scene needs the neighborhood effect. baker/plan/neighborhoods.hpp chooses the groups, and
-// bake_neighborhood.hpp computes their transfer.
+// Decides whether a scene needs the neighborhood effect, for groups that baker/plan/neighborhoods.hpp
+// chooses, and computes their transfer.
 #pragma once
 
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "baker/cache/bytes.hpp"
+#include "baker/compress/kept_transfer.hpp"
+#include "baker/effects/neighborhood/body.hpp"
+#include "baker/effects/neighborhood/code_change.hpp"
+#include "baker/effects/neighborhood/grid_placement.hpp"
+#include "baker/effects/neighborhood/light_change.hpp"
+#include "baker/jobs/bake_context.hpp"
 #include "baker/plan/effect_plan.hpp"
+#include "baker/plan/neighborhoods.hpp"
 
 namespace lambent::baker {
 
 EffectChoice chooseNeighborhood(const Scene& scene, const std::vector<RigidGroup>& groups);
+
+// Measures what receivers see of a change, given how their surfaces face; this decides how far a grid
+// reaches. A floor loses little light to a body that stands on it far away, however much of its sky the body
+// fills; ChangeMeter, which takes all normals, would make the grid as long as the floor.
+
+class ReceiverMeter {
+ public:
+  // If `facing` has no area, receivers may face anywhere.
+  ReceiverMeter(const ChangeShape& shape, const FacingArea& facing);
+
+  // Does what ChangeMeter::measure does, over the normals of the receivers and for their cosine in three
+  // bands. May be called from any thread.
+  double measure(std::span<const float> visibility, std::span<const float> bounced) const;
+
+ private:
+  static constexpr std::size_t kOutputs = 9;
+  struct Term {
+    std::uint32_t at;  // output * columns + column
+    std::uint16_t k;
+    float value;
+  };
+  ChangeShape shape_;
+  std::vector<Term> terms_;
+  std::vector<double> light_power_;                          // one per column
+  std::array<std::array<double, kOutputs>, kOutputs> seen_;  // mean over normals of A_i y_i A_j y_j
+  double light_ = 0.0;
+};
+
+// Bakes the neighborhood transfer of one body, from the placement of its grid to codes.
+
+struct NeighborhoodSettings {
+  PlacementWish placement;  // relative to `origin`, like the body's points
+  FacingArea facing{};      // of the receivers; all 0: they may face anywhere
+  glm::vec3 origin{0.0f};   // of the body's points, in the group's frame
+  // If true, there are as many outputs as the light has bands, for receivers with transfer of their own.
+  bool matrices = false;
+  std::size_t rays = 2048;  // from each point towards the body
+  // If true, points hold the values that interpolate best to the change between them
+  // (grid_placement.hpp), in place of the change at the points.
+  bool fit_between_points = false;
+  ChangeCoding coding;
+};
+
+struct NeighborhoodFigures {
+  glm::uvec3 size{0};
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
+  std::size_t inside_points = 0;                 // points inside the body, continued from outside
+  std::uint64_t rays = 0;                        // traced in this run
+  std::uint64_t rays_kept = 0;                   // rays that results of earlier runs saved
+  double error = 0.0, change_error = 0.0;        // as in CodedChange
+};
+
+struct BakedAround {
+  std::optional<BakedNeighborhood> grid;  // empty if no receiver comes within reach, or the body has no size
+  NeighborhoodFigures figures;
+};
+
+void write(const BakedAround& around, ByteWriter& out);
+bool read(ByteReader& in, BakedAround& around);
+
+// The light has up to 6 bands. Returns nothing if stopped. The result does not depend on the number of
+// threads. The key of the context covers body and settings; the result is kept under it.
+std::optional<BakedAround> bakeNeighborhood(const Body& body, const NeighborhoodSettings& settings,
+                                            const BakeContext& context);
 
 }  // namespace lambent::baker

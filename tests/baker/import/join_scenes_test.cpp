@@ -1,10 +1,10 @@
-#include "baker/import/join_scenes.hpp"
-
 #include <algorithm>
 #include <string>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+
+#include "baker/import/scene_edits.hpp"
 
 namespace lambent::baker {
 namespace {

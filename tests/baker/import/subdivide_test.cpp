@@ -1,5 +1,3 @@
-#include "baker/import/subdivide.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "baker/import/mesh_edits.hpp"
 #include "tests/support/differences.hpp"
 
 namespace lambent::baker {

@@ -1,11 +1,10 @@
 // Tests tangents against what the rules of MikkTSpace give on meshes that can be worked out by hand.
-#include "baker/import/tangents.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "baker/import/gltf.hpp"
+#include "baker/import/mesh_edits.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace lambent::baker {

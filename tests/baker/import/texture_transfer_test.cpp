@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/import/check_fields.hpp"
+#include "baker/import/check.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace lambent::baker {

@@ -1,8 +1,7 @@
 // Tests which file beside a scene a URI names.
-#include "baker/import/uri.hpp"
-
 #include <gtest/gtest.h>
 
+#include "baker/import/scene_files.hpp"
 #include "tests/baker/import/gltf_writer.hpp"
 
 namespace lambent::baker {

@@ -9,7 +9,6 @@
 
 #include "baker/import/density_file.hpp"
 #include "baker/import/gltf.hpp"
-#include "baker/import/procedural_cloud.hpp"
 #include "tests/baker/import/gltf_writer.hpp"
 #include "tests/support/shared_data.hpp"
 

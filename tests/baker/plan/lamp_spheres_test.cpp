@@ -1,7 +1,6 @@
-#include "baker/plan/lamp_spheres.hpp"
-
 #include <gtest/gtest.h>
 
+#include "baker/plan/group_lights.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace lambent::baker {

@@ -1,8 +1,7 @@
 // Tests which light is traced inside a group, on shapes of which it is known.
-#include "baker/plan/planned_transport.hpp"
-
 #include <gtest/gtest.h>
 
+#include "baker/plan/effect_plan.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace lambent::baker {

@@ -1,6 +1,6 @@
-#include "baker/trace/fill.hpp"
-
 #include <gtest/gtest.h>
+
+#include "baker/trace/transfer_field.hpp"
 
 namespace lambent::baker {
 namespace {

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/trace/hit_bytes.hpp"
-
 namespace lambent::baker {
 namespace {
 

@@ -1,10 +1,9 @@
 // Tests that invisible faces of scanned models do not darken what is visible.
-#include "baker/transport/flipped_faces.hpp"
-
 #include <array>
 #include <bit>
 
-#include "baker/transport/frame.hpp"
+#include "baker/transport/direction_table.hpp"
+#include "baker/transport/group_geometry.hpp"
 #include "baker/transport/seen_origins.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "baker/transport/frame.hpp"
+#include "baker/transport/direction_table.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

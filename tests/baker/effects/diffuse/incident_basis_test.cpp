@@ -1,6 +1,5 @@
 // Tests transfer for any normal, as normal maps need it.
-#include "baker/effects/diffuse/incident_basis.hpp"
-
+#include "baker/effects/diffuse/hemisphere.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"

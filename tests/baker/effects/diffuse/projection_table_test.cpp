@@ -1,11 +1,10 @@
-#include "baker/effects/diffuse/projection_table.hpp"
-
 #include <algorithm>
 #include <numeric>
 
 #include <glm/vec3.hpp>
 #include <gtest/gtest.h>
 
+#include "baker/effects/diffuse/hemisphere.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 

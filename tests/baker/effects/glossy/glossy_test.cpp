@@ -1,7 +1,7 @@
 // Tests what the plan says about glossy surfaces.
 #include "baker/effects/glossy/glossy.hpp"
 
-#include "baker/plan/lobe_energy.hpp"
+#include "baker/plan/smooth_dielectrics.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

@@ -1,8 +1,7 @@
 // Tests bounces that are also gathered inside faces, and vertex values that are fitted to them.
-#include "baker/effects/glossy/inside_faces.hpp"
-
 #include <algorithm>
 
+#include "baker/effects/glossy/traced_points.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "tests/support/glossy_transport.hpp"
 

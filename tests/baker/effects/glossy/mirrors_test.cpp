@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/brdf/surface_brdfs.hpp"
-#include "baker/plan/lobe_energy.hpp"
+#include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/trace/mirror_paths.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/glossy_transport.hpp"

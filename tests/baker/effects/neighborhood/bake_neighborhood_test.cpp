@@ -1,7 +1,6 @@
 // Tests whole neighborhoods: grids, points inside bodies, codes.
-#include "baker/effects/neighborhood/bake_neighborhood.hpp"
-
-#include "baker/effects/neighborhood/surface_body.hpp"
+#include "baker/effects/neighborhood/bodies.hpp"
+#include "baker/effects/neighborhood/neighborhood.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/neighborhood.hpp"

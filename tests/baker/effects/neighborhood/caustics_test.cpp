@@ -1,7 +1,7 @@
 // Tests light that polished bodies focus, by quantities that mirrors conserve by symmetry.
 #include "baker/brdf/follow_highlight.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
-#include "baker/effects/neighborhood/surface_body.hpp"
+#include "baker/effects/neighborhood/bodies.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/glossy_transport.hpp"
 #include "tests/support/neighborhood.hpp"

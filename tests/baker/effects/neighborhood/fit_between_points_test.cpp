@@ -1,11 +1,11 @@
 // Tests that grid points hold the values that interpolate best.
-#include "baker/effects/neighborhood/fit_between_points.hpp"
-
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "baker/effects/neighborhood/grid_placement.hpp"
 
 namespace lambent::baker {
 namespace {

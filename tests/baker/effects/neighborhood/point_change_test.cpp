@@ -1,7 +1,6 @@
 // Compares matrices at points in free space with closed forms.
-#include "baker/effects/neighborhood/point_change.hpp"
-
-#include "baker/effects/neighborhood/surface_body.hpp"
+#include "baker/effects/neighborhood/bodies.hpp"
+#include "baker/effects/neighborhood/light_change.hpp"
 #include "tests/support/neighborhood.hpp"
 
 namespace lambent::baker {

@@ -1,12 +1,11 @@
 // Tests how strongly receivers see a change, depending on their normals.
-#include "baker/effects/neighborhood/receiver_meter.hpp"
-
 #include <cmath>
 #include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "baker/effects/neighborhood/neighborhood.hpp"
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::baker {

@@ -1,6 +1,5 @@
 // Tests volumes as bodies, with a synthetic medium.
-#include "baker/effects/neighborhood/volume_body.hpp"
-
+#include "baker/effects/neighborhood/bodies.hpp"
 #include "tests/support/neighborhood.hpp"
 
 namespace lambent::baker {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "baker/effects/volume/volume_transfer.hpp"
+#include "baker/effects/volume/volume.hpp"
 
 namespace lambent::baker {
 namespace {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "baker/effects/volume/first_light.hpp"
-#include "baker/effects/volume/grid_fit.hpp"
 #include "baker/effects/volume/marched_volume.hpp"
 #include "tests/baker/effects/volume/media.hpp"
 

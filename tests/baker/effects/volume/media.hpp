@@ -10,7 +10,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "baker/effects/volume/volume_transfer.hpp"
+#include "baker/effects/volume/volume.hpp"
 
 namespace lambent::testing {
 

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/effects/volume/sphere_table.hpp"
-#include "baker/import/procedural_cloud.hpp"
+#include "baker/effects/volume/first_light.hpp"
+#include "baker/import/density_file.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "reference/phase.hpp"
 #include "runtime/sh/basis.hpp"

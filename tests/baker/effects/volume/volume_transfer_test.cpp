@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/import/procedural_cloud.hpp"
+#include "baker/import/density_file.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "tests/baker/effects/volume/media.hpp"

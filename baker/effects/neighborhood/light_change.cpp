@@ -1,0 +1,283 @@
+#include "baker/effects/neighborhood/light_change.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "baker/jobs/parallel.hpp"
+#include "baker/jobs/stage.hpp"
+#include "baker/trace/transfer_field.hpp"
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/gaunt.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr double kInsideShare = 0.5;
+constexpr BandPower kDiffusePower = {1.0, 4.0 / 9.0, 1.0 / 16.0, 0.0, 1.0 / 576.0, 0.0};
+constexpr BandPower kShadowedPower = {1.0, 0.625, 0.25, 0.072, 0.019, 0.01};
+
+}  // namespace
+
+PointChange::PointChange(const Body& body, const CapDirections& directions, const ChangeShape& shape)
+    : body_(body),
+      directions_(directions),
+      shape_(shape),
+      harmonics_(shape.visibilitySize() * kPacketWidth),
+      visibility_(shape.visibilitySize()),
+      bounced_(shape.bouncedSize()),
+      sums_(shape.bouncedSize()) {
+  assert(shape.channels == 0 || shape.channels == body.channels());
+  assert(shape.order == body.order());
+  look_.sent.resize(kPacketWidth * shape.channels * shape.columns());
+}
+
+void PointChange::look(const glm::vec3& point) {
+  cap_ = capOf(point, body_.centre(), body_.radius());
+  weight_ = cap_.steradians() / static_cast<double>(directions_.size());
+  std::fill(visibility_.begin(), visibility_.end(), 0.0f);
+  std::fill(sums_.begin(), sums_.end(), 0.0f);
+  backs_ = 0.0;
+  nearest_back_ = std::numeric_limits<float>::infinity();
+  std::array<float, kPacketWidth> x, y, z;
+  for (std::size_t p = 0; p < directions_.packets(); ++p) {
+    directions_.packet(p, cap_, along_);
+    body_.look(point, along_, p * kPacketWidth, shape_.channels > 0, look_);
+    const bool stops =
+        std::any_of(look_.stopped.begin(), look_.stopped.end(), [](float s) { return s != 0.0f; });
+    if (!stops && look_.sends == 0) continue;
+    for (std::size_t k = 0; k < kPacketWidth; ++k) x[k] = along_[k].x, y[k] = along_[k].y, z[k] = along_[k].z;
+    sh::evaluateBatch<float>(shape_.visibilityBands(), x.data(), y.data(), z.data(), kPacketWidth,
+                             harmonics_.data(), kPacketWidth);
+    addVisibility();
+    if (shape_.channels > 0 && look_.sends != 0) addBounced();
+    backs_ += weight_ * std::popcount(look_.backs);
+    if (look_.backs != 0 && look_.nearest_back < nearest_back_)
+      nearest_back_ = look_.nearest_back, nearest_point_ = look_.nearest_point,
+      nearest_normal_ = look_.nearest_normal;
+  }
+  const std::size_t columns = shape_.columns(), row = shape_.channels * columns;
+  for (std::size_t c = 0; c < shape_.channels; ++c)
+    for (std::size_t i = 0; i < shape_.outputs(); ++i)
+      for (std::size_t j = 0; j < columns; ++j)
+        bounced_[(c * shape_.outputs() + i) * columns + j] = sums_[i * row + c * columns + j];
+}
+
+void PointChange::addVisibility() {
+  const auto weight = static_cast<float>(weight_);
+  for (std::size_t i = 0; i < visibility_.size(); ++i) {
+    float sum = 0.0f;
+    const float* of = harmonics_.data() + i * kPacketWidth;
+    for (std::size_t k = 0; k < kPacketWidth; ++k) sum += of[k] * look_.stopped[k];
+    visibility_[i] -= weight * sum;
+  }
+}
+
+void PointChange::addBounced() {
+  const std::size_t row = shape_.channels * shape_.columns();
+  const auto weight = static_cast<float>(weight_);
+  for (std::uint32_t left = look_.sends; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(left));
+    const float* sent = look_.sent.data() + k * row;
+    for (std::size_t i = 0; i < shape_.outputs(); ++i) {
+      const float factor = weight * harmonics_[i * kPacketWidth + k];
+      float* out = sums_.data() + i * row;
+      for (std::size_t j = 0; j < row; ++j) out[j] += factor * sent[j];
+    }
+  }
+}
+
+bool PointChange::inside() const {
+  return backs_ > kInsideShare * 4.0 * std::numbers::pi;
+}
+
+const BandPower& receiverPower(const ChangeShape& shape) {
+  return shape.order_out > kDiffuseBands ? kShadowedPower : kDiffusePower;
+}
+
+ChangeMeter::ChangeMeter(const ChangeShape& shape) : shape_(shape) {
+  const sh::GauntTable gaunt = sh::makeGauntTable(shape.order, shape.order_out);
+  const std::size_t columns = shape.columns();
+  weights_.resize(shape.outputs() * columns);
+  for (std::size_t i = 0; i < shape.outputs(); ++i) {
+    const auto band_out = static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)));
+    for (std::uint32_t t = gaunt.offsets[i]; t < gaunt.offsets[i + 1]; ++t)
+      terms_.push_back({static_cast<std::uint32_t>(i * columns) + gaunt.terms[t].j, gaunt.terms[t].k,
+                        gaunt.terms[t].value});
+    for (std::size_t j = 0; j < columns; ++j)
+      weights_[i * columns + j] =
+          static_cast<float>(receiverPower(shape)[band_out] *
+                             kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(j)))]);
+    if (i < columns) light_ += double{weights_[i * columns + i]};
+  }
+}
+
+double ChangeMeter::measure(std::span<const float> visibility, std::span<const float> bounced) const {
+  std::vector<float> shadow(weights_.size(), 0.0f);
+  for (const Term& term : terms_) shadow[term.at] += term.value * visibility[term.k];
+  double sum = 0.0;
+  const std::size_t channels = bounced.empty() ? 1 : shape_.channels;
+  for (std::size_t c = 0; c < channels; ++c)
+    for (std::size_t at = 0; at < shadow.size(); ++at) {
+      const float change = shadow[at] + (bounced.empty() ? 0.0f : bounced[c * shadow.size() + at]);
+      sum += double{weights_[at] * change * change};
+    }
+  return std::sqrt(sum / (static_cast<double>(channels) * light_));
+}
+
+double ChangeMeter::lightEnergy() const {
+  return 3.0 * light_;
+}
+
+namespace {
+
+constexpr std::size_t kGridPointsPerRange = 64;
+// Distance from the surface, relative to the spacing of points, that counts as on the surface.
+constexpr float kOnSurface = 1e-3f;
+
+struct Back {
+  glm::vec3 point{0.0f}, normal{0.0f};
+};
+
+}  // namespace
+
+template <>
+inline constexpr bool kPlainBytes<Back> = sizeof(Back) == 6 * sizeof(float);
+
+namespace {
+
+class Filler {
+ public:
+  Filler(const Body& body, const CapDirections& directions, const GridPlacement& grid, GridChange& change)
+      : body_(body), directions_(directions), grid_(grid), change_(change) {}
+
+  // Traces rays from each point; `backs` receives the nearest back for points inside.
+  std::optional<StageFigures> look(std::vector<Back>& backs, const BakeContext& context) {
+    const auto compute = [&](std::size_t begin, std::size_t end) {
+      PointChange point(body_, directions_, change_.shape);
+      for (std::size_t p = begin; p < end; ++p) {
+        point.look(grid_.point(p));
+        change_.outside[p] = !point.inside();
+        if (point.inside()) backs[p] = {point.nearestPoint(), point.nearestNormal()};
+        store(point.visibility(), change_.visibility, p);
+        store(point.bounced(), change_.bounced, p);
+      }
+    };
+    return runStage({.name = "neighborhood",
+                     .unit = "points",
+                     .count = grid_.count(),
+                     .grain = kGridPointsPerRange,
+                     .writes = {rowsOf(change_.outside), rowsOf(backs),
+                                rowsOf(change_.visibility, change_.shape.visibilitySize()),
+                                rowsOf(change_.bounced, change_.shape.bouncedSize())},
+                     .compute = compute},
+                    context);
+  }
+
+  // Continues the values to points inside that are beside points outside. Sets known[p] to 1 if that was
+  // possible.
+  bool continueInside(const std::vector<Back>& backs, std::vector<std::uint8_t>& known,
+                      const std::stop_token& stop) {
+    std::vector<std::size_t> border;
+    for (std::size_t p = 0; p < grid_.count(); ++p)
+      if (!change_.outside[p] && besideOutside(p)) border.push_back(p);
+    return parallelRanges(border.size(), kGridPointsPerRange, stop, [&](std::size_t begin, std::size_t end) {
+      PointChange on(body_, directions_, change_.shape), before(body_, directions_, change_.shape);
+      for (std::size_t b = begin; b < end; ++b) {
+        const std::size_t p = border[b];
+        const glm::vec3 spacing = grid_.spacing();
+        const float least = kOnSurface * std::min({spacing.x, spacing.y, spacing.z});
+        on.look(backs[p].point + least * backs[p].normal);
+        if (on.inside()) continue;
+        const float behind = glm::distance(backs[p].point, grid_.point(p));
+        before.look(backs[p].point + std::max(behind, least) * backs[p].normal);
+        continued(on.visibility(), before.visibility(), before.inside(), change_.visibility, p);
+        continued(on.bounced(), before.bounced(), before.inside(), change_.bounced, p);
+        known[p] = 1;
+      }
+    });
+  }
+
+  void fillRest(const std::vector<std::uint8_t>& known) {
+    const auto size = grid_.size;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    const std::size_t strides[3] = {1, size.x, std::size_t{size.x} * size.y};
+    for (std::size_t p = 0; p < grid_.count(); ++p)
+      for (int axis = 0; axis < 3; ++axis) {
+        if (p / strides[axis] % size[axis] + 1 == size[axis]) continue;
+        const std::size_t q = p + strides[axis];
+        if (!known[p] || !known[q])
+          edges.emplace_back(static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(q));
+      }
+    if (edges.empty()) return;
+    fillStretchFromNeighbours(edges, known, 0, change_.shape.visibilitySize(), change_.visibility);
+    fillStretchFromNeighbours(edges, known, 0, change_.shape.bouncedSize(), change_.bounced);
+  }
+
+ private:
+  static void store(std::span<const float> values, std::vector<float>& all, std::size_t point) {
+    std::copy(values.begin(), values.end(), all.begin() + static_cast<std::ptrdiff_t>(point * values.size()));
+  }
+  static void continued(std::span<const float> on, std::span<const float> before, bool only_on,
+                        std::vector<float>& all, std::size_t point) {
+    for (std::size_t i = 0; i < on.size(); ++i)
+      all[point * on.size() + i] = only_on ? on[i] : 2.0f * on[i] - before[i];
+  }
+
+  bool besideOutside(std::size_t p) const {
+    const glm::ivec3 size(grid_.size);
+    const auto index = static_cast<int>(p);
+    const glm::ivec3 at(index % size.x, index / size.x % size.y, index / (size.x * size.y));
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          const glm::ivec3 other = glm::clamp(at + glm::ivec3(x, y, z), glm::ivec3(0), size - 1);
+          if (change_.outside[static_cast<std::size_t>(other.x + size.x * (other.y + size.y * other.z))])
+            return true;
+        }
+    return false;
+  }
+
+  const Body& body_;
+  const CapDirections& directions_;
+  const GridPlacement& grid_;
+  GridChange& change_;
+};
+
+}  // namespace
+
+std::size_t GridChange::insidePoints() const {
+  return static_cast<std::size_t>(std::count(outside.begin(), outside.end(), std::uint8_t{0}));
+}
+
+std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& grid, const ChangeShape& shape,
+                                       std::size_t rays, const BakeContext& context) {
+  const CapDirections directions(rays);
+  GridChange change;
+  change.shape = shape;
+  change.visibility.resize(grid.count() * shape.visibilitySize());
+  change.bounced.resize(grid.count() * shape.bouncedSize());
+  change.outside.resize(grid.count());
+  Filler filler(body, directions, grid, change);
+  std::vector<Back> backs(grid.count());
+  const auto looked = filler.look(backs, context);
+  if (!looked) return std::nullopt;
+  change.rays = looked->computed * directions.size();
+  change.rays_kept = looked->found * directions.size();
+  std::vector<std::uint8_t> known = change.outside;
+  if (!filler.continueInside(backs, known, context.stop)) return std::nullopt;
+  filler.fillRest(known);
+  return change;
+}
+
+void dropChange(const BakeContext& context, std::size_t points) {
+  dropStage(context, points, kGridPointsPerRange);
+}
+
+}  // namespace lambent::baker
