@@ -10,8 +10,8 @@
 
 #include "baker/bake/bake.hpp"
 #include "baker/bake/options.hpp"
-#include "baker/import/scene_files.hpp"
 #include "baker/import/scene_edits.hpp"
+#include "baker/import/scene_files.hpp"
 
 namespace lambent::baker {
 

@@ -11,8 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "baker/import/scene_files.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/import/scene_files.hpp"
 
 namespace lambent::baker {
 

@@ -15,10 +15,10 @@
 #include "baker/importance/importance.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/trace/emitters.hpp"
+#include "baker/transport/geometry_key.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/seen_origins.hpp"
-#include "baker/transport/geometry_key.hpp"
 
 namespace lambent::baker {
 

@@ -11,8 +11,8 @@
 #include "baker/effects/volume/ray_steps.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/jobs/bake_context.hpp"
-#include "baker/jobs/stage.hpp"
 #include "baker/jobs/parallel.hpp"
+#include "baker/jobs/stage.hpp"
 #include "runtime/sh/gaunt.hpp"
 
 namespace lambent::baker {
