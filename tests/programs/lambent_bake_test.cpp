@@ -138,7 +138,7 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   EXPECT_EQ(info["imageBytes"], report["imageBytes"]);
   EXPECT_EQ(info["rowBytes"].get<int>() + info["codebookBytes"].get<int>() +
                 info["clusterIdBytes"].get<int>() + info["planeBytes"].get<int>() +
-                info["lightWeightBytes"].get<int>(),
+                info["lightWeightBytes"].get<int>() + info["importanceBytes"].get<int>(),
             report["transferBytes"].get<int>());
   EXPECT_EQ(info["proxyBytes"], report["proxyBytes"]);
   EXPECT_EQ(info["settings"]["order"], "5");
