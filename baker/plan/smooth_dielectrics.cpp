@@ -16,17 +16,17 @@ double lobeEnergyShare(double roughness, int order) {
   const double alpha = std::max(roughness * roughness, 1e-3), a2 = alpha * alpha;
   // Seen along the normal the lobe is zonal, and the half vector is at half the angle. Steps are even in
   // x = atan(tan(theta/2) / alpha), in which the lobe is smooth however narrow it is.
-  constexpr int kSteps = 2000;
+  constexpr int kAngleSteps = 2000;
   std::vector<double> zonal(static_cast<std::size_t>(order), 0.0);
   double all = 0.0;
   const double last = std::atan(1.0 / alpha);  // theta = 90 degrees
-  for (int i = 0; i < kSteps; ++i) {
-    const double x = (i + 0.5) / kSteps * last;
+  for (int i = 0; i < kAngleSteps; ++i) {
+    const double x = (i + 0.5) / kAngleSteps * last;
     const double tan_half = alpha * std::tan(x);
     const double cos_h2 = 1.0 / (1.0 + tan_half * tan_half);
     const double cosine = 2.0 * cos_h2 - 1.0, sine = 2.0 * tan_half * cos_h2;
     const double slope = 2.0 * cos_h2 * alpha / (std::cos(x) * std::cos(x));  // d theta / d x
-    const double weight = 2.0 * std::numbers::pi * sine * slope * last / kSteps;
+    const double weight = 2.0 * std::numbers::pi * sine * slope * last / kAngleSteps;
     // The value is D G2 / (4 n.v n.l) times n.l at n.v = 1, up to a constant factor; G2 is the
     // height-correlated Smith term.
     const double bottom = cos_h2 * (a2 - 1.0) + 1.0;
