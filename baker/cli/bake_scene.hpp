@@ -60,7 +60,7 @@ int watchFolder(const BakeArguments& arguments, Cache* cache);
 
 class FolderOutputs {
  public:
-  // With an empty `output` bundles lie beside their scenes.
+  // If `output` is empty, bundles lie beside their scenes.
   FolderOutputs(std::filesystem::path folder, std::filesystem::path output)
       : folder_(std::move(folder)), output_(std::move(output)) {}
 

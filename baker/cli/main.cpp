@@ -65,13 +65,6 @@ int main(int argc, char** argv) {
                                   {"lambent info scene.lmb.glb", "checks it and says what is in it"},
                                   {"lambent bake --help", "lists the options of a command"}});
   command_line::finish(app, "lambent " LAMBENT_VERSION);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {
-    return app.exit(asked);  // --help, --version
-  } catch (const CLI::ParseError& wrong) {
-    baker::reportError(command_line::usageError(app, wrong));
-    return 2;
-  }
+  if (const auto ended = command_line::parse(app, argc, argv)) return *ended;
   return baker::runToItsEnd(run);
 }

@@ -30,7 +30,7 @@ Result<void> checkSizes(const Document& document, const NodeMap& map, const Scen
   std::vector<PlacedBox> boxes;
   for (const SceneMesh& mesh : scene.meshes) boxes.push_back(boxOf(mesh));
   const std::vector<glm::dmat4> world = sceneWorldTransforms(map, scene);
-  // Of a node or one above it: places that cancel each other out have lost their digits.
+  // The farthest place of each node and those above it: if two cancel each other out, digits are lost.
   std::vector<double> farthest(world.size());
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     farthest[n] = largest(glm::dvec3(world[n][3]));

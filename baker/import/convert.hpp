@@ -26,7 +26,7 @@ void convertLights(const Document& document, Scene& scene);
 struct NodeMap {
   std::vector<std::int32_t> scene_node;  // by node of the file
   std::vector<std::int32_t> file_node;   // by node of the scene
-  // By node of the scene, in double as in the file; those in the scene are rounded.
+  // Indexed by node of the scene. They are in double as in the file; the scene has rounded ones.
   std::vector<glm::dmat4> parent_from_node;
 };
 

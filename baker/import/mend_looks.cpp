@@ -104,7 +104,7 @@ void mendAlphaMode(const Entry& material) {
   std::ranges::transform(word, word.begin(), [](unsigned char c) { return std::toupper(c); });
   if (word != "OPAQUE" && word != "MASK" && word != "BLEND")
     return material.leaveOut("alphaMode", fmt::format("is {}", mode->dump()));
-  if (word != *mode) material.warn(fmt::format("alphaMode {} counts as {}", mode->dump(), word));
+  if (*mode != json(word)) material.warn(fmt::format("alphaMode {} counts as {}", mode->dump(), word));
   *mode = word;
 }
 
@@ -179,7 +179,7 @@ void mendCones(const Entry& light) {
     light.warn("it has no spot, so its cone is that of the default");
     light.json["spot"] = json::object();
   }
-  // What has no width gives no light.
+  // A cone without width would give no light.
   constexpr double kThinnest_rad = 1e-3, kRightAngle_rad = std::numbers::pi / 2;
   const Entry spot = *light.object("spot");
   spot.clamp("outerConeAngle", kThinnest_rad, kRightAngle_rad);

@@ -125,7 +125,7 @@ class NearOrigin {
   }
 
   // Returns which nodes only carry others to their places, so that no one sees where they are themselves.
-  // What carries no surface is left out.
+  // Nodes that carry no surface are left out.
   std::vector<bool> carriers() const {
     std::vector<bool> carries(scene_.nodes.size(), false);
     const auto mark = [&](std::int32_t n) {

@@ -111,7 +111,7 @@ JobSeconds jobSeconds(const PartSeconds& expected, std::span<const Progress::Sta
                       const Progress::Stage& now) {
   const std::optional<double> own = restAtRate(now);
   const double pace = paceOf(expected, finished, now, own);
-  // What was found counts as much as if it had been computed.
+  // Work that the cache held counts as much as if it had been computed.
   const auto spentOn = [&](const Progress::Stage& stage) {
     if (const auto seconds = secondsOf(stage)) return *seconds;
     const double share =

@@ -61,7 +61,7 @@ struct View {
 // Holds the unique ids of the attributes of a Draco mesh; -1 if the mesh lacks one.
 struct DracoAttributes {
   std::int32_t position = -1, normal = -1, texcoord0 = -1, texcoord1 = -1, color0 = -1, tangent = -1,
-               normal_weight = -1, fan = -1;
+               normal_weight = -1;
 };
 
 struct Primitive {

@@ -37,7 +37,6 @@ constexpr std::array kAttributes = {
     AttributeName{"COLOR_0", &DracoAttributes::color0, 5123, "VEC4", true},
     AttributeName{"TANGENT", &DracoAttributes::tangent, 5126, "VEC4"},
     AttributeName{"_NORMAL_WEIGHT", &DracoAttributes::normal_weight, 5121, "SCALAR", true},
-    AttributeName{"_FAN", &DracoAttributes::fan, 5121, "SCALAR"},
 };
 
 Json primitiveJson(const Primitive& primitive, Json& accessors) {

@@ -237,8 +237,7 @@ std::vector<std::string> commandNames(const CLI::App& app) {
   return names;
 }
 
-}  // namespace
-
+// Returns what to print for an error that `app` threw while it parsed.
 Error usageError(const CLI::App& app, const CLI::ParseError& wrong) {
   const CLI::App* command = &app;  // the one that was chosen
   std::string program = app.get_name();
@@ -261,6 +260,21 @@ Error usageError(const CLI::App& app, const CLI::ParseError& wrong) {
   if (unexpected && !extra.empty()) return {extra.front(), "is one word too many", help};
   const std::string text = wrong.what();
   return {{}, text, text.find("; ") == std::string::npos ? help : ""};  // else it says what to do
+}
+
+}  // namespace
+
+std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
+  constexpr int kWrongUsage = 2;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    return app.exit(asked);  // --help, --version
+  } catch (const CLI::ParseError& wrong) {
+    fmt::print(stderr, "{}: {}\n", app.get_name(), usageError(app, wrong).line());
+    return kWrongUsage;
+  }
+  return std::nullopt;
 }
 
 }  // namespace lambent::command_line

@@ -4,6 +4,7 @@
 // when their options are declared. All functions run on the main thread before any work begins.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,11 +63,11 @@ void group(CLI::App& app, const std::string& heading, const std::vector<std::str
 // subcommand too.
 void finish(CLI::App& app, const std::string& version);
 
-// Says in one sentence what is wrong with a command line, for all programs.
-
-// Returns what to print for an error that `app` threw while it parsed. A word that is not known is named with
-// the nearest one that is.
-Error usageError(const CLI::App& app, const CLI::ParseError& wrong);
+// Parses a command line. Returns nothing if the program is to go on, or else its exit code: 0 after --help
+// and
+// --version, 2 after one line on stderr that says what is wrong. A word that is not known is named with the
+// nearest one that is.
+std::optional<int> parse(CLI::App& app, int argc, const char* const* argv);
 
 // Writes functions with which shells complete the words of a command line.
 std::string bashCompletion(const CommandEntry& table);

@@ -288,13 +288,7 @@ std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
   Words words;
   declare(app, words);
   describe(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    printError(command_line::usageError(app, error));
-    return 2;
-  }
+  if (const auto ended = command_line::parse(app, argc, argv)) return *ended;
   Result<Options> options = understand(words);
   if (options) return std::move(*options);
   printError(options.error());

@@ -28,7 +28,7 @@ EffectChoice chooseVolume(const Scene& scene, const std::vector<RigidGroup>& gro
 // (docs/design/volumes.md). Where free paths are shorter than voxels, samples are not the values at voxel
 // centres, but those that interpolate best to the values at many places (fit_within_voxels.hpp).
 //
-// With an anisotropic phase function (Henyey and Greenstein's, g not 0), bands of the arriving radiance take
+// If the phase function is anisotropic (Henyey and Greenstein's, g not 0), bands of arriving radiance take
 // the place of its mean: L_lm = int L y_lm ds, of which g^l L_lm y_lm continues (literature 1.8).
 
 // A Medium is what a bake knows of a volume before light comes in.
@@ -77,8 +77,8 @@ struct VolumeTransfer {
   // [sample][single scattering, then all scatterings by channel][outputs][order²]. With one output these are
   // the mean radiance, with more its coefficients.
   std::vector<float> vectors;
-  // With more than 3 bands, this is the transmittance of unscattered light by direction, in order + bands - 1
-  // bands: [sample][visibility]. The first block of `vectors` follows from it.
+  // If there are more than 3 bands, this is the transmittance of unscattered light by direction, in order +
+  // bands - 1 bands: [sample][visibility]. The first block of `vectors` follows from it.
   std::vector<float> visibility;
 
   std::uint64_t rays = 0;       // traced in this run
