@@ -59,11 +59,10 @@ void readFactors(const nlohmann::json& source, gltf::Material& material) {
     using Value = typename Row::Value;
     if constexpr (std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3>) {
       const auto& objects = row.json.objects;
-      const bool wanted = has_lobes || objects[1] == nullptr || objects == gltf::material_rows::kIor;
-      const bool read = row.part == gltf::MaterialPart::Reflection ||
-                        objects == gltf::material_rows::kTransmission ||
-                        objects == gltf::material_rows::kVolume;
-      if (!read || !wanted) return;
+      const bool in_extension = objects[1] != nullptr;
+      const bool wanted = has_lobes || !in_extension || std::string_view(row.json.key) == "ior";
+      const bool of_pane = in_extension && row.part == gltf::MaterialPart::Opacity;
+      if (!wanted || !(of_pane || row.part == gltf::MaterialPart::Reflection)) return;
       const nlohmann::json* place = &source;
       for (const char* object : objects) {
         if (!object) continue;

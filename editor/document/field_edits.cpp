@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/materials.hpp"
 
 namespace lambent::editor {
 

@@ -20,6 +20,7 @@
 #include "editor/session/field_numbers.hpp"
 #include "editor/session/local_lights.hpp"
 #include "editor/ui/fitting.hpp"
+#include "runtime/scene/materials.hpp"
 
 namespace lambent::editor {
 

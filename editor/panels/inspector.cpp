@@ -15,6 +15,7 @@
 #include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/fitting.hpp"
 #include "editor/ui/marks.hpp"
+#include "runtime/scene/materials.hpp"
 
 namespace lambent::editor {
 

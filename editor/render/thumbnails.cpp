@@ -7,8 +7,8 @@
 
 #include "editor/session/asset_pictures.hpp"
 #include "editor/session/materials.hpp"
-#include "runtime/bundle/material_fields.hpp"
 #include "runtime/scene/bounds.hpp"
+#include "runtime/scene/materials.hpp"
 
 namespace lambent::editor {
 

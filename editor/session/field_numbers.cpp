@@ -6,6 +6,7 @@
 
 #include "editor/session/local_lights.hpp"
 #include "editor/session/session.hpp"
+#include "runtime/scene/materials.hpp"
 
 namespace lambent::editor {
 

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "editor/session/session.hpp"
+#include "runtime/scene/materials.hpp"
 
 namespace lambent::editor {
 

@@ -11,10 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/bundle/material_fields.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 #include "runtime/ecs/registry.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/spec/image.hpp"
+
+namespace lambent::scene {
+struct MaterialComponent;
+}
 
 namespace lambent::editor {
 

@@ -137,6 +137,23 @@ struct Material {
   }
 };
 
+// Holds the values of a material that can be changed while it is shown. Textures and vertex colours multiply
+// them.
+struct MaterialFactors {
+  glm::vec3 base_color{1.0f};  // linear
+  float alpha = 1.0f;
+  float metallic = 1.0f, roughness = 1.0f;
+  float ior = 1.5f;  // at least 1, or 0 for infinite
+  float specular = 1.0f;
+  glm::vec3 specular_color{1.0f};
+  float anisotropy = 0.0f, anisotropy_rotation_rad = 0.0f;
+  std::int32_t brdf = -1;    // measured table of the bundle that replaces all of the above; -1 if none
+  glm::vec3 emission{0.0f};  // linear
+  float emission_strength = 1.0f;
+  float normal_scale = 1.0f;
+  float alpha_cutoff = 0.5f;  // used by masked materials
+};
+
 struct Camera {
   std::string name;
   bool perspective = true;

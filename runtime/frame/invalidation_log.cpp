@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/scene/materials.hpp"
+
 namespace lambent::frame {
 
 namespace {

@@ -16,7 +16,6 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include "runtime/bundle/material_fields.hpp"
 #include "runtime/ecs/entity.hpp"
 #include "runtime/ecs/fields.hpp"
 #include "runtime/scene/bounds.hpp"
@@ -140,32 +139,6 @@ struct LampComponent {
     return std::tuple{ecs::Field{"color", &L::color, glm::vec3(1.0f)},
                       ecs::Field{"strength", &L::strength, 1.0f, "", ecs::Range{0.0f, 1e6f}},
                       ecs::Field{"enabled", &L::enabled, true}};
-  }
-};
-
-// Describes a material of a bundle, which is an entity of its own. Its factors shade surfaces; textures and
-// vertex colours multiply them. A change shows in the next frame, except for baked effects
-// (world/material_rebake.hpp tells which). The radiance of a LampComponent takes precedence over `emission`.
-struct MaterialComponent : gltf::MaterialFactors {
-  std::uint32_t bundle = 0, material = 0;
-
-  static constexpr std::string_view kComponentName = "Material";
-  // Returns the live values in the table of material fields, in its order.
-  static auto fields() {
-    return std::apply(
-        [](const auto&... row) {
-          return std::tuple_cat(
-              std::apply([](const auto&... live) { return std::tuple{fieldOf(live)...}; }, row.live)...);
-        },
-        gltf::kMaterialFields);
-  }
-
- private:
-  template <class T>
-  static ecs::Field<MaterialComponent, T> fieldOf(const gltf::LiveValue<T>& live) {
-    std::optional<ecs::Range<T>> range;
-    if (live.range) range = {live.range->least, live.range->greatest};
-    return {live.name, live.factor, gltf::MaterialFactors().*live.factor, live.unit, range};
   }
 };
 

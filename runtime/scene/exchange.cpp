@@ -10,6 +10,7 @@
 
 #include "runtime/bundle/keyframes.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/materials.hpp"
 #include "runtime/scene/stable_id.hpp"
 #include "runtime/scene/transforms.hpp"
 

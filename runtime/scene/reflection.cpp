@@ -14,6 +14,7 @@
 
 #include "runtime/base/finite.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/materials.hpp"
 
 namespace lambent::scene {
 namespace {

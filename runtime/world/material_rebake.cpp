@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/bundle/material_fields.hpp"
+#include "runtime/scene/materials.hpp"
 
 namespace lambent::frame {
 

@@ -2,6 +2,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/scene/materials.hpp"
 #include "runtime/world/material_rebake.hpp"
 #include "tests/stability/show.hpp"
 #include "tests/support/gpu_context.hpp"

@@ -7,6 +7,7 @@
 #include "editor/panels/panel.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/ui.hpp"
+#include "runtime/scene/materials.hpp"
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/brdf/brdf.hpp"
+#include "runtime/scene/materials.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/support/frame/live_stage.hpp"

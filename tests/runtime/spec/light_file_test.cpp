@@ -44,7 +44,8 @@ class LightFile : public ::testing::Test {
   // A picture of one texel, whose components are multiples of 1/128 below 2.
   Result<RgbImage> oneTexel(const std::string& lines, glm::vec3 color) const {
     std::string texel = "-Y 1 +X 1\n";
-    for (int channel = 0; channel < 3; ++channel) texel += static_cast<char>(128.0f * color[channel]);
+    for (int channel = 0; channel < 3; ++channel)
+      texel += static_cast<char>(static_cast<int>(128.0f * color[channel]));
     return hdr(lines, texel + '\x81');
   }
   static glm::vec3 first(const Result<RgbImage>& image) {

@@ -13,6 +13,7 @@
 
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/bounds.hpp"
+#include "runtime/scene/materials.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 

@@ -21,11 +21,18 @@ export async function launch(t) {
   return browser;
 }
 
+/** Opens an empty page without limits of time: a busy machine is slow, and each test has a limit of its own. */
+export async function newPage(browser) {
+  const page = await browser.newPage();
+  page.setDefaultTimeout(0);
+  return page;
+}
+
 /** Opens a page of a server for some folders. `messages` collects warnings and errors of the console. */
 export async function open(t, browser, folders, path = '/web/test/browser/page.html', size = [320, 360]) {
   const { server, requests, address } = await serve({ '/web/': web, ...folders });
   t.after(() => server.close());
-  const page = await browser.newPage(), messages = [];
+  const page = await newPage(browser), messages = [];
   page.on('console', (m) => ['error', 'warn'].includes(m.type()) && messages.push(m.text()));
   page.on('pageerror', (error) => messages.push(String(error)));
   await page.setViewport({ width: size[0], height: size[1] });

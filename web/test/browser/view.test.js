@@ -8,7 +8,7 @@ import { join, resolve } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import test from 'node:test';
 import { listedFiles } from '../../site/listed_files.js';
-import { bin, launch, list, skip, web, work } from './browser.js';
+import { bin, launch, list, newPage, skip, web, work } from './browser.js';
 
 const map = process.env.LAMBENT_TEST_MAP;
 const options = { skip: skip || (map ? false : 'LAMBENT_TEST_MAP is not set'), timeout: 600000 };
@@ -37,7 +37,7 @@ async function interrupt({ process }) {
 test('lambent view shows a bundle under a map', options, async (t) => {
   mkdirSync(work, { recursive: true });
   const viewing = await view(t, ['--light', resolve(map), '--no-browser']), browser = await launch(t);
-  const page = await browser.newPage(), messages = [], elsewhere = [];
+  const page = await newPage(browser), messages = [], elsewhere = [];
   page.on('console', (m) => ['error', 'warn'].includes(m.type()) && messages.push(m.text()));
   page.on('pageerror', (error) => messages.push(String(error)));
   page.on('request', (request) => {
