@@ -1,7 +1,9 @@
 #include "runtime/frame/frame_pass.hpp"
 
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
+
+#include <fmt/format.h>
 
 namespace lambent::frame {
 
@@ -14,17 +16,18 @@ void StepCounts::clear() {
   for (Count& count : counts_) count.value = 0;
 }
 
-void StepCounts::add(std::string_view name, std::uint64_t value) {
+std::size_t StepCounts::placeOf(std::string_view name) const {
   const auto found = std::ranges::find(counts_, name, &Count::name);
-  assert(found != counts_.end());
-  found->value += value;
+  if (found == counts_.end()) throw std::out_of_range(fmt::format("no pass counts {}", name));
+  return static_cast<std::size_t>(found - counts_.begin());
+}
+
+void StepCounts::add(std::string_view name, std::uint64_t value) {
+  counts_[placeOf(name)].value += value;
 }
 
 std::uint64_t StepCounts::operator[](std::string_view name) const {
-  if (counts_.empty()) return 0;
-  const auto found = std::ranges::find(counts_, name, &Count::name);
-  assert(found != counts_.end());
-  return found->value;
+  return counts_.empty() ? 0 : counts_[placeOf(name)].value;
 }
 
 void FrameContext::because(std::string_view otherwise) const {

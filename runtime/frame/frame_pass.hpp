@@ -28,9 +28,6 @@
 
 namespace lambent::frame {
 
-// Holds what the passes of a frame share, found by its type: lights of groups, shaded samples, shadow maps. A
-// pass offers its own objects once, when it is made, and they live as long as the frame.
-
 // Lists the types that a pass reads or writes.
 using Resources = std::vector<std::type_index>;
 template <class... Types>
@@ -38,6 +35,8 @@ Resources resources() {
   return {std::type_index(typeid(Types))...};
 }
 
+// Holds what the passes of a frame share, found by its type: lights of groups, shaded samples, shadow maps. A
+// pass offers its own objects once, when it is made, and they live as long as the frame.
 class Blackboard {
  public:
   // Offers an object. There may be only one of each type.
@@ -47,12 +46,11 @@ class Blackboard {
     assert(first);
     (void)first;
   }
-  // Returns the object of a type, which must have been offered.
+  // Returns the object of a type. Throws std::out_of_range if nobody offered it, which is a mistake in the
+  // list of passes.
   template <class Type>
   Type& get() const {
-    const auto found = objects_.find(typeid(Type));
-    assert(found != objects_.end());
-    return *static_cast<Type*>(found->second);
+    return *static_cast<Type*>(objects_.at(typeid(Type)));
   }
 
  private:
@@ -69,11 +67,12 @@ class StepCounts {
     std::uint64_t value = 0;
   };
 
+  // add() and operator[] throw std::out_of_range for names that were not declared.
   void declare(std::span<const std::string_view> names);
   // Sets every count to 0.
   void clear();
   void add(std::string_view name, std::uint64_t value);
-  // Returns the count. The name must be declared, unless none is; then the result is 0.
+  // Returns the count, or 0 before any is declared.
   std::uint64_t operator[](std::string_view name) const;
 
   // Iterate in the order in which the names were declared.
@@ -81,6 +80,8 @@ class StepCounts {
   auto end() const { return counts_.end(); }
 
  private:
+  std::size_t placeOf(std::string_view name) const;
+
   std::vector<Count> counts_;
 };
 

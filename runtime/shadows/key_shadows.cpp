@@ -262,7 +262,7 @@ void KeyShadows::makePyramid(const std::vector<std::size_t>& changed, gpu::Count
   }
 }
 
-void KeyShadows::bind(const spec::View& view, const spec::Size& size) {
+void KeyShadows::bind(const spec::View& view, const spec::Size& size) const {
   if (maps_.empty()) return;
   struct Block {
     KeyView view;

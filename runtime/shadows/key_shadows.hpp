@@ -38,7 +38,7 @@ class KeyShadows {
   Result<void> update(World& world, std::span<const spec::Disc> keys, const spec::View& view,
                       const KeyShadowOptions& options, gpu::Counters& counters);
   // Binds what the surface shaders read, for a picture of this size. Call it before Surfaces draws.
-  void bind(const spec::View& view, const spec::Size& size);
+  void bind(const spec::View& view, const spec::Size& size) const;
 
   // Returns whether any key light shines.
   bool any() const { return !maps_.empty(); }
@@ -79,7 +79,8 @@ class KeyShadows {
   gpu::Program pyramid_program_;
   gpu::Texture depths_, blockers_;
   gpu::Handle<gpu::FramebufferTraits> target_;
-  gpu::Table views_, block_;
+  gpu::Table views_;
+  mutable gpu::Table block_;  // what bind() says of its view, which is no state of the shadows
   std::uint32_t maps_drawn_ = 0;
 };
 

@@ -351,25 +351,36 @@ float shareThrough(std::span<const lighting::IncidentBody* const> bodies, Blocke
 
 }  // namespace
 
-void hideApart(LitScene& scene, std::span<const bundle::CaptureProxy* const> proxies) {
-  Blockers blockers(proxies);
-  for (lighting::IncidentGroup& group : scene.groups) {
-    group.open.clear();
-    if (group.left_out.empty() || std::ranges::all_of(group.apart, [](float share) { return share == 0.0f; }))
-      continue;
-    group.open.assign(group.samples_ws.size() * scene.lights.size(), 1.0f);
-    for (std::size_t s = 0; s < group.samples_ws.size(); ++s)
-      for (std::size_t k = 0; k < scene.lights.size(); ++k) {
-        if (group.apart[k] == 0.0f) continue;
-        std::vector<const lighting::IncidentBody*> bodies;
-        for (const std::uint32_t body : group.left_out)
-          if (mayHide(scene.bodies[body], scene.lights[k], group.samples_ws[s]))
-            bodies.push_back(&scene.bodies[body]);
-        if (!bodies.empty())
-          group.open[s * scene.lights.size() + k] =
-              shareThrough(bodies, blockers, scene.lights[k], group.samples_ws[s]);
-      }
+std::size_t ApartOcclusion::update(LitScene& scene, std::span<const bundle::CaptureProxy* const> proxies,
+                                   std::uint64_t version) {
+  Inputs inputs{.version = version, .groups = {}, .lights = scene.lights, .bodies = {}};
+  for (lighting::LocalLight& light : inputs.lights) light.power = {};
+  for (const lighting::IncidentBody& body : scene.bodies) inputs.bodies.push_back(body.body.world_from_proxy);
+  for (const lighting::IncidentGroup& group : scene.groups)
+    inputs.groups.push_back({group.samples_ws, group.apart, group.left_out});
+  std::size_t probes = 0;
+  if (open_.size() != scene.groups.size() || inputs != traced_) {
+    open_.assign(scene.groups.size(), {});
+    Blockers blockers(proxies);
+    for (std::size_t g = 0; g < scene.groups.size(); ++g) {
+      const Group& group = inputs.groups[g];
+      if (group.left_out.empty() ||
+          std::ranges::all_of(group.apart, [](float share) { return share == 0.0f; }))
+        continue;
+      probes += group.samples_ws.size();
+      for (const glm::vec3& sample : group.samples_ws)
+        for (std::size_t k = 0; k < scene.lights.size(); ++k) {
+          std::vector<const lighting::IncidentBody*> bodies;
+          if (group.apart[k] > 0.0f)
+            for (const std::uint32_t body : group.left_out)
+              if (mayHide(scene.bodies[body], scene.lights[k], sample)) bodies.push_back(&scene.bodies[body]);
+          open_[g].push_back(bodies.empty() ? 1.0f : shareThrough(bodies, blockers, scene.lights[k], sample));
+        }
+    }
+    traced_ = std::move(inputs);
   }
+  for (std::size_t g = 0; g < scene.groups.size(); ++g) scene.groups[g].open = open_[g];
+  return probes;
 }
 
 }  // namespace lambent::frame

@@ -214,7 +214,7 @@ void LocalShadows::drawCubes(World& world, const std::vector<std::uint32_t>& cha
   casters_.draw(world, tiles, programs_, {faces_.buffer(), sizeof(ShadowFace), kBindShadowFace}, counters);
 }
 
-void LocalShadows::bind(const spec::View& view, const spec::Size& size) {
+void LocalShadows::bind(const spec::View& view, const spec::Size& size) const {
   if (!any_) return;
   struct Block {
     ShadowView view;

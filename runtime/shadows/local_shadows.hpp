@@ -88,7 +88,7 @@ class LocalShadows {
 
   // Binds what the surface shaders read, for a picture of this size and view. Call it before Surfaces draws;
   // it binds nothing if no draw is lit.
-  void bind(const spec::View& view, const spec::Size& size);
+  void bind(const spec::View& view, const spec::Size& size) const;
 
   // Returns the lights of a draw of the residency: bit k is set if light k lights it.
   std::uint32_t lightsOf(std::size_t draw) const { return draw < draws_.size() ? draws_[draw].lights : 0; }
@@ -124,7 +124,8 @@ class LocalShadows {
   gpu::Handle<gpu::FramebufferTraits> target_;
   std::uint32_t rows_ = 0;  // rows of the texture, one per light
   std::uint32_t size_ = 0;  // texels along an edge of a face
-  gpu::Table block_, draws_table_, faces_;
+  mutable gpu::Table block_;  // what bind() says of its view, which is no state of the shadows
+  gpu::Table draws_table_, faces_;
   std::vector<LocalDraw> draws_;
   // draws_ follows from the groups' masks, the materials that shine as lights, the lights that shine,
   // residency and transforms.

@@ -53,7 +53,7 @@ float worthOf(const Parts& parts, std::uint32_t unit, std::uint32_t step, float 
 }
 
 float sizeSeen(const spec::View& view, const glm::vec3& center_ws, float radius_m) {
-  const float distance = std::max(glm::distance(view.eye_ws, center_ws) - radius_m, 0.0f);
+  const float distance = std::max(0.0f, glm::distance(view.eye_ws, center_ws) - radius_m);  // 0 for NaN
   const float size = distance > 0.0f ? radius_m / distance : std::numeric_limits<float>::infinity();
   float seen = std::min(size * size, kLargest);
   const glm::mat4 clip_from_world = view.clip_from_view * view.view_from_world;

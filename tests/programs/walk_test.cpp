@@ -1,12 +1,17 @@
-// Bakes the glTF files of the shared scenes at draft quality and shows it, with the programs as a user runs
-// them. Each gives a bundle and a picture of finite values, or one line that says why not. The variants of
-// one Khronos model (embedded, Draco, quantized, ...) must give the same picture.
+// Bakes the glTF files of the shared scenes at draft quality as a user does, and shows them. Each gives a
+// bundle and a picture of finite values, or one line that says why not. The variants of one Khronos model
+// (embedded, Draco, quantized, ...) must give the same picture.
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "baker/accuracy/compare.hpp"
+#include "runtime/frame/frame.hpp"
+#include "runtime/gpu/context.hpp"
+#include "runtime/scene/bounds.hpp"
 #include "runtime/spec/image.hpp"
+#include "runtime/spec/light.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/require.hpp"
 #include "tests/support/shared_data.hpp"
@@ -43,26 +48,44 @@ std::string modelOf(const std::filesystem::path& name) {
   return (++part)->string();
 }
 
+// Shows bundles one after another in one world, as an editor does: a program each would spend more time on
+// shaders than on pictures.
 class SharedScenes : public testing::ProgramTest {
  protected:
-  // Pictures are small: what is looked for shows in any size.
-  std::optional<spec::RgbaImage> show(const std::filesystem::path& bundle) {
-    const std::string picture = (folder / "picture.exr").string();
-    const Outcome shown =
-        run(LAMBENT_DEMO, {bundle.string(), "--light", "sun:40,50,30,4,3,2", "--light",
-                           "constant:0.3,0.4,0.5", "--size", "96x96", "--headless", picture});
-    if (testing::lacksDevice(shown)) {
-      no_device = true;
-      return std::nullopt;
-    }
-    EXPECT_EQ(shown.exit_code, 0) << bundle << shown.err;
-    auto read = spec::readExr(picture);
-    EXPECT_TRUE(read) << bundle;
-    if (!read) return std::nullopt;
-    return std::move(*read);
+  void SetUp() override {
+    ProgramTest::SetUp();
+    Result<gpu::Context> made = gpu::Context::createHeadless();
+    if (!made) LAMBENT_LACKS("gl", "no OpenGL 4.5 here: " << made.error().line());
+    context.emplace(std::move(*made));
+    const auto lights = {*spec::parseLight("sun:40,50,30,4,3,2"), *spec::parseLight("constant:0.3,0.4,0.5")};
+    environment.emplace(*lighting::Environment::create(lights));
+    frame.emplace(*frame::Frame::create(
+        {.size = {96, 96}, .output = frame::Output::Linear, .wait_for_captures = true}, *environment));
   }
 
-  bool no_device = false;
+  std::optional<spec::RgbaImage> show(const std::filesystem::path& bundle) {
+    const Result<std::uint32_t> opened = world.open(bundle);
+    EXPECT_TRUE(opened) << opened.error().line();
+    if (!opened) return std::nullopt;
+    gpu::Counters counters;
+    const Result<void> loaded = world.uploadAll(counters);
+    EXPECT_TRUE(loaded) << loaded.error().line();
+    world.updateTransforms();
+    const scene::Box bounds = scene::worldBounds(world.registry());
+    const spec::View view = spec::orbitView({}, bounds.min, bounds.max, 1.0f);
+    for (int turn = 0; turn < 2; ++turn) {  // the second one with all light between bodies
+      EXPECT_TRUE(frame->render(world, *environment, view));
+      EXPECT_TRUE(frame->rest(world, *environment));
+    }
+    spec::RgbaImage picture = frame->readLinear();
+    world.close(*opened);
+    return picture;
+  }
+
+  std::optional<gpu::Context> context;  // outlives what is drawn with it
+  frame::World world;
+  std::optional<lighting::Environment> environment;
+  std::optional<frame::Frame> frame;
 };
 
 std::size_t coveredPixels(const spec::RgbaImage& image) {
@@ -124,7 +147,6 @@ TEST_F(SharedScenes, BakeAndShowOrAreRefusedInOneRightLine) {
     // Quantized and Draco meshes have samples a little elsewhere, and 128 rays leave 2 % at each.
     EXPECT_LT(error->relative_rms, 0.04) << name << " beside " << first->second.file;
   }
-  if (no_device) LAMBENT_LACKS("gl", "baked, but there is no OpenGL 4.5 here to show them");
   EXPECT_GT(shown, 80u);
 }
 

@@ -36,14 +36,14 @@ float meanRadiance(const lighting::Environment& environment) {
 class LightPass final : public FramePass {
  public:
   explicit LightPass(Blackboard& board)
-      : FramePass(
-            {.name = "light",
-             .reads = resources<World>(),
-             .reads_before = resources<Incident, Neighborhoods>(),
-             .writes = resources<LitScene, Incident, GroupLights, Neighborhoods>(),
-             .causes = kLightCauses,
-             .counts = {"groups", "bodies", "local_lights", "shadowed_lights", "shadowed_lights_left_out",
-                        "light_probes", "light_probes_risen", "light_probes_written"}}) {
+      : FramePass({.name = "light",
+                   .reads = resources<World>(),
+                   .reads_before = resources<Incident, Neighborhoods>(),
+                   .writes = resources<LitScene, Incident, GroupLights, Neighborhoods>(),
+                   .causes = kLightCauses,
+                   .counts = {"groups", "bodies", "local_lights", "shadowed_lights",
+                              "shadowed_lights_left_out", "light_probes", "light_probes_risen",
+                              "light_probes_occluded", "light_probes_written"}}) {
     board.offer(scene_);
     board.offer(incident_);
     board.offer(group_lights_);
@@ -92,7 +92,9 @@ class LightPass final : public FramePass {
     if (settings.neighborhoods || neighborhoods.any())
       neighborhoods.chooseCarriers(frame.world, scene_, settings.neighborhoods);
     keepFewerSamples(frame.world, settings.light_probes);
-    hideApart(scene_, proxiesOf(frame.world.residency()).proxies);
+    frame.count("light_probes_occluded",
+                apart_occlusion_.update(scene_, proxiesOf(frame.world.residency()).proxies,
+                                        frame.world.residency().proxiesVersion()));
   }
 
   // Keeps at most `most` light probes per group. Other samples take the light of the nearest kept one.
@@ -167,6 +169,7 @@ class LightPass final : public FramePass {
   }
 
   LitScene scene_;
+  ApartOcclusion apart_occlusion_;
   Incident incident_;  // made once there is something to sample
   GroupLights group_lights_;
   ChangeGate<bool, bool, bool, float, std::uint32_t> carriers_;  // settings that choose carriers

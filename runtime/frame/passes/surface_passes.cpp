@@ -84,7 +84,7 @@ class ReflectionProbesPass final : public FramePass {
       : FramePass({.name = "reflection probes",
                    .reads = resources<World, Diffuse, Glossy, PatchBounces, Neighborhoods, evaluate::SeenSky,
                                       Prefiltered, LocalShadows>(),
-                   .writes = resources<ReflectionProbes, Surfaces, Prefiltered, LocalShadows>(),
+                   .writes = resources<ReflectionProbes, Surfaces, Prefiltered>(),
                    .causes = kLightCauses | Cause::Materials,
                    .counts = {"reflection_probes", "reflection_probes_captured"}}),
         voxelizer_(std::move(voxelizer)),
@@ -227,7 +227,7 @@ class ReflectionProbesPass final : public FramePass {
     const auto draw = [&](const spec::View& view, const spec::Size& size) -> Result<void> {
       if (Result<void> done = prepareSurfaces(frame, surfaces, modules_, view, SurfaceView::Final); !done)
         return done;
-      frame.write<LocalShadows>().bind(view, size);
+      frame.read<LocalShadows>().bind(view, size);
       keys_.bind(view, size);
       surfaces.drawOpaque(frame.world, frame.counters());
       surfaces.drawBlended(frame.world, frame.counters());
@@ -269,8 +269,7 @@ class RasterPass final : public FramePass {
             {.name = "raster",
              .reads = resources<World, LitScene, GroupLights, Diffuse, Neighborhoods, PatchBounces, Sky,
                                 evaluate::SeenSky, Prefiltered, LocalShadows, KeyShadows, ReflectionProbes>(),
-             .writes = resources<PictureTargets, Surfaces, std::optional<DataView>, Prefiltered, LocalShadows,
-                                 KeyShadows>(),
+             .writes = resources<PictureTargets, Surfaces, std::optional<DataView>, Prefiltered>(),
              .causes = kPictureCauses,
              .counts = {"draws_out_of_view"}}),
         surfaces_(std::move(surfaces)),
@@ -305,8 +304,8 @@ class RasterPass final : public FramePass {
   Result<void> drawLight(FrameContext& frame) {
     const spec::View& view = *frame.view;
     const SurfaceView shown = frame.options.view.view;
-    frame.write<LocalShadows>().bind(view, frame.targets.size());
-    frame.write<KeyShadows>().bind(view, frame.targets.size());
+    frame.read<LocalShadows>().bind(view, frame.targets.size());
+    frame.read<KeyShadows>().bind(view, frame.targets.size());
     clearTargets(frame);
     surfaces_.drawOpaque(frame.world, frame.counters());
     if (shown == SurfaceView::Final || shown == SurfaceView::Wireframe) {

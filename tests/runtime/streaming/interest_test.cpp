@@ -1,5 +1,6 @@
 #include "runtime/streaming/interest.hpp"
 
+#include <limits>
 #include <numeric>
 
 #include <glm/ext/matrix_clip_space.hpp>
@@ -132,6 +133,16 @@ TEST(Interest, SizeIsByAngleAndLessBehindTheCamera) {
   EXPECT_NEAR(far, 0.25f * near, 1e-5f);
   EXPECT_LT(behind, 0.2f * near);
   EXPECT_GT(inside, 10.0f);
+}
+
+// Sizes order what streams in, and NaN has no place in an order.
+TEST(Interest, WhatHasNoPlaceCountsAsNear) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  spec::View view;
+  view.clip_from_view = glm::perspective(0.8f, 1.5f, 0.1f, 1000.0f);
+  const float inside = sizeSeen(view, glm::vec3(0.0f), 1.0f);
+  EXPECT_EQ(sizeSeen(view, glm::vec3(nan), 1.0f), inside);
+  EXPECT_EQ(sizeSeen(view, {0, 0, -11}, nan), inside);
 }
 
 }  // namespace lambent::streaming
