@@ -79,11 +79,5 @@ TEST_F(Accuracy, WrongUsageIsExitCode2AndOneLine) {
   EXPECT_FALSE(std::filesystem::exists(out()));
 }
 
-TEST_F(Accuracy, ASceneThatIsMissingIsOneLine) {
-  const Outcome outcome = run(LAMBENT_PROGRAM, {"accuracy", (folder / "no.glb").string(), "-o", out()});
-  EXPECT_EQ(outcome.exit_code, 1);
-  expectOneLine(outcome, "lambent", "a missing scene");
-}
-
 }  // namespace
 }  // namespace lambent

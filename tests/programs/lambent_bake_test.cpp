@@ -34,14 +34,6 @@ TEST_F(LambentProgram, BakesBesideTheSceneUnlessToldWhere) {
   EXPECT_EQ(fileCount(), files);
 }
 
-TEST_F(LambentProgram, BakesTheSameBytesWithAnyNumberOfThreads) {
-  ASSERT_EQ(bakeHello("one.lmb.glb", {"--threads", "1"}).exit_code, 0);
-  ASSERT_EQ(bakeHello("two.lmb.glb", {"--threads", "4000000000"}).exit_code, 0);
-  ASSERT_GT(bytesOf(folder / "one.lmb.glb").size(), 1000u);
-  EXPECT_TRUE(bytesOf(folder / "one.lmb.glb") == bytesOf(folder / "two.lmb.glb"));
-  EXPECT_EQ(fileCount(), 2);
-}
-
 TEST_F(LambentProgram, BakesAgainOnlyWhenSomethingChangedOrForced) {
   const auto bundle = folder / "hello.lmb.glb";
   ASSERT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);

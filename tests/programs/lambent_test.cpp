@@ -251,16 +251,6 @@ TEST_F(LambentProgram, RefusesAReferenceThatTakesTooMuchMemoryAndSaysHowMuchItTa
   EXPECT_GT(took, 0.5 * megabytes);
 }
 
-TEST_F(LambentProgram, WritesAReferenceForAScreenToo) {
-  const Outcome outcome = lambent({"reference", kHello, "-o", path("a.exr"), "--png", path("a.png"), "--size",
-                                   "16x16", "--spp", "4", "--light", "constant:1,1,1"});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(bytesOf(folder / "a.png").starts_with("\x89PNG"));
-  const Outcome nowhere = lambent({"reference", kHello, "-o", path("b.exr"), "--png", path("no/such/a.png")});
-  EXPECT_EQ(nowhere.exit_code, 1);
-  expectOneLine(nowhere, "lambent", "--png");
-}
-
 TEST_F(LambentProgram, ComparesPictures) {
   const std::string picture = LAMBENT_SOURCE_DIR "/tests/golden/hello_sky.exr";
   const Outcome same = lambent({"compare", picture, picture, "--reference2", picture, "--json"});

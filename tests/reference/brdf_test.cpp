@@ -81,23 +81,6 @@ TEST(Brdf, OfMetalsReflectsOfUniformLightWhatQuadratureSays) {
   }
 }
 
-TEST(Brdf, OfAnisotropicMetalsReflectsOfUniformLightWhatQuadratureSays) {
-  for (const float roughness : {0.1f, 0.4f, 0.8f})
-    for (const float strength : {0.3f, 1.0f}) {
-      const Floor floor = knownFloor(metal(roughness, strength));
-      for (const float cosine : {1.0f, 0.5f, 0.1f, 0.001f})
-        for (const float azimuth : {0.0f, 1.0f, 4.7f}) {
-          const Reflector reflector = floor.towards(viewAt(cosine, azimuth));
-          EXPECT_NEAR(reflector.alpha.x, glm::mix(roughness * roughness, 1.0f, strength * strength), 1e-6f);
-          EXPECT_NEAR(reflector.alpha.y, roughness * roughness, 1e-6f);
-          const glm::dvec2 parts = lobeOf(reflector).albedo(glm::dvec3(reflector.view));
-          const double seen = furnace(reflector).g;
-          EXPECT_NEAR(seen, parts.x + parts.y, 0.005) << roughness << " " << strength << " " << cosine;
-          EXPECT_LE(seen, 1.0 + 1e-5);
-        }
-    }
-}
-
 TEST(Brdf, OfDielectricsGivesTheDiffusePartWhatTheSpecularOneLeaves) {
   for (const float ior : {1.0f, 1.5f, 2.5f, 0.0f})
     for (const float roughness : kRoughness) {
@@ -118,24 +101,6 @@ TEST(Brdf, OfDielectricsGivesTheDiffusePartWhatTheSpecularOneLeaves) {
         EXPECT_LE(seen.r, 1.003) << ior << " " << roughness << " " << cosine;
       }
     }
-}
-
-TEST(Brdf, MixesDielectricAndMetal) {
-  gltf::Material material = metal(0.4f, 0.5f);
-  material.metallic = 0.25f;
-  material.base_color = glm::vec4(0.8f, 0.4f, 0.2f, 1.0f);
-  material.specular = 0.5f;
-  material.specular_color = {1.0f, 2.0f, 100.0f};
-  const Floor floor = knownFloor(material);
-  for (const float cosine : {1.0f, 0.4f, 0.05f}) {
-    const Reflector reflector = floor.towards(viewAt(cosine));
-    const glm::dvec3 f0 = 0.75 * 0.5 * glm::dvec3(0.04, 0.08, 1.0) + 0.25 * glm::dvec3(0.8, 0.4, 0.2);
-    const glm::dvec2 parts = lobeOf(reflector).albedo(glm::dvec3(reflector.view));
-    const glm::dvec3 specular = f0 * parts.x + (0.75 * 0.5 + 0.25) * parts.y;
-    const glm::dvec3 expected = specular + 0.75 * (1.0 - specular.b) * glm::dvec3(0.8, 0.4, 0.2);
-    const glm::dvec3 seen = furnace(reflector);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], 0.005) << cosine << " " << c;
-  }
 }
 
 TEST(Brdf, IsReciprocalInItsSpecularPart) {

@@ -69,16 +69,5 @@ TEST(Depth, OfCutOutsIsWhatIsSeenThroughThem) {
   }
 }
 
-TEST(Depth, DoesNotKnowVolumes) {
-  for (const float density : {0.5f, 1e6f}) {
-    Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 2.0f, 4)});
-    testing::place(scene, testing::even(density, glm::vec3(0.5f), 0.0f, {0, 2, 0}, {8, 1, 8}));
-    const std::vector<float> depths = depthsOf(scene, 40.0f);
-    EXPECT_EQ(count(depths, 5.0f) + count(depths, kNone), depths.size());
-    EXPECT_GT(count(depths, 5.0f), 100u);
-    EXPECT_GT(count(depths, kNone), 100u);
-  }
-}
-
 }  // namespace
 }  // namespace lambent::baker::reference

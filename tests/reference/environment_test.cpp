@@ -61,15 +61,6 @@ TEST(Environment, SamplesProbesOfEveryLayout) {
   }
 }
 
-TEST(Environment, SamplesSeveralLightsTogether) {
-  spec::DistantLights lights;
-  lights.environment_maps = {environment_map(sh::ImageLayout::LatLong, 32, 16)};
-  lights.discs = {{.direction = {0, 1, 0}, .radius_rad = 0.3f, .radiance = glm::vec3(40)},
-                  {.direction = {1, 0, 0}, .radius_rad = 2.0f, .radiance = glm::vec3(1)}};
-  lights.constant = glm::vec3(0.5f);
-  expectSamplesBringTheLight(lights, 0.01);
-}
-
 TEST(Environment, TurnsItsProbes) {
   spec::DistantLights lights;
   lights.environment_maps = {environment_map(sh::ImageLayout::LatLong, 32, 16)};

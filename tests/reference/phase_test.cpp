@@ -58,15 +58,6 @@ TEST(Phase, DrawsDirectionsByItsValue) {
   }
 }
 
-TEST(Phase, OfManyBandsIsWhole) {
-  for (const float g : {-0.4f, 0.0f, 0.5f})
-    for (const float cosine : {-1.0f, -0.3f, 0.6f, 1.0f}) {
-      EXPECT_NEAR(phaseValue(g, cosine, 40), phaseValue(g, cosine), 1e-6f) << g << " " << cosine;
-      EXPECT_NEAR(phaseValue(g, cosine, 1), 0.25f / kPi, 1e-7f);
-      EXPECT_NEAR(phaseValue(g, cosine, 2), (1.0f + 3.0f * g * cosine) * 0.25f / kPi, 1e-7f);
-    }
-}
-
 TEST(Phase, StaysFiniteWhereItIsSharpest) {
   for (const float g : {std::nextafter(1.0f, 0.0f), std::nextafter(-1.0f, 0.0f)})
     for (const glm::vec2 u : {glm::vec2(0, 0), glm::vec2(0.5f), glm::vec2(std::nextafter(1.0f, 0.0f))}) {

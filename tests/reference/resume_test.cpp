@@ -82,25 +82,6 @@ TEST_F(Resume, BeginsAnewWhenTheWordsOrTheBytesAreOthers) {
   EXPECT_EQ(damaged->image.texels, other->image.texels);
 }
 
-TEST_F(Resume, WithAVolumeEndsInTheSameBytesAndKnowsItsDensity) {
-  SceneVolume volume = testing::even(4.0f, glm::vec3(0.9f), 0.3f, {0, 0.8f, 0});
-  testing::place(scene, volume);
-  request.options = {.size = {32, 24}, .spp = 200};
-  const auto whole = folder / "whole.exr", parts = folder / "parts.exr", other = folder / "other.exr";
-  ASSERT_TRUE(renderUntil(whole, 2.0));
-  ASSERT_FALSE(renderUntil(parts, 0.3));
-  ASSERT_TRUE(std::filesystem::copy_file(checkpointOf(parts), checkpointOf(other)));
-  const auto gone_on = renderUntil(parts, 2.0);
-  ASSERT_TRUE(gone_on);
-  EXPECT_TRUE(gone_on->notices.empty());
-  EXPECT_EQ(bytesOf(parts), bytesOf(whole));
-  scene.volumes[0].density[5] += 0.1f;
-  const auto anew = renderUntil(other, 2.0);
-  ASSERT_TRUE(anew);
-  EXPECT_EQ(anew->notices.size(), 1u);
-  EXPECT_NE(bytesOf(other), bytesOf(whole));
-}
-
 TEST(Film, RestoresOnlyWhatItSaved) {
   const auto path = std::filesystem::path(::testing::TempDir()) / fmt::format("film-{}.partial", ::getpid());
   const std::vector<PixelSum> row = {
@@ -131,50 +112,6 @@ TEST(Film, RestoresOnlyWhatItSaved) {
   }
   EXPECT_EQ(same.done(0), 4u) << "unchanged";
   std::filesystem::remove(path);
-}
-
-// Writes a checkpoint of version 1, which had no depths: 56 bytes per pixel.
-TEST(Film, RefusesCheckpointsOfTheVersionBefore) {
-  const auto path = std::filesystem::path(::testing::TempDir()) / fmt::format("old-{}.partial", ::getpid());
-  const auto writeFilm = [&](std::uint32_t version, std::size_t doubles_a_pixel) {
-    std::string bytes = "LBRP";
-    const auto put = [&](const auto& value) {
-      bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
-    };
-    put(version);
-    put(std::uint64_t{42});  // digest
-    put(std::uint32_t{2});
-    put(std::uint32_t{1});
-    put(1.5);               // seconds
-    put(std::uint32_t{4});  // samples done of the one row
-    put(std::uint64_t{16});
-    for (std::size_t i = 0; i < 2 * doubles_a_pixel; ++i) put(0.25);
-    put(bundle::checksum(std::as_bytes(std::span(bytes))));
-    testing::writeBytes(path, bytes);
-  };
-  Film film({2, 1}, 42);
-  writeFilm(1, 7);
-  EXPECT_FALSE(film.restore(path));
-  writeFilm(1, 8);
-  EXPECT_FALSE(film.restore(path));
-  EXPECT_EQ(film.done(0), 0u) << "unchanged";
-  writeFilm(2, 8);
-  EXPECT_TRUE(film.restore(path)) << "so that it was not refused for something else";
-  EXPECT_EQ(film.done(0), 4u);
-  std::filesystem::remove(path);
-}
-
-TEST(Film, ToldItsErrorByTwoReplicas) {
-  // Means 2 and 4 of two samples each: the mean 3 has the standard error |2 - 4| / 2.
-  Film film({1, 1}, 0);
-  film.addRow(0, 4,
-              std::vector<PixelSum>{{.replicas = {glm::dvec3(4), glm::dvec3(8)}, .alpha = 1, .rays = 0}});
-  ASSERT_TRUE(film.standardError());
-  EXPECT_NEAR(*film.standardError(), 1.0 / 3.0, 1e-12);
-  Film once({1, 1}, 0);
-  once.addRow(0, 1,
-              std::vector<PixelSum>{{.replicas = {glm::dvec3(4), glm::dvec3(0)}, .alpha = 1, .rays = 0}});
-  EXPECT_FALSE(once.standardError());
 }
 
 }  // namespace

@@ -82,20 +82,6 @@ TEST(SphereLight, IsHiddenByWhatStandsBeforeItOnly) {
   expectMean(under(ceiling({4, 1, 0})), open / 2.0, kOffset);  // its edge stands under the middle
 }
 
-TEST(SphereLight, FillsAWhiteBallByTheGeometricSeries) {
-  // Light that met the wall once gives L r²/R² rho, and each further bounce rho times as much.
-  Scene scene = sceneOf({testing::flipped(testing::icosphere({0, 0, 0}, 2.0f, 5))});
-  scene.materials[0].base_color = glm::vec4(0.6f, 0.6f, 0.6f, 1);
-  const auto seen = [&](std::optional<std::uint32_t> bounces) {
-    return measured(scene, {0.2f, 0.1f, 0}, {0.3f, -1.9f, 0.4f}, {sphere({0, 0, 0}, 0.5f, 8.0f)},
-                    samples(64, bounces));
-  };
-  const double once = 0.6 * 8.0 * 0.25 / 4.0;
-  expectMean(seen(0), once, 2e-3);  // a polyhedron, nearer to its middle than a ball
-  expectMean(seen(1), once * 1.6, 3e-3);
-  expectMean(seen({}), once / 0.4, 6e-3);
-}
-
 // Returns E/pi on the axis: L r²/(r² + h²).
 TEST(DiscLight, LightsWhatLiesOnItsAxisInClosedForm) {
   for (const float height : {0.002f, 0.5f, 2.0f, 30.0f}) {
@@ -117,14 +103,6 @@ TEST(DiscLight, ShinesToOneSideAndNotAlongItsPlane) {
   EXPECT_EQ(floor(disc({3, 0, 0}, {0, -1, 0}, 1.0f, 7.0f)), 0.0) << "in the plane of the floor";
   EXPECT_EQ(floor(disc({0, 1, 0}, {0, -1, 0}, 0.0f, 7.0f)), 0.0) << "radius 0";
   EXPECT_EQ(floor(sphere({0, 1, 0}, 0.0f, 7.0f)), 0.0);
-}
-
-TEST(DiscLight, TiltedLightsByItsFormFactor) {
-  // The distance is large enough for one direction: L A cos cos / d² / pi, with an error of 1e-4 at a hundred
-  // radii.
-  const auto light = disc({60, 80, 0}, {-1, -1, 0}, 1.0f, 1e4f);
-  const double cosine = (0.6 + 0.8) / std::sqrt(2.0);
-  expectMean(measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0}, {light}, samples(64, 0)), cosine * 0.8, 3e-4);
 }
 
 TEST(ShapeLights, HardPlacesStayFinite) {

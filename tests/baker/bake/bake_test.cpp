@@ -257,20 +257,6 @@ TEST_F(Bake, AHouseWithOutsideFacesHasAsManyBouncesAsItsRoom) {
   EXPECT_GT(report->pass_energy.size(), 8u) << "half of the light is left by each bounce";
 }
 
-TEST_F(Bake, KnowsWhenABundleIsUpToDate) {
-  Scene scene = twoGroups();
-  EXPECT_FALSE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));
-  ASSERT_TRUE(bakeTo("stage.lmb.glb", scene, unrefinedDraft()));
-  EXPECT_TRUE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));
-  BakeOptions other = unrefinedDraft();
-  other.threads = 1;
-  EXPECT_TRUE(isUpToDate(scene, other, folder_ / "stage.lmb.glb"));
-  other.order = 4;
-  EXPECT_FALSE(isUpToDate(scene, other, folder_ / "stage.lmb.glb"));
-  scene.meshes[0].primitives[0].mesh.positions[3].y += 0.01f;
-  EXPECT_FALSE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));
-}
-
 TEST_F(Bake, IsOutOfDateWhenLightsMaterialsOrMotionChange) {
   Scene scene = twoGroups();
   scene.lights = {gltf::Light{}};

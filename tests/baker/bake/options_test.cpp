@@ -52,17 +52,6 @@ TEST(BakeOptions, TellWhatIsChosenFromWhatIsGiven) {
   expectBack(fixed, Quality::Standard);
 }
 
-TEST(BakeOptions, LetLightLeaveByMoreBandsAtHighQuality) {
-  BakeOptions options;
-  EXPECT_EQ(options.exitOrder(), 7);
-  options.quality = Quality::High;
-  EXPECT_EQ(options.exitOrder(), 9);
-  options.order = 6;  // beside which visibility is known for fewer
-  EXPECT_EQ(options.exitOrder(), 8);
-  options.bounces = 0;
-  EXPECT_EQ(options.exitOrder(), options.glossy_order);
-}
-
 TEST(BakeOptions, DoNotComeFromSettingsThatAreNotAll) {
   const auto whole = BakeOptions().settings();
   for (const auto& [name, word] : whole) {

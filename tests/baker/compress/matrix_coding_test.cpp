@@ -192,35 +192,6 @@ TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
   EXPECT_LE(coded.error, 0.0101f) << "with more axes in each";
 }
 
-TEST(MatrixCoding, KeepsItsBoundWithFewerClustersWhereMemoryEndsOnTheWayThere) {
-  // Four clusters are estimated to need less than this but need more; one needs 451.
-  constexpr std::size_t kCount = 3000;
-  transfer::TransferShape grey = kBounced;
-  grey.full_channels = 1;
-  const std::vector<float> vectors = slowlyFalling(kCount, grey.size());
-  const std::size_t most = 800 * grey.size() * sizeof(float);
-  const CodedTransfer coded =
-      codeTransfer(vectors, kCount, grey,
-                   {.bound = 0.05f, .most_components = kAllComponents, .most_expanded_bytes = most});
-  EXPECT_LE(coded.error, 0.05f) << coded.codebook.axis_counts.size() << " clusters";
-  EXPECT_LE(expandedBytes(coded), most);
-}
-
-TEST(MatrixCoding, NeverGetsWorseWithMoreAxesWhereTheAssignmentStays) {
-  const Points points = pointsOf(wanderingVisibility(2000, 5), 81);
-  for (const std::uint32_t count : {1u, 8u, 64u}) {
-    ClusterIds ids = seedClusters(points, count, evenly(points));
-    std::vector<Cluster> clusters = fitClusters(points, ids, /*held_out=*/false, evenly(points));
-    double before = std::numeric_limits<double>::infinity();
-    for (int axes = 0; axes <= 16; ++axes) {
-      keepSoMany(clusters, axes);
-      const double now = squaredDistance(points, ids, clusters);
-      EXPECT_LE(now, before * (1.0 + 1e-6)) << count << " clusters, " << axes << " axes";
-      before = now;
-    }
-  }
-}
-
 TEST(MatrixCoding, IsVectorQuantizationWithoutAxes) {
   const auto vectors = wanderingVisibility(1000, 9);
   const CodedTransfer coded =
@@ -267,29 +238,6 @@ TEST(MatrixCoding, FindsTheLeadingComponentsOfLongMatrices) {
   const Eigen::MatrixXf best = leading.axes.leftCols(6).cast<float>();
   const Points rest = points - best * (best.transpose() * points);
   EXPECT_LT(double{rest.squaredNorm()} / 700.0, 1e-3 * energy) << "six parts were mixed";
-}
-
-TEST(MatrixCoding, KeepsABoundWithoutLeadingComponentsWhereAllOfThemMayBeTaken) {
-  transfer::TransferShape grey = kBounced;
-  grey.full_channels = 1;
-  std::mt19937 random(23);
-  std::normal_distribution<float> normal;
-  std::vector<float> vectors(600 * grey.size());
-  for (float& value : vectors) value = normal(random);
-  const auto error = [&](std::uint32_t most, float loose) {
-    return codeTransfer(vectors, 600, grey,
-                        {.bound = 0.1f, .clusters = 1, .most_components = most, .loose_bound = loose})
-        .error;
-  };
-  const float few = error(kUsualComponents, 0.0f);
-  EXPECT_GT(few, 0.5f);
-  EXPECT_LE(error(kAllComponents, 0.0f), 0.1f);
-  // At 0.4 all components are coded coarsely, because few would leave out more than that; at 0.99 few
-  // suffice.
-  const float loose = error(kUsualComponents, 0.4f);
-  EXPECT_LE(loose, 0.4f);
-  EXPECT_GT(loose, 0.35f);
-  EXPECT_EQ(error(kUsualComponents, 0.99f), few);
 }
 
 TEST(MatrixCoding, StaysFiniteAndTheSameOnDegenerateInput) {

@@ -234,14 +234,6 @@ TEST(BrokenScene, SurvivesFlippedBytes) {
   }
 }
 
-TEST(BrokenScene, MissingAndForeignFilesAreTold) {
-  TemporaryFolder folder;
-  EXPECT_NE(importScene(folder.path() / "none.glb").error().problem.find("no such file"), std::string::npos);
-  EXPECT_FALSE(importScene(folder.path()));
-  EXPECT_FALSE(importScene(folder.write("empty.gltf", "")));
-  EXPECT_FALSE(importScene(folder.write("picture.glb", "\x89PNG\r\n\x1a\n")));
-}
-
 TEST(BrokenScene, NoFileOfTheValidatorsCorpusDoesHarm) {
   const auto corpus = testing::sharedFile("invalid/gltf-validator");
   LAMBENT_NEEDS_SHARED(corpus);

@@ -114,13 +114,6 @@ TEST(Stages, AreWrittenAsCheckpointsOnlyWhenItIsTime) {
   EXPECT_EQ(Squares().run(&*cache, KeepWhen::Due)->found, 0u);
 }
 
-TEST(Stages, DoWithoutACache) {
-  Squares squares;
-  EXPECT_EQ(squares.run(nullptr)->computed, kItems);
-  EXPECT_EQ(squares.computed, kRanges);
-  squares.expectAll();
-}
-
 TEST(Stages, KeepRowsOfItemsThatHaveOne) {
   // Items from 10 on have a row of three values in one list, all of them one in the middle of another.
   std::vector<float> rows(3 * 20, 0.0f), all(100, 0.0f);

@@ -227,16 +227,4 @@ TEST_F(BakeQueueTest, AfterAKillTheShareGoesOnFromWhatWasKeptAndNeverFalls) {
   EXPECT_LT(shares.front(), 1.0);
 }
 
-TEST_F(BakeQueueTest, AFailureIsAStateAndTheNextJobGoesOn) {
-  writeBytes(folder / "broken.glb", "not a scene");
-  write(folder / "good.glb", assets::hello());
-  BakeQueue queue({.work_folder = folder / "work"});
-  const JobId broken = queue.add(request("broken", quick()));
-  const JobId good = queue.add(request("good", quick()));
-  ASSERT_TRUE(eventually([&] { return !queue.busy(); }));
-  EXPECT_EQ(stateOf(queue, broken).phase, JobPhase::Failed);
-  ASSERT_TRUE(stateOf(queue, broken).error);
-  EXPECT_EQ(stateOf(queue, good).phase, JobPhase::Done);
-}
-
 }  // namespace lambent::baker

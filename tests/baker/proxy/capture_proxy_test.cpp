@@ -343,13 +343,5 @@ TEST(CaptureProxy, OfHardCasesIsReadable) {
   check(lamps);
 }
 
-TEST(CaptureProxy, IsTheSameForAnyNumberOfThreads) {
-  const Transport t(sceneOf({meshOf(assets::teapot(6, 1.0f))}));
-  std::vector<std::byte> one, two;
-  withThreads(1, [&] { one = bundle::encodeCaptureProxy(proxyOf(t)); });
-  withThreads(2, [&] { two = bundle::encodeCaptureProxy(proxyOf(t)); });
-  EXPECT_EQ(one, two);
-}
-
 }  // namespace
 }  // namespace lambent::baker

@@ -72,14 +72,6 @@ TEST(Knobs, AllValuesOfAllKnobsAreUnderstoodByTheBake) {
   }
 }
 
-TEST(Knobs, TheBaseComesFirstAndOnce) {
-  const auto settings = settingsOf({.surfaces = true}, Quality::Standard, {});
-  ASSERT_TRUE(settings);
-  EXPECT_EQ(settings->front().name(), "standard quality");
-  EXPECT_EQ(std::ranges::count(*settings, "standard quality", &Setting::name), 1);
-  EXPECT_EQ(std::ranges::count(*settings, "high quality", &Setting::name), 1);
-}
-
 TEST(Knobs, GlossyScenesHaveAtMostSixBands) {
   const auto settings = settingsOf({.surfaces = true, .glossy = true}, Quality::Draft, {});
   ASSERT_TRUE(settings);
@@ -94,20 +86,6 @@ TEST(Knobs, AskedOnesComeWithTheValuesThatAreNamed) {
   EXPECT_EQ((*settings)[2].bake.rays, 300u);
   EXPECT_EQ((*settings)[2].command(), "lambent bake --quality draft --rays 300");
   EXPECT_EQ((*settings)[3].command(), "lambent-demo --keys off");
-}
-
-TEST(Knobs, TheUsualValueOfAFrameGivesNoOption) {
-  const std::vector<std::string> asked = {"keys=auto"};
-  const auto settings = settingsOf({}, Quality::Draft, asked);
-  ASSERT_TRUE(settings);
-  EXPECT_TRUE(settings->back().frame_words.empty());
-}
-
-TEST(Knobs, UnknownNamesAndValuesAreErrors) {
-  for (const char* word : {"knob", "rays=few", "order=9", "max-memory=half", "max-memory=101%"}) {
-    const std::vector<std::string> asked = {word};
-    EXPECT_FALSE(settingsOf({}, Quality::Draft, asked)) << word;
-  }
 }
 
 }  // namespace

@@ -150,21 +150,6 @@ TEST(OverlayKeys, OfManyKeyLightsTheStrongestHaveBoxesOrTheOneThatIsChosen) {
   EXPECT_EQ(one[without].to_ws.x, 4.0f) << "the fourth";
 }
 
-TEST(OverlayLines, OfBoxesThatOverlapTheWantedOrElseTheNearestIsDrawnWhole) {
-  const auto at = [](float x, bool wanted = false) {
-    return PlacedBox{{glm::vec3(-1.0f), glm::vec3(1.0f)},
-                     glm::translate(glm::mat4(1.0f), glm::vec3(x, 0.0f, 0.0f)),
-                     wanted};
-  };
-  const glm::vec3 eye(10.0f, 0.0f, 0.0f);
-  // Three are in a row, and one is apart; they are seen from the right.
-  EXPECT_EQ(drawnWhole({at(0.0f), at(1.5f), at(3.0f), at(-9.0f)}, eye),
-            (std::vector<bool>{false, false, true, true}));
-  EXPECT_EQ(drawnWhole({at(0.0f, true), at(1.5f), at(3.0f), at(-9.0f)}, eye),
-            (std::vector<bool>{true, false, true, true}));
-  EXPECT_EQ(drawnWhole({at(2.0f), at(2.0f)}, eye), (std::vector<bool>{true, false})) << "just one of two";
-}
-
 TEST(OverlayLines, GlyphsOfLightsHaveTheirSizeAndPointWhereTheyShine) {
   using Kind = scene::LocalLightComponent::Kind;
   const glm::mat4 place = glm::translate(glm::mat4(1.0f), {0.0f, 4.0f, 0.0f});

@@ -85,19 +85,6 @@ TEST_F(ViewTest, BandEnergyOfAnOpenSphereIsTheClosedFormForPlainAndMappedSurface
     }
 }
 
-TEST_F(ViewTest, TheErrorEstimateIsWhatTheBundleRecords) {
-  ViewStage stage(openSphere(), {kWhite}, linearOptions({SurfaceView::ErrorEstimate}));
-  const bundle::CellTransfer& transfer = stage.world.description(0).groups[0].cells[0].transfers[0];
-  std::size_t count = 0;
-  for (const glm::vec4& texel : stage.picture().texels) {
-    if (texel.a == 0.0f) continue;
-    ++count;
-    ASSERT_NEAR(texel.r, transfer.error, 1e-5f * transfer.error);
-  }
-  EXPECT_GT(count, 300u);
-  EXPECT_GT(transfer.error, 0.0f);
-}
-
 TEST_F(ViewTest, ImportanceIsWhatTheBundleRecordsAndNothingWhereNobodySees) {
   BundleBuilder builder = openSphere();
   builder.importance([](const glm::vec3& normal) { return normal.z > 0.0f ? 4.0f : 0.0f; });

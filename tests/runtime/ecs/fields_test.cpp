@@ -55,13 +55,6 @@ TEST(Fields, RoundTripThroughTextByNameAlone) {
   EXPECT_EQ(read.derived, 0) << "what is not declared is not carried";
 }
 
-TEST(Fields, AreVisitedInTheOrderOfDeclaration) {
-  const Lamp lamp;
-  std::vector<std::string> order;
-  forEachField(lamp, [&](const auto& field, auto&) { order.emplace_back(field.name); });
-  EXPECT_EQ(order, (std::vector<std::string>{"power", "samples", "lit", "note"}));
-}
-
 TEST(Fields, RangesIncludeTheirEndsAndExcludeNan) {
   const auto power = std::get<0>(Lamp::fields());
   EXPECT_EQ(power.unit, "cd");

@@ -183,16 +183,6 @@ TEST_F(FrameGlossy, AMovingCameraUnderStillLightDispatchesNothing) {
   EXPECT_EQ(stage.counts("glossy")->dispatches, 2u);
 }
 
-TEST_F(FrameGlossy, AMatteSceneHasNoPassAndNoTableForGloss) {
-  BundleBuilder builder(5);
-  gltf::Material material;
-  builder.add({sphereMesh(12, 24), material});
-  GlossyStage stage(builder, {kWideSun});
-  stage.render();
-  EXPECT_FALSE(stage.counts("glossy"));
-  EXPECT_TRUE(stage.world.residency().bundles()[0].brdf_tables.empty());
-}
-
 TEST_F(FrameGlossy, MeasuredSurfacesShowTheirTable) {
   bundle::BrdfTable table{.order = 4, .lobes = 3, .angles = 3, .values = {}};
   for (std::size_t node = 0; node < 3; ++node)

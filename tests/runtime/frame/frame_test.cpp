@@ -257,17 +257,6 @@ TEST_F(FrameTest, CountsNegativePixelsAndKeepsTheirSignInLinearPictures) {
   EXPECT_LT(at(image, 32, 32).r, 0.0f);  // clamped, it could not be held against a reference
 }
 
-TEST_F(FrameTest, DisplayPicturesShowNegativePixelsAsBlack) {
-  const auto dark = [](const glm::vec3&) { return std::vector<float>(9, -0.1f); };
-  FrameOptions options;
-  options.settings.exposure_ev = 0.0f;
-  Stage stage(BundleBuilder().transfer(dark).add({quadMesh(), colored(glm::vec4(1.0f))}), {kWhite}, options);
-  stage.render();
-  const spec::Rgba8Image image = stage.frame->readDisplay();
-  for (std::size_t channel = 0; channel < 3; ++channel)
-    EXPECT_EQ(image.texels[4 * (32 * 64 + 32) + channel], 0);
-}
-
 TEST_F(FrameTest, DisplayPicturesAreExposedAndOpaque) {
   FrameOptions options;
   options.settings.exposure_ev = 0.0f;
@@ -441,36 +430,6 @@ TEST_F(FrameTest, ABudgetLeavesTheLastPlanesAwayAndStillShowsEverything) {
     before = error;
   }
   EXPECT_EQ(before, 0.0) << "with room for all it is the same picture";
-}
-
-TEST_F(FrameTest, ShowsSeveralBundlesTogether) {
-  const auto at_x = [](float x, glm::vec4 color) {
-    return BundleBuilder().add(
-        {quadMesh(), colored(color), glm::translate(glm::mat4(1.0f), glm::vec3(x, 0, 0))});
-  };
-  Stage stage(at_x(-1.0f, {1, 0, 0, 1}), {kWhite}, kLinear);
-  const std::filesystem::path second = temporary("second.lmb.glb");
-  at_x(1.0f, {0, 1, 0, 1}).write(second);
-  ASSERT_TRUE(stage.world.open(second));
-  ASSERT_TRUE(stage.world.open(second)) << "the same file again is another instance";
-  gpu::Counters counters;
-  ASSERT_TRUE(stage.world.uploadAll(counters));
-  const spec::RgbaImage image = stage.picture();
-  EXPECT_LT(glm::distance(at(image, 26, 32), glm::vec4(1, 0, 0, 1)), 1e-3f);
-  EXPECT_LT(glm::distance(at(image, 38, 32), glm::vec4(0, 1, 0, 1)), 1e-3f);
-  std::filesystem::remove(second);
-}
-
-TEST_F(FrameTest, ManyDrawsOfOneTextureAreOneCall) {
-  BundleBuilder builder;
-  for (int i = 0; i < 20; ++i)
-    builder.add({quadMesh(), colored(glm::vec4(1.0f)),
-                 glm::translate(glm::mat4(1.0f), glm::vec3(static_cast<float>(i), 0, 0))});
-  Stage stage(builder, {kWhite}, kLinear);
-  stage.render();
-  EXPECT_EQ(stage.counts("raster").draws, 21u);
-  EXPECT_EQ(stage.counts("raster").draw_calls, 2u);
-  EXPECT_EQ(stage.counts("shade").dispatches, 3u);
 }
 
 }  // namespace lambent::frame

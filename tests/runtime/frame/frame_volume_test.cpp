@@ -122,15 +122,6 @@ TEST_F(FrameVolume, ABundleOfNothingButAVolumeIsFramedAndShows) {
   EXPECT_EQ(stage.frame->counts()["volumes_drawn"], 1u);
 }
 
-TEST_F(FrameVolume, ATurnedGroupIsBoundedByItsCorners) {
-  BuiltVolume turned = mist(1.0f);
-  turned.rest_rotation = glm::angleAxis(glm::radians(45.0f), glm::vec3(0, 0, 1));
-  turned.rest_translation = {5.0f, 0.0f, 0.0f};
-  VolumeStage stage(BundleBuilder().volume(turned));
-  const scene::Box bounds = scene::worldBounds(stage.world.registry());
-  EXPECT_LT(glm::distance(bounds.max, glm::vec3(5.0f + std::sqrt(2.0f), std::sqrt(2.0f), 1.0f)), 1e-5f);
-}
-
 TEST_F(FrameVolume, EverythingWhiteUnderWhiteLightIsWhite) {
   // A sphere is half in the mist, a quad is behind it, then the sky. All light is uniform.
   BundleBuilder builder;
@@ -218,44 +209,6 @@ TEST_F(FrameVolume, IsNotShadedWhileTheViewPassesBy) {
   EXPECT_EQ(stage.frame->counts()["draws_out_of_view"], 0u);
   stage.frame->forget();
   EXPECT_EQ(stage.picture().texels, came_into_view.texels) << "as if it had been in view all the time";
-}
-
-TEST_F(FrameVolume, ASceneWithoutOneHasNoPassForIt) {
-  VolumeStage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}));
-  stage.render();
-  EXPECT_EQ(stage.pass("volume"), nullptr);
-  EXPECT_EQ(stage.pass("march"), nullptr);
-  EXPECT_EQ(stage.frame->counts()["volumes"], 0u);
-  EXPECT_EQ(stage.frame->kept<effects::volume::Volume>().textureBytes(), 0u);
-}
-
-TEST_F(FrameVolume, AnEmptyVolumeLeavesThePictureToTheLastBit) {
-  BundleBuilder builder;
-  builder.add({sphereMesh(12, 24), colored({0.3f, 0.5f, 0.8f, 1.0f})});
-  BuiltVolume empty = mist(1.0f);
-  empty.density = [](const glm::vec3&) { return 0.0f; };
-  VolumeStage without(builder), with(BundleBuilder(builder).volume(empty));
-  EXPECT_EQ(with.picture().texels, without.picture().texels);
-  EXPECT_EQ(with.frame->counts()["volumes_drawn"], 0u);
-}
-
-TEST_F(FrameVolume, TheWordsOfTransferChooseTheBlock) {
-  BuiltVolume volume = mist(1e4f);
-  volume.shape.full_channels = 3;
-  volume.transfer = [](std::uint32_t) {
-    std::vector<float> blocks(4 * 9, 0.0f);
-    blocks[0] = 0.25f * 0.282094792f;
-    for (const int c : {1, 2, 3})
-      blocks[static_cast<std::size_t>(9 * c)] = 0.2f * static_cast<float>(c + 1) * 0.282094792f;
-    return blocks;
-  };
-  for (const auto& [mode, expected] : {std::pair{TransferMode::Full, glm::vec3(0.4f, 0.6f, 0.8f)},
-                                       {TransferMode::Shadowed, glm::vec3(0.25f)},
-                                       {TransferMode::Unshadowed, glm::vec3(1.0f)}}) {
-    VolumeStage stage(BundleBuilder().volume(volume), {kWhite},
-                      linearOptions([&](FrameOptions& options) { options.settings.transfer = mode; }));
-    EXPECT_LT(glm::distance(glm::vec3(middle(stage.picture())), expected), 1e-3f);
-  }
 }
 
 TEST_F(FrameVolume, ForwardScatteringShowsTheSunBehindIt) {

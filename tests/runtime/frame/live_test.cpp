@@ -234,14 +234,4 @@ TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
   EXPECT_EQ(stage.reason("tone map"), "exposure: 1");
 }
 
-TEST_F(LiveFrame, SettingsOutOfRangeChangeNothing) {
-  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), diffuseColored(glm::vec4(1.0f))}), {kSun});
-  FrameSettings settings = stage.frame->settings();
-  settings.order = 9;
-  const Result<void> set = stage.frame->setSettings(settings);
-  ASSERT_FALSE(set);
-  EXPECT_NE(set.error().line().find("order"), std::string::npos);
-  EXPECT_EQ(stage.frame->settings(), FrameSettings{});
-}
-
 }  // namespace lambent::frame

@@ -126,17 +126,6 @@ TEST(Environment, ReportsTexelsThatAreNotFiniteInBothSets) {
     for (int channel = 0; channel < 3; ++channel) EXPECT_TRUE(std::isfinite(c[channel]));
 }
 
-TEST(Environment, ProjectsAProbeToItsMeanRadiance) {
-  const auto file = testing::sharedFile("probes/uffizi_latlong_small.hdr");
-  LAMBENT_NEEDS_SHARED(file);
-  const auto environment = Environment::create({spec::EnvironmentMapLight{.file = file, .layout = {}}});
-  ASSERT_TRUE(environment) << environment.error().line();
-  // Band 0 is the mean times sqrt(4 pi); the mean luminance of this environment map is 0.882, or 0.885
-  // for readers that take RGBE mantissas at the middle of their steps.
-  const glm::vec3 mean = environment->light().c[0] / 3.5449077f;
-  EXPECT_NEAR(glm::dot(mean, glm::vec3(0.2126f, 0.7152f, 0.0722f)), 0.885f, 0.004f);
-}
-
 // Makes an image of one radiance.
 void writeEnvironmentMap(const std::filesystem::path& file, float radiance) {
   const spec::RgbaImage image{
@@ -188,13 +177,6 @@ TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
   EXPECT_FALSE(environment->setLights(withSun(22)));
   EXPECT_EQ(environment->version(), version);
   EXPECT_EQ(environment->discs().size(), 2u);
-}
-
-TEST(Environment, NamesAProbeThatIsNotThere) {
-  const auto environment =
-      Environment::create({spec::EnvironmentMapLight{.file = "nowhere.hdr", .layout = {}}});
-  ASSERT_FALSE(environment);
-  EXPECT_EQ(environment.error().subject, "nowhere.hdr");
 }
 
 }  // namespace lambent::lighting

@@ -19,16 +19,6 @@ std::vector<double> evaluated(int order, const glm::dvec3& dir) {
   return y;
 }
 
-TEST(ShBasis, IndexesBandsInOrder) {
-  EXPECT_EQ(coefficientCount(5), 25);
-  int i = 0;
-  for (int l = 0; l < kMaxBasisOrder; ++l)
-    for (int m = -l; m <= l; ++m, ++i) {
-      EXPECT_EQ(coefficientIndex(l, m), i);
-      EXPECT_EQ(bandOf(i), l);
-    }
-}
-
 TEST(ShBasis, HasTheConstantsOfTheConventions) {
   const double x = 0.6, y = -0.48, z = 0.64;
   const auto values = evaluated(3, {x, y, z});

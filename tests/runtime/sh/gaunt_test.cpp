@@ -32,21 +32,6 @@ std::vector<float> randomFunction(Random& random, int bands) {
   return f;
 }
 
-// These are the numbers of nonzero coefficients if all three functions have n bands, from several sources.
-TEST(Gaunt, HasTheKnownNumberOfTermsInEqualBands) {
-  constexpr std::array<std::size_t, 5> kKnown = {10, 83, 353, 1158, 2907};
-  for (int n = 2; n <= 6; ++n) {
-    const GauntTable table = makeGauntTable(n, n);
-    EXPECT_EQ(table.visibilityBands(), 2 * n - 1);
-    ASSERT_EQ(table.offsets.size(), countOf(n) + 1);
-    EXPECT_EQ(table.offsets.back(), table.terms.size());
-    EXPECT_EQ(std::count_if(table.terms.begin(), table.terms.end(),
-                            [&](const GauntTerm& term) { return term.k < countOf(n); }),
-              kKnown[static_cast<std::size_t>(n - 2)])
-        << n << " bands";
-  }
-}
-
 // The selection rules are that l_k is between |l_i - l_j| and l_i + l_j, and that the sum is even.
 TEST(Gaunt, IsOrderedSymmetricAndObeysTheTriangleRule) {
   for (const auto& [in, out] : {std::pair{5, 5}, {6, 6}, {5, 4}, {4, 6}, {1, 3}, {5, 9}}) {

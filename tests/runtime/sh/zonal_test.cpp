@@ -177,29 +177,6 @@ TEST(ShZonal, TruncatesDiscsAsTabulated) {
     }
 }
 
-// Returns the unoccluded irradiance of a receiver that faces a disc, relative to the exact pi sin² a.
-TEST(ShZonal, LightsAFacingReceiverAsTabulated) {
-  struct Row {
-    double degrees;
-    std::array<double, 4> ratio;
-  };
-  constexpr std::array<int, 4> kOrders = {2, 3, 5, 7};
-  const std::array<Row, 5> table = {{{1, {.7500, 1.0625, .9688, 1.0195}},
-                                     {20, {.7578, 1.0514, .9814, 1.0067}},
-                                     {40, {.7831, 1.0225, 1.0026, .9966}},
-                                     {60, {.8333, .9896, 1.0042, 1.0028}},
-                                     {90, {1, 1, 1, 1}}}};
-  const glm::vec3 normal(0.36f, 0.48f, -0.8f);
-  for (const Row& row : table)
-    for (std::size_t k = 0; k < kOrders.size(); ++k) {
-      const double radius = row.degrees * kDegree;
-      const LightVector light = discLight(kOrders[k], normal, radius, {1, 1, 1});
-      const double irradiance_over_pi = static_cast<double>(cosineConvolved(light).evaluate(normal).r);
-      const double ratio = irradiance_over_pi / (std::sin(radius) * std::sin(radius));
-      EXPECT_NEAR(ratio, row.ratio[k], 1.1e-4) << row.degrees << " degrees, order " << kOrders[k];
-    }
-}
-
 TEST(ShZonal, TransferAndConvolutionAgree) {
   Random random(12);
   const LightVector light =

@@ -83,13 +83,6 @@ TEST_F(SpecImage, HdrRoundTripStaysWithinHalfAStepOfTheLargestChannel) {
   }
 }
 
-TEST_F(SpecImage, HdrWritesTheSameBytesTwiceAndIsStableUnderRewriting) {
-  const fs::path a = folder_ / "a.hdr", b = folder_ / "b.hdr";
-  ASSERT_TRUE(writeHdr(a, noise(64, 32, 1)));
-  ASSERT_TRUE(writeHdr(b, readHdr(a).value()));
-  EXPECT_EQ(read(a), read(b));
-}
-
 TEST_F(SpecImage, HdrReadsOldRunsFlatTexelsAndCommentLines) {
   std::string bytes = "#?RGBE\n# made by hand\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 9\n";
   bytes += std::string("\x80\x40\x20\x81", 4);  // 1, 0.5, 0.25
@@ -183,25 +176,6 @@ TEST_F(SpecImage, ExrReadsTiledHalfFloatsAndOffsetDataWindows) {
   EXPECT_EQ(image->depths[8 * 3 + 4], 34.0f);
   EXPECT_EQ(image->depths[8 * 1 + 4], std::numeric_limits<float>::infinity());
   EXPECT_EQ(image->depths[8 * 3 + 6], std::numeric_limits<float>::infinity());
-}
-
-TEST_F(SpecImage, ExrTakesGreyAndNamesTheChannelsOfOthers) {
-  const auto writeChannel = [&](const char* name) {
-    const float value = 2.5f;
-    Imf::Header header(1, 1);
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    Imf::FrameBuffer source;
-    source.insert(name, Imf::Slice::Make(Imf::FLOAT, &value, header.dataWindow()));
-    Imf::OutputFile file((folder_ / "one.exr").c_str(), header);
-    file.setFrameBuffer(source);
-    file.writePixels(1);
-  };
-  writeChannel("Y");
-  EXPECT_EQ(readExr(folder_ / "one.exr").value().texels[0], glm::vec4(2.5f, 2.5f, 2.5f, 1.0f));
-  writeChannel("depth.Z");
-  const Result<RgbaImage> depth = readExr(folder_ / "one.exr");
-  ASSERT_FALSE(depth);
-  EXPECT_NE(depth.error().line().find("it has depth.Z"), std::string::npos) << depth.error().line();
 }
 
 TEST_F(SpecImage, PngRoundTripIsExact) {

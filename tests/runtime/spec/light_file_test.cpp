@@ -245,13 +245,5 @@ TEST_F(LightFile, DeepPicturesAndCroppedOnesWithoutAnyTexelAreRefusedByName) {
       << outside.error().line();
 }
 
-TEST_F(LightFile, TheSameSkyIsAsBrightWithAnExposureInItsHeader) {
-  const fs::path flat = testing::sharedFile("found/hdr-exposure/flat.hdr");
-  LAMBENT_NEEDS_SHARED(flat);
-  const RgbImage a = readLightImage(flat).value(),
-                 b = readLightImage(testing::sharedFile("found/hdr-exposure/exposure.hdr")).value();
-  EXPECT_EQ(a.texels, b.texels);
-}
-
 }  // namespace
 }  // namespace lambent::spec

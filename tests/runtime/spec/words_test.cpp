@@ -47,21 +47,6 @@ TEST(SpecLight, ParsesConstantSunAndProbe) {
   EXPECT_FALSE(std::get<EnvironmentMapLight>(*environment_map).layout);
 }
 
-TEST(SpecLight, ParsesAllWordsAndGivesMapsTheLayout) {
-  const std::vector<std::string> words{"constant:1,1,1", "map.hdr"};
-  const auto layoutOf = [](const Result<std::vector<Light>>& lights) {
-    return std::get<EnvironmentMapLight>(lights->at(1)).layout;
-  };
-  const Result<std::vector<Light>> named = parseLights(words, "angular-map"), by_shape = parseLights(words);
-  ASSERT_TRUE(named && by_shape);
-  EXPECT_EQ(named->size(), 2u);
-  EXPECT_EQ(layoutOf(named), sh::ImageLayout::AngularMap);
-  EXPECT_FALSE(layoutOf(by_shape));
-  EXPECT_FALSE(parseLights(words, "cube"));
-  EXPECT_FALSE(parseLights(std::vector<std::string>{"map.hdr", "lamp"}));
-  EXPECT_TRUE(parseLights({})->empty());
-}
-
 TEST(SpecLight, RefusesEverythingElseAndShowsTheForm) {
   for (const char* wrong : {"constant:", "constant:1", "constant:1,2", "constant:1,2,3,4", "constant:1,2,-3",
                             "constant:1,2,nan", "constant:1,2,3e38", "constant:1,2,3 "}) {
@@ -152,13 +137,6 @@ TEST(SpecLight, NoGarbageCrashesOrSlipsThrough) {
     }
   }
   EXPECT_LT(accepted, 1000);
-}
-
-TEST(SpecLight, LayoutsAreCalledAsTheShRoomCallsThem) {
-  for (const auto layout :
-       {sh::ImageLayout::LatLong, sh::ImageLayout::AngularMap, sh::ImageLayout::VerticalCross})
-    EXPECT_EQ(parseLightLayout(sh::name(layout)).value(), layout);
-  EXPECT_FALSE(parseLightLayout("cube"));
 }
 
 TEST(SpecLight, AzimuthZeroIsFrontAndNinetyIsRight) {
