@@ -24,13 +24,6 @@ std::string written(const Scene& scene, const std::string& name) {
   return bytes;
 }
 
-std::size_t vertexCount(const Scene& scene) {
-  std::size_t count = 0;
-  for (const Node& node : scene.nodes)
-    count += scene.meshes[static_cast<std::size_t>(node.mesh)].mesh.positions.size();
-  return count;
-}
-
 TEST(AssetsScenes, EveryMeshIsSound) {
   for (const Scene& scene : {gallery(), hello(), knot(), metals()})
     for (const MaterialMesh& mesh : scene.meshes) expectSound(mesh.mesh, scene.name + " " + mesh.name);

@@ -16,8 +16,6 @@
 namespace lambent::assets {
 namespace {
 
-constexpr float kNewellHeight = 3.15f;
-
 TEST(AssetsTeapot, IsSound) {
   // The lip of the spout is so sharp that coarse faces bend far from their corners' normals.
   expectSound(teapot(12, 1.0f), "teapot 12", 0.2f);

@@ -1,5 +1,4 @@
 // Tests `lambent bake` as a user sees it: when it bakes, what it reports, and how it ends and goes on.
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
@@ -227,40 +226,6 @@ TEST_F(LambentProgram, SaysThatABakeCannotBeResumedAndBakesOn) {
   EXPECT_NE(baked.err.find("journal"), std::string::npos) << baked.err;
   EXPECT_NE(baked.err.find("--resume will not know of this bake"), std::string::npos) << baked.err;
   EXPECT_TRUE(std::filesystem::exists(folder / "hello.lmb.glb"));
-}
-
-// Kills the bake as soon as this many results are in the cache, whatever it does at that moment.
-TEST_F(LambentProgram, GoesOnWhereItWasKilled) {
-  const std::string cache = path("cache");
-  const std::vector<std::string> options = {"--rays", "4096", "--cache", cache};
-  ASSERT_EQ(bakeHello("whole.lmb.glb", {"--rays", "4096"}).exit_code, 0);
-  const auto entries = [&] {
-    std::ptrdiff_t count = 0;
-    std::error_code ignored;
-    for (std::filesystem::recursive_directory_iterator at(cache, ignored), end; !ignored && at != end;
-         at.increment(ignored))
-      count += at->path().extension() == ".entry";
-    return count;
-  };
-  for (const std::ptrdiff_t enough : {1, 6}) {
-    std::vector<std::string> arguments = {"bake",      kHello,  "-o",        path("killed.lmb.glb"),
-                                          "--quality", "draft", "--threads", "1"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const ::pid_t id = start(LAMBENT_PROGRAM, arguments);
-    int status = 0;
-    while (entries() < enough && ::waitpid(id, &status, WNOHANG) == 0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    ::kill(id, SIGKILL);
-    ::waitpid(id, &status, 0);
-    EXPECT_FALSE(std::filesystem::exists(path("killed.lmb.glb")));
-  }
-  std::vector<std::string> rest = options;
-  rest.push_back("--json");
-  const Outcome resumed = bakeHello("resumed.lmb.glb", rest);
-  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
-  const json report = json::parse(resumed.out);
-  EXPECT_GT(report["refinement"]["raysKept"].get<double>(), 0.0);
-  EXPECT_TRUE(bytesOf(path("resumed.lmb.glb")) == bytesOf(path("whole.lmb.glb")));
 }
 
 }  // namespace

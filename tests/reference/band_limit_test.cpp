@@ -15,7 +15,6 @@ using testing::expectMean;
 using testing::kPlace;
 using testing::limited;
 using testing::measured;
-using testing::samples;
 using testing::sceneOf;
 
 // Returns E/pi on a surface with nothing around.
@@ -121,38 +120,6 @@ TEST(BandLimit, OfASphereOverAnOpenPlaneIsSeenFromThePlace) {
     }
   // Light of two bands is not zero below the plane; light without a band limit is.
   EXPECT_GT(expected(2, {0.1, -0.3, 1.7}, 0.3), 0.05);
-}
-
-TEST(BandLimit, OfASphereThatBouncesIsSeenFromWhereItBounces) {
-  // A speck looks up at a wide ceiling that is lit by a light below the speck. Straight above, the light is 3
-  // m away; further out it is far.
-  const Scene scene = [] {
-    Scene out =
-        sceneOf({testing::grid({0, 0, 0}, 0.01f, 1), testing::flipped(testing::grid({0, 1, 0}, 200.0f, 1))});
-    gltf::Material grey = testing::matte();
-    grey.base_color = glm::vec4(0.5f, 0.5f, 0.5f, 1);
-    testing::paint(out, 1, grey);
-    return out;
-  }();
-  const spec::SphereLight sphere{.position_ws = {0, -2, 0}, .radius_m = 1, .radiance = glm::vec3(30)};
-  for (const int order : {1, 4}) {
-    double expected = 0.0;
-    constexpr int kCount = 2000;
-    for (int k = 0; k < kCount; ++k) {
-      const double sine2 = (k + 0.5) / kCount;  // even in what a cosine weighs
-      const glm::dvec3 there(std::sqrt(sine2 / (1.0 - sine2)), 1, 0);
-      const auto light = sh::sphereLight(order, glm::dvec3(sphere.position_ws) - there,
-                                         double{sphere.radius_m}, sphere.radiance);
-      expected += 0.5 * open(light, {0, -1, 0}) / kCount;
-    }
-    Options options = limited(1024, order);
-    options.bounces = 1;
-    const auto seen = measured(scene, {0, 0.5f, 0.2f}, {0, 0, 0}, {sphere}, options);
-    expectMean(seen, expected, 1e-3);
-    EXPECT_LT(seen.error.g, 0.01 * expected);
-    options.bounces = 0;
-    EXPECT_NEAR(measured(scene, {0, 0.5f, 0.2f}, {0, 0, 0}, {sphere}, options).mean.g, 0.0, 1e-3);
-  }
 }
 
 TEST(BandLimit, OfLightsInHardPlacesStaysFinite) {

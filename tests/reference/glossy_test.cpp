@@ -13,7 +13,6 @@
 namespace lambent::baker::reference {
 namespace {
 
-using testing::expectMean;
 using testing::Ggx;
 using testing::kPlace;
 using testing::limited;

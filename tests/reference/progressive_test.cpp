@@ -2,7 +2,6 @@
 #include "reference/progressive.hpp"
 
 #include <chrono>
-#include <filesystem>
 #include <thread>
 
 #include <gtest/gtest.h>

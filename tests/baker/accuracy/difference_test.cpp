@@ -1,7 +1,6 @@
 #include "baker/accuracy/difference.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,7 @@
 #include "baker/compress/cpca.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <random>
 
 #include <glm/geometric.hpp>
@@ -54,17 +52,6 @@ std::vector<float> decoded(const CodedTransfer& coded, std::size_t planes = 1000
   for (const CodedPlane& plane : coded.planes)
     if (codes.size() < planes) codes.push_back(plane.codes);
   return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
-}
-
-// Holds everything that is written to the file, before entropy coding.
-std::vector<std::byte> bytesOf(const CodedTransfer& coded) {
-  std::vector<std::byte> all = transfer::encodeCodebook(coded.codebook);
-  const auto append = [&](const std::vector<std::byte>& bytes) {
-    all.insert(all.end(), bytes.begin(), bytes.end());
-  };
-  append(transfer::encodeClusterIds(coded.cluster_of, static_cast<std::uint32_t>(coded.codebook.clusters())));
-  for (const CodedPlane& plane : coded.planes) append(transfer::encodeWeightPlane(plane.codes, plane.bits));
-  return all;
 }
 
 std::size_t codesOf(const CodedTransfer& coded) {

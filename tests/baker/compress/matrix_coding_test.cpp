@@ -57,25 +57,6 @@ std::vector<float> wanderingVisibility(std::size_t count, unsigned seed) {
   return out;
 }
 
-// Makes clusters, each with its own directions, whose variances fall slowly.
-std::vector<float> slowlyFalling(std::size_t count, std::size_t size) {
-  std::mt19937 random(3);
-  std::normal_distribution<float> normal;
-  constexpr std::size_t kHeaps = 8, kRank = 200;
-  std::vector<std::vector<float>> axes(kHeaps);
-  for (auto& of_heap : axes)
-    for (std::size_t i = 0; i < kRank * size; ++i) of_heap.push_back(normal(random));
-  std::vector<float> out(count * size);
-  for (std::size_t s = 0; s < count; ++s) {
-    const std::vector<float>& from = axes[s * kHeaps / count];
-    for (std::size_t r = 0; r < kRank; ++r) {
-      const float share = (r == 0 ? 1.0f : normal(random)) / static_cast<float>(1 + r);
-      for (std::size_t i = 0; i < size; ++i) out[s * size + i] += share * from[r * size + i];
-    }
-  }
-  return out;
-}
-
 // Makes reflections of low rank plus a little noise.
 std::vector<float> bouncedMatrices(std::size_t count, unsigned seed, float noise) {
   std::mt19937 random(seed);

@@ -12,7 +12,6 @@
 namespace lambent::baker {
 namespace {
 
-using testing::box;
 using testing::grid;
 using testing::icosphere;
 using testing::sceneOf;

@@ -39,7 +39,7 @@ struct Squares {
   }
 };
 
-constexpr std::size_t kRanges = 143, kItems = 1000;
+constexpr std::size_t kItems = 1000;
 
 TEST(Stages, GoOnWhereTheyWereStopped) {
   const TemporaryFolder folder;

@@ -18,7 +18,6 @@
 namespace lambent::baker {
 namespace {
 
-using testing::Transport;
 
 LightProbes choose(const SampleSet& samples, LightProbeCount count) {
   glm::vec3 low(1e30f), high(-1e30f);

@@ -1,6 +1,5 @@
 #include "baker/sweep/knobs.hpp"
 
-#include <algorithm>
 #include <iterator>
 #include <set>
 

@@ -333,22 +333,5 @@ TEST_F(BundleFile, CodebooksOfAnotherSizeThanDescribedAreRefusedBeforeUse) {
   refused([](CellTransfer& transfer) { transfer.axes = 0; });
 }
 
-TEST_F(BundleFile, APlainGltfFileIsSaidNotToBeBaked) {
-  std::string json = R"({"asset":{"version":"2.0"}})";
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  const auto word = [](std::size_t value) {
-    const auto v = static_cast<std::uint32_t>(value);
-    std::string bytes(4, '\0');
-    std::memcpy(bytes.data(), &v, 4);
-    return bytes;
-  };
-  replace("glTF" + word(2) + word(28 + json.size()) + word(json.size()) + "JSON" + json + word(0) +
-          std::string("BIN\0", 4));
-  const auto reader = Reader::open(path_);
-  ASSERT_FALSE(reader);
-  EXPECT_NE(reader.error().problem.find("without baked transfer"), std::string::npos)
-      << reader.error().line();
-}
-
 }  // namespace
 }  // namespace lambent::bundle

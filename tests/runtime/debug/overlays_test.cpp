@@ -123,33 +123,6 @@ TEST(OverlayKeys, AKeyLightHasItsOutlineOnTheSkyAnArrowTheWayItShinesAndItsBox) 
   EXPECT_LT(of_dark.color.a, both[0].color.a);
 }
 
-TEST(OverlayKeys, OfManyKeyLightsTheStrongestHaveBoxesOrTheOneThatIsChosen) {
-  std::vector<spec::Disc> keys;
-  std::vector<KeyShadows::ShownRegion> maps;
-  for (int i = 0; i < 9; ++i) {
-    keys.push_back({.direction = glm::normalize(glm::vec3(i, 5, 1)),
-                    .radius_rad = 0.05f,
-                    .radiance = glm::vec3(static_cast<float>(10 + i))});
-    KeyRegion region;
-    region.max = glm::dvec2(1.0 + i);  // tells the boxes apart
-    region.range = 1.0;
-    maps.push_back({.light = keys.back(), .region = region, .texels = 256});
-  }
-  const scene::Box world{glm::vec3(-1.0f), glm::vec3(1.0f)};
-  const auto drawn = [&](std::span<const KeyShadows::ShownRegion> regions,
-                         std::optional<std::size_t> chosen) {
-    std::vector<OverlayLine> lines;
-    appendKeys(keys, regions, chosen, world, {}, lines);
-    return lines;
-  };
-  const std::size_t without = drawn({}, {}).size();
-  const std::vector<OverlayLine> all = drawn(maps, {}), one = drawn(maps, 3);
-  EXPECT_EQ(all.size(), without + 12 * kMostBoxes);
-  ASSERT_EQ(one.size(), without + 12);
-  EXPECT_EQ(all[without].to_ws.x, 9.0f) << "the strongest";
-  EXPECT_EQ(one[without].to_ws.x, 4.0f) << "the fourth";
-}
-
 TEST(OverlayLines, GlyphsOfLightsHaveTheirSizeAndPointWhereTheyShine) {
   using Kind = scene::LocalLightComponent::Kind;
   const glm::mat4 place = glm::translate(glm::mat4(1.0f), {0.0f, 4.0f, 0.0f});

@@ -80,21 +80,6 @@ TEST(Registry, ComponentsMayBeMoveOnlyAndAreDestroyedWithTheirEntity) {
   EXPECT_EQ(counted.use_count(), 1);
 }
 
-template <std::size_t>
-struct Numbered {
-  std::size_t value;
-};
-
-template <std::size_t... Is>
-void checkManyTypes(std::index_sequence<Is...>) {
-  Registry registry;
-  const Entity entity = registry.create();
-  (registry.emplace<Numbered<Is>>(entity, Is), ...);
-  EXPECT_TRUE(((registry.get<Numbered<Is>>(entity).value == Is) && ...));
-  registry.destroy(entity);
-  EXPECT_EQ((registry.count<Numbered<Is>>() + ...), 0u);
-}
-
 // Compares the registry with the simplest model: a map per component, and a set of living entities.
 TEST(Registry, DoesWhatMapsDoOverRandomOperations) {
   struct Model {

@@ -1,5 +1,4 @@
 #include <set>
-#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>

@@ -4,7 +4,6 @@
 #include <limits>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -95,27 +95,6 @@ TEST(ShLocalLight, DiscsAreWhatTheirSolidAngleHolds) {
     }
 }
 
-TEST(ShLocalLight, LowOrdersAreTheFirstBandsOfHighOnes) {
-  const glm::dvec3 center(0.4, 1.0, -0.2), normal(0.1, -1, 0.3);
-  const LightVector disc = discAreaLight(kMaxOrder, center, normal, 0.8, kWarm),
-                    sphere = sphereLight(kMaxOrder, center, 0.8, kWarm),
-                    point = pointLight(kMaxOrder, center, kWarm),
-                    spot = spotLight(kMaxOrder, center, {normal, 0.1, 1.2}, kWarm),
-                    far = directionalLight(kMaxOrder, center, kWarm);
-  for (int order = 1; order <= kMaxOrder; ++order)
-    for (const auto& [low, high] : {std::pair{discAreaLight(order, center, normal, 0.8, kWarm), disc},
-                                    std::pair{sphereLight(order, center, 0.8, kWarm), sphere},
-                                    std::pair{pointLight(order, center, kWarm), point},
-                                    std::pair{spotLight(order, center, {normal, 0.1, 1.2}, kWarm), spot},
-                                    std::pair{directionalLight(order, center, kWarm), far}}) {
-      EXPECT_EQ(low.order, order);
-      const LightVector cut = high.truncated(order);
-      for (std::size_t i = 0; i < low.c.size(); ++i)
-        for (int channel = 0; channel < 3; ++channel)
-          EXPECT_NEAR(low.c[i][channel], cut.c[i][channel], 1e-6f) << order << " " << i;
-    }
-}
-
 TEST(ShLocalLight, ASphereIsASunOfItsAngle) {
   for (const double distance : {1.0001, 1.5, 4.0, 1e5}) {
     const glm::dvec3 to = glm::normalize(glm::dvec3(-1, 0.5, 3));

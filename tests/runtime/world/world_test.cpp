@@ -19,7 +19,6 @@
 
 namespace lambent::frame {
 
-using testing::BundleBuilder;
 using testing::WorldStage;
 using testing::worst;
 using WorldTest = testing::WorldTest;
