@@ -88,18 +88,6 @@ TEST_F(DemoProgram, SaysThatADeviceIsTooOldInOneLine) {
   EXPECT_FALSE(std::filesystem::exists(picture));
 }
 
-TEST_F(DemoProgram, LeavesNoHalfPictureWhereTheDiskIsFull) {
-  LAMBENT_NEEDS_DEVICE();
-  const std::filesystem::path picture = folder / "a.exr";
-  const Outcome outcome =
-      run(bundle() + " --light sun:35,45,6,5 --size 128x128 --headless " + quoted(picture), "ulimit -f 8; ");
-  EXPECT_EQ(outcome.exit_code, 1);
-  expectOneLine(outcome.err);
-  EXPECT_NE(outcome.err.find("a.exr: cannot be written: File too large"), std::string::npos) << outcome.err;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    EXPECT_EQ(entry.path().filename().string().find("a.exr"), std::string::npos) << entry.path();
-}
-
 TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
   for (const char* arguments : {"",
                                 "a.glb --size 0x5",

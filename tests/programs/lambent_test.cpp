@@ -152,36 +152,6 @@ TEST_F(LambentProgram, SaysWhenItsOutputIsLost) {
   }
 }
 
-TEST_F(LambentProgram, DoesNotWaitForPipesInPlaceOfFiles) {
-  const std::string pipe = path("pipe.hdr");
-  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"info", pipe},
-        {"plan", pipe},
-        {"bake", pipe, "-o", path("a.lmb.glb")},
-        {"compare", pipe, pipe},
-        {"reference", kHello, "-o", path("a.exr"), "--light", pipe}}) {
-    const Outcome outcome = lambent(arguments);
-    EXPECT_EQ(outcome.exit_code, 1) << arguments.front();
-    expectOneLine(outcome, "lambent", arguments.front());
-    EXPECT_NE(outcome.err.find("pipe.hdr: is a device or a pipe"), std::string::npos) << outcome.err;
-  }
-}
-
-// A limit on the size of files fails writes as a full disk does, in the middle.
-TEST_F(LambentProgram, LeavesNothingHalfWrittenWhereTheDiskIsFull) {
-  for (const std::string& command :
-       {"bake " + kHello + " --quality draft --progress off -o " + path("a.lmb.glb"),
-        "reference " + kHello + " --size 64x64 --spp 2 --progress off --light constant:1,1,1 -o " +
-            path("a.exr")}) {
-    const Outcome outcome = run("/bin/sh", {"-c", "ulimit -f 8; exec " LAMBENT_PROGRAM " " + command});
-    EXPECT_EQ(outcome.exit_code, 1) << command;
-    expectOneLine(outcome, "lambent", command);
-    EXPECT_NE(outcome.err.find(": cannot be written: File too large"), std::string::npos) << outcome.err;
-    EXPECT_EQ(fileCount(), 0) << command;
-  }
-}
-
 // Root may read and write everything, so another user runs a copy of lambent, which may lie where that user
 // may not go.
 TEST_F(LambentProgram, SaysWhatItMayNotReadOrWrite) {

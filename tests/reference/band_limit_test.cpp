@@ -63,25 +63,6 @@ TEST(BandLimit, IsSignedAndTurnsWithTheLight) {
   expectMean(measured(wall, {0.3f, 3, 0.4f}, {0.1f, 1, 0.2f}, {sun}, options), expected);
 }
 
-TEST(BandLimit, DirectionsDrawnOnTheHorizonHaveADensity) {
-  sh::LightVector light{.order = 5};
-  light.c[0] = glm::vec3(1.0f);
-  for (std::uint32_t n = 0; n < 64; ++n) {
-    const float turn = 2.39996323f * static_cast<float>(n);
-    SurfacePoint point;
-    point.smooth = point.shading = sphereDirection({(static_cast<float>(n) + 0.5f) / 64.0f, turn});
-    point.geometric = glm::normalize(point.smooth + 0.3f * glm::vec3(std::sin(turn), 0.2f, std::cos(turn)));
-    point.albedo = glm::vec3(1.0f);
-    const FirstHit hit(point, 5, light, n);
-    for (std::uint32_t i = 0; i < 256; ++i) {
-      const glm::vec3 ray = hit.sample({0.0f, (static_cast<float>(i) + 0.5f) / 256.0f});
-      if (glm::dot(ray, point.geometric) > 0.0f) {
-        ASSERT_GT(hit.pdf(ray), 0.0f) << n << ' ' << i;
-      }
-    }
-  }
-}
-
 // Computes Σ_k c_k l_k of a diffuse white plane that faces up.
 double openWithKernel(const sh::LightVector& light, int order, glm::vec3 normal) {
   return open(light.truncated(std::min(light.order, order)), normal);

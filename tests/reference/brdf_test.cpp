@@ -120,21 +120,6 @@ TEST(Brdf, IsReciprocalInItsSpecularPart) {
   }
 }
 
-TEST(Brdf, DensitiesOfTheLobeAreThoseOfAllDirections) {
-  for (const float roughness : kRoughness)
-    for (const float strength : {0.0f, 0.8f})
-      for (const float cosine : kCosines) {
-        const glm::vec2 alpha = ggxAlpha(roughness, strength);
-        const glm::vec3 view = viewAt(cosine);
-        double sum = 0.0;
-        Ggx{double{alpha.x}, double{alpha.y}}.integrate(
-            glm::dvec3(view), [&](const glm::dvec3& s, double weight) {
-              sum += weight * double{ggxPdf(alpha, view, glm::vec3(s))};
-            });
-        EXPECT_NEAR(sum, 1.0, 0.005) << roughness << " " << strength << " " << cosine;
-      }
-}
-
 // Returns chi-square over 10 x 20 cells of the sphere.
 void expectDrawnByDensity(const Reflector& reflector, const char* what) {
   constexpr int kRows = 10, kColumns = 20, kFine = 24;

@@ -57,17 +57,5 @@ TEST(Depth, OfBlendedSurfacesIsWhatStandsBehindThem) {
   EXPECT_EQ(count(nothing, kNone), nothing.size());
 }
 
-TEST(Depth, OfCutOutsIsWhatIsSeenThroughThem) {
-  Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 20.0f, 4), testing::grid({0, 3, 0}, 20.0f, 4)});
-  gltf::Material leaf = testing::matte();
-  leaf.alpha_mode = gltf::AlphaMode::Mask;
-  for (const auto& [alpha, depth] : {std::pair(0.4f, 5.0f), std::pair(0.6f, 2.0f)}) {
-    leaf.base_color.a = alpha;
-    testing::paint(scene, 1, leaf);
-    const std::vector<float> depths = depthsOf(scene, 40.0f);
-    EXPECT_EQ(count(depths, depth), depths.size()) << alpha;
-  }
-}
-
 }  // namespace
 }  // namespace lambent::baker::reference

@@ -225,19 +225,6 @@ double received(const sh::LightVector& kernel, const Open& open) {
   return sum;
 }
 
-TEST(Glossy, LimitedKernelsSeeAWallInFrontOfHalfTheSky) {
-  // The wall also hides its image below the floor.
-  Scene scene = glossyFloor(glossy(1.0f, 0.5f));
-  addWall(scene);
-  const glm::vec3 eye = kPlace + glm::vec3(1.0f, 0.6f, 0.2f);
-  const double expected = received(kernelOf(glossy(1.0f, 0.5f), glm::normalize(eye - kPlace), 5),
-                                   [](const glm::vec3& s) { return s.x > 0.0f; });
-  const auto seen = measured(scene, eye, kPlace, {kSun}, limited(1024, 5, 5));
-  // Rays start a little above the place, and the floor's kernel is good to 0.1 %.
-  EXPECT_NEAR(seen.mean.g, expected, 4.0 * seen.error.g + 4e-3 * std::abs(expected));
-  EXPECT_LT(seen.error.g, 0.02 * std::abs(expected));
-}
-
 TEST(Glossy, LimitedKernelsMirrorWhatLiesBelowSmoothNormalsInThem) {
   // Bundles' surfaces may have such normals. Above a tilted normal, all directions that do not point to the
   // wall are open, also those below the floor, whose mirror images do not point to it either.

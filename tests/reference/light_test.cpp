@@ -109,12 +109,6 @@ TEST(Reference, InASphereWithAnOpeningHasTheRadianceOfEachBounce) {
   }
 }
 
-TEST(Reference, ShowsTheSkyWithoutCoverage) {
-  const auto sky = measured(boxOverFloor(), {3, 3, 3}, {10, 9, 10}, {testing::uniform(0.25f)}, samples(1));
-  EXPECT_EQ(sky.alpha, 0.0);
-  EXPECT_NEAR(sky.mean.r, 0.25, 1e-6);
-}
-
 TEST(Reference, IsTheSameForAnyNumberOfThreads) {
   Request request{.lights = {testing::uniform(1.0f), spec::SunLight{.elevation_deg = 50, .angle_deg = 3}},
                   .camera = spec::OrbitCamera{30, 20, 2, 40},

@@ -1,6 +1,5 @@
 // Tests that interrupted work resumes from its checkpoint and gives the same bytes.
 #include <fstream>
-#include <limits>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -80,38 +79,6 @@ TEST_F(Resume, BeginsAnewWhenTheWordsOrTheBytesAreOthers) {
   ASSERT_TRUE(damaged);
   EXPECT_EQ(damaged->notices.size(), 1u);
   EXPECT_EQ(damaged->image.texels, other->image.texels);
-}
-
-TEST(Film, RestoresOnlyWhatItSaved) {
-  const auto path = std::filesystem::path(::testing::TempDir()) / fmt::format("film-{}.partial", ::getpid());
-  const std::vector<PixelSum> row = {
-      {.replicas = {glm::dvec3(1, 2, 3), glm::dvec3(3, 2, 1)}, .alpha = 1, .depth = 2.5, .rays = 7},
-      {.replicas = {glm::dvec3(0.5), glm::dvec3(-0.5)}, .alpha = 0.25, .rays = 9}};
-  Film film({2, 1}, 42);
-  film.addRow(0, 4, row);
-  film.seconds = 1.5;
-  ASSERT_TRUE(film.save(path));
-  Film same({2, 1}, 42), other({2, 1}, 43);
-  EXPECT_TRUE(same.restore(path));
-  EXPECT_EQ(same.image().texels, film.image().texels);
-  EXPECT_EQ(same.image().texels[0], glm::vec4(1, 1, 1, 1));
-  EXPECT_EQ(same.image().depths, (std::vector<float>{2.5f, std::numeric_limits<float>::infinity()}));
-  EXPECT_EQ(same.half(1).depths, same.image().depths);
-  EXPECT_EQ(same.rays(), 16u);
-  EXPECT_EQ(same.done(0), 4u);
-  EXPECT_EQ(same.seconds, 1.5);
-  EXPECT_FALSE(other.restore(path));
-  const std::string bytes = bytesOf(path);
-  for (std::size_t at = 0; at < bytes.size(); at += 5) {
-    std::string wrong = bytes;
-    wrong[at] ^= 0x20;
-    testing::writeBytes(path, wrong);
-    EXPECT_FALSE(same.restore(path)) << at;
-    testing::writeBytes(path, bytes.substr(0, at));
-    EXPECT_FALSE(same.restore(path)) << at;
-  }
-  EXPECT_EQ(same.done(0), 4u) << "unchanged";
-  std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -86,24 +86,6 @@ TEST(GridMedium, IsLinearBetweenCentresAndConstantInTheHalfVoxelAtTheFaces) {
   EXPECT_DOUBLE_EQ(inside->metres, 2.0);
 }
 
-TEST(GridMedium, BoundsTheWorkOfAVoxelThatLetsNoLightThrough) {
-  Scene scene;
-  place(scene, medium({16, 16, 16},
-                      [](glm::vec3 p) { return glm::all(glm::lessThan(p, glm::vec3(1))) ? 1e10f : 0.1f; }));
-  std::vector<std::string> notices;
-  const Volumes volumes = Volumes::build(scene, notices);
-  ASSERT_EQ(notices.size(), 1u);
-  EXPECT_NE(notices[0].find("densities above 256 per metre"), std::string::npos) << notices[0];
-  // Beside the voxel, through its block: this took 1e11 steps.
-  Stream random(12);
-  const Ray beside{{-1, 3, 3}, {1, 0, 0}, 0}, through{{-1, 0.5f, 0.5f}, {1, 0, 0}, 0};
-  double sum = 0.0;
-  constexpr int kRays = 2000;
-  for (int i = 0; i < kRays; ++i) sum += volumes.transmittance(beside, kFar, random) / kRays;
-  EXPECT_NEAR(sum, std::exp(-1.6), 0.03);
-  EXPECT_EQ(volumes.transmittance(through, kFar, random), 0.0);
-}
-
 TEST(EyeDepth, IsTheIntegralOfTheDensityAlongTheRay) {
   const Scene scene = wild();
   const Volumes volumes = volumesOf(scene);
@@ -221,16 +203,6 @@ TEST(Tracking, StaysWithinZeroAndOneForAnyDensity) {
     // Four voxels are crossed, which let nothing through at their limit of 256 free paths each.
     EXPECT_NEAR(EyeDepth(volumes, ray, 0.0, kFar).to(kFar) / std::min(double{density}, 4 * 256.0), 1.0, 1e-5);
   }
-}
-
-TEST(Volumes, WithoutDensityOrOnAFlatNodeAreLeftOut) {
-  Scene scene = sceneOf({});
-  place(scene, even(0.0f));
-  place(scene, even(1.0f), glm::scale(glm::mat4(1), {1, 0, 1}));
-  std::vector<std::string> notices;
-  EXPECT_TRUE(Volumes::build(scene, notices).empty());
-  ASSERT_EQ(notices.size(), 1u);
-  EXPECT_NE(notices[0].find("flat"), std::string::npos);
 }
 
 }  // namespace

@@ -45,28 +45,6 @@ double transmittanceOf(float density) {
   return std::exp(-double{density});
 }
 
-Scene stillLife() {
-  Scene scene = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1), testing::box({0.2f, 0.6f, 0}, {1, 1, 1}, 1)});
-  scene.materials[0].base_color = glm::vec4(0.8f, 0.7f, 0.6f, 1);
-  return scene;
-}
-
-TEST(VolumePicture, OfAnEmptyVolumeIsThatOfNoneToTheLastBit) {
-  Request request{.lights = {uniform(0.5f), spec::SunLight{.elevation_deg = 50, .angle_deg = 3},
-                             spec::SphereLight{.position_ws = {1, 2, 1}, .radius_m = 0.2f}},
-                  .camera = spec::OrbitCamera{30, 20, 2, 40},
-                  .options = {.size = {40, 30}, .spp = 20}};
-  for (const auto& limit : {std::optional<BandLimit>(), std::optional(BandLimit{5, 5})}) {
-    request.options.band_limit = limit;
-    const Report without = rendered(stillLife(), request);
-    Scene with = stillLife();
-    place(with, even(0.0f, glm::vec3(1), 0, {0, 0.5f, 0}));
-    const Report report = rendered(with, request);
-    EXPECT_EQ(report.image.texels, without.image.texels);
-    EXPECT_EQ(report.rays, without.rays);
-  }
-}
-
 TEST(VolumePicture, OfABlackVolumeIsTheSkyThroughIt) {
   for (const float density : {1e-6f, 0.5f, 4.0f, 1e6f}) {
     const auto seen = measured(cloud(density, glm::vec3(0)), kFront, kBack, {uniform(2.0f)}, samples(4));
@@ -186,33 +164,6 @@ TEST(VolumePicture, ThinIsTheLightConvolvedWithThePhaseFunction) {
     }
 }
 
-TEST(VolumePicture, CutToFiveBandsIsSignedInsideAVolume) {
-  // Compares single scattering in a dense cube under a small sun with a sum over directions and places, which
-  // uses the cube's chords.
-  const spec::SunLight sun{.azimuth_deg = 0, .elevation_deg = 90, .angle_deg = 5, .radiance = glm::vec3(100)};
-  const auto light = spec::loadDistantLights({sun})->lightVector().truncated(4);
-  const double density = 3.0, y = -0.3;
-  double expected = 0.0;
-  constexpr int kPlaces = 64, kDirections = 4000;
-  for (int i = 0; i < kPlaces; ++i) {
-    const double depth = (i + 0.5) / kPlaces;
-    const glm::dvec3 at(0.1, y, 0.5 - depth);
-    double arriving = 0.0;
-    for (int k = 0; k < kDirections; ++k) {
-      const glm::dvec3 dir = testing::evenDirection(k, kDirections);
-      double chord = 1e9;
-      for (int a = 0; a < 3; ++a) chord = std::min(chord, (std::copysign(0.5, dir[a]) - at[a]) / dir[a]);
-      arriving += std::exp(-density * chord) * double{light.evaluate(glm::vec3(dir)).g} / kDirections;
-    }
-    expected += density * std::exp(-density * depth) * arriving / kPlaces;
-  }
-  Options options = samples(2048, 0);
-  options.band_limit = BandLimit{4, {}};
-  const auto seen = measured(cloud(3.0f), {0.1f, -0.3f, 3}, {0.1f, -0.3f, -1}, {sun}, options);
-  expectMean(seen, expected, 1e-3);
-  EXPECT_LT(seen.error.g, 0.02 * std::abs(expected) + 2e-3);
-}
-
 TEST(VolumePicture, ShadesTheGroundByItsOpticalDepth) {
   // The sun is straight above a sheet over the ground: exp(-depth) of its light passes.
   for (const float density : {0.5f, 3.0f}) {
@@ -256,27 +207,6 @@ TEST(VolumePicture, OfTwoThatOverlapIsThatOfTheirSum) {
   EXPECT_NEAR(a.mean.g, b.mean.g, 4.0 * std::hypot(a.error.g, b.error.g));
   EXPECT_LT(a.error.g, 0.005 * a.mean.g);
   EXPECT_NEAR(a.alpha, b.alpha, 1e-6);
-}
-
-TEST(VolumePicture, CountsReflectionsBySurfacesOnly) {
-  // The medium is over a white ground under uniform light. Without a bounce the ground does not light the
-  // medium; with one it does, and scattering in the medium is complete.
-  Scene scene = sceneOf({testing::grid({0, -0.6f, 0}, 40.0f, 1)});
-  place(scene, even(1.0f));
-  const auto seen = [&](std::uint32_t bounces) {
-    return measured(scene, {0.1f, 0.2f, 3.0f}, {0.1f, 0.2f, -1.0f}, {uniform(1.0f)}, samples(64, bounces))
-        .mean.g;
-  };
-  const double through = transmittanceOf(1.0f);
-  EXPECT_LT(seen(0), through + 0.6 * (1.0 - through));
-  EXPECT_GT(seen(1), through + 0.85 * (1.0 - through));
-  EXPECT_NEAR(seen(60), 1.0, 1e-3);
-  // Without surfaces one bounce is complete.
-  const auto open = [&](std::optional<std::uint32_t> bounces) {
-    return measured(cloud(16.0f), kFront, kBack, {uniform(1.0f)}, samples(16, bounces)).mean.g;
-  };
-  EXPECT_NEAR(open(1), 1.0, 2e-5);
-  EXPECT_LT(open(0), 0.5);
 }
 
 TEST(VolumePicture, InHardCasesStaysFinite) {

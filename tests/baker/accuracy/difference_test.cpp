@@ -68,23 +68,5 @@ TEST(Difference, ChoosesARangeThatHoldsAllButTheWorstPixels) {
   EXPECT_GT(same->range, 0.0);
 }
 
-TEST(Difference, TellsPixelsThatNobodyCoversFromThoseThatOneDoes) {
-  auto picture = grey(1.0f), reference = grey(1.0f);
-  picture.texels[1].w = reference.texels[1].w = 0.0f;
-  reference.texels[2].w = 0.0f;
-  set(picture, 1, 70.0f), set(picture, 2, 70.0f);
-  const auto out = differenceOf(picture, reference, nullptr, {}, "a.exr");
-  ASSERT_TRUE(out);
-  EXPECT_EQ(out->figures.pixels_apart, 1u);
-  const Color uncovered = at(*out, 1), apart = at(*out, 2);
-  EXPECT_TRUE(uncovered[0] == uncovered[1] && uncovered[1] == uncovered[2]);
-  EXPECT_NE(uncovered, apart);
-  for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0})
-    for (const HeatMap map : {HeatMap::Signed, HeatMap::Magnitude}) {
-      EXPECT_NE(uncovered, heatColor(map, share));
-      EXPECT_NE(apart, heatColor(map, share));
-    }
-}
-
 }  // namespace
 }  // namespace lambent::baker

@@ -139,19 +139,5 @@ TEST_F(VolumeBake, RefusesGridsOfNoVoxelsOrTooMany) {
   }
 }
 
-TEST(SceneDigest, ChangesWithTheDensityTheAlbedoAndTheNeighborhood) {
-  const std::uint64_t before = sceneDigest(foggy());
-  EXPECT_EQ(before, sceneDigest(foggy()));
-  Scene scene = foggy();
-  scene.volumes[0].density[3] += 1e-3f;
-  EXPECT_NE(before, sceneDigest(scene));
-  scene = foggy();
-  scene.volumes[0].albedo.g = 0.5f;
-  EXPECT_NE(before, sceneDigest(scene));
-  scene = foggy();
-  scene.neighborhoods.push_back({});
-  EXPECT_NE(before, sceneDigest(scene));
-}
-
 }  // namespace
 }  // namespace lambent::baker

@@ -186,24 +186,6 @@ TEST(BrdfTables, InterpolateWithinHalfAPercentWhereFiveBandsCarryTheLobe) {
     }
 }
 
-TEST(BrdfTables, OfAnisotropicGgxAreIsotropicAtStrengthNothing) {
-  const BrdfGrid grid{.angles = 9, .azimuths = 4, .roughnesses = 3, .strengths = 2};
-  const bundle::BrdfTable round = integrateTable(*makeGgx(false), 5, {.angles = 9, .roughnesses = 3}),
-                          brushed = integrateTable(*makeGgx(true), 5, grid);
-  std::vector<float> a(50), b(50);
-  float largest = 0.0f;
-  for (const float cosine : kCosines)
-    for (const float phi : {0.0f, 0.4f, 1.2f, 2.5f, 4.0f, 6.0f}) {
-      lookUp(round, {.cos_theta = cosine}, 0.7f, 0.0f, a);
-      lookUp(brushed, {cosine, std::cos(phi), std::sin(phi)}, 0.7f, 0.0f, b);
-      for (std::size_t k = 0; k < 50; ++k)
-        EXPECT_NEAR(b[k], a[k], 1.5e-3f) << cosine << ", " << phi << ": " << k;
-      lookUp(brushed, {cosine, std::cos(phi), std::sin(phi)}, 0.7f, 1.0f, b);
-      for (std::size_t k = 0; k < 50; ++k) largest = lambent::testing::larger(largest, std::abs(b[k] - a[k]));
-    }
-  EXPECT_GT(largest, 0.1f) << "strength 1 is something else";
-}
-
 // Measures the fraction of a lobe's energy (∫ (f cos)²) in five bands, for a view along the normal. The
 // planning of glossy transfer uses these figures.
 TEST(BrdfTables, HoldTheKnownShareOfTheLobesEnergy) {

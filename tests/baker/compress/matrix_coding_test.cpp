@@ -81,17 +81,6 @@ std::vector<float> decodedMatrix(const CodedTransfer& coded) {
   return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
 }
 
-double squaredDistance(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters) {
-  double sum = 0.0;
-  for (Eigen::Index s = 0; s < points.cols(); ++s) {
-    const Cluster& cluster = clusters[ids[static_cast<std::size_t>(s)]];
-    const Eigen::VectorXf off = points.col(s) - cluster.mean;
-    const Eigen::VectorXf along = cluster.axes.leftCols(cluster.kept).transpose() * off;
-    sum += double{off.squaredNorm()} - double{along.squaredNorm()};
-  }
-  return sum;
-}
-
 Points pointsOf(const std::vector<float>& vectors, std::uint32_t size) {
   return Eigen::Map<const Eigen::MatrixXf>(vectors.data(), size,
                                            static_cast<Eigen::Index>(vectors.size() / size));
@@ -171,38 +160,6 @@ TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
       codeTransfer(vectors, kCount, kVisibility, {.bound = 0.01f, .most_expanded_bytes = most});
   EXPECT_LE(expandedBytes(coded), most);
   EXPECT_LE(coded.error, 0.0101f) << "with more axes in each";
-}
-
-TEST(MatrixCoding, IsVectorQuantizationWithoutAxes) {
-  const auto vectors = wanderingVisibility(1000, 9);
-  const CodedTransfer coded =
-      codeTransfer(vectors, 1000, kVisibility, {.bound = 1e-4f, .clusters = 16, .axes = 0});
-  EXPECT_TRUE(coded.planes.empty());
-  const std::vector<float> found = decodedMatrix(coded);
-  std::vector<std::array<double, 81>> means(coded.codebook.clusters());
-  std::vector<double> members(means.size(), 0.0);
-  for (std::size_t s = 0; s < 1000; ++s) {
-    members[coded.cluster_of[s]] += 1.0;
-    for (std::size_t i = 0; i < 81; ++i) means[coded.cluster_of[s]][i] += double{vectors[81 * s + i]};
-  }
-  for (std::size_t s = 0; s < 1000; ++s)
-    for (std::size_t i = 0; i < 81; ++i)
-      ASSERT_NEAR(double{found[81 * s + i]}, means[coded.cluster_of[s]][i] / members[coded.cluster_of[s]],
-                  2e-3);
-}
-
-TEST(MatrixCoding, IsPrincipalComponentAnalysisWithOneCluster) {
-  const Points points = pointsOf(wanderingVisibility(1500, 13), 81);
-  ClusterIds ids(1500, 0);
-  std::vector<Cluster> one = fitClusters(points, ids, /*held_out=*/false, evenly(points));
-  const Eigen::VectorXf mean = points.rowwise().mean();
-  const Eigen::MatrixXd centred = (points.colwise() - mean).cast<double>();
-  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(centred).singularValues();
-  for (const int axes : {0, 1, 4, 16}) {
-    keepSoMany(one, axes);
-    const double expected = singular.tail(singular.size() - axes).squaredNorm();
-    EXPECT_NEAR(squaredDistance(points, ids, one) / expected, 1.0, 1e-3) << axes;
-  }
 }
 
 TEST(MatrixCoding, FindsTheLeadingComponentsOfLongMatrices) {

@@ -235,29 +235,5 @@ TEST(OddScene, KeepsSmallTrianglesOfALargeMesh) {
   EXPECT_EQ(scene.warnings.size(), 1u);
 }
 
-TEST(OddScene, OfTheFoundFilesIsReadWithOneWarning) {
-  const auto folder = testing::sharedFile("found");
-  LAMBENT_NEEDS_SHARED(folder);
-  const std::pair<const char*, const char*> files[] = {{"backslash.gltf", "image 0"},
-                                                       {"empty_geometry.glb", "mesh 2, primitive 0"},
-                                                       {"missing_texture.gltf", "wood.png"},
-                                                       {"range0.glb", "light 0: range"},
-                                                       {"stride0.glb", "bufferView 0: byteStride"},
-                                                       {"zero_view_unused.glb", "bufferView 8"},
-                                                       {"znear0.glb", "camera 0"}};
-  for (const auto& [file, words] : files) {
-    const Scene scene = imported(folder / "lenient-import" / file);
-    ASSERT_EQ(scene.warnings.size(), 1u) << file;
-    EXPECT_NE(scene.warnings[0].find(words), std::string::npos) << scene.warnings[0];
-  }
-  EXPECT_TRUE(imported(folder / "lenient-import/upper.gltf").warnings.empty());
-  const Scene joined = imported(folder / "joined-mesh-drops-small-triangles/joined.glb");
-  std::size_t corners = 0;  // of the ground and, as a primitive of its own, the ball
-  for (const ScenePrimitive& primitive : joined.meshes.at(0).primitives)
-    corners += primitive.mesh.indices.size();
-  EXPECT_EQ(joined.meshes.at(0).primitives.size(), 2u);
-  EXPECT_EQ(corners, 3u * 9026);
-}
-
 }  // namespace
 }  // namespace lambent::baker

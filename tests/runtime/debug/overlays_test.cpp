@@ -47,25 +47,6 @@ TEST(OverlayWords, AListNamesThemAndSaysWhereTheSliceLies) {
   }
 }
 
-TEST(OverlayLines, ABoxHasItsTwelveEdgesWhereItStands) {
-  std::vector<OverlayLine> lines;
-  appendBox(scene::Box{glm::vec3(-1.0f), glm::vec3(1.0f, 2.0f, 3.0f)},
-            glm::translate(glm::mat4(1.0f), {5.0f, 0.0f, 0.0f}), glm::vec4(1.0f), lines);
-  ASSERT_EQ(lines.size(), 12u);
-  float sum = 0.0f;
-  scene::Box around;
-  for (const OverlayLine& line : lines) {
-    sum += glm::distance(line.from_ws, line.to_ws);
-    around.add(line.from_ws);
-    around.add(line.to_ws);
-  }
-  EXPECT_FLOAT_EQ(sum, 4.0f * (2.0f + 3.0f + 4.0f));
-  EXPECT_EQ(around.min, glm::vec3(4.0f, -1.0f, -1.0f));
-  EXPECT_EQ(around.max, glm::vec3(6.0f, 2.0f, 3.0f));
-  appendBox({}, glm::mat4(1.0f), glm::vec4(1.0f), lines);
-  EXPECT_EQ(lines.size(), 12u) << "an empty one has none";
-}
-
 TEST(OverlayKeys, TheBoxOfAShadowMapHoldsAllThatIsSeenAndStandsOnItsLight) {
   const std::vector<glm::dvec3> seen = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 2}, {-1, 0.5, 2}};
   const glm::dvec3 towards = glm::normalize(glm::dvec3(0.3, 0.8, 0.5));

@@ -258,27 +258,4 @@ TEST_F(FrameGlossy, TheResidualBringsNarrowHighlightsNearTheWholeIntegral) {
   }
 }
 
-TEST_F(FrameGlossy, TheResidualIsMadeOnceAndLeavesUniformLightAsItIs) {
-  BundleBuilder builder(5);
-  builder.add({sphereMesh(24, 48), metal(glm::vec3(1.0f), 0.3f)})
-      .glossy(5, bundle::BrdfFamily::Ggx, ggxTable());
-  spec::RgbaImage image;
-  {
-    GlossyStage with(builder, {kWhite}, /*residual=*/true);
-    with.render();
-    ASSERT_TRUE(with.counts("specular environment"));
-    EXPECT_GT(with.counts("specular environment")->dispatches, 0u);
-    image = with.frame->readLinear();
-    with.environment.setTurn(20.0f);
-    with.render();
-    EXPECT_FALSE(with.counts("specular environment"));
-  }
-  GlossyStage without(builder, {kWhite}, /*residual=*/false);
-  without.render();
-  EXPECT_FALSE(without.counts("specular environment"));
-  const spec::RgbaImage plain = without.frame->readLinear();
-  for (std::size_t i = 0; i < image.texels.size(); ++i)
-    EXPECT_LT(glm::distance(image.texels[i], plain.texels[i]), 2e-3f);
-}
-
 }  // namespace lambent::frame

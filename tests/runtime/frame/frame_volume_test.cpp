@@ -187,29 +187,6 @@ TEST_F(FrameVolume, AStillFrameOnlyMarches) {
   EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
 }
 
-TEST_F(FrameVolume, IsNotShadedWhileTheViewPassesBy) {
-  VolumeStage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}).volume(mist(1.0f)));
-  const glm::mat4 at_it = stage.view.view_from_world;
-  stage.view.view_from_world = glm::lookAt(stage.view.eye_ws, {20, 0, 10}, glm::vec3(0, 1, 0));
-  const spec::RgbaImage beside = stage.picture();
-  EXPECT_EQ(stage.pass("volume")->counters.dispatches, 0u);
-  EXPECT_EQ(stage.pass("march")->counters.draws, 0u);
-  EXPECT_EQ(stage.pass("raster")->counters.draws, 1u) << "the sky alone";
-  EXPECT_EQ(stage.frame->counts()["volumes_out_of_view"], 1u);
-  EXPECT_EQ(stage.frame->counts()["draws_out_of_view"], 1u);
-  for (const glm::vec4& texel : beside.texels) EXPECT_EQ(texel.a, 0.0f);
-  // Light that changes meanwhile is in the picture as soon as the volume is.
-  stage.environment.setTurn(5.0f);
-  stage.render();
-  stage.view.view_from_world = at_it;
-  const spec::RgbaImage came_into_view = stage.picture();
-  EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
-  EXPECT_EQ(stage.frame->counts()["volumes_out_of_view"], 0u);
-  EXPECT_EQ(stage.frame->counts()["draws_out_of_view"], 0u);
-  stage.frame->forget();
-  EXPECT_EQ(stage.picture().texels, came_into_view.texels) << "as if it had been in view all the time";
-}
-
 TEST_F(FrameVolume, ForwardScatteringShowsTheSunBehindIt) {
   BuiltVolume volume = mist(1e4f);
   volume.g = 0.7f;
@@ -264,26 +241,6 @@ TEST_F(FrameVolume, TheSurfacesThatItStandsInAreNotCapturedAtItsLightProbes) {
               within < 0 ? std::vector<std::uint32_t>{} : std::vector<std::uint32_t>{0});
     EXPECT_EQ(scene.needsSampling(), within < 0);
   }
-}
-
-TEST_F(FrameVolume, StreamsInWithoutEverShowingNonsense) {
-  BuiltVolume volume = mist(1.0f);
-  volume.transfer_size = glm::uvec3(6);
-  volume.shape.outputs = 9;
-  volume.g = 0.3f;
-  const auto builder = BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}).volume(volume);
-  VolumeStage whole(builder);
-  const spec::RgbaImage expected = whole.picture();
-  VolumeStage stage(builder, {kWhite},
-                    linearOptions([](FrameOptions& options) { options.upload_budget_bytes = 1; }),
-                    /*load=*/false);
-  for (int frame = 0; frame < 100'000 && !stage.world.loaded(); ++frame)
-    for (const glm::vec4& texel : stage.picture().texels) {
-      ASSERT_TRUE(std::isfinite(texel.g));
-      ASSERT_LE(texel.g, 1.01f);
-    }
-  ASSERT_TRUE(stage.world.loaded());
-  EXPECT_EQ(stage.picture().texels, expected.texels);
 }
 
 }  // namespace lambent::frame

@@ -117,15 +117,6 @@ TEST_F(LiveFrame, OnlyTheChangedMaterialGoesToTheGpuAndNothingIsShaded) {
   EXPECT_EQ(stage.pass("raster")->counters.uploaded_bytes, 0u) << "no number, no change";
 }
 
-TEST_F(LiveFrame, AnisotropyWithoutATableStillShowsTheSurface) {
-  LiveStage stage(glossyBall(metalOf(glm::vec3(0.9f), 0.5f)), {kSun});
-  const auto before = stage.picture();
-  stage.editMaterial(0).anisotropy = 0.5f;
-  EXPECT_EQ(farthest(stage.picture(), before), 0.0f);
-  stage.editMaterial(0).brdf = 3;
-  EXPECT_EQ(farthest(stage.picture(), before), 0.0f) << "no such table: as it was baked";
-}
-
 TEST_F(LiveFrame, EverySettingComesBackToTheSamePicture) {
   FrameSettings plain;
   plain.exposure_ev = 0.0f;

@@ -173,17 +173,6 @@ TEST(KeyLights, FindsTheSunOfAPictureInEveryLayout) {
   }
 }
 
-TEST(KeyLights, FinerGoalsLeaveLessOfTheSunInTheRest) {
-  const spec::DistantLights lights = oneMap(painted(sh::ImageLayout::LatLong, 512, 256, skyWithSun));
-  float before = 1e9f;
-  for (const double goal : {0.05, 0.02, 0.005, 0.002}) {
-    const PartedLights parted = partLights(lights, {.least_loss = goal});
-    EXPECT_LE(parted.loss_after, goal);
-    EXPECT_LT(parted.threshold, before);
-    before = parted.threshold;
-  }
-}
-
 TEST(KeyLights, ATurnedPictureHasTheSameKeysTurned) {
   const auto lamps = [](const glm::dvec3& dir) {
     glm::vec3 light = smoothSky(dir);

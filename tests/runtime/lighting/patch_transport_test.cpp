@@ -155,19 +155,6 @@ TEST(Patches, APointALittleBehindItsPatchComesInFrontOfIt) {
   EXPECT_LT(patches.inFront({0.3f, -0.3f, 0.2f}, {0, 1, 0}).y, -0.29f) << "that is another surface";
 }
 
-TEST(PatchTransport, PatchesOfATriangleAreFoundByWhereARayMeetsIt) {
-  const Patches patches(RoomBuilder().box({0, 0, 0}, {3, 2, 1}, glm::vec3(0.5f)).surface(), 500);
-  EXPECT_LE(patches.size(), 500u);
-  EXPECT_GE(patches.size(), 400u);
-  const glm::vec3 origin(1.3f, 0.9f, 0.45f);
-  for (std::size_t i = 0; i < patches.size(); ++i)
-    for (const glm::vec3& point : patches.all()[i].points) {
-      const auto hit = patches.tree().first(origin, point - origin);
-      ASSERT_TRUE(hit);
-      ASSERT_EQ(patches.patchAt(*hit), i);
-    }
-}
-
 TEST(PatchTransport, AnOpenPatchHasTheClosedFormOfItsDirectTransfer) {
   const glm::vec3 normal = glm::normalize(glm::vec3(1, 2, 3));
   const LinkFrame frame = linkFrame(normal);
@@ -180,21 +167,6 @@ TEST(PatchTransport, AnOpenPatchHasTheClosedFormOfItsDirectTransfer) {
     EXPECT_NEAR(transport.direct(0, light).y, 2.0f * expected[c], 1e-6f) << c;
   }
   EXPECT_EQ(transport.bounced(), 0.0f);
-}
-
-// A group whose bounces count for nothing has no links, and rooms must not count as such for the ground
-// around them.
-TEST(PatchTransport, ARoomOnAWideGroundIsARoom) {
-  RoomBuilder room;
-  room.sphere(10, 14, glm::vec3(0.5f)).wall({-200, -2, 200}, {400, 0, 0}, {0, 0, -400}, glm::vec3(0.5f));
-  bundle::CaptureProxy proxy = room.proxy();
-  proxy.patches = bundle::patchSurfaceOf(proxy);
-  proxy.patches.error_m = 0.004f;
-  for (bundle::PatchTriangle& triangle : proxy.patches.triangles) {
-    const bool ground = proxy.patches.positions[triangle.vertices[0]].y < -1.5f;
-    triangle.detail = bundle::detailOf(ground ? bundle::kLeastPatchDensity : 1.0f);
-  }
-  EXPECT_GT(PatchTransport(proxy).bounced(), 0.6f) << "by area it is 0.0001";
 }
 
 TEST(PatchTransport, ASmallBrightSpotIsMissedFromNowhere) {

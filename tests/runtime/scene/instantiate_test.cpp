@@ -206,19 +206,6 @@ TEST(RigidGroup, TurnsWithItsNodeInSpiteOfMirrorsAndStretch) {
   EXPECT_LT(glm::distance(top.translation, hall.d.groups[1].rest_translation), kRounding);
 }
 
-TEST(RigidGroup, AllGroupsTurnWithTheInstance) {
-  const Hall hall;
-  ecs::Registry registry;
-  const SceneInstance scene = instance(registry, hall.d);
-  const glm::quat quarter = glm::angleAxis(glm::radians(90.0f), kUp);
-  registry.edit<Transform>(scene.root).rotation = quarter;
-  EXPECT_EQ(updateTransforms(registry).groups, 2u);
-  for (const ecs::Entity group : scene.groups) {
-    EXPECT_NEAR(std::abs(glm::dot(registry.get<RigidGroupComponent>(group).turn_since_rest, quarter)), 1.0f,
-                kRounding);
-  }
-}
-
 TEST(RigidGroup, KeepsItsLastRotationWhileItIsFlatOrMirrored) {
   const Hall hall;
   ecs::Registry registry;
@@ -327,21 +314,6 @@ TEST(Instantiate, TwiceNeedsAnotherInstanceNumberAndDestructionTakesOnlyItsOwn) 
   destroyInstance(registry, second);
   EXPECT_EQ(registry.entityCount(), 0u);
   EXPECT_TRUE(worldBounds(registry).empty());
-}
-
-TEST(Instantiate, WhatIsClosedAndComesBackHasItsOrderAgain) {
-  const Hall hall;
-  ecs::Registry registry;
-  const auto order = [](const SceneInstance& scene) {
-    std::vector<std::uint32_t> indices = {scene.root.index};
-    for (const auto* list : {&scene.nodes, &scene.groups, &scene.draws, &scene.animations, &scene.materials})
-      for (const ecs::Entity entity : *list) indices.push_back(entity.index);
-    return indices;
-  };
-  const SceneInstance first = instance(registry, hall.d);
-  const std::vector<std::uint32_t> before = order(first);
-  destroyInstance(registry, first);
-  EXPECT_EQ(order(instance(registry, hall.d)), before);
 }
 
 template <class Component>

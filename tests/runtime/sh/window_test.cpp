@@ -119,15 +119,5 @@ TEST(ShWindow, AutoStaysFiniteOnOddLights) {
   EXPECT_GT(deringingBlend(red), 0);
 }
 
-TEST(ShWindow, HannFallsFromOneToZeroBeyondTheLastBand) {
-  const BandWeights weights = windowWeights(constantLight(4, {1, 1, 1}), Window::Hann);
-  EXPECT_FLOAT_EQ(weights[0], 1);
-  EXPECT_FLOAT_EQ(weights[2], 0.5f);
-  EXPECT_NEAR(weights[1] + weights[3], 1, 1e-6f);
-  EXPECT_EQ(weights[4], 0);
-  const LightVector light = discLight(5, {0, 1, 0}, 0.1, {1, 1, 1});
-  expectEqual(applyWindow(light, Window::Off), light);
-}
-
 }  // namespace
 }  // namespace lambent::sh

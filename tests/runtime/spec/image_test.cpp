@@ -299,22 +299,6 @@ TEST_F(SpecImage, BrokenExrFilesGiveErrors) {
   breakInEveryWay(folder_ / "broken.exr", read(path), 7);
 }
 
-TEST_F(SpecImage, SharedProbesHaveTheirKnownExtremes) {
-  // The luminance maxima are from the data's own table, printed to four digits.
-  for (const auto& [name, maximum] : {std::pair{"probes/grace_probe.hdr", 520.6f},
-                                      {"probes/uffizi_latlong_small.hdr", 13.8f},
-                                      {"probes/grace_latlong.exr", 14.82f}}) {
-    const fs::path path = testing::sharedFile(name);
-    LAMBENT_NEEDS_SHARED(path);
-    const Result<RgbImage> image = readLightImage(path);
-    ASSERT_TRUE(image) << image.error().line();
-    float largest = 0.0f;
-    for (const glm::vec3 t : image->texels)
-      largest = testing::larger(largest, 0.2126f * t.x + 0.7152f * t.y + 0.0722f * t.z);
-    EXPECT_NEAR(largest, maximum, 0.005f * maximum) << name;
-  }
-}
-
 TEST(SpecDisplay, MapsLightToTheColoursOfAScreen) {
   const RgbaImage linear{
       5,

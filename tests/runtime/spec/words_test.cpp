@@ -161,16 +161,5 @@ TEST(SpecRotate, PositiveTurnsTakeFrontToRightAndAddToAzimuths) {
   EXPECT_FALSE(parseDegrees("90deg"));
 }
 
-TEST(SpecSize, ParsesAndRefuses) {
-  EXPECT_EQ(parseSize("1920x1080").value(), (Size{1920, 1080}));
-  EXPECT_EQ(parseSize("1x16384").value(), (Size{1, 16384}));
-  for (const char* wrong : {"", "x", "10", "10x", "x10", "10X10", "10x10x10", "0x10", "10x0", "-1x5",
-                            "10 x 10", "16385x1", "99999999999x1", "1e2x5", " 1x1"}) {
-    const Result<Size> size = parseSize(wrong);
-    ASSERT_FALSE(size) << wrong;
-    EXPECT_NE(size.error().line().find("WIDTHxHEIGHT"), std::string::npos) << size.error().line();
-  }
-}
-
 }  // namespace
 }  // namespace lambent::spec

@@ -173,20 +173,6 @@ TEST_F(LoaderTest, GivesTheSameSequenceForAnyNumberOfThreadsAndAnyBudget) {
   }
 }
 
-TEST_F(LoaderTest, TakesAtLeastOneItemAndNoMoreThanTheBudgetBeyond) {
-  write(testing::manyImages(6, 64));  // 16 KiB each
-  Loader loader(open(), threads_, 1);
-  std::size_t taken = 0;
-  while (!loader.finished()) {
-    loader.waitForMore();
-    const auto items = loader.take(40 << 10);
-    EXPECT_LE(items.size(), 2u);
-    EXPECT_GE(items.size(), 1u) << "waitForMore had promised one";
-    taken += items.size();
-  }
-  EXPECT_EQ(taken, 6u);
-}
-
 TEST_F(LoaderTest, DecodesNoFurtherAheadThanItsMemory) {
   constexpr std::uint32_t kThreads = 4;
   write(testing::manyImages(48, 1024));  // 4 MiB each: 192 MiB in all, of which 64 fit

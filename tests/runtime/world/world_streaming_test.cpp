@@ -141,15 +141,6 @@ TEST_F(WorldStreaming, OneSlowFrameBringsSeveralBatches) {
   EXPECT_TRUE(stage.world.errors().empty());
 }
 
-TEST(FrameTimesTest, OnlySlowFramesWaitForWhatLoads) {
-  UploadPacer pacer;
-  EXPECT_EQ(pacer.waitSeconds(), 0.0);
-  pacer.frameTook(16.0, true, 16 << 20);
-  EXPECT_EQ(pacer.waitSeconds(), 0.0);
-  pacer.frameTook(4000.0, true, 16 << 20);
-  EXPECT_DOUBLE_EQ(pacer.waitSeconds(), 1.0);
-}
-
 TEST(FrameTimesTest, SlowFramesDoNotStarveWhatLoads) {
   UploadPacer pacer;
   constexpr std::uint64_t kMost = 16 << 20;

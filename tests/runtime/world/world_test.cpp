@@ -165,24 +165,4 @@ TEST_F(WorldTest, WhatWasChangedByHandSurvivesAndEntitiesStayTheSame) {
   EXPECT_EQ(stage.world.registry().get<scene::StableId>(root), scene::instanceId("ball", 0));
 }
 
-TEST_F(WorldTest, AMaterialChangedByHandStaysChangedInAReplacement) {
-  const glm::vec4 green(0.2f, 0.8f, 0.1f, 1.0f), red(0.9f, 0.1f, 0.1f, 1.0f);
-  const auto glow = [](WorldStage& stage, std::uint32_t slot) {
-    const ecs::Entity material = stage.world.instance(slot).materials[0];
-    stage.world.registry().edit<scene::MaterialComponent>(material).emission = {0.0f, 0.0f, 0.7f};
-  };
-  WorldStage stage(lights);
-  const std::uint32_t quad = stage.open(quadFile(green), {.bundle_id = "quad"});
-  stage.picture();
-  glow(stage, quad);
-  stage.picture();
-  ASSERT_TRUE(stage.world.replace(quad, quadFile(red)));
-  const spec::RgbaImage image = stage.picture();
-  WorldStage other(lights);
-  const std::uint32_t again = other.open(quadFile(red));
-  other.picture();
-  glow(other, again);
-  expectSame(image, other.picture(), stage);
-}
-
 }  // namespace lambent::frame
