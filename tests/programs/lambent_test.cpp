@@ -25,47 +25,11 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
   EXPECT_TRUE(version.out.starts_with("lambent ")) << version.out;
   const Outcome help = lambent({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
-      {"bake",
-       {"SCENE",
-        "--output",
-        "--quality",
-        "--order",
-        "--rays",
-        "--bounces",
-        "--error",
-        "--codes",
-        "--max-edge",
-        "--light-probes",
-        "--refine",
-        "--volume-grid",
-        "--neighborhood-grid",
-        "--effects",
-        "--threads",
-        "--max-memory",
-        "--allow-outside",
-        "--cache",
-        "--cache-size",
-        "--force",
-        "--json"}},
-      {"reference",
-       {"SCENE", "--light", "--camera", "--output", "--spp", "--seed", "--band-limit", "--bounces", "--time",
-        "--max-memory", "--json"}},
-      {"plan", {"SCENE", "--effects", "--light-probes", "--json"}},
-      {"info", {"BUNDLE", "--json"}},
-      {"view", {"BUNDLE", "--light", "--port", "--no-browser"}},
-      {"accuracy",
-       {"SCENE", "--output", "--quality", "--knob", "--light", "--camera", "--size", "--spp", "--force",
-        "--json"}},
-      {"compare",
-       {"PICTURE", "REFERENCE", "--reference2", "--heat", "--heat-map", "--heat-range", "--json"}}};
-  for (const auto& [command, options] : commands) {
+  for (const char* command : {"bake", "reference", "plan", "info", "view", "accuracy", "compare"}) {
     EXPECT_NE(help.out.find(command), std::string::npos) << command;
     const Outcome about = lambent({command, "--help"});
     EXPECT_EQ(about.exit_code, 0) << command;
     EXPECT_EQ(about.err, "") << command;
-    for (const std::string& option : options)
-      EXPECT_NE(about.out.find(option), std::string::npos) << command << " " << option;
     EXPECT_EQ(lambent({command, "--version"}).out, version.out) << command;
   }
 }
@@ -79,32 +43,14 @@ TEST_F(LambentProgram, WrongUsageIsExitCode2AndOneLine) {
       {"bake", kHello, "-o"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--no-such-option"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--quality", "splendid"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--order", "five"},
       {"reference", kHello, "-o", path("a.exr"), "--time", "soon"},
       {"reference", kHello, "-o", path("a.exr"), "--time", "-1"},
       {"reference", kHello, "-o", path("a.exr"), "--light", "sphere:0,0,0,-1,1"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--rays", "-5"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--threads", "-1"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--max-edge", "wide"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--refine", "2"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--volume-grid", "32x32"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--neighborhood-grid", "fine"},
       {"bake", kHello, kHello, "-o", path("a.lmb.glb")},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--effects", "diffuse,smell"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--effects", ""},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--order", "9"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--order", "-1"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--rays", "5"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--rays", "1048577"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--max-edge", "-1"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--max-edge", "nan"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--max-edge", "inf"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--error", "nan"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--error", "-0.1"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--error", "1"},
       {"plan", kHello, "--effects", "smell"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--rays", "0"},
-      {"bake", kHello, "-o", path("a.lmb.glb"), "--threads", "0"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--max-memory", "1"},
       {"plan"},
       {"info"},

@@ -37,23 +37,21 @@ glm::vec3 seenAt(Show& show, float angle_deg) {
 using GlossyEndToEnd = testing::GpuTest;
 
 TEST_F(GlossyEndToEnd, WhiteMetalInAWhiteWorldNeverGivesMoreThanItGets) {
-  for (const float anisotropy : {0.0f, 0.8f})
-    for (const float roughness : {0.1f, 1.0f}) {
-      Show show(ball(roughness, /*metallic=*/1.0f, anisotropy), {constantLight(1.0f)});
-      for (const float angle : {0.0f, 40.0f, 82.0f}) {
-        const glm::vec3 seen = seenAt(show, angle);
-        EXPECT_LE(seen.g, 1.002f);
-        EXPECT_NEAR(seen.r, seen.b, 1e-4f);
-        if (roughness < 0.5f && anisotropy == 0.0f) {
-          EXPECT_GE(seen.g, 0.98f) << angle;
-        }
-        // GGX of alpha 1 seen from above: D = 1/pi, G2 = 2 c / (c + 1), so the integral is that of c / (c +
-        // 1).
-        if (roughness == 1.0f && angle == 0.0f) {
-          EXPECT_NEAR(seen.g, 1.0 - std::numbers::ln2, 0.003);
-        }
+  for (const auto& [anisotropy, roughness] : {std::pair{0.0f, 0.1f}, {0.0f, 1.0f}, {0.8f, 0.1f}}) {
+    Show show(ball(roughness, /*metallic=*/1.0f, anisotropy), {constantLight(1.0f)});
+    for (const float angle : {0.0f, 40.0f, 82.0f}) {
+      const glm::vec3 seen = seenAt(show, angle);
+      EXPECT_LE(seen.g, 1.002f);
+      EXPECT_NEAR(seen.r, seen.b, 1e-4f);
+      if (roughness < 0.5f && anisotropy == 0.0f) {
+        EXPECT_GE(seen.g, 0.98f) << angle;
+      }
+      // GGX of alpha 1 seen from above: D = 1/pi, G2 = 2 c / (c + 1), so the integral is that of c / (c + 1).
+      if (roughness == 1.0f && angle == 0.0f) {
+        EXPECT_NEAR(seen.g, 1.0 - std::numbers::ln2, 0.003);
       }
     }
+  }
 }
 
 TEST_F(GlossyEndToEnd, AClosedRoomOfMetalUnderAStrongSunIsDark) {

@@ -1,19 +1,11 @@
 // Tests pictures with known answers, and what a frame may and may not do.
 #include "runtime/frame/frame.hpp"
 
-#include <numeric>
-
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "runtime/scene/bounds.hpp"
-#include "runtime/sh/image_layout.hpp"
-#include "runtime/streaming/sizes.hpp"
-#include "tests/support/frame/bundle_builder.hpp"
-#include "tests/support/gpu_context.hpp"
+#include "tests/support/frame/view_stage.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -24,60 +16,16 @@ using testing::sphereMesh;
 
 using testing::colored;
 
-// Several builds may run their tests at the same time.
-std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::path(::testing::TempDir()) /
-         fmt::format("{}-{}-{}", getpid(), ::testing::UnitTest::GetInstance()->current_test_info()->name(),
-                     name);
+struct Stage : testing::ViewStage {
+  using ViewStage::ViewStage;
+
+  gpu::Counters counts(const std::string& name) {
+    const auto found = pass(name);
+    EXPECT_TRUE(found) << name;
+    return found ? found->counters : gpu::Counters{};
+  }
+};
 }
-
-// Shows one bundle in a world with a light and a frame of 64 x 64.
-struct Stage {
-  std::filesystem::path path;
-  World world;
-  lighting::Environment environment;
-  std::optional<Frame> frame;
-  spec::OrbitCamera camera{
-      .azimuth_deg = 0.0f, .elevation_deg = 0.0f, .distance_radii = 2.5f, .fov_deg = 40.0f};
-
-  Stage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, FrameOptions options = {},
-        bool load = true, const WorldOptions& world_options = {})
-      : path(temporary(load ? "whole.lmb.glb" : "streamed.lmb.glb")),
-        world(world_options),
-        environment(*lighting::Environment::create(lights)) {
-    builder.write(path);
-    const Result<std::uint32_t> opened = world.open(path);
-    EXPECT_TRUE(opened) << opened.error().line();
-    if (!opened) return;
-    if (load) {
-      gpu::Counters counters;
-      const Result<void> loaded = world.uploadAll(counters);
-      EXPECT_TRUE(loaded) << loaded.error().line();
-    }
-    options.size = {64, 64};
-    Result<Frame> made = Frame::create(options, environment);
-    EXPECT_TRUE(made) << made.error().line();
-    if (made) frame.emplace(std::move(*made));
-  }
-  ~Stage() { std::filesystem::remove(path); }
-
-  void render() {
-    const scene::Box bounds = scene::worldBounds(world.registry());
-    const Result<void> done =
-        frame->render(world, environment, spec::orbitView(camera, bounds.min, bounds.max, 1.0f));
-    ASSERT_TRUE(done) << done.error().line();
-  }
-  spec::RgbaImage picture() {
-    render();
-    return frame->readLinear();
-  }
-  gpu::Counters counts(const std::string& pass) {
-    frame->timers().finish();
-    for (const gpu::PassTime& time : frame->timers().latest())
-      if (time.name == pass) return time.counters;
-    ADD_FAILURE() << "no pass " << pass;
-    return {};
-  }
 };
 
 const FrameOptions kLinear = [] {

@@ -19,12 +19,6 @@ std::size_t countOf(int bands) {
   return static_cast<std::size_t>(coefficientCount(bands));
 }
 
-double gaunt(const GauntTable& table, std::size_t i, std::size_t j, std::size_t k) {
-  for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t)
-    if (table.terms[t].j == j && table.terms[t].k == k) return static_cast<double>(table.terms[t].value);
-  return 0;
-}
-
 std::vector<float> randomFunction(Random& random, int bands) {
   std::vector<float> f(countOf(bands));
   for (float& c : f) c = static_cast<float>(2 * random.uniform() - 1);
