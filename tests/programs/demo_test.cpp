@@ -72,20 +72,6 @@ void expectOneLine(const std::string& text) {
 
 }  // namespace
 
-TEST_F(DemoProgram, SaysThatADeviceIsTooOldInOneLine) {
-  LAMBENT_NEEDS_DEVICE();
-  if (gpu::Context::createHeadless()->info().version.find("Mesa") == std::string::npos)
-    GTEST_SKIP() << "only Mesa's drivers can be told to offer less";
-  const std::filesystem::path picture = folder / "a.png";
-  ::setenv("MESA_GL_VERSION_OVERRIDE", "4.3", /*overwrite=*/1);
-  const Outcome outcome = run(bundle() + " --light constant:1,1,1 --headless " + quoted(picture));
-  ::unsetenv("MESA_GL_VERSION_OVERRIDE");
-  EXPECT_EQ(outcome.exit_code, 1);
-  expectOneLine(outcome.err);
-  EXPECT_NE(outcome.err.find("OpenGL: no device gives OpenGL 4.5 core"), std::string::npos) << outcome.err;
-  EXPECT_FALSE(std::filesystem::exists(picture));
-}
-
 TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
   for (const char* arguments : {"",
                                 "a.glb --size 0x5",

@@ -150,46 +150,6 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   }
 }
 
-TEST_F(LambentProgram, PlansFitOneScreenHoweverManyGroupsAndMaterialsThereAre) {
-  const auto manyBodies = [&](bool apart) {
-    json scene = {{"asset", {{"version", "2.0"}}}, {"scenes", {{{"nodes", json::array()}}}}};
-    scene["buffers"] = {
-        {{"uri", "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}, {"byteLength", 36}}};
-    scene["bufferViews"] = {{{"buffer", 0}, {"byteLength", 36}}};
-    scene["accessors"] = {{{"bufferView", 0},
-                           {"componentType", 5126},
-                           {"count", 3},
-                           {"type", "VEC3"},
-                           {"min", {0, 0, 0}},
-                           {"max", {1, 1, 0}}}};
-    for (int i = 0; i < 90; ++i) {
-      scene["materials"].push_back(
-          {{"name", fmt::format("metal {}", i)}, {"pbrMetallicRoughness", {{"roughnessFactor", 0.01 * i}}}});
-      scene["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"material", i}}}}});
-      scene["nodes"].push_back({{"mesh", i},
-                                {"name", fmt::format("body {}", i)},
-                                {"translation", {3 * i, 0, 0}},
-                                {"extras", {{"lambent", {{"movable", apart}}}}}});
-      scene["scenes"][0]["nodes"].push_back(i);
-    }
-    writeBytes(folder / "many.gltf", scene.dump());
-    return path("many.gltf");
-  };
-  for (const bool apart : {false, true}) {
-    const Outcome plan = lambent({"plan", manyBodies(apart)}),
-                  all = lambent({"plan", manyBodies(apart), "--verbose"});
-    EXPECT_EQ(plan.exit_code, 0) << plan.err;
-    EXPECT_LE(std::count(plan.out.begin(), plan.out.end(), '\n'), 40) << plan.out;
-    EXPECT_EQ(plan.out.find("e+0"), std::string::npos) << plan.out;
-    EXPECT_NE(plan.out.find(apart ? "more groups of "
-                                  : "matrices         baked for 90 of 90 draws, 100 % of the area"),
-              std::string::npos)
-        << plan.out;
-    for (int i = 0; i < 90; ++i)
-      EXPECT_NE(all.out.find(fmt::format("primitive 0 of metal {}\n", i)), std::string::npos) << i;
-  }
-}
-
 TEST_F(LambentProgram, AnInterruptEndsALongBakeAndKeepsTheOldBundle) {
   const auto bundle = folder / "gallery.lmb.glb";
   writeBytes(bundle, "the old one");

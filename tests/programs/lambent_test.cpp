@@ -2,10 +2,8 @@
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
-#include <sys/stat.h>
 
 #include "tests/programs/lambent_program.hpp"
-#include "tests/support/require.hpp"
 
 namespace lambent {
 namespace {
@@ -96,49 +94,6 @@ TEST_F(LambentProgram, SaysWhenItsOutputIsLost) {
     expectOneLine(lost, "lambent", command);
     EXPECT_NE(lost.err.find("standard output: cannot be written"), std::string::npos) << lost.err;
   }
-}
-
-// Root may read and write everything, so another user runs a copy of lambent, which may lie where that user
-// may not go.
-TEST_F(LambentProgram, SaysWhatItMayNotReadOrWrite) {
-  if (::geteuid() == 0 && !std::filesystem::exists("/usr/bin/setpriv")) GTEST_SKIP() << "no setpriv here";
-  const auto lambentOfAnother = [&](const std::vector<std::string>& arguments) {
-    if (::geteuid() != 0) return lambent(arguments);
-    const std::string copy = path("lambent");
-    std::filesystem::copy_file(LAMBENT_PROGRAM, copy, std::filesystem::copy_options::skip_existing);
-    std::vector<std::string> words = {"--reuid=65534", "--regid=65534", "--clear-groups", copy};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    return run("/usr/bin/setpriv", words);
-  };
-  const Outcome version = lambentOfAnother({"--version"});
-  ASSERT_EQ(version.exit_code, 0) << version.err;
-  ASSERT_EQ(bakeHello("secret.lmb.glb").exit_code, 0);
-  std::filesystem::copy(kHello, folder / "secret.glb");
-  const std::filesystem::path locked = folder / "locked";
-  std::filesystem::create_directory(locked);
-  using std::filesystem::perms;
-  for (const char* name : {"secret.glb", "secret.lmb.glb"})
-    std::filesystem::permissions(folder / name, perms::none);
-  std::filesystem::permissions(
-      locked, perms::owner_read | perms::owner_exec | perms::others_read | perms::others_exec);
-  std::filesystem::copy(kHello, folder / "scene.glb");
-  const std::string scene = path("scene.glb");
-  struct Case {
-    std::string said;
-    std::vector<std::string> arguments;
-  };
-  const std::vector<Case> cases = {
-      {"secret.glb: cannot be opened; check its permissions", {"plan", path("secret.glb")}},
-      {"secret.lmb.glb: cannot be read", {"info", path("secret.lmb.glb")}},
-      {"a.lmb.glb: cannot be written: Permission denied", {"bake", scene, "-o", path("locked/a.lmb.glb")}},
-      {"a.exr: cannot be written: Permission denied", {"reference", scene, "-o", path("locked/a.exr")}}};
-  for (const Case& denied : cases) {
-    const Outcome outcome = lambentOfAnother(denied.arguments);
-    EXPECT_EQ(outcome.exit_code, 1) << denied.said;
-    expectOneLine(outcome, "lambent", denied.said);
-    EXPECT_NE(outcome.err.find(denied.said), std::string::npos) << outcome.err;
-  }
-  EXPECT_TRUE(std::filesystem::is_empty(locked));
 }
 
 TEST_F(LambentProgram, RefusesAReferenceThatTakesTooMuchMemoryAndSaysHowMuchItTakes) {

@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "tests/reference/measure.hpp"
-#include "tests/reference/media.hpp"
 
 namespace lambent::baker::reference {
 namespace {

@@ -8,7 +8,6 @@
 #include "runtime/spec/distant_lights.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/reference/quadrature.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::baker::reference {
 namespace {
@@ -148,22 +147,6 @@ TEST(Glossy, WholePicturesOfASunAreWhatQuadratureSays) {
       EXPECT_NEAR(seen.mean[c], expected[c], 4.0 * seen.error[c] + 1e-3 * expected[c]) << sample.name;
     EXPECT_LT(seen.error.g, 0.01 * expected.g) << sample.name;
   }
-}
-
-TEST(Glossy, MirrorsShowTheLightInTheReflectedDirection) {
-  gltf::Material mirror = glossy(1.0f, 0.0f);
-  mirror.base_color = glm::vec4(0.9f, 0.6f, 0.3f, 1.0f);
-  const Scene floor = glossyFloor(mirror);
-  const spec::SunLight sun{.azimuth_deg = 200, .elevation_deg = 30, .angle_deg = 3, .radiance = glm::vec3(7)};
-  // From the opposite side at the same height the floor shows the sun; 5 degrees away it is black.
-  const auto seen = measured(floor, eyeAt(30.0f, 20.0f), kPlace, {sun}, samples(64));
-  const double w = std::pow(0.5, 5.0);  // 1 - v·n = 1/2
-  for (int c = 0; c < 3; ++c) {
-    const double f0 = double{mirror.base_color[c]};
-    EXPECT_NEAR(seen.mean[c], 7.0 * (f0 + (1.0 - f0) * w), 0.01);
-  }
-  EXPECT_LT(measured(floor, eyeAt(36.0f, 20.0f), kPlace, {sun}, samples(64)).mean.g, 0.01);
-  EXPECT_LT(measured(floor, eyeAt(30.0f, 27.0f), kPlace, {sun}, samples(64)).mean.g, 0.01);
 }
 
 // Makes a floor and a ceiling so wide that it hides the sky.

@@ -7,7 +7,6 @@
 #include "reference/film.hpp"
 #include "runtime/bundle/checksum.hpp"
 #include "tests/reference/measure.hpp"
-#include "tests/reference/media.hpp"
 #include "tests/support/program.hpp"
 
 namespace lambent::baker::reference {

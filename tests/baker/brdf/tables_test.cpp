@@ -11,7 +11,6 @@
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/baker/brdf/quadrature.hpp"
-#include "tests/support/differences.hpp"
 
 namespace lambent::baker {
 namespace {

@@ -6,7 +6,6 @@
 #include "baker/import/gltf.hpp"
 #include "baker/import/image.hpp"
 #include "tests/baker/import/gltf_writer.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -130,18 +129,6 @@ TEST(OddScene, HasNamesInLatin1) {
             "K\xc3\xbc"
             "che");
   EXPECT_EQ(scene.warnings.size(), 1u);
-}
-
-TEST(OddScene, HasASpotWithAHardEdgeWhereItsConesAreEqual) {
-  TemporaryFolder folder;
-  GltfWriter writer = oneTriangle();
-  writer.json["extensions"] =
-      json::parse(withLight(R"({"type":"spot","spot":{"innerConeAngle":0.5,"outerConeAngle":0.5}})"));
-  const Scene scene = imported(writer, folder);
-  EXPECT_TRUE(scene.warnings.empty());
-  EXPECT_EQ(scene.lights.at(0).outer_cone_rad, 0.5f);
-  EXPECT_LT(scene.lights[0].inner_cone_rad, 0.5f);
-  EXPECT_NEAR(scene.lights[0].inner_cone_rad, 0.5f, 1e-6f);
 }
 
 // Makes a triangle whose base color is texture 0.

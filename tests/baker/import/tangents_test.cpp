@@ -5,7 +5,6 @@
 
 #include "baker/import/gltf.hpp"
 #include "baker/import/mesh_edits.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::baker {
 namespace {

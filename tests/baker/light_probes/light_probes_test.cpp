@@ -12,8 +12,6 @@
 #include "baker/transport/face_points.hpp"
 #include "runtime/bundle/description.hpp"
 #include "tests/support/differences.hpp"
-#include "tests/support/shapes.hpp"
-#include "tests/support/transport.hpp"
 
 namespace lambent::baker {
 namespace {

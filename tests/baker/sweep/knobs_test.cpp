@@ -71,12 +71,6 @@ TEST(Knobs, AllValuesOfAllKnobsAreUnderstoodByTheBake) {
   }
 }
 
-TEST(Knobs, GlossyScenesHaveAtMostSixBands) {
-  const auto settings = settingsOf({.surfaces = true, .glossy = true}, Quality::Draft, {});
-  ASSERT_TRUE(settings);
-  for (const Setting& setting : *settings) EXPECT_LE(setting.bake.order, 6) << setting.name();
-}
-
 TEST(Knobs, AskedOnesComeWithTheValuesThatAreNamed) {
   const std::vector<std::string> asked = {"rays=128,300", "keys=off"};
   const auto settings = settingsOf({}, Quality::Draft, asked);

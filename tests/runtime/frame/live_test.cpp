@@ -175,26 +175,6 @@ TEST_F(LiveFrame, BandsThatDoNotCountAreAsIfTheTransferHadNone) {
   EXPECT_LT(farthest(many.picture(), expected), 2e-4f) << "codes of 16 bits";
 }
 
-TEST_F(LiveFrame, AnotherProbeIsAsIfItHadBeenThereFromTheStart) {
-  spec::RgbImage image{.width = 64, .height = 32, .texels = {}};
-  for (int i = 0; i < 64 * 32; ++i)
-    image.texels.push_back(
-        0.5f + 0.4f * glm::vec3(sh::texelDirection(sh::ImageLayout::LatLong, 64, 32, i % 64, i / 64)));
-  const auto file = std::filesystem::path(::testing::TempDir()) / fmt::format("{}-other.hdr", getpid());
-  ASSERT_TRUE(spec::writeHdr(file, image));
-  const std::vector<spec::Light> environment_map = {spec::EnvironmentMapLight{.file = file, .layout = {}},
-                                                    kSun};
-  for (const auto& builder : {glossyBall(metalOf(glm::vec3(0.9f), 0.2f)), ballAndCloud()}) {
-    LiveStage swapped(builder, {kWhite});
-    swapped.picture();
-    swapped.environment = *lighting::Environment::create(environment_map);
-    const auto found = swapped.picture();
-    LiveStage fresh(builder, environment_map);
-    EXPECT_EQ(farthest(found, fresh.picture()), 0.0f);
-  }
-  std::filesystem::remove(file);
-}
-
 TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
   LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), diffuseColored(glm::vec4(1.0f))}), {kSun});
   stage.render();

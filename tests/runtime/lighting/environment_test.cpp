@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "runtime/sh/zonal.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::lighting {
 

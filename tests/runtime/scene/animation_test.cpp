@@ -151,16 +151,6 @@ TEST(Animation, AGroupThatGrowsEvenlyStaysRigid) {
   }
 }
 
-TEST(Animation, SurvivesNodesAndBundlesThatWereTakenAway) {
-  Playground at;
-  at.registry.destroy(at.scene.nodes[1]);
-  EXPECT_EQ(at.play(0.5f).nodes, 1u);
-  at.bundles.clear();
-  EXPECT_EQ(at.play(0.5f).animations, 0u);
-  destroyInstance(at.registry, at.scene);
-  EXPECT_EQ(at.registry.entityCount(), 0u);
-}
-
 TEST(SceneLights, StandWhereTheirWordsSay) {
   ecs::Registry registry;
   const std::vector<spec::Light> lights = {spec::ConstantLight{},

@@ -149,26 +149,6 @@ TEST(Instantiate, GivesEachMaterialAnEntityThatSaysWhatItIs) {
   EXPECT_EQ(changed.emissive, 2.0f * baked.emissive);
 }
 
-TEST(Instantiate, BoundsAreThoseOfTheBoxesWhereTheyStand) {
-  const Hall hall;
-  ecs::Registry registry;
-  const SceneInstance scene = instance(registry, hall.d);
-  const Box legs = drawBounds(registry, scene.draws[1]);
-  EXPECT_LT(glm::distance(legs.min, glm::vec3(1.5f, -1.0f, -0.5f)), kRounding);
-  EXPECT_LT(glm::distance(legs.max, glm::vec3(2.5f, -0.5f, 0.5f)), kRounding);
-  const Box all = worldBounds(registry);
-  EXPECT_NEAR(all.max.x, 4.5f, kRounding);
-  EXPECT_NEAR(all.max.y, 4.0f, kRounding) << "the top is stretched to 2 m";
-  EXPECT_NEAR(all.min.y, -1.0f, kRounding);
-  registry.edit<Transform>(scene.root).translation.x = 10.0f;
-  updateTransforms(registry);
-  EXPECT_NEAR(worldBounds(registry).max.x, 14.5f, kRounding);
-  EXPECT_NEAR(groupBounds(registry, scene.groups[0]).max.x, 11.0f, kRounding);
-  EXPECT_TRUE(worldBounds(ecs::Registry{}).empty());
-  EXPECT_EQ(Box{}.radius(), 0.0f);
-  EXPECT_TRUE(transformed(Box{}, turned(30.0f)).empty());
-}
-
 TEST(RigidGroup, IsWhereTheBakerSaysUntilItMoves) {
   const Hall hall;
   ecs::Registry registry;

@@ -7,7 +7,6 @@
 
 #include "runtime/sh/basis.hpp"
 #include "tests/runtime/sh/sphere.hpp"
-#include "tests/support/differences.hpp"
 
 namespace lambent::sh {
 namespace {

@@ -20,8 +20,6 @@
 #include <zlib.h>
 
 #include "runtime/spec/display.hpp"
-#include "tests/support/differences.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::spec {
 namespace {

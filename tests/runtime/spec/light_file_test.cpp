@@ -21,7 +21,6 @@
 
 #include "runtime/spec/environment_map.hpp"
 #include "runtime/spec/image.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::spec {
 namespace {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "runtime/spec/environment_map.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::spec {
 namespace {

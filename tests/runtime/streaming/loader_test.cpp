@@ -18,7 +18,6 @@
 #include "runtime/bundle/writer.hpp"
 #include "runtime/streaming/parts.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"
-#include "tests/support/eventually.hpp"
 
 namespace lambent::streaming {
 namespace {
