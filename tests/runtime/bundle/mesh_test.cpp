@@ -19,7 +19,6 @@ namespace {
 
 using baker::EncodedMesh;
 using baker::encodeDraco;
-using baker::latticeStep;
 
 constexpr float kStep = 1.0f / 4096.0f;
 

@@ -14,7 +14,6 @@
 namespace lambent::frame {
 namespace {
 
-using evaluate::TransferMode;
 using testing::BuiltVolume;
 using testing::BundleBuilder;
 using testing::quadMesh;
