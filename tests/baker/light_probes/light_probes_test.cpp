@@ -16,7 +16,6 @@
 namespace lambent::baker {
 namespace {
 
-
 LightProbes choose(const SampleSet& samples, LightProbeCount count) {
   glm::vec3 low(1e30f), high(-1e30f);
   for (const glm::vec3& p : samples.positions) low = glm::min(low, p), high = glm::max(high, p);

@@ -2,7 +2,6 @@
 // that edits, cancels and failures on the way do no harm.
 #include "baker/pipeline/bake_queue.hpp"
 
-
 #include "baker/bake/bake_unshadowed.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/journal.hpp"

@@ -1,7 +1,6 @@
 // Tests where the cameras are, what they see, and that their depth range contains the scene.
 #include "runtime/spec/camera.hpp"
 
-
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
