@@ -25,8 +25,6 @@ struct Stage : testing::ViewStage {
     return found ? found->counters : gpu::Counters{};
   }
 };
-}
-};
 
 const FrameOptions kLinear = [] {
   FrameOptions options;
