@@ -10,7 +10,8 @@ namespace lambent::testing {
 struct LiveStage : ViewStage {
   LiveStage(const BundleBuilder& builder, const std::vector<spec::Light>& lights,
             const frame::FrameSettings& settings = {})
-      : ViewStage(builder, lights, {.output = frame::Output::Linear, .settings = settings}) {
+      : ViewStage(builder, lights,
+                  {.size = {64, 64}, .output = frame::Output::Linear, .settings = settings}) {
     camera.azimuth_deg = 20.0f;
     camera.elevation_deg = 15.0f;
   }
