@@ -17,7 +17,7 @@ namespace {
 
 using testing::bytesOf;
 
-constexpr int kKills = 8;
+constexpr int kKills = 12;
 constexpr double kCheckpoint_s = 0.2;
 constexpr int kThreads = 2;
 
