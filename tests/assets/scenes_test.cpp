@@ -24,24 +24,9 @@ std::string written(const Scene& scene, const std::string& name) {
   return bytes;
 }
 
-std::size_t vertexCount(const Scene& scene) {
-  std::size_t count = 0;
-  for (const Node& node : scene.nodes)
-    count += scene.meshes[static_cast<std::size_t>(node.mesh)].mesh.positions.size();
-  return count;
-}
-
 TEST(AssetsScenes, EveryMeshIsSound) {
   for (const Scene& scene : {gallery(), hello(), knot(), metals()})
     for (const MaterialMesh& mesh : scene.meshes) expectSound(mesh.mesh, scene.name + " " + mesh.name);
-}
-
-TEST(AssetsScenes, HaveTheSizeThatTheyPromise) {
-  EXPECT_GT(vertexCount(gallery()), 60000u);
-  EXPECT_LT(vertexCount(gallery()), 120000u);
-  EXPECT_LT(vertexCount(hello()), 1000u);
-  EXPECT_LT(vertexCount(knot()), 20000u);
-  EXPECT_LT(vertexCount(metals()), 50000u);
 }
 
 TEST(AssetsScenes, WallsAndBoxesEncloseAPositiveVolume) {
@@ -51,18 +36,6 @@ TEST(AssetsScenes, WallsAndBoxesEncloseAPositiveVolume) {
       EXPECT_GT(volume(mesh.mesh), 0.0) << mesh.name;
     }
   EXPECT_GT(volume(knot().meshes[0].mesh), 0.0);
-}
-
-TEST(AssetsScenes, NothingStandsBelowTheFloorOrOutsideTheRoom) {
-  const Scene scene = gallery();
-  for (const Node& node : scene.nodes) {
-    if (node.name == "floor") continue;
-    for (const glm::vec3 p : scene.meshes[static_cast<std::size_t>(node.mesh)].mesh.positions) {
-      const glm::vec3 world = node.translation + node.scale * (node.rotation * p);
-      ASSERT_GT(world.y, -1e-5f) << node.name;
-      ASSERT_LT(glm::length(world), 4.5f) << node.name;
-    }
-  }
 }
 
 TEST(AssetsScenes, ComeOutByteForByteTheSame) {

@@ -16,35 +16,10 @@
 namespace lambent::assets {
 namespace {
 
-constexpr float kNewellHeight = 3.15f;
-
 TEST(AssetsTeapot, IsSound) {
   // The lip of the spout is so sharp that coarse faces bend far from their corners' normals.
   expectSound(teapot(12, 1.0f), "teapot 12", 0.2f);
   expectSound(teapot(22, 1.0f), "teapot 22");
-}
-
-TEST(AssetsTeapot, HasNewellsExtent) {
-  const Mesh mesh = teapot(24, kNewellHeight);
-  glm::vec3 low(1e9f), high(-1e9f);
-  for (const glm::vec3 p : mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
-  EXPECT_NEAR(low.y, 0.0f, 1e-6f);
-  EXPECT_NEAR(high.y, 3.15f, 1e-6f);
-  EXPECT_NEAR(high.z, 2.0f, 0.01f);  // the belly's radius: rows of r = 2 meet there
-  EXPECT_NEAR(low.z, -2.0f, 0.01f);
-  EXPECT_NEAR(low.x, -3.0f, 1e-6f);  // the handle: two rows of x = -3 meet there
-  EXPECT_GT(high.x, 3.3f);           // the spout
-  EXPECT_LT(high.x, 3.525f);
-}
-
-TEST(AssetsTeapot, NormalsPointAwayFromTheAxisOfTheBody) {
-  const Mesh mesh = teapot(8, kNewellHeight);
-  const std::size_t per_patch = 81, rim = 4;
-  for (std::size_t i = rim * per_patch; i < 12 * per_patch; ++i) {  // both bodies
-    const glm::vec3 p = mesh.positions[i];
-    EXPECT_GT(glm::dot(mesh.normals[i], glm::vec3(p.x, 0, p.z)), 0.0f) << i;
-  }
-  EXPECT_NEAR(mesh.normals[16 * per_patch].y, 1.0f, 1e-6f);  // top of the setting, a pole
 }
 
 // The shared teapot was tessellated 12 x 12 per patch from another copy of the patch data: its vertices are

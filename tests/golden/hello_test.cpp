@@ -109,22 +109,6 @@ TEST_F(HelloPicture, UnderTheSkyIsTheStoredOne) {
   EXPECT_LT(relativeRms(picture, *stored), 0.01);
 }
 
-// Lights must add up: by transfer alone up to rounding; with key lights, whose rays are distributed by flux,
-// as precisely as these rays resolve penumbrae.
-TEST_F(HelloPicture, IsLinearInItsLight) {
-  const std::string disc = "sun:40,50,3,200,150,100";
-  for (const auto& [keys, bound] : {std::pair{"off", 1e-3}, std::pair{"auto", 3e-3}}) {
-    spec::RgbaImage sky, sun, both;
-    show({"--keys", keys, "--light", kSky}, sky);
-    if (sky.texels.empty()) return;
-    show({"--keys", keys, "--light", disc}, sun);
-    show({"--keys", keys, "--light", kSky, "--light", disc}, both);
-    for (std::size_t i = 0; i < sun.texels.size(); ++i)
-      sun.texels[i] += glm::vec4(glm::vec3(sky.texels[i]), 0.0f);
-    EXPECT_LT(relativeRms(both, sun), bound) << "--keys " << keys;
-  }
-}
-
 TEST_F(HelloPicture, UnderUniformLightIsNeverBrighterThanItsAlbedo) {
   spec::RgbaImage shadowed, open;
   show({"--light", "constant:1,1,1"}, shadowed);

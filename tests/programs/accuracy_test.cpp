@@ -52,15 +52,6 @@ TEST_F(Accuracy, MeasuresWritesAPageAndMeasuresNothingAgain) {
   EXPECT_EQ(json::parse(second.out).at("rows"), report.at("rows"));
 }
 
-TEST_F(Accuracy, SaysInOneLineThatTheDemoIsMissing) {
-  std::filesystem::copy_file(LAMBENT_PROGRAM, folder / "lambent");
-  const Outcome outcome = run(folder / "lambent", {"accuracy", kHello, "-o", out()});
-  EXPECT_EQ(outcome.exit_code, 1);
-  expectOneLine(outcome, "lambent", "without lambent-demo");
-  EXPECT_NE(outcome.err.find("lambent-demo"), std::string::npos) << outcome.err;
-  EXPECT_FALSE(std::filesystem::exists(out()));
-}
-
 TEST_F(Accuracy, WrongUsageIsExitCode2AndOneLine) {
   const std::vector<std::vector<std::string>> wrong = {
       {"accuracy"},
@@ -77,12 +68,6 @@ TEST_F(Accuracy, WrongUsageIsExitCode2AndOneLine) {
     expectOneLine(outcome, "lambent", words.back());
   }
   EXPECT_FALSE(std::filesystem::exists(out()));
-}
-
-TEST_F(Accuracy, ASceneThatIsMissingIsOneLine) {
-  const Outcome outcome = run(LAMBENT_PROGRAM, {"accuracy", (folder / "no.glb").string(), "-o", out()});
-  EXPECT_EQ(outcome.exit_code, 1);
-  expectOneLine(outcome, "lambent", "a missing scene");
 }
 
 }  // namespace

@@ -8,8 +8,6 @@ namespace lambent {
 namespace {
 
 using nlohmann::json;
-using testing::bytesOf;
-using testing::kGallery;
 using testing::kHello;
 using testing::LambentProgram;
 using testing::Outcome;
@@ -50,15 +48,6 @@ TEST_F(LambentFolder, BakesEverySceneOnceAndSumsUp) {
       << second.out;
 }
 
-TEST_F(LambentFolder, BakesBesideTheScenesAndTakesBundlesForNoScenes) {
-  for (int run = 0; run < 2; ++run) {
-    const Outcome baked = lambent({"bake", path("scenes"), "--quality", "draft", "--rays", "128"});
-    EXPECT_EQ(baked.exit_code, 0) << baked.err;
-    EXPECT_NE(baked.out.find("2 scenes: "), std::string::npos) << baked.out;
-  }
-  EXPECT_TRUE(std::filesystem::exists(folder / "scenes/deep/b.lmb.glb"));
-}
-
 TEST_F(LambentFolder, GoesOnAfterAFailureAndFails) {
   writeBytes(folder / "scenes/0.glb", "no scene");
   std::filesystem::copy(kHello, folder / "scenes/a.gltf");  // another scene for a.lmb.glb
@@ -83,17 +72,6 @@ TEST_F(LambentFolder, PrintsAnArrayAsJson) {
   EXPECT_EQ(all[1]["output"], path("bundles/a.lmb.glb"));
   EXPECT_GT(all[1]["rays"], 0);
   EXPECT_EQ(json::parse(bakeAll({"--json"}).out)[2]["upToDate"], true);
-}
-
-TEST_F(LambentFolder, EndsAtAnInterrupt) {
-  std::filesystem::remove(folder / "scenes/a.glb");
-  std::filesystem::copy(kGallery, folder / "scenes/a.glb");
-  const Outcome outcome = interrupt({"bake", path("scenes"), "-o", path("bundles"), "--quality", "high",
-                                     "--rays", "1048576", "--progress", "json"},
-                                    "{", SIGINT);
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.out.find("2 scenes: 0 baked, 0 up to date, 1 failed, 1 not begun in "), std::string::npos)
-      << outcome.out << outcome.err;
 }
 
 TEST_F(LambentFolder, QuietLeavesErrorsAndJson) {

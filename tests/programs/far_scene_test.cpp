@@ -58,19 +58,6 @@ class FarScene : public LambentProgram {
   }
 };
 
-TEST_F(FarScene, HasTheSameReference) {
-  const auto trace = [&](const std::string& scene, const std::string& out, std::vector<std::string> more) {
-    more.insert(more.begin(), {"reference", scene, "-o", path(out), "--spp", "16"});
-    return lambent(more);
-  };
-  Outcome outcome = trace(kHello, "near.exr", near_view);
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  outcome = trace(path("far.glb"), "far.exr", far_view);
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  // The same paths are traced, but for those that end on other sides of edges.
-  EXPECT_LT(difference("far.exr", "near.exr"), 0.02);
-}
-
 TEST_F(FarScene, HasTheSameBake) {
   const auto show = [&](const std::string& bundle, const std::string& out, std::vector<std::string> more) {
     more.insert(more.begin(), {path(bundle), "--headless", path(out)});

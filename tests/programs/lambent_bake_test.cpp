@@ -1,5 +1,4 @@
 // Tests `lambent bake` as a user sees it: when it bakes, what it reports, and how it ends and goes on.
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
@@ -32,14 +31,6 @@ TEST_F(LambentProgram, BakesBesideTheSceneUnlessToldWhere) {
     EXPECT_NE(outcome.err.find("is a bundle, which was baked already; name the scene"), std::string::npos);
   }
   EXPECT_EQ(fileCount(), files);
-}
-
-TEST_F(LambentProgram, BakesTheSameBytesWithAnyNumberOfThreads) {
-  ASSERT_EQ(bakeHello("one.lmb.glb", {"--threads", "1"}).exit_code, 0);
-  ASSERT_EQ(bakeHello("two.lmb.glb", {"--threads", "4000000000"}).exit_code, 0);
-  ASSERT_GT(bytesOf(folder / "one.lmb.glb").size(), 1000u);
-  EXPECT_TRUE(bytesOf(folder / "one.lmb.glb") == bytesOf(folder / "two.lmb.glb"));
-  EXPECT_EQ(fileCount(), 2);
 }
 
 TEST_F(LambentProgram, BakesAgainOnlyWhenSomethingChangedOrForced) {
@@ -159,46 +150,6 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   }
 }
 
-TEST_F(LambentProgram, PlansFitOneScreenHoweverManyGroupsAndMaterialsThereAre) {
-  const auto manyBodies = [&](bool apart) {
-    json scene = {{"asset", {{"version", "2.0"}}}, {"scenes", {{{"nodes", json::array()}}}}};
-    scene["buffers"] = {
-        {{"uri", "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}, {"byteLength", 36}}};
-    scene["bufferViews"] = {{{"buffer", 0}, {"byteLength", 36}}};
-    scene["accessors"] = {{{"bufferView", 0},
-                           {"componentType", 5126},
-                           {"count", 3},
-                           {"type", "VEC3"},
-                           {"min", {0, 0, 0}},
-                           {"max", {1, 1, 0}}}};
-    for (int i = 0; i < 90; ++i) {
-      scene["materials"].push_back(
-          {{"name", fmt::format("metal {}", i)}, {"pbrMetallicRoughness", {{"roughnessFactor", 0.01 * i}}}});
-      scene["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"material", i}}}}});
-      scene["nodes"].push_back({{"mesh", i},
-                                {"name", fmt::format("body {}", i)},
-                                {"translation", {3 * i, 0, 0}},
-                                {"extras", {{"lambent", {{"movable", apart}}}}}});
-      scene["scenes"][0]["nodes"].push_back(i);
-    }
-    writeBytes(folder / "many.gltf", scene.dump());
-    return path("many.gltf");
-  };
-  for (const bool apart : {false, true}) {
-    const Outcome plan = lambent({"plan", manyBodies(apart)}),
-                  all = lambent({"plan", manyBodies(apart), "--verbose"});
-    EXPECT_EQ(plan.exit_code, 0) << plan.err;
-    EXPECT_LE(std::count(plan.out.begin(), plan.out.end(), '\n'), 40) << plan.out;
-    EXPECT_EQ(plan.out.find("e+0"), std::string::npos) << plan.out;
-    EXPECT_NE(plan.out.find(apart ? "more groups of "
-                                  : "matrices         baked for 90 of 90 draws, 100 % of the area"),
-              std::string::npos)
-        << plan.out;
-    for (int i = 0; i < 90; ++i)
-      EXPECT_NE(all.out.find(fmt::format("primitive 0 of metal {}\n", i)), std::string::npos) << i;
-  }
-}
-
 TEST_F(LambentProgram, AnInterruptEndsALongBakeAndKeepsTheOldBundle) {
   const auto bundle = folder / "gallery.lmb.glb";
   writeBytes(bundle, "the old one");
@@ -235,40 +186,6 @@ TEST_F(LambentProgram, SaysThatABakeCannotBeResumedAndBakesOn) {
   EXPECT_NE(baked.err.find("journal"), std::string::npos) << baked.err;
   EXPECT_NE(baked.err.find("--resume will not know of this bake"), std::string::npos) << baked.err;
   EXPECT_TRUE(std::filesystem::exists(folder / "hello.lmb.glb"));
-}
-
-// Kills the bake as soon as this many results are in the cache, whatever it does at that moment.
-TEST_F(LambentProgram, GoesOnWhereItWasKilled) {
-  const std::string cache = path("cache");
-  const std::vector<std::string> options = {"--rays", "4096", "--cache", cache};
-  ASSERT_EQ(bakeHello("whole.lmb.glb", {"--rays", "4096"}).exit_code, 0);
-  const auto entries = [&] {
-    std::ptrdiff_t count = 0;
-    std::error_code ignored;
-    for (std::filesystem::recursive_directory_iterator at(cache, ignored), end; !ignored && at != end;
-         at.increment(ignored))
-      count += at->path().extension() == ".entry";
-    return count;
-  };
-  for (const std::ptrdiff_t enough : {1, 6}) {
-    std::vector<std::string> arguments = {"bake",      kHello,  "-o",        path("killed.lmb.glb"),
-                                          "--quality", "draft", "--threads", "1"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const ::pid_t id = start(LAMBENT_PROGRAM, arguments);
-    int status = 0;
-    while (entries() < enough && ::waitpid(id, &status, WNOHANG) == 0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    ::kill(id, SIGKILL);
-    ::waitpid(id, &status, 0);
-    EXPECT_FALSE(std::filesystem::exists(path("killed.lmb.glb")));
-  }
-  std::vector<std::string> rest = options;
-  rest.push_back("--json");
-  const Outcome resumed = bakeHello("resumed.lmb.glb", rest);
-  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
-  const json report = json::parse(resumed.out);
-  EXPECT_GT(report["refinement"]["raysKept"].get<double>(), 0.0);
-  EXPECT_TRUE(bytesOf(path("resumed.lmb.glb")) == bytesOf(path("whole.lmb.glb")));
 }
 
 }  // namespace

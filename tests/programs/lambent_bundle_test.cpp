@@ -65,28 +65,6 @@ TEST_F(DamagedBundle, IsToldByInfoInOneLine) {
   EXPECT_NE(outcome.err.find("newer"), std::string::npos) << outcome.err;
 }
 
-TEST_F(DamagedBundle, IsToldByTheDemoInOneLineAndGivesNoPicture) {
-  // This view reads all that a bundle holds; pictures of light leave importance out.
-  const auto show = [&](const std::string& name) {
-    return run(LAMBENT_DEMO, {path(name), "--light", "constant:1,1,1", "--view", "importance", "--size",
-                              "32x32", "--headless", path("a.png")});
-  };
-  const Outcome intact = show("hello.lmb.glb");
-  if (testing::lacksDevice(intact)) LAMBENT_LACKS("gl", intact.err);
-  ASSERT_EQ(intact.exit_code, 0) << intact.err;
-  ASSERT_TRUE(std::filesystem::remove(folder / "a.png"));
-  auto bundles = damaged();
-  bundles.emplace_back("too new", tooNew());
-  for (const auto& [what, bytes] : bundles) {
-    writeBytes(folder / "damaged.lmb.glb", bytes);
-    const Outcome outcome = show("damaged.lmb.glb");
-    EXPECT_EQ(outcome.exit_code, 1) << what;
-    expectOneLine(outcome, "lambent-demo", what);
-    EXPECT_NE(outcome.err.find("damaged.lmb.glb: "), std::string::npos) << what << "\n" << outcome.err;
-    EXPECT_FALSE(std::filesystem::exists(folder / "a.png")) << what;
-  }
-}
-
 TEST_F(LambentProgram, BundlesPassTheKhronosValidator) {
   ASSERT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);
   const Outcome gallery = lambent({"bake", kGallery, "-o", path("gallery.lmb.glb"), "--quality", "draft"});

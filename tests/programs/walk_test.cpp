@@ -123,7 +123,7 @@ TEST_F(SharedScenes, BakeAndShowOrAreRefusedInOneRightLine) {
     // BRDFs, and what variants of a model have in common.
     const Outcome baked =
         run(LAMBENT_PROGRAM, {"bake", (scenes / file).string(), "-o", bundle.string(), "--quality", "draft",
-                              "--rays", "128", "--bounces", "2", "--order", "3", "--glossy-order", "4",
+                              "--rays", "128", "--bounces", "1", "--order", "3", "--glossy-order", "4",
                               "--refine", "off", "--cache", (folder / "cache").string()});
     const auto refused = kRefused.find(name);
     if (refused != kRefused.end() || isPointsOrLines(name)) {

@@ -84,32 +84,4 @@ TEST_F(LambentWatch, BakesWhatIsThereAndWhatChangesAndKeepsTheOldBundleMeanwhile
   EXPECT_EQ(events("ended").size(), 1u);
 }
 
-TEST_F(LambentWatch, EndsWithExitCode1WhileASceneFails) {
-  const std::string hello = bytesOfScene(folder / "hello", assets::hello());
-  writeBytes(scenes / "a.glb", hello);
-  std::filesystem::create_directory(scenes / "a.lmb.glb");  // where its bundle would go
-  const auto watch = [&] {
-    return start(LAMBENT_PROGRAM, {"bake", "--watch", scenes.string(), "--quality", "draft", "--json"});
-  };
-  ::pid_t id = watch();
-  ASSERT_TRUE(waitFor("failed", 1)) << bytesOf(log("err"));
-  ::kill(id, SIGINT);
-  EXPECT_EQ(finish(id).exit_code, 1);
-  std::filesystem::remove(scenes / "a.lmb.glb");
-  id = watch();
-  ASSERT_TRUE(waitFor("baked", 1)) << bytesOf(log("err"));
-  ::kill(id, SIGINT);
-  EXPECT_EQ(finish(id).exit_code, 0);
-}
-
-TEST_F(LambentWatch, WantsAFolderAlone) {
-  const testing::Outcome no_folder = run(LAMBENT_PROGRAM, {"bake", "--watch", (scenes / "missing").string()});
-  EXPECT_EQ(no_folder.exit_code, 1);
-  testing::expectOneLine(no_folder, "lambent", "no folder");
-  const testing::Outcome both =
-      run(LAMBENT_PROGRAM, {"bake", "a.glb", "-o", "b.lmb.glb", "--watch", scenes.string()});
-  EXPECT_EQ(both.exit_code, 2);
-  testing::expectOneLine(both, "lambent", "both");
-}
-
 }  // namespace lambent

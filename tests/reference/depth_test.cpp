@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "tests/reference/measure.hpp"
-#include "tests/reference/media.hpp"
 
 namespace lambent::baker::reference {
 namespace {
@@ -55,29 +54,6 @@ TEST(Depth, OfBlendedSurfacesIsWhatStandsBehindThem) {
   testing::paint(scene, 0, glass);
   const std::vector<float> nothing = depthsOf(scene, 40.0f);
   EXPECT_EQ(count(nothing, kNone), nothing.size());
-}
-
-TEST(Depth, OfCutOutsIsWhatIsSeenThroughThem) {
-  Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 20.0f, 4), testing::grid({0, 3, 0}, 20.0f, 4)});
-  gltf::Material leaf = testing::matte();
-  leaf.alpha_mode = gltf::AlphaMode::Mask;
-  for (const auto& [alpha, depth] : {std::pair(0.4f, 5.0f), std::pair(0.6f, 2.0f)}) {
-    leaf.base_color.a = alpha;
-    testing::paint(scene, 1, leaf);
-    const std::vector<float> depths = depthsOf(scene, 40.0f);
-    EXPECT_EQ(count(depths, depth), depths.size()) << alpha;
-  }
-}
-
-TEST(Depth, DoesNotKnowVolumes) {
-  for (const float density : {0.5f, 1e6f}) {
-    Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 2.0f, 4)});
-    testing::place(scene, testing::even(density, glm::vec3(0.5f), 0.0f, {0, 2, 0}, {8, 1, 8}));
-    const std::vector<float> depths = depthsOf(scene, 40.0f);
-    EXPECT_EQ(count(depths, 5.0f) + count(depths, kNone), depths.size());
-    EXPECT_GT(count(depths, 5.0f), 100u);
-    EXPECT_GT(count(depths, kNone), 100u);
-  }
 }
 
 }  // namespace

@@ -61,23 +61,6 @@ TEST(Environment, SamplesProbesOfEveryLayout) {
   }
 }
 
-TEST(Environment, SamplesSeveralLightsTogether) {
-  spec::DistantLights lights;
-  lights.environment_maps = {environment_map(sh::ImageLayout::LatLong, 32, 16)};
-  lights.discs = {{.direction = {0, 1, 0}, .radius_rad = 0.3f, .radiance = glm::vec3(40)},
-                  {.direction = {1, 0, 0}, .radius_rad = 2.0f, .radiance = glm::vec3(1)}};
-  lights.constant = glm::vec3(0.5f);
-  expectSamplesBringTheLight(lights, 0.01);
-}
-
-TEST(Environment, TurnsItsProbes) {
-  spec::DistantLights lights;
-  lights.environment_maps = {environment_map(sh::ImageLayout::LatLong, 32, 16)};
-  const Environment still(lights, 0.0f, 0), turned(lights, 90.0f, 0);
-  const glm::vec3 dir = glm::normalize(glm::vec3(0.3f, 0.2f, 0.9f));
-  EXPECT_EQ(turned.look(glm::normalize(spec::lightRotation(90.0f) * dir)).radiance, still.look(dir).radiance);
-}
-
 TEST(Environment, FindsSmallSunsToTheDigit) {
   // At 0.01 degrees the cosine of the radius differs from 1 by a tenth of a float's rounding.
   spec::DistantLights lights;

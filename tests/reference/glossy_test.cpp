@@ -8,12 +8,10 @@
 #include "runtime/spec/distant_lights.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/reference/quadrature.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::baker::reference {
 namespace {
 
-using testing::expectMean;
 using testing::Ggx;
 using testing::kPlace;
 using testing::limited;
@@ -151,33 +149,6 @@ TEST(Glossy, WholePicturesOfASunAreWhatQuadratureSays) {
   }
 }
 
-TEST(Glossy, MirrorsShowTheLightInTheReflectedDirection) {
-  gltf::Material mirror = glossy(1.0f, 0.0f);
-  mirror.base_color = glm::vec4(0.9f, 0.6f, 0.3f, 1.0f);
-  const Scene floor = glossyFloor(mirror);
-  const spec::SunLight sun{.azimuth_deg = 200, .elevation_deg = 30, .angle_deg = 3, .radiance = glm::vec3(7)};
-  // From the opposite side at the same height the floor shows the sun; 5 degrees away it is black.
-  const auto seen = measured(floor, eyeAt(30.0f, 20.0f), kPlace, {sun}, samples(64));
-  const double w = std::pow(0.5, 5.0);  // 1 - v·n = 1/2
-  for (int c = 0; c < 3; ++c) {
-    const double f0 = double{mirror.base_color[c]};
-    EXPECT_NEAR(seen.mean[c], 7.0 * (f0 + (1.0 - f0) * w), 0.01);
-  }
-  EXPECT_LT(measured(floor, eyeAt(36.0f, 20.0f), kPlace, {sun}, samples(64)).mean.g, 0.01);
-  EXPECT_LT(measured(floor, eyeAt(30.0f, 27.0f), kPlace, {sun}, samples(64)).mean.g, 0.01);
-}
-
-TEST(Glossy, SurfacesAreSeenInEachOther) {
-  // A slanted view of a mirror floor below a lamp shows the lamp's radiance.
-  Scene scene = glossyFloor(glossy(1.0f, 0.0f));
-  scene.materials[0].base_color = glm::vec4(1.0f);
-  gltf::Material shining = testing::matte();
-  shining.emissive = glm::vec3(3.0f);
-  testing::add(scene, testing::flipped(testing::grid({0, 1, 0}, 8.0f, 1)), shining);
-  const auto seen = measured(scene, kPlace + glm::vec3(0.3f, 0.5f, 0.2f), kPlace, {}, samples(64, 0));
-  EXPECT_NEAR(seen.mean.g, 3.0, 0.01);
-}
-
 // Makes a floor and a ceiling so wide that it hides the sky.
 Scene underCeiling(const gltf::Material& floor, const gltf::Material& ceiling) {
   Scene scene = glossyFloor(floor);
@@ -237,19 +208,6 @@ double received(const sh::LightVector& kernel, const Open& open) {
   return sum;
 }
 
-TEST(Glossy, LimitedKernelsSeeAWallInFrontOfHalfTheSky) {
-  // The wall also hides its image below the floor.
-  Scene scene = glossyFloor(glossy(1.0f, 0.5f));
-  addWall(scene);
-  const glm::vec3 eye = kPlace + glm::vec3(1.0f, 0.6f, 0.2f);
-  const double expected = received(kernelOf(glossy(1.0f, 0.5f), glm::normalize(eye - kPlace), 5),
-                                   [](const glm::vec3& s) { return s.x > 0.0f; });
-  const auto seen = measured(scene, eye, kPlace, {kSun}, limited(1024, 5, 5));
-  // Rays start a little above the place, and the floor's kernel is good to 0.1 %.
-  EXPECT_NEAR(seen.mean.g, expected, 4.0 * seen.error.g + 4e-3 * std::abs(expected));
-  EXPECT_LT(seen.error.g, 0.02 * std::abs(expected));
-}
-
 TEST(Glossy, LimitedKernelsMirrorWhatLiesBelowSmoothNormalsInThem) {
   // Bundles' surfaces may have such normals. Above a tilted normal, all directions that do not point to the
   // wall are open, also those below the floor, whose mirror images do not point to it either.
@@ -275,36 +233,6 @@ TEST(Glossy, LimitedKernelsMirrorWhatLiesBelowSmoothNormalsInThem) {
     const auto seen = measured(scene, eye, kPlace, {kSun}, limited(1024, 5, 5));
     EXPECT_NEAR(seen.mean.g, expected, 4.0 * seen.error.g + 4e-3 * std::abs(expected)) << lean;
     EXPECT_LT(seen.error.g, 0.05 * std::abs(expected)) << lean;
-  }
-}
-
-TEST(Glossy, LimitedKernelsTakePunctualLightsByTheirDirection) {
-  Scene scene = glossyFloor(glossy(1.0f, 0.4f));
-  scene.lights = {
-      {.name = "", .type = gltf::Light::Type::Directional, .color = glm::vec3(1), .intensity = 3.0f}};
-  gltf::Node node;
-  node.light = 0;
-  const glm::vec3 to_light = glm::normalize(glm::vec3(-0.5f, 0.8f, -0.3f));
-  node.parent_from_node = glm::inverse(glm::lookAt(to_light, glm::vec3(0), glm::vec3(0, 1, 0)));
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
-  const glm::vec3 eye = eyeAt(50.0f, 40.0f);
-  const sh::LightVector kernel = kernelOf(scene.materials[0], glm::normalize(eye - kPlace), 5);
-  EXPECT_NEAR(measured(scene, eye, kPlace, {}, limited(16, 5, 5)).mean.g,
-              3.0 * double{kernel.evaluate(to_light).g}, 0.005);
-}
-
-TEST(Glossy, KernelsOfMeasurementsHaveTheirDirectionalAlbedo) {
-  LAMBENT_NEEDS_SHARED(testing::sharedFile("brdf"));
-  Scene scene = glossyFloor({});
-  scene.materials[0].brdf = 0;
-  scene.brdfs = {*readMeasuredBrdf(testing::sharedFile("brdf/garnet_red.brdf"))};
-  for (const float elevation : {80.0f, 30.0f, 8.0f}) {
-    const auto whole = measured(scene, eyeAt(elevation, 30), kPlace, {testing::uniform(1)}, samples(1024));
-    const auto cut = measured(scene, eyeAt(elevation, 30), kPlace, {testing::uniform(1)}, limited(16, 5, 5));
-    for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(cut.mean[c], whole.mean[c], 4.0 * whole.error[c] + 2e-3 * whole.mean[c]);
-    EXPECT_GT(whole.mean.r, 1.5 * whole.mean.b);  // it is red
   }
 }
 

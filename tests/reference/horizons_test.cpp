@@ -93,16 +93,6 @@ TEST(Horizons, ARayAboveTheTriangleStandsForTheDirectionThatItAnswers) {
   }
 }
 
-TEST(LeaningNormals, ReflectAllOfUniformLight) {
-  for (const float roughness : {0.3f, 0.6f})
-    for (const float lean : {kLean, -kLean}) {
-      const double expected = albedo(roughness, lean);
-      const auto seen = measured(floorThatLeans(isotropicMetal(roughness), lean), eye(), kPlace,
-                                 {testing::uniform(1.0f)}, samples(256));
-      EXPECT_NEAR(seen.mean.g, expected, 4.0 * seen.error.g + 1e-3) << roughness << ' ' << lean;
-    }
-}
-
 // Light of a local source is found both by paths and by sampling the source: it must count once in total.
 TEST(LeaningNormals, ReflectAllOfWhatShinesAllAround) {
   for (const float roughness : {0.3f, 0.6f}) {
@@ -130,20 +120,6 @@ TEST(LeaningNormals, ShowWhatStandsInTheMirrorImage) {
   // Neither the sun behind the wall nor the one in front of the mirror image is visible.
   const auto seen = measured(lit, eye(), kPlace, {sunAt(-kHidden), sunAt(kHidden)}, samples(64, 0));
   EXPECT_NEAR(seen.mean.g, 3.0, 0.01);
-}
-
-TEST(LeaningNormals, LoseNothingAtLaterHitsEither) {
-  // A mirror on the ceiling shows the floor.
-  Scene scene = floorThatLeans(isotropicMetal(0.3f), kLean);
-  const glm::vec3 down = glm::normalize(kPlace - eye());
-  add(scene, testing::flipped(testing::grid({-3.0f, 2.0f, 0.2f}, 1.0f, 1)), isotropicMetal(0.0f));
-  const float height = 2.0f / -down.y;
-  const glm::vec3 on_ceiling = kPlace - height * down,
-                  below = on_ceiling + 0.5f * glm::vec3(-down.x, down.y, -down.z);
-  scene.nodes.back().parent_from_node =
-      glm::translate(glm::mat4(1.0f), on_ceiling - glm::vec3(-3.0f, 2.0f, 0.2f));
-  const auto seen = measured(scene, below, on_ceiling, {testing::uniform(1.0f)}, samples(256, 1));
-  EXPECT_NEAR(seen.mean.g, albedo(0.3f, kLean), 4.0 * seen.error.g + 2e-3);
 }
 
 }  // namespace

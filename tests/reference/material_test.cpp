@@ -70,21 +70,6 @@ TEST(Material, OfBlendedSurfacesCoversTheEyeOnly) {
   expectMean(sky, 0.25 * 0.2 + 0.75);
 }
 
-TEST(Material, OfBlendedLayersAddsThemFromTheFront) {
-  gltf::Material glass = testing::matte();
-  glass.alpha_mode = gltf::AlphaMode::Blend;
-  glass.unlit = true;
-  Scene scene = sceneOf({testing::grid({0, 1, 0}, 2.0f, 1), testing::grid({0, 2, 0}, 2.0f, 1)});
-  glass.base_color = glm::vec4(1, 0, 0, 0.5f);
-  testing::paint(scene, 0, glass);
-  glass.base_color = glm::vec4(0, 1, 0, 0.25f);
-  testing::paint(scene, 1, glass);
-  const Measured seen = measured(scene, {0, 4, 0}, {0, 1, 0}, {testing::uniform(0.0f)}, samples(1));
-  EXPECT_NEAR(seen.mean.g, 0.25, 1e-6);
-  EXPECT_NEAR(seen.mean.r, 0.75 * 0.5, 1e-6);
-  EXPECT_NEAR(seen.alpha, 1.0 - 0.75 * 0.5, 1e-6);
-}
-
 TEST(Material, OfUnlitSurfacesShowsItsColourBlocksAndGivesNothing) {
   gltf::Material unlit, black = testing::matte();
   unlit.unlit = true;
@@ -119,14 +104,6 @@ TEST(Material, OfOneSideIsCulledForTheEyeAndBlackForTheLight) {
   // The form factor of the card over the point is 4/pi * (a / sqrt(1 + a²)) atan(a / sqrt(1 + a²)) at a = 1.
   const double a = std::sqrt(0.5);
   expectMean(dark, 1.0 - 4.0 / double{kPi} * a * std::atan(a));
-}
-
-TEST(Material, OfMirroredNodesKeepsItsFront) {
-  Scene scene = sceneOf({testing::grid({0, 0, 0}, 2.0f, 2)});
-  scene.nodes[0].parent_from_node = glm::scale(glm::mat4(1), {-2, 1, 1});
-  const std::vector<spec::Light> light = {testing::uniform(1.0f)};
-  expectMean(measured(scene, {0, 2, 0}, {0.1f, 0, 0.1f}, light, samples(4)), 1.0);
-  EXPECT_EQ(measured(scene, {0, -2, 0}, {0.1f, 0, 0.1f}, light, samples(1)).alpha, 0.0);
 }
 
 TEST(Material, OfTexturesIsLinearAndMultiplies) {

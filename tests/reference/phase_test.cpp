@@ -9,24 +9,6 @@
 namespace lambent::baker::reference {
 namespace {
 
-// Integrates 2 pi ∫ f(cos) dcos by the midpoint rule.
-template <typename F>
-double overSphere(const F& f, int count = 200000) {
-  double sum = 0.0;
-  for (int i = 0; i < count; ++i) sum += f(-1.0 + (i + 0.5) * 2.0 / count);
-  return 4.0 * std::numbers::pi * sum / count;
-}
-
-TEST(Phase, LosesNoLightAndHasTheMeanCosineG) {
-  for (const float g : {-0.9f, -0.3f, 0.0f, 1e-6f, 0.5f, 0.76f, 0.95f}) {
-    EXPECT_NEAR(overSphere([&](double c) { return double{phaseValue(g, static_cast<float>(c))}; }), 1.0, 1e-5)
-        << g;
-    EXPECT_NEAR(overSphere([&](double c) { return c * double{phaseValue(g, static_cast<float>(c))}; }),
-                double{g}, 1e-5)
-        << g;
-  }
-}
-
 TEST(Phase, DrawsDirectionsByItsValue) {
   // Compares frequencies of the cosine in twenty bins; azimuths must be uniform.
   constexpr int kCount = 1 << 18, kBins = 20;
@@ -56,15 +38,6 @@ TEST(Phase, DrawsDirectionsByItsValue) {
       EXPECT_NEAR(shares[static_cast<std::size_t>(b)], expected, 2e-4) << g << " " << b;
     }
   }
-}
-
-TEST(Phase, OfManyBandsIsWhole) {
-  for (const float g : {-0.4f, 0.0f, 0.5f})
-    for (const float cosine : {-1.0f, -0.3f, 0.6f, 1.0f}) {
-      EXPECT_NEAR(phaseValue(g, cosine, 40), phaseValue(g, cosine), 1e-6f) << g << " " << cosine;
-      EXPECT_NEAR(phaseValue(g, cosine, 1), 0.25f / kPi, 1e-7f);
-      EXPECT_NEAR(phaseValue(g, cosine, 2), (1.0f + 3.0f * g * cosine) * 0.25f / kPi, 1e-7f);
-    }
 }
 
 TEST(Phase, StaysFiniteWhereItIsSharpest) {

@@ -2,7 +2,6 @@
 #include "reference/progressive.hpp"
 
 #include <chrono>
-#include <filesystem>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -70,22 +69,6 @@ TEST_F(Progressive, EndsInTheBitsOfTheReferenceOfAsManySamples) {
     request.options.spp = spp;
     expectTheReference(ProgressiveReference(shared(), request));
   }
-}
-
-TEST_F(Progressive, EndsInTheBitsOfTheReferenceOfVolumesAndOfBandLimits) {
-  request.options.size = {16, 12};
-  request.options.band_limit = BandLimit{.in = 4, .out = 3};
-  request.options.spp = 20;
-  expectTheReference(ProgressiveReference(shared(), request));
-  request.options.band_limit.reset();
-  request.options.spp = 100;
-  testing::place(scene, testing::even(4.0f, glm::vec3(0.9f), 0.3f, {0, 0.8f, 0}));
-  expectTheReference(ProgressiveReference(shared(), request));
-}
-
-TEST_F(Progressive, DoesNotDependOnThreads) {
-  request.options.threads = 1;
-  expectTheReference(ProgressiveReference(shared(), request));
 }
 
 TEST_F(Progressive, GivesTwoIndependentHalvesWhoseMeanIsThePicture) {
@@ -213,26 +196,6 @@ TEST(LightCache, ReadsAgainOnlyWhatChanged) {
   EXPECT_NE(*cache.environment(lights, {}, options), turned);
   lights[0] = testing::uniform(2.0f);
   EXPECT_EQ((*cache.environment(lights, {}, options))->shown({0, 1, 0}, 0.01f), glm::vec3(2.0f));
-}
-
-TEST(LightCache, LightsAreAsStrongAsTheirFactorsSay) {
-  const auto file = std::filesystem::path(::testing::TempDir()) / "factor-probe.exr";
-  spec::RgbaImage environment_map{8, 4, std::vector<glm::vec4>(32, glm::vec4(0.5f, 1.0f, 2.0f, 1.0f))};
-  ASSERT_TRUE(spec::writeExr(file, environment_map));
-  LightCache cache;
-  const std::vector<spec::Light> lights = {spec::SphereLight{}, testing::uniform(1.0f),
-                                           spec::EnvironmentMapLight{.file = file, .layout = {}}};
-  const auto sky = [&](const std::vector<float>& factors) {
-    const auto environment = *cache.environment(lights, factors, {});
-    EXPECT_EQ(environment->shown({0, -1, 0}, 0.01f), environment->look({0, -1, 0}).radiance);
-    return environment->shown({0, -1, 0}, 0.01f);
-  };
-  EXPECT_EQ(sky({}), glm::vec3(1.5f, 2.0f, 3.0f));
-  EXPECT_EQ(sky({9.0f, 0.5f, 2.0f}), glm::vec3(1.5f, 2.5f, 4.5f));
-  EXPECT_EQ(sky({9.0f, 0.0f}), glm::vec3(0.5f, 1.0f, 2.0f));
-  // The file is read only once, so it may be deleted meanwhile.
-  std::filesystem::remove(file);
-  EXPECT_EQ(sky({9.0f, 0.0f, 4.0f}), glm::vec3(2.0f, 4.0f, 8.0f));
 }
 
 TEST(Enlarged, LiesWhereThePictureDid) {

@@ -69,33 +69,6 @@ TEST(SphereLight, FromInsideComesFromEverywhereThatNothingBlocks) {
              1.5, 2e-3);
 }
 
-TEST(SphereLight, IsHiddenByWhatStandsBeforeItOnly) {
-  const auto light = sphere({0, 2, 0}, 0.5f, 10.0f);
-  const double open = 10.0 * 0.25 / 4.0;
-  const auto under = [&](const bundle::MeshData& blocker) {
-    return measured(sceneOf({testing::grid({0, 0, 0}, 20.0f, 1), blocker}), {0, 0.3f, 3}, {0, 0, 0}, {light},
-                    samples(128, 0));
-  };
-  const auto ceiling = [](glm::vec3 place) { return testing::flipped(testing::grid(place, 8.0f, 1)); };
-  expectMean(under(ceiling({0, 1, 0})), 0.0);
-  expectMean(under(ceiling({0, 3, 0})), open, kOffset);
-  expectMean(under(ceiling({4, 1, 0})), open / 2.0, kOffset);  // its edge stands under the middle
-}
-
-TEST(SphereLight, FillsAWhiteBallByTheGeometricSeries) {
-  // Light that met the wall once gives L r²/R² rho, and each further bounce rho times as much.
-  Scene scene = sceneOf({testing::flipped(testing::icosphere({0, 0, 0}, 2.0f, 5))});
-  scene.materials[0].base_color = glm::vec4(0.6f, 0.6f, 0.6f, 1);
-  const auto seen = [&](std::optional<std::uint32_t> bounces) {
-    return measured(scene, {0.2f, 0.1f, 0}, {0.3f, -1.9f, 0.4f}, {sphere({0, 0, 0}, 0.5f, 8.0f)},
-                    samples(64, bounces));
-  };
-  const double once = 0.6 * 8.0 * 0.25 / 4.0;
-  expectMean(seen(0), once, 2e-3);  // a polyhedron, nearer to its middle than a ball
-  expectMean(seen(1), once * 1.6, 3e-3);
-  expectMean(seen({}), once / 0.4, 6e-3);
-}
-
 // Returns E/pi on the axis: L r²/(r² + h²).
 TEST(DiscLight, LightsWhatLiesOnItsAxisInClosedForm) {
   for (const float height : {0.002f, 0.5f, 2.0f, 30.0f}) {
@@ -119,14 +92,6 @@ TEST(DiscLight, ShinesToOneSideAndNotAlongItsPlane) {
   EXPECT_EQ(floor(sphere({0, 1, 0}, 0.0f, 7.0f)), 0.0);
 }
 
-TEST(DiscLight, TiltedLightsByItsFormFactor) {
-  // The distance is large enough for one direction: L A cos cos / d² / pi, with an error of 1e-4 at a hundred
-  // radii.
-  const auto light = disc({60, 80, 0}, {-1, -1, 0}, 1.0f, 1e4f);
-  const double cosine = (0.6 + 0.8) / std::sqrt(2.0);
-  expectMean(measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0}, {light}, samples(64, 0)), cosine * 0.8, 3e-4);
-}
-
 TEST(ShapeLights, HardPlacesStayFinite) {
   for (const glm::vec3 place :
        {glm::vec3(0), glm::vec3(0, 1e-6f, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1e30f, 0)})
@@ -138,22 +103,6 @@ TEST(ShapeLights, HardPlacesStayFinite) {
       // Two lights around a white floor give no more than this, in the mean over everything but noise.
       EXPECT_LE(report.mean.g, 2.1e8) << place.y << " " << radius;
     }
-}
-
-TEST(ShapeLights, DensitiesOfBothStrategiesAgree) {
-  const spec::LocalLight ball = spec::SphereLight{.position_ws = {1, 2, -1}, .radius_m = 0.7f},
-                         plate = spec::DiscLight{
-                             .position_ws = {1, 2, -1}, .normal_ws = {0, -1, 0}, .radius_m = 0.7f};
-  for (const spec::LocalLight& light : {ball, plate})
-    for (float u = 0.05f; u < 0.99f; u += 0.1f)
-      for (float v = 0.05f; v < 0.99f; v += 0.1f) {
-        const auto drawn = sampleShape(light, glm::vec3(0), {u, v});
-        ASSERT_TRUE(drawn);
-        const auto met = lookAtShape(light, glm::vec3(0), drawn->dir);
-        ASSERT_TRUE(met) << u << " " << v;
-        EXPECT_NEAR(met->pdf, drawn->pdf, 1e-3f * drawn->pdf);
-        EXPECT_NEAR(met->distance, drawn->distance, 1e-3f);
-      }
 }
 
 TEST(Time, PutsTheSceneWhereItsAnimationsHaveIt) {

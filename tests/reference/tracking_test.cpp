@@ -86,24 +86,6 @@ TEST(GridMedium, IsLinearBetweenCentresAndConstantInTheHalfVoxelAtTheFaces) {
   EXPECT_DOUBLE_EQ(inside->metres, 2.0);
 }
 
-TEST(GridMedium, BoundsTheWorkOfAVoxelThatLetsNoLightThrough) {
-  Scene scene;
-  place(scene, medium({16, 16, 16},
-                      [](glm::vec3 p) { return glm::all(glm::lessThan(p, glm::vec3(1))) ? 1e10f : 0.1f; }));
-  std::vector<std::string> notices;
-  const Volumes volumes = Volumes::build(scene, notices);
-  ASSERT_EQ(notices.size(), 1u);
-  EXPECT_NE(notices[0].find("densities above 256 per metre"), std::string::npos) << notices[0];
-  // Beside the voxel, through its block: this took 1e11 steps.
-  Stream random(12);
-  const Ray beside{{-1, 3, 3}, {1, 0, 0}, 0}, through{{-1, 0.5f, 0.5f}, {1, 0, 0}, 0};
-  double sum = 0.0;
-  constexpr int kRays = 2000;
-  for (int i = 0; i < kRays; ++i) sum += volumes.transmittance(beside, kFar, random) / kRays;
-  EXPECT_NEAR(sum, std::exp(-1.6), 0.03);
-  EXPECT_EQ(volumes.transmittance(through, kFar, random), 0.0);
-}
-
 TEST(EyeDepth, IsTheIntegralOfTheDensityAlongTheRay) {
   const Scene scene = wild();
   const Volumes volumes = volumesOf(scene);
@@ -142,26 +124,6 @@ TEST(Tracking, ThroughAWildFieldIsUnbiased) {
   }
 }
 
-TEST(Tracking, ThroughALinearRampIsTheExponentialOfItsIntegral) {
-  // Density 0.05 x, from x = 1/2 to 31 1/2 and level beyond: along x its integral is 25.6.
-  SceneVolume ramp = medium({32, 5, 5}, [](glm::vec3 p) { return 0.05f * p.x; });
-  Scene scene = sceneOf({});
-  place(scene, ramp);
-  const Volumes volumes = volumesOf(scene);
-  const auto integral = [](double x) {  // from 0
-    return x < 0.5 ? 0.025 * x : 0.0125 + 0.025 * (x * x - 0.25);
-  };
-  const Ray along{{-3, 2.2f, 2.7f}, {1, 0, 0}, 0};
-  EXPECT_NEAR(EyeDepth(volumes, along, 0.0, 13.0).to(13.0), integral(10.0), 1e-5);
-  EXPECT_NEAR(EyeDepth(volumes, along, 0.0, kFar).to(kFar), 25.6, 1e-4);
-  for (const double x : {0.4, 3.0, 9.5}) expectTransmittance(volumes, along, x + 3.0, std::exp(-integral(x)));
-  // The ray is slanted, or reversed.
-  const glm::vec3 dir = glm::normalize(glm::vec3(-1, 0.2f, -0.1f));
-  const Ray back{glm::vec3(12, 1, 3), dir, 0};
-  const double length = 10.0 / double{-dir.x};
-  expectTransmittance(volumes, back, length, std::exp(-(integral(12) - integral(2)) / double{-dir.x}));
-}
-
 TEST(Tracking, MeetsWhereTheExtinctionIs) {
   // Quartiles of the first collision's depth, of those that collide.
   const Scene scene = wild();
@@ -179,39 +141,6 @@ TEST(Tracking, MeetsWhereTheExtinctionIs) {
   }
 }
 
-TEST(Tracking, OfTwoVolumesAddsTheirExtinctions) {
-  Scene scene = wild();
-  place(scene, even(1.5f, glm::vec3(0.5f), 0, {0.5f, 0.3f, 0.5f}));
-  const Volumes volumes = volumesOf(scene);
-  ASSERT_EQ(volumes.grids().size(), 2u);
-  const Ray ray = raysThroughWild()[0];
-  Scene one = scene, two = scene;
-  one.volumes.pop_back();
-  two.volumes.erase(two.volumes.begin());
-  const Volumes first = volumesOf(one), second = volumesOf(two);
-  const EyeDepth eye(volumes, ray, 0.0, kFar), a(first, ray, 0.0, kFar), b(second, ray, 0.0, kFar);
-  EXPECT_GT(a.to(kFar), 0.5);
-  EXPECT_GT(b.to(kFar), 0.5);
-  EXPECT_NEAR(eye.to(kFar), a.to(kFar) + b.to(kFar), 1e-6);
-  expectTransmittance(volumes, ray, kFar, std::exp(-eye.to(kFar)));
-  // A collision belongs to a volume in proportion to its extinction there, for both ways of finding one.
-  double expected = 0.0, picked = 0.0;
-  constexpr int kSteps = 200000;
-  const double share = -std::expm1(-eye.to(kFar));
-  for (int i = 0; i < kSteps; ++i) {
-    const double t = eye.place(-std::log1p(-(i + 0.5) / kSteps * share)), step = 1e-4;
-    const double here = a.to(t + step) - a.to(t - step), there = b.to(t + step) - b.to(t - step);
-    expected += here / (here + there) / kSteps;
-    picked += (eye.pick(t, std::fmod(i * 0.6180339887, 1.0)) == 0 ? 1.0 : 0.0) / kSteps;
-  }
-  EXPECT_NEAR(picked, expected, 2e-3);
-  const Estimate met = estimated(40000, [&](Stream& r) {
-    const auto collision = volumes.collide(ray, kFar, r);
-    return collision && collision->volume == 0 ? 1.0 : 0.0;
-  });
-  EXPECT_NEAR(met.mean, expected * share, 4.0 * met.error);
-}
-
 TEST(Tracking, CountsMetresOfTheWorldWhateverTheNodesScaleAndTheRaysLength) {
   Scene scene = sceneOf({});
   place(scene, even(2.0f), glm::scale(glm::mat4(1), {3, 1, 0.5f}));
@@ -220,29 +149,6 @@ TEST(Tracking, CountsMetresOfTheWorldWhateverTheNodesScaleAndTheRaysLength) {
   EXPECT_NEAR(EyeDepth(volumes, {{0, 0, 9}, {0, 0, -40}, 0}, 0.0, kFar).to(kFar), 1.0, 1e-5);
   EXPECT_NEAR(EyeDepth(volumes, {{0, 0, 0}, {0, 0, -40}, 0}, -1.0, kFar).to(kFar), 1.0, 1e-5);
   expectTransmittance(volumes, {{0, 0, 9}, {0, 0, -40}, 0}, kFar, std::exp(-1.0));
-}
-
-TEST(Tracking, FromTheMiddleOfACubeLetsThroughWhatTheTableSays) {
-  // Literature 7.8 gives the mean transmittance over all directions.
-  const double expected[][2] = {{1.0, 0.5445496}, {4.0, 0.0908467}, {16.0, 0.0001013}};
-  for (const auto& [sigma, mean] : expected) {
-    Scene scene = sceneOf({});
-    place(scene, even(static_cast<float>(sigma)));
-    const Volumes volumes = volumesOf(scene);
-    double exact = 0.0;
-    constexpr int kCount = 20000;
-    for (int i = 0; i < kCount; ++i)
-      exact +=
-          std::exp(
-              -EyeDepth(volumes, {{}, glm::vec3(testing::evenDirection(i, kCount)), 0}, 0.0, kFar).to(kFar)) /
-          kCount;
-    EXPECT_NEAR(exact, mean, 1e-5 + 1e-3 * mean);
-    int i = 0;
-    const Estimate ratio = estimated(kCount, [&](Stream& r) {
-      return volumes.transmittance({{}, glm::vec3(testing::evenDirection(i++, kCount)), 0}, kFar, r);
-    });
-    EXPECT_NEAR(ratio.mean, mean, 4.0 * ratio.error + 1e-5);
-  }
 }
 
 TEST(Tracking, InASphereLetsThroughWhatTheTableSays) {
@@ -297,16 +203,6 @@ TEST(Tracking, StaysWithinZeroAndOneForAnyDensity) {
     // Four voxels are crossed, which let nothing through at their limit of 256 free paths each.
     EXPECT_NEAR(EyeDepth(volumes, ray, 0.0, kFar).to(kFar) / std::min(double{density}, 4 * 256.0), 1.0, 1e-5);
   }
-}
-
-TEST(Volumes, WithoutDensityOrOnAFlatNodeAreLeftOut) {
-  Scene scene = sceneOf({});
-  place(scene, even(0.0f));
-  place(scene, even(1.0f), glm::scale(glm::mat4(1), {1, 0, 1}));
-  std::vector<std::string> notices;
-  EXPECT_TRUE(Volumes::build(scene, notices).empty());
-  ASSERT_EQ(notices.size(), 1u);
-  EXPECT_NE(notices[0].find("flat"), std::string::npos);
 }
 
 }  // namespace

@@ -45,28 +45,6 @@ double transmittanceOf(float density) {
   return std::exp(-double{density});
 }
 
-Scene stillLife() {
-  Scene scene = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1), testing::box({0.2f, 0.6f, 0}, {1, 1, 1}, 1)});
-  scene.materials[0].base_color = glm::vec4(0.8f, 0.7f, 0.6f, 1);
-  return scene;
-}
-
-TEST(VolumePicture, OfAnEmptyVolumeIsThatOfNoneToTheLastBit) {
-  Request request{.lights = {uniform(0.5f), spec::SunLight{.elevation_deg = 50, .angle_deg = 3},
-                             spec::SphereLight{.position_ws = {1, 2, 1}, .radius_m = 0.2f}},
-                  .camera = spec::OrbitCamera{30, 20, 2, 40},
-                  .options = {.size = {40, 30}, .spp = 20}};
-  for (const auto& limit : {std::optional<BandLimit>(), std::optional(BandLimit{5, 5})}) {
-    request.options.band_limit = limit;
-    const Report without = rendered(stillLife(), request);
-    Scene with = stillLife();
-    place(with, even(0.0f, glm::vec3(1), 0, {0, 0.5f, 0}));
-    const Report report = rendered(with, request);
-    EXPECT_EQ(report.image.texels, without.image.texels);
-    EXPECT_EQ(report.rays, without.rays);
-  }
-}
-
 TEST(VolumePicture, OfABlackVolumeIsTheSkyThroughIt) {
   for (const float density : {1e-6f, 0.5f, 4.0f, 1e6f}) {
     const auto seen = measured(cloud(density, glm::vec3(0)), kFront, kBack, {uniform(2.0f)}, samples(4));
@@ -97,31 +75,6 @@ TEST(VolumePicture, InAWhiteFurnaceShowsNothing) {
       }
       EXPECT_GT(covered, 0.5);
     }
-}
-
-TEST(VolumePicture, InAWhiteFurnaceOfADiscThatIsTheWholeSkyShowsOneWithinItsNoise) {
-  // Tests the same light by next-event estimation through the medium, combined with phase function sampling.
-  const spec::SunLight whole{
-      .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 180, .radiance = glm::vec3(1)};
-  const int spp[] = {256, 128, 64};
-  int i = 0;
-  for (const float density : {1.0f, 4.0f, 16.0f}) {
-    for (const float g : {0.0f, 0.7f}) {
-      const auto seen = measured(cloud(density, glm::vec3(1), g), kFront, kBack, {whole},
-                                 samples(static_cast<std::uint32_t>(spp[i])));
-      expectMean(seen, 1.0);
-      EXPECT_LT(seen.error.g, 0.01) << density << " " << g;
-      EXPECT_GT(seen.error.g, 0.0);
-    }
-    ++i;
-  }
-}
-
-TEST(VolumePicture, CutToOneBandIsAFurnaceToo) {
-  Options options = samples(8);
-  options.band_limit = BandLimit{5, 5};
-  const auto seen = measured(cloud(4.0f, glm::vec3(1), 0.0f), kFront, kBack, {uniform(1.0f)}, options);
-  EXPECT_NEAR(seen.mean.g, 1.0, 2e-5);
 }
 
 // Returns the mean over all directions of the radiance that arrives in the middle of the cube: by symmetry,
@@ -211,74 +164,6 @@ TEST(VolumePicture, ThinIsTheLightConvolvedWithThePhaseFunction) {
     }
 }
 
-TEST(VolumePicture, CutToFiveBandsIsSignedInsideAVolume) {
-  // Compares single scattering in a dense cube under a small sun with a sum over directions and places, which
-  // uses the cube's chords.
-  const spec::SunLight sun{.azimuth_deg = 0, .elevation_deg = 90, .angle_deg = 5, .radiance = glm::vec3(100)};
-  const auto light = spec::loadDistantLights({sun})->lightVector().truncated(4);
-  const double density = 3.0, y = -0.3;
-  double expected = 0.0;
-  constexpr int kPlaces = 64, kDirections = 4000;
-  for (int i = 0; i < kPlaces; ++i) {
-    const double depth = (i + 0.5) / kPlaces;
-    const glm::dvec3 at(0.1, y, 0.5 - depth);
-    double arriving = 0.0;
-    for (int k = 0; k < kDirections; ++k) {
-      const glm::dvec3 dir = testing::evenDirection(k, kDirections);
-      double chord = 1e9;
-      for (int a = 0; a < 3; ++a) chord = std::min(chord, (std::copysign(0.5, dir[a]) - at[a]) / dir[a]);
-      arriving += std::exp(-density * chord) * double{light.evaluate(glm::vec3(dir)).g} / kDirections;
-    }
-    expected += density * std::exp(-density * depth) * arriving / kPlaces;
-  }
-  Options options = samples(2048, 0);
-  options.band_limit = BandLimit{4, {}};
-  const auto seen = measured(cloud(3.0f), {0.1f, -0.3f, 3}, {0.1f, -0.3f, -1}, {sun}, options);
-  expectMean(seen, expected, 1e-3);
-  EXPECT_LT(seen.error.g, 0.02 * std::abs(expected) + 2e-3);
-}
-
-TEST(VolumePicture, UnderASphereOfLightIsThatUnderAPointOfTheSameStrength) {
-  // The two lights are small and near, so they are equivalent; one is sampled by area, the other as a whole.
-  const glm::vec3 there(0.9f, 1.0f, 0.3f);
-  const float radius = 0.02f, candela = 5.0f;
-  Scene pointed = cloud(2.0f, glm::vec3(0.8f), 0.3f);
-  gltf::Light light;
-  light.type = gltf::Light::Type::Point;
-  light.intensity = candela;
-  gltf::Node node;
-  node.light = 0;
-  node.parent_from_node = glm::translate(glm::mat4(1), there);
-  pointed.roots.push_back(static_cast<std::int32_t>(pointed.nodes.size()));
-  pointed.nodes.push_back(node);
-  pointed.lights = {light};
-  const spec::SphereLight sphere{
-      .position_ws = there,
-      .radius_m = radius,
-      .radiance = glm::vec3(candela / (std::numbers::pi_v<float> * radius * radius))};
-  for (const std::optional<std::uint32_t> bounces : {std::optional(0u), std::optional<std::uint32_t>()}) {
-    const auto a = measured(pointed, kFront, kBack, kDark, samples(512, bounces));
-    const auto b =
-        measured(cloud(2.0f, glm::vec3(0.8f), 0.3f), kFront, kBack, {sphere}, samples(512, bounces));
-    const double noise = 4.0 * std::hypot(a.error.g, b.error.g);
-    EXPECT_NEAR(a.mean.g, b.mean.g, noise + 1e-3 * a.mean.g);
-    EXPECT_LT(noise, 0.04 * a.mean.g);
-  }
-}
-
-TEST(VolumePicture, FromInsideALightSphereIsAFurnace) {
-  // The sphere surrounds the medium.
-  const spec::SphereLight around{.position_ws = {0, 0, 0}, .radius_m = 5, .radiance = glm::vec3(1)};
-  const auto seen = measured(cloud(4.0f), kFront, kBack, {around}, samples(64));
-  // Unseen by the eye: what it sends is what is scattered.
-  EXPECT_NEAR(seen.mean.g, 1.0 - transmittanceOf(4.0f), 1e-5);
-  // A sphere inside the medium lights what is around it.
-  const spec::SphereLight within{.position_ws = {0, 0, 0}, .radius_m = 0.2f, .radiance = glm::vec3(1)};
-  const auto lit = measured(cloud(4.0f), kFront, kBack, {within}, samples(64));
-  EXPECT_GT(lit.mean.g, 0.01);
-  EXPECT_LT(lit.mean.g, 1.0);
-}
-
 TEST(VolumePicture, ShadesTheGroundByItsOpticalDepth) {
   // The sun is straight above a sheet over the ground: exp(-depth) of its light passes.
   for (const float density : {0.5f, 3.0f}) {
@@ -312,30 +197,6 @@ TEST(VolumePicture, ShowsSurfacesThroughItAndFromWithin) {
   EXPECT_NEAR(away.alpha, 1.0 - std::exp(-0.5), 2e-3);
 }
 
-TEST(VolumePicture, OfABlendedSurfaceInsideMultipliesWhatBothLetThrough) {
-  Scene scene = sceneOf({testing::turned(testing::grid({0, 0, 0}, 2.0f, 1), 90, {1, 0, 0})});
-  scene.materials[0].alpha_mode = gltf::AlphaMode::Blend;
-  scene.materials[0].base_color = glm::vec4(0, 0, 0, 0.25f);
-  place(scene, even(2.0f, glm::vec3(0)));
-  const auto seen = measured(scene, kFront, kBack, {uniform(1.0f)}, samples(4));
-  EXPECT_NEAR(seen.mean.g, 0.75 * std::exp(-2.0), 1e-5);
-  EXPECT_NEAR(seen.alpha, 1.0 - 0.75 * std::exp(-2.0), 1e-6);
-}
-
-TEST(VolumePicture, OfOneHiddenInAMeshIsThatOfTheMesh) {
-  Scene scene = stillLife();
-  const Request request{.lights = {uniform(0.5f), spec::SunLight{.elevation_deg = 50, .angle_deg = 3}},
-                        .camera = spec::OrbitCamera{30, 20, 2, 40},
-                        .options = {.size = {40, 30}, .spp = 16}};
-  const Report without = rendered(scene, request);
-  place(scene, even(50.0f, glm::vec3(1), 0, {0.2f, 0.6f, 0}, glm::vec3(0.99f)));
-  const Report with = rendered(scene, request);
-  for (std::size_t i = 0; i < with.image.texels.size(); ++i) {
-    EXPECT_NEAR(with.image.texels[i].g, without.image.texels[i].g, 1e-6f);
-    EXPECT_EQ(with.image.texels[i].w, without.image.texels[i].w);
-  }
-}
-
 TEST(VolumePicture, OfTwoThatOverlapIsThatOfTheirSum) {
   // If a medium of albedo 1 and one twice as dense of albedo 0.4 overlap, the albedo is 0.6.
   Scene two = cloud(1.0f, glm::vec3(1));
@@ -346,39 +207,6 @@ TEST(VolumePicture, OfTwoThatOverlapIsThatOfTheirSum) {
   EXPECT_NEAR(a.mean.g, b.mean.g, 4.0 * std::hypot(a.error.g, b.error.g));
   EXPECT_LT(a.error.g, 0.005 * a.mean.g);
   EXPECT_NEAR(a.alpha, b.alpha, 1e-6);
-}
-
-TEST(VolumePicture, CountsReflectionsBySurfacesOnly) {
-  // The medium is over a white ground under uniform light. Without a bounce the ground does not light the
-  // medium; with one it does, and scattering in the medium is complete.
-  Scene scene = sceneOf({testing::grid({0, -0.6f, 0}, 40.0f, 1)});
-  place(scene, even(1.0f));
-  const auto seen = [&](std::uint32_t bounces) {
-    return measured(scene, {0.1f, 0.2f, 3.0f}, {0.1f, 0.2f, -1.0f}, {uniform(1.0f)}, samples(64, bounces))
-        .mean.g;
-  };
-  const double through = transmittanceOf(1.0f);
-  EXPECT_LT(seen(0), through + 0.6 * (1.0 - through));
-  EXPECT_GT(seen(1), through + 0.85 * (1.0 - through));
-  EXPECT_NEAR(seen(60), 1.0, 1e-3);
-  // Without surfaces one bounce is complete.
-  const auto open = [&](std::optional<std::uint32_t> bounces) {
-    return measured(cloud(16.0f), kFront, kBack, {uniform(1.0f)}, samples(16, bounces)).mean.g;
-  };
-  EXPECT_NEAR(open(1), 1.0, 2e-5);
-  EXPECT_LT(open(0), 0.5);
-}
-
-TEST(VolumePicture, IsTheSameForAnyNumberOfThreads) {
-  Scene scene = stillLife();
-  place(scene, even(5.0f, {0.9f, 0.8f, 0.7f}, 0.5f, {0.2f, 1.3f, 0}));
-  Request request{.lights = {uniform(1.0f), spec::SunLight{.elevation_deg = 50, .angle_deg = 3}},
-                  .camera = spec::OrbitCamera{30, 20, 2, 40},
-                  .options = {.size = {40, 30}, .spp = 20}};
-  request.options.threads = 1;
-  const auto one = rendered(scene, request);
-  request.options.threads = 2;
-  EXPECT_EQ(rendered(scene, request).image.texels, one.image.texels);
 }
 
 TEST(VolumePicture, InHardCasesStaysFinite) {

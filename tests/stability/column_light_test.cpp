@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
-#include "reference/reference.hpp"
 #include "tests/stability/show.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
@@ -154,19 +153,7 @@ TEST_F(ColumnLight, BouncesAsInTheReference) {
   Show show(lampScene(true), noLight());
   double found = 0.0, by_column = 0.0, expected = 0.0;
   const auto referenceAt = [&](const glm::vec3& target) {
-    baker::reference::Request request;
-    request.lights = noLight();
-    request.view = spec::View{.view_from_world = glm::lookAt(kEye, target, glm::vec3(0.01f, 1.0f, 0.02f)),
-                              .clip_from_view = glm::perspective(glm::radians(1.5f), 1.0f, 0.01f, 1000.0f),
-                              .eye_ws = kEye};
-    request.options.size = {8, 8};
-    request.options.spp = 256;
-    baker::Progress progress;
-    const auto report = baker::reference::render(show.scene, request, {}, true, progress, {});
-    EXPECT_TRUE(report) << report.error().line();
-    double sum = 0.0;
-    for (const glm::vec4& texel : report->image.texels) sum += double{texel.g} / 64.0;
-    return sum;
+    return show.referenceAt(kEye, target, noLight(), 256);
   };
   // The first places see only bounced light.
   for (const glm::vec3& target :

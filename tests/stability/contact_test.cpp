@@ -67,17 +67,6 @@ TEST_F(Contact, ABoxTakesTheSkysLightFromWhatItStandsOnWhereverItWasBaked) {
   }
 }
 
-TEST_F(Contact, LiftedByHandItsShadowStaysBelowIt) {
-  Show show(boxAt(kHere), {constantLight(1.0f)});
-  show.move("body", {0, 0.1f, 0});
-  const float low = seenBeside(show, kHere, 0.02f);
-  show.move("body", {0, 0.4f, 0});
-  const float high = seenBeside(show, kHere, 0.02f);
-  EXPECT_LT(low, 0.8f);
-  EXPECT_GT(high, low + 0.1f);
-  EXPECT_LT(high, 0.95f);
-}
-
 TEST_F(Contact, InTheSunNothingIsDarkenedTwice) {
   constexpr float kSky = 0.3f, kRadius = 2.0f, kRadiance = 700.0f, kElevation = 45.0f;
   const float sine = std::sin(glm::radians(kRadius));

@@ -61,22 +61,6 @@ std::vector<frame::RebakeReason> reasons(const Show& show) {
 
 using LiveMaterials = testing::GpuTest;
 
-TEST_F(LiveMaterials, AColorOnDirectLightIsThatOfARebake) {
-  const Look red{.color = {0.8f, 0.1f, 0.1f}}, blue{.color = {0.1f, 0.3f, 0.9f}};
-  glm::vec3 ball, floor;
-  {
-    Show live = show(red, /*bounces=*/0);
-    ballOf(live);
-    change(live, blue);
-    ball = ballOf(live);
-    floor = floorOf(live);
-    EXPECT_TRUE(reasons(live).empty());
-  }
-  Show baked = show(blue, /*bounces=*/0);
-  EXPECT_LT(glm::distance(ball, ballOf(baked)), 1e-5f);
-  EXPECT_LT(glm::distance(floor, floorOf(baked)), 1e-5f);
-}
-
 TEST_F(LiveMaterials, ARoughnessOnDirectLightIsThatOfARebake) {
   const Look dull{.color = glm::vec3(0.9f, 0.7f, 0.4f), .roughness = 0.7f, .metallic = 1.0f};
   const Look shiny{.color = glm::vec3(0.9f, 0.7f, 0.4f), .roughness = 0.3f, .metallic = 1.0f};

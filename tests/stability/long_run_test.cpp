@@ -50,7 +50,7 @@ std::map<std::string, int> objectsOfTheDriver() {
 TEST_F(WorldTest, InALongRunNeitherMemoryNorObjectsOfTheDriverGrow) {
   constexpr int kFramesOfARound = 25;
   const char* asked = std::getenv("LAMBENT_LONG_RUN");
-  const int rounds = std::max(12, asked ? std::atoi(asked) / kFramesOfARound : 0);
+  const int rounds = std::max(9, asked ? std::atoi(asked) / kFramesOfARound : 0);
   WorldStage stage(lights);
   stage.open(floorFile());
   stage.picture();

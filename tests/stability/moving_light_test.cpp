@@ -64,28 +64,6 @@ TEST_F(MovingLight, ARedBallTintsTheWhiteWallThatItComesNear) {
   EXPECT_LT(glm::distance(show.patch(eye, beside), alone), 0.005f) << "nothing stays behind";
 }
 
-TEST_F(MovingLight, ABlockerBetweenLampAndStatueDarkensTheStatue) {
-  assets::Scene scene = named("statue");
-  add(scene, "statue", assets::sphere(0.3f, 10), glm::vec3(1.0f), {0, 0, 0}, true);
-  add(scene, "screen", assets::box({-1, -0.02f, -1}, {1, 0.02f, 1}, 0.25f), glm::vec3(0.02f), {10, 3, 0},
-      true);
-  Show show(scene, {constantLight(0.0f)}, 1);
-  frame::FrameSettings settings = show.frame->settings();
-  settings.local_radii = 0.0f;  // this is about captures
-  ASSERT_TRUE(show.frame->setSettings(settings));
-  show.add({.kind = Kind::Sphere, .strength = 50.0f, .radius_m = 0.8f}, {0, 6, 0});
-  const glm::vec3 eye(0.8f, 1.2f, 1.5f), top(0, 0.3f, 0);
-  const float lit = show.patch(eye, top).g;
-  // Its light is sampled at the statue's centre, 6 m below the lamp; five bands give 98 % of a small disc's
-  // irradiance.
-  const float expected = 50.0f * 0.8f * 0.8f / 36.0f;
-  EXPECT_NEAR(lit / expected, 0.98f, 0.03f);
-  show.move("screen", {0, 3, 0});
-  EXPECT_LT(show.patch(eye, top).g, 0.02f * lit);
-  show.move("screen", {0, 9, 0});
-  EXPECT_NEAR(show.patch(eye, top).g / lit, 1.0f, 0.05f) << "behind the lamp it hides nothing";
-}
-
 TEST_F(MovingLight, ABodyTakesTheLightOfALampThatIsBakedIntoTheFloorItStandsOn) {
   assets::Scene scene = named("lamp");
   add(scene, "floor", floorOf(2.0f, 0.1f), glm::vec3(1.0f), {0, 0, 0}, false);

@@ -149,18 +149,5 @@ TEST_F(NeighborhoodBundle, OfHostileBodiesIsFiniteOrNone) {
   EXPECT_FALSE(bake(over(icosphere({0, 0, 0}, 0.1f, 2), {0, 500, 0})).has_value());
 }
 
-TEST_F(NeighborhoodBundle, IsLeftOutWhereTheEffectIs) {
-  baker::BakeOptions options;
-  options.effects = "diffuse";
-  const auto plan = baker::planFor(over(icosphere({0, 0, 0}, 0.5f, 1), {0, 0.4f, 0}), options);
-  ASSERT_TRUE(plan);
-  for (const auto& one : plan->neighborhoods) EXPECT_FALSE(one.baked);
-  EXPECT_EQ(plan->light_probes[0].count.count, 32u);  // the floor's, for the ball
-  // Matrices do not have this many bands.
-  options.effects = "auto";
-  options.order = 8;
-  EXPECT_FALSE(baker::planFor(over(icosphere({0, 0, 0}, 0.5f, 1), {0, 0.8f, 0}), options));
-}
-
 }  // namespace
 }  // namespace lambent

@@ -209,13 +209,6 @@ TEST_F(ProxyLods, GiveWayInOneFrameAndAreNeverSeenTogetherWithTheSurfaces) {
   EXPECT_TRUE(std::ranges::equal(at_once.picture().texels, expected.texels)) << "bit for bit";
 }
 
-TEST_F(ProxyLods, LeaveTheLargestToItsSurfacesHoweverLittleRoomThereIs) {
-  Place place({near, far}, 1);
-  place.picture();
-  EXPECT_EQ(place.shown(0), Shown::Partly);
-  EXPECT_EQ(place.shown(1), Shown::Nothing);
-}
-
 TEST_F(ProxyLods, AreThoseOfTheReplacementOnceItHasCome) {
   Place place({near, far}, tight());
   const Right before(place.picture());

@@ -15,6 +15,7 @@
 #include "assets/shapes.hpp"
 #include "baker/bake/bake.hpp"
 #include "baker/import/gltf.hpp"
+#include "reference/reference.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/lights.hpp"
 
@@ -78,14 +79,31 @@ class Show {
     }
     return glm::vec3(sum / double{kSide * kSide});
   }
+  static spec::View viewOf(glm::vec3 eye, glm::vec3 target) {
+    return {.view_from_world = glm::lookAt(eye, target, glm::vec3(0.01f, 1.0f, 0.02f)),
+            .clip_from_view = glm::perspective(glm::radians(1.5f), 1.0f, 0.01f, 1000.0f),
+            .eye_ws = eye};
+  }
   void step(glm::vec3 eye, glm::vec3 target) {
-    spec::View view;
-    view.view_from_world = glm::lookAt(eye, target, glm::vec3(0.01f, 1.0f, 0.02f));
-    view.clip_from_view = glm::perspective(glm::radians(1.5f), 1.0f, 0.01f, 1000.0f);
-    view.eye_ws = eye;
     world.updateTransforms();
-    const Result<void> done = frame->render(world, environment, view);
+    const Result<void> done = frame->render(world, environment, viewOf(eye, target));
     ASSERT_TRUE(done) << done.error().line();
+  }
+
+  // Returns what the path-traced reference shows of such a patch, in green.
+  double referenceAt(glm::vec3 eye, glm::vec3 target, const std::vector<spec::Light>& lights,
+                     std::uint32_t samples) const {
+    baker::reference::Request request;
+    request.lights = lights;
+    request.view = viewOf(eye, target);
+    request.options.size = {kSide, kSide};
+    request.options.spp = samples;
+    baker::Progress progress;
+    const auto report = baker::reference::render(scene, request, {}, true, progress, {});
+    EXPECT_TRUE(report) << report.error().line();
+    double sum = 0.0;
+    for (const glm::vec4& texel : report->image.texels) sum += double{texel.g} / (kSide * kSide);
+    return sum;
   }
 
   void move(const std::string& name, glm::vec3 to) {

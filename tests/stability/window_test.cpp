@@ -3,7 +3,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "reference/reference.hpp"
 #include "tests/stability/show.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -46,18 +45,7 @@ TEST_F(SunThroughAWindow, BouncesOffTheFloorAsInTheReference) {
   double found = 0.0, expected = 0.0, squares = 0.0;
   int places = 0;
   const auto compareAt = [&](const glm::vec3& target) {
-    baker::reference::Request request;
-    request.lights = lights;
-    request.view = spec::View{.view_from_world = glm::lookAt(eye, target, glm::vec3(0.01f, 1.0f, 0.02f)),
-                              .clip_from_view = glm::perspective(glm::radians(1.5f), 1.0f, 0.01f, 1000.0f),
-                              .eye_ws = eye};
-    request.options.size = {8, 8};
-    request.options.spp = 512;
-    baker::Progress progress;
-    const auto report = baker::reference::render(show.scene, request, {}, true, progress, {});
-    ASSERT_TRUE(report) << report.error().line();
-    double sum = 0.0;
-    for (const glm::vec4& texel : report->image.texels) sum += double{texel.g} / 64.0;
+    const double sum = show.referenceAt(eye, target, lights, 256);
     const double seen = double{show.patch(eye, target).g};
     EXPECT_NEAR(seen / sum, 1.0, 0.6) << target.x << " " << target.y << " " << target.z;
     squares += (seen / sum - 1.0) * (seen / sum - 1.0);
@@ -65,8 +53,8 @@ TEST_F(SunThroughAWindow, BouncesOffTheFloorAsInTheReference) {
     found += seen;
     expected += sum;
   };
-  for (const float u : {-0.7f, -0.35f, 0.0f, 0.35f, 0.7f})
-    for (const float v : {-0.7f, -0.35f, 0.0f, 0.35f, 0.7f}) {
+  for (const float u : {-0.7f, -0.25f, 0.25f, 0.7f})
+    for (const float v : {-0.7f, -0.25f, 0.25f, 0.7f}) {
       compareAt({u, 1, v});
       compareAt({-1, v, u});
       compareAt({u, v, -1});

@@ -1,7 +1,6 @@
 #include "baker/accuracy/difference.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -55,18 +54,6 @@ TEST(Difference, MeasuresDarkPixelsByAFloor) {
   expectNear(at(*out, 7), heatColor(HeatMap::Signed, 0.5));
 }
 
-TEST(Difference, OfMagnitudeIsWhatThePercentilesAreOf) {
-  auto picture = grey(2.0f);
-  for (std::size_t i = 0; i < 40; ++i) set(picture, i, i % 2 ? 2.2f : 1.8f);
-  const auto out =
-      differenceOf(picture, grey(2.0f), nullptr, {.map = HeatMap::Magnitude, .range = 0.2}, "a.exr");
-  ASSERT_TRUE(out);
-  EXPECT_NEAR(out->figures.largest, 0.1, 1e-6);
-  expectNear(at(*out, 0), heatColor(HeatMap::Magnitude, out->figures.largest / 0.2));
-  EXPECT_EQ(at(*out, 0), at(*out, 1)) << "of either sign";
-  expectNear(at(*out, 50), heatColor(HeatMap::Magnitude, 0.0));
-}
-
 TEST(Difference, ChoosesARangeThatHoldsAllButTheWorstPixels) {
   auto picture = grey(1.0f, 100, 10);
   for (std::size_t i = 0; i < 500; ++i) set(picture, i, 1.13f);
@@ -79,44 +66,6 @@ TEST(Difference, ChoosesARangeThatHoldsAllButTheWorstPixels) {
   const auto same = differenceOf(picture, picture, nullptr, {}, "a.exr");
   ASSERT_TRUE(same);
   EXPECT_GT(same->range, 0.0);
-}
-
-TEST(Difference, TakesTheMeanOfTwoReferencesAndTheirFigures) {
-  const auto picture = grey(1.1f), a = grey(0.9f), b = grey(1.1f);
-  const auto out = differenceOf(picture, a, &b, {.range = 0.2}, "a.exr");
-  const auto figures = comparePictures(picture, a, &b, "a.exr");
-  ASSERT_TRUE(out && figures);
-  expectNear(at(*out, 0), heatColor(HeatMap::Signed, 0.5));
-  EXPECT_EQ(out->figures.relative_rms, figures->relative_rms);
-  EXPECT_EQ(out->figures.bias, figures->bias);
-}
-
-TEST(Difference, TellsPixelsThatNobodyCoversFromThoseThatOneDoes) {
-  auto picture = grey(1.0f), reference = grey(1.0f);
-  picture.texels[1].w = reference.texels[1].w = 0.0f;
-  reference.texels[2].w = 0.0f;
-  set(picture, 1, 70.0f), set(picture, 2, 70.0f);
-  const auto out = differenceOf(picture, reference, nullptr, {}, "a.exr");
-  ASSERT_TRUE(out);
-  EXPECT_EQ(out->figures.pixels_apart, 1u);
-  const Color uncovered = at(*out, 1), apart = at(*out, 2);
-  EXPECT_TRUE(uncovered[0] == uncovered[1] && uncovered[1] == uncovered[2]);
-  EXPECT_NE(uncovered, apart);
-  for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0})
-    for (const HeatMap map : {HeatMap::Signed, HeatMap::Magnitude}) {
-      EXPECT_NE(uncovered, heatColor(map, share));
-      EXPECT_NE(apart, heatColor(map, share));
-    }
-}
-
-TEST(Difference, RefusesWhatCannotBeCompared) {
-  const auto white = grey(1.0f);
-  EXPECT_FALSE(differenceOf(white, grey(1.0f, 4, 4), nullptr, {}, "a.exr"));
-  EXPECT_FALSE(differenceOf(white, white, nullptr, {.range = 0.0}, "a.exr"));
-  EXPECT_FALSE(
-      differenceOf(white, white, nullptr, {.range = std::numeric_limits<double>::infinity()}, "a.exr"));
-  EXPECT_FALSE(parseHeatMap("rainbow"));
-  EXPECT_EQ(*parseHeatMap("magnitude"), HeatMap::Magnitude);
 }
 
 }  // namespace

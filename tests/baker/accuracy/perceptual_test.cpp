@@ -40,9 +40,5 @@ TEST(Perceptual, FineContrastsHideWhatCoarseOnesShow) {
   EXPECT_LT(fine, 0.1 * coarse);
 }
 
-TEST(Perceptual, SizesMustBeEqual) {
-  EXPECT_FALSE(visibleShare(twoGreys(1, 1), spec::Rgba8Image{1, 1, {0, 0, 0, 255}}, "a"));
-}
-
 }  // namespace
 }  // namespace lambent::baker

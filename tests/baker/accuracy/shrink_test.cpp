@@ -33,12 +33,5 @@ TEST(Shrunk, CoverageIsAShareAndDepthsAreLeftOut) {
   EXPECT_EQ(shrunk(picture, 1, "a.exr")->depths.size(), 4u);
 }
 
-TEST(Shrunk, NamesThePictureThatCannotBeDivided) {
-  const auto failed = shrunk(rising(6, 4), 3, "a.exr");
-  ASSERT_FALSE(failed);
-  EXPECT_NE(failed.error().line().find("a.exr"), std::string::npos);
-  EXPECT_NE(failed.error().line().find("6 x 4"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace lambent::baker

@@ -210,17 +210,6 @@ TEST_F(Bake, WritesAnOrdinaryScene) {
   for (const glm::vec4& tangent : mesh.tangents) EXPECT_EQ(tangent, glm::vec4(1, 0, 0, -1));
 }
 
-TEST_F(Bake, SplitsLongEdgesSoThatAFloorOfTwoTrianglesCatchesAShadow) {
-  const Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 1), icosphere({0, 0.8f, 0}, 0.6f, 2)});
-  BakeOptions options = unrefinedDraft();
-  const auto coarse = bakeTo("coarse.lmb.glb", scene, options);
-  options.max_edge_m = 0.25f;
-  const auto fine = bakeTo("fine.lmb.glb", scene, options);
-  ASSERT_TRUE(coarse && fine);
-  EXPECT_EQ(coarse->vertices, 4u + 162u);
-  EXPECT_GT(fine->vertices, 250u);
-}
-
 TEST_F(Bake, SplitsEdgesWhereAShadowFallsUnlessToldNotTo) {
   const Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 1), icosphere({0, 0.8f, 0}, 0.6f, 2)});
   BakeOptions options = unrefinedDraft();
@@ -255,20 +244,6 @@ TEST_F(Bake, AHouseWithOutsideFacesHasAsManyBouncesAsItsRoom) {
   const auto report = bakeTo("house.lmb.glb", sceneOf({room, shell}), options);
   ASSERT_TRUE(report) << report.error().line();
   EXPECT_GT(report->pass_energy.size(), 8u) << "half of the light is left by each bounce";
-}
-
-TEST_F(Bake, KnowsWhenABundleIsUpToDate) {
-  Scene scene = twoGroups();
-  EXPECT_FALSE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));
-  ASSERT_TRUE(bakeTo("stage.lmb.glb", scene, unrefinedDraft()));
-  EXPECT_TRUE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));
-  BakeOptions other = unrefinedDraft();
-  other.threads = 1;
-  EXPECT_TRUE(isUpToDate(scene, other, folder_ / "stage.lmb.glb"));
-  other.order = 4;
-  EXPECT_FALSE(isUpToDate(scene, other, folder_ / "stage.lmb.glb"));
-  scene.meshes[0].primitives[0].mesh.positions[3].y += 0.01f;
-  EXPECT_FALSE(isUpToDate(scene, unrefinedDraft(), folder_ / "stage.lmb.glb"));
 }
 
 TEST_F(Bake, IsOutOfDateWhenLightsMaterialsOrMotionChange) {
@@ -316,35 +291,6 @@ TEST_F(Bake, ThatIsStoppedOrFailsLeavesTheOldBundle) {
   EXPECT_FALSE(bakeTo("stage.lmb.glb", twoGroups(), wrong));
   EXPECT_TRUE(bytes("stage.lmb.glb") == before);
   EXPECT_EQ(files(), 1);
-}
-
-TEST_F(Bake, NamesTheOptionThatIsWrong) {
-  const auto refused = [&](auto spoil, const char* name) {
-    BakeOptions options = unrefinedDraft();
-    spoil(options);
-    const auto report = bakeTo("x.lmb.glb", twoGroups(), options);
-    ASSERT_FALSE(report) << name;
-    EXPECT_EQ(report.error().subject, name);
-    EXPECT_FALSE(report.error().hint.empty());
-  };
-  refused([](BakeOptions& o) { o.order = 0; }, "--order");
-  refused([](BakeOptions& o) { o.rays = 3; }, "--rays");
-  refused([](BakeOptions& o) { o.error_bound = 2.0f; }, "--codes");
-  refused([](BakeOptions& o) { o.picture_bound = 2.0f; }, "--error");
-  refused([](BakeOptions& o) { o.max_edge_m = -1.0f; }, "--max-edge");
-  refused([](BakeOptions& o) { o.light_probes = 33; }, "--light-probes");
-  refused([](BakeOptions& o) { o.effects = "diffuse,smell"; }, "--effects");
-}
-
-TEST_F(Bake, TakesEveryOrder) {
-  for (int order = 1; order <= 8; ++order) {
-    BakeOptions options = unrefinedDraft();
-    options.order = order;
-    options.effects = "diffuse";
-    const auto report = bakeTo("stage.lmb.glb", twoGroups(), options);
-    ASSERT_TRUE(report) << report.error().line();
-    EXPECT_LE(report->worst_error, 0.01) << order;
-  }
 }
 
 }  // namespace

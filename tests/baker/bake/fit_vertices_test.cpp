@@ -120,26 +120,6 @@ TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
   EXPECT_EQ(bakeFitted(1).second.visibility, after.visibility);
 }
 
-TEST(FitVertices, ShowsIrradianceOverMatteFacesBetterThanWhatTheVerticesSee) {
-  const Transport t(boxOnCoarseFloor(0.0f));
-  const Truth truth(t);
-  const TracedScene view = t.diffuse(), true_view = withSamples(t, truth.points);
-  Progress progress;
-  const auto there =
-      bakeDirect(DirectPass(true_view, {.order = 5, .rays = kTrueRays}), true_view, {progress});
-  const DirectPass pass(view, {.order = 5, .rays = kRays});
-  auto direct = bakeDirect(pass, view, {progress});
-  const auto error = [&] {
-    return truth.error(direct->field.vectorSize(), there->field.vectors, there->looks.valid,
-                       direct->field.vectors);
-  };
-  const double before = error();
-  ASSERT_TRUE(fitDiffuse(pass, view, *direct, {progress}));
-  RecordProperty("before", std::to_string(before));
-  RecordProperty("after", std::to_string(error()));
-  EXPECT_LT(error(), 0.9 * before);
-}
-
 TEST(FitVertices, ShowsBouncedLightOverMatteFacesBetterThanWhatTheVerticesReceive) {
   const Transport t(boxOnCoarseFloor(0.0f));
   const Truth truth(t);

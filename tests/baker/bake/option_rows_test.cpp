@@ -134,12 +134,6 @@ TEST(OptionRows, CheckValuesThatCameFromNoWord) {
   EXPECT_TRUE(checkOptions({}));
 }
 
-TEST(OptionRows, SayInTheHelpWhatEachQualityComesTo) {
-  EXPECT_NE(findOption("refine")->help.find("0.04, 0.02 or 0.01 by quality"), std::string::npos);
-  EXPECT_NE(findOption("codes")->help.find("glossy surfaces 0.03, 0.015 or 0.005"), std::string::npos);
-  for (const OptionRow& row : optionRows()) EXPECT_EQ(row.help.find("{}"), std::string::npos) << row.name;
-}
-
 TEST(OptionRows, TakeSharesInPerCentToo) {
   for (const auto& [name, word, share] :
        {std::tuple{"error", "2%", 0.02f}, {"codes", "0.3%", 0.003f}, {"refine", "4%", 0.04f}}) {

@@ -39,30 +39,6 @@ TEST(BakeOptions, ComeBackFromTheSettingsThatABundleRecords) {
   expectBack(other, Quality::High);
 }
 
-// A number that a bound on pictures begins with is not the same number asked for, which stays.
-TEST(BakeOptions, TellWhatIsChosenFromWhatIsGiven) {
-  BakeOptions chooses, fixed;
-  chooses.picture_bound = fixed.picture_bound = 0.01f;
-  fixed.rays = static_cast<std::uint32_t>(chooses.effectiveRays());
-  fixed.refine_bound = chooses.effectiveRefineBound(), fixed.error_bound = chooses.effectiveErrorBound();
-  const auto settings = chooses.settings(), others = fixed.settings();
-  for (const char* name : {"rays", "refineBound", "errorBound"})
-    EXPECT_NE(settings.at(name), others.at(name)) << name;
-  expectBack(chooses, Quality::Standard);
-  expectBack(fixed, Quality::Standard);
-}
-
-TEST(BakeOptions, LetLightLeaveByMoreBandsAtHighQuality) {
-  BakeOptions options;
-  EXPECT_EQ(options.exitOrder(), 7);
-  options.quality = Quality::High;
-  EXPECT_EQ(options.exitOrder(), 9);
-  options.order = 6;  // beside which visibility is known for fewer
-  EXPECT_EQ(options.exitOrder(), 8);
-  options.bounces = 0;
-  EXPECT_EQ(options.exitOrder(), options.glossy_order);
-}
-
 TEST(BakeOptions, DoNotComeFromSettingsThatAreNotAll) {
   const auto whole = BakeOptions().settings();
   for (const auto& [name, word] : whole) {

@@ -83,17 +83,6 @@ TEST(PictureError, FallsWithMoreVerticesAndWithMoreRays) {
   EXPECT_LT(errorOf(boxOnFloor(64), options).samples, 0.6f * fine.samples);
 }
 
-TEST(PictureError, GrowsWithTheBoundOnCodes) {
-  BakeOptions options = plainOptions();
-  options.error_bound = 0.002f;
-  const bundle::PictureError exact = errorOf(openRoom(), options);
-  options.error_bound = 0.05f;
-  const bundle::PictureError rough = errorOf(openRoom(), options);
-  EXPECT_LT(exact.codes, 0.004f);
-  EXPECT_GT(rough.codes, 4.0f * exact.codes);
-  EXPECT_GT(rough.all, rough.codes * 0.9f);
-}
-
 TEST(PictureError, IsWithinTheBoundThatWasAskedForAndNotFarBelow) {
   for (const float bound : {0.03f, 0.015f}) {
     BakeOptions options;
@@ -104,24 +93,6 @@ TEST(PictureError, IsWithinTheBoundThatWasAskedForAndNotFarBelow) {
                                 << error.interpolation;
     EXPECT_GE(error.all, 0.5f * bound);
   }
-}
-
-TEST(PictureError, IsLargerThanItsBoundWhereRaysAreFixed) {
-  BakeOptions options = plainOptions();
-  options.rays = 128;
-  options.picture_bound = 0.002f;
-  const bundle::PictureError error = errorOf(openRoom(), options);
-  EXPECT_GT(error.samples, options.picture_bound) << "noise of so few rays cannot be taken away by codes";
-  EXPECT_GT(error.all, error.bound);
-}
-
-TEST(PictureError, OfAnOpenMetalSphereIsThatOfItsCodes) {
-  const bundle::PictureError error =
-      errorOf(ofMetal(testing::sceneOf({testing::icosphere(glm::vec3(0.0f), 1.0f, 4)})), plainOptions());
-  EXPECT_GT(error.points, 100u);
-  EXPECT_LT(error.samples, 1e-3f) << "it sees everything above its horizon";
-  EXPECT_LT(error.interpolation, 1e-3f) << "pixels have their own normal";
-  EXPECT_LT(error.codes, 0.03f);
 }
 
 TEST(PictureError, OfMetalsFallsWithMoreVerticesWithMoreRaysAndWithFinerCodes) {

@@ -53,13 +53,6 @@ TEST(QuantizedDensity, TakesSixteenBitsWhereOnePeakWouldDrownTheRest) {
   EXPECT_NEAR(density.values[0], 0.7f, 20.0f / 65535.0f);
 }
 
-TEST(QuantizedDensity, OfNothingIsNothing) {
-  const QuantizedDensity density = quantizeDensity(std::vector<float>(8, 0.0f));
-  EXPECT_EQ(density.bits, 8u);
-  EXPECT_EQ(density.largest, 0.0f);
-  EXPECT_EQ(density.values, std::vector<float>(8, 0.0f));
-}
-
 TEST_F(VolumeBake, WritesTheSameBytesWithOneThreadAndWithTwo) {
   const auto bytesWith = [&](unsigned threads) {
     BakeOptions options = small();
@@ -90,20 +83,6 @@ TEST_F(VolumeBake, ScattersAsOftenAsItDoesHoweverFewBouncesAreAskedFor) {
   EXPECT_GT(all, 1);
   EXPECT_EQ(iterationsWith(1), all);
   EXPECT_EQ(iterationsWith(0), 0);
-}
-
-TEST_F(VolumeBake, LeavesVolumesOutWhereTheirEffectIsNotAskedFor) {
-  BakeOptions options = small();
-  options.effects = "diffuse";
-  const auto plan = planFor(foggy(), options);
-  ASSERT_TRUE(plan);
-  EXPECT_EQ(plan->groups.size(), 1u);
-  EXPECT_EQ(plan->light_probes.size(), 1u);
-  options.effects = "auto";
-  const auto whole = planFor(foggy(), options);
-  ASSERT_TRUE(whole);
-  EXPECT_EQ(whole->groups.size(), 2u);
-  EXPECT_TRUE(whole->bakes("volume"));
 }
 
 TEST_F(VolumeBake, KeepsNineOutputsOfBroadPhasesAndMatricesOfNarrowOnes) {
@@ -158,20 +137,6 @@ TEST_F(VolumeBake, RefusesGridsOfNoVoxelsOrTooMany) {
     ASSERT_FALSE(checked);
     EXPECT_EQ(checked.error().subject, "--volume-grid");
   }
-}
-
-TEST(SceneDigest, ChangesWithTheDensityTheAlbedoAndTheNeighborhood) {
-  const std::uint64_t before = sceneDigest(foggy());
-  EXPECT_EQ(before, sceneDigest(foggy()));
-  Scene scene = foggy();
-  scene.volumes[0].density[3] += 1e-3f;
-  EXPECT_NE(before, sceneDigest(scene));
-  scene = foggy();
-  scene.volumes[0].albedo.g = 0.5f;
-  EXPECT_NE(before, sceneDigest(scene));
-  scene = foggy();
-  scene.neighborhoods.push_back({});
-  EXPECT_NE(before, sceneDigest(scene));
 }
 
 }  // namespace

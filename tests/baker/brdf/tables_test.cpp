@@ -11,7 +11,6 @@
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/baker/brdf/quadrature.hpp"
-#include "tests/support/differences.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -186,40 +185,6 @@ TEST(BrdfTables, InterpolateWithinHalfAPercentWhereFiveBandsCarryTheLobe) {
     }
 }
 
-TEST(BrdfTables, OfAnisotropicGgxAreIsotropicAtStrengthNothing) {
-  const BrdfGrid grid{.angles = 9, .azimuths = 4, .roughnesses = 3, .strengths = 2};
-  const bundle::BrdfTable round = integrateTable(*makeGgx(false), 5, {.angles = 9, .roughnesses = 3}),
-                          brushed = integrateTable(*makeGgx(true), 5, grid);
-  std::vector<float> a(50), b(50);
-  float largest = 0.0f;
-  for (const float cosine : kCosines)
-    for (const float phi : {0.0f, 0.4f, 1.2f, 2.5f, 4.0f, 6.0f}) {
-      lookUp(round, {.cos_theta = cosine}, 0.7f, 0.0f, a);
-      lookUp(brushed, {cosine, std::cos(phi), std::sin(phi)}, 0.7f, 0.0f, b);
-      for (std::size_t k = 0; k < 50; ++k)
-        EXPECT_NEAR(b[k], a[k], 1.5e-3f) << cosine << ", " << phi << ": " << k;
-      lookUp(brushed, {cosine, std::cos(phi), std::sin(phi)}, 0.7f, 1.0f, b);
-      for (std::size_t k = 0; k < 50; ++k) largest = lambent::testing::larger(largest, std::abs(b[k] - a[k]));
-    }
-  EXPECT_GT(largest, 0.1f) << "strength 1 is something else";
-}
-
-// The table stores one quadrant; mirroring it must give what integration finds in the others.
-TEST(BrdfTables, OfAnisotropicGgxMirrorIntoAllQuadrants) {
-  const auto ggx = makeGgx(true);
-  std::vector<float> found(32);
-  const float c = std::sqrt(0.5f);
-  const bundle::BrdfTable table =
-      integrateTable(*ggx, 4, {.angles = 3, .azimuths = 3, .roughnesses = 3, .strengths = 2});
-  const float cosine = 1 - 0.75f * 0.75f;  // u = 1/2
-  for (const auto& [x, y] : {std::pair{c, c}, {-c, c}, {-c, -c}, {c, -c}}) {
-    const auto expected = kernel(*ggx, {.roughness = 0.5f, .strength = 1.0f}, {cosine, x, y}, 4, 2048);
-    lookUp(table, {cosine, x, y}, 0.5f, 1.0f, found);
-    for (std::size_t k = 0; k < 32; ++k)
-      EXPECT_NEAR(found[k], expected[k], 4e-3) << x << ", " << y << ": " << k;
-  }
-}
-
 // Measures the fraction of a lobe's energy (∫ (f cos)²) in five bands, for a view along the normal. The
 // planning of glossy transfer uses these figures.
 TEST(BrdfTables, HoldTheKnownShareOfTheLobesEnergy) {
@@ -238,30 +203,6 @@ TEST(BrdfTables, HoldTheKnownShareOfTheLobesEnergy) {
     });
     EXPECT_NEAR(held / all, share, 0.01) << "roughness " << roughness;
   }
-}
-
-TEST(BrdfTables, AreTheSameForAnyNumberOfThreads) {
-  const BrdfGrid grid{.angles = 5, .azimuths = 3, .roughnesses = 3, .strengths = 2};
-  const auto all = integrateTable(*makeGgx(true), 5, grid);
-  bundle::BrdfTable one;
-  withThreads(1, [&] { one = integrateTable(*makeGgx(true), 5, grid); });
-  EXPECT_EQ(one.values, all.values);
-}
-
-// The runtime stores four values of a node in a texture layer; OpenGL 4.5 guarantees 2048 layers.
-TEST(BrdfTables, OfAnisotropicGgxFitTheTextureOfEveryDevice) {
-  for (std::uint32_t order = 1; order <= 6; ++order) {
-    const BrdfGrid grid = gridFor(*makeGgx(true), static_cast<int>(order));
-    const std::uint32_t layers_of_a_node = (2 * order * order + 3) / 4;
-    EXPECT_LE(grid.roughnesses * grid.strengths * layers_of_a_node, 2048u) << "order " << order;
-  }
-}
-
-TEST(BrdfTables, FitTheirPayload) {
-  const auto table = integrateTable(*makeGgx(false), 5);
-  const auto back = bundle::decodeBrdfTable(bundle::encodeBrdfTable(table), "table");
-  ASSERT_TRUE(back) << back.error().line();
-  for (std::size_t i = 0; i < table.values.size(); ++i) EXPECT_NEAR(back->values[i], table.values[i], 1e-4f);
 }
 
 }  // namespace

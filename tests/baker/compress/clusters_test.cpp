@@ -91,33 +91,5 @@ TEST(Clusters, OfFewerSamplesThanCoordinatesHaveNoMoreAxesThanThose) {
   EXPECT_EQ(assignClusters(points, clusters, step, ids, evenly(points)).size(), 60u);
 }
 
-TEST(Clusters, TakeASampleAmongOthersAsTheyTakeItAlone) {
-  const Points points = falling(30, 3000, 11);  // more than one range of them
-  ClusterIds ids = seedClusters(points, 20, evenly(points));
-  auto clusters = fitClusters(points, ids, /*held_out=*/false, evenly(points));
-  const double step = stepFor(clusters, 0.05);
-  const ClusterIds together = assignClusters(points, clusters, step, {}, evenly(points));
-  std::size_t moved = 0;
-  for (std::size_t s = 0; s < together.size(); ++s) {
-    const Points alone = points.col(static_cast<Eigen::Index>(s));
-    EXPECT_EQ(assignClusters(alone, clusters, step, {}, evenly(alone)).front(), together[s]) << s;
-    moved += together[s] != ids[s] ? 1u : 0u;
-  }
-  EXPECT_GT(moved, 30u) << "not just the nearest means";
-}
-
-TEST(Clusters, KnowAxesOfFewWeightsMoreRoughly) {
-  // Returns the error from quantized axes relative to that from quantized weights: rank coordinates with
-  // variance grid²/12 each, times the mean square weight.
-  const auto share = [](double count) {
-    const double grid = axisGrid(600, 0.3, 0.01, count);
-    return 600.0 * grid * grid * 0.3 / (0.01 * 0.01);
-  };
-  EXPECT_NEAR(share(600.0), 1.0, 1e-9);
-  EXPECT_NEAR(share(1200.0), 0.5, 1e-9);
-  EXPECT_NEAR(share(1.0), 1.5, 1e-9);
-  EXPECT_NEAR(share(1e6), 0.2, 1e-9);
-}
-
 }  // namespace
 }  // namespace lambent::baker

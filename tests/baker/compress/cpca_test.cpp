@@ -1,9 +1,7 @@
 #include "baker/compress/cpca.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <random>
 
 #include <glm/geometric.hpp>
@@ -54,17 +52,6 @@ std::vector<float> decoded(const CodedTransfer& coded, std::size_t planes = 1000
   for (const CodedPlane& plane : coded.planes)
     if (codes.size() < planes) codes.push_back(plane.codes);
   return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
-}
-
-// Holds everything that is written to the file, before entropy coding.
-std::vector<std::byte> bytesOf(const CodedTransfer& coded) {
-  std::vector<std::byte> all = transfer::encodeCodebook(coded.codebook);
-  const auto append = [&](const std::vector<std::byte>& bytes) {
-    all.insert(all.end(), bytes.begin(), bytes.end());
-  };
-  append(transfer::encodeClusterIds(coded.cluster_of, static_cast<std::uint32_t>(coded.codebook.clusters())));
-  for (const CodedPlane& plane : coded.planes) append(transfer::encodeWeightPlane(plane.codes, plane.bits));
-  return all;
 }
 
 std::size_t codesOf(const CodedTransfer& coded) {
@@ -158,14 +145,6 @@ TEST(ClusteredCoding, TakesLightsOfTheGroupFromVeryFarAndVeryNear) {
             std::sqrt(3.0) * 0.005 * 1.5);  // a third of the energy, and not all alike
 }
 
-TEST(ClusteredCoding, OfLightsAloneWorksWithoutAnEnvironment) {
-  const auto shape = shapeOf(0, 3, 3, 1, 2);
-  const auto vectors = bumpyTransfer(300, shape, 9);
-  const CodedTransfer coded = code(vectors, shape, 0.01f);
-  expectSound(coded, 300);
-  EXPECT_LE(coded.error, 0.01f);
-}
-
 // One sample of 7,001 is ten thousand times as bright as the others. Which cluster it lands in is up to
 // chance, and codes of 16 bits do not span it and the dark samples together.
 TEST(ClusteredCoding, OfLampsKnowsTheFewSamplesNextToThem) {
@@ -252,19 +231,6 @@ TEST(ClusteredCoding, FindsTheClustersOfAWorldThatHasSome) {
   EXPECT_LT(2 * codesOf(free), codesOf(single));
 }
 
-TEST(ClusteredCoding, OfEqualVectorsNeedsNoPlane) {
-  std::vector<float> vectors(40 * 25);
-  for (std::size_t s = 0; s < 40; ++s)
-    sh::unoccludedTransfer(5, glm::vec3(0, 1, 0), std::span(vectors).subspan(s * 25, 25));
-  for (const std::uint32_t clusters : {0u, 1u, 16u}) {
-    const CodedTransfer coded = code(vectors, shapeOf(5), 0.003f, clusters);
-    expectSound(coded, 40);
-    EXPECT_EQ(coded.planes.size(), 0u);
-    EXPECT_EQ(coded.codebook.clusters(), 1u);
-    EXPECT_LE(coded.error, 0.003f);
-  }
-}
-
 TEST(ClusteredCoding, StandsFewSamplesAndDuplicates) {
   const auto shape = shapeOf(5, 1, 3);
   for (const std::size_t count : {1u, 2u, 3u, 7u, 30u})
@@ -306,41 +272,6 @@ TEST(ClusteredCoding, OfDarknessInOneBlockOrColumnKeepsIt) {
   }
 }
 
-TEST(ClusteredCoding, ErrsAlikeInAnyOrderOfSamples) {
-  const auto shape = shapeOf(4, 1, 3);
-  const auto vectors = bumpyTransfer(800, shape, 23);
-  std::vector<std::size_t> order(800);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::shuffle(order.begin(), order.end(), std::mt19937(1));
-  std::vector<float> shuffled;
-  for (const std::size_t s : order)
-    shuffled.insert(shuffled.end(), vectors.begin() + static_cast<std::ptrdiff_t>(s * shape.size()),
-                    vectors.begin() + static_cast<std::ptrdiff_t>((s + 1) * shape.size()));
-  // Both use most of the error bound, so their errors differ by at most 3 % of it.
-  const float a = code(vectors, shape, 0.004f).error, b = code(shuffled, shape, 0.004f).error;
-  EXPECT_LE(std::max(a, b), 0.004f);
-  EXPECT_NEAR(a, b, 0.03f * 0.004f);
-}
-
-TEST(ClusteredCoding, SaysWhatItReachedWhereTheBoundIsOutOfReach) {
-  const auto shape = shapeOf(3);
-  const auto vectors = bumpyTransfer(100, shape, 29);
-  const CodedTransfer coded = code(vectors, shape, 1e-9f);  // finer than floats
-  expectSound(coded, 100);
-  EXPECT_GT(coded.error, 1e-9f);
-  EXPECT_LT(coded.error, 1e-4f);
-  EXPECT_NEAR(radianceError(vectors, decoded(coded), shape), double{coded.error}, 1e-9);
-}
-
-TEST(ClusteredCoding, IsTheSameForAnyNumberOfThreads) {
-  const auto shape = shapeOf(5, 1, 3);
-  const auto vectors = bumpyTransfer(6000, shape, 31);
-  CodedTransfer one, many;
-  withThreads(1, [&] { one = code(vectors, shape, 0.005f); });
-  many = code(vectors, shape, 0.005f);
-  EXPECT_EQ(bytesOf(one), bytesOf(many));
-}
-
 TEST(ClusteredCoding, StopsWhenAskedTo) {
   const auto shape = shapeOf(5);
   const auto vectors = bumpyTransfer(2000, shape, 37);
@@ -358,15 +289,6 @@ TEST(RadianceError, IsRelativeToTheBlockAndTakesTheWorse) {
   coded[1] += 1.2f;  // of an energy of 24
   EXPECT_NEAR(radianceError(truth, coded, shape), 1.2 / std::sqrt(24.0), 1e-6);
   EXPECT_EQ(radianceError(truth, truth, shape), 0.0);
-}
-
-TEST(RadianceError, CountsOneOverTheBrightnessOfASample) {
-  const auto shape = shapeOf(1);
-  const std::vector<float> truth = {1.0f, 0.1f};
-  const double rms = std::sqrt(0.505), bright = 1.0 / (0.02 + 1.0 / rms), dark = 1.0 / (0.02 + 0.1 / rms);
-  const double eased = bright * 1.0 + dark * 0.01;  // of an energy of 1.01
-  EXPECT_NEAR(radianceError(truth, std::vector{1.01f, 0.1f}, shape), 0.01 * std::sqrt(bright / eased), 1e-6);
-  EXPECT_NEAR(radianceError(truth, std::vector{1.0f, 0.11f}, shape), 0.01 * std::sqrt(dark / eased), 1e-6);
 }
 
 TEST(RadianceError, OfWhatIsNotANumberIsNone) {

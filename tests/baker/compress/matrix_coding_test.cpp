@@ -57,25 +57,6 @@ std::vector<float> wanderingVisibility(std::size_t count, unsigned seed) {
   return out;
 }
 
-// Makes clusters, each with its own directions, whose variances fall slowly.
-std::vector<float> slowlyFalling(std::size_t count, std::size_t size) {
-  std::mt19937 random(3);
-  std::normal_distribution<float> normal;
-  constexpr std::size_t kHeaps = 8, kRank = 200;
-  std::vector<std::vector<float>> axes(kHeaps);
-  for (auto& of_heap : axes)
-    for (std::size_t i = 0; i < kRank * size; ++i) of_heap.push_back(normal(random));
-  std::vector<float> out(count * size);
-  for (std::size_t s = 0; s < count; ++s) {
-    const std::vector<float>& from = axes[s * kHeaps / count];
-    for (std::size_t r = 0; r < kRank; ++r) {
-      const float share = (r == 0 ? 1.0f : normal(random)) / static_cast<float>(1 + r);
-      for (std::size_t i = 0; i < size; ++i) out[s * size + i] += share * from[r * size + i];
-    }
-  }
-  return out;
-}
-
 // Makes reflections of low rank plus a little noise.
 std::vector<float> bouncedMatrices(std::size_t count, unsigned seed, float noise) {
   std::mt19937 random(seed);
@@ -98,17 +79,6 @@ std::vector<float> decodedMatrix(const CodedTransfer& coded) {
   std::vector<std::vector<std::uint32_t>> codes;
   for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
   return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
-}
-
-double squaredDistance(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters) {
-  double sum = 0.0;
-  for (Eigen::Index s = 0; s < points.cols(); ++s) {
-    const Cluster& cluster = clusters[ids[static_cast<std::size_t>(s)]];
-    const Eigen::VectorXf off = points.col(s) - cluster.mean;
-    const Eigen::VectorXf along = cluster.axes.leftCols(cluster.kept).transpose() * off;
-    sum += double{off.squaredNorm()} - double{along.squaredNorm()};
-  }
-  return sum;
 }
 
 Points pointsOf(const std::vector<float>& vectors, std::uint32_t size) {
@@ -192,67 +162,6 @@ TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
   EXPECT_LE(coded.error, 0.0101f) << "with more axes in each";
 }
 
-TEST(MatrixCoding, KeepsItsBoundWithFewerClustersWhereMemoryEndsOnTheWayThere) {
-  // Four clusters are estimated to need less than this but need more; one needs 451.
-  constexpr std::size_t kCount = 3000;
-  transfer::TransferShape grey = kBounced;
-  grey.full_channels = 1;
-  const std::vector<float> vectors = slowlyFalling(kCount, grey.size());
-  const std::size_t most = 800 * grey.size() * sizeof(float);
-  const CodedTransfer coded =
-      codeTransfer(vectors, kCount, grey,
-                   {.bound = 0.05f, .most_components = kAllComponents, .most_expanded_bytes = most});
-  EXPECT_LE(coded.error, 0.05f) << coded.codebook.axis_counts.size() << " clusters";
-  EXPECT_LE(expandedBytes(coded), most);
-}
-
-TEST(MatrixCoding, NeverGetsWorseWithMoreAxesWhereTheAssignmentStays) {
-  const Points points = pointsOf(wanderingVisibility(2000, 5), 81);
-  for (const std::uint32_t count : {1u, 8u, 64u}) {
-    ClusterIds ids = seedClusters(points, count, evenly(points));
-    std::vector<Cluster> clusters = fitClusters(points, ids, /*held_out=*/false, evenly(points));
-    double before = std::numeric_limits<double>::infinity();
-    for (int axes = 0; axes <= 16; ++axes) {
-      keepSoMany(clusters, axes);
-      const double now = squaredDistance(points, ids, clusters);
-      EXPECT_LE(now, before * (1.0 + 1e-6)) << count << " clusters, " << axes << " axes";
-      before = now;
-    }
-  }
-}
-
-TEST(MatrixCoding, IsVectorQuantizationWithoutAxes) {
-  const auto vectors = wanderingVisibility(1000, 9);
-  const CodedTransfer coded =
-      codeTransfer(vectors, 1000, kVisibility, {.bound = 1e-4f, .clusters = 16, .axes = 0});
-  EXPECT_TRUE(coded.planes.empty());
-  const std::vector<float> found = decodedMatrix(coded);
-  std::vector<std::array<double, 81>> means(coded.codebook.clusters());
-  std::vector<double> members(means.size(), 0.0);
-  for (std::size_t s = 0; s < 1000; ++s) {
-    members[coded.cluster_of[s]] += 1.0;
-    for (std::size_t i = 0; i < 81; ++i) means[coded.cluster_of[s]][i] += double{vectors[81 * s + i]};
-  }
-  for (std::size_t s = 0; s < 1000; ++s)
-    for (std::size_t i = 0; i < 81; ++i)
-      ASSERT_NEAR(double{found[81 * s + i]}, means[coded.cluster_of[s]][i] / members[coded.cluster_of[s]],
-                  2e-3);
-}
-
-TEST(MatrixCoding, IsPrincipalComponentAnalysisWithOneCluster) {
-  const Points points = pointsOf(wanderingVisibility(1500, 13), 81);
-  ClusterIds ids(1500, 0);
-  std::vector<Cluster> one = fitClusters(points, ids, /*held_out=*/false, evenly(points));
-  const Eigen::VectorXf mean = points.rowwise().mean();
-  const Eigen::MatrixXd centred = (points.colwise() - mean).cast<double>();
-  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(centred).singularValues();
-  for (const int axes : {0, 1, 4, 16}) {
-    keepSoMany(one, axes);
-    const double expected = singular.tail(singular.size() - axes).squaredNorm();
-    EXPECT_NEAR(squaredDistance(points, ids, one) / expected, 1.0, 1e-3) << axes;
-  }
-}
-
 TEST(MatrixCoding, FindsTheLeadingComponentsOfLongMatrices) {
   const Points points = pointsOf(bouncedMatrices(700, 17, 1e-4f), kBounced.size());
   double left_out = -1.0;
@@ -267,29 +176,6 @@ TEST(MatrixCoding, FindsTheLeadingComponentsOfLongMatrices) {
   const Eigen::MatrixXf best = leading.axes.leftCols(6).cast<float>();
   const Points rest = points - best * (best.transpose() * points);
   EXPECT_LT(double{rest.squaredNorm()} / 700.0, 1e-3 * energy) << "six parts were mixed";
-}
-
-TEST(MatrixCoding, KeepsABoundWithoutLeadingComponentsWhereAllOfThemMayBeTaken) {
-  transfer::TransferShape grey = kBounced;
-  grey.full_channels = 1;
-  std::mt19937 random(23);
-  std::normal_distribution<float> normal;
-  std::vector<float> vectors(600 * grey.size());
-  for (float& value : vectors) value = normal(random);
-  const auto error = [&](std::uint32_t most, float loose) {
-    return codeTransfer(vectors, 600, grey,
-                        {.bound = 0.1f, .clusters = 1, .most_components = most, .loose_bound = loose})
-        .error;
-  };
-  const float few = error(kUsualComponents, 0.0f);
-  EXPECT_GT(few, 0.5f);
-  EXPECT_LE(error(kAllComponents, 0.0f), 0.1f);
-  // At 0.4 all components are coded coarsely, because few would leave out more than that; at 0.99 few
-  // suffice.
-  const float loose = error(kUsualComponents, 0.4f);
-  EXPECT_LE(loose, 0.4f);
-  EXPECT_GT(loose, 0.35f);
-  EXPECT_EQ(error(kUsualComponents, 0.99f), few);
 }
 
 TEST(MatrixCoding, StaysFiniteAndTheSameOnDegenerateInput) {

@@ -12,7 +12,6 @@
 namespace lambent::baker {
 namespace {
 
-using testing::box;
 using testing::grid;
 using testing::icosphere;
 using testing::sceneOf;
@@ -64,13 +63,6 @@ TEST(Decisions, BakeWhatABallOnAFloorCallsFor) {
   EXPECT_EQ(primitives.size(), 2u);
 }
 
-TEST(Decisions, SayNoMoreBouncesThanAreAskedFor) {
-  const auto none = decided(ballOnFloor(), {.bounces = 0});
-  EXPECT_EQ(about(none.decisions, "interreflection").choice, Choice::LeftOut);
-  const auto one = decided(ballOnFloor(), {.bounces = 1});
-  EXPECT_NE(about(one.decisions, "interreflection").reason.find("at most 1 bounce"), std::string::npos);
-}
-
 TEST(Decisions, SayWhichCarrierAHighlightHas) {
   Scene scene = ballOnFloor();
   scene.materials.resize(2, scene.materials[0]);
@@ -89,18 +81,6 @@ TEST(Decisions, SayWhichCarrierAHighlightHas) {
   EXPECT_EQ(about(lacquer, "mirrorPaths").choice, Choice::Absent);
   scene.materials[1].specular = 0.0f;
   EXPECT_EQ(about(of_ball(), "matrices").choice, Choice::Absent);
-}
-
-TEST(Decisions, WriteSharesAsPeopleDo) {
-  EXPECT_EQ(percentText(1.0), "100 %");
-  EXPECT_EQ(percentText(0.99999), "100 %");
-  EXPECT_EQ(percentText(12.5), "1250 %");
-  EXPECT_EQ(percentText(0.0421), "4.2 %");
-  EXPECT_EQ(percentText(0.004), "0.4 %");
-  EXPECT_EQ(percentText(0.0004), "<0.1 %");
-  EXPECT_EQ(percentText(0.0), "0 %");
-  EXPECT_EQ(percentText(2e-5, 3), "0.002 %");
-  EXPECT_EQ(percentText(0.2, 0), "20 %");
 }
 
 }  // namespace

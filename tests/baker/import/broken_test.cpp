@@ -1,6 +1,5 @@
 // Tests what importScene() refuses, and that the error names the object. With the address and undefined
 // sanitizers it also shows that nothing is read out of bounds.
-#include <functional>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -17,140 +16,91 @@ using testing::GltfWriter;
 using testing::oneTriangle;
 using testing::TemporaryFolder;
 
-struct BrokenCase {
-  const char* names;  // which the error must contain
-  std::function<void(json&)> bend;
-};
-
 TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
-  const std::vector<BrokenCase> cases{
-      {"accessor 0", [](json& j) { j["accessors"][0]["count"] = 4; }},
-      {"accessor 0",
-       [](json& j) { j["accessors"][0]["count"] = 6148914691236517206u; }},  // count * 12 wraps to 8
-      {"accessor 0", [](json& j) { j["accessors"][0]["count"] = -1; }},
-      {"accessor 0", [](json& j) { j["accessors"][0]["byteOffset"] = 4; }},
-      {"accessor 0", [](json& j) { j["accessors"][0]["componentType"] = 5124; }},
-      {"accessor 0", [](json& j) { j["accessors"][0]["type"] = "VEC5"; }},
-      {"accessor 0", [](json& j) { j["accessors"][0]["type"] = "VEC2"; }},
-      {"accessor 0",
-       [](json& j) { j["accessors"][0]["bufferView"] = 4294967296u; }},  // 0 when cut to 32 bits
-      {"accessor 0",
-       [](json& j) { j["accessors"][0].erase("bufferView"), j["accessors"][0]["count"] = 1u << 30; }},
-      {"accessor 0: sparse",
-       [](json& j) {
-         j["accessors"][0]["sparse"] = {{"count", 9}};
-       }},
-      {"bufferView 0", [](json& j) { j["bufferViews"][0]["byteOffset"] = 18446744073709551610u; }},
-      {"bufferView 0", [](json& j) { j["bufferViews"][0]["buffer"] = 1; }},
-      {"accessor 0", [](json& j) { j["bufferViews"][0]["byteStride"] = 3; }},
-      {"accessor 0", [](json& j) { j["bufferViews"][0]["byteStride"] = 8; }},
-      {"buffer 0", [](json& j) { j["buffers"][0]["byteLength"] = 37; }},
-      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "../scene.bin"; }},
-      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "%2e%2e/scene.bin"; }},
-      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "/etc/hostname"; }},
-      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "file:///etc/hostname"; }},
-      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "data:application/octet-stream;base64,AAAA"; }},
-      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "not there.bin"; }},
-      {"buffer 0", [](json& j) { j["buffers"][0].erase("uri"); }},
-      {"mesh 0, primitive 0", [](json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 7; }},
-      {"mesh 0, primitive 0", [](json& j) { j["meshes"][0]["primitives"][0]["material"] = 0; }},
-      {"mesh 0, primitive 0", [](json& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; }},
-      {"KHR_draco",
-       [](json& j) {
-         j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
-             {"bufferView", 9}, {"attributes", json::object()}};
-       }},
+  const char* const draco = "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression";
+  struct Case {
+    const char* names;  // which the error must contain
+    testing::Edits edits;
+  };
+  const std::vector<Case> cases{
+      {"accessor 0", {{"/accessors/0/count", "4"}}},
+      {"accessor 0", {{"/accessors/0/count", "6148914691236517206"}}},  // count * 12 wraps to 8
+      {"accessor 0", {{"/accessors/0/count", "-1"}}},
+      {"accessor 0", {{"/accessors/0/byteOffset", "4"}}},
+      {"accessor 0", {{"/accessors/0/componentType", "5124"}}},
+      {"accessor 0", {{"/accessors/0/type", R"("VEC5")"}}},
+      {"accessor 0", {{"/accessors/0/type", R"("VEC2")"}}},
+      {"accessor 0", {{"/accessors/0/bufferView", "4294967296"}}},  // 0 when cut to 32 bits
+      {"accessor 0", {{"/accessors/0/bufferView", ""}, {"/accessors/0/count", "1073741824"}}},
+      {"accessor 0: sparse", {{"/accessors/0/sparse", R"({"count":9})"}}},
+      {"bufferView 0", {{"/bufferViews/0/byteOffset", "18446744073709551610"}}},
+      {"bufferView 0", {{"/bufferViews/0/buffer", "1"}}},
+      {"accessor 0", {{"/bufferViews/0/byteStride", "3"}}},
+      {"accessor 0", {{"/bufferViews/0/byteStride", "8"}}},
+      {"buffer 0", {{"/buffers/0/byteLength", "37"}}},
+      {"buffer 0", {{"/buffers/0/uri", R"("../scene.bin")"}}},
+      {"buffer 0", {{"/buffers/0/uri", R"("%2e%2e/scene.bin")"}}},
+      {"buffer 0", {{"/buffers/0/uri", R"("/etc/hostname")"}}},
+      {"buffer 0", {{"/buffers/0/uri", R"("file:///etc/hostname")"}}},
+      {"buffer 0", {{"/buffers/0/uri", R"("data:application/octet-stream;base64,AAAA")"}}},
+      {"buffer 0", {{"/buffers/0/uri", R"("not there.bin")"}}},
+      {"buffer 0", {{"/buffers/0/uri", ""}}},
+      {"mesh 0, primitive 0", {{"/meshes/0/primitives/0/attributes/POSITION", "7"}}},
+      {"mesh 0, primitive 0", {{"/meshes/0/primitives/0/material", "0"}}},
+      {"mesh 0, primitive 0", {{"/meshes/0/primitives/0/mode", "7"}}},
+      {"KHR_draco", {{draco, R"({"bufferView":9,"attributes":{}})"}}},
       {"mesh 0, primitive 0",
-       [](json& j) {
-         j["meshes"][0]["primitives"][0]["indices"] = 0;
-         j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
-             {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
-       }},
+       {{"/meshes/0/primitives/0/indices", "0"}, {draco, R"({"bufferView":0,"attributes":{"POSITION":0}})"}}},
       {"without POSITION or indices",  // the importer's own note, forged
-       [](json& j) {
-         j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
-             {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
-         j["meshes"][0]["primitives"][0]["extensions"]["LAMBENT_indices"] = {{"accessor", 1000000}};
-       }},
-      {"node 0", [](json& j) { j["nodes"][0]["mesh"] = 1; }},
-      {"node 0", [](json& j) { j["nodes"][0]["children"] = {0}; }},
-      {"node 1",
-       [](json& j) { j["nodes"] = json::parse(R"([{"children":[1]},{"children":[2]},{"children":[1]}])"); }},
-      {"its own ancestor",
-       [](json& j) { j["nodes"] = json::parse(R"([{},{"children":[2]},{"children":[1]}])"); }},
-      {"node 0",
-       [](json& j) {
-         j["nodes"][0]["rotation"] = {0, 0, 1};
-       }},
-      {"node 0",
-       [](json& j) {
-         j["nodes"][0]["scale"] = {1e300, 1, 1};
-       }},
-      {"scene 0", [](json& j) { j["scenes"][0]["nodes"] = {3}; }},
-      {"scene 9", [](json& j) { j["scene"] = 9; }},
-      {"stands twice",
-       [](json& j) {
-         j["scenes"][0]["nodes"] = {0, 0};
-       }},
+       {{draco, R"({"bufferView":0,"attributes":{"POSITION":0}})"},
+        {"/meshes/0/primitives/0/extensions/LAMBENT_indices", R"({"accessor":1000000})"}}},
+      {"node 0", {{"/nodes/0/mesh", "1"}}},
+      {"node 0", {{"/nodes/0/children", "[0]"}}},
+      {"node 1", {{"/nodes", R"([{"children":[1]},{"children":[2]},{"children":[1]}])"}}},
+      {"its own ancestor", {{"/nodes", R"([{},{"children":[2]},{"children":[1]}])"}}},
+      {"node 0", {{"/nodes/0/rotation", "[0,0,1]"}}},
+      {"node 0", {{"/nodes/0/scale", "[1e300,1,1]"}}},
+      {"scene 0", {{"/scenes/0/nodes", "[3]"}}},
+      {"scene 9", {{"/scene", "9"}}},
+      {"stands twice", {{"/scenes/0/nodes", "[0,0]"}}},
       {"animation 0",
-       [](json& j) {
-         j["animations"] = json::parse(
-             R"([{"channels":[{"sampler":0,"target":{"node":5}}],"samplers":[{"input":0,"output":0}]}])");
-       }},
-      {"animation 0, channel 0",
-       [](json& j) {
-         j["animations"] = json::parse(R"([{"channels":[{"sampler":0,"target":{"node":0}}]}])");
-       }},
-      {"animation 0, sampler 0",
-       [](json& j) { j["animations"] = json::parse(R"([{"samplers":[{"input":0,"output":9}]}])"); }},
-      {"skin 0", [](json& j) { j["skins"] = json::parse(R"([{"joints":[]}])"); }},
-      {"skin 0", [](json& j) { j["skins"] = json::parse(R"([{"joints":[7]}])"); }},
-      {"node 0", [](json& j) { j["nodes"][0]["skin"] = 0; }},
-      {"node 0", [](json& j) { j["nodes"][0]["weights"] = {"heavy"}; }},
-      {"mesh 0", [](json& j) { j["meshes"][0]["weights"] = 1; }},
-      {"morph target 0",
-       [](json& j) { j["meshes"][0]["primitives"][0]["targets"] = json::parse(R"([{"POSITION":4}])"); }},
-      {"node 0",
-       [](json& j) {
-         j["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = 5;
-       }},
-      {"node 0", [](json& j) { j["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0; }},
+       {{"/animations",
+         R"([{"channels":[{"sampler":0,"target":{"node":5}}],"samplers":[{"input":0,"output":0}]}])"}}},
+      {"animation 0, channel 0", {{"/animations", R"([{"channels":[{"sampler":0,"target":{"node":0}}]}])"}}},
+      {"animation 0, sampler 0", {{"/animations", R"([{"samplers":[{"input":0,"output":9}]}])"}}},
+      {"skin 0", {{"/skins", R"([{"joints":[]}])"}}},
+      {"skin 0", {{"/skins", R"([{"joints":[7]}])"}}},
+      {"node 0", {{"/nodes/0/skin", "0"}}},
+      {"node 0", {{"/nodes/0/weights", R"(["heavy"])"}}},
+      {"mesh 0", {{"/meshes/0/weights", "1"}}},
+      {"morph target 0", {{"/meshes/0/primitives/0/targets", R"([{"POSITION":4}])"}}},
+      {"node 0", {{"/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION", "5"}}},
+      {"node 0", {{"/nodes/0/extensions/KHR_lights_punctual/light", "0"}}},
       {"accessor 1 holds indices",
-       [](json& j) {
-         j["accessors"].push_back({{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}});
-         j["meshes"][0]["primitives"][0]["indices"] = 1;
-       }},
-      {"texture 0", [](json& j) { j["textures"] = json::parse(R"([{"source":0}])"); }},
-      {"image 0", [](json& j) { j["images"] = json::parse(R"([{"bufferView":5}])"); }},
-      {"2.1", [](json& j) { j["asset"]["minVersion"] = "2.1"; }},
-      {"asset", [](json& j) { j.erase("asset"); }},
-      {"no triangles", [](json& j) { j["meshes"][0]["primitives"][0]["mode"] = 0; }},
+       {{"/accessors/1", R"({"componentType":5123,"count":3,"type":"SCALAR"})"},
+        {"/meshes/0/primitives/0/indices", "1"}}},
+      {"texture 0", {{"/textures", R"([{"source":0}])"}}},
+      {"image 0", {{"/images", R"([{"bufferView":5}])"}}},
+      {"2.1", {{"/asset/minVersion", R"("2.1")"}}},
+      {"asset", {{"/asset", ""}}},
+      {"no triangles", {{"/meshes/0/primitives/0/mode", "0"}}},
       // Sizes that floats cannot trace.
-      {"node 0 (\"\") reaches 1e+12 m",
-       [](json& j) {
-         j["nodes"][0]["scale"] = {1e12, 1, 1};
-       }},
-      {"is only 1e-11 m large",
-       [](json& j) {
-         j["nodes"][0]["scale"] = {1e-11, 1e-11, 1e-11};
-       }},
-      {"deeper",
-       [](json& j) {
-         json deep = 1;
-         for (int i = 0; i < 300; ++i) deep = json{{"x", std::move(deep)}};
-         j["extras"] = std::move(deep);
-       }},
+      {"node 0 (\"\") reaches 1e+12 m", {{"/nodes/0/scale", "[1e12,1,1]"}}},
+      {"is only 1e-11 m large", {{"/nodes/0/scale", "[1e-11,1e-11,1e-11]"}}},
   };
   TemporaryFolder folder;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
+  for (std::size_t i = 0; i <= cases.size(); ++i) {
     GltfWriter writer = oneTriangle();
     writer.writeText(folder);
-    cases[i].bend(writer.json);
-    const auto path = folder.write("scene.gltf", writer.json.dump());
-    const auto scene = importScene(path);
-    ASSERT_FALSE(scene) << "case " << i << " (" << cases[i].names << ")";
-    EXPECT_NE(scene.error().line().find(cases[i].names), std::string::npos)
-        << i << ": " << scene.error().line();
+    const bool last = i == cases.size();
+    if (last)
+      for (int depth = 0; depth < 300; ++depth) writer.json["extras"] = {{"x", writer.json["extras"]}};
+    else
+      testing::edit(writer.json, cases[i].edits);
+    const char* names = last ? "deeper" : cases[i].names;
+    const auto scene = importScene(folder.write("scene.gltf", writer.json.dump()));
+    ASSERT_FALSE(scene) << "case " << i << " (" << names << ")";
+    EXPECT_NE(scene.error().line().find(names), std::string::npos) << i << ": " << scene.error().line();
     EXPECT_NE(scene.error().line().find("scene.gltf"), std::string::npos) << scene.error().line();
   }
 }
@@ -232,14 +182,6 @@ TEST(BrokenScene, SurvivesFlippedBytes) {
       EXPECT_TRUE(scene || scene.error().line().find('\n') == std::string::npos);
     }
   }
-}
-
-TEST(BrokenScene, MissingAndForeignFilesAreTold) {
-  TemporaryFolder folder;
-  EXPECT_NE(importScene(folder.path() / "none.glb").error().problem.find("no such file"), std::string::npos);
-  EXPECT_FALSE(importScene(folder.path()));
-  EXPECT_FALSE(importScene(folder.write("empty.gltf", "")));
-  EXPECT_FALSE(importScene(folder.write("picture.glb", "\x89PNG\r\n\x1a\n")));
 }
 
 TEST(BrokenScene, NoFileOfTheValidatorsCorpusDoesHarm) {

@@ -228,19 +228,6 @@ TEST(ImportScene, ReadsMaterialsAndOnlyTheImagesThatTheyUse) {
   EXPECT_EQ(firstMesh(scene).texcoords0, (std::vector<glm::vec2>{{0, 0}, {1, 0}, {0, 1}}));
 }
 
-TEST(ImportScene, FindsPercentEncodedBuffersAndEmbeddedOnes) {
-  TemporaryFolder folder;
-  GltfWriter writer = oneTriangle();
-  folder.write("my data/tri angle.bin", writer.bytes);
-  auto path = writer.writeText(folder, "x.bin");
-  writer.json["buffers"][0]["uri"] = "my%20data/tri%20angle.bin";
-  EXPECT_TRUE(importScene(folder.write("scene.gltf", writer.json.dump())));
-  // The base64 text has three positions that are zero except for two ones.
-  writer.json["buffers"][0]["uri"] =
-      "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
-  EXPECT_TRUE(importScene(folder.write("scene.gltf", writer.json.dump())));
-}
-
 TEST(ImportScene, ReadsDataUrisOfAnyMediaTypeForBuffersAndImages) {
   TemporaryFolder folder;
   GltfWriter writer = oneTriangle();
@@ -275,23 +262,6 @@ TEST(ImportScene, ReadsFilesOutsideItsFolderOnlyWhenAllowed) {
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().line().find("--allow-outside"), std::string::npos) << refused.error().line();
     EXPECT_TRUE(importScene(path, {.allow_outside = true}));
-  }
-}
-
-TEST(ImportScene, ReadsSparseIndicesWithAndWithoutABase) {
-  TemporaryFolder folder;
-  for (const bool base : {true, false}) {
-    GltfWriter writer = oneTriangle();
-    const int indices = writer.add<std::uint16_t>("SCALAR", 5123, {0, 2, 0}, 1);
-    writer.add<std::uint8_t>("SCALAR", 5121, {1, 2}, 1);
-    writer.add<std::uint16_t>("SCALAR", 5123, {1, 2}, 1);
-    nlohmann::json& accessor = writer.json["accessors"][static_cast<std::size_t>(indices)];
-    if (!base) accessor.erase("bufferView");
-    accessor["sparse"] = {{"count", 2},
-                          {"indices", {{"bufferView", 2}, {"componentType", 5121}}},
-                          {"values", {{"bufferView", 3}}}};
-    writer.primitive()["indices"] = indices;
-    EXPECT_EQ(firstMesh(imported(writer.writeText(folder))).indices, (Indices{0, 1, 2})) << base;
   }
 }
 

@@ -102,6 +102,17 @@ class GltfWriter {
   }
 };
 
+// Sets parts of a document, by JSON pointer and value, or removes them where the value is empty. Arrays and
+// objects on the way are made.
+using Edits = std::vector<std::pair<std::string, std::string>>;
+inline void edit(nlohmann::json& document, const Edits& edits) {
+  for (const auto& [path, value] : edits)
+    if (const nlohmann::json::json_pointer at(path); !value.empty())
+      document[at] = nlohmann::json::parse(value);
+    else
+      document[at.parent_pointer()].erase(at.back());
+}
+
 // Makes the triangle (0,0,0) (1,0,0) (0,1,0).
 inline GltfWriter oneTriangle() {
   GltfWriter writer;

@@ -33,17 +33,6 @@ GltfWriter withMaterial(const TemporaryFolder& folder, const char* material) {
   return writer;
 }
 
-TEST(Materials, ShineTheirFactorTimesTheirStrength) {
-  TemporaryFolder folder;
-  const Scene scene = imported(withMaterial(folder, R"({"emissiveFactor":[1,0.5,0],"emissiveTexture":
-      {"index":1},"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":8}}})"),
-                               folder);
-  EXPECT_EQ(scene.materials.at(0).emissive, glm::vec3(8.0f, 4.0f, 0.0f));
-  EXPECT_EQ(scene.materials[0].emissive_texture.texture, 0);
-  EXPECT_EQ(scene.images.at(0).name, "b.png");
-  EXPECT_FALSE(scene.materials[0].unlit);
-}
-
 TEST(Materials, ThatShineByATextureThatCannotBeReadDoNotShine) {
   TemporaryFolder folder;
   for (const char* texture : {R"({"index":2})", R"({"index":0,"texCoord":2})"}) {
@@ -89,13 +78,6 @@ TEST(Materials, WithANormalTextureKeepUnitTangentsAndOthersNone) {
       imported(withMaterial(folder, R"({"normalTexture":{"index":0,"texCoord":3}})"), folder);
   EXPECT_TRUE(unread.meshes.at(0).primitives.at(0).mesh.tangents.empty());
   EXPECT_EQ(unread.materials[0].normal_texture.texture, -1);
-}
-
-TEST(Materials, CanBeUnlit) {
-  TemporaryFolder folder;
-  GltfWriter writer = withMaterial(folder, R"({"extensions":{"KHR_materials_unlit":{}}})");
-  writer.json["extensionsRequired"] = {"KHR_materials_unlit"};
-  EXPECT_TRUE(imported(writer, folder).materials.at(0).unlit);
 }
 
 TEST(Lights, OfAllTypesAreReadWithTheirNodes) {

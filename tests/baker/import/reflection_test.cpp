@@ -213,21 +213,6 @@ constexpr const char* kWhite =
     "# num wls\r\n4\r\n\r\n# wls\r\n400 500\r\n600 700\r\n\r\n# values\r\n\r\n"
     "0.5 0.25 0.75 -1.5 2 2 2 2\r\n0 0 1.5708 3 0 0 0 0\r\n";
 
-TEST(MeasuredBrdf, WhiteIsWhiteInRec709) {
-  TemporaryFolder folder;
-  const auto measured = readMeasuredBrdf(folder.write("white.brdf", kWhite));
-  ASSERT_TRUE(measured) << measured.error().line();
-  EXPECT_EQ(measured->name, "white.brdf");
-  ASSERT_EQ(measured->measurements.size(), 2u);
-  const BrdfMeasurement& m = measured->measurements[0];
-  EXPECT_EQ(m.theta_i, 0.5f);
-  EXPECT_EQ(m.phi_i, 0.25f);
-  EXPECT_EQ(m.theta_o, 0.75f);
-  EXPECT_EQ(m.phi_o, -1.5f);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(m.value[c], 2.0f, 1e-6f);
-  EXPECT_EQ(measured->measurements[1].value, glm::vec3(0.0f));
-}
-
 TEST(MeasuredBrdf, ColoursAreThoseOfTheSpectrum) {
   TemporaryFolder folder;
   const auto colorOf = [&](const char* values) {

@@ -1,13 +1,11 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <tuple>
 
 #include <gtest/gtest.h>
 
 #include "baker/import/mesh_edits.hpp"
-#include "tests/support/differences.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -41,15 +39,6 @@ std::map<Edge, int> edges(const MeshData& mesh) {
   return count;
 }
 
-float longestEdge(const MeshData& mesh) {
-  float longest = 0.0f;
-  for (const auto& [edge, count] : edges(mesh))
-    longest =
-        testing::larger(longest, std::hypot(edge.first[0] - edge.second[0], edge.first[1] - edge.second[1],
-                                            edge.first[2] - edge.second[2]));
-  return longest;
-}
-
 // Makes a closed box with hard edges: every side has its own vertices, normals and texture coordinates, and
 // the sides differ so much that adjacent ones are split differently.
 MeshData box(glm::vec3 size) {
@@ -78,17 +67,6 @@ MeshData box(glm::vec3 size) {
     }
   }
   return mesh;
-}
-
-TEST(SplitLongEdges, LeavesAClosedMeshClosedAcrossSeams) {
-  for (const float limit : {0.9f, 0.31f, 0.1f}) {
-    MeshData mesh = box({1.3f, 0.2f, 3.7f});
-    const double before = area(mesh);
-    ASSERT_TRUE(splitLongEdges(mesh, limit, 1u << 20));
-    EXPECT_LE(longestEdge(mesh), limit);
-    EXPECT_NEAR(area(mesh), before, 1e-5 * before);
-    for (const auto& [edge, count] : edges(mesh)) ASSERT_EQ(count, 2);
-  }
 }
 
 // An edge that is doubled at a seam, with its ends in the other order, is split at the same place.

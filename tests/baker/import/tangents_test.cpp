@@ -5,7 +5,6 @@
 
 #include "baker/import/gltf.hpp"
 #include "baker/import/mesh_edits.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -106,26 +105,6 @@ TEST(Tangents, LieInTheSurfaceWhereThePictureHasNoArea) {
   makeTangents(mesh, {});
   ASSERT_EQ(mesh.tangents.size(), 4u);
   expectTangent(mesh.tangents[0], {1, 0, 0, 1}, "of the left");
-}
-
-TEST(Tangents, ComeWithScenesThatHaveNormalMapsAndNoTangents) {
-  const auto file = testing::sharedFile("scenes/khronos/NormalTangentTest/glTF-Binary/NormalTangentTest.glb");
-  LAMBENT_NEEDS_SHARED(file);
-  const auto scene = importScene(file);
-  ASSERT_TRUE(scene) << scene.error().line();
-  std::size_t vertices = 0;
-  for (const SceneMesh& mesh : scene->meshes)
-    for (const ScenePrimitive& primitive : mesh.primitives) {
-      if (scene->materials[static_cast<std::size_t>(primitive.material)].normal_texture.texture < 0) continue;
-      const bundle::MeshData& data = primitive.mesh;
-      ASSERT_EQ(data.tangents.size(), data.positions.size());
-      vertices += data.tangents.size();
-      for (std::size_t v = 0; v < data.tangents.size(); ++v) {
-        EXPECT_NEAR(glm::length(glm::vec3(data.tangents[v])), 1.0f, 1e-5f);
-        EXPECT_NEAR(glm::dot(glm::vec3(data.tangents[v]), data.normals[v]), 0.0f, 1e-5f);
-      }
-    }
-  EXPECT_GT(vertices, 1000u);
 }
 
 }  // namespace lambent::baker

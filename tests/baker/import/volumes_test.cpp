@@ -151,25 +151,6 @@ TEST(Volume, OfAGivenSizeIsCentredOnItsNode) {
   EXPECT_EQ(glm::vec3(m * glm::vec4(2, 1, 3, 1)), glm::vec3(2, 1, 0.5f));
 }
 
-TEST(Volume, MayBeAllThatASceneHas) {
-  TemporaryFolder folder;
-  GltfWriter writer = withVolume({{"file", "procedural:cloud,1"}});
-  writer.json["nodes"][0].erase("mesh");
-  const Scene scene = imported(writer, folder);
-  EXPECT_TRUE(scene.meshes.empty());
-  EXPECT_EQ(scene.volumes.size(), 1u);
-}
-
-TEST(Volume, FlattenedByItsNodeIsLeftOut) {
-  TemporaryFolder folder;
-  GltfWriter writer = withVolume({{"file", "procedural:cloud,1"}});
-  writer.json["nodes"][1]["scale"] = {1, 0, 1};
-  const Scene scene = imported(writer, folder);
-  EXPECT_TRUE(scene.volumes.empty());
-  ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("flat"), std::string::npos);
-}
-
 TEST(Volume, IsRefusedByWhatIsWrongWithIt) {
   TemporaryFolder folder;
   folder.write("fog.txt", "fog");
@@ -293,17 +274,6 @@ TEST(VdbFile, WithoutTheGridAskedForSaysWhatItHas) {
   ASSERT_FALSE(grid);
   EXPECT_NE(grid.error().line().find("no grid \"temperature\""), std::string::npos);
   EXPECT_NE(grid.error().hint.find("density"), std::string::npos);
-}
-
-TEST(NrrdFile, OfTheSharedSmokeIsThere) {
-  const auto nrrd = testing::sharedFile("volumes/smoke_100x100x40.nrrd");
-  LAMBENT_NEEDS_SHARED(nrrd);
-  const auto grid = readNrrd(nrrd);
-  ASSERT_TRUE(grid) << grid.error().line();
-  EXPECT_EQ(grid->size, glm::uvec3(100, 100, 40));
-  const auto filled =
-      std::count_if(grid->values.begin(), grid->values.end(), [](float v) { return v > 0.0f; });
-  EXPECT_NEAR(static_cast<double>(filled) / 4e5, 0.29, 0.01);  // data/README.md: 29 % non-zero
 }
 
 }  // namespace

@@ -44,15 +44,6 @@ TEST(BlendWeights, SumToOneAndAreNotNegative) {
   }
 }
 
-TEST(BlendWeights, AtALightProbeAreAllItsOwn) {
-  const auto points = lights(12);
-  for (std::uint32_t k = 0; k < points.size(); ++k) {
-    const BlendWeights weights = blendWeights(points[k], points, kEps);
-    EXPECT_EQ(weights.light[0], k);
-    EXPECT_GT(weights.weight[0], 0.999);
-  }
-}
-
 // Along a path through the cloud no weight jumps, although the light probes in use change: the largest change
 // shrinks with the step length.
 TEST(BlendWeights, ChangeWithoutAJumpAlongAPath) {

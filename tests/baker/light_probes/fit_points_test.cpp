@@ -64,12 +64,6 @@ TEST(FitPoints, LeavesThemInsideTheBody) {
   }
 }
 
-TEST(FitPoints, LeavesThemInAPlane) {
-  const Fitted floor(testing::grid({0, 0, 0}, 2.0f, 32), 9);
-  EXPECT_LT(missed(floor, floor.points), missed(floor, floor.means));
-  for (const glm::vec3& point : floor.points) EXPECT_NEAR(point.y, 0.0f, 1e-4f);
-}
-
 TEST(FitPoints, OfFewOrCoincidentPointsStayFinite) {
   const Fitted ball(testing::icosphere({0, 0, 0}, 1.0f, 2), 1);
   EXPECT_LT(glm::length(ball.points[0]), 1e-3f);

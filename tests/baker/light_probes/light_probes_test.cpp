@@ -12,13 +12,9 @@
 #include "baker/transport/face_points.hpp"
 #include "runtime/bundle/description.hpp"
 #include "tests/support/differences.hpp"
-#include "tests/support/shapes.hpp"
-#include "tests/support/transport.hpp"
 
 namespace lambent::baker {
 namespace {
-
-using testing::Transport;
 
 LightProbes choose(const SampleSet& samples, LightProbeCount count) {
   glm::vec3 low(1e30f), high(-1e30f);
@@ -63,18 +59,6 @@ void expectSound(const LightProbes& found, const SampleSet& samples) {
     EXPECT_TRUE(read) << read.error().line();
   }
   EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);
-}
-
-TEST(LightProbes, OneIsTheCentreOfTheBounds) {
-  const Transport t(
-      testing::sceneOf({testing::icosphere({5, 0, 0}, 1.0f, 2), testing::grid({0, 0, 0}, 2.0f, 3)}));
-  for (const bool of_group : {false, true}) {
-    const LightProbes found = chooseLightProbes(t.samples, sampleAreas(t.geometry, t.samples),
-                                                t.geometry.bounds_min, t.geometry.bounds_max, {1, of_group});
-    ASSERT_EQ(found.points.size(), 1u);
-    EXPECT_EQ(found.points[0], 0.5f * (t.geometry.bounds_min + t.geometry.bounds_max));
-    expectSound(found, t.samples);
-  }
 }
 
 TEST(LightProbes, AreAsManyAsAskedForOfEachCellOrOfTheGroup) {
@@ -160,15 +144,6 @@ TEST(LightProbes, AreThinnedWhereACellWouldTakeTooMany) {
   const LightProbes found = choose(samples, {32, false});
   expectSound(found, samples);
   EXPECT_GT(found.points.size(), 1u);
-}
-
-TEST(LightProbes, AreTheSameForAnyNumberOfThreads) {
-  const SampleSet samples = strips(2, 90);
-  LightProbes one, two;
-  withThreads(1, [&] { one = choose(samples, {16, false}); });
-  withThreads(2, [&] { two = choose(samples, {16, false}); });
-  EXPECT_EQ(one.points, two.points);
-  for (std::size_t c = 0; c < 2; ++c) EXPECT_EQ(one.cells[c].weights, two.cells[c].weights);
 }
 
 }  // namespace

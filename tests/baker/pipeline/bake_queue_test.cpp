@@ -2,8 +2,6 @@
 // that edits, cancels and failures on the way do no harm.
 #include "baker/pipeline/bake_queue.hpp"
 
-#include <algorithm>
-
 #include "baker/bake/bake_unshadowed.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/journal.hpp"
@@ -186,57 +184,6 @@ TEST_F(BakeQueueTest, AQueueThatGoesInTheMiddleLeavesARecordOfTheBake) {
   const auto left = Journal(folder / "work" / "journal").unfinished();
   ASSERT_EQ(left.size(), 1u);
   EXPECT_EQ(left[0].output, asked.output);
-}
-
-// A copy of the cache's folder is what a kill at that moment would have left.
-TEST_F(BakeQueueTest, AfterAKillTheShareGoesOnFromWhatWasKeptAndNeverFalls) {
-  constexpr double kCheckpoint_s = 0.05, kBound = 0.15;
-  write(folder / "a.glb", assets::knot());
-  BakeOptions options = quick();
-  options.rays = 1024;
-  const BakeRequest asked = request("a", options);
-  const auto cacheAt = [&](const std::string& name) {
-    auto cache = Cache::open(folder / name);
-    EXPECT_TRUE(cache);
-    cache->setCheckpointEvery(kCheckpoint_s);
-    return std::move(*cache);
-  };
-  double at_kill = 0.0;
-  {
-    Cache cache = cacheAt("cache");
-    BakeQueue queue({.work_folder = folder / "work", .cache = &cache, .previews = false});
-    const JobId job = queue.add(asked);
-    ASSERT_TRUE(eventually([&] { return stateOf(queue, job).fraction > 0.4; }));
-    at_kill = stateOf(queue, job).fraction;
-    std::filesystem::copy(folder / "cache", folder / "killed", std::filesystem::copy_options::recursive);
-  }
-  std::filesystem::remove(asked.output);
-  Cache cache = cacheAt("killed");
-  BakeQueue queue({.work_folder = folder / "work", .cache = &cache, .previews = false});
-  const JobId job = queue.add(asked);
-  std::vector<double> shares;
-  ASSERT_TRUE(eventually([&] {
-    const JobState state = stateOf(queue, job);
-    if (state.phase != JobPhase::Waiting && state.phase != JobPhase::Importing)
-      shares.push_back(state.fraction);
-    return state.phase == JobPhase::Done || state.fraction > at_kill + kBound;
-  }));
-  EXPECT_TRUE(std::ranges::is_sorted(shares));
-  ASSERT_FALSE(shares.empty());
-  EXPECT_GT(shares.front(), at_kill - kBound);
-  EXPECT_LT(shares.front(), 1.0);
-}
-
-TEST_F(BakeQueueTest, AFailureIsAStateAndTheNextJobGoesOn) {
-  writeBytes(folder / "broken.glb", "not a scene");
-  write(folder / "good.glb", assets::hello());
-  BakeQueue queue({.work_folder = folder / "work"});
-  const JobId broken = queue.add(request("broken", quick()));
-  const JobId good = queue.add(request("good", quick()));
-  ASSERT_TRUE(eventually([&] { return !queue.busy(); }));
-  EXPECT_EQ(stateOf(queue, broken).phase, JobPhase::Failed);
-  ASSERT_TRUE(stateOf(queue, broken).error);
-  EXPECT_EQ(stateOf(queue, good).phase, JobPhase::Done);
 }
 
 }  // namespace lambent::baker

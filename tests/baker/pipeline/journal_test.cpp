@@ -74,12 +74,6 @@ TEST_F(JournalTest, ABakeIsUnfinishedOnlyOnceItEndedWithoutBeingDone) {
   EXPECT_TRUE(journal.unfinished().empty());
 }
 
-TEST_F(JournalTest, WithoutAFolderNothingIsRecordedAndNothingFails) {
-  const Journal journal{std::filesystem::path()};
-  { const Journal::Entry entry = journal.begin(request("a")); }
-  EXPECT_TRUE(journal.unfinished().empty());
-}
-
 TEST_F(JournalTest, SaysThatItCannotBeWritten) {
   std::ofstream(folder / "file") << "no folder";
   const Journal under_a_file(folder / "file" / "journal"), is_a_file(folder / "file");

@@ -136,33 +136,4 @@ TEST_F(SourceWatchTest, ARemovedSceneIsToldAndBundlesAndHiddenFilesAreNoScenes) 
   EXPECT_FALSE(next(watch, kQuiet));
 }
 
-TEST_F(SourceWatchTest, AnImageThatStaysMissingIsLeftOut) {
-  const std::filesystem::path scene = folder / "a.gltf";
-  std::string text = gltfText("a.bin");
-  text.replace(text.rfind('}'), 1, R"(, "images": [{"uri": "none.png"}], "textures": [{"source": 0}],
-      "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]})");
-  writeBytes(folder / "a.bin", triangleBytes(1.0f));
-  writeBytes(scene, text);
-  WatchSettings settings = quick();
-  settings.complain_after = std::chrono::milliseconds(300);
-  SourceWatch watch({folder}, settings);
-  const auto event = next(watch);
-  ASSERT_TRUE(event);
-  EXPECT_EQ(event->kind, WatchKind::Found);
-}
-
-TEST_F(SourceWatchTest, FilesThatASceneNamesAreFoundWithoutCheckingIt) {
-  writeBytes(folder / "a.gltf", R"({"buffers": [{"uri": "a.bin"}, {"uri": "data:;base64,AA=="}, {}, 3],
-      "images": [{"uri": "textures/stone.png"}, {"bufferView": 0}],
-      "materials": [{"extras": {"lambent": {"brdf": "red.brdf"}}}, {"extras": 1}],
-      "nodes": [{"extras": {"lambent": {"volume": {"file": "cloud.vdb"}}}},
-                {"extras": {"lambent": {"volume": {"file": "procedural:cloud,1"}}}}]})");
-  const auto files = sourceFiles(folder / "a.gltf");
-  const std::vector<std::filesystem::path> wanted = {folder / "a.gltf", folder / "a.bin",
-                                                     folder / "textures/stone.png", folder / "cloud.vdb",
-                                                     folder / "red.brdf"};
-  EXPECT_EQ(files, wanted);
-  EXPECT_EQ(sourceFiles(folder / "missing.gltf").size(), 1u);
-}
-
 }  // namespace lambent::baker

@@ -31,11 +31,6 @@ TEST(EffectPlan, BakesDiffuseTransferForSurfacesAndSaysWhy) {
   EXPECT_TRUE(plan.left_out.empty());
 }
 
-TEST(EffectPlan, OfNothingBakesNothing) {
-  const EffectPlan plan = makePlan(Scene{}, effectList());
-  for (const EffectChoice& effect : plan.effects) EXPECT_FALSE(effect.baked) << effect.effect;
-}
-
 TEST(EffectPlan, SaysWhatTheBakeWillNotShow) {
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1), grid({0, 1, 0}, 1.0f, 1)});
   const auto diffuse_alone = effectList().first(1);

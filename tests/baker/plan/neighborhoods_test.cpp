@@ -75,15 +75,6 @@ TEST(NeighborhoodPlans, KnowWhereReceiversStandInTheGroupsFrame) {
   EXPECT_LT(ball.receivers_max.x, 10.0f);  // and its reach here, although triangles go on
 }
 
-TEST(NeighborhoodPlans, CutLargeTrianglesToTheReach) {
-  const PlannedNeighborhood coarse = planBodies(rolling(ballsOver(1, 0.5f, 1))).of("ball 0"),
-                            fine = planBodies(rolling(ballsOver(1, 0.5f, 40))).of("ball 0");
-  for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_NEAR(coarse.receivers_min[axis], fine.receivers_min[axis], 1e-3f);
-    EXPECT_NEAR(coarse.receivers_max[axis], fine.receivers_max[axis], 1e-3f);
-  }
-}
-
 TEST(NeighborhoodPlans, KnowHowReceiversFaceInTheGroupsFrame) {
   // Area times y_k of the normal; y_2 is along z, y_1 along y.
   const auto along = [](const FacingArea& facing, std::size_t k) {
@@ -130,22 +121,6 @@ TEST(NeighborhoodPlans, AreForBodiesThatCanBeMovedByHandWhereverTheyStand) {
   EXPECT_FALSE(planBodies(rolling(ballsOver(1, 0.5f))).of("ball 0").by_hand);
   for (std::size_t k = 1; k < ball.receivers_face.size(); ++k)
     EXPECT_EQ(ball.receivers_face[k], 0.0f) << "surfaces may face anywhere";
-}
-
-TEST(NeighborhoodPlans, OfBodiesMovedByHandCostThoseThatMoveAboutNothing) {
-  Scene scene = ballsOver(9, 0.5f);
-  scene.nodes[9].parent_from_node[3].y = 3.0f;
-  const PlannedBodies planned = planBodies(scene);
-  EXPECT_TRUE(planned.of("ball 3").baked);
-  EXPECT_FALSE(planned.of("ball 8").baked);
-  EXPECT_NE(planned.of("ball 8").reason.find("8 other bodies"), std::string::npos);
-}
-
-TEST(NeighborhoodPlans, AreForNoneOfMany) {
-  EXPECT_TRUE(planBodies(ballsOver(8, 0.5f)).of("ball 3").baked);
-  const PlannedBodies planned = planBodies(ballsOver(9, 0.5f));
-  for (const PlannedNeighborhood& one : planned.plans) EXPECT_FALSE(one.baked);
-  EXPECT_NE(planned.of("ball 3").reason.find("8 other bodies"), std::string::npos);
 }
 
 TEST(NeighborhoodPlans, AreNotForBodiesThatGiveOffLight) {

@@ -79,15 +79,6 @@ TEST(RigidGroups, KeepTheirGeometryToTheLastBitWhileTheyMoveAsAWhole) {
   }
 }
 
-TEST(RigidGroups, DoubleSidedSurfacesAreDrawnFromBothSides) {
-  Scene scene = family();
-  scene.materials[0].double_sided = true;
-  const auto group = findRigidGroups(scene).at(0);
-  ASSERT_EQ(group.draws.size(), 6u);
-  EXPECT_FALSE(group.draws[0].back);
-  EXPECT_TRUE(group.draws[1].back);
-}
-
 TEST(RigidGroups, AZeroScaleIsNotANan) {
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1)});
   scene.nodes[0].movable = true;

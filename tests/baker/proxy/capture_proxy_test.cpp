@@ -160,21 +160,6 @@ glm::vec3 reflectanceOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTr
   return sum;
 }
 
-TEST(CaptureProxyLight, ReflectsTheAlbedoOnEveryTriangle) {
-  Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 4), box({3, 0, 0}, {1, 1, 1}, 1)});
-  scene.materials[0].base_color = {0.8f, 0.4f, 0.1f, 1.0f};
-  const Transport t(scene);
-  const bundle::CaptureProxy proxy = proxyOf(t);
-  ASSERT_FALSE(proxy.levels.empty());
-  for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
-    EXPECT_LE(triangle.entry_count, bundle::kMaxProxyEntries);
-    EXPECT_FALSE(triangle.front_only);
-    EXPECT_EQ(triangle.light, -1);
-    const glm::vec3 sum = reflectanceOf(proxy, triangle);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], scene.materials[0].base_color[c], 1e-5f);
-  }
-}
-
 // The body is red above and blue below: the whole has the mean colour, and light from above sees the red
 // half.
 TEST(CaptureProxyLight, OfASphereOfTwoColoursHasItsMeans) {
@@ -302,18 +287,6 @@ TEST(CaptureProxy, LeavesOutWhatIsMostlyTransparent) {
   EXPECT_TRUE(proxyOf(Transport(scene)).levels.empty());
 }
 
-TEST(CaptureProxy, OfUnlitSurfacesIsBlack) {
-  Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 2)});
-  scene.materials[0].unlit = true;
-  scene.materials[0].emissive = glm::vec3(3.0f);
-  const bundle::CaptureProxy proxy = proxyOf(Transport(scene));
-  ASSERT_EQ(proxy.levels.size(), 1u);
-  for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
-    EXPECT_EQ(triangle.entry_count, 0u);
-    EXPECT_EQ(triangle.emission, glm::vec3(0.0f));
-  }
-}
-
 TEST(CaptureProxy, OfHardCasesIsReadable) {
   const auto check = [](const Scene& scene) {
     const Transport t(scene);
@@ -341,14 +314,6 @@ TEST(CaptureProxy, OfHardCasesIsReadable) {
     lamps.meshes[i].primitives[0].material = static_cast<std::int32_t>(i) + 1;
   }
   check(lamps);
-}
-
-TEST(CaptureProxy, IsTheSameForAnyNumberOfThreads) {
-  const Transport t(sceneOf({meshOf(assets::teapot(6, 1.0f))}));
-  std::vector<std::byte> one, two;
-  withThreads(1, [&] { one = bundle::encodeCaptureProxy(proxyOf(t)); });
-  withThreads(2, [&] { two = bundle::encodeCaptureProxy(proxyOf(t)); });
-  EXPECT_EQ(one, two);
 }
 
 }  // namespace

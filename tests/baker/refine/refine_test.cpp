@@ -140,13 +140,6 @@ TEST(Refinement, DoesNotTakeTheNoiseOfFewRaysForASmallError) {
       << "that of the worst of many regions has more noise";
 }
 
-TEST(Refinement, LooksOnceAtWhatIsWithinTheBoundFromTheStart) {
-  const RefineOptions twice{.bound = 0.5f};
-  RefineOptions once = twice;
-  once.many_rays = once.rays;
-  EXPECT_EQ(refined(floorUnderSlab(), twice).report.rays, refined(floorUnderSlab(), once).report.rays);
-}
-
 TEST(Refinement, BringsWhatAGlossyFloorReflectsUnderTheBound) {
   Scene scene = floorUnderSlab();
   scene.materials[0].metallic = 1.0f;
@@ -212,17 +205,6 @@ TEST(Refinement, LeavesNoFaceFromTheLightIntoADarkBox) {
   EXPECT_LT(crossing, 0.1);
 }
 
-TEST(Refinement, TakesFacesWithTwoCornersInOnePlace) {
-  Scene scene = darkBox();
-  bundle::MeshData& floor = scene.meshes[0].primitives[0].mesh;
-  const auto copy = static_cast<std::uint32_t>(floor.positions.size());
-  floor.positions.push_back(floor.positions[floor.indices[0]]);
-  floor.normals.push_back(floor.normals[floor.indices[0]]);
-  const std::array<std::uint32_t, 3> sliver = {floor.indices[0], copy, floor.indices[1]};
-  floor.indices.insert(floor.indices.end(), sliver.begin(), sliver.end());
-  EXPECT_LT(refined(scene, {.bound = 0.02f}).report.error_after, 0.02);
-}
-
 TEST(Refinement, EndsWithTheVerticesThatItMayAdd) {
   const Refined result = refined(floorUnderSlab(), {.bound = 1e-4f, .most_growth = 1.0, .most_added = 500});
   EXPECT_GT(result.report.vertices_after, result.report.vertices_before + 250);
@@ -245,15 +227,6 @@ TEST(Refinement, CountsAMeshAsOftenAsItIsDrawn) {
   const std::size_t added = result.report.vertices_after - result.report.vertices_before;
   EXPECT_GT(kCopies * added, 800u);
   EXPECT_LE(kCopies * added, 2000u);
-}
-
-TEST(Refinement, IsTheSameForAnyNumberOfThreads) {
-  Refined one, many;
-  withThreads(1, [&] { one = refined(floorUnderSlab(), {.bound = 0.02f}); });
-  withThreads(0, [&] { many = refined(floorUnderSlab(), {.bound = 0.02f}); });
-  EXPECT_EQ(one.meshes[0][0].positions, many.meshes[0][0].positions);
-  EXPECT_EQ(one.meshes[0][0].indices, many.meshes[0][0].indices);
-  EXPECT_EQ(one.report.error_after, many.report.error_after);
 }
 
 TEST(ShadowProbe, OfAClosedBoxMissesAllOfTheLight) {

@@ -1,6 +1,5 @@
 #include "baker/sweep/knobs.hpp"
 
-#include <algorithm>
 #include <iterator>
 #include <set>
 
@@ -72,20 +71,6 @@ TEST(Knobs, AllValuesOfAllKnobsAreUnderstoodByTheBake) {
   }
 }
 
-TEST(Knobs, TheBaseComesFirstAndOnce) {
-  const auto settings = settingsOf({.surfaces = true}, Quality::Standard, {});
-  ASSERT_TRUE(settings);
-  EXPECT_EQ(settings->front().name(), "standard quality");
-  EXPECT_EQ(std::ranges::count(*settings, "standard quality", &Setting::name), 1);
-  EXPECT_EQ(std::ranges::count(*settings, "high quality", &Setting::name), 1);
-}
-
-TEST(Knobs, GlossyScenesHaveAtMostSixBands) {
-  const auto settings = settingsOf({.surfaces = true, .glossy = true}, Quality::Draft, {});
-  ASSERT_TRUE(settings);
-  for (const Setting& setting : *settings) EXPECT_LE(setting.bake.order, 6) << setting.name();
-}
-
 TEST(Knobs, AskedOnesComeWithTheValuesThatAreNamed) {
   const std::vector<std::string> asked = {"rays=128,300", "keys=off"};
   const auto settings = settingsOf({}, Quality::Draft, asked);
@@ -94,20 +79,6 @@ TEST(Knobs, AskedOnesComeWithTheValuesThatAreNamed) {
   EXPECT_EQ((*settings)[2].bake.rays, 300u);
   EXPECT_EQ((*settings)[2].command(), "lambent bake --quality draft --rays 300");
   EXPECT_EQ((*settings)[3].command(), "lambent-demo --keys off");
-}
-
-TEST(Knobs, TheUsualValueOfAFrameGivesNoOption) {
-  const std::vector<std::string> asked = {"keys=auto"};
-  const auto settings = settingsOf({}, Quality::Draft, asked);
-  ASSERT_TRUE(settings);
-  EXPECT_TRUE(settings->back().frame_words.empty());
-}
-
-TEST(Knobs, UnknownNamesAndValuesAreErrors) {
-  for (const char* word : {"knob", "rays=few", "order=9", "max-memory=half", "max-memory=101%"}) {
-    const std::vector<std::string> asked = {word};
-    EXPECT_FALSE(settingsOf({}, Quality::Draft, asked)) << word;
-  }
 }
 
 }  // namespace

@@ -20,11 +20,6 @@ TEST(Pareto, FrontHasWhatNothingBeatsInTheOrderOfCost) {
   EXPECT_EQ(paretoFront(points), (Front{1, 2, 3}));
 }
 
-TEST(Pareto, OfEqualPointsTheFirstCountsAndOfEqualCostTheSmallerError) {
-  const std::vector<CostAndError> points = {{2.0, 0.2}, {1.0, 0.4}, {1.0, 0.3}, {1.0, 0.3}, {2.0, 0.2}};
-  EXPECT_EQ(paretoFront(points), (Front{2, 0}));
-}
-
 TEST(Pareto, WhatIsNotFiniteNeverLiesOnTheFront) {
   const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
   const std::vector<CostAndError> points = {
@@ -84,29 +79,6 @@ TEST(Report, SaysWhichSettingToTakeAndWhy) {
       "by 20 % for 1 s. Beyond it, no setting takes a tenth of the error away for each doubling of the time "
       "of a bake: the most exact one, rays 512, errs by 9.9 % for 4 s.");
   EXPECT_EQ(sweep.at("costs").at(1).at("competing"), json({0, 3}));
-}
-
-TEST(Report, SettingsThatComeToTheSameCountOnceByTheNameOfThePreset) {
-  SweepResults results = someResults();
-  results.settings.insert(results.settings.begin(), measured("rays", "256", 2.0, 0.10));
-  results.settings.front().key = results.settings[1].key;
-  const json cost = sweepJson(results).at("costs").at(0);
-  EXPECT_EQ(cost.at("competing"), json({1, 2, 3}));
-  EXPECT_EQ(cost.at("take"), 1);
-}
-
-TEST(Report, RowsHaveWhatWasMeasured) {
-  const json sweep = sweepJson(someResults());
-  const json& row = sweep.at("rows").at(1);
-  EXPECT_EQ(row.at("name"), "rays 128");
-  EXPECT_EQ(row.at("knob"), "rays");
-  EXPECT_EQ(row.at("value"), "128");
-  EXPECT_EQ(row.at("bake").at("processorSeconds"), 1.0);
-  EXPECT_EQ(row.at("bake").at("stages"), json::parse(R"([["direct light", 1.0]])"));
-  EXPECT_EQ(row.at("picture").at("frameMs"), 5.0);
-  EXPECT_EQ(row.at("picture").at("asLightIs").at("rms"), 0.2);
-  EXPECT_EQ(sweep.at("knobs").at(1).at("of"), "frame");
-  EXPECT_EQ(sweep.at("view").at("lights"), json({"sky.hdr", "sun:1,2"}));  // without private folders
 }
 
 TEST(Report, ThePageHasTheFiguresAndThePicturesAndLoadsNothing) {

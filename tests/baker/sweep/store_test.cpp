@@ -61,20 +61,6 @@ TEST(Store, LeavesOutALineThatWasCutShortAndGoesOnBehindIt) {
   EXPECT_TRUE(store->find<BakeRow>("c"));
 }
 
-TEST(Store, TakesARowOfAnotherFormForNone) {
-  const testing::TemporaryFolder folder;
-  const auto file = folder.path() / "results.jsonl";
-  std::ofstream(file) << R"({"key": "a", "row": {"seconds": "two"}})"
-                      << "\n"
-                      << "[1, 2]\n"
-                      << "\n"
-                      << R"({"key": 7, "row": {}})"
-                      << "\n";
-  const auto store = Store::open(file);
-  ASSERT_TRUE(store);
-  EXPECT_FALSE(store->find<BakeRow>("a"));
-}
-
 TEST(Store, ALaterRowTakesThePlaceOfAnEarlierOne) {
   const testing::TemporaryFolder folder;
   const auto file = folder.path() / "results.jsonl";

@@ -32,12 +32,6 @@ TEST(KeepEvery, KeepsTheWeightOfAllHits) {
   }
 }
 
-TEST(KeepEvery, KeepsAllHitsOfASampleThatHasFew) {
-  std::vector<GatherHit> kept;
-  EXPECT_EQ(keepEvery(4, 0, hitsOf(kHitsToThin), weightOf, kept), 1.0f);
-  EXPECT_EQ(kept.size(), kHitsToThin);
-}
-
 TEST(HitStore, GivesUpWholeRangesUntilFewEnoughBytesAreKept) {
   constexpr std::size_t kHits = 1000;
   HitStore store(4 * kSamplesPerRange, 3 * kHits * sizeof(GatherHit));

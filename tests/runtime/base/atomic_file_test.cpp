@@ -106,11 +106,6 @@ TEST_F(AtomicFileTest, RemovesWhatKilledProgramsLeftAndNothingElse) {
   EXPECT_TRUE(fs::exists(of_no_process));
 }
 
-TEST_F(AtomicFileTest, ReadingNamesWhatIsWrong) {
-  EXPECT_EQ(readTextFile(folder_ / "nothing").error().problem, "no such file");
-  EXPECT_EQ(readTextFile(folder_).error().problem, "is a folder");
-}
-
 TEST_F(AtomicFileTest, DoesNotWaitForAPipe) {
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   EXPECT_EQ(readTextFile(folder_ / "pipe").error().problem, "is a device or a pipe");

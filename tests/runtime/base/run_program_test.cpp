@@ -25,10 +25,6 @@ TEST(RunProgram, LeavesTheExitCodeToTheCallerWhoAsksForIt) {
   EXPECT_EQ(out->out, "said\n");
 }
 
-TEST(RunProgram, FailsIfThereIsNoSuchProgram) {
-  EXPECT_FALSE(runProgram("/no/such/program", {}, {}));
-}
-
 // Far more than a pipe holds, on both streams.
 TEST(RunProgram, ReadsBothStreamsToTheirEnds) {
   const auto out =

@@ -95,34 +95,6 @@ TEST_F(PatchBouncesTest, WhatDoesNotChangeIsNeitherBouncedNorGathered) {
   EXPECT_EQ(stage.frame->counts()["lights_bounced"], 1u) << "moved";
 }
 
-TEST_F(PatchBouncesTest, DimmedItIsHalfAndSwitchedOffItIsBlack) {
-  RoomStage stage(BundleBuilder().add(insideOfSphere()));
-  const auto full = stage.picture();
-  stage.light().strength = 2.0f;
-  const auto half = stage.picture();
-  for (std::size_t i = 0; i < full.size(); ++i) ASSERT_NEAR(half[i].g, 0.5f * full[i].g, 1e-6f * full[i].g);
-  stage.light().enabled = false;
-  for (const glm::vec4& texel : stage.picture()) ASSERT_EQ(glm::vec3(texel), glm::vec3(0.0f));
-}
-
-TEST_F(PatchBouncesTest, MovedAndMovedBackThePictureIsTheSameToTheByte) {
-  RoomStage stage(BundleBuilder().add(insideOfSphere()));
-  const auto before = stage.picture();
-  stage.moveLamp({0.4f, 0.2f, -0.3f});
-  EXPECT_NE(stage.picture(), before);
-  stage.moveLamp({0, 0, 0});
-  EXPECT_EQ(stage.picture(), before);
-}
-
-TEST_F(PatchBouncesTest, OutsideOfTheRoomTheLampLeavesNothingInIt) {
-  RoomStage stage(BundleBuilder().add(insideOfSphere()));
-  (void)stage.picture();
-  stage.moveLamp({150, 0, 0});  // the bundle says that the room is 10 m wide to each side
-  (void)stage.picture();
-  EXPECT_EQ(stage.frame->counts()["patch_rooms"], 0u);
-  EXPECT_EQ(stage.frame->counts()["shadowed_lights"], 0u);
-}
-
 // Patches are coarse: beside a bright sill they may claim more light than there is. A sun that its bands
 // bring in, and whose rays pass along floor and ceiling, then took away all the light there was.
 TEST_F(PatchBouncesTest, WherePatchesClaimMoreThanTransferKnowsTheyTakeAwayInProportion) {

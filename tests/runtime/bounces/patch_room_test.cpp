@@ -2,7 +2,6 @@
 #include "runtime/bounces/patch_room.hpp"
 
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -38,10 +37,6 @@ void shine(PatchRoom& room, std::vector<ShadowedLight> lamps,
   room.light({.lamps = std::move(lamps)}, glm::mat4(1.0f), others);
 }
 
-bool sameBytes(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(glm::vec3)) == 0;
-}
-
 // Returns the flux that arrives at all patches, relative to that of the lamp.
 double received(const lighting::Patches& patches, const std::vector<float>& direct, double flux) {
   double sum = 0.0;
@@ -73,21 +68,6 @@ TEST(LampLight, AllLightOfALampArrivesInAClosedRoom) {
   for (std::size_t i = 0; i < patches.size(); ++i) {
     if (patches.all()[i].points[0].x >= 0.7f) continue;
     ASSERT_EQ(ahead[i], 0.0f) << i;
-  }
-}
-
-TEST(LampLight, ALampInABoxLightsNothingOfTheBoxBeside) {
-  const lighting::Patches patches(RoomBuilder()
-                                      .box({0, 0, 0}, {1, 1, 1}, glm::vec3(0.7f))
-                                      .box({1.1f, 0, 0}, {2, 1, 1}, glm::vec3(0.7f))
-                                      .surface());
-  ShadowedLight lamp = pointLamp({0.5f, 0.5f, 0.5f});
-  lamp.kind = ShadowedLight::Kind::Sphere;
-  lamp.radius_m = 0.2f;
-  const std::vector<float> direct = lampOnPatches(lamp, patches, {}, glm::mat4(1.0f));
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const bool beside = patches.all()[i].points[0].x > 1.05f;
-    ASSERT_EQ(direct[i] == 0.0f, beside) << i;
   }
 }
 
@@ -130,53 +110,6 @@ TEST(PatchRoom, DimmingIsLinearToTheBitAndTracesNothingAnew) {
   EXPECT_EQ(room.tracedLast(), 0u);
   EXPECT_GT(room.version(), version);
   for (std::size_t i = 0; i < full.size(); ++i) ASSERT_EQ(room.givenOff()[i], 0.25f * full[i]);
-}
-
-TEST(PatchRoom, TwoLampsGiveTheSumOfBoth) {
-  PatchRoom room = boxRoom(), first = boxRoom(), second = boxRoom();
-  const ShadowedLight a = pointLamp({1, 2, 1}, {4, 2, 1}), b = pointLamp({0.3f, 1, 2.6f}, {1, 3, 5});
-  shine(room, {a, b});
-  shine(first, {a});
-  shine(second, {b});
-  for (std::size_t i = 0; i < room.givenOff().size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      const float sum = first.givenOff()[i][k] + second.givenOff()[i][k];
-      // Bounces end where they add less than 1 / 10 000.
-      ASSERT_NEAR(room.givenOff()[i][k], sum, 1e-3f * sum);
-    }
-}
-
-TEST(PatchRoom, WhatStandsStillIsNewOnlyOnce) {
-  PatchRoom room = boxRoom();
-  const std::vector<ShadowedLight> lamps = {pointLamp({1, 2, 1}), pointLamp({0.5f, 0.5f, 0.5f})};
-  shine(room, lamps);
-  const std::uint64_t version = room.version();
-  shine(room, lamps);
-  EXPECT_EQ(room.version(), version);
-  EXPECT_EQ(room.tracedLast(), 0u);
-  // When the other lamp is switched off, the remaining one is not computed again.
-  shine(room, {lamps[1]});
-  EXPECT_EQ(room.tracedLast(), 0u);
-  EXPECT_GT(room.version(), version);
-}
-
-TEST(PatchRoom, SwitchedOffItSendsOnNothing) {
-  PatchRoom room = boxRoom();
-  shine(room, {pointLamp({1, 2, 1})});
-  EXPECT_FALSE(room.givenOff().empty());
-  shine(room, {});
-  EXPECT_TRUE(room.givenOff().empty());
-}
-
-TEST(PatchRoom, ALampThatComesBackGivesTheSameBytes) {
-  PatchRoom room = boxRoom();
-  shine(room, {pointLamp({1, 2, 1})});
-  const std::vector<glm::vec3> before = room.givenOff();
-  shine(room, {pointLamp({1, 2, 1.1f})});
-  EXPECT_EQ(room.tracedLast(), 1u);
-  EXPECT_FALSE(sameBytes(before, room.givenOff()));
-  shine(room, {pointLamp({1, 2, 1})});
-  EXPECT_TRUE(sameBytes(before, room.givenOff()));
 }
 
 TEST(PatchRoom, WhatElseStandsInTheLightTakesItAway) {
@@ -294,22 +227,6 @@ TEST(PatchRoom, KeyLightsThatAreBlockedByOtherBodiesAreTakenOff) {
   const std::vector<glm::vec3> by_bands = givenOffByBands(*room.transport(), bands);
   for (std::size_t i = 0; i < by_bands.size(); ++i)
     ASSERT_NEAR(room.givenOff()[i].g + by_bands[i].g, 0.0f, 1e-4f) << i;
-}
-
-TEST(PatchRoom, AKeyLightThatIsDimmedIsNotTracedAnew) {
-  PatchRoom room = openRoom();
-  std::vector<spec::Disc> keys = {sunAt({0, 0.8f, 0.6f}), sunAt({0.3f, 0.2f, 0.9f})};
-  room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
-  EXPECT_EQ(room.tracedLast(), 2u);
-  keys[0].radiance *= 0.5f;
-  room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
-  EXPECT_EQ(room.tracedLast(), 0u);
-  keys[1].direction = glm::normalize(glm::vec3(0.31f, 0.2f, 0.9f));
-  room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
-  EXPECT_EQ(room.tracedLast(), 1u);
-  const std::uint64_t version = room.version();
-  room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
-  EXPECT_EQ(room.version(), version);
 }
 
 }  // namespace lambent::frame

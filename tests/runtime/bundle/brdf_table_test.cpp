@@ -134,18 +134,6 @@ TEST(BrdfTable, ComesBackFromItsPayload) {
   }
 }
 
-TEST(BrdfTable, ThatIsTruncatedOrHasMoreIsRefused) {
-  const auto bytes = encodeBrdfTable(makeTable(3, 2, 2, 2));
-  for (std::size_t length = 0; length < bytes.size(); ++length) {
-    const auto read = decodeBrdfTable(std::span(bytes).first(length), "table 3");
-    ASSERT_FALSE(read) << length;
-    EXPECT_EQ(read.error().subject, "table 3");
-  }
-  auto longer = bytes;
-  longer.push_back({});
-  EXPECT_FALSE(decodeBrdfTable(longer, "table 3"));
-}
-
 // Sizes from a damaged file must not cause large allocations or reads past its end.
 TEST(BrdfTable, WithSizesOutOfRangeIsRefused) {
   const auto bytes = encodeBrdfTable(makeTable(3, 2, 2, 2));

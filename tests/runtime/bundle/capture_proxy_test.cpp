@@ -75,29 +75,6 @@ TEST(CaptureProxy, BringsTheSurfaceForItsOwnPartsInStepsOfAByteOfAlbedo) {
   }
 }
 
-TEST(CaptureProxy, ShowsItsOwnPartsTheFinestLevelWhereThereIsNoOtherSurface) {
-  const PatchSurface surface = patchSurfaceOf(smallProxy());
-  ASSERT_EQ(surface.triangles.size(), 2u);
-  EXPECT_EQ(surface.error_m, 0.001f);
-  EXPECT_TRUE(surface.triangles[0].front_only);
-  EXPECT_EQ(surface.triangles[0].albedo, glm::vec3(0.0f));
-  EXPECT_EQ(surface.triangles[1].albedo, glm::vec3(1.0f, 1.0f, 0.0f));
-  EXPECT_EQ(patchSurfaceOf(withPatches()).error_m, 0.25f);
-}
-
-TEST(CaptureProxy, OfAnotherLengthIsRefused) {
-  const std::size_t without_patches = encodeCaptureProxy(smallProxy()).size();
-  for (const CaptureProxy& proxy : {smallProxy(), withPatches()}) {
-    auto bytes = encodeCaptureProxy(proxy);
-    for (std::size_t length = 0; length < bytes.size(); ++length) {
-      if (length == without_patches) continue;
-      EXPECT_FALSE(decode({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)})) << length;
-    }
-    bytes.push_back(std::byte{0});
-    EXPECT_FALSE(decode(bytes));
-  }
-}
-
 TEST(CaptureProxy, FlippedBytesNeverGiveIndicesOutOfRange) {
   const auto bytes = encodeCaptureProxy(withPatches());
   for (std::size_t at = 0; at < bytes.size(); ++at)

@@ -111,14 +111,6 @@ TEST_F(BundleFile, IsNotWrittenOfTransferThatIsNotANumber) {
   }
 }
 
-TEST_F(BundleFile, IsTheSameBytesTwice) {
-  const Sample sample = sampleOfEveryList();
-  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-  const std::string first = bytes();
-  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-  EXPECT_EQ(first, bytes());
-}
-
 TEST_F(BundleFile, TruncatedAtAnyPrefixIsRefusedInOneLine) {
   const Sample sample = sampleOfEveryList();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
@@ -226,19 +218,6 @@ TEST_F(BundleFile, ADeepChainOfNodesIsReadInNoTime) {
   const std::clock_t begin = std::clock();  // processor time, which other work on the machine does not change
   EXPECT_TRUE(Reader::open(path_));
   EXPECT_LT(std::clock() - begin, 5 * CLOCKS_PER_SEC);
-}
-
-TEST_F(BundleFile, AnEmptyListOfScenesIsRefused) {
-  Sample sample = sampleOfEveryList();
-  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-  auto glb = GlbFile::open(path_);
-  ASSERT_TRUE(glb);
-  std::string json = glb->json();
-  const std::string scenes = R"("scenes":[{"nodes":[0]}])";
-  const std::size_t at = json.find(scenes);
-  ASSERT_NE(at, std::string::npos) << json;
-  json.replace(at, scenes.size(), R"("scenes":[])");
-  EXPECT_FALSE(fromJson(json, glb->binaryBytes(), "scene"));
 }
 
 // Surrounds nonsense with valid checksums, as a hostile or buggy writer could.
@@ -352,33 +331,6 @@ TEST_F(BundleFile, CodebooksOfAnotherSizeThanDescribedAreRefusedBeforeUse) {
   refused([](CellTransfer& transfer) { transfer.clusters = 3; });
   refused([](CellTransfer& transfer) { transfer.axes = 3; });
   refused([](CellTransfer& transfer) { transfer.axes = 0; });
-}
-
-TEST_F(BundleFile, APlainGltfFileIsSaidNotToBeBaked) {
-  std::string json = R"({"asset":{"version":"2.0"}})";
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  const auto word = [](std::size_t value) {
-    const auto v = static_cast<std::uint32_t>(value);
-    std::string bytes(4, '\0');
-    std::memcpy(bytes.data(), &v, 4);
-    return bytes;
-  };
-  replace("glTF" + word(2) + word(28 + json.size()) + word(json.size()) + "JSON" + json + word(0) +
-          std::string("BIN\0", 4));
-  const auto reader = Reader::open(path_);
-  ASSERT_FALSE(reader);
-  EXPECT_NE(reader.error().problem.find("without baked transfer"), std::string::npos)
-      << reader.error().line();
-}
-
-TEST_F(BundleFile, AFailedWriteLeavesTheOldFile) {
-  replace("precious");
-  const Sample sample = sampleOfEveryList();
-  const auto written = write(folder_ / "missing" / "scene.lmb.glb", sample.description, sample.blobs);
-  ASSERT_FALSE(written);
-  EXPECT_NE(written.error().problem.find("folder does not exist"), std::string::npos);
-  EXPECT_EQ(bytes(), "precious");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
 }
 
 }  // namespace

@@ -114,19 +114,5 @@ TEST_F(GlossyParts, TablesOfOtherBandsThanTheTransferAreRefused) {
   EXPECT_NE(found.error().problem.find("other bands"), std::string::npos) << found.error().line();
 }
 
-TEST_F(GlossyParts, TablesThatAreDamagedAreNamed) {
-  Sample sample = glossySample();
-  const std::uint32_t payload = sample.description.brdf_tables[1].payload;
-  sample.blobs[sample.description.payloads[payload].view].resize(8);
-  sample.description.payloads[payload].raw_length = 8;
-  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-  const auto reader = Reader::open(path_);
-  ASSERT_TRUE(reader) << reader.error().line();
-  const auto table = reader->readBrdfTable(1);
-  ASSERT_FALSE(table);
-  EXPECT_NE(table.error().line().find("BRDF table 1"), std::string::npos) << table.error().line();
-  EXPECT_FALSE(reader->checkAll());
-}
-
 }  // namespace
 }  // namespace lambent::bundle

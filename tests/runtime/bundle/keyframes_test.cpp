@@ -92,26 +92,6 @@ TEST(Keyframes, CubicSplinesReproduceCubics) {
   EXPECT_EQ(vectorAt(c, 10.0f).x, static_cast<float>(value(4.0))) << "the last key, not its tangents";
 }
 
-TEST(Keyframes, TangentsOfEachSideAreTheirOwn) {
-  // The value is 0 at both keys; the out-tangent is 4 at the first and the in-tangent -8 at the second, over
-  // half a second. At the middle it is 0.5 * (4 / 8) - 0.5 * (-8 / 8) = 0.75.
-  const auto c = channel(Path::Translation, Interpolation::Cubic, {1.0f, 1.5f},
-                         {99, 0, 0, 0, 0, 0, 4, 0, 0, -8, 0, 0, 0, 0, 0, 99, 0, 0});
-  EXPECT_FLOAT_EQ(vectorAt(c, 1.25f).x, 0.75f);
-}
-
-TEST(Keyframes, CubicRotationsComeOutUnit) {
-  const std::vector<float> none = {0, 0, 0, 0};
-  const auto c =
-      channel(Path::Rotation, Interpolation::Cubic, {0, 1}, none + turn(0) + none + none + turn(90) + none);
-  EXPECT_NEAR(degreesOf(rotationAt(c, 0.5f)), 45.0f, 1e-4f) << "half and half";
-  EXPECT_NEAR(degreesOf(rotationAt(c, 1.0f)), 90.0f, 1e-4f);
-  // The interpolation from q to -q passes through zero.
-  const auto zero = channel(Path::Rotation, Interpolation::Cubic, {0, 1},
-                            none + turn(30) + none + none + turn(30, -1.0f) + none);
-  EXPECT_NEAR(degreesOf(rotationAt(zero, 0.5f)), 30.0f, 1e-4f);
-}
-
 TEST(Keyframes, HardTimesAreHarmless) {
   const auto one = channel(Path::Translation, Interpolation::Linear, {2}, {5, 6, 7});
   const auto one_cubic = channel(Path::Translation, Interpolation::Cubic, {2}, {9, 9, 9, 5, 6, 7, 9, 9, 9});

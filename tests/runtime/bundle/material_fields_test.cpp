@@ -30,25 +30,6 @@ TEST(MaterialFields, EveryFieldChangesTheJsonAndComesBackFromIt) {
   });
 }
 
-TEST(MaterialFields, HaveNamesOfTheirOwn) {
-  std::set<std::string_view> names, live_names, edit_names;
-  std::set<std::string> places;
-  gltf::forEachMaterialField([&](const auto& field) {
-    EXPECT_TRUE(names.insert(field.name).second) << field.name;
-    std::string place;
-    for (const char* object : field.json.objects)
-      if (object) place += std::string(object) + '/';
-    if (field.json.key) place += field.json.key;
-    EXPECT_TRUE(places.insert(place).second) << place;
-  });
-  gltf::forEachLiveValue([&](const auto&, const auto& live) {
-    EXPECT_TRUE(live_names.insert(live.name).second) << live.name;
-    if (live.edit) {
-      EXPECT_TRUE(edit_names.insert(live.edit).second) << live.edit;
-    }
-  });
-}
-
 TEST(MaterialFields, EveryLiveValueIsReadFromItsFieldAndChangesIt) {
   const gltf::Material plain = materialWithEverything();
   const gltf::MaterialFactors factors = gltf::factorsOf(plain);

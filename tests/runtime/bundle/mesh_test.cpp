@@ -19,7 +19,6 @@ namespace {
 
 using baker::EncodedMesh;
 using baker::encodeDraco;
-using baker::latticeStep;
 
 constexpr float kStep = 1.0f / 4096.0f;
 
@@ -195,20 +194,6 @@ TEST(DracoMesh, TangentsAreUnitWithinAThirtiethOfADegreeAndKeepTheirSign) {
   EXPECT_LT(std::asin(worst) * 180.0 / std::numbers::pi, 0.03);
 }
 
-TEST(DecodeDraco, GivesAnAttributeThatMeshesHaveNoPlaceFor) {
-  MeshData mesh = bump(4);
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    mesh.colors.emplace_back(mesh.positions[i].x, 0.25f, 0.5f, 1.0f);
-  const EncodedMesh out = encoded(mesh);
-  const Primitive primitive = announce(out);
-  const auto weights = decodeDracoAttribute(out.bytes, primitive, out.attributes.color0, "WEIGHTS_0", "mesh");
-  ASSERT_TRUE(weights) << weights.error().line();
-  EXPECT_EQ(*weights, out.decoded.colors);
-  const auto missing = decodeDracoAttribute(out.bytes, primitive, 9, "WEIGHTS_0", "mesh");
-  ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().problem.find("WEIGHTS_0"), std::string::npos);
-}
-
 TEST(DracoMesh, SurvivesShapesThatConnectivityCodersTripOver) {
   MeshData triangle;
   triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -233,34 +218,6 @@ TEST(DracoMesh, SurvivesShapesThatConnectivityCodersTripOver) {
   bow.normals.assign(5, {0, 0, 1});
   bow.indices = {0, 1, 2, 0, 3, 4};
   EXPECT_EQ(encoded(bow).decoded.indices.size(), 6u);
-}
-
-TEST(DracoMesh, SurvivesThreeHundredThousandTriangles) {
-  const MeshData mesh = bump(390);
-  const EncodedMesh out = encoded(mesh, 1.0f / 65536.0f);
-  EXPECT_EQ(out.decoded.indices.size(), mesh.indices.size());
-}
-
-TEST(DracoMesh, RefusesWhatTheLatticeCannotHold) {
-  EXPECT_FALSE(encodeDraco(bump(2), 0.3f, "mesh"));
-  EXPECT_FALSE(encodeDraco(bump(2), std::ldexp(1.0f, -26), "mesh"));  // 2^26 steps wide
-  EXPECT_FALSE(encodeDraco(bump(2), 64.0f, "mesh"));                  // all of it in one lattice point
-  MeshData broken = bump(2);
-  broken.positions[3].y = std::nanf("");
-  EXPECT_FALSE(encodeDraco(broken, kStep, "mesh"));
-}
-
-TEST(LatticeStep, IsThePowerOfTwoThatFits) {
-  EXPECT_EQ(latticeStep(1.0f, 14), std::ldexp(1.0f, -14));
-  EXPECT_EQ(latticeStep(1.1f, 14), std::ldexp(1.0f, -13));
-  EXPECT_EQ(latticeStep(559.2f, 10), 1.0f);
-}
-
-TEST(DecodeDraco, GivesTheSameMeshAsTheEncoderAnnounced) {
-  const EncodedMesh out = encoded(bump(9));
-  const auto decoded = decodeDraco(out.bytes, announce(out), "mesh");
-  ASSERT_TRUE(decoded) << decoded.error().line();
-  EXPECT_EQ(meshDigest(*decoded), meshDigest(out.decoded));
 }
 
 TEST(DecodeDraco, NamesCountsAndAttributesThatDiffer) {

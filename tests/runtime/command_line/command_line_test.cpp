@@ -76,33 +76,10 @@ TEST_F(CommandLine, HelpHasGroupsThenExamplesThenExitCodes) {
   EXPECT_FALSE(has(help, "--former") || has(help, "--help-as")) << help;
 }
 
-TEST_F(CommandLine, LinesOfHelpFitATerminal) {
-  std::istringstream help(printed({"long", "--help"}).first);
-  int lines = 0;
-  for (std::string line; std::getline(help, line); ++lines) EXPECT_LE(line.size(), 100u) << line;
-  EXPECT_GT(lines, 6);
-}
-
 TEST_F(CommandLine, WrappedCountsLettersAndNotBytes) {
   EXPECT_EQ(wrapped("order² is\nmore", 9), "order² is\nmore");
   EXPECT_EQ(wrapped("  a   b ", 80), "a b");
   EXPECT_EQ(wrapped("unbreakable word", 3), "unbreakable\nword");
-}
-
-TEST_F(CommandLine, ManualPageHasEveryOptionThatHelpHas) {
-  const auto [page, code] = printed({"bake", "--help-as", "man"});
-  EXPECT_EQ(code, 0) << page;
-  EXPECT_TRUE(page.starts_with(".\\\" Written by")) << page;
-  EXPECT_TRUE(has(page, ".SH NAME\ntool\\-bake \\- Bake a scene\n")) << page;
-  EXPECT_TRUE(has(page, "\\fBtool bake\\fR [\\fIOPTIONS\\fR] \\fISCENE\\fR")) << page;
-  EXPECT_TRUE(has(page, ".SH ARGUMENTS\n.TP\n\\fISCENE\\fR\nThe scene; .gltf\n")) << page;
-  EXPECT_TRUE(has(page, ".TP\n\\fB\\-s\\fR, \\fB\\-\\-seconds\\fR \\fIS\\fR\nDon't take")) << page;
-  EXPECT_TRUE(has(page, ".SS Accuracy\n.TP\n\\fB\\-\\-quality\\fR \\fIdraft|high|N\\fR\n")) << page;
-  EXPECT_TRUE(has(page, "(default: draft)")) << page;
-  EXPECT_TRUE(has(page, ".SH EXAMPLES\n.nf\n  tool bake a.gltf\n")) << page;
-  EXPECT_TRUE(has(page, ".SH EXIT CODES\n.nf\n  0  done\n")) << page;
-  EXPECT_FALSE(has(page, "former")) << page;
-  EXPECT_TRUE(has(printed({"--help-as", "man"}).first, ".TP\n\\fBtool\\-bake\\fR(1)\nBake a scene\n"));
 }
 
 TEST_F(CommandLine, ManualPageBearsADateAndEscapesWhatRoffTakesForCommands) {
@@ -117,22 +94,6 @@ TEST_F(CommandLine, ManualPageBearsADateAndEscapesWhatRoffTakesForCommands) {
   EXPECT_TRUE(has(page, ".TH \"TOOL\" \"1\" \"1970-01-02\" \"tool 1.2\"")) << page;
   EXPECT_TRUE(has(page, "\n\\&.gltf or 'words'\n")) << page;
   EXPECT_TRUE(has(page, "C:\\ea")) << page;
-}
-
-TEST_F(CommandLine, CompletionsKnowCommandsOptionsAndWords) {
-  const std::string bash = printed({"--help-as", "bash"}).first;
-  EXPECT_TRUE(has(bash, "case $word in bake|long|info)")) << bash;
-  EXPECT_TRUE(has(bash, "\"bake --quality\") COMPREPLY=($(compgen -W \"draft high\"")) << bash;
-  EXPECT_TRUE(has(bash, "\"bake -s\"|\"bake --seconds\") COMPREPLY=($(compgen -f")) << bash;
-  EXPECT_TRUE(has(bash, "complete -o filenames -F _tool tool")) << bash;
-  const std::string zsh = printed({"--help-as", "zsh"}).first;
-  EXPECT_TRUE(zsh.starts_with("#compdef tool\n")) << zsh;
-  EXPECT_TRUE(has(zsh, "'*--quality[How fine it is, which says it all]:value:(draft high)'")) << zsh;
-  EXPECT_TRUE(has(zsh, "'*--seconds[Don'\\''t take \\[longer\\]]:value:_files'")) << zsh;
-  const std::string fish = printed({"--help-as", "fish"}).first;
-  EXPECT_TRUE(has(fish, "-n '__fish_seen_subcommand_from bake' -l quality -x -a 'draft high' -d")) << fish;
-  EXPECT_EQ(printed({"--help-as", "commands"}).first, "bake\nlong\ninfo\n");
-  EXPECT_EQ(printed({"--help-as", "runes"}).second != 0, true);
 }
 
 }  // namespace lambent::command_line

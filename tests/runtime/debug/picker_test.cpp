@@ -102,23 +102,4 @@ TEST_F(PickerTest, SaysWhereAndWhatStandsThere) {
   EXPECT_LT(glm::distance(picked->normal_ws, glm::vec3(turn * glm::vec4(0, 0, 1, 0))), 1e-3f);
 }
 
-TEST_F(PickerTest, VolumesArePickedByTheirBoxWhereNothingStandsBefore) {
-  BundleBuilder builder;
-  builder.add({quadMesh(), {}, at({0, 0, 1.5f}) * glm::scale(glm::mat4(1.0f), glm::vec3(0.3f))});
-  builder.volume({});
-  LiveStage stage(builder, {kWhite});
-  stage.camera = {.azimuth_deg = 0.0f, .elevation_deg = 0.0f, .distance_radii = 2.5f, .fov_deg = 40.0f};
-  stage.render();
-  EXPECT_EQ(drawAt(stage, 32.0f, 32.0f), 0);
-  const auto beside = pick(stage, 40.0f, 32.0f);
-  ASSERT_TRUE(beside);
-  EXPECT_EQ(beside->draw, ecs::Entity{});
-  EXPECT_EQ(beside->group, stage.world.instance(0).groups[1]);
-  EXPECT_NEAR(beside->position_ws.z, 1.0f, 1e-4f);
-  EXPECT_FALSE(pick(stage, 1.0f, 1.0f));
-  stage.set("volumes", "off");
-  stage.render();
-  EXPECT_FALSE(pick(stage, 40.0f, 32.0f)) << "not in the picture";
-}
-
 }  // namespace lambent::frame

@@ -2,7 +2,6 @@
 // same.
 #include "runtime/surface/views.hpp"
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -85,19 +84,6 @@ TEST_F(ViewTest, BandEnergyOfAnOpenSphereIsTheClosedFormForPlainAndMappedSurface
     }
 }
 
-TEST_F(ViewTest, TheErrorEstimateIsWhatTheBundleRecords) {
-  ViewStage stage(openSphere(), {kWhite}, linearOptions({SurfaceView::ErrorEstimate}));
-  const bundle::CellTransfer& transfer = stage.world.description(0).groups[0].cells[0].transfers[0];
-  std::size_t count = 0;
-  for (const glm::vec4& texel : stage.picture().texels) {
-    if (texel.a == 0.0f) continue;
-    ++count;
-    ASSERT_NEAR(texel.r, transfer.error, 1e-5f * transfer.error);
-  }
-  EXPECT_GT(count, 300u);
-  EXPECT_GT(transfer.error, 0.0f);
-}
-
 TEST_F(ViewTest, ImportanceIsWhatTheBundleRecordsAndNothingWhereNobodySees) {
   BundleBuilder builder = openSphere();
   builder.importance([](const glm::vec3& normal) { return normal.z > 0.0f ? 4.0f : 0.0f; });
@@ -121,26 +107,6 @@ TEST_F(ViewTest, IrradianceIsTheLightWithoutTheAlbedo) {
   }
 }
 
-TEST_F(ViewTest, NormalsAreThoseOfTheWorldHoweverTheMeshStands) {
-  // A quad that faces +Z is turned to face +X, in a group that has another rotation.
-  const glm::mat4 turned(glm::vec4(0, 0, -1, 0), glm::vec4(0, 1, 0, 0), glm::vec4(1, 0, 0, 0),
-                         glm::vec4(0, 0, 0, 1));
-  for (const bool mapped : {false, true}) {
-    BundleBuilder builder;
-    builder.add({quadMesh(), {}, turned}).groupRotation(glm::angleAxis(0.7f, glm::vec3(0.6f, 0.0f, 0.8f)));
-    if (mapped) openMapped(builder);
-    ViewStage stage(builder, {kWhite}, linearOptions({SurfaceView::Normals}));
-    stage.camera.azimuth_deg = 90.0f;
-    std::size_t count = 0;
-    for (const glm::vec4& texel : stage.picture().texels) {
-      if (texel.a == 0.0f) continue;
-      ++count;
-      ASSERT_LT(glm::distance(glm::vec3(texel), glm::vec3(1.0f, 0.5f, 0.5f)), 1e-3f) << mapped;
-    }
-    EXPECT_GT(count, 100u);
-  }
-}
-
 TEST_F(ViewTest, FalseColoursAreShownAsTheyAreWhateverTheExposure) {
   const auto shown = [](float exposure_ev) {
     FrameOptions options;
@@ -157,31 +123,6 @@ TEST_F(ViewTest, FalseColoursAreShownAsTheyAreWhateverTheExposure) {
   EXPECT_NEAR(dark[middle], 253, 4);
   EXPECT_NEAR(dark[middle + 1], 231, 4);
   EXPECT_NEAR(dark[middle + 2], 37, 6);
-}
-
-TEST_F(ViewTest, APictureWithoutViewsIsTheSameToTheBitBeforeAndAfterThemAndCostsNothingMore) {
-  ViewStage stage(openSphere(), {kWhite}, linearOptions());
-  const spec::RgbaImage before = stage.picture();
-  const auto passesOf = [&] {
-    stage.frame->timers().finish();
-    std::string passes;
-    for (const gpu::PassTime& pass : stage.frame->timers().latest())
-      passes += fmt::format("{} {} {} ", pass.name, pass.counters.dispatches, pass.counters.draws);
-    return passes;
-  };
-  stage.render();
-  const std::string still = passesOf();
-  for (const SurfaceViewRow& row : kSurfaceViews) {
-    if (row.view == SurfaceView::Final) continue;
-    stage.frame->setView({row.view});
-    EXPECT_NE(stage.picture().texels, before.texels) << row.name;
-    EXPECT_EQ(stage.frame->kept<std::optional<DataView>>().has_value(), showsTransfer(row.view)) << row.name;
-    stage.frame->setView({});
-    EXPECT_EQ(stage.picture().texels, before.texels) << row.name;
-    EXPECT_FALSE(stage.frame->kept<std::optional<DataView>>()) << row.name;
-  }
-  stage.render();
-  EXPECT_EQ(passesOf(), still);
 }
 
 TEST_F(ViewTest, WiresKeepTheCoverageAndLieOnTheSurface) {

@@ -4,7 +4,6 @@
 #include <map>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -53,13 +52,6 @@ TEST(Fields, RoundTripThroughTextByNameAlone) {
   load(read, saved);
   EXPECT_EQ(save(read), saved);
   EXPECT_EQ(read.derived, 0) << "what is not declared is not carried";
-}
-
-TEST(Fields, AreVisitedInTheOrderOfDeclaration) {
-  const Lamp lamp;
-  std::vector<std::string> order;
-  forEachField(lamp, [&](const auto& field, auto&) { order.emplace_back(field.name); });
-  EXPECT_EQ(order, (std::vector<std::string>{"power", "samples", "lit", "note"}));
 }
 
 TEST(Fields, RangesIncludeTheirEndsAndExcludeNan) {

@@ -36,16 +36,6 @@ TEST(Registry, AHandleIsStaleAfterDestructionEvenWhenItsIndexIsUsedAgain) {
   EXPECT_EQ(registry.get<Position>(second).x, 3.0f);
 }
 
-TEST(Registry, NoneIsNeverAliveNorIsAHandleMadeUpForAFreeIndex) {
-  Registry registry;
-  EXPECT_FALSE(Entity{});
-  EXPECT_FALSE(registry.alive(Entity{}));
-  const Entity entity = registry.create();
-  registry.destroy(entity);
-  EXPECT_FALSE(registry.alive(Entity{entity.index, entity.generation + 1}));
-  EXPECT_FALSE(registry.alive(Entity{1000, 1}));
-}
-
 TEST(Registry, EveryChangeRaisesTheVersionOfItsComponentOnly) {
   Registry registry;
   const Entity a = registry.create(), b = registry.create();
@@ -88,35 +78,6 @@ TEST(Registry, ComponentsMayBeMoveOnlyAndAreDestroyedWithTheirEntity) {
   EXPECT_EQ(**registry.get<Owner>(b).value, 7);
   { const Registry taken = std::move(registry); }
   EXPECT_EQ(counted.use_count(), 1);
-}
-
-TEST(Registry, StateBelongsToOneRegistry) {
-  struct Seen {
-    int runs = 0;
-  };
-  Registry a, b;
-  a.state<Seen>().runs = 3;
-  EXPECT_EQ(a.state<Seen>().runs, 3);
-  EXPECT_EQ(b.state<Seen>().runs, 0);
-}
-
-template <std::size_t>
-struct Numbered {
-  std::size_t value;
-};
-
-template <std::size_t... Is>
-void checkManyTypes(std::index_sequence<Is...>) {
-  Registry registry;
-  const Entity entity = registry.create();
-  (registry.emplace<Numbered<Is>>(entity, Is), ...);
-  EXPECT_TRUE(((registry.get<Numbered<Is>>(entity).value == Is) && ...));
-  registry.destroy(entity);
-  EXPECT_EQ((registry.count<Numbered<Is>>() + ...), 0u);
-}
-
-TEST(Registry, KeepsFortyComponentTypesApart) {
-  checkManyTypes(std::make_index_sequence<40>());
 }
 
 // Compares the registry with the simplest model: a map per component, and a set of living entities.

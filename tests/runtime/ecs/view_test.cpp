@@ -1,5 +1,4 @@
 #include <set>
-#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -24,19 +23,6 @@ struct Fixture {
   Registry registry;
   std::vector<Entity> entities;
 };
-
-TEST(View, OfAComponentThatNobodyEverHadIsEmpty) {
-  Fixture f(3);
-  for ([[maybe_unused]] auto [entity, a, b] : f.registry.view<A, B>()) FAIL();
-}
-
-TEST(View, HandsOutReferencesIntoTheRegistry) {
-  Fixture f(3);
-  for (auto [entity, a] : f.registry.view<A>()) a.value *= 10;
-  EXPECT_EQ(f.registry.get<A>(f.entities[2]).value, 20);
-  using ConstStep = decltype(*f.registry.view<const A>().begin());
-  static_assert(std::is_same_v<ConstStep, std::tuple<Entity, const A&>>);
-}
 
 TEST(View, MayDestroyTheEntityInHand) {
   Fixture f(100);

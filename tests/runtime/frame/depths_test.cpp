@@ -89,17 +89,6 @@ TEST_F(FrameDepths, AreOfWhatStandsBehindBlendedSurfacesAndInTheHolesOfOthers) {
   EXPECT_NEAR(middle(BundleBuilder().add(square(0.0f)).add(square(2.0f, 1.0f, Mask, 0.6f))), 8.0f, 2e-5f);
 }
 
-TEST_F(FrameDepths, DoNotKnowVolumes) {
-  testing::BuiltVolume mist;  // a cube of 2 m
-  mist.density_max = 5.0f;
-  mist.density = [](const glm::vec3&) { return 5.0f; };
-  ViewStage stage(BundleBuilder().add(square(-2.0f, 0.5f)).volume(mist), {kWhite}, testing::linearOptions());
-  const std::vector<float> depths = depthsOf(stage, glm::ortho(-1.5f, 1.5f, -1.5f, 1.5f, 1.0f, 30.0f));
-  ASSERT_EQ(stage.frame->counts()["volumes_drawn"], 1u);
-  EXPECT_NEAR(depths[32 * 64 + 32], 12.0f, 2e-5f);
-  EXPECT_EQ(depths[32 * 64 + 14], kNone) << "nothing but mist";
-}
-
 TEST_F(FrameDepths, AreTheSameInOtherViews) {
   ViewStage stage(BundleBuilder().add(square(-2.0f, 13.0f)).add(square(4.0f, 3.0f)), {kWhite},
                   testing::linearOptions());

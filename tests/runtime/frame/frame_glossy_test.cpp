@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "baker/brdf/brdf.hpp"
 #include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/scene/bounds.hpp"
 #include "tests/runtime/frame/ggx_table.hpp"
-#include "tests/support/frame/bundle_builder.hpp"
-#include "tests/support/gpu_context.hpp"
+#include "tests/support/frame/view_stage.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -29,54 +26,16 @@ gltf::Material metal(const glm::vec3& color, float roughness) {
   return material;
 }
 
-struct GlossyStage {
-  std::filesystem::path path;
-  World world;
-  lighting::Environment environment;
-  std::optional<Frame> frame;
-  spec::OrbitCamera camera{
-      .azimuth_deg = 20.0f, .elevation_deg = 10.0f, .distance_radii = 2.0f, .fov_deg = 40.0f};
-  spec::Size size{96, 96};
-
-  GlossyStage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, bool residual = false,
-              Output output = Output::Linear, const spec::Size& picture_size = {96, 96})
-      : path(std::filesystem::path(::testing::TempDir()) /
-             fmt::format("{}-{}.lmb.glb", getpid(),
-                         ::testing::UnitTest::GetInstance()->current_test_info()->name())),
-        environment(*lighting::Environment::create(lights)),
-        size(picture_size) {
-    builder.write(path);
-    const Result<std::uint32_t> opened = world.open(path);
-    EXPECT_TRUE(opened) << opened.error().line();
-    if (!opened) return;
-    gpu::Counters counters;
-    const Result<void> loaded = world.uploadAll(counters);
-    EXPECT_TRUE(loaded) << loaded.error().line();
-    FrameOptions options;
-    options.size = size;
-    options.output = output;
+struct GlossyStage : testing::ViewStage {
+  GlossyStage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, bool residual = false)
+      : ViewStage(builder, lights, optionsWith(residual), /*load=*/true, {}, 96) {
+    camera = {.azimuth_deg = 20.0f, .elevation_deg = 10.0f, .distance_radii = 2.0f, .fov_deg = 40.0f};
+  }
+  static FrameOptions optionsWith(bool residual) {
+    FrameOptions options = testing::linearOptions();
     options.settings.residual = residual;
     options.settings.window = sh::Window::Off;
-    Result<Frame> made = Frame::create(options, environment);
-    EXPECT_TRUE(made) << made.error().line();
-    if (made) frame.emplace(std::move(*made));
-  }
-  ~GlossyStage() { std::filesystem::remove(path); }
-
-  spec::View view() {
-    world.updateTransforms();
-    const scene::Box bounds = scene::worldBounds(world.registry());
-    return spec::orbitView(camera, bounds.min, bounds.max, size.aspect());
-  }
-  void render() {
-    const Result<void> done = frame->render(world, environment, view());
-    ASSERT_TRUE(done) << done.error().line();
-  }
-  std::optional<gpu::Counters> counts(const std::string& pass) {
-    frame->timers().finish();
-    for (const gpu::PassTime& time : frame->timers().latest())
-      if (time.name == pass) return time.counters;
-    return {};
+    return options;
   }
 };
 
@@ -169,28 +128,18 @@ TEST_F(FrameGlossy, AMovingCameraUnderStillLightDispatchesNothing) {
       .glossy(5, bundle::BrdfFamily::Ggx, ggxTable());
   GlossyStage stage(builder, {kWideSun});
   stage.render();
-  ASSERT_TRUE(stage.counts("glossy"));
-  EXPECT_EQ(stage.counts("glossy")->dispatches, 2u) << "visibility and samples";
-  EXPECT_EQ(stage.counts("shade")->dispatches, 0u) << "nothing matte";
+  ASSERT_TRUE(stage.pass("glossy"));
+  EXPECT_EQ(stage.pass("glossy")->counters.dispatches, 2u) << "visibility and samples";
+  EXPECT_EQ(stage.pass("shade")->counters.dispatches, 0u) << "nothing matte";
   stage.camera.azimuth_deg += 30.0f;
   stage.render();
   stage.frame->timers().finish();
   for (const gpu::PassTime& pass : stage.frame->timers().latest())
     EXPECT_EQ(pass.counters.dispatches, pass.name == "tone map" ? pass.counters.dispatches : 0u) << pass.name;
-  EXPECT_EQ(stage.counts("raster")->uploaded_bytes, 0u);
+  EXPECT_EQ(stage.pass("raster")->counters.uploaded_bytes, 0u);
   stage.environment.setTurn(5.0f);
   stage.render();
-  EXPECT_EQ(stage.counts("glossy")->dispatches, 2u);
-}
-
-TEST_F(FrameGlossy, AMatteSceneHasNoPassAndNoTableForGloss) {
-  BundleBuilder builder(5);
-  gltf::Material material;
-  builder.add({sphereMesh(12, 24), material});
-  GlossyStage stage(builder, {kWideSun});
-  stage.render();
-  EXPECT_FALSE(stage.counts("glossy"));
-  EXPECT_TRUE(stage.world.residency().bundles()[0].brdf_tables.empty());
+  EXPECT_EQ(stage.pass("glossy")->counters.dispatches, 2u);
 }
 
 TEST_F(FrameGlossy, MeasuredSurfacesShowTheirTable) {
@@ -266,29 +215,6 @@ TEST_F(FrameGlossy, TheResidualBringsNarrowHighlightsNearTheWholeIntegral) {
                roughness, without, with);
     EXPECT_LT(with, 0.5 * without);
   }
-}
-
-TEST_F(FrameGlossy, TheResidualIsMadeOnceAndLeavesUniformLightAsItIs) {
-  BundleBuilder builder(5);
-  builder.add({sphereMesh(24, 48), metal(glm::vec3(1.0f), 0.3f)})
-      .glossy(5, bundle::BrdfFamily::Ggx, ggxTable());
-  spec::RgbaImage image;
-  {
-    GlossyStage with(builder, {kWhite}, /*residual=*/true);
-    with.render();
-    ASSERT_TRUE(with.counts("specular environment"));
-    EXPECT_GT(with.counts("specular environment")->dispatches, 0u);
-    image = with.frame->readLinear();
-    with.environment.setTurn(20.0f);
-    with.render();
-    EXPECT_FALSE(with.counts("specular environment"));
-  }
-  GlossyStage without(builder, {kWhite}, /*residual=*/false);
-  without.render();
-  EXPECT_FALSE(without.counts("specular environment"));
-  const spec::RgbaImage plain = without.frame->readLinear();
-  for (std::size_t i = 0; i < image.texels.size(); ++i)
-    EXPECT_LT(glm::distance(image.texels[i], plain.texels[i]), 2e-3f);
 }
 
 }  // namespace lambent::frame

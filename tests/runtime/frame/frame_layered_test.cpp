@@ -1,22 +1,18 @@
 // Tests smooth dielectrics in whole frames: pictures with known answers, and the shader against its CPU twin.
 #include <numbers>
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "baker/brdf/brdf.hpp"
 #include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/scene/bounds.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/transfer/transfer_ref.hpp"
 #include "tests/runtime/frame/ggx_table.hpp"
-#include "tests/support/frame/bundle_builder.hpp"
-#include "tests/support/gpu_context.hpp"
+#include "tests/support/frame/view_stage.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -70,27 +66,10 @@ std::vector<float> listOf(const Vector& vector) {
 // Renders a bundle under uniform white light.
 spec::RgbaImage pictureOf(const BundleBuilder& builder, const spec::OrbitCamera& camera,
                           spec::View* seen = nullptr) {
-  const std::filesystem::path path =
-      std::filesystem::path(::testing::TempDir()) / fmt::format("{}-layered.lmb.glb", getpid());
-  builder.write(path);
-  auto environment = *lighting::Environment::create({spec::ConstantLight{.radiance = glm::vec3(1.0f)}});
-  World world;
-  EXPECT_TRUE(world.open(path));
-  gpu::Counters counters;
-  EXPECT_TRUE(world.uploadAll(counters));
-  FrameOptions options;
-  options.size = {kSide, kSide};
-  options.output = Output::Linear;
-  Result<Frame> frame = Frame::create(options, environment);
-  EXPECT_TRUE(frame) << frame.error().line();
-  world.updateTransforms();
-  const scene::Box bounds = scene::worldBounds(world.registry());
-  const spec::View view = spec::orbitView(camera, bounds.min, bounds.max, 1.0f);
-  if (seen) *seen = view;
-  const Result<void> done = frame->render(world, environment, view);
-  EXPECT_TRUE(done) << done.error().line();
-  std::filesystem::remove(path);
-  return frame->readLinear();
+  testing::ViewStage stage(builder, {testing::kWhite}, testing::linearOptions());
+  stage.camera = camera;
+  if (seen) *seen = stage.view();
+  return stage.picture();
 }
 
 // Looks the weights of the kernel up as the GPU does.

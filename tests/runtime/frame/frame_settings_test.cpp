@@ -53,18 +53,6 @@ TEST(FrameSettings, WordsAreThoseOfTheCommandLine) {
   EXPECT_NE(unknown.error().line().find("march-step"), std::string::npos) << "names those that there are";
 }
 
-TEST(FewerSamples, StandAllOverTheGroupAndTakeTheNearest) {
-  std::vector<glm::vec3> line;
-  for (int i = 0; i < 10; ++i) line.emplace_back(static_cast<float>(i), 0.0f, 0.0f);
-  const lighting::FewerSamples three = lighting::fewerSamples(line, 3);
-  EXPECT_EQ(three.kept, (std::vector<std::uint32_t>{0, 4, 9}));
-  EXPECT_EQ(three.place, (std::vector<std::uint32_t>{0, 0, 0, 1, 1, 1, 1, 2, 2, 2}));
-  EXPECT_EQ(lighting::fewerSamples(line, 10).kept.size(), 10u);
-  EXPECT_EQ(lighting::fewerSamples(line, 1).place, std::vector<std::uint32_t>(10, 0));
-  EXPECT_EQ(lighting::fewerSamples(std::vector<glm::vec3>(4, glm::vec3(1.0f)), 3).kept.size(), 1u)
-      << "all at one place";
-}
-
 TEST(BrdfChoice, IsThatOfTheMaterialNowWhereThereIsATableForIt) {
   using Family = bundle::BrdfFamily;
   const Family all[] = {Family::Measured, Family::Ggx, Family::AnisotropicGgx, Family::Measured};
@@ -172,14 +160,4 @@ TEST(Quality, SetsWhatItNamesAndIsToldByThat) {
 }
 
 }  // namespace
-TEST(FrameSettings, FormerNamesOfSettingsAreStillUnderstood) {
-  for (const auto& [former, name] : {std::pair{"residual", "specular-environment"},
-                                     {"near-shadows", "local-shadows"},
-                                     {"near-radii", "local-radii"},
-                                     {"light-samples", "light-probes"}}) {
-    ASSERT_NE(findSetting(former), nullptr) << former;
-    EXPECT_EQ(findSetting(former)->name, name);
-  }
-}
-
 }  // namespace lambent::frame

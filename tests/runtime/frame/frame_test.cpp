@@ -1,19 +1,11 @@
 // Tests pictures with known answers, and what a frame may and may not do.
 #include "runtime/frame/frame.hpp"
 
-#include <numeric>
-
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "runtime/scene/bounds.hpp"
-#include "runtime/sh/image_layout.hpp"
-#include "runtime/streaming/sizes.hpp"
-#include "tests/support/frame/bundle_builder.hpp"
-#include "tests/support/gpu_context.hpp"
+#include "tests/support/frame/view_stage.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -24,59 +16,13 @@ using testing::sphereMesh;
 
 using testing::colored;
 
-// Several builds may run their tests at the same time.
-std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::path(::testing::TempDir()) /
-         fmt::format("{}-{}-{}", getpid(), ::testing::UnitTest::GetInstance()->current_test_info()->name(),
-                     name);
-}
+struct Stage : testing::ViewStage {
+  using ViewStage::ViewStage;
 
-// Shows one bundle in a world with a light and a frame of 64 x 64.
-struct Stage {
-  std::filesystem::path path;
-  World world;
-  lighting::Environment environment;
-  std::optional<Frame> frame;
-  spec::OrbitCamera camera{
-      .azimuth_deg = 0.0f, .elevation_deg = 0.0f, .distance_radii = 2.5f, .fov_deg = 40.0f};
-
-  Stage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, FrameOptions options = {},
-        bool load = true, const WorldOptions& world_options = {})
-      : path(temporary(load ? "whole.lmb.glb" : "streamed.lmb.glb")),
-        world(world_options),
-        environment(*lighting::Environment::create(lights)) {
-    builder.write(path);
-    const Result<std::uint32_t> opened = world.open(path);
-    EXPECT_TRUE(opened) << opened.error().line();
-    if (!opened) return;
-    if (load) {
-      gpu::Counters counters;
-      const Result<void> loaded = world.uploadAll(counters);
-      EXPECT_TRUE(loaded) << loaded.error().line();
-    }
-    options.size = {64, 64};
-    Result<Frame> made = Frame::create(options, environment);
-    EXPECT_TRUE(made) << made.error().line();
-    if (made) frame.emplace(std::move(*made));
-  }
-  ~Stage() { std::filesystem::remove(path); }
-
-  void render() {
-    const scene::Box bounds = scene::worldBounds(world.registry());
-    const Result<void> done =
-        frame->render(world, environment, spec::orbitView(camera, bounds.min, bounds.max, 1.0f));
-    ASSERT_TRUE(done) << done.error().line();
-  }
-  spec::RgbaImage picture() {
-    render();
-    return frame->readLinear();
-  }
-  gpu::Counters counts(const std::string& pass) {
-    frame->timers().finish();
-    for (const gpu::PassTime& time : frame->timers().latest())
-      if (time.name == pass) return time.counters;
-    ADD_FAILURE() << "no pass " << pass;
-    return {};
+  gpu::Counters counts(const std::string& name) {
+    const auto found = pass(name);
+    EXPECT_TRUE(found) << name;
+    return found ? found->counters : gpu::Counters{};
   }
 };
 
@@ -257,17 +203,6 @@ TEST_F(FrameTest, CountsNegativePixelsAndKeepsTheirSignInLinearPictures) {
   EXPECT_LT(at(image, 32, 32).r, 0.0f);  // clamped, it could not be held against a reference
 }
 
-TEST_F(FrameTest, DisplayPicturesShowNegativePixelsAsBlack) {
-  const auto dark = [](const glm::vec3&) { return std::vector<float>(9, -0.1f); };
-  FrameOptions options;
-  options.settings.exposure_ev = 0.0f;
-  Stage stage(BundleBuilder().transfer(dark).add({quadMesh(), colored(glm::vec4(1.0f))}), {kWhite}, options);
-  stage.render();
-  const spec::Rgba8Image image = stage.frame->readDisplay();
-  for (std::size_t channel = 0; channel < 3; ++channel)
-    EXPECT_EQ(image.texels[4 * (32 * 64 + 32) + channel], 0);
-}
-
 TEST_F(FrameTest, DisplayPicturesAreExposedAndOpaque) {
   FrameOptions options;
   options.settings.exposure_ev = 0.0f;
@@ -280,38 +215,6 @@ TEST_F(FrameTest, DisplayPicturesAreExposedAndOpaque) {
   EXPECT_NEAR(image.texels[centre], 181, 2);
   EXPECT_EQ(image.texels[centre + 3], 255);
   EXPECT_EQ(image.texels[3], 255) << "the sky too";
-}
-
-TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
-  // The environment map is smooth, with a colour for each axis.
-  spec::RgbImage environment_map{.width = 128, .height = 64, .texels = {}};
-  for (std::uint32_t y = 0; y < environment_map.height; ++y)
-    for (std::uint32_t x = 0; x < environment_map.width; ++x)
-      environment_map.texels.push_back(
-          0.5f + 0.4f * glm::vec3(sh::texelDirection(sh::ImageLayout::LatLong, 128, 64, static_cast<int>(x),
-                                                     static_cast<int>(y))));
-  const std::filesystem::path file = temporary("axes.hdr");
-  ASSERT_TRUE(spec::writeHdr(file, environment_map));
-  Stage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}),
-              {spec::EnvironmentMapLight{.file = file, .layout = {}}}, kLinear);
-  for (const glm::vec2 place : {glm::vec2(0, 0), glm::vec2(90, 20), glm::vec2(200, -60), glm::vec2(300, 70)})
-    for (const float turn : {0.0f, 90.0f}) {
-      stage.camera.azimuth_deg = place.x;
-      stage.camera.elevation_deg = place.y;
-      stage.environment.setTurn(turn);
-      const scene::Box bounds = scene::worldBounds(stage.world.registry());
-      const spec::View view = spec::orbitView(stage.camera, bounds.min, bounds.max, 1.0f);
-      const spec::RgbaImage image = stage.picture();
-      // This is the ray through the centre of the top left pixel.
-      const glm::vec4 far_clip(-63.0f / 64.0f, 63.0f / 64.0f, 1.0f, 1.0f);
-      const glm::vec4 far_ws = glm::inverse(view.clip_from_view * view.view_from_world) * far_clip;
-      const glm::vec3 dir_ws = glm::normalize(glm::vec3(far_ws) / far_ws.w - view.eye_ws);
-      const glm::vec3 expected = spec::radiance(stage.environment.set(0).environment_maps[0],
-                                                glm::transpose(stage.environment.worldFromLight()) * dir_ws);
-      // RGBE has 8 bits, the cube map half a degree to a texel.
-      EXPECT_LT(glm::distance(glm::vec3(at(image, 0, 0)), expected), 0.01f) << place.x << " turned " << turn;
-    }
-  std::filesystem::remove(file);
 }
 
 TEST_F(FrameTest, ABundleThatStreamsInIsLitFromTheFirstMeshOnAndEndsAtTheSamePicture) {
@@ -385,92 +288,6 @@ TEST_F(FrameTest, LampsShineAndLightTheirGroupAndDimTogether) {
   EXPECT_GT(stage.counts("shade").dispatches, 0u);
   stage.world.scaleLamps(0.0f);
   expect(0.0f);
-}
-
-TEST_F(FrameTest, NormalMappedDrawsWithoutAMapLookAsPlainOnes) {
-  // Transferred light of bands 0..2 is the light itself in the open: output j is column j.
-  const auto open_light = [](const glm::vec3&) {
-    std::vector<float> transfer(81, 0.0f);
-    for (std::size_t j = 0; j < 9; ++j) transfer[10 * j] = 1.0f;
-    return transfer;
-  };
-  const std::vector<spec::Light> lights = {
-      spec::SunLight{.azimuth_deg = 20, .elevation_deg = 40, .angle_deg = 30, .radiance = glm::vec3(4.0f)},
-      spec::ConstantLight{.radiance = {0.1f, 0.2f, 0.3f}}};
-  const auto turn = glm::angleAxis(0.8f, glm::normalize(glm::vec3(1, 2, 3)));
-  Stage plain(BundleBuilder().groupRotation(turn).add({sphereMesh(24, 48), colored(glm::vec4(1.0f))}), lights,
-              kLinear);
-  Stage mapped(BundleBuilder()
-                   .groupRotation(turn)
-                   .normalMapped()
-                   .transfer(open_light)
-                   .add({sphereMesh(24, 48), colored(glm::vec4(1.0f))}),
-               lights, kLinear);
-  const spec::RgbaImage expected = plain.picture(), found = mapped.picture();
-  for (std::size_t i = 0; i < found.texels.size(); ++i)
-    // One surface interpolates E between vertices, the other one the normal.
-    ASSERT_LT(glm::distance(found.texels[i], expected.texels[i]), 0.02f) << i;
-}
-
-TEST_F(FrameTest, ABudgetLeavesTheLastPlanesAwayAndStillShowsEverything) {
-  const auto builder = BundleBuilder().add({sphereMesh(24, 48), colored(glm::vec4(1.0f))});
-  const std::vector<spec::Light> lights = {
-      spec::SunLight{.azimuth_deg = 20, .elevation_deg = 40, .angle_deg = 30, .radiance = glm::vec3(4.0f)}};
-  Stage whole(builder, lights, kLinear);
-  const spec::RgbaImage expected = whole.picture();
-  const std::uint64_t all_bytes = whole.world.residency().bytesResident();
-  EXPECT_EQ(whole.world.loadedParts().planes_resident, 9u);
-  // Error of the picture falls as memory rises; planes are of equal variance here, mean and first band first.
-  double before = 1e9;
-  for (std::uint64_t planes = 0; planes <= 9; planes += 3) {
-    const bundle::Cell& cell = whole.world.description(0).groups[0].cells[0];
-    const std::uint64_t plane_bytes = streaming::planeBytes(cell.transfers[0].planes[0]);
-    const std::uint64_t max_bytes = all_bytes + 512 - (9 - planes) * plane_bytes;
-    Stage stage(builder, lights, kLinear, /*load=*/true, {.max_resident_bytes = max_bytes});
-    const spec::RgbaImage image = stage.picture();
-    const LoadedParts parts = stage.world.loadedParts();
-    EXPECT_NEAR(static_cast<double>(parts.planes_resident), static_cast<double>(planes), 1.0);
-    EXPECT_EQ(parts.planes_in_bundles, 9u);
-    EXPECT_LE(parts.bytes_loaded, parts.bytes_in_bundles);
-    EXPECT_LE(stage.world.residency().bytesResident(), max_bytes);
-    EXPECT_EQ(covered(image), covered(expected));
-    double error = 0.0;
-    for (std::size_t i = 0; i < image.texels.size(); ++i)
-      error += glm::distance(image.texels[i], expected.texels[i]);
-    EXPECT_LE(error, before);
-    before = error;
-  }
-  EXPECT_EQ(before, 0.0) << "with room for all it is the same picture";
-}
-
-TEST_F(FrameTest, ShowsSeveralBundlesTogether) {
-  const auto at_x = [](float x, glm::vec4 color) {
-    return BundleBuilder().add(
-        {quadMesh(), colored(color), glm::translate(glm::mat4(1.0f), glm::vec3(x, 0, 0))});
-  };
-  Stage stage(at_x(-1.0f, {1, 0, 0, 1}), {kWhite}, kLinear);
-  const std::filesystem::path second = temporary("second.lmb.glb");
-  at_x(1.0f, {0, 1, 0, 1}).write(second);
-  ASSERT_TRUE(stage.world.open(second));
-  ASSERT_TRUE(stage.world.open(second)) << "the same file again is another instance";
-  gpu::Counters counters;
-  ASSERT_TRUE(stage.world.uploadAll(counters));
-  const spec::RgbaImage image = stage.picture();
-  EXPECT_LT(glm::distance(at(image, 26, 32), glm::vec4(1, 0, 0, 1)), 1e-3f);
-  EXPECT_LT(glm::distance(at(image, 38, 32), glm::vec4(0, 1, 0, 1)), 1e-3f);
-  std::filesystem::remove(second);
-}
-
-TEST_F(FrameTest, ManyDrawsOfOneTextureAreOneCall) {
-  BundleBuilder builder;
-  for (int i = 0; i < 20; ++i)
-    builder.add({quadMesh(), colored(glm::vec4(1.0f)),
-                 glm::translate(glm::mat4(1.0f), glm::vec3(static_cast<float>(i), 0, 0))});
-  Stage stage(builder, {kWhite}, kLinear);
-  stage.render();
-  EXPECT_EQ(stage.counts("raster").draws, 21u);
-  EXPECT_EQ(stage.counts("raster").draw_calls, 2u);
-  EXPECT_EQ(stage.counts("shade").dispatches, 3u);
 }
 
 }  // namespace lambent::frame

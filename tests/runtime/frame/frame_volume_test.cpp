@@ -1,24 +1,19 @@
 // Tests volumes in pictures with known answers, and what a frame does for them.
-#include <algorithm>
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/lights.hpp"
 #include "runtime/shadows/lit_scene.hpp"
-#include "tests/support/frame/bundle_builder.hpp"
-#include "tests/support/gpu_context.hpp"
+#include "tests/support/frame/view_stage.hpp"
 
 namespace lambent::frame {
 namespace {
 
-using evaluate::TransferMode;
 using testing::BuiltVolume;
 using testing::BundleBuilder;
 using testing::quadMesh;
@@ -45,53 +40,23 @@ BuiltVolume mist(float extinction, float albedo = 1.0f) {
   return volume;
 }
 
-// Shows one bundle in a world, by an orthographic camera of 3 m, 10 m away on +Z.
-struct VolumeStage {
-  std::filesystem::path path;
-  World world;
-  lighting::Environment environment;
-  std::optional<Frame> frame;
+// Has an orthographic camera of 3 m, 10 m away on +Z.
+struct VolumeStage : testing::ViewStage {
   spec::View view;
 
   VolumeStage(const BundleBuilder& builder, const std::vector<spec::Light>& lights = {kWhite},
-              FrameOptions options = linearOptions(), bool load = true)
-      : path(std::filesystem::path(::testing::TempDir()) /
-             fmt::format("{}-{}.lmb.glb", getpid(),
-                         ::testing::UnitTest::GetInstance()->current_test_info()->name())),
-        environment(*lighting::Environment::create(lights)) {
-    builder.write(path);
-    const Result<std::uint32_t> opened = world.open(path);
-    EXPECT_TRUE(opened) << opened.error().line();
+              const FrameOptions& options = linearOptions())
+      : ViewStage(builder, lights, options) {
     scene::addLights(world.registry(), lights);
-    gpu::Counters counters;
-    if (load) {
-      const Result<void> loaded = world.uploadAll(counters);
-      EXPECT_TRUE(loaded) << loaded.error().line();
-    }
     world.updateTransforms();
-    options.size = {kVolumeSide, kVolumeSide};
-    Result<Frame> made = Frame::create(options, environment);
-    EXPECT_TRUE(made) << made.error().line();
-    if (made) frame.emplace(std::move(*made));
     view.eye_ws = {0, 0, 10};
     view.view_from_world = glm::lookAt(view.eye_ws, glm::vec3(0.0f), glm::vec3(0, 1, 0));
     view.clip_from_view = glm::ortho(-1.5f, 1.5f, -1.5f, 1.5f, 1.0f, 20.0f);
   }
-  ~VolumeStage() { std::filesystem::remove(path); }
-
-  void render() {
-    const Result<void> done = frame->render(world, environment, view);
-    ASSERT_TRUE(done) << done.error().line();
-  }
+  void render() { ViewStage::render(view); }
   spec::RgbaImage picture() {
     render();
     return frame->readLinear();
-  }
-  const gpu::PassTime* pass(const std::string& name) {
-    frame->timers().finish();
-    for (const gpu::PassTime& time : frame->timers().latest())
-      if (time.name == name) return &time;
-    return nullptr;
   }
 };
 
@@ -120,15 +85,6 @@ TEST_F(FrameVolume, ABundleOfNothingButAVolumeIsFramedAndShows) {
   EXPECT_EQ(texelAt(image, 1, 1).a, 0.0f);
   EXPECT_EQ(stage.frame->counts()["volumes"], 1u);
   EXPECT_EQ(stage.frame->counts()["volumes_drawn"], 1u);
-}
-
-TEST_F(FrameVolume, ATurnedGroupIsBoundedByItsCorners) {
-  BuiltVolume turned = mist(1.0f);
-  turned.rest_rotation = glm::angleAxis(glm::radians(45.0f), glm::vec3(0, 0, 1));
-  turned.rest_translation = {5.0f, 0.0f, 0.0f};
-  VolumeStage stage(BundleBuilder().volume(turned));
-  const scene::Box bounds = scene::worldBounds(stage.world.registry());
-  EXPECT_LT(glm::distance(bounds.max, glm::vec3(5.0f + std::sqrt(2.0f), std::sqrt(2.0f), 1.0f)), 1e-5f);
 }
 
 TEST_F(FrameVolume, EverythingWhiteUnderWhiteLightIsWhite) {
@@ -178,8 +134,8 @@ TEST_F(FrameVolume, AStillFrameOnlyMarches) {
       BundleBuilder().volume(mist(1.0f)),
       {spec::SunLight{.azimuth_deg = 90, .elevation_deg = 0, .angle_deg = 30, .radiance = glm::vec3(1)}});
   stage.render();
-  ASSERT_NE(stage.pass("volume"), nullptr);
-  ASSERT_NE(stage.pass("march"), nullptr);
+  ASSERT_TRUE(stage.pass("volume"));
+  ASSERT_TRUE(stage.pass("march"));
   EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
   EXPECT_EQ(stage.pass("march")->counters.draws, 1u);
   EXPECT_EQ(stage.frame->counts()["volumes_shaded"], 1u);
@@ -195,67 +151,6 @@ TEST_F(FrameVolume, AStillFrameOnlyMarches) {
   stage.environment.setTurn(5.0f);
   stage.render();
   EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
-}
-
-TEST_F(FrameVolume, IsNotShadedWhileTheViewPassesBy) {
-  VolumeStage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}).volume(mist(1.0f)));
-  const glm::mat4 at_it = stage.view.view_from_world;
-  stage.view.view_from_world = glm::lookAt(stage.view.eye_ws, {20, 0, 10}, glm::vec3(0, 1, 0));
-  const spec::RgbaImage beside = stage.picture();
-  EXPECT_EQ(stage.pass("volume")->counters.dispatches, 0u);
-  EXPECT_EQ(stage.pass("march")->counters.draws, 0u);
-  EXPECT_EQ(stage.pass("raster")->counters.draws, 1u) << "the sky alone";
-  EXPECT_EQ(stage.frame->counts()["volumes_out_of_view"], 1u);
-  EXPECT_EQ(stage.frame->counts()["draws_out_of_view"], 1u);
-  for (const glm::vec4& texel : beside.texels) EXPECT_EQ(texel.a, 0.0f);
-  // Light that changes meanwhile is in the picture as soon as the volume is.
-  stage.environment.setTurn(5.0f);
-  stage.render();
-  stage.view.view_from_world = at_it;
-  const spec::RgbaImage came_into_view = stage.picture();
-  EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
-  EXPECT_EQ(stage.frame->counts()["volumes_out_of_view"], 0u);
-  EXPECT_EQ(stage.frame->counts()["draws_out_of_view"], 0u);
-  stage.frame->forget();
-  EXPECT_EQ(stage.picture().texels, came_into_view.texels) << "as if it had been in view all the time";
-}
-
-TEST_F(FrameVolume, ASceneWithoutOneHasNoPassForIt) {
-  VolumeStage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}));
-  stage.render();
-  EXPECT_EQ(stage.pass("volume"), nullptr);
-  EXPECT_EQ(stage.pass("march"), nullptr);
-  EXPECT_EQ(stage.frame->counts()["volumes"], 0u);
-  EXPECT_EQ(stage.frame->kept<effects::volume::Volume>().textureBytes(), 0u);
-}
-
-TEST_F(FrameVolume, AnEmptyVolumeLeavesThePictureToTheLastBit) {
-  BundleBuilder builder;
-  builder.add({sphereMesh(12, 24), colored({0.3f, 0.5f, 0.8f, 1.0f})});
-  BuiltVolume empty = mist(1.0f);
-  empty.density = [](const glm::vec3&) { return 0.0f; };
-  VolumeStage without(builder), with(BundleBuilder(builder).volume(empty));
-  EXPECT_EQ(with.picture().texels, without.picture().texels);
-  EXPECT_EQ(with.frame->counts()["volumes_drawn"], 0u);
-}
-
-TEST_F(FrameVolume, TheWordsOfTransferChooseTheBlock) {
-  BuiltVolume volume = mist(1e4f);
-  volume.shape.full_channels = 3;
-  volume.transfer = [](std::uint32_t) {
-    std::vector<float> blocks(4 * 9, 0.0f);
-    blocks[0] = 0.25f * 0.282094792f;
-    for (const int c : {1, 2, 3})
-      blocks[static_cast<std::size_t>(9 * c)] = 0.2f * static_cast<float>(c + 1) * 0.282094792f;
-    return blocks;
-  };
-  for (const auto& [mode, expected] : {std::pair{TransferMode::Full, glm::vec3(0.4f, 0.6f, 0.8f)},
-                                       {TransferMode::Shadowed, glm::vec3(0.25f)},
-                                       {TransferMode::Unshadowed, glm::vec3(1.0f)}}) {
-    VolumeStage stage(BundleBuilder().volume(volume), {kWhite},
-                      linearOptions([&](FrameOptions& options) { options.settings.transfer = mode; }));
-    EXPECT_LT(glm::distance(glm::vec3(middle(stage.picture())), expected), 1e-3f);
-  }
 }
 
 TEST_F(FrameVolume, ForwardScatteringShowsTheSunBehindIt) {
@@ -312,64 +207,6 @@ TEST_F(FrameVolume, TheSurfacesThatItStandsInAreNotCapturedAtItsLightProbes) {
               within < 0 ? std::vector<std::uint32_t>{} : std::vector<std::uint32_t>{0});
     EXPECT_EQ(scene.needsSampling(), within < 0);
   }
-}
-
-TEST_F(FrameVolume, DisplayPicturesShowTheSameThing) {
-  BundleBuilder builder;
-  builder.add({sphereMesh(16, 32), colored({0.8f, 0.5f, 0.2f, 1.0f}),
-               glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-0.3f, 0.2f, 0.9f)), glm::vec3(0.5f))});
-  builder.volume(mist(0.9f, 0.6f));
-  VolumeStage display(builder, {kWhite}, linearOptions([](FrameOptions& options) {
-                        options.output = Output::Display;
-                        options.settings.exposure_ev = 0.0f;
-                      }));
-  VolumeStage linear(builder);
-  const spec::RgbaImage wanted = linear.picture();
-  display.render();
-  const spec::Rgba8Image shown = display.frame->readDisplay();
-  std::size_t compared = 0;
-  for (std::uint32_t y = 4; y < kVolumeSide; y += 5)
-    for (std::uint32_t x = 4; x < kVolumeSide; x += 5) {
-      bool edge = false;  // where neighbours differ
-      for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
-        if (x + 1 < kVolumeSide && y + 1 < kVolumeSide)
-          edge |= glm::distance(texelAt(wanted, x, y), texelAt(wanted, x + static_cast<std::uint32_t>(dx),
-                                                               y + static_cast<std::uint32_t>(dy))) > 0.01f;
-      if (edge) continue;
-      ++compared;
-      for (int c = 0; c < 3; ++c) {
-        // This is the tone curve of resolve.frag below its shoulder.
-        const glm::vec3 texel(texelAt(wanted, x, y));
-        const float low = std::min({texel.r, texel.g, texel.b});
-        float value = texel[c] - (low < 0.08f ? low - 6.25f * low * low : 0.04f);
-        if (std::max({texel.r, texel.g, texel.b}) - 0.04f >= 0.76f) continue;
-        value = value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
-        EXPECT_NEAR(shown.texels[4 * (y * kVolumeSide + x) + static_cast<std::uint32_t>(c)], 255.0f * value,
-                    2.0f)
-            << x << " " << y;
-      }
-    }
-  EXPECT_GT(compared, 60u);
-}
-
-TEST_F(FrameVolume, StreamsInWithoutEverShowingNonsense) {
-  BuiltVolume volume = mist(1.0f);
-  volume.transfer_size = glm::uvec3(6);
-  volume.shape.outputs = 9;
-  volume.g = 0.3f;
-  const auto builder = BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}).volume(volume);
-  VolumeStage whole(builder);
-  const spec::RgbaImage expected = whole.picture();
-  VolumeStage stage(builder, {kWhite},
-                    linearOptions([](FrameOptions& options) { options.upload_budget_bytes = 1; }),
-                    /*load=*/false);
-  for (int frame = 0; frame < 100'000 && !stage.world.loaded(); ++frame)
-    for (const glm::vec4& texel : stage.picture().texels) {
-      ASSERT_TRUE(std::isfinite(texel.g));
-      ASSERT_LE(texel.g, 1.01f);
-    }
-  ASSERT_TRUE(stage.world.loaded());
-  EXPECT_EQ(stage.picture().texels, expected.texels);
 }
 
 }  // namespace lambent::frame

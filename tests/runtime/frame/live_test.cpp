@@ -118,15 +118,6 @@ TEST_F(LiveFrame, OnlyTheChangedMaterialGoesToTheGpuAndNothingIsShaded) {
   EXPECT_EQ(stage.pass("raster")->counters.uploaded_bytes, 0u) << "no number, no change";
 }
 
-TEST_F(LiveFrame, AnisotropyWithoutATableStillShowsTheSurface) {
-  LiveStage stage(glossyBall(metalOf(glm::vec3(0.9f), 0.5f)), {kSun});
-  const auto before = stage.picture();
-  stage.editMaterial(0).anisotropy = 0.5f;
-  EXPECT_EQ(farthest(stage.picture(), before), 0.0f);
-  stage.editMaterial(0).brdf = 3;
-  EXPECT_EQ(farthest(stage.picture(), before), 0.0f) << "no such table: as it was baked";
-}
-
 TEST_F(LiveFrame, EverySettingComesBackToTheSamePicture) {
   FrameSettings plain;
   plain.exposure_ev = 0.0f;
@@ -185,26 +176,6 @@ TEST_F(LiveFrame, BandsThatDoNotCountAreAsIfTheTransferHadNone) {
   EXPECT_LT(farthest(many.picture(), expected), 2e-4f) << "codes of 16 bits";
 }
 
-TEST_F(LiveFrame, AnotherProbeIsAsIfItHadBeenThereFromTheStart) {
-  spec::RgbImage image{.width = 64, .height = 32, .texels = {}};
-  for (int i = 0; i < 64 * 32; ++i)
-    image.texels.push_back(
-        0.5f + 0.4f * glm::vec3(sh::texelDirection(sh::ImageLayout::LatLong, 64, 32, i % 64, i / 64)));
-  const auto file = std::filesystem::path(::testing::TempDir()) / fmt::format("{}-other.hdr", getpid());
-  ASSERT_TRUE(spec::writeHdr(file, image));
-  const std::vector<spec::Light> environment_map = {spec::EnvironmentMapLight{.file = file, .layout = {}},
-                                                    kSun};
-  for (const auto& builder : {glossyBall(metalOf(glm::vec3(0.9f), 0.2f)), ballAndCloud()}) {
-    LiveStage swapped(builder, {kWhite});
-    swapped.picture();
-    swapped.environment = *lighting::Environment::create(environment_map);
-    const auto found = swapped.picture();
-    LiveStage fresh(builder, environment_map);
-    EXPECT_EQ(farthest(found, fresh.picture()), 0.0f);
-  }
-  std::filesystem::remove(file);
-}
-
 TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
   LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), diffuseColored(glm::vec4(1.0f))}), {kSun});
   stage.render();
@@ -233,16 +204,6 @@ TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
   stage.render();
   EXPECT_EQ(stage.reason("shade"), "");
   EXPECT_EQ(stage.reason("tone map"), "exposure: 1");
-}
-
-TEST_F(LiveFrame, SettingsOutOfRangeChangeNothing) {
-  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), diffuseColored(glm::vec4(1.0f))}), {kSun});
-  FrameSettings settings = stage.frame->settings();
-  settings.order = 9;
-  const Result<void> set = stage.frame->setSettings(settings);
-  ASSERT_FALSE(set);
-  EXPECT_NE(set.error().line().find("order"), std::string::npos);
-  EXPECT_EQ(stage.frame->settings(), FrameSettings{});
 }
 
 }  // namespace lambent::frame

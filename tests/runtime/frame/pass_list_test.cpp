@@ -56,10 +56,5 @@ TEST_F(PassListTest, OverlaysBeforeTheUploadWouldReadTooEarly) {
   EXPECT_FALSE(readTooEarly(list).empty());
 }
 
-TEST_F(PassListTest, NamesAreDifferent) {
-  std::set<std::string_view> names;
-  for (const PassInfo& pass : infos()) EXPECT_TRUE(names.insert(pass.name).second) << pass.name;
-}
-
 }  // namespace
 }  // namespace lambent::frame

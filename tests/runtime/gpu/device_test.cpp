@@ -34,11 +34,6 @@ constexpr FindText kTables[] = {&findText};
 using Device = testing::GpuTest;
 using testing::FullGpu;
 
-TEST_F(Device, SaysWhatItIs) {
-  EXPECT_FALSE(context->info().renderer.empty());
-  EXPECT_TRUE(checkContext()) << "it is not lost";
-}
-
 TEST_F(Device, IsRefusedWithoutTheFeaturesThatAreNeeded) {
   const testing::FewFeatures few;
   const Result<Context> refused = Context::createHeadless();
@@ -121,12 +116,6 @@ TEST_F(Device, DrawsPlainTextOnADarkGroundInTheTopLeftCorner) {
     }
   EXPECT_GT(bright, 60u) << "the strokes of two letters";
   EXPECT_GT(dark, 4 * bright) << "the ground";
-}
-
-TEST_F(Device, CountsErrors) {
-  glEnable(GL_TEXTURE_2D + 12345);
-  EXPECT_EQ(context->errors(), 1u);
-  context.reset();  // the error was meant
 }
 
 TEST_F(Device, NamesFileAndLineOfAShaderThatDoesNotCompile) {

@@ -1,7 +1,6 @@
 #include "runtime/lighting/environment.hpp"
 
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 
@@ -9,22 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "runtime/sh/zonal.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::lighting {
-
-TEST(Environment, AddsItsLights) {
-  const auto environment = Environment::create(
-      {spec::ConstantLight{.radiance = {1, 2, 3}}, spec::ConstantLight{.radiance = {0.5f, 0, 0}},
-       spec::SunLight{.azimuth_deg = 90, .elevation_deg = 0, .angle_deg = 10, .radiance = {1, 1, 1}}});
-  ASSERT_TRUE(environment);
-  sh::LightVector expected = sh::constantLight(8, {1.5f, 2, 3});
-  expected += sh::discLight(8, {1, 0, 0}, 10.0 * 3.14159265358979 / 180.0, glm::vec3(1.0f));
-  for (std::size_t i = 0; i < 64; ++i)
-    EXPECT_LT(glm::distance(environment->light().c[i], expected.c[i]), 1e-5f) << "coefficient " << i;
-  EXPECT_EQ(environment->set(0).constant, glm::vec3(1.5f, 2, 3));
-  ASSERT_EQ(environment->discs().size(), 1u);
-}
 
 TEST(Environment, TurnsAsASunOfTheTurnedAzimuth) {
   const auto sun = [](float azimuth) {
@@ -109,34 +94,6 @@ TEST(Environment, HasANewVersionOnlyWhereSomethingChanged) {
   for (const glm::vec3& c : environment->light().c) EXPECT_EQ(c, glm::vec3(0.0f));
 }
 
-TEST(Environment, ReportsTexelsThatAreNotFiniteInBothSets) {
-  const auto file = std::filesystem::path(::testing::TempDir()) / "lambent-environment-not-finite.exr";
-  spec::RgbaImage image{.width = 8, .height = 4, .texels = std::vector<glm::vec4>(32, glm::vec4(1.0f))};
-  image.texels[3].r = std::numeric_limits<float>::quiet_NaN();
-  image.texels[17].b = std::numeric_limits<float>::infinity();
-  ASSERT_TRUE(spec::writeExr(file, image));
-  const std::vector<spec::Light> environment_map = {spec::EnvironmentMapLight{.file = file, .layout = {}}};
-  const auto environment = Environment::create(environment_map, environment_map);
-  std::filesystem::remove(file);
-  ASSERT_TRUE(environment) << environment.error().line();
-  ASSERT_EQ(environment->notices().size(), 4u);
-  for (const std::string& notice : environment->notices())
-    EXPECT_NE(notice.find(" in 1 of 32 texels"), std::string::npos) << notice;
-  for (const glm::vec3& c : environment->light().c)
-    for (int channel = 0; channel < 3; ++channel) EXPECT_TRUE(std::isfinite(c[channel]));
-}
-
-TEST(Environment, ProjectsAProbeToItsMeanRadiance) {
-  const auto file = testing::sharedFile("probes/uffizi_latlong_small.hdr");
-  LAMBENT_NEEDS_SHARED(file);
-  const auto environment = Environment::create({spec::EnvironmentMapLight{.file = file, .layout = {}}});
-  ASSERT_TRUE(environment) << environment.error().line();
-  // Band 0 is the mean times sqrt(4 pi); the mean luminance of this environment map is 0.882, or 0.885
-  // for readers that take RGBE mantissas at the middle of their steps.
-  const glm::vec3 mean = environment->light().c[0] / 3.5449077f;
-  EXPECT_NEAR(glm::dot(mean, glm::vec3(0.2126f, 0.7152f, 0.0722f)), 0.885f, 0.004f);
-}
-
 // Makes an image of one radiance.
 void writeEnvironmentMap(const std::filesystem::path& file, float radiance) {
   const spec::RgbaImage image{
@@ -188,13 +145,6 @@ TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
   EXPECT_FALSE(environment->setLights(withSun(22)));
   EXPECT_EQ(environment->version(), version);
   EXPECT_EQ(environment->discs().size(), 2u);
-}
-
-TEST(Environment, NamesAProbeThatIsNotThere) {
-  const auto environment =
-      Environment::create({spec::EnvironmentMapLight{.file = "nowhere.hdr", .layout = {}}});
-  ASSERT_FALSE(environment);
-  EXPECT_EQ(environment.error().subject, "nowhere.hdr");
 }
 
 }  // namespace lambent::lighting

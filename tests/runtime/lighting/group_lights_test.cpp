@@ -45,29 +45,6 @@ TEST_F(GroupLightsTest, GiveEachGroupTheLightInItsOwnFrame) {
   EXPECT_EQ(lights.coefficients()[2 * kStride + 1], glm::vec4(4, 0, 0, 0));
 }
 
-TEST_F(GroupLightsTest, LightProbesHaveVersionsOfTheirOwn) {
-  GroupLights lights;
-  gpu::Counters counters;
-  const Environment environment = sunAlong(90);
-  const sh::LightVector other = sunAlong(0).light();
-  std::vector<GroupPlace> places = {
-      {.order = 3}, {.order = 3, .lamps = {{1, 1, 1}}, .incident = {{}, {.light = &other, .version = 1}}}};
-  lights.update(environment, sh::Window::Off, places, counters);
-  constexpr std::uint32_t kStride = GroupLights::kStride;
-  EXPECT_EQ(lights.firstOf(1, 1), 2 * kStride);
-  EXPECT_EQ(lights.lampsOf(1), 3 * kStride);
-  EXPECT_EQ(lights.renewedSamples(), 3u);
-  EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[2 * kStride]), other.c[0]), 1e-6f);
-  const std::uint64_t own = lights.versionOf(1, 0), captured = lights.versionOf(1, 1),
-                      all = lights.versionOf(1);
-  places[1].incident[1].version = 2;
-  lights.update(environment, sh::Window::Off, places, counters);
-  EXPECT_EQ(lights.renewedSamples(), 1u);
-  EXPECT_EQ(lights.versionOf(1, 0), own);
-  EXPECT_GT(lights.versionOf(1, 1), captured);
-  EXPECT_GT(lights.versionOf(1), all);
-}
-
 TEST_F(GroupLightsTest, ManyWindowsAtOnceAreThoseOfEachByItselfAndScaledLightsKeepThem) {
   GroupLights lights;
   gpu::Counters counters;

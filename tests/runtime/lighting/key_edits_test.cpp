@@ -118,19 +118,6 @@ TEST_F(KeyEdits, AnEditThatChangesNothingKeepsAllOfTheLight) {
   EXPECT_EQ(environment_->shownOf(0).discs.size(), 2u);
 }
 
-TEST_F(KeyEdits, OnlyTheKeyLightThatIsEditedLeavesThePicture) {
-  environment_->setKeyEdits({editOf(1)});
-  const Environment::Shown shown = environment_->shownOf(0);
-  ASSERT_EQ(shown.discs.size(), 1u);
-  EXPECT_GT(spec::radiance(*shown.environment_maps[0], glm::vec3(kHigh)).r, 2000.0f)
-      << "this one stays as it was";
-  EXPECT_LT(spec::radiance(*shown.environment_maps[0], glm::vec3(kLow)).r, 400.0f) << "what the rest keeps";
-  environment_->setKeyEdits({});
-  EXPECT_EQ(environment_->shownOf(0).environment_maps[0], &environment_->set(0).environment_maps[0])
-      << "the picture as loaded";
-  EXPECT_EQ(environment_->lightsVersion(), environment_->restVersion());
-}
-
 TEST_F(KeyEdits, AKeyLightThatIsMovedAndDimmedIsThatDiscAndTheRestStays) {
   const auto found = environment_->foundKeys()[0].found;
   const sh::LightVector rest = environment_->restLight();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -71,29 +70,6 @@ TEST(PatchTransport, InAClosedSphereBouncesAddAlbedoOverOneMinusAlbedo) {
                   0.05f * albedo / (1.0f - albedo))
           << i;
   }
-}
-
-TEST(PatchTransport, InAClosedBoxTheSameHoldsOfTheWholeWhereverTheLampStands) {
-  for (const glm::vec3& lamp : {glm::vec3(1, 1.2f, 1.5f), glm::vec3(0.3f, 2.0f, 0.4f)}) {
-    const PatchTransport transport(RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(0.6f)).proxy());
-    const Patches& patches = transport.patches();
-    const std::vector<float> direct = litFrom(patches, lamp);
-    const std::vector<float> all = receivedAll(patches, transport.bounce(grey(direct)));
-    EXPECT_NEAR((wholeOf(patches, all) / wholeOf(patches, direct) - 1.0) / 1.5, 1.0, 0.03);
-  }
-}
-
-TEST(PatchTransport, AFurnaceStaysUniform) {
-  // Every patch emits 1 and reflects half of what it gets: the result is 2 everywhere, for any shape of the
-  // room.
-  const PatchTransport transport(RoomBuilder().box({0, 0, 0}, {1, 5, 2}, glm::vec3(0.5f)).proxy());
-  const std::vector<float> direct(transport.patches().size(), 2.0f);
-  for (const glm::vec3& radiance : transport.bounce(grey(direct))) ASSERT_NEAR(radiance.g, 2.0f, 0.002f);
-  const std::vector<SurfacePoint> points = {
-      {{0.5f, 0, 1}, {0, 1, 0}}, {{0, 0, 0}, {0, 1, 0}}, {{1, 5, 2}, {-1, 0, 0}}};
-  const auto links = transport.link(points, LinkSpread::Cosine);
-  for (std::size_t p = 0; p < points.size(); ++p)
-    EXPECT_NEAR(gathered(transport, links, p, transport.bounce(grey(direct))).g, 2.0f, 0.002f) << p;
 }
 
 TEST(PatchTransport, BouncesKeepTheColoursOfTheWalls) {
@@ -179,33 +155,6 @@ TEST(Patches, APointALittleBehindItsPatchComesInFrontOfIt) {
   EXPECT_LT(patches.inFront({0.3f, -0.3f, 0.2f}, {0, 1, 0}).y, -0.29f) << "that is another surface";
 }
 
-TEST(PatchTransport, TheSameRoomGivesTheSameBytes) {
-  const bundle::CaptureProxy proxy = RoomBuilder().sphere(9, 12, glm::vec3(0.4f, 0.5f, 0.6f)).proxy();
-  const PatchTransport one(proxy), other(proxy);
-  const auto direct = litFrom(one.patches(), {0.2f, 0.1f, -0.3f});
-  const auto a = one.bounce(grey(direct)), b = other.bounce(grey(direct));
-  ASSERT_EQ(a.size(), b.size());
-  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(glm::vec3)), 0);
-  // Twice the light gives exactly twice the result.
-  std::vector<float> twice = direct;
-  for (float& value : twice) value *= 2.0f;
-  const auto doubled = one.bounce(grey(twice));
-  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(doubled[i], 2.0f * a[i]);
-}
-
-TEST(PatchTransport, PatchesOfATriangleAreFoundByWhereARayMeetsIt) {
-  const Patches patches(RoomBuilder().box({0, 0, 0}, {3, 2, 1}, glm::vec3(0.5f)).surface(), 500);
-  EXPECT_LE(patches.size(), 500u);
-  EXPECT_GE(patches.size(), 400u);
-  const glm::vec3 origin(1.3f, 0.9f, 0.45f);
-  for (std::size_t i = 0; i < patches.size(); ++i)
-    for (const glm::vec3& point : patches.all()[i].points) {
-      const auto hit = patches.tree().first(origin, point - origin);
-      ASSERT_TRUE(hit);
-      ASSERT_EQ(patches.patchAt(*hit), i);
-    }
-}
-
 TEST(PatchTransport, AnOpenPatchHasTheClosedFormOfItsDirectTransfer) {
   const glm::vec3 normal = glm::normalize(glm::vec3(1, 2, 3));
   const LinkFrame frame = linkFrame(normal);
@@ -218,44 +167,6 @@ TEST(PatchTransport, AnOpenPatchHasTheClosedFormOfItsDirectTransfer) {
     EXPECT_NEAR(transport.direct(0, light).y, 2.0f * expected[c], 1e-6f) << c;
   }
   EXPECT_EQ(transport.bounced(), 0.0f);
-}
-
-TEST(PatchTransport, UnderAWallHalfOfTheSkyIsLeft) {
-  RoomBuilder room;
-  room.wall({-50, 0, -50}, {0, 0, 100}, {50, 0, 0}, {0.5f, 0.5f, 0.5f});  // a floor before
-  room.wall({0, 0, -50}, {0, 100, 0}, {0, 0, 100}, {0.5f, 0.5f, 0.5f});   // a high wall that faces +x
-  const PatchTransport transport(room.proxy(), 512, 3);
-  std::vector<glm::vec4> light(9, glm::vec4(0.0f));
-  light[0] = glm::vec4(1.0f / 0.28209479f);
-  for (std::size_t i = 0; i < transport.patches().size(); ++i) {
-    const float seen = transport.direct(i, light).r;
-    EXPECT_GE(seen, 0.45f);
-    EXPECT_LE(seen, 1.0f + 1e-5f);
-  }
-}
-
-TEST(PatchTransport, InAClosedSphereAllIsBounced) {
-  const PatchTransport transport(RoomBuilder().sphere(10, 14, glm::vec3(0.5f)).proxy());
-  EXPECT_NEAR(transport.bounced(), 1.0f, 0.01f);
-  std::vector<glm::vec4> light(25, glm::vec4(0.0f));
-  light[0] = glm::vec4(1.0f / 0.28209479f);
-  for (std::size_t i = 0; i < transport.patches().size(); ++i)
-    ASSERT_NEAR(transport.direct(i, light).g, 0.0f, 1e-4f);
-}
-
-// A group whose bounces count for nothing has no links, and rooms must not count as such for the ground
-// around them.
-TEST(PatchTransport, ARoomOnAWideGroundIsARoom) {
-  RoomBuilder room;
-  room.sphere(10, 14, glm::vec3(0.5f)).wall({-200, -2, 200}, {400, 0, 0}, {0, 0, -400}, glm::vec3(0.5f));
-  bundle::CaptureProxy proxy = room.proxy();
-  proxy.patches = bundle::patchSurfaceOf(proxy);
-  proxy.patches.error_m = 0.004f;
-  for (bundle::PatchTriangle& triangle : proxy.patches.triangles) {
-    const bool ground = proxy.patches.positions[triangle.vertices[0]].y < -1.5f;
-    triangle.detail = bundle::detailOf(ground ? bundle::kLeastPatchDensity : 1.0f);
-  }
-  EXPECT_GT(PatchTransport(proxy).bounced(), 0.6f) << "by area it is 0.0001";
 }
 
 TEST(PatchTransport, ASmallBrightSpotIsMissedFromNowhere) {

@@ -49,10 +49,6 @@ TEST(ProbePlaces, ARoomDividedByAWallGetsAProbeOnEachSide) {
   EXPECT_LT((places[0].x - 2.0f) * (places[1].x - 2.0f), 0.0f);
 }
 
-TEST(ProbePlaces, TheInsideOfABodyIsNoRoom) {
-  EXPECT_TRUE(chooseProbePlaces(box(glm::vec3(1.0f), /*inwards=*/false), 16).empty());
-}
-
 TEST(ProbePlaces, ANicheBetweenAFloorAndABodyIsNoRoom) {
   SurfaceVoxels voxels = SurfaceVoxels::over(glm::vec3(0.0f), glm::vec3(4.0f, 2.0f, 4.0f));
   for (int z = 1; z < voxels.count.z - 1; ++z)

@@ -111,12 +111,6 @@ TEST(TriangleTree, OfASheetsTwoSidesTheOneThatFacesTheRayCounts) {
   EXPECT_FALSE(tree.first({0.2f, 0.2f, 1e-6f}, {0, 0, -1}));  // it lies on the sheet
 }
 
-TEST(TriangleTree, LetsRaysFromBehindThroughTrianglesThatExistFromTheFrontOnly) {
-  const TriangleTree tree({{{glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)}, true}}, 1e-5f);
-  EXPECT_TRUE(tree.first({0.2f, 0.2f, 1.0f}, {0, 0, -1}));
-  EXPECT_FALSE(tree.first({0.2f, 0.2f, -1.0f}, {0, 0, 1}));
-}
-
 TEST(TriangleTree, FindsAllTrianglesNearAPoint) {
   Random random;
   const std::vector<RayTriangle> triangles = manyTriangles(random, 500);
@@ -132,12 +126,6 @@ TEST(TriangleTree, FindsAllTrianglesNearAPoint) {
       EXPECT_TRUE(std::ranges::binary_search(found, t)) << i << ' ' << t;
     }
   }
-}
-
-TEST(TriangleTree, WithoutTrianglesIsMetByNothing) {
-  const TriangleTree tree;
-  EXPECT_FALSE(tree.first(glm::vec3(0.0f), {0, 0, 1}));
-  EXPECT_FALSE(tree.blocked(glm::vec3(0.0f), {0, 0, 1}, 1.0f));
 }
 
 }  // namespace

@@ -83,20 +83,4 @@ TEST_F(SettingCostTest, FewerKeyLightsAreMeasuredByLightThatIsPartedSo) {
   EXPECT_EQ(stage.environment.keys().size(), 1u) << "the one beside stays as it is";
 }
 
-TEST_F(SettingCostTest, MeasuringAFrameGivesThePictureThatAFrameDrawsAndItsPasses) {
-  LiveStage stage(ball(), {kSun});
-  stage.environment.setMostKeys(16);
-  const auto before = stage.picture();
-  const auto measured = measureFrame({stage.world, stage.environment, stage.view()}, stage.frame->settings(),
-                                     {.size = {64, 64}, .repeats = 2});
-  ASSERT_TRUE(measured) << measured.error().line();
-  EXPECT_EQ(farthest(measured->picture.texels, before), 0.0f);
-  EXPECT_GT(measured->cost.milliseconds("key shadows"), 0.0);
-  EXPECT_GT(measured->cost.milliseconds("raster"), 0.0);
-  EXPECT_GE(measured->cost.milliseconds(),
-            measured->cost.milliseconds("key shadows") + measured->cost.milliseconds("raster"));
-  EXPECT_EQ(measured->cost.milliseconds("no such pass"), 0.0);
-  EXPECT_EQ(farthest(stage.picture(), before), 0.0f) << "the frame beside goes on as before";
-}
-
 }  // namespace lambent::frame

@@ -121,25 +121,6 @@ TEST(Animation, LoopsForwardAndBackward) {
     EXPECT_EQ(at.play(wrong).animations, 0u);
 }
 
-TEST(Animation, GoesToATimeThatIsSet) {
-  Playground at;
-  for (std::size_t i = 0; i < 2; ++i) at.player(i).playing = false;
-  at.set(0.0f);
-  EXPECT_EQ(at.node(0).translation, glm::vec3(0, 1, 0)) << "from rest to the first key";
-  at.set(50.0f);
-  EXPECT_EQ(at.node(0).translation, glm::vec3(4, 1, 0)) << "the last key holds";
-  EXPECT_EQ(at.player(0).time_s, 50.0f);
-  at.player(0).time_s = 1.0f;  // by a field in an editor
-  EXPECT_EQ(at.play(0.016f).nodes, 1u);
-  EXPECT_EQ(at.node(0).translation.x, 2.0f);
-  EXPECT_EQ(at.play(0.016f).animations, 0u);
-  at.player(0).playing = true;
-  at.set(50.0f);
-  EXPECT_EQ(at.play(0.0f).nodes, 0u) << "no time passed";
-  at.play(1.0f);
-  EXPECT_LT(at.player(0).time_s, 3.0f) << "round again";
-}
-
 TEST(Animation, MovesAsTheBakersPosesDo) {
   Playground at;
   auto nodes = at.d.nodes;
@@ -168,16 +149,6 @@ TEST(Animation, AGroupThatGrowsEvenlyStaysRigid) {
     const glm::vec3 grown(top.world_from_rest * glm::vec4(0, 1, 0, 0));
     EXPECT_LT(glm::distance(grown, glm::vec3(0, (1 + 2 * time) / 2, 0)), kRounding);
   }
-}
-
-TEST(Animation, SurvivesNodesAndBundlesThatWereTakenAway) {
-  Playground at;
-  at.registry.destroy(at.scene.nodes[1]);
-  EXPECT_EQ(at.play(0.5f).nodes, 1u);
-  at.bundles.clear();
-  EXPECT_EQ(at.play(0.5f).animations, 0u);
-  destroyInstance(at.registry, at.scene);
-  EXPECT_EQ(at.registry.entityCount(), 0u);
 }
 
 TEST(SceneLights, StandWhereTheirWordsSay) {

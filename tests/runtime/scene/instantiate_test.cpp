@@ -4,7 +4,6 @@
 #include <limits>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -150,26 +149,6 @@ TEST(Instantiate, GivesEachMaterialAnEntityThatSaysWhatItIs) {
   EXPECT_EQ(changed.emissive, 2.0f * baked.emissive);
 }
 
-TEST(Instantiate, BoundsAreThoseOfTheBoxesWhereTheyStand) {
-  const Hall hall;
-  ecs::Registry registry;
-  const SceneInstance scene = instance(registry, hall.d);
-  const Box legs = drawBounds(registry, scene.draws[1]);
-  EXPECT_LT(glm::distance(legs.min, glm::vec3(1.5f, -1.0f, -0.5f)), kRounding);
-  EXPECT_LT(glm::distance(legs.max, glm::vec3(2.5f, -0.5f, 0.5f)), kRounding);
-  const Box all = worldBounds(registry);
-  EXPECT_NEAR(all.max.x, 4.5f, kRounding);
-  EXPECT_NEAR(all.max.y, 4.0f, kRounding) << "the top is stretched to 2 m";
-  EXPECT_NEAR(all.min.y, -1.0f, kRounding);
-  registry.edit<Transform>(scene.root).translation.x = 10.0f;
-  updateTransforms(registry);
-  EXPECT_NEAR(worldBounds(registry).max.x, 14.5f, kRounding);
-  EXPECT_NEAR(groupBounds(registry, scene.groups[0]).max.x, 11.0f, kRounding);
-  EXPECT_TRUE(worldBounds(ecs::Registry{}).empty());
-  EXPECT_EQ(Box{}.radius(), 0.0f);
-  EXPECT_TRUE(transformed(Box{}, turned(30.0f)).empty());
-}
-
 TEST(RigidGroup, IsWhereTheBakerSaysUntilItMoves) {
   const Hall hall;
   ecs::Registry registry;
@@ -205,19 +184,6 @@ TEST(RigidGroup, TurnsWithItsNodeInSpiteOfMirrorsAndStretch) {
   updateTransforms(registry);
   EXPECT_NEAR(std::abs(top.turn_since_rest.w), 1.0f, 1e-7f) << "and back, without drift";
   EXPECT_LT(glm::distance(top.translation, hall.d.groups[1].rest_translation), kRounding);
-}
-
-TEST(RigidGroup, AllGroupsTurnWithTheInstance) {
-  const Hall hall;
-  ecs::Registry registry;
-  const SceneInstance scene = instance(registry, hall.d);
-  const glm::quat quarter = glm::angleAxis(glm::radians(90.0f), kUp);
-  registry.edit<Transform>(scene.root).rotation = quarter;
-  EXPECT_EQ(updateTransforms(registry).groups, 2u);
-  for (const ecs::Entity group : scene.groups) {
-    EXPECT_NEAR(std::abs(glm::dot(registry.get<RigidGroupComponent>(group).turn_since_rest, quarter)), 1.0f,
-                kRounding);
-  }
 }
 
 TEST(RigidGroup, KeepsItsLastRotationWhileItIsFlatOrMirrored) {
@@ -330,37 +296,11 @@ TEST(Instantiate, TwiceNeedsAnotherInstanceNumberAndDestructionTakesOnlyItsOwn) 
   EXPECT_TRUE(worldBounds(registry).empty());
 }
 
-TEST(Instantiate, WhatIsClosedAndComesBackHasItsOrderAgain) {
-  const Hall hall;
-  ecs::Registry registry;
-  const auto order = [](const SceneInstance& scene) {
-    std::vector<std::uint32_t> indices = {scene.root.index};
-    for (const auto* list : {&scene.nodes, &scene.groups, &scene.draws, &scene.animations, &scene.materials})
-      for (const ecs::Entity entity : *list) indices.push_back(entity.index);
-    return indices;
-  };
-  const SceneInstance first = instance(registry, hall.d);
-  const std::vector<std::uint32_t> before = order(first);
-  destroyInstance(registry, first);
-  EXPECT_EQ(order(instance(registry, hall.d)), before);
-}
-
 template <class Component>
 class DeclaredFields : public ::testing::Test {};
 using Components = ::testing::Types<Name, Transform, CameraComponent, EnvironmentComponent, LampComponent,
                                     LocalLightComponent, AnimationComponent>;
 TYPED_TEST_SUITE(DeclaredFields, Components);
-
-TYPED_TEST(DeclaredFields, HaveTheComponentsOwnDefaultsInsideTheirRangesUnderNamesOfTheirOwn) {
-  TypeParam made;
-  std::set<std::string_view> names;
-  ecs::forEachField(made, [&](const auto& field, const auto& value) {
-    EXPECT_TRUE(value == field.default_value) << field.name;
-    EXPECT_TRUE(ecs::withinRange(field, value)) << field.name;
-    EXPECT_TRUE(names.insert(field.name).second) << field.name;
-  });
-  EXPECT_FALSE(names.empty());
-}
 
 }  // namespace
 }  // namespace lambent::scene

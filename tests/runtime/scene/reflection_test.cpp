@@ -73,16 +73,5 @@ TEST(Reflection, EnumsGoByWords) {
   EXPECT_EQ(registry.get<LocalLightComponent>(entity).kind, LocalLightComponent::Kind::Disc);
 }
 
-TEST(Reflection, CopiesWhatIsDeclaredAndNothingElse) {
-  ecs::Registry registry;
-  const ecs::Entity from = registry.create(), to = registry.create(), root = registry.create();
-  registry.emplace<Transform>(from).scale = glm::vec3(2.0f);
-  registry.emplace<Transform>(to).parent = root;
-  EXPECT_TRUE(findComponent("Transform")->copy(registry, from, to));
-  EXPECT_EQ(registry.get<Transform>(to).scale, glm::vec3(2.0f));
-  EXPECT_EQ(registry.get<Transform>(to).parent, root);
-  EXPECT_FALSE(findComponent("Camera")->copy(registry, from, to));
-}
-
 }  // namespace
 }  // namespace lambent::scene

@@ -28,20 +28,6 @@ glm::vec3 place(const ecs::Registry& registry, ecs::Entity entity) {
   return glm::vec3(registry.get<WorldTransform>(entity).world_from_node[3]);
 }
 
-TEST(Transforms, ChildrenMadeBeforeTheirParentsFollowThem) {
-  ecs::Registry registry;
-  const ecs::Entity child = makeNode(registry, {}, {1.0f, 0.0f, 0.0f});
-  const ecs::Entity middle = makeNode(registry, {}, {0.0f, 2.0f, 0.0f});
-  const ecs::Entity root = makeNode(registry, {}, {0.0f, 0.0f, 3.0f});
-  ASSERT_TRUE(setParent(registry, child, middle));
-  ASSERT_TRUE(setParent(registry, middle, root));
-  EXPECT_EQ(updateTransforms(registry).nodes, 3u);
-  EXPECT_EQ(place(registry, child), glm::vec3(1.0f, 2.0f, 3.0f));
-  registry.edit<Transform>(root).scale = glm::vec3(2.0f);
-  updateTransforms(registry);
-  EXPECT_EQ(place(registry, child), glm::vec3(2.0f, 4.0f, 3.0f));
-}
-
 TEST(Transforms, OnlyWhatChangedIsComputedAgain) {
   ecs::Registry registry;
   const ecs::Entity root = makeNode(registry, {}, {});
@@ -69,16 +55,6 @@ TEST(Transforms, OnlyWhatChangedIsComputedAgain) {
   EXPECT_EQ(registry.version<WorldTransform>(), before);
 }
 
-TEST(Transforms, AHundredThousandLevelsDoNotOverflowTheStack) {
-  ecs::Registry registry;
-  std::vector<ecs::Entity> chain;
-  for (int i = 0; i < 100000; ++i) chain.push_back(makeNode(registry, {}, {1.0f, 0.0f, 0.0f}));
-  for (std::size_t i = 0; i + 1 < chain.size(); ++i) registry.edit<Transform>(chain[i]).parent = chain[i + 1];
-  EXPECT_EQ(updateTransforms(registry).nodes, chain.size());
-  EXPECT_EQ(place(registry, chain.front()).x, 100000.0f);
-  EXPECT_FALSE(setParent(registry, chain.back(), chain.front()));
-}
-
 TEST(Transforms, ReparentingMovesTheChildAndRefusesCycles) {
   ecs::Registry registry;
   const ecs::Entity a = makeNode(registry, {}, {1.0f, 0.0f, 0.0f});
@@ -98,28 +74,6 @@ TEST(Transforms, ReparentingMovesTheChildAndRefusesCycles) {
 
   ASSERT_TRUE(setParent(registry, child, {}));
   updateTransforms(registry);
-  EXPECT_EQ(place(registry, child), glm::vec3(0.0f, 0.0f, 1.0f));
-}
-
-TEST(Transforms, ChildrenOfADestroyedParentProxyLodTheWorld) {
-  ecs::Registry registry;
-  const ecs::Entity parent = makeNode(registry, {}, {1.0f, 0.0f, 0.0f});
-  const ecs::Entity child = makeNode(registry, parent, {0.0f, 0.0f, 1.0f});
-  updateTransforms(registry);
-  registry.destroy(parent);
-  makeNode(registry, {}, {7.0f, 0.0f, 0.0f});  // takes the parent's index, not its place
-  EXPECT_EQ(updateTransforms(registry).nodes, 2u);
-  EXPECT_EQ(place(registry, child), glm::vec3(0.0f, 0.0f, 1.0f));
-}
-
-TEST(Transforms, ARemovedTransformTakesItsMatrixAlong) {
-  ecs::Registry registry;
-  const ecs::Entity parent = makeNode(registry, {}, {1.0f, 0.0f, 0.0f});
-  const ecs::Entity child = makeNode(registry, parent, {0.0f, 0.0f, 1.0f});
-  updateTransforms(registry);
-  registry.remove<Transform>(parent);
-  updateTransforms(registry);
-  EXPECT_FALSE(registry.has<WorldTransform>(parent));
   EXPECT_EQ(place(registry, child), glm::vec3(0.0f, 0.0f, 1.0f));
 }
 
@@ -162,6 +116,16 @@ TEST(Transforms, RandomEditsGiveWhatComputingAllFromNothingGives) {
             << "at step " << step;
     }
   }
+}
+
+TEST(Transforms, AHundredThousandLevelsDoNotOverflowTheStack) {
+  ecs::Registry registry;
+  std::vector<ecs::Entity> chain;
+  for (int i = 0; i < 100000; ++i) chain.push_back(makeNode(registry, {}, {1.0f, 0.0f, 0.0f}));
+  for (std::size_t i = 0; i + 1 < chain.size(); ++i) registry.edit<Transform>(chain[i]).parent = chain[i + 1];
+  EXPECT_EQ(updateTransforms(registry).nodes, chain.size());
+  EXPECT_EQ(place(registry, chain.front()).x, 100000.0f);
+  EXPECT_FALSE(setParent(registry, chain.back(), chain.front()));
 }
 
 }  // namespace

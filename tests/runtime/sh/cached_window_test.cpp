@@ -1,4 +1,3 @@
-#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -36,37 +35,6 @@ TEST(CachedWindow, AScaledLightKeepsTheWindowThatItWouldHave) {
     const BandWeights searched = windowWeights(scaled, Window::Auto);
     for (std::size_t l = 0; l < searched.size(); ++l) EXPECT_NEAR(kept.weights()[l], searched[l], 1e-3f);
   }
-}
-
-TEST(CachedWindow, AnotherShapeHasAWindowOfItsOwn) {
-  testing::Random random(8);
-  for (int i = 0; i < 20; ++i) {
-    const LightVector light = someLight(random), other = someLight(random);
-    CachedWindow kept;
-    kept.follow(light, Window::Auto);
-    EXPECT_FALSE(kept.fits(other, Window::Auto));
-    kept.follow(other, Window::Auto);
-    EXPECT_EQ(kept.weights(), windowWeights(other, Window::Auto));
-    LightVector a_little = light;
-    a_little.c[7].g += 1e-4f;
-    EXPECT_FALSE(sameShape(light, a_little));
-  }
-}
-
-TEST(CachedWindow, ChannelsThatComeOrGoOrTurnRoundAreOtherShapes) {
-  testing::Random random(9);
-  const LightVector light = someLight(random);
-  const LightVector red = light * glm::vec3(1, 0, 0);
-  EXPECT_FALSE(sameShape(light, red));
-  EXPECT_FALSE(sameShape(red, light));
-  EXPECT_TRUE(sameShape(red, red * 2.0f));
-  EXPECT_FALSE(sameShape(light, light * -1.0f));
-  EXPECT_FALSE(sameShape(light, light.truncated(4)));
-  LightVector broken = light;
-  broken.c[3].r = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_FALSE(sameShape(light, broken));
-  EXPECT_FALSE(sameShape(broken, broken));
-  EXPECT_TRUE(sameShape(LightVector{}, LightVector{})) << "darkness is darkness";
 }
 
 TEST(CachedWindow, WindowsThatDoNotLookAtTheLightFollowItsOrderAndTheirKind) {

@@ -1,6 +1,5 @@
 #include "runtime/sh/gaunt.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -20,55 +19,10 @@ std::size_t countOf(int bands) {
   return static_cast<std::size_t>(coefficientCount(bands));
 }
 
-double gaunt(const GauntTable& table, std::size_t i, std::size_t j, std::size_t k) {
-  for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t)
-    if (table.terms[t].j == j && table.terms[t].k == k) return static_cast<double>(table.terms[t].value);
-  return 0;
-}
-
 std::vector<float> randomFunction(Random& random, int bands) {
   std::vector<float> f(countOf(bands));
   for (float& c : f) c = static_cast<float>(2 * random.uniform() - 1);
   return f;
-}
-
-// These are the numbers of nonzero coefficients if all three functions have n bands, from several sources.
-TEST(Gaunt, HasTheKnownNumberOfTermsInEqualBands) {
-  constexpr std::array<std::size_t, 5> kKnown = {10, 83, 353, 1158, 2907};
-  for (int n = 2; n <= 6; ++n) {
-    const GauntTable table = makeGauntTable(n, n);
-    EXPECT_EQ(table.visibilityBands(), 2 * n - 1);
-    ASSERT_EQ(table.offsets.size(), countOf(n) + 1);
-    EXPECT_EQ(table.offsets.back(), table.terms.size());
-    EXPECT_EQ(std::count_if(table.terms.begin(), table.terms.end(),
-                            [&](const GauntTerm& term) { return term.k < countOf(n); }),
-              kKnown[static_cast<std::size_t>(n - 2)])
-        << n << " bands";
-  }
-}
-
-// The selection rules are that l_k is between |l_i - l_j| and l_i + l_j, and that the sum is even.
-TEST(Gaunt, IsOrderedSymmetricAndObeysTheTriangleRule) {
-  for (const auto& [in, out] : {std::pair{5, 5}, {6, 6}, {5, 4}, {4, 6}, {1, 3}, {5, 9}}) {
-    const GauntTable table = makeGauntTable(in, out);
-    for (std::size_t i = 0; i < countOf(out); ++i) {
-      for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t) {
-        const GauntTerm& term = table.terms[t];
-        const int a = bandOf(static_cast<int>(i)), b = bandOf(term.j), c = bandOf(term.k);
-        EXPECT_TRUE(c >= std::abs(a - b) && c <= a + b && (a + b + c) % 2 == 0) << a << ' ' << b << ' ' << c;
-        EXPECT_GT(std::abs(term.value), 1e-4f);
-        if (t > table.offsets[i]) {
-          const GauntTerm& before = table.terms[t - 1];
-          EXPECT_TRUE(before.j < term.j || (before.j == term.j && before.k < term.k));
-        }
-      }
-      for (std::size_t j = 0; j < std::min(countOf(in), countOf(out)); ++j)
-        for (std::size_t k = 0; k < countOf(table.visibilityBands()); k += 3)
-          if (i < countOf(in)) {
-            EXPECT_EQ(gaunt(table, i, j, k), gaunt(table, j, i, k));
-          }
-    }
-  }
 }
 
 // Checks Σ_k Γ_ijk² = ∫ (y_i y_j)²: visibility has all bands that the product of two functions can have, and

@@ -28,16 +28,6 @@ void expectAt(ImageLayout layout, int width, int height, const glm::dvec3& dir, 
   EXPECT_NEAR(at.y, y, 1e-9);
 }
 
-TEST(ShImageLayout, KnowsLayoutsByTheirShape) {
-  EXPECT_EQ(layoutOfShape(1024, 512), ImageLayout::LatLong);
-  EXPECT_EQ(layoutOfShape(1000, 1000), ImageLayout::AngularMap);
-  EXPECT_EQ(layoutOfShape(768, 1024), ImageLayout::VerticalCross);
-  EXPECT_FALSE(layoutOfShape(1024, 768).has_value());
-  EXPECT_FALSE(layoutOfShape(1023, 511).has_value());
-  EXPECT_FALSE(layoutOfShape(0, 0).has_value());
-  EXPECT_FALSE(layoutOfShape(-2, -1).has_value());
-}
-
 TEST(ShImageLayout, CoversTheSphereOnce) {
   for (const Shape& shape : kShapes) {
     double sum = 0;

@@ -19,16 +19,5 @@ TEST(ShLightVector, AddsAndScalesAsFunctionsDo) {
     EXPECT_NEAR(sum.evaluate(kDir)[channel], expected[channel], 1e-6f);
 }
 
-TEST(ShLightVector, TruncatesAndPads) {
-  const LightVector disc = discLight(5, {0, 1, 0}, 0.5, {1, 2, 3});
-  const LightVector low = disc.truncated(2), high = low.truncated(6);
-  EXPECT_EQ(low.order, 2);
-  EXPECT_EQ(low.coefficients().size(), 4u);
-  EXPECT_EQ(low.c[3], disc.c[3]);
-  EXPECT_EQ(low.c[4], glm::vec3(0));
-  EXPECT_EQ(high.order, 6);
-  EXPECT_EQ(high.evaluate(kDir), low.evaluate(kDir));
-}
-
 }  // namespace
 }  // namespace lambent::sh

@@ -76,14 +76,5 @@ TEST(ShProjection, CountsAndReplacesWhatIsNotLight) {
   for (std::size_t i = 0; i < 25; ++i) EXPECT_EQ(light.c[i], expected.c[i]);
 }
 
-TEST(ShProjection, IgnoresTexelsThatShowNoDirection) {
-  std::vector<glm::vec3> texels(100 * 100, glm::vec3(1));
-  texels[0] = glm::vec3(std::numeric_limits<float>::quiet_NaN());  // a corner, outside the circle
-  ProjectionReport report;
-  projectImage(5, ImageLayout::AngularMap, 100, 100, texels, &report);
-  EXPECT_EQ(report.replaced_texels, 0u);
-  EXPECT_NEAR(static_cast<double>(report.covered_texels), 100 * 100 * std::numbers::pi / 4, 20);
-}
-
 }  // namespace
 }  // namespace lambent::sh

@@ -88,37 +88,6 @@ TEST(ShRotation, IsOrthogonal) {
   }
 }
 
-TEST(ShRotation, ComposesAsRotationsDo) {
-  Random random(7);
-  for (int k = 0; k < 50; ++k) {
-    const glm::dquat a = random.rotation(), b = random.rotation();
-    const auto y = functionsAt(random.direction());
-    std::array<double, kMaxCoefficients> once, twice, together;
-    Rotation(b, kMaxOrder).apply(y, std::span<double>(once));
-    Rotation(a, kMaxOrder).apply(once, std::span<double>(twice));
-    Rotation(a * b, kMaxOrder).apply(y, std::span<double>(together));
-    EXPECT_LE(lambent::testing::largestDifference(twice, together), 1e-12);
-  }
-}
-
-TEST(ShRotation, CarriesAFunctionAlong) {
-  Random random(8);
-  for (int order = 1; order <= kMaxOrder; ++order) {
-    const glm::dquat q = random.rotation();
-    const glm::vec3 dir(random.direction());
-    const LightVector light = discLight(order, dir, 0.4, {1, 2, 3});
-    const LightVector expected = discLight(order, glm::vec3(q * glm::dvec3(dir)), 0.4, {1, 2, 3});
-    const LightVector turned = Rotation(q, order).apply(light);
-    const LightVector turned_by_more = Rotation(q, kMaxOrder).apply(light);
-    EXPECT_EQ(turned.order, order);
-    for (std::size_t i = 0; i < light.c.size(); ++i)
-      for (int channel = 0; channel < 3; ++channel) {
-        EXPECT_NEAR(turned.c[i][channel], expected.c[i][channel], 3e-6f);
-        EXPECT_EQ(turned.c[i][channel], turned_by_more.c[i][channel]);
-      }
-  }
-}
-
 // Rotates light into the frame of a group and compares with an independent reference: lights of one direction
 // each, whose directions are rotated, in double and with the textbook's functions.
 TEST(ShRotation, TurnsLightVectorsAsTheirDirectionsTo1e5AtEveryOrder) {
@@ -155,29 +124,6 @@ TEST(ShRotation, TurnsLightVectorsAsTheirDirectionsTo1e5AtEveryOrder) {
       ASSERT_LE(error, 1e-5) << "order " << order << ", quaternion " << q.w << " " << q.x << " " << q.y << " "
                              << q.z;
     }
-}
-
-TEST(ShRotation, LeavesZonalLightAloneAboutItsAxis) {
-  const LightVector light = discLight(kMaxOrder, {0, 0, 1}, 0.3, {1, 1, 1});
-  const LightVector turned = Rotation(glm::angleAxis(1.234, glm::dvec3(0, 0, 1)), kMaxOrder).apply(light);
-  for (std::size_t i = 0; i < light.c.size(); ++i) EXPECT_NEAR(turned.c[i].r, light.c[i].r, 1e-6f);
-}
-
-TEST(ShRotation, AgreesInFloatWithDouble) {
-  Random random(9);
-  for (const glm::dquat& q : rotations()) {
-    const Rotation rotation(q, kMaxOrder);
-    std::array<double, kMaxCoefficients> in, out;
-    std::array<float, kMaxCoefficients> in_float, out_float;
-    for (std::size_t i = 0; i < in.size(); ++i) {
-      in_float[i] = static_cast<float>(2 * random.uniform() - 1);
-      in[i] = static_cast<double>(in_float[i]);
-    }
-    rotation.apply(in, std::span<double>(out));
-    rotation.apply(in_float, std::span<float>(out_float));
-    // The error is that of 15 products of numbers up to 1, each rounded at 2^-24.
-    for (std::size_t i = 0; i < in.size(); ++i) EXPECT_NEAR(static_cast<double>(out_float[i]), out[i], 1e-5);
-  }
 }
 
 // Tests the documented way to rotate a body for hours: accumulate a quaternion and rebuild the matrix, of

@@ -97,17 +97,6 @@ TEST(ShWindow, AutoIsTheLeastThatHelps) {
     }
 }
 
-TEST(ShWindow, AutoLeavesLightsAloneThatDoNotRing) {
-  for (int order = 1; order <= kMaxOrder; ++order) {
-    LightVector gradient = constantLight(order, {1, 2, 3});
-    if (order > 1) gradient.c[2] = 0.5f * gradient.c[0];  // brighter towards +z, 0.13 towards -z
-    for (const LightVector& light :
-         {constantLight(order, {1, 2, 3}), gradient,
-          constantLight(order, {1, 1, 1}) + discLight(order, {1, 0, 0}, 10 * kDegree, {1, 1, 1})})
-      expectEqual(applyWindow(light, Window::Auto), light);
-  }
-}
-
 TEST(ShWindow, AutoStaysFiniteOnOddLights) {
   const LightVector none{.order = 5};
   expectEqual(applyWindow(none, Window::Auto), none);
@@ -128,28 +117,6 @@ TEST(ShWindow, AutoStaysFiniteOnOddLights) {
 
   LightVector red = discLight(5, {0, 1, 0}, 0.1, {1, 0, 0});  // two channels dark
   EXPECT_GT(deringingBlend(red), 0);
-}
-
-TEST(ShWindow, AutoDoesNotDependOnRotationOrScale) {
-  Random random(14);
-  for (int k = 0; k < 10; ++k) {
-    const LightVector light = someLights(5, random);
-    const double blend = deringingBlend(light);
-    const double scaled = deringingBlend(light * 1e6f);
-    const double turned = deringingBlend(Rotation(random.rotation(), 5).apply(light));
-    EXPECT_NEAR(blend, scaled, 1e-4);
-    EXPECT_NEAR(blend, turned, 1e-3);  // the climb stops at 1e-3 rad
-  }
-}
-
-TEST(ShWindow, HannFallsFromOneToZeroBeyondTheLastBand) {
-  const BandWeights weights = windowWeights(constantLight(4, {1, 1, 1}), Window::Hann);
-  EXPECT_FLOAT_EQ(weights[0], 1);
-  EXPECT_FLOAT_EQ(weights[2], 0.5f);
-  EXPECT_NEAR(weights[1] + weights[3], 1, 1e-6f);
-  EXPECT_EQ(weights[4], 0);
-  const LightVector light = discLight(5, {0, 1, 0}, 0.1, {1, 1, 1});
-  expectEqual(applyWindow(light, Window::Off), light);
 }
 
 }  // namespace

@@ -51,25 +51,6 @@ std::vector<float> filled(const std::vector<float>& stored, int order, bool isot
   return all;
 }
 
-TEST(ZonalFactors, HaveTheNormalFirstAndUnitAxes) {
-  for (int order = 1; order <= kMaxFactoredOrder; ++order)
-    for (bool isotropic : {true, false}) {
-      const ZonalFactors factors = makeFactors(order, isotropic);
-      ASSERT_EQ(factors.axes().size(), static_cast<std::size_t>(isotropic ? order : 2 * order - 1));
-      EXPECT_EQ(factors.axes()[0], glm::vec3(0, 0, 1));
-      int weights = 0;
-      for (int l = 0; l < order; ++l) weights += factors.axesOfBand(l);
-      EXPECT_EQ(factors.weightCount(), weights);
-      for (const glm::vec3& axis : factors.axes()) {
-        EXPECT_NEAR(glm::length(axis), 1.0f, 1e-6f);
-        EXPECT_GT(axis.z, 0.0f);
-        if (isotropic) {
-          EXPECT_EQ(axis.y, 0.0f);
-        }
-      }
-    }
-}
-
 // Rounding, and errors of interpolated weights, grow by no more than a small factor.
 TEST(ZonalFactors, AreWellConditionedInEveryBand) {
   for (bool isotropic : {true, false}) {
@@ -131,17 +112,6 @@ TEST(ZonalFactors, TurnFunctionsAsRotationMatricesDo) {
               << "order " << order << (isotropic ? ", plane: " : ", sphere: ") << i;
       }
     }
-}
-
-// Zonal functions about the normal, such as diffuse reflection, keep all their weight on the first axis.
-TEST(ZonalFactors, LeaveZonalFunctionsOnTheNormal) {
-  const ZonalFactors factors = ZonalFactors::isotropic(5);
-  std::vector<float> f(15), weights(15);
-  for (int l = 0; l < 5; ++l) f[static_cast<std::size_t>(l * (l + 1) / 2)] = 1.0f / static_cast<float>(l + 1);
-  factors.factor(f, weights);
-  for (int l = 0; l < 5; ++l)
-    for (int i = 1; i <= l; ++i)
-      EXPECT_NEAR(weights[static_cast<std::size_t>(l * (l + 1) / 2 + i)], 0.0f, 1e-6f);
 }
 
 }  // namespace

@@ -38,15 +38,6 @@ TEST(KeyEdit, WordsReadBackToTheSameEditWithinAThousandthOfADegree) {
   EXPECT_EQ(keyEditWord({.found = {0, 0, 1}, .towards = {1, 0, 0}}), "key:0,0,90,0,1");
 }
 
-TEST(KeyEdit, AnglesAreTheInverseOfDirections) {
-  for (const float azimuth : {-170.0f, -35.0f, 0.0f, 20.0f, 120.0f})
-    for (const float elevation : {-80.0f, 0.0f, 45.0f}) {
-      const AzimuthElevation angles = azimuthElevation(directionFromAzimuthElevation(azimuth, elevation));
-      EXPECT_NEAR(angles.azimuth_deg, azimuth, 1e-4f);
-      EXPECT_NEAR(angles.elevation_deg, elevation, 1e-4f);
-    }
-}
-
 TEST(KeyEdit, RefusesOtherWordsAndSaysTheForm) {
   for (const char* word : {"", "sun:1,2,3,4", "key:", "key:1,2,3,4", "key:1,2,3,4,5,6", "key:0,91,0,0,1",
                            "key:0,0,0,-91,1", "key:0,0,0,0,-1", "key:0,0,0,0,2e6", "key:0,0,0,0,x"}) {

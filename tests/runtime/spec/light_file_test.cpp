@@ -21,7 +21,6 @@
 
 #include "runtime/spec/environment_map.hpp"
 #include "runtime/spec/image.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::spec {
 namespace {
@@ -244,14 +243,6 @@ TEST_F(LightFile, DeepPicturesAndCroppedOnesWithoutAnyTexelAreRefusedByName) {
   ASSERT_FALSE(outside);
   EXPECT_NE(outside.error().line().find("outside its display window"), std::string::npos)
       << outside.error().line();
-}
-
-TEST_F(LightFile, TheSameSkyIsAsBrightWithAnExposureInItsHeader) {
-  const fs::path flat = testing::sharedFile("found/hdr-exposure/flat.hdr");
-  LAMBENT_NEEDS_SHARED(flat);
-  const RgbImage a = readLightImage(flat).value(),
-                 b = readLightImage(testing::sharedFile("found/hdr-exposure/exposure.hdr")).value();
-  EXPECT_EQ(a.texels, b.texels);
 }
 
 }  // namespace

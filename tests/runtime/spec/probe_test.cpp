@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "runtime/spec/environment_map.hpp"
-#include "tests/support/shared_data.hpp"
 
 namespace lambent::spec {
 namespace {
@@ -105,15 +104,6 @@ TEST(SpecEnvironmentMap, TexelCentresGiveTheTexelItself) {
   }
 }
 
-TEST(SpecEnvironmentMap, TinyPicturesAreLookedUpToo) {
-  for (const Shape& shape : {Shape{ImageLayout::LatLong, 2, 1}, Shape{ImageLayout::AngularMap, 1, 1},
-                             Shape{ImageLayout::VerticalCross, 3, 4}}) {
-    const EnvironmentMap environment_map = picture(shape, [](glm::vec3) { return glm::vec3(1.0f); });
-    for (const glm::vec3 dir : directions(200))
-      EXPECT_NEAR(radiance(environment_map, dir).x, 1.0f, 1e-6f) << sh::name(shape.layout);
-  }
-}
-
 TEST(SpecEnvironmentMap, ValuesThatAreNoRadiancesAreReplacedAndCounted) {
   const auto path = std::filesystem::path(::testing::TempDir()) / "lambent_spec_not_finite.exr";
   RgbaImage image{4, 2, std::vector<glm::vec4>(8, glm::vec4(1.0f))};
@@ -148,35 +138,6 @@ TEST(SpecEnvironmentMap, ShapesChooseTheLayoutAndWrongOnesAreExplained) {
   EXPECT_FALSE(loadEnvironmentMap({path, ImageLayout::VerticalCross}));
   EXPECT_FALSE(loadEnvironmentMap({path, ImageLayout::AngularMap}));
   std::filesystem::remove(path);
-}
-
-TEST(SpecEnvironmentMap, EucalyptusGroveIsTheSameAsAngularMapAndAsCross) {
-  const auto angular_file = testing::sharedFile("probes/rnl_probe.hdr");
-  const auto cross_file = testing::sharedFile("probes/rnl_cross.hdr");
-  LAMBENT_NEEDS_SHARED(angular_file);
-  LAMBENT_NEEDS_SHARED(cross_file);
-  const Result<EnvironmentMap> angular = loadEnvironmentMap({angular_file, {}}),
-                               cross = loadEnvironmentMap({cross_file, {}});
-  ASSERT_TRUE(angular && cross);
-  EXPECT_EQ(angular->layout, ImageLayout::AngularMap);
-  EXPECT_EQ(cross->layout, ImageLayout::VerticalCross);
-  // The test takes the mean log-ratio of small blurred spots, because single texels of leaves against sky
-  // differ by the resampling.
-  double difference = 0.0, sum = 0.0;
-  std::mt19937 random(3);
-  std::normal_distribution<float> normal;
-  for (const glm::vec3 dir : directions(1000)) {
-    glm::vec3 a(0.0f), b(0.0f);
-    for (int i = 0; i < 200; ++i) {
-      const glm::vec3 near =
-          glm::normalize(dir + 0.1f * glm::vec3(normal(random), normal(random), normal(random)));
-      a += radiance(*angular, near);
-      b += radiance(*cross, near);
-    }
-    difference += glm::length(a - b);
-    sum += glm::length(a);
-  }
-  EXPECT_LT(difference, 0.03 * sum);
 }
 
 }  // namespace

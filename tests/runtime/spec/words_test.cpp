@@ -47,21 +47,6 @@ TEST(SpecLight, ParsesConstantSunAndProbe) {
   EXPECT_FALSE(std::get<EnvironmentMapLight>(*environment_map).layout);
 }
 
-TEST(SpecLight, ParsesAllWordsAndGivesMapsTheLayout) {
-  const std::vector<std::string> words{"constant:1,1,1", "map.hdr"};
-  const auto layoutOf = [](const Result<std::vector<Light>>& lights) {
-    return std::get<EnvironmentMapLight>(lights->at(1)).layout;
-  };
-  const Result<std::vector<Light>> named = parseLights(words, "angular-map"), by_shape = parseLights(words);
-  ASSERT_TRUE(named && by_shape);
-  EXPECT_EQ(named->size(), 2u);
-  EXPECT_EQ(layoutOf(named), sh::ImageLayout::AngularMap);
-  EXPECT_FALSE(layoutOf(by_shape));
-  EXPECT_FALSE(parseLights(words, "cube"));
-  EXPECT_FALSE(parseLights(std::vector<std::string>{"map.hdr", "lamp"}));
-  EXPECT_TRUE(parseLights({})->empty());
-}
-
 TEST(SpecLight, RefusesEverythingElseAndShowsTheForm) {
   for (const char* wrong : {"constant:", "constant:1", "constant:1,2", "constant:1,2,3,4", "constant:1,2,-3",
                             "constant:1,2,nan", "constant:1,2,3e38", "constant:1,2,3 "}) {
@@ -154,13 +139,6 @@ TEST(SpecLight, NoGarbageCrashesOrSlipsThrough) {
   EXPECT_LT(accepted, 1000);
 }
 
-TEST(SpecLight, LayoutsAreCalledAsTheShRoomCallsThem) {
-  for (const auto layout :
-       {sh::ImageLayout::LatLong, sh::ImageLayout::AngularMap, sh::ImageLayout::VerticalCross})
-    EXPECT_EQ(parseLightLayout(sh::name(layout)).value(), layout);
-  EXPECT_FALSE(parseLightLayout("cube"));
-}
-
 TEST(SpecLight, AzimuthZeroIsFrontAndNinetyIsRight) {
   constexpr float kTolerance = 1e-7f;  // float rounding of unit vectors
   const auto near = [&](glm::vec3 a, glm::vec3 b) { return glm::length(a - b) < kTolerance; };
@@ -181,17 +159,6 @@ TEST(SpecRotate, PositiveTurnsTakeFrontToRightAndAddToAzimuths) {
             kTolerance);
   EXPECT_EQ(parseDegrees("-22.5").value(), -22.5f);
   EXPECT_FALSE(parseDegrees("90deg"));
-}
-
-TEST(SpecSize, ParsesAndRefuses) {
-  EXPECT_EQ(parseSize("1920x1080").value(), (Size{1920, 1080}));
-  EXPECT_EQ(parseSize("1x16384").value(), (Size{1, 16384}));
-  for (const char* wrong : {"", "x", "10", "10x", "x10", "10X10", "10x10x10", "0x10", "10x0", "-1x5",
-                            "10 x 10", "16385x1", "99999999999x1", "1e2x5", " 1x1"}) {
-    const Result<Size> size = parseSize(wrong);
-    ASSERT_FALSE(size) << wrong;
-    EXPECT_NE(size.error().line().find("WIDTHxHEIGHT"), std::string::npos) << size.error().line();
-  }
 }
 
 }  // namespace

@@ -22,13 +22,6 @@ TEST(ImageDecode, PngTexelsComeBackExactlyTopRowFirst) {
   }
 }
 
-TEST(ImageDecode, GreyBecomesRgbWithAlphaOne) {
-  const auto rgba = decodeRgba(testing::pngFile(2, 1, 1), "grey");
-  ASSERT_TRUE(rgba) << rgba.error().line();
-  const std::uint8_t a = testing::texel(0, 0, 0), b = testing::texel(1, 0, 0);
-  EXPECT_EQ(*rgba, (std::vector<std::uint8_t>{a, a, a, 255, b, b, b, 255}));
-}
-
 TEST(ImageDecode, JpegIsDecoded) {
   const auto file = testing::jpegFile(16, 8, 100);
   const auto size = imageSize(file, "leaf");

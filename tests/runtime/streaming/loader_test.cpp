@@ -18,7 +18,6 @@
 #include "runtime/bundle/writer.hpp"
 #include "runtime/streaming/parts.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"
-#include "tests/support/eventually.hpp"
 
 namespace lambent::streaming {
 namespace {
@@ -173,20 +172,6 @@ TEST_F(LoaderTest, GivesTheSameSequenceForAnyNumberOfThreadsAndAnyBudget) {
   }
 }
 
-TEST_F(LoaderTest, TakesAtLeastOneItemAndNoMoreThanTheBudgetBeyond) {
-  write(testing::manyImages(6, 64));  // 16 KiB each
-  Loader loader(open(), threads_, 1);
-  std::size_t taken = 0;
-  while (!loader.finished()) {
-    loader.waitForMore();
-    const auto items = loader.take(40 << 10);
-    EXPECT_LE(items.size(), 2u);
-    EXPECT_GE(items.size(), 1u) << "waitForMore had promised one";
-    taken += items.size();
-  }
-  EXPECT_EQ(taken, 6u);
-}
-
 TEST_F(LoaderTest, DecodesNoFurtherAheadThanItsMemory) {
   constexpr std::uint32_t kThreads = 4;
   write(testing::manyImages(48, 1024));  // 4 MiB each: 192 MiB in all, of which 64 fit
@@ -241,46 +226,6 @@ TEST_F(LoaderTest, StopsAtADamagedPayloadAndNamesTheFileWhateverTheThreads) {
   }
 }
 
-TEST_F(LoaderTest, NamesTheImageThatCannotBeDecoded) {
-  Sample sample = testing::sampleBundle();
-  bundle::Blob& blob = sample.blobs[sample.description.images[1].view];
-  blob.assign(blob.size(), std::byte{'x'});
-  write(sample);
-  Loader loader(open(), threads_, 2);
-  EXPECT_EQ(drain(loader, 1 << 20).size(), 8u);
-  ASSERT_TRUE(loader.error());
-  EXPECT_NE(loader.error()->line().find(path().string() + ": image 1 \"leaf\""), std::string::npos)
-      << loader.error()->line();
-}
-
-TEST_F(LoaderTest, RefusesClustersThatContradictThePlanes) {
-  Sample sample = testing::sampleBundle();
-  const bundle::CellTransfer& transfer = sample.description.groups[1].cells[0].transfers[0];
-  const auto view = sample.description.payloads[static_cast<std::uint32_t>(transfer.cluster_ids)].view;
-  const std::vector<std::uint32_t> all_first(500, 0);
-  sample.blobs[view] = transfer::encodeClusterIds(all_first, 2);
-  sample.description.payloads[static_cast<std::uint32_t>(transfer.cluster_ids)].codec =
-      bundle::PayloadCodec::Raw;
-  write(sample);
-  Loader loader(open(), threads_, 2);
-  EXPECT_EQ(drain(loader, 1 << 20).size(), 9u);
-  ASSERT_TRUE(loader.error());
-  EXPECT_NE(loader.error()->line().find("group 1 cell 0: has weight planes of other sizes"),
-            std::string::npos)
-      << loader.error()->line();
-}
-
-TEST_F(LoaderTest, RefusesRowsOfANormalMappedDrawIntoPlainSamples) {
-  Sample sample = testing::sampleBundle();
-  sample.description.draws[0].outputs = 9;
-  write(sample);
-  Loader loader(open(), threads_, 2);
-  drain(loader, 1 << 20);
-  ASSERT_TRUE(loader.error());
-  EXPECT_NE(loader.error()->line().find("draw 0: takes samples"), std::string::npos)
-      << loader.error()->line();
-}
-
 TEST_F(LoaderTest, BringsThePartsThatAreAskedForInTheirOrder) {
   write(testing::sampleBundle());
   Loader loader(open(),
@@ -289,15 +234,6 @@ TEST_F(LoaderTest, BringsThePartsThatAreAskedForInTheirOrder) {
                 threads_, 2);
   EXPECT_EQ(names(drain(loader, 1 << 20)),
             (std::vector<std::string>{"image 1", "mesh 1.1", "codebook 1.0.0", "plane 1.0.0.0"}));
-}
-
-TEST_F(LoaderTest, IsIdleSoonAfterItWasStopped) {
-  write(testing::manyImages(40, 1024));
-  Loader loader(open(), threads_, 3);
-  loader.waitForMore();
-  EXPECT_FALSE(loader.idle()) << "there is more than its memory holds";
-  loader.stop();
-  EXPECT_TRUE(lambent::testing::eventually([&] { return loader.idle(); }));
 }
 
 TEST_F(LoaderTest, PartsOfABundleAreAllOfItEachOnceInAnOrderThatShows) {
@@ -368,16 +304,6 @@ TEST_F(LoaderTest, BringsRandomPartsWhileOthersAreDropped) {
     dropped.push_back(std::move(loader));
     std::erase_if(dropped, [](const Loader& one) { return one.idle(); });
   }
-}
-
-TEST_F(LoaderTest, FinishesAnEmptyBundleAtOnce) {
-  write(Sample{});
-  Loader loader(open(), threads_, 4);
-  EXPECT_TRUE(loader.finished());
-  loader.waitForMore();
-  EXPECT_TRUE(loader.take(1 << 20).empty());
-  EXPECT_FALSE(loader.error());
-  EXPECT_EQ(loader.bytesRead(), 0u);
 }
 
 }  // namespace

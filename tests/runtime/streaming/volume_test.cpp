@@ -80,19 +80,6 @@ TEST_F(VolumeLoading, BringsGridsAsTheyWereWrittenBeforeImagesAndTransfer) {
   }
 }
 
-TEST_F(VolumeLoading, RefusesVoxelsThatAreNotInOrder) {
-  testing::Sample sample;
-  const std::uint32_t group = lambent::testing::addVolume(sample.description, sample.blobs, waves());
-  std::vector<std::uint32_t> voxels = waves().voxels();
-  std::swap(voxels[3], voxels[9]);
-  const bundle::VolumeGrid& grid = *sample.description.groups[group].volume;
-  sample.blobs[sample.description.payloads[grid.voxels].view] = bundle::encodeVoxels(voxels);
-  Loader loader(write(sample), threads_, 2);
-  drain(loader);
-  ASSERT_TRUE(loader.error());
-  EXPECT_NE(loader.error()->line().find("voxels"), std::string::npos) << loader.error()->line();
-}
-
 TEST_F(VolumeLoading, CountsGridsAndTheirLightAgainstTheBudget) {
   testing::Sample sample;
   BuiltVolume volume = waves();

@@ -149,44 +149,4 @@ TEST_F(TextureStreaming, ALargeTextureComesOverSeveralFramesAndIsSeenWhenItIsWho
   }
 }
 
-TEST_F(TextureStreaming, WhatReplacesABundleComesOverSeveralFramesToo) {
-  constexpr std::uint64_t kPerFrame = std::uint64_t{128} << 10;
-  WorldStage expected(lights);
-  expected.open(sheet(1));
-  const spec::RgbaImage picture = look(expected, 2.2f);
-  for (const std::uint64_t limit : {kNoLimit, std::uint64_t{1} << 30}) {
-    WorldStage stage(lights, {.max_resident_bytes = limit});
-    const std::uint32_t slot = stage.open(sheet(0));
-    look(stage, 2.2f);
-    const std::uint64_t bytes = stage.world.residency().bytesResident();
-    // An upload that is cancelled in the middle of a texture leaves nothing behind.
-    for (const bool give_up : {true, false}) {
-      ASSERT_TRUE(stage.world.replace(slot, sheet(1)));
-      int frames = 0;
-      std::uint64_t come = 0;
-      for (; frames < 2000 && !stage.world.loaded(); ++frames) {
-        gpu::Counters counters;
-        ASSERT_TRUE(stage.world.upload(kPerFrame, counters));
-        ASSERT_LE(counters.uploaded_bytes, kPerFrame + 4 * kTexels) << "a row more at most";
-        come += counters.uploaded_bytes;
-        if (come < std::uint64_t{4} * kTexels * kTexels) {
-          EXPECT_EQ(stage.world.status(slot).path, sheet(0)) << "until all of it is here";
-        }
-        if (give_up && counters.uploaded_bytes >= kPerFrame / 2) break;
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      }
-      if (give_up) {
-        ASSERT_LT(frames, 2000);
-        ASSERT_GT(stage.world.residency().bytesResident(), bytes) << "some of it has come";
-        ASSERT_FALSE(stage.world.replace(slot, file("missing.lmb.glb")));
-        EXPECT_EQ(stage.world.residency().bytesResident(), bytes);
-      } else {
-        EXPECT_GE(frames, static_cast<int>(4 * kTexels * kTexels / kPerFrame));
-      }
-    }
-    EXPECT_EQ(stage.world.status(slot).path, sheet(1));
-    EXPECT_EQ(worst(look(stage, 2.2f), picture), 0.0);
-  }
-}
-
 }  // namespace lambent::frame

@@ -20,7 +20,6 @@
 
 namespace lambent::frame {
 
-using testing::BundleBuilder;
 using testing::WorldStage;
 using testing::worst;
 using WorldTest = testing::WorldTest;
@@ -146,28 +145,6 @@ TEST_F(WorldTest, APictureOfALostContextFails) {
   EXPECT_EQ(drawn.error().subject, "GPU");
 }
 
-TEST_F(WorldTest, ADamagedBundleIsReportedAndTheOthersAreShown) {
-  const std::filesystem::path damaged = file("damaged.lmb.glb");
-  std::filesystem::copy_file(ballFile(0.0f), damaged);
-  std::filesystem::resize_file(damaged, std::filesystem::file_size(damaged));
-  {
-    std::fstream bytes(damaged, std::ios::in | std::ios::out | std::ios::binary);
-    bytes.seekp(-64, std::ios::end);
-    bytes.write("________________", 16);
-  }
-  WorldStage stage(lights);
-  const std::uint32_t bad = stage.open(damaged);
-  stage.open(quadFile({0.2f, 0.8f, 0.1f, 1.0f}));
-  for (int i = 0; i < 1000 && !stage.world.loaded(); ++i) stage.render();
-  ASSERT_EQ(stage.world.errors().size(), 1u) << stage.world.errors().back().error.line();
-  EXPECT_EQ(stage.world.errors()[0].bundle, bad);
-  EXPECT_EQ(stage.world.status(bad).state, BundleStatus::State::Damaged);
-  gpu::Counters counters;
-  EXPECT_FALSE(stage.world.uploadAll(counters)) << "who waits for all of it is told";
-  stage.world.close(bad);
-  expectSame(stage.picture(), fresh({quadFile({0.2f, 0.8f, 0.1f, 1.0f})}), stage);
-}
-
 TEST_F(WorldTest, WhatWasChangedByHandSurvivesAndEntitiesStayTheSame) {
   WorldStage stage(lights);
   const std::uint32_t ball = stage.open(ballFile(0.0f), {.bundle_id = "ball"});
@@ -187,48 +164,6 @@ TEST_F(WorldTest, WhatWasChangedByHandSurvivesAndEntitiesStayTheSame) {
   EXPECT_EQ(stage.world.registry().get<scene::Transform>(lid).translation.x, 0.4f) << "nobody moved this one";
   EXPECT_EQ(stage.world.registry().get<scene::Transform>(root).translation.x, -0.5f);
   EXPECT_EQ(stage.world.registry().get<scene::StableId>(root), scene::instanceId("ball", 0));
-}
-
-TEST_F(WorldTest, AMaterialChangedByHandStaysChangedInAReplacement) {
-  const glm::vec4 green(0.2f, 0.8f, 0.1f, 1.0f), red(0.9f, 0.1f, 0.1f, 1.0f);
-  const auto glow = [](WorldStage& stage, std::uint32_t slot) {
-    const ecs::Entity material = stage.world.instance(slot).materials[0];
-    stage.world.registry().edit<scene::MaterialComponent>(material).emission = {0.0f, 0.0f, 0.7f};
-  };
-  WorldStage stage(lights);
-  const std::uint32_t quad = stage.open(quadFile(green), {.bundle_id = "quad"});
-  stage.picture();
-  glow(stage, quad);
-  stage.picture();
-  ASSERT_TRUE(stage.world.replace(quad, quadFile(red)));
-  const spec::RgbaImage image = stage.picture();
-  WorldStage other(lights);
-  const std::uint32_t again = other.open(quadFile(red));
-  other.picture();
-  glow(other, again);
-  expectSame(image, other.picture(), stage);
-}
-
-TEST_F(WorldTest, ManyReplacementsTakeNoMoreThanOne) {
-  WorldStage stage(lights);
-  stage.open(floorFile());
-  const std::uint32_t ball = stage.open(ballFile(0.0f));
-  stage.picture();
-  const std::uint64_t bytes = stage.world.residency().bytesResident();
-  const std::size_t entities = stage.world.registry().entityCount();
-  std::uint64_t reserved = 0;
-  gpu::Counters counters;
-  for (int i = 0; i < 300; ++i) {
-    ASSERT_TRUE(stage.world.replace(ball, ballFile(0.4f * static_cast<float>((i + 1) % 2))));
-    ASSERT_TRUE(stage.world.uploadAll(counters));
-    if (i == 3) reserved = stage.world.residency().bytesReserved();
-    if (i > 3) {
-      ASSERT_LE(stage.world.residency().bytesReserved(), reserved) << i;
-    }
-  }
-  EXPECT_EQ(stage.world.residency().bytesResident(), bytes);
-  EXPECT_EQ(stage.world.registry().entityCount(), entities);
-  expectSame(stage.picture(), fresh({floorFile(), ballFile(0.0f)}), stage);
 }
 
 }  // namespace lambent::frame

@@ -1,8 +1,9 @@
-// Shows one bundle in a world with a light and a frame of 64 x 64, for tests of views and overlays.
+// Shows one written bundle in a world with a light and a small square frame.
 #pragma once
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -32,18 +33,25 @@ struct ViewStage {
   spec::OrbitCamera camera{
       .azimuth_deg = 0.0f, .elevation_deg = 0.0f, .distance_radii = 2.5f, .fov_deg = 40.0f};
 
-  ViewStage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, frame::FrameOptions options)
+  // Without `load`, the bundle streams in with the frames.
+  ViewStage(const BundleBuilder& builder, const std::vector<spec::Light>& lights,
+            frame::FrameOptions options = {}, bool load = true, const frame::WorldOptions& world_options = {},
+            std::uint32_t side = 64)
       : path(std::filesystem::path(::testing::TempDir()) /
-             fmt::format("{}-{}.lmb.glb", getpid(),
-                         ::testing::UnitTest::GetInstance()->current_test_info()->name())),
+             fmt::format("{}-{}{}.lmb.glb", getpid(),
+                         ::testing::UnitTest::GetInstance()->current_test_info()->name(),
+                         load ? "" : "-streamed")),
+        world(world_options),
         environment(*lighting::Environment::create(lights)) {
     builder.write(path);
-    const auto opened = world.open(path);
+    const Result<std::uint32_t> opened = world.open(path);
     EXPECT_TRUE(opened) << opened.error().line();
     gpu::Counters counters;
-    const Result<void> loaded = world.uploadAll(counters);
-    EXPECT_TRUE(loaded) << loaded.error().line();
-    options.size = {64, 64};
+    if (load) {
+      const Result<void> loaded = world.uploadAll(counters);
+      EXPECT_TRUE(loaded) << loaded.error().line();
+    }
+    options.size = {side, side};
     options.wait_for_captures = true;
     Result<frame::Frame> made = frame::Frame::create(options, environment);
     EXPECT_TRUE(made) << made.error().line();
@@ -51,16 +59,26 @@ struct ViewStage {
   }
   ~ViewStage() { std::filesystem::remove(path); }
 
-  void render() {
+  spec::View view() {
     world.updateTransforms();
     const scene::Box bounds = scene::worldBounds(world.registry());
-    const Result<void> done =
-        frame->render(world, environment, spec::orbitView(camera, bounds.min, bounds.max, 1.0f));
+    return spec::orbitView(camera, bounds.min, bounds.max, 1.0f);
+  }
+  void render() { render(view()); }
+  void render(const spec::View& view) {
+    const Result<void> done = frame->render(world, environment, view);
     ASSERT_TRUE(done) << done.error().line();
   }
   spec::RgbaImage picture() {
     render();
     return frame->readLinear();
+  }
+  // Returns the time of a pass of the last frame, or none if there was no such pass.
+  std::optional<gpu::PassTime> pass(const std::string& name) {
+    frame->timers().finish();
+    for (const gpu::PassTime& time : frame->timers().latest())
+      if (time.name == name) return time;
+    return {};
   }
 };
 
