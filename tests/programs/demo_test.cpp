@@ -14,15 +14,13 @@
 #include "runtime/spec/image.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/require.hpp"
 
 namespace lambent {
 namespace {
 
-struct Outcome {
-  int exit_code = -1;
-  std::string out, err;
-};
+using testing::Outcome;
 
 class DemoProgram : public ::testing::Test {
  protected:

@@ -17,22 +17,22 @@ using testing::named;
 using testing::Show;
 using ColumnLight = testing::GpuTest;
 
-constexpr float kAlbedo = 0.6f, kRadiance = 400.0f, kRadius = 0.05f, kHeight = 1.0f;
+constexpr float kGrey = 0.6f, kRadiance = 400.0f, kRadius = 0.05f, kBulbHeight = 1.0f;
 const glm::vec3 kEye(0.9f, 0.6f, 0.9f);
 
 // Has a bulb 1 m above a floor, and a plate of 0.2 m halfway below it. All of it is one rigid group, unless
 // the plate is movable.
 assets::Scene lampScene(bool closed, bool movable = false) {
   assets::Scene scene = named("lamp");
-  add(scene, "floor", assets::plane({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0.1f), glm::vec3(kAlbedo), {0, 0, 0},
+  add(scene, "floor", assets::plane({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0.1f), glm::vec3(kGrey), {0, 0, 0},
       false);
-  add(scene, "plate", assets::box({-0.1f, 0.49f, -0.1f}, {0.1f, 0.5f, 0.1f}, 0.1f), glm::vec3(kAlbedo),
+  add(scene, "plate", assets::box({-0.1f, 0.49f, -0.1f}, {0.1f, 0.5f, 0.1f}, 0.1f), glm::vec3(kGrey),
       {0, 0, 0}, movable);
-  add(scene, "bulb", assets::sphere(kRadius, 8), glm::vec3(kAlbedo), {0, kHeight, 0}, false,
+  add(scene, "bulb", assets::sphere(kRadius, 8), glm::vec3(kGrey), {0, kBulbHeight, 0}, false,
       glm::vec3(kRadiance));
   if (!closed) return scene;
   const auto wall = [&](const char* name, glm::vec3 corner, glm::vec3 right, glm::vec3 up) {
-    add(scene, name, assets::plane(corner, right, up, 0.1f), glm::vec3(kAlbedo), {0, 0, 0}, false);
+    add(scene, name, assets::plane(corner, right, up, 0.1f), glm::vec3(kGrey), {0, 0, 0}, false);
   };
   wall("ceiling", {-1, 2, -1}, {2, 0, 0}, {0, 0, 2});
   wall("back", {-1, 0, -1}, {2, 0, 0}, {0, 2, 0});
@@ -52,7 +52,7 @@ assets::Scene spotScene(bool movable) {
   scene.materials.pop_back();
   scene.spots = {
       {.name = "spot", .intensity_cd = kIntensity, .inner_cone_deg = 60.0f, .outer_cone_deg = 80.0f}};
-  assets::Node node{.name = "lamp", .mesh = -1, .translation = {0, kHeight, 0}};
+  assets::Node node{.name = "lamp", .mesh = -1, .translation = {0, kBulbHeight, 0}};
   node.rotation = glm::angleAxis(glm::radians(-90.0f), glm::vec3(1, 0, 0));  // from -Z to -Y
   node.spot = 0;
   scene.nodes.push_back(node);
@@ -61,15 +61,15 @@ assets::Scene spotScene(bool movable) {
 
 // Returns the floor's radiance on the x axis where nothing hides the spot.
 float underSpot(float x) {
-  const float squared = kHeight * kHeight + x * x;
-  return kAlbedo / glm::pi<float>() * kIntensity * kHeight / (squared * std::sqrt(squared));
+  const float squared = kBulbHeight * kBulbHeight + x * x;
+  return kGrey / glm::pi<float>() * kIntensity * kBulbHeight / (squared * std::sqrt(squared));
 }
 
 // Returns the floor's radiance where nothing hides the bulb: the whole sphere is above the horizon.
 float openAt(const glm::vec3& place) {
-  const glm::vec3 way = glm::vec3(0, kHeight, 0) - place;
+  const glm::vec3 way = glm::vec3(0, kBulbHeight, 0) - place;
   const float squared = glm::dot(way, way);
-  return kAlbedo * kRadiance * (kRadius * kRadius / squared) * way.y / std::sqrt(squared);
+  return kGrey * kRadiance * (kRadius * kRadius / squared) * way.y / std::sqrt(squared);
 }
 
 std::vector<spec::Light> noLight() {
@@ -95,7 +95,7 @@ TEST_F(ColumnLight, ABulbCastsTheSharpShadowOfAPlate) {
   }
   EXPECT_EQ(show.frame->counts()["shadowed_lights"], 1u);
   // The bulb shows its emission alone, because its own light does not reach it.
-  EXPECT_NEAR(show.patch(kEye, {0.0f, kHeight, 0.0f}).g / kRadiance, 1.0f, 0.001f);
+  EXPECT_NEAR(show.patch(kEye, {0.0f, kBulbHeight, 0.0f}).g / kRadiance, 1.0f, 0.001f);
 }
 
 TEST_F(ColumnLight, ASpotOfTheGroupCastsTheSharpShadowOfAPlate) {

@@ -15,7 +15,7 @@ using testing::constantLight;
 using testing::named;
 using testing::Show;
 
-const glm::vec3 kFront(0.8f, 0.1f, 0.1f), kRight(0.1f, 0.6f, 0.1f), kElsewhere(0.2f, 0.2f, 0.5f);
+const glm::vec3 kFront(0.8f, 0.1f, 0.1f), kRight(0.1f, 0.6f, 0.1f), kOtherWalls(0.2f, 0.2f, 0.5f);
 
 // Makes a closed room of 2 m whose walls reflect nothing and shine, with a perfect mirror before its back.
 assets::Scene mirrorRoom() {
@@ -24,11 +24,11 @@ assets::Scene mirrorRoom() {
                         glm::vec3 radiance) {
     add(scene, name, assets::plane(corner, right, up, 0.25f), glm::vec3(0.0f), {0, 0, 0}, false, radiance);
   };
-  wall("floor", {-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, kElsewhere);
-  wall("ceiling", {-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, kElsewhere);
-  wall("back", {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, kElsewhere);
+  wall("floor", {-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, kOtherWalls);
+  wall("ceiling", {-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, kOtherWalls);
+  wall("back", {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, kOtherWalls);
   wall("front", {1, -1, 1}, {-2, 0, 0}, {0, 2, 0}, kFront);
-  wall("left", {-1, -1, 1}, {0, 0, -2}, {0, 2, 0}, kElsewhere);
+  wall("left", {-1, -1, 1}, {0, 0, -2}, {0, 2, 0}, kOtherWalls);
   wall("right", {1, -1, -1}, {0, 0, 2}, {0, 2, 0}, kRight);
   add(scene, "mirror", assets::plane({-0.9f, -0.9f, -0.95f}, {1.8f, 0, 0}, {0, 1.8f, 0}, 0.2f),
       glm::vec3(1.0f), {0, 0, 0}, false);

@@ -14,13 +14,13 @@ using testing::named;
 using testing::Show;
 using SunThroughAWindow = testing::GpuTest;
 
-constexpr float kLow = 0.2f, kHigh = 0.8f, kHalfWidth = 0.4f, kAlbedo = 0.6f;
+constexpr float kLow = 0.2f, kHigh = 0.8f, kHalfWidth = 0.4f, kWallAlbedo = 0.6f;
 
 // The room is 2 m wide and closed but for a window towards +X. All of it is one rigid group.
 assets::Scene room() {
   assets::Scene scene = named("room");
   const auto part = [&](const char* name, glm::vec3 corner, glm::vec3 right, glm::vec3 up) {
-    add(scene, name, assets::plane(corner, right, up, 0.1f), glm::vec3(kAlbedo), {0, 0, 0}, false);
+    add(scene, name, assets::plane(corner, right, up, 0.1f), glm::vec3(kWallAlbedo), {0, 0, 0}, false);
   };
   part("floor", {-1, -1, 1}, {2, 0, 0}, {0, 0, -2});
   part("ceiling", {-1, 1, -1}, {2, 0, 0}, {0, 0, 2});
