@@ -16,12 +16,12 @@
 #include <imgui.h>
 #include <nlohmann/json.hpp>
 
-#include "editor/app/layout.hpp"
 #include "editor/commands/command.hpp"
+#include "editor/panels/panel.hpp"
 #include "editor/render/renderer.hpp"
 #include "editor/script/script.hpp"
+#include "editor/session/scene_changes.hpp"
 #include "editor/session/session.hpp"
-#include "editor/session/status.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/gpu/context.hpp"

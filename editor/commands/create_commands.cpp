@@ -1,8 +1,8 @@
 #include <array>
 
 #include "editor/commands/rows.hpp"
-#include "editor/document/snapshot.hpp"
-#include "editor/session/local_lights.hpp"
+#include "editor/document/document.hpp"
+#include "editor/session/field_numbers.hpp"
 #include "runtime/spec/numbers.hpp"
 
 namespace lambent::editor {

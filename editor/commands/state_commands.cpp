@@ -3,7 +3,7 @@
 
 #include "editor/commands/rows.hpp"
 #include "editor/document/actions.hpp"
-#include "editor/session/status.hpp"
+#include "editor/session/scene_changes.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/spec/numbers.hpp"
 

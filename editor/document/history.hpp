@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "editor/document/document.hpp"
-#include "editor/document/snapshot.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/scene/reflection.hpp"
 

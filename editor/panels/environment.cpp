@@ -8,14 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/panels/assets.hpp"
-#include "editor/panels/fields.hpp"
-#include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/panels/widgets.hpp"
 #include "editor/session/assets.hpp"
 #include "editor/session/key_lights.hpp"
 #include "editor/ui/dear_imgui.hpp"
-#include "editor/ui/fitting.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {

@@ -7,13 +7,11 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/document/actions.hpp"
-#include "editor/panels/fields.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/text.hpp"
+#include "editor/panels/widgets.hpp"
 #include "editor/session/names.hpp"
 #include "editor/session/session.hpp"
 #include "editor/ui/dear_imgui.hpp"
-#include "editor/ui/fitting.hpp"
 #include "editor/ui/marks.hpp"
 
 namespace lambent::editor {

@@ -8,8 +8,8 @@
 #include "editor/commands/command.hpp"
 #include "editor/document/tree.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/text.hpp"
-#include "editor/ui/fitting.hpp"
+#include "editor/panels/widgets.hpp"
+#include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {
 

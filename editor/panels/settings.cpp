@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/panels/fields.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/ui/fitting.hpp"
+#include "editor/panels/widgets.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "runtime/frame/frame_settings.hpp"
 
 namespace lambent::editor {

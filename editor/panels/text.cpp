@@ -1,10 +1,10 @@
-#include "editor/panels/text.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
 
 #include <fmt/format.h>
+
+#include "editor/panels/widgets.hpp"
 
 namespace lambent::editor {
 

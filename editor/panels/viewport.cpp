@@ -6,13 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/panels/assets.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/text.hpp"
+#include "editor/panels/widgets.hpp"
 #include "editor/render/renderer.hpp"
 #include "editor/session/viewing.hpp"
 #include "editor/ui/dear_imgui.hpp"
-#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 

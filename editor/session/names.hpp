@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "editor/document/snapshot.hpp"
+#include "editor/document/document.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::editor {

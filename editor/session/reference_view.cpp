@@ -17,10 +17,9 @@ namespace lambent::editor {
 namespace {
 
 using scene::LocalLightComponent;
-using Kind = LocalLightComponent::Kind;
 
-bool isShape(Kind kind) {
-  return kind == Kind::Sphere || kind == Kind::Disc;
+bool isShape(LocalLightComponent::Kind kind) {
+  return kind == LocalLightComponent::Kind::Sphere || kind == LocalLightComponent::Kind::Disc;
 }
 
 template <typename Visitor>
@@ -30,9 +29,10 @@ void forEachLight(const ecs::Registry& registry, const Document& document, const
       visit(light, worldFromNode(registry, entity), document.nameOf(entity));
 }
 
-gltf::Light::Type typeOf(Kind kind) {
-  if (kind == Kind::Spot) return gltf::Light::Type::Spot;
-  return kind == Kind::Directional ? gltf::Light::Type::Directional : gltf::Light::Type::Point;
+gltf::Light::Type typeOf(LocalLightComponent::Kind kind) {
+  if (kind == LocalLightComponent::Kind::Spot) return gltf::Light::Type::Spot;
+  return kind == LocalLightComponent::Kind::Directional ? gltf::Light::Type::Directional
+                                                        : gltf::Light::Type::Point;
 }
 
 }  // namespace
@@ -84,9 +84,9 @@ std::vector<spec::Light> shapesOf(const ecs::Registry& registry, const Document&
   forEachLight(registry, document,
                [&](const LocalLightComponent& light, const glm::mat4& place, const std::string&) {
                  const glm::vec3 at(place[3]), radiance = light.power();
-                 if (light.kind == Kind::Sphere)
+                 if (light.kind == LocalLightComponent::Kind::Sphere)
                    shapes.emplace_back(spec::SphereLight{at, light.radius_m, radiance});
-                 else if (light.kind == Kind::Disc)
+                 else if (light.kind == LocalLightComponent::Kind::Disc)
                    shapes.emplace_back(
                        spec::DiscLight{at, -glm::normalize(glm::vec3(place[2])), light.radius_m, radiance});
                });

@@ -9,7 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include "editor/session/asset_pictures.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"

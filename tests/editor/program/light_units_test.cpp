@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "editor/document/field_edits.hpp"
-#include "editor/session/local_lights.hpp"
+#include "editor/session/field_numbers.hpp"
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {

@@ -3,7 +3,7 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "editor/session/asset_pictures.hpp"
+#include "editor/session/assets.hpp"
 
 namespace lambent::editor {
 namespace {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "baker/pipeline/journal.hpp"
-#include "editor/session/status.hpp"
+#include "editor/session/scene_changes.hpp"
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {
