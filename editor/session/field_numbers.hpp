@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,18 +11,16 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
-#include "editor/document/document.hpp"
+#include "runtime/ecs/registry.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/reflection.hpp"
 
 namespace lambent::editor {
 
-// Converts the strength of a local light to the units in which lamps are sold and measured, and places new
-// lights. Components store candela for point and spot lights, lux for directional ones and cd/m² for spheres
-// and discs (1 cd = 1 W/sr up to the global scale of all light). Main thread.
-
 class Session;
 
+// A unit in which lamps are sold and measured. Components store candela for point and spot lights, lux for
+// directional ones and cd/m² for spheres and discs (1 cd = 1 W/sr up to the global scale of all light).
 struct LightUnit {
   std::string_view name;  // "lm"
   std::string_view help;  // what it measures
@@ -34,14 +31,6 @@ struct LightUnit {
 std::vector<LightUnit> unitsOf(const scene::LocalLightComponent& light);
 // Returns the unit of this name, or the first if the light has none of that name.
 LightUnit unitOf(const scene::LocalLightComponent& light, std::string_view name);
-
-// Returns the point that a new entity gets: on the way from the surface in the middle of the picture to the
-// camera, or the point that the camera turns about where there is no surface.
-glm::vec3 newPlace(const Session& session);
-// Returns a light of this kind at `at`, or at newPlace() without it. It is turned towards the surface that
-// the camera looks at, and as bright as the present exposure shows well, so that it is seen at once.
-EntitySnapshot newLight(const Session& session, scene::LocalLightComponent::Kind kind, std::string name,
-                        const std::optional<glm::vec3>& at);
 
 // Holds the angles of the rotation that a field shows. Many angles give one rotation, so a field that made
 // them anew from the rotation in each frame would jump to others while it is dragged beyond 90 degrees.

@@ -192,12 +192,13 @@ Result<void> resetKeyLights(Session& session, std::optional<std::size_t> key) {
   return {};
 }
 
+bool isEnvironmentMap(const std::string& word) {
+  const auto light = spec::parseLight(word);
+  return light && std::holds_alternative<spec::EnvironmentMapLight>(*light);
+}
+
 void replaceLights(const Session& session, WorldState& world, std::vector<std::string> lights) {
   const auto stays = [&](const std::string& word) { return std::ranges::find(lights, word) != lights.end(); };
-  const auto isEnvironmentMap = [](const std::string& word) {
-    const auto light = spec::parseLight(word);
-    return light && std::holds_alternative<spec::EnvironmentMapLight>(*light);
-  };
   const bool all_stay = std::ranges::all_of(
       world.lights, [&](const std::string& word) { return !isEnvironmentMap(word) || stays(word); });
   if (!all_stay) {

@@ -47,6 +47,8 @@ Result<void> dimKeyLight(Session& session, std::size_t key, const glm::vec3& fac
 // Removes the edits of one key light, or of all without a number. Suns are not changed.
 Result<void> resetKeyLights(Session& session, std::optional<std::size_t> key);
 
+// Returns whether a light word names an environment map.
+bool isEnvironmentMap(const std::string& word);
 // Sets the world's lights. Edits of key lights stay with their environment maps, and are removed with them.
 void replaceLights(const Session& session, WorldState& world, std::vector<std::string> lights);
 

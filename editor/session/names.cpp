@@ -64,14 +64,4 @@ Result<std::size_t> findScene(const Session& session, const std::string& word) {
   return fail(word, "is no open scene", fmt::format("open are: {}", fmt::join(known, ", ")));
 }
 
-std::string freshName(const Session& session, const std::string& stem) {
-  std::vector<std::string> names;
-  for (const auto [entity, name] : session.document.registry().view<const scene::Name>())
-    names.push_back(name.value);
-  std::string name = stem;
-  for (int count = 2; std::find(names.begin(), names.end(), name) != names.end(); ++count)
-    name = fmt::format("{} {}", stem, count);
-  return name;
-}
-
 }  // namespace lambent::editor

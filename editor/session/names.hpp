@@ -22,7 +22,5 @@ Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std:
 std::optional<std::size_t> sceneAtHand(const Session& session);
 // Finds a scene by its id or number. An empty word means sceneAtHand().
 Result<std::size_t> findScene(const Session& session, const std::string& word);
-// Returns an unused name: "point", "point 2", ...
-std::string freshName(const Session& session, const std::string& stem);
 
 }  // namespace lambent::editor
