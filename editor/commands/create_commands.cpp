@@ -60,17 +60,9 @@ void put(EntitySnapshot& snapshot, std::string_view component, std::string_view 
 float strengthFor(LampKind kind, float distance_m, float radius_m, float exposure_ev) {
   const float irradiance = std::numbers::pi_v<float> * kOfWhite * std::exp2(-exposure_ev);
   const float intensity = irradiance * distance_m * distance_m;
-  switch (kind) {
-    case LampKind::Directional:
-      return irradiance;
-    case LampKind::Point:
-    case LampKind::Spot:
-      return intensity;
-    case LampKind::Sphere:
-    case LampKind::Disc:
-      return intensity / (std::numbers::pi_v<float> * radius_m * radius_m);
-  }
-  return 1.0f;
+  if (kind == LampKind::Directional) return irradiance;
+  if (kind == LampKind::Point || kind == LampKind::Spot) return intensity;
+  return intensity / (std::numbers::pi_v<float> * radius_m * radius_m);
 }
 
 // Returns the point that a new entity gets: on the way from the surface in the middle of the picture to the

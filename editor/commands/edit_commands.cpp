@@ -41,7 +41,7 @@ Result<void> copy(Session& session, Words words) {
 
 Result<void> paste(Session& session) {
   const std::string text = session.clipboard.get();
-  if (peekClip(text).kind == Pasted::Component)
+  if (peekClip(text) == Pasted::Component)
     return pasteComponent(session.document, session.history, selected(session), text);
   return pasteEntities(session.document, session.history, ecs::Entity{}, text)
       .map([&](const std::vector<ecs::Entity>& pasted) { selectAll(session, pasted); });

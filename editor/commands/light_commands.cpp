@@ -74,12 +74,12 @@ Result<void> setEnvironmentMap(Session& session, Words words) {
 }
 
 void addEnvironmentMapFolder(Session& session, Words words) {
-  if (!words.empty()) return session.environment_maps.addFolder(words[0]);
+  if (!words.empty()) return session.assets.addFolder(words[0]);
   session.window.dialog =
       Dialog{.kind = Dialog::Kind::Folder,
              .title = "Folder of environment maps",
              .folder = workingFolder(),
-             .answered = [](Session& s, const std::string& folder) { s.environment_maps.addFolder(folder); }};
+             .answered = [](Session& s, const std::string& folder) { s.assets.addFolder(folder); }};
 }
 
 Result<void> setLights(Session& session, Words words) {

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "editor/commands/command.hpp"
-#include "editor/session/names.hpp"
 #include "editor/session/session.hpp"
 
 namespace lambent::editor {

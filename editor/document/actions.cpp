@@ -11,6 +11,9 @@
 
 namespace lambent::editor {
 
+namespace {
+
+// Returns snapshots of the entities and their descendants, parents first. Errors: those of duplicate().
 Result<std::vector<EntitySnapshot>> copiesOf(const Document& document,
                                              std::span<const ecs::Entity> entities) {
   const ecs::Registry& registry = document.registry();
@@ -33,6 +36,8 @@ Result<std::vector<EntitySnapshot>> copiesOf(const Document& document,
   return copies;
 }
 
+// Creates entities from the snapshots as one step of the history. Returns those whose parent is not among
+// them.
 Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history,
                                             std::vector<EntitySnapshot> copies, std::string name) {
   // Every copy gets a new id, and its parent is renamed if it is a copy, too.
@@ -58,8 +63,6 @@ Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history
   return entities;
 }
 
-namespace {
-
 // Returns "ball 2" for "ball" and "ball 1", or the next free number.
 std::string nextName(const Document& document, const std::string& name) {
   std::string stem = name;
@@ -74,11 +77,6 @@ std::string nextName(const Document& document, const std::string& name) {
   }
 }
 
-std::string what(const Document& document, std::span<const ecs::Entity> entities) {
-  return entities.size() == 1 ? document.nameOf(entities.front())
-                              : fmt::format("{} entities", entities.size());
-}
-
 }  // namespace
 
 Result<std::vector<ecs::Entity>> duplicate(Document& document, History& history,
@@ -86,7 +84,7 @@ Result<std::vector<ecs::Entity>> duplicate(Document& document, History& history,
   for (const ecs::Entity entity : entities) document.adopt(entity);
   Result<std::vector<EntitySnapshot>> copies = copiesOf(document, entities);
   if (!copies) return failAgain(copies.error());
-  history.begin("duplicate of " + what(document, entities));
+  history.begin("duplicate of " + entitiesName(document, entities));
   const Result<std::vector<ecs::Entity>> made = makeCopies(document, history, std::move(*copies), "copies");
   if (!made) {
     history.cancel();
@@ -133,8 +131,10 @@ Result<void> resetToDefault(Document& document, History& history, const Baseline
     }
   }
   // A value of a bundle may lie outside the field's range and is still its default.
-  return history.restoreFields(
-      edits, fmt::format("reset of {} of {}", field.empty() ? component : field, what(document, entities)));
+  return history.setFields(
+      edits,
+      fmt::format("reset of {} of {}", field.empty() ? component : field, entitiesName(document, entities)),
+      /*in_range=*/false);
 }
 
 namespace {
@@ -231,12 +231,12 @@ Result<std::string> copyEntities(const Document& document, std::span<const ecs::
   return clip.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
-Clip peekClip(std::string_view text) {
+Pasted peekClip(std::string_view text) {
   const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object() || !json.contains(kMark)) return {};
-  if (json.contains("component") && json["component"].is_string())
-    return {Pasted::Component, json["component"].get<std::string>()};
-  return {json.contains("entities") ? Pasted::Entities : Pasted::Nothing, {}};
+  if (!json.is_object() || !json.contains(kMark)) return Pasted::Nothing;
+  return json.contains("component")  ? Pasted::Component
+         : json.contains("entities") ? Pasted::Entities
+                                     : Pasted::Nothing;
 }
 
 Result<void> pasteComponent(Document& document, History& history, std::span<const ecs::Entity> entities,
@@ -251,9 +251,7 @@ Result<void> pasteComponent(Document& document, History& history, std::span<cons
     return asError(fault);
   }
   const scene::ComponentInfo& info = *part.component;
-  history.begin(entities.size() == 1
-                    ? fmt::format("paste of {} onto {}", info.name, document.nameOf(entities.front()))
-                    : fmt::format("paste of {} onto {} entities", info.name, entities.size()));
+  history.begin(fmt::format("paste of {} onto {}", info.name, entitiesName(document, entities)));
   std::vector<FieldEdit> edits;
   for (const ecs::Entity entity : entities) {
     if (!info.has(document.registry(), entity)) {

@@ -87,7 +87,6 @@ class Document {
 
   // Returns the entity, or none if it does not exist at present.
   ecs::Entity find(StableId id) const;
-  // Returns the entity's id, or kNoId if it has none.
   StableId idOf(ecs::Entity entity) const;
   // Returns the entity's id. An entity without id gets one and becomes Created (the environment gets
   // environmentId()).
@@ -118,7 +117,6 @@ class Document {
 
 // Returns the parent, or none if it is no longer alive.
 ecs::Entity parentOf(const ecs::Registry& registry, ecs::Entity entity);
-// Returns whether `entity` is `ancestor` or one of its descendants.
 bool isBelow(const ecs::Registry& registry, ecs::Entity entity, ecs::Entity ancestor);
 // Returns the entities and their descendants, each once, parents before children.
 std::vector<ecs::Entity> withDescendants(const ecs::Registry& registry,
@@ -150,7 +148,6 @@ ComponentValues componentValues(const ecs::Registry& registry, ecs::Entity entit
 EntitySnapshot takeSnapshot(const Document& document, ecs::Entity entity);
 // Creates a Created entity with these components, below the world if its parent does not exist.
 ecs::Entity makeEntity(Document& document, const EntitySnapshot& snapshot);
-// Return the approximate memory use in bytes.
 std::size_t bytesOf(const EntitySnapshot& snapshot);
 std::size_t bytesOf(const scene::Value& value);
 

@@ -19,17 +19,9 @@ namespace {
 constexpr float kShape = 16.0f / 9.0f;  // of the picture
 
 ImU32 colorOf(AssetKind kind) {
-  switch (kind) {
-    case AssetKind::EnvironmentMap:
-      return IM_COL32(70, 105, 150, 255);
-    case AssetKind::Scene:
-      return IM_COL32(95, 95, 100, 255);
-    case AssetKind::Bundle:
-      return IM_COL32(140, 100, 50, 255);
-    case AssetKind::World:
-      return IM_COL32(70, 120, 75, 255);
-  }
-  return 0;
+  constexpr std::array kColors = {IM_COL32(70, 105, 150, 255), IM_COL32(95, 95, 100, 255),
+                                  IM_COL32(140, 100, 50, 255), IM_COL32(70, 120, 75, 255)};
+  return kColors[static_cast<std::size_t>(kind)];
 }
 
 ImVec2 sizeOfText(const std::string& text) {
@@ -153,9 +145,7 @@ void drawAssets(Session& session, Marks& marks) {
       if (titled) {
         sameLineIfFits(em(browser.large ? kLargeTileEms : kTileEms));
       } else {
-        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-        fittedText(group.title);
-        ImGui::PopStyleColor();
+        fittedText(dimmed(), group.title);
       }
       titled = true;
       drawTile(session, marks, asset);

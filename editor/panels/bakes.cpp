@@ -11,7 +11,6 @@
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/panels/widgets.hpp"
-#include "editor/session/names.hpp"
 #include "editor/session/scene_changes.hpp"
 #include "editor/ui/dear_imgui.hpp"
 
@@ -119,35 +118,36 @@ std::string pictureErrorText(const Session& session, const SceneEntry& entry) {
 }
 
 void drawState(const SceneStatus& status) {
-  ImGui::PushStyleColor(ImGuiCol_Text, standingColor(status.standing));
-  fittedText(status.text, status.detail);
-  ImGui::PopStyleColor();
+  fittedText(standingColor(status.standing), status.text, status.detail);
+}
+
+// Draws a button with a mark, in the line of the last one if it fits there.
+bool smallButton(Marks& marks, const char* text, const std::string& mark, const char* help = "",
+                 bool first = false) {
+  if (!first) sameLineIfFits(text);
+  const bool pressed = ImGui::SmallButton(text);
+  marks.put(mark);
+  tooltip(help);
+  return pressed;
 }
 
 // Draws the buttons of an open scene. Returns false if it was closed.
 bool drawButtons(Session& session, Marks& marks, std::size_t i, bool working) {
   const SceneEntry& entry = session.scenes.entries()[i];
+  const bool has_source = !entry.source.empty();
   const std::string number = std::to_string(i), mark = fmt::format("bakes.{}.", entry.id);
   if (working) {
-    if (ImGui::SmallButton("Cancel")) runOrLog(session, "cancel", std::array{number});
-    marks.put(mark + "cancel");
-    sameLineIfFits("Options");
-  } else if (!entry.source.empty()) {
-    if (ImGui::SmallButton("Bake")) runOrLog(session, "bake", std::array{number});
-    marks.put(mark + "bake");
-    sameLineIfFits("Options");
+    if (smallButton(marks, "Cancel", mark + "cancel", "", /*first=*/true))
+      runOrLog(session, "cancel", std::array{number});
+  } else if (has_source && smallButton(marks, "Bake", mark + "bake", "", /*first=*/true)) {
+    runOrLog(session, "bake", std::array{number});
   }
-  if (!entry.source.empty()) {
-    if (ImGui::SmallButton("Options")) ImGui::OpenPopup("options");
-    marks.put(mark + "options");
-    if (ImGui::BeginPopup("options")) {
-      drawBakeOptions(session, marks, i);
-      ImGui::EndPopup();
-    }
-    sameLineIfFits("Close");
+  if (has_source && smallButton(marks, "Options", mark + "options")) ImGui::OpenPopup("options");
+  if (ImGui::BeginPopup("options")) {
+    drawBakeOptions(session, marks, i);
+    ImGui::EndPopup();
   }
-  const bool close = ImGui::SmallButton("Close");
-  marks.put(mark + "close");
+  const bool close = smallButton(marks, "Close", mark + "close", "", /*first=*/!working && !has_source);
   if (close) runOrLog(session, "close", std::array{number});
   return !close;
 }
@@ -187,13 +187,10 @@ void drawUnseen(Session& session, Marks& marks, const baker::JobState& job) {
   if (works(job)) drawProgress(job);
   fittedText(job.error ? job.error->line() : newsOf(job));
   ImGui::TableNextColumn();
-  if (works(job)) {
-    if (ImGui::SmallButton("Cancel")) session.scenes.cancelUnseen(job.id);
-    marks.put(mark + "cancel");
-    sameLineIfFits("Open");
-  }
-  if (ImGui::SmallButton("Open")) runOrLog(session, "open", std::array{job.request.scene.string()});
-  marks.put(mark + "open");
+  if (works(job) && smallButton(marks, "Cancel", mark + "cancel", "", /*first=*/true))
+    session.scenes.cancelUnseen(job.id);
+  if (smallButton(marks, "Open", mark + "open", "", /*first=*/!works(job)))
+    runOrLog(session, "open", std::array{job.request.scene.string()});
 }
 
 // Draws a bake that an earlier session left unfinished. Returns false if it is on the list no more.
@@ -208,17 +205,12 @@ bool drawUnfinished(Session& session, Marks& marks, std::size_t i) {
   ImGui::TableNextColumn();
   fittedText("its bake can go on from where it was");
   ImGui::TableNextColumn();
-  const bool go_on = ImGui::SmallButton("Go on");
-  tooltip("Bake it without opening it");
-  marks.put(mark + "go-on");
-  sameLineIfFits("Open");
-  const bool open = ImGui::SmallButton("Open");
-  tooltip("Show it, and bake it with the options of this session");
-  marks.put(mark + "open");
-  sameLineIfFits("Forget");
-  const bool forget = ImGui::SmallButton("Forget");
-  tooltip("Offer it no more; what it kept stays in the cache");
-  marks.put(mark + "forget");
+  const bool go_on =
+      smallButton(marks, "Go on", mark + "go-on", "Bake it without opening it", /*first=*/true);
+  const bool open =
+      smallButton(marks, "Open", mark + "open", "Show it, and bake it with the options of this session");
+  const bool forget =
+      smallButton(marks, "Forget", mark + "forget", "Offer it no more; what it kept stays in the cache");
   const std::string number = std::to_string(i);
   if (go_on) runOrLog(session, "go-on", std::array{number});
   if (open) runOrLog(session, "open", std::array{scene.string()});

@@ -108,49 +108,6 @@ std::string percentText(double error) {
   return error <= 0.0 ? "none" : fmt::format("{:.2g} %", 100.0 * error);
 }
 
-// Plots error over value; the tooltip shows the times.
-void drawSweep(const frame::SettingRow& row, const std::vector<frame::SettingPoint>& points) {
-  std::vector<float> errors;
-  std::string table = fmt::format("{:>10}  {:>10}  {:>8}\n", row.name, "error", "ms");
-  for (const frame::SettingPoint& point : points) {
-    errors.push_back(static_cast<float>(100.0 * point.error));
-    table += fmt::format("{:>10.4g}  {:>10}  {:>8.2f}\n", point.value, percentText(point.error),
-                         frameMilliseconds(point));
-  }
-  ImGui::PlotLines("##sweep", errors.data(), static_cast<int>(errors.size()), 0, nullptr, 0.0f, FLT_MAX,
-                   ImVec2(em(8.7f), em(1.6f)));
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", table.c_str());
-}
-
-// Draws the widget of the setting itself.
-void drawSetting(Session& session, Marks& marks, const frame::SettingRow& row) {
-  frame::FrameSettings settings = session.stage.settings();
-  const double value = row.get(settings);
-  double to = value;
-  bool changed = false;
-  ImGui::SetNextItemWidth(-1.0f);
-  using Kind = frame::SettingRow::Kind;
-  if (row.kind == Kind::Switch) {
-    bool on = value != 0.0;
-    changed = ImGui::Checkbox("##knob", &on);
-    to = on ? 1.0 : 0.0;
-  } else {
-    float shown = static_cast<float>(value);
-    changed =
-        ImGui::SliderFloat("##knob", &shown, static_cast<float>(row.least), static_cast<float>(row.greatest),
-                           frame::settingWord(row, settings).c_str(), ImGuiSliderFlags_AlwaysClamp);
-    to = row.kind == Kind::Real ? double{shown} : std::round(double{shown});
-  }
-  marks.put(fmt::format("accuracy.{}", row.name));
-  if (ImGui::IsItemActivated()) session.history.beginDrag(std::string(row.label));
-  if (changed && to != value) {
-    row.put(settings, to);
-    const std::array words = {std::string(row.name), frame::settingWord(row, settings)};
-    runOrLog(session, "setting", words);
-  }
-  if (ImGui::IsItemDeactivated()) session.history.endDrag();
-}
-
 }  // namespace
 
 void drawAccuracy(Session& session, Marks& marks) {
@@ -158,47 +115,40 @@ void drawAccuracy(Session& session, Marks& marks) {
     session.settings.measureAll();
   marks.put("accuracy.measure");
   ImGui::SameLine();
-  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
   fittedText(
+      dimmed(),
       "error against the knob's finest value, same view at rest; times of a frame that shades everything");
-  ImGui::PopStyleColor();
   constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
                                      ImGuiTableFlags_ScrollY | ImGuiTableFlags_Resizable |
                                      ImGuiTableFlags_ScrollX;
-  if (!ImGui::BeginTable("knobs", 6, kTable, ImVec2(0.0f, 0.0f),
-                         std::max(ImGui::GetContentRegionAvail().x, em(44.0f))))
+  if (!ImGui::BeginTable("knobs", 5, kTable, ImVec2(0.0f, 0.0f),
+                         std::max(ImGui::GetContentRegionAvail().x, em(32.0f))))
     return;
   ImGui::TableSetupColumn("Knob", ImGuiTableColumnFlags_WidthStretch, 0.24f);
   ImGui::TableSetupColumn("Value", ImGuiTableColumnFlags_WidthStretch, 0.26f);
   ImGui::TableSetupColumn("Error", ImGuiTableColumnFlags_WidthFixed, em(5.0f));
   ImGui::TableSetupColumn("ms now", ImGuiTableColumnFlags_WidthFixed, em(4.0f));
   ImGui::TableSetupColumn("ms finest", ImGuiTableColumnFlags_WidthFixed, em(4.3f));
-  ImGui::TableSetupColumn("Error over values", ImGuiTableColumnFlags_WidthFixed, em(12.7f));
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableHeadersRow();
   for (const frame::SettingRow& row : frame::settingRows()) {
     if (!row.finest) continue;
-    const auto found = session.settings.rows().find(row.name);
+    const auto found = session.settings.costs().find(row.name);
     ImGui::PushID(row.name.data());
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     fittedText(row.label, fmt::format("{}\n{}", row.name, row.help));
     ImGui::TableNextColumn();
-    drawSetting(session, marks, row);
-    const bool known = found != session.settings.rows().end() && !found->second.cost.now.passes.empty();
-    ImGui::TableNextColumn();
-    if (known) ImGui::TextUnformatted(percentText(found->second.cost.now.error).c_str());
-    ImGui::TableNextColumn();
-    if (known) ImGui::Text("%.2f", frameMilliseconds(found->second.cost.now));
-    ImGui::TableNextColumn();
-    if (known) ImGui::Text("%.2f", frameMilliseconds(found->second.cost.finest));
-    ImGui::TableNextColumn();
-    if (found != session.settings.rows().end() && !found->second.sweep.empty()) {
-      drawSweep(row, found->second.sweep);
-      ImGui::SameLine();
+    editSetting(session, marks, row, fmt::format("accuracy.{}", row.name));
+    if (found != session.settings.costs().end()) {
+      const frame::SettingCost& cost = found->second;
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(percentText(cost.now.error).c_str());
+      for (const frame::SettingPoint* point : {&cost.now, &cost.finest}) {
+        ImGui::TableNextColumn();
+        ImGui::Text("%.2f", frameMilliseconds(*point));
+      }
     }
-    if (ImGui::SmallButton("Sweep")) session.settings.sweep(std::string(row.name));
-    marks.put(fmt::format("accuracy.sweep.{}", row.name));
     ImGui::PopID();
   }
   ImGui::EndTable();
@@ -207,20 +157,8 @@ void drawAccuracy(Session& session, Marks& marks) {
 namespace {
 
 const char* stateWord(frame::BundleStatus::State state) {
-  using State = frame::BundleStatus::State;
-  switch (state) {
-    case State::Closed:
-      return "closed";
-    case State::Loading:
-      return "loading";
-    case State::Partial:
-      return "as far as there is room";
-    case State::Whole:
-      return "whole";
-    case State::Damaged:
-      return "damaged";
-  }
-  return "";
+  constexpr std::array kStateWords = {"closed", "loading", "as far as there is room", "whole", "damaged"};
+  return kStateWords[static_cast<std::size_t>(state)];
 }
 
 void drawTimes(const frame::FrameTimes& times) {

@@ -14,7 +14,6 @@
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/panels/widgets.hpp"
-#include "editor/session/names.hpp"
 #include "editor/session/scene_changes.hpp"
 #include "editor/ui/dear_imgui.hpp"
 
@@ -36,13 +35,14 @@ void runAfterFields(Session& session, const Command& command) {
   session.window.wanted_commands.emplace_back(command.id);
 }
 
-void drawMenuItem(Session& session, Marks& marks, const Command& command) {
+// Draws a command as a menu item. Returns whether it was chosen.
+bool drawCommandItem(const Session& session, Marks& marks, const Command& command, const char* mark) {
   const bool enabled = !command.enabled || command.enabled(session);
   const bool checked = command.checked && command.checked(session);
-  if (ImGui::MenuItem(titleOf(session, command).c_str(), command.shortcut, checked, enabled))
-    runAfterFields(session, command);
-  marks.put(std::string("menu.") + command.id);
+  const bool chosen = ImGui::MenuItem(titleOf(session, command).c_str(), command.shortcut, checked, enabled);
+  marks.put(std::string(mark) + command.id);
   tooltip(command.help);
+  return chosen;
 }
 
 bool isUndoOrRedo(const Command& command) {
@@ -148,8 +148,8 @@ void drawMenus(Session& session, Marks& marks) {
       if (std::strcmp(command.menu, menu) != 0) continue;
       if (*command.title == '-')
         ImGui::Separator();
-      else if (*command.title != '\0')
-        drawMenuItem(session, marks, command);
+      else if (*command.title != '\0' && drawCommandItem(session, marks, command, "menu."))
+        runAfterFields(session, command);
       if (std::strcmp(command.id, "open") == 0) drawRecentMenu(session, marks);
       if (std::strcmp(command.id, "save-layout") == 0) drawSavedLayouts(session, marks);
     }
@@ -170,11 +170,7 @@ constexpr std::array kItems = {"frame", "rename", "duplicate", "delete",    "",
 constexpr std::array kCameraItems = {"look-through", "camera-to-view"};
 
 void drawContextItem(Session& session, Marks& marks, const Command& command) {
-  const bool enabled = !command.enabled || command.enabled(session);
-  const bool checked = command.checked && command.checked(session);
-  if (ImGui::MenuItem(command.title, command.shortcut, checked, enabled)) runOrLog(session, command.id, {});
-  marks.put(std::string("context.") + command.id);
-  tooltip(command.help);
+  if (drawCommandItem(session, marks, command, "context.")) runOrLog(session, command.id, {});
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Formats numbers for people to read, names fields in plain words, and names the few colours that mean
-// something in every panel.
+// Holds what several panels draw: fields and numbers, settings, and tiles of assets. It formats numbers for
+// people to read, names fields in plain words, and names the few colours that mean something in every panel.
 #pragma once
 
 #include <optional>
@@ -15,6 +15,7 @@
 #include "editor/session/scene_changes.hpp"
 #include "editor/session/session.hpp"
 #include "editor/ui/marks.hpp"
+#include "runtime/frame/frame_settings.hpp"
 
 namespace lambent::editor {
 
@@ -36,10 +37,6 @@ std::string fieldLabel(std::string_view component, std::string_view field);
 // Returns a sentence about the field where its label is not enough, or an empty text.
 std::string_view fieldHelp(std::string_view component, std::string_view field);
 
-// Draws a number that is dragged or typed, with the modifiers that the gizmos have, too: Shift is finer, Ctrl
-// goes in steps, Alt is coarser. A click opens a text field that calculates (document/field_edits.hpp). The
-// edit is returned, not applied, so that it can reach several entities.
-
 struct NumberLook {
   double speed = 0.01;             // for a pixel of a drag
   double least = 0.0, most = 0.0;  // equal: no limits
@@ -49,8 +46,10 @@ struct NumberLook {
   bool scales = false;             // a drag multiplies, so that several keep their ratios
 };
 
-// The edit is relative to the number that was shown when the widget became active. It is returned again
-// whenever it changes.
+// Draws a number that is dragged or typed, with the modifiers that the gizmos have, too: Shift is finer, Ctrl
+// goes in steps, Alt is coarser. A click opens a text field that calculates (document/field_edits.hpp). The
+// edit is returned, not applied, so that it can reach several entities. It is relative to the number that was
+// shown when the widget became active. It is returned again whenever it changes.
 std::optional<NumberEdit> dragNumber(const char* label, double shown, const NumberLook& look,
                                      HeldNumber& held);
 // The same for a single number, to which the edit is applied. Returns whether it changed.
@@ -61,9 +60,6 @@ inline constexpr const char* kNumberHelp =
     "Drag; Shift: finer, Alt: coarser, Ctrl: in steps. Click to type: 2*3, +=1, *2";
 // Stands for values that differ.
 inline constexpr const char* kMixedText = "—";
-
-// Draws the fields of a component as widgets, a row each, for the entities that have it. Edits are steps of
-// the history: a drag, or the time that a text field is open, is one. Part of the inspector.
 
 // Draws a table of the fields that all entities use (document/field_edits.hpp). Values that differ are shown
 // as a dash. An edit reaches all entities: a drag shifts their numbers by the same amount, and those of
@@ -83,8 +79,8 @@ void asOneStep(Session& session, const char* name);
 // Logs why an edit was refused, if it was.
 void logRefusal(Session& session, const Result<void>& done);
 
-// Draws assets as tiles: a picture with the name below it. The Assets panel, the Environment panel and the
-// start page have them.
+// Draws the widget of a setting of the frame, as wide as there is room.
+void editSetting(Session& session, Marks& marks, const frame::SettingRow& row, const std::string& mark);
 
 inline constexpr float kTileEms = 7.0f, kLargeTileEms = 12.0f;  // widths
 inline constexpr const char* kDraggedAsset = "asset";  // the type of what a dragged tile carries: its path

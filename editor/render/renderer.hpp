@@ -51,7 +51,6 @@ class Thumbnails {
 // changes, and its textures as they are on the GPU.
 class MaterialPainter {
  public:
-  // Answers what panels wanted in the last frame. Call it once a frame.
   void update(Session& session);
 
  private:
@@ -135,7 +134,6 @@ class Picture {
   Result<std::optional<frame::Picked>> pick(Session& session, float x, float y);
   // Row 0 of the texture is the bottom.
   const gpu::Texture& texture() const { return frame_.picture(); }
-  // Returns what the selected camera sees, as CameraPreview::texture().
   const gpu::Texture& preview() const { return preview_.texture(); }
 
  private:
@@ -184,25 +182,11 @@ class Renderer {
 
   // Renders the view at this size if anything changed, and does all other pending work. Call it once a frame.
   void update(Session& session, spec::Size size);
-  // Returns what is visible at a pixel of the last picture, as Picture::pick().
-  Result<std::optional<frame::Picked>> pick(Session& session, float x, float y) {
-    return picture_.pick(session, x, y);
-  }
-  // Returns the runtime's picture; row 0 is the bottom.
-  const gpu::Texture& picture() const { return picture_.texture(); }
-  // Returns what the selected camera sees; row 0 is the bottom. It has no handle if none is selected.
-  const gpu::Texture& preview() const { return picture_.preview(); }
-  // Returns the reference or the heat map, as `split` says; row 0 is the top. It has no handle while there is
-  // none.
-  const gpu::Texture& reference(SplitView split) const { return reference_.texture(split); }
 
- private:
-  explicit Renderer(Picture picture) : picture_(std::move(picture)) {}
-
-  Picture picture_;
-  ReferencePicture reference_;
-  Thumbnails thumbnails_;
-  MaterialPainter materials_;
+  Picture picture;
+  ReferencePicture reference{};
+  Thumbnails thumbnails{};
+  MaterialPainter materials{};
 };
 
 }  // namespace lambent::editor

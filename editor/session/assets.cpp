@@ -19,7 +19,6 @@
 #include "baker/pipeline/source_watch.hpp"
 #include "editor/document/world_file.hpp"
 #include "editor/gizmo/projection.hpp"
-#include "editor/session/names.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/base/lower_case.hpp"
 #include "runtime/spec/light.hpp"
@@ -50,17 +49,8 @@ bool holdsWorld(const std::filesystem::path& file) {
 }  // namespace
 
 std::string_view kindWord(AssetKind kind) {
-  switch (kind) {
-    case AssetKind::EnvironmentMap:
-      return "environment map";
-    case AssetKind::Scene:
-      return "scene";
-    case AssetKind::Bundle:
-      return "bundle";
-    case AssetKind::World:
-      return "world";
-  }
-  return {};
+  constexpr std::array<std::string_view, 4> kKindWords = {"environment map", "scene", "bundle", "world"};
+  return kKindWords[static_cast<std::size_t>(kind)];
 }
 
 std::string nameOf(const Asset& asset) {
@@ -99,45 +89,6 @@ bool matches(const Asset& asset, std::string_view search) {
 
 namespace {
 
-constexpr std::size_t kMostMaps = 64;
-
-std::vector<std::filesystem::path> foldersOf(std::vector<std::filesystem::path> folders,
-                                             const std::vector<std::string>& light_words,
-                                             const Scenes& scenes) {
-  for (const std::string& word : light_words)
-    if (const auto light = spec::parseLight(word);
-        light && std::holds_alternative<spec::EnvironmentMapLight>(*light))
-      folders.push_back(std::filesystem::path(word).parent_path());
-  for (const SceneEntry& entry : scenes.entries())
-    folders.push_back((entry.source.empty() ? entry.bundle : entry.source).parent_path());
-  for (std::filesystem::path& folder : folders) {
-    std::error_code ignored;
-    folder = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, ignored);
-  }
-  std::sort(folders.begin(), folders.end());
-  folders.erase(std::unique(folders.begin(), folders.end()), folders.end());
-  return folders;
-}
-
-}  // namespace
-
-void EnvironmentMapShelf::addFolder(const std::filesystem::path& folder) {
-  if (std::find(added_.begin(), added_.end(), folder) == added_.end()) added_.push_back(folder);
-}
-
-void EnvironmentMapShelf::update(const std::vector<std::string>& light_words, const Scenes& scenes) {
-  if (!changed_.renew(light_words, scenes.version(), added_.size())) return;
-  std::vector<std::filesystem::path> folders = foldersOf(added_, light_words, scenes);
-  if (folders == folders_) return;
-  folders_ = std::move(folders);
-  environment_maps_.clear();
-  for (const std::filesystem::path& folder : folders_)
-    for (Asset& asset : listAssets(folder, AssetKind::EnvironmentMap))
-      if (environment_maps_.size() < kMostMaps) environment_maps_.push_back(std::move(asset));
-}
-
-namespace {
-
 // Returns the folder of what was opened last, which may be a folder itself, or an empty path.
 std::filesystem::path folderInUse(const Preferences& preferences) {
   if (preferences.recent.empty()) return {};
@@ -155,6 +106,10 @@ std::vector<AssetGroup> listed(std::vector<AssetGroup> groups) {
 
 }  // namespace
 
+void AssetBrowser::addFolder(const std::filesystem::path& folder) {
+  if (std::ranges::find(added_, folder) == added_.end()) added_.push_back(folder);
+}
+
 void AssetBrowser::take() {
   groups_ = coming_.get();
 }
@@ -165,9 +120,20 @@ void AssetBrowser::update(const Session& session) {
     take();
   }
   std::vector<AssetGroup> groups;
-  const std::filesystem::path folder = folderInUse(session.preferences);
-  if (!folder.empty() && std::ranges::find(samples_, folder) == samples_.end())
-    groups.push_back({.title = folder.string(), .folders = {folder}, .assets = {}});
+  const auto add = [&](const std::filesystem::path& named) {
+    std::error_code ignored;
+    const std::filesystem::path folder =
+        std::filesystem::weakly_canonical(named.empty() ? "." : named, ignored);
+    if (std::ranges::find(samples_, folder) == samples_.end() &&
+        std::ranges::find(groups, folder.string(), &AssetGroup::title) == groups.end())
+      groups.push_back({.title = folder.string(), .folders = {folder}, .assets = {}});
+  };
+  if (const std::filesystem::path folder = folderInUse(session.preferences); !folder.empty()) add(folder);
+  for (const std::filesystem::path& folder : added_) add(folder);
+  for (const std::string& word : session.document.world().lights)
+    if (isEnvironmentMap(word)) add(std::filesystem::path(word).parent_path());
+  for (const SceneEntry& entry : session.scenes.entries())
+    add((entry.source.empty() ? entry.bundle : entry.source).parent_path());
   if (!samples_.empty()) groups.push_back({.title = "Samples", .folders = samples_, .assets = {}});
   std::vector<std::filesystem::path> folders;
   std::vector<std::filesystem::file_time_type> times;

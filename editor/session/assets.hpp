@@ -45,25 +45,7 @@ std::optional<Asset> assetAt(const std::filesystem::path& file);
 // Returns the assets of a folder by name, of one kind or of all, without the folders in it. Files .json are
 // read as far as it takes to tell worlds from others.
 std::vector<Asset> listAssets(const std::filesystem::path& folder, std::optional<AssetKind> only = {});
-// Returns whether all words of the search are parts of the file's name or its kind. Case does not count.
 bool matches(const Asset& asset, std::string_view search);
-
-// Lists environment maps to choose from: those in the folders of the ones in use, of the open scenes, and in
-// folders that were added.
-class EnvironmentMapShelf {
- public:
-  void addFolder(const std::filesystem::path& folder);
-  // Lists the files again if the folders may have changed.
-  void update(const std::vector<std::string>& light_words, const Scenes& scenes);
-  const std::vector<Asset>& environment_maps() const { return environment_maps_; }
-
- private:
-  // Tells when the folders must be found again: it compares the light words, the version of the scenes and
-  // the number of added folders.
-  ChangeGate<std::vector<std::string>, std::uint64_t, std::size_t> changed_;
-  std::vector<std::filesystem::path> added_, folders_;
-  std::vector<Asset> environment_maps_;
-};
 
 struct AssetGroup {
   std::string title;
@@ -71,17 +53,17 @@ struct AssetGroup {
   std::vector<Asset> assets;
 };
 
-// Lists the assets to choose from: those of the folder in use, which is that of what was opened last, and
-// the samples that came with the program. Folders are read on another thread. It also holds what the Assets
-// panel remembers.
+// Lists the assets to choose from: those of the folder in use, which is that of what was opened last, those
+// beside open scenes and environment maps in use, those of folders that were added, and the samples that came
+// with the program. Folders are read on another thread. It also holds what the Assets panel remembers.
 class AssetBrowser {
  public:
+  void addFolder(const std::filesystem::path& folder);
   // Takes what was read, and reads the folders again if they or the open scenes have changed. Panels call it
   // in each frame in which they show assets.
   void update(const Session& session);
   // The same, but the list is complete when it returns.
   void updateNow(const Session& session);
-  // Returns whether folders are being read.
   bool busy() const;
 
   const std::vector<AssetGroup>& groups() const { return groups_; }
@@ -97,7 +79,7 @@ class AssetBrowser {
  private:
   void take();
 
-  std::vector<std::filesystem::path> samples_ = sampleFolders();
+  std::vector<std::filesystem::path> added_, samples_ = sampleFolders();
   std::vector<AssetGroup> groups_;
   // Tells when folders must be read again: it compares them, their times, and the version of the scenes.
   ChangeGate<std::vector<std::filesystem::path>, std::vector<std::filesystem::file_time_type>, std::uint64_t>
@@ -165,9 +147,7 @@ class AssetPictures {
   bool lacks(const Asset& asset);
   // Gives the asset another picture, and keeps it on disk.
   void keep(const Asset& asset, spec::Rgba8Image image);
-  // Takes what has come. Call it once a frame.
   void update();
-  // Returns whether pictures that were asked for are still to come.
   bool busy() const { return coming_ > 0; }
 
   std::map<std::filesystem::path, Picture>& pictures() { return pictures_; }

@@ -35,7 +35,6 @@ struct DialogFile {
 // cannot be read are empty.
 class DialogFiles {
  public:
-  // Call it in each frame in which the dialog is drawn.
   void update(const Session& session, const Dialog& dialog);
 
   // Home, beside what is open and what was opened, among the samples. Each folder is named once.
@@ -76,7 +75,6 @@ struct Dialog {
 // Returns the desktop's program for file dialogs, or an empty path without a desktop session or such a
 // program in PATH.
 std::filesystem::path desktopDialogProgram();
-// Returns the program's arguments for a question that asks for a file or a folder.
 std::vector<std::string> desktopDialogWords(const std::filesystem::path& program, const Dialog& question);
 
 // Asks for a file in the desktop's own dialog: zenity or kdialog, run as a program of its own with arguments

@@ -85,20 +85,11 @@ bool isStrengthOfLight(const FieldInfo& field) {
 }
 
 bool hasNumbers(const FieldInfo& field) {
-  switch (field.kind) {
-    case ValueKind::Number:
-    case ValueKind::Rotation:
-      return true;
-    case ValueKind::Vector:
-      return !field.color;
-    case ValueKind::Whole:  // a number of a measured BRDF is chosen by its name
-      return field.component != scene::MaterialComponent::kComponentName || field.name != "brdf";
-    case ValueKind::Flag:
-    case ValueKind::Text:
-    case ValueKind::Word:
-      break;
-  }
-  return false;
+  // A number of a measured BRDF is chosen by its name.
+  if (field.kind == ValueKind::Whole)
+    return field.component != scene::MaterialComponent::kComponentName || field.name != "brdf";
+  if (field.kind == ValueKind::Vector) return !field.color;
+  return field.kind == ValueKind::Number || field.kind == ValueKind::Rotation;
 }
 
 std::vector<double> numbersOf(const Session& session, const FieldInfo& field, ecs::Entity entity,

@@ -64,7 +64,6 @@ struct FieldEditState {
 };
 
 bool isStrengthOfLight(const scene::FieldInfo& field);
-// Returns whether the field is edited as one number or three. Colors and choices are not.
 bool hasNumbers(const scene::FieldInfo& field);
 // Returns one number or three. The entity must have the field's component.
 std::vector<double> numbersOf(const Session& session, const scene::FieldInfo& field, ecs::Entity entity,

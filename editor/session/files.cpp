@@ -1,7 +1,6 @@
 #include "editor/session/files.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,32 +12,22 @@ namespace lambent::editor {
 
 namespace {
 
-class SceneChange : public OutsideChange {
- public:
-  SceneChange(SceneSteps& steps, ClosedScene scene, bool opened)
-      : steps_(steps), scene_(std::move(scene)), opened_(opened) {}
-
-  void carryOut(bool forth, std::vector<std::string>& missing) override {
-    if (opened_ != forth) {
-      if (!steps_.take(scene_)) missing.push_back("the scene " + scene_.entry.id);
-    } else if (const auto brought = steps_.bring(scene_); !brought) {
-      missing.push_back(brought.error().line());
-    }
+// Returns the opening or closing of a scene as a change of the history.
+OutsideChange sceneChange(SceneSteps& steps, ClosedScene scene, bool opened) {
+  std::size_t bytes = sizeof scene + 1024;  // an estimate of paths and options
+  for (const EntityOverride& edit : scene.kept) {
+    bytes += sizeof edit + edit.name.size();
+    for (const FieldOverride& field : edit.fields) bytes += sizeof field + bytesOf(field.value);
   }
-  std::size_t bytes() const override {
-    std::size_t bytes = sizeof *this + 1024;  // an estimate of paths and options
-    for (const EntityOverride& edit : scene_.kept) {
-      bytes += sizeof edit + edit.name.size();
-      for (const FieldOverride& field : edit.fields) bytes += sizeof field + editor::bytesOf(field.value);
-    }
-    return bytes;
-  }
-
- private:
-  SceneSteps& steps_;
-  ClosedScene scene_;
-  bool opened_;
-};
+  return {[&steps, opened, scene = std::move(scene)](bool forth, std::vector<std::string>& missing) mutable {
+            if (opened != forth) {
+              if (!steps.take(scene)) missing.push_back("the scene " + scene.entry.id);
+            } else if (const auto brought = steps.bring(scene); !brought) {
+              missing.push_back(brought.error().line());
+            }
+          },
+          bytes};
+}
 
 std::optional<std::size_t> placeOf(const Scenes& scenes, const SceneEntry& entry) {
   const auto& entries = scenes.entries();
@@ -73,7 +62,7 @@ Result<void> SceneSteps::open(const std::filesystem::path& path) {
   const std::string name = "opening of " + path.filename().string();
   session_.history.begin(name);
   const auto did = [&](ClosedScene scene) {
-    session_.history.did(std::make_shared<SceneChange>(*this, std::move(scene), /*opened=*/true), name);
+    session_.history.did(sceneChange(*this, std::move(scene), /*opened=*/true), name);
   };
   const auto& entries = session_.scenes.entries();
   for (std::size_t i = 0; i < entries.size(); ++i)
@@ -93,7 +82,7 @@ void SceneSteps::close(std::size_t entry) {
   ClosedScene scene{.entry = session_.scenes.entries()[entry], .place = entry, .kept = {}, .folder = {}};
   if (!take(scene)) return;
   const std::string name = "closing of " + scene.entry.id;
-  session_.history.did(std::make_shared<SceneChange>(*this, std::move(scene), /*opened=*/false), name);
+  session_.history.did(sceneChange(*this, std::move(scene), /*opened=*/false), name);
 }
 
 Result<void> SceneSteps::bring(const ClosedScene& scene) {

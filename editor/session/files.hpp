@@ -74,12 +74,10 @@ class Files {
   Result<void> open(const std::vector<std::filesystem::path>& paths);
   // The same, but each error is logged, and the rest is opened.
   void openLogged(const std::vector<std::filesystem::path>& paths);
-  // Saves the world to this file, which becomes the world's file.
   Result<void> save(const std::filesystem::path& path);
   // Saves what closing would lose under a name of its own, beside the world's file or, if it has none, in the
   // working folder. Returns where it lies, or an empty path if nothing would be lost.
   Result<std::filesystem::path> rescue();
-  // Closes everything and begins an empty world, without asking.
   void closeAll();
 
   // Returns the world's file, or an empty path if it has none yet.
@@ -89,7 +87,6 @@ class Files {
   bool modified() const;
   // Calls `then`. If there are unsaved edits, a dialog asks first, and offers to save them.
   void unlessUnsaved(std::string question, std::function<void(Session&)> then);
-  // Quits the editor, after the same question.
   void askToQuit();
 
  private:

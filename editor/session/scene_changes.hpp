@@ -42,7 +42,6 @@ class SceneChanges {
   SceneChanges(const frame::World& world, const Scenes& scenes, const History& history, Log& log)
       : world_(world), scenes_(scenes), history_(history), log_(log) {}
 
-  // Returns the unedited state of the bundles.
   const Baseline& baseline();
   // Returns the edits of the entry's scene: those that its bundle was baked with, and the new ones.
   baker::SceneEdits editsOf(std::size_t entry) const;

@@ -175,8 +175,8 @@ void tooltip(std::string_view text) {
   ImGui::EndTooltip();
 }
 
-void fittedTextBeside(std::string_view text, float width, std::string_view more) {
-  const std::string shown = ellipsized(text, ImGui::GetContentRegionAvail().x - width);
+void fittedText(std::string_view text, std::string_view more) {
+  const std::string shown = ellipsized(text, ImGui::GetContentRegionAvail().x);
   ImGui::TextUnformatted(shown.c_str());
   if (shown == text)
     tooltip(more);
@@ -184,8 +184,14 @@ void fittedTextBeside(std::string_view text, float width, std::string_view more)
     tooltip(more.empty() ? std::string(text) : fmt::format("{}\n{}", text, more));
 }
 
-void fittedText(std::string_view text, std::string_view more) {
-  fittedTextBeside(text, 0.0f, more);
+void fittedText(const ImVec4& color, std::string_view text, std::string_view more) {
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  fittedText(text, more);
+  ImGui::PopStyleColor();
+}
+
+ImVec4 dimmed() {
+  return ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled);
 }
 
 bool sameLineIfFits(std::string_view button) {
@@ -205,6 +211,43 @@ const char* numberFormat(float value, float width, int digits) {
   int shown = std::clamp(digits, 0, static_cast<int>(kFormats.size()) - 1);
   while (shown > 0 && widthOf(fmt::format("{:.{}f}", value, shown)) > room) --shown;
   return kFormats[static_cast<std::size_t>(shown)];
+}
+
+void Marks::beginFrame() {
+  before_ = std::exchange(now_, {});
+  times_.clear();
+}
+
+void Marks::put(std::string_view name) {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  // A tab has no size in its first frame, and cannot be clicked.
+  if (low.x >= high.x && low.y >= high.y) return;
+  const ImVec2 middle(0.5f * (low.x + high.x), 0.5f * (low.y + high.y));
+  // Rows that span all columns of a table are drawn while only their first column is within the clip
+  // rectangle.
+  const float left = ImGui::GetWindowPos().x, right = left + ImGui::GetWindowWidth();
+  const bool shown = left <= middle.x && middle.x < right &&
+                     ImGui::IsRectVisible({low.x, middle.y - 0.5f}, {high.x, middle.y + 0.5f});
+  put(name, {{low.x, low.y}, {high.x, high.y}, shown});
+}
+
+void Marks::put(std::string_view name, const Rectangle& where) {
+  std::uint32_t& times = times_[std::string(name)];
+  std::string own(name);
+  if (++times > 1) own += '#' + std::to_string(times);
+  // Another widget may already have the name NAME#2.
+  while (!now_.try_emplace(own, where).second) own = std::string(name) + '#' + std::to_string(++times);
+}
+
+std::optional<Rectangle> Marks::find(std::string_view name) const {
+  const auto found = before_.find(name);
+  return found == before_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<std::string> Marks::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, where] : before_) names.push_back(name);
+  return names;
 }
 
 }  // namespace lambent::editor

@@ -1,6 +1,6 @@
 // Includes Dear ImGui, of any version from 1.86 on, and hides what differs between the versions: how keys
-// are named and asked for, how a script's input is handed over, and names that were changed. It keeps no
-// state. Main thread.
+// are named and asked for, how a script's input is handed over, and names that were changed. It also fits
+// text into the room that there is. It keeps no state. Main thread.
 #pragma once
 
 #include <cstdint>
@@ -50,9 +50,6 @@ inline constexpr ImGuiCol kColorOfKeyboardCursor = ImGuiCol_NavCursor;
 inline constexpr ImGuiCol kColorOfKeyboardCursor = ImGuiCol_NavHighlight;
 #endif
 
-// Fits text and widgets into the room that there is, whatever the size of the font and the window. Needs a
-// Dear ImGui context. Main thread.
-
 // Returns so many heights of the font, in pixels. Sizes that hold text are given in these.
 float em(float heights);
 
@@ -62,8 +59,10 @@ std::string ellipsized(std::string_view text, float width);
 // Draws a line of text that ends in an ellipsis where the room ends. Its tooltip then begins with the whole
 // text; `more`, if there is any, follows or is all of the tooltip.
 void fittedText(std::string_view text, std::string_view more = {});
-// The same in the room that is left beside this width.
-void fittedTextBeside(std::string_view text, float width, std::string_view more = {});
+// The same in a color.
+void fittedText(const ImVec4& color, std::string_view text, std::string_view more = {});
+// The color of what matters less.
+ImVec4 dimmed();
 
 // Shows a wrapped tooltip for the last widget while the pointer is over it. Without text there is none.
 void tooltip(std::string_view text);
