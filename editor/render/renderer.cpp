@@ -80,9 +80,9 @@ void ReferencePicture::update(Session& session) {
 }
 
 Result<Renderer> Renderer::create(const Session& session) {
-  auto picture = Picture::create(session);
-  if (!picture) return failAgain(picture.error());
-  return Renderer{.picture = std::move(*picture)};
+  auto made = Picture::create(session);
+  if (!made) return failAgain(made.error());
+  return Renderer{.picture = std::move(*made)};
 }
 
 void Renderer::update(Session& session, spec::Size size) {

@@ -93,7 +93,7 @@ tree type:material
   const json& materials = played.answer("tree");
   ASSERT_GT(materials.size(), 0u);
   const std::string name = materials[0]["name"];
-  const Played edited = play(fmt::format(R"(
+  play(fmt::format(R"(
 open {0}
 wait baked 240
 tree ""
@@ -108,7 +108,7 @@ state
 expect /scenes/0/needsRebake []
 expect /errors 0
 )",
-                                         path("hello.glb"), name));
+                   path("hello.glb"), name));
 }
 
 TEST_F(EditorProgram, EditsRoughnessByItsWidgetLiveWhereItCanBe) {

@@ -41,7 +41,7 @@ tree type:bundle
 }
 
 TEST_F(EditorProgram, OpensAndClosesScenesAsStepsThatKeepEdits) {
-  const Played played = play(fmt::format(R"(
+  play(fmt::format(R"(
 open {0}
 wait loaded 60
 state
@@ -74,8 +74,8 @@ state
 expect /redo "Redo closing of hello"
 expect /errors 0
 )",
-                                         path("hello.glb")),
-                             {"--no-bake"});
+                   path("hello.glb")),
+       {"--no-bake"});
 }
 
 // Each way to another world must ask, and leave everything as it is if the answer is no.
