@@ -16,12 +16,12 @@
 #include <imgui.h>
 #include <nlohmann/json.hpp>
 
-#include "editor/app/layout.hpp"
 #include "editor/commands/command.hpp"
+#include "editor/panels/panel.hpp"
 #include "editor/render/renderer.hpp"
 #include "editor/script/script.hpp"
+#include "editor/session/scene_changes.hpp"
 #include "editor/session/session.hpp"
-#include "editor/session/status.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/gpu/context.hpp"
@@ -34,28 +34,18 @@ namespace {
 
 struct Options {
   SessionOptions session;
-  std::optional<std::filesystem::path> script;
-  bool json = false;          // --json: writes the script's answers to stdout
-  bool remember = true;       // whether to load and save the layout and the recent files
-  int width = 0, height = 0;  // in pixels; 0: as remembered
-  float scale = 0.0f;         // of text and widgets; 0: as remembered
-};
-
-struct OptionWords {
-  std::vector<std::string> files, lights;
-  std::string size, script, cache, output;
-  float scale = 0.0f;
+  std::vector<std::string> files;
+  std::string size, script, cache, output, quality = "standard";
   bool json = false, fresh = false, no_bake = false;
-  std::uint64_t max_memory = ~std::uint64_t{0}, cache_size = std::uint64_t{8} << 30;
-  unsigned threads = 0;
-  std::string quality = "standard";
+  float scale = 0.0f;         // of text and widgets; 0: as remembered
+  int width = 0, height = 0;  // in pixels; 0: as remembered
 };
 
-void declare(CLI::App& app, OptionWords& words) {
+void declare(CLI::App& app, Options& words) {
   app.add_option("FILE", words.files,
                  "Scenes (.gltf, .glb), bundles (.lmb.glb), folders of them,\nor a world (.json)")
       ->type_name("");
-  app.add_option("--light", words.lights,
+  app.add_option("--light", words.session.light_words,
                  "Several add up: an environment map file (.hdr, .exr), constant:R,G,B "
                  "or\nsun:AZ,EL,ANGLE,R[,G,B]; in "
                  "the scene: sphere:... or disc:...")
@@ -76,13 +66,15 @@ void declare(CLI::App& app, OptionWords& words) {
                  "Folder for what bakes keep (default: $LAMBENT_CACHE, else\n$XDG_CACHE_HOME/lambent, else "
                  "~/.cache/lambent)")
       ->type_name("DIR");
-  app.add_option("--cache-size", words.cache_size, "What it may hold, in bytes or like 4GB")
+  app.add_option("--cache-size", words.session.cache_bytes, "What it may hold, in bytes or like 4GB")
       ->type_name("BYTES")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
-  app.add_option("--max-memory", words.max_memory, "GPU memory for bundles, in bytes or like 200MB")
+  app.add_option("--max-memory", words.session.max_memory_bytes,
+                 "GPU memory for bundles, in bytes or like 200MB")
       ->type_name("BYTES")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
-  app.add_option("--threads", words.threads, "Threads of bakes (default: all but one)")->type_name("N");
+  app.add_option("--threads", words.session.threads, "Threads of bakes (default: all but one)")
+      ->type_name("N");
   app.add_flag("--no-bake", words.no_bake, "Show scenes without transfer, and bake only when asked to");
   app.add_option("--script", words.script, "Run the commands of a file, then quit (docs/editor.md)")
       ->type_name("FILE");
@@ -100,30 +92,23 @@ void declare(CLI::App& app, OptionWords& words) {
   command_line::finish(app, "lambent-editor " LAMBENT_VERSION);
 }
 
-Result<Options> understand(const OptionWords& words) {
-  Options options;
-  options.session.files.assign(words.files.begin(), words.files.end());
-  options.session.light_words = words.lights;
-  if (const auto lights = spec::parseLights(words.lights); !lights) return failAgain(lights.error());
-  if (!words.size.empty()) {
-    const auto size = spec::parseSize(words.size);
+// Takes what the words say over into the other members.
+Result<void> understand(Options& options) {
+  SessionOptions& session = options.session;
+  if (const auto lights = spec::parseLights(session.light_words); !lights) return failAgain(lights.error());
+  if (!options.size.empty()) {
+    const auto size = spec::parseSize(options.size);
     if (!size) return failAgain(size.error());
     options.width = static_cast<int>(size->width), options.height = static_cast<int>(size->height);
   }
-  if (!words.script.empty()) options.script = words.script;
-  options.scale = words.scale;
-  options.json = words.json;
-  options.remember = !words.fresh;
-  options.session.quality = words.quality == "draft"  ? baker::Quality::Draft
-                            : words.quality == "high" ? baker::Quality::High
-                                                      : baker::Quality::Standard;
-  options.session.output_folder = words.output;
-  options.session.cache_folder = words.cache;
-  options.session.cache_bytes = words.cache_size;
-  options.session.max_memory_bytes = words.max_memory;
-  options.session.threads = words.threads;
-  options.session.bake = !words.no_bake;
-  return options;
+  session.files.assign(options.files.begin(), options.files.end());
+  session.quality = options.quality == "draft"  ? baker::Quality::Draft
+                    : options.quality == "high" ? baker::Quality::High
+                                                : baker::Quality::Standard;
+  session.output_folder = options.output;
+  session.cache_folder = options.cache;
+  session.bake = !options.no_bake;
+  return {};
 }
 
 void printError(const Error& error) {
@@ -134,12 +119,12 @@ void printError(const Error& error) {
 // one line on stderr that says what is wrong and what to do (2), or else the options.
 std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
   CLI::App app("Opens, bakes and lights scenes, and shows what accuracy costs.", "lambent-editor");
-  OptionWords words;
-  declare(app, words);
+  Options options;
+  declare(app, options);
   if (const auto ended = command_line::parse(app, argc, argv)) return *ended;
-  Result<Options> options = understand(words);
-  if (options) return std::move(*options);
-  printError(options.error());
+  const Result<void> understood = understand(options);
+  if (understood) return options;
+  printError(understood.error());
   return 2;
 }
 
@@ -151,13 +136,13 @@ constexpr double kRestWaitSeconds = 0.1;
 constexpr double kActiveSeconds = 0.5;
 
 Result<std::optional<Script>> loadScript(const Options& options) {
-  if (!options.script) return std::nullopt;
-  const auto text = readTextFile(*options.script);
+  if (options.script.empty()) return std::nullopt;
+  const auto text = readTextFile(options.script);
   if (!text) return failAgain(text.error());
-  auto lines = parseScript(*options.script, *text);
+  auto lines = parseScript(options.script, *text);
   if (!lines) return failAgain(lines.error());
   const bool json = options.json;
-  return Script(*options.script, std::move(*lines), [json](const std::string& answer) {
+  return Script(options.script, std::move(*lines), [json](const std::string& answer) {
     if (!json) return;
     fmt::print("{}\n", answer);
     std::fflush(stdout);
@@ -180,7 +165,7 @@ Result<void> afterLoss(Session& session, Error lost) {
 Result<void> run(const Options& options) {
   auto script = loadScript(options);
   if (!script) return failAgain(script.error());
-  const std::filesystem::path remembered = options.remember ? preferencesFile() : std::filesystem::path{};
+  const std::filesystem::path remembered = options.fresh ? std::filesystem::path{} : preferencesFile();
   Preferences preferences = loadPreferences(remembered);
   if (options.width > 0) preferences.width = options.width, preferences.height = options.height;
   if (options.scale > 0.0f) preferences.scale = options.scale;
@@ -195,7 +180,7 @@ Result<void> run(const Options& options) {
   Session& s = **session;
   auto renderer = Renderer::create(s);
   if (!renderer) return failAgain(renderer.error());
-  if (!options.script)
+  if (options.script.empty())
     s.window.desktop_program = desktopDialogProgram();  // no script answers another program
   Ui ui(*window, s.preferences.scale);
   s.clipboard.put_system = [](const std::string& text) { ImGui::SetClipboardText(text.c_str()); };
@@ -207,7 +192,7 @@ Result<void> run(const Options& options) {
   s.viewing.surface_ahead = [&s, &r = *renderer]() -> std::optional<glm::vec3> {
     const spec::Size size = s.viewing.size;
     const auto picked =
-        r.pick(s, 0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height));
+        r.picture.pick(s, 0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height));
     return picked && *picked ? std::optional((*picked)->position_ws) : std::nullopt;
   };
 
@@ -250,7 +235,7 @@ Result<void> run(const Options& options) {
   s.preferences.width = static_cast<int>(width), s.preferences.height = static_cast<int>(height);
   s.preferences.handles = s.handles.gizmo.options;
   savePreferences(remembered, s.preferences);
-  if (*script && (*script)->failed()) return failAgain((*script)->error());
+  if (*script && (*script)->error()) return failAgain(*(*script)->error());
   return {};
 }
 

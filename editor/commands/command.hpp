@@ -7,9 +7,8 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include "runtime/base/result.hpp"
 
@@ -20,22 +19,26 @@ class Session;
 using Words = std::span<const std::string>;
 
 struct Command {
-  const char* id;         // the name in scripts: "save"
-  const char* title;      // the text in menus: "Save world"; empty: the command is for scripts only
-  const char* menu;       // the menu that shows it: "File"
-  const char* shortcut;   // "Ctrl+Shift+S"; empty: none
-  const char* help;       // a sentence for tooltips and lists
-  const char* arguments;  // "FILE [OPTION]"; empty: none
+  const char* id;               // the name in scripts: "save"; empty: a separator of the menu
+  const char* title;            // the text in menus: "Save world"; empty: the command is for scripts only
+  const char* shortcut;         // "Ctrl+Shift+S"; empty: none
+  const char* help;             // a sentence for tooltips and lists
+  const char* menu = "Script";  // the menu that shows it: "File"
+  const char* arguments = "";   // "FILE [OPTION]"; empty: none
   std::size_t least_words = 0, most_words = 0;
-  Result<nlohmann::json> (*run)(Session& session, Words words) = nullptr;
-  bool (*enabled)(const Session& session) = nullptr;  // null: always enabled
-  bool (*checked)(const Session& session) = nullptr;  // state of a switch; null: no switch
-  const char* former = "";  // the id before 0.11, which is still accepted but not shown; empty: none
+  std::function<Result<nlohmann::json>(Session& session, Words words)> run{};
+  std::function<bool(const Session& session)> enabled{};  // none: always enabled
+  std::function<bool(const Session& session)> checked{};  // state of a switch; none: no switch
+
+  // Make a command that takes words, that can be run only while `is` says so, or that is checked then.
+  Command taking(const char* words, std::size_t least, std::size_t most) const;
+  Command onlyIf(std::function<bool(const Session&)> is) const;
+  Command checkedIf(std::function<bool(const Session&)> is) const;
 };
 
 // Returns the commands in the order in which menus show them.
 std::span<const Command> commandList();
-// Finds a command by its id or its former id. Returns null if there is none.
+// Returns null if there is none of that id.
 const Command* findCommand(std::string_view id);
 
 // Runs the command. Errors: it does not exist, is not enabled, takes another number of words, or failed.

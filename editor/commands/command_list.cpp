@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <cctype>
 #include <string>
@@ -11,12 +10,27 @@
 
 namespace lambent::editor {
 
+Command Command::taking(const char* words, std::size_t least, std::size_t most) const {
+  Command command = *this;
+  command.arguments = words, command.least_words = least, command.most_words = most;
+  return command;
+}
+Command Command::onlyIf(std::function<bool(const Session&)> is) const {
+  Command command = *this;
+  command.enabled = std::move(is);
+  return command;
+}
+Command Command::checkedIf(std::function<bool(const Session&)> is) const {
+  Command command = *this;
+  command.checked = std::move(is);
+  return command;
+}
+
 std::span<const Command> commandList() {
   static const std::vector<Command> list = [] {
     std::vector<Command> all;
-    for (const auto rows :
-         {fileCommands(), editCommands(), createCommands(), viewCommands(), handleCommands(),
-          cameraCommands(), lightCommands(), bakeCommands(), layoutCommands(), stateCommands()})
+    for (const auto& rows : {fileCommands(), editCommands(), createCommands(), viewCommands(),
+                             lightCommands(), bakeCommands(), windowCommands(), stateCommands()})
       all.insert(all.end(), rows.begin(), rows.end());
     return all;
   }();
@@ -24,12 +38,9 @@ std::span<const Command> commandList() {
 }
 
 const Command* findCommand(std::string_view id) {
-  if (id.empty()) return nullptr;
-  const auto list = commandList();
-  const auto found = std::find_if(list.begin(), list.end(), [&](const Command& command) {
-    return id == command.id || id == command.former;
-  });
-  return found == list.end() ? nullptr : &*found;
+  for (const Command& command : commandList())
+    if (!id.empty() && id == command.id) return &command;
+  return nullptr;
 }
 
 Result<nlohmann::json> runCommand(Session& session, std::string_view id, Words words) {
@@ -79,26 +90,20 @@ int keyOf(std::string_view name) {
 Result<Shortcut> parseShortcut(std::string_view text) {
   Shortcut shortcut;
   std::string_view rest = text;
-  while (true) {
-    const std::size_t plus = rest.find('+');
-    const std::string_view word = rest.substr(0, plus);
-    if (plus == rest.npos) {
-      shortcut.key = keyOf(word);
-      if (shortcut.key >= 0) return shortcut;
-      return fail("key", fmt::format("\"{}\" is not known", text),
-                  "give keys like Ctrl+Shift+S, F5 or Delete");
-    }
-    if (word == "Ctrl")
-      shortcut.ctrl = true;
-    else if (word == "Shift")
-      shortcut.shift = true;
-    else if (word == "Alt")
-      shortcut.alt = true;
-    else
-      return fail("key", fmt::format("\"{}\" is not known", text),
-                  "give keys like Ctrl+Shift+S, F5 or Delete");
-    rest.remove_prefix(plus + 1);
+  const auto takes = [&](std::string_view modifier) {
+    if (!rest.starts_with(modifier)) return false;
+    rest.remove_prefix(modifier.size());
+    return true;
+  };
+  for (bool any = true; any;) {
+    any = false;
+    if (takes("Ctrl+")) any = shortcut.ctrl = true;
+    if (takes("Shift+")) any = shortcut.shift = true;
+    if (takes("Alt+")) any = shortcut.alt = true;
   }
+  shortcut.key = keyOf(rest);
+  if (shortcut.key >= 0) return shortcut;
+  return fail("key", fmt::format("\"{}\" is not known", text), "give keys like Ctrl+Shift+S, F5 or Delete");
 }
 
 }  // namespace lambent::editor

@@ -1,26 +1,114 @@
+// Implements the commands that create entities, and decides where new lights stand and how bright they are.
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/ranges.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "editor/commands/rows.hpp"
-#include "editor/document/snapshot.hpp"
-#include "editor/session/local_lights.hpp"
 #include "runtime/spec/numbers.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
+using LampKind = scene::LocalLightComponent::Kind;
+
+constexpr float kShareOfWay = 0.35f;  // from the surface towards the camera
+constexpr float kRadiusOfDistance = 0.1f;
+constexpr float kOfWhite = 0.5f;  // what a white surface that faces the light is shown as
+// Where a new directional light stands, seen from the camera: over its shoulder, so that it shows on what the
+// camera sees, with shadows to one side.
+constexpr float kShoulderDeg = 40.0f, kHighDeg = 50.0f;
+
+// Rounds to two digits, as a person would choose it.
+float rounded(float value) {
+  if (!(value > 0.0f) || !std::isfinite(value)) return value;
+  const float step = std::pow(10.0f, std::floor(std::log10(value)) - 1.0f);
+  return step * std::round(value / step);
+}
+
+glm::vec3 lookedAt(const Session& session) {
+  const Viewing& viewing = session.viewing;
+  return (viewing.surface_ahead ? viewing.surface_ahead() : std::nullopt).value_or(viewing.goal.target_ws);
+}
+
+// Returns the rotation that takes +Z, from where lights shine, to this direction.
+glm::quat facing(float azimuth_deg, float elevation_deg) {
+  return glm::angleAxis(glm::radians(azimuth_deg), glm::vec3(0.0f, 1.0f, 0.0f)) *
+         glm::angleAxis(-glm::radians(elevation_deg), glm::vec3(1.0f, 0.0f, 0.0f));
+}
+glm::quat facing(const glm::vec3& direction) {
+  return facing(glm::degrees(std::atan2(direction.x, direction.z)),
+                glm::degrees(std::asin(std::clamp(direction.y, -1.0f, 1.0f))));
+}
+
+void put(EntitySnapshot& snapshot, std::string_view component, std::string_view field, scene::Value value) {
+  for (ComponentValues& part : snapshot.components) {
+    if (part.component->name != component) continue;
+    for (std::size_t i = 0; i < part.values.size(); ++i)
+      if (part.component->fields[i].name == field) part.values[i] = std::move(value);
+  }
+}
+
+// Returns the strength at which a white surface at this distance, facing the light, is seen well.
+float strengthFor(LampKind kind, float distance_m, float radius_m, float exposure_ev) {
+  const float irradiance = std::numbers::pi_v<float> * kOfWhite * std::exp2(-exposure_ev);
+  const float intensity = irradiance * distance_m * distance_m;
+  if (kind == LampKind::Directional) return irradiance;
+  if (kind == LampKind::Point || kind == LampKind::Spot) return intensity;
+  return intensity / (std::numbers::pi_v<float> * radius_m * radius_m);
+}
+
+// Returns the point that a new entity gets: on the way from the surface in the middle of the picture to the
+// camera, or the point that the camera turns about where there is no surface.
+glm::vec3 newPlace(const Session& session) {
+  const glm::vec3 surface = lookedAt(session);
+  return surface + kShareOfWay * (session.viewing.goal.eye() - surface);
+}
+
+// Returns a light of this kind at `at`, or at newPlace() without it. It is turned towards the surface that
+// the camera looks at, and as bright as the present exposure shows well, so that it is seen at once.
+EntitySnapshot newLight(const Session& session, LampKind kind, std::string name,
+                        const std::optional<glm::vec3>& at) {
+  const glm::vec3 place = at.value_or(newPlace(session));
+  const glm::vec3 back = place - lookedAt(session);
+  const float distance = glm::length(back) > 0.0f ? glm::length(back) : 1.0f;
+  const float radius = rounded(kRadiusOfDistance * distance);
+  EntitySnapshot light = lightEntity(scene::kLightKindWords[static_cast<std::size_t>(kind)], std::move(name));
+  put(light, "Transform", "translation", place);
+  if (kind == LampKind::Directional)
+    put(light, "Transform", "rotation", facing(session.viewing.goal.azimuth_deg + kShoulderDeg, kHighDeg));
+  if (kind == LampKind::Spot || kind == LampKind::Disc)
+    put(light, "Transform", "rotation", facing(back / distance));
+  if (kind == LampKind::Sphere || kind == LampKind::Disc) put(light, "Light", "radius", radius);
+  put(light, "Light", "strength", rounded(strengthFor(kind, distance, radius, session.picture.exposure_ev)));
+  return light;
+}
+
+// Returns an unused name: "point", "point 2", ...
+std::string freshName(const Session& session, const std::string& stem) {
+  std::vector<std::string> names;
+  for (const auto [entity, name] : session.document.registry().view<const scene::Name>())
+    names.push_back(name.value);
+  std::string name = stem;
+  for (int count = 2; std::find(names.begin(), names.end(), name) != names.end(); ++count)
+    name = fmt::format("{} {}", stem, count);
+  return name;
+}
+
 // Returns the place that the words give, or none without words.
 Result<std::optional<glm::vec3>> placeOf(Words words) {
   if (words.empty()) return std::nullopt;
-  glm::vec3 at(0.0f);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto number =
-        words.size() == 3 ? spec::parseNumber(words[static_cast<std::size_t>(axis)]) : std::nullopt;
-    if (!number)
-      return fail("create", "is no place", "give three numbers, or none: in front of what the camera sees");
-    at[axis] = *number;
-  }
-  return at;
+  const auto numbers = spec::parseNumbers(fmt::format("{}", fmt::join(words, ",")));
+  if (!numbers || numbers->size() != 3)
+    return fail("create", "is no place", "give three numbers, or none: in front of what the camera sees");
+  return glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }
 
 Answer create(Session& session, const EntitySnapshot& snapshot) {
@@ -31,63 +119,47 @@ Answer create(Session& session, const EntitySnapshot& snapshot) {
   return nlohmann::json{{"id", idText(id)}, {"name", session.document.nameOf(*made)}};
 }
 
-// Creates the entity at the place that the words give, or where a new light would stand.
-Answer put(Session& session, const EntitySnapshot& snapshot, Words words) {
-  const auto at = placeOf(words);
-  if (!at) return failAgain(at.error());
-  session.history.begin("creation of " + std::get<std::string>(*snapshot.find("Name", "name")));
-  const auto made = create(session, snapshot);
-  const ecs::Entity entity = session.selection.primaryEntity(session.document);
-  const auto moved =
-      made ? session.history.setField(entity, "Transform", "translation", at->value_or(newPlace(session)))
-           : Result<void>();
-  if (!made || !moved) {
-    session.history.cancel();
-    return failAgain(made ? moved.error() : made.error());
-  }
-  session.history.commit();
-  return made;
+Command lightOf(LampKind kind, const char* id, const char* title, const char* help) {
+  return item(id, title, "", help,
+              [kind](Session& session, Words words) -> Answer {
+                const auto at = placeOf(words);
+                if (!at) return failAgain(at.error());
+                const std::string word(scene::kLightKindWords[static_cast<std::size_t>(kind)]);
+                return create(session, newLight(session, kind, freshName(session, word), *at));
+              })
+      .taking("[X Y Z]", 0, 3);
 }
 
-template <scene::LocalLightComponent::Kind Kind>
-Answer light(Session& session, Words words) {
-  const auto at = placeOf(words);
-  if (!at) return failAgain(at.error());
-  const std::string word(scene::kLightKindWords[static_cast<std::size_t>(Kind)]);
-  return create(session, newLight(session, Kind, freshName(session, word), *at));
+// The entity is created at the place that the words give, or where a new light would stand.
+Command entityOf(EntitySnapshot (*make)(std::string), const char* id, const char* title, const char* stem,
+                 const char* help) {
+  return item(id, title, "", help,
+              [make, stem](Session& session, Words words) -> Answer {
+                const auto at = placeOf(words);
+                if (!at) return failAgain(at.error());
+                EntitySnapshot snapshot = make(freshName(session, stem));
+                put(snapshot, "Transform", "translation", at->value_or(newPlace(session)));
+                return create(session, snapshot);
+              })
+      .taking("[X Y Z]", 0, 3);
 }
-Answer createCamera(Session& session, Words words) {
-  return put(session, cameraEntity(freshName(session, "camera")), words);
-}
-Answer empty(Session& session, Words words) {
-  return put(session, emptyEntity(freshName(session, "empty")), words);
-}
-
-constexpr Command row(const char* id, const char* title, const char* help,
-                      Result<nlohmann::json> (*run)(Session&, Words)) {
-  return withWords("[X Y Z]", 0, 3, item("Create", id, title, "", help, run));
-}
-
-using LampKind = scene::LocalLightComponent::Kind;
-
-constexpr std::array kCreateRows = {
-    row("create-point", "Point light", "A lamp without size, in front of what the camera sees",
-        &light<LampKind::Point>),
-    row("create-spot", "Spot light", "A lamp that shines along its -Z, at what the camera sees",
-        &light<LampKind::Spot>),
-    row("create-directional", "Directional light", "Light from one direction, without end",
-        &light<LampKind::Directional>),
-    row("create-sphere", "Sphere of light", "A lamp with a radius: soft shadows", &light<LampKind::Sphere>),
-    row("create-disc", "Disc of light", "A flat lamp that shines to one side", &light<LampKind::Disc>),
-    separator("Create"),
-    row("create-camera", "Camera", "A camera that stands in the world", &createCamera),
-    row("create-empty", "Empty", "A place to hang other things from", &empty),
-};
 
 }  // namespace
 
-std::span<const Command> createCommands() {
-  return kCreateRows;
+std::vector<Command> createCommands() {
+  return inMenu(
+      "Create",
+      {lightOf(LampKind::Point, "create-point", "Point light",
+               "A lamp without size, in front of what the camera sees"),
+       lightOf(LampKind::Spot, "create-spot", "Spot light",
+               "A lamp that shines along its -Z, at what the camera sees"),
+       lightOf(LampKind::Directional, "create-directional", "Directional light",
+               "Light from one direction, without end"),
+       lightOf(LampKind::Sphere, "create-sphere", "Sphere of light", "A lamp with a radius: soft shadows"),
+       lightOf(LampKind::Disc, "create-disc", "Disc of light", "A flat lamp that shines to one side"),
+       separator(),
+       entityOf(&cameraEntity, "create-camera", "Camera", "camera", "A camera that stands in the world"),
+       entityOf(&emptyEntity, "create-empty", "Empty", "empty", "A place to hang other things from")});
 }
 
 }  // namespace lambent::editor

@@ -1,3 +1,4 @@
+// Implements the commands for files and for bakes of scenes.
 #include <array>
 
 #include "editor/commands/rows.hpp"
@@ -7,59 +8,38 @@ namespace lambent::editor {
 
 namespace {
 
-Answer open(Session& session, Words words) {
-  if (!words.empty()) return answerOf(session.files.open({words.begin(), words.end()}));
-  Dialog ask;
-  ask.kind = Dialog::Kind::OpenFile;
-  ask.title = "Open";
-  ask.kinds = {{"Scenes", {".gltf", ".glb"}}, {"Bundles", {".lmb.glb"}}, {"Worlds", {".json"}}};
-  ask.folder = startFolder(session);
-  ask.yes = "Open";
-  ask.answered = [](Session& s, const std::string& file) { s.files.openLogged({file}); };
-  session.window.dialog = std::move(ask);
-  return nullptr;
+Result<void> open(Session& session, Words words) {
+  if (!words.empty()) return session.files.open({words.begin(), words.end()});
+  session.window.dialog =
+      Dialog{.kind = Dialog::Kind::OpenFile,
+             .title = "Open",
+             .kinds = {{"Scenes", {".gltf", ".glb"}}, {"Bundles", {".lmb.glb"}}, {"Worlds", {".json"}}},
+             .folder = startFolder(session),
+             .yes = "Open",
+             .answered = [](Session& s, const std::string& file) { s.files.openLogged({file}); }};
+  return {};
 }
 
-Answer watch(Session& session, Words words) {
-  if (!words.empty()) return answerOf(session.files.open({words[0]}));
-  Dialog ask;
-  ask.kind = Dialog::Kind::Folder;
-  ask.title = "Open and watch a folder";
-  ask.folder = startFolder(session);
-  ask.yes = "Watch";
-  ask.answered = [](Session& s, const std::string& folder) { s.files.openLogged({folder}); };
-  session.window.dialog = std::move(ask);
-  return nullptr;
+Result<void> watch(Session& session, Words words) {
+  if (!words.empty()) return session.files.open({words[0]});
+  session.window.dialog =
+      Dialog{.kind = Dialog::Kind::Folder,
+             .title = "Open and watch a folder",
+             .folder = startFolder(session),
+             .yes = "Watch",
+             .answered = [](Session& s, const std::string& folder) { s.files.openLogged({folder}); }};
+  return {};
 }
 
-Answer saveAs(Session& session, Words words) {
-  if (!words.empty()) return answerOf(session.files.save(words[0]), {{"file", words[0]}});
-  askWhereToSave(session);
-  return nullptr;
-}
-
-Answer save(Session& session, Words words) {
-  if (words.empty() && !session.files.world().empty())
-    return answerOf(session.files.save(session.files.world()), {{"file", session.files.world().string()}});
-  return saveAs(session, words);
-}
-
-Answer newWorld(Session& session, Words) {
-  session.files.unlessUnsaved("The world has edits that are not saved. Begin a new one without them?",
-                              [](Session& s) { s.files.closeAll(); });
-  return nullptr;
-}
-
-Answer close(Session& session, Words words) {
-  const auto entry = findScene(session, words.empty() ? std::string() : words[0]);
-  if (!entry) return failAgain(entry.error());
-  session.scene_steps.close(*entry);
-  return nullptr;
-}
-
-Answer quit(Session& session, Words) {
-  session.files.askToQuit();
-  return nullptr;
+// Saves to the file that is named or, without a name, to this one. Asks where neither is.
+Answer saveTo(Session& session, Words words, const std::filesystem::path& present) {
+  const std::filesystem::path file = words.empty() ? present : std::filesystem::path(words[0]);
+  if (file.empty()) {
+    askWhereToSave(session);
+    return nullptr;
+  }
+  if (const auto saved = session.files.save(file); !saved) return failAgain(saved.error());
+  return nlohmann::json{{"file", file.string()}};
 }
 
 constexpr std::size_t kMostFiles = 1000;
@@ -86,45 +66,127 @@ Answer useAsset(Session& session, Words words) {
     if (const Asset* listed = session.assets.find(words[0])) asset = *listed;
   }
   if (!asset) return fail(words[0], "is no asset", "\"assets\" lists them");
-  if (asset->kind == AssetKind::EnvironmentMap)
-    return runCommand(session, "environment-map", std::array{asset->file.string()});
-  return answerOf(session.files.open({asset->file}));
+  const bool light = asset->kind == AssetKind::EnvironmentMap;
+  return runCommand(session, light ? "environment-map" : "open", std::array{asset->file.string()});
 }
-
-constexpr std::array kFileRows = {
-    item("File", "new", "New world", "Ctrl+N", "Close everything and begin anew", &newWorld),
-    withWords("FILE...", 1, kMostFiles,
-              item("File", "open", "Open...", "Ctrl+O",
-                   "Open scenes (.gltf, .glb), bundles (.lmb.glb) or a world (.json)", &open)),
-    withWords("FOLDER", 1, 1,
-              item("File", "watch", "Open and watch a folder...", "Ctrl+Shift+O",
-                   "Open all scenes of a folder, and bake what comes or changes there", &watch)),
-    separator("File"),
-    withWords("[FILE]", 0, 1,
-              item("File", "save", "Save world", "Ctrl+S",
-                   "Save what was edited, and which bundles stand here", &save)),
-    withWords("FILE", 1, 1,
-              item("File", "save-as", "Save world as...", "Ctrl+Shift+S", "Save the world under another name",
-                   &saveAs)),
-    separator("File"),
-    enabled(&anyOpen,
-            withWords(
-                "[SCENE]", 0, 1,
-                item("File", "close", "Close scene", "Ctrl+W",
-                     "Take the scene that is selected out of the world; its files stay, undo brings it back",
-                     &close))),
-    item("File", "quit", "Quit", "Ctrl+Q", "End the editor; bakes go on where they were when it starts again",
-         &quit),
-    scripted("assets", "Environment maps, scenes, bundles and worlds to choose from, searched", "[SEARCH]", 0,
-             1, &assets),
-    scripted("use-asset", "Light from this environment map; open this scene, bundle or world", "FILE", 1, 1,
-             &useAsset),
-};
 
 }  // namespace
 
-std::span<const Command> fileCommands() {
-  return kFileRows;
+std::vector<Command> fileCommands() {
+  return inMenu(
+      "File",
+      {item("new", "New world", "Ctrl+N", "Close everything and begin anew",
+            [](Session& session) {
+              session.files.unlessUnsaved(
+                  "The world has edits that are not saved. Begin a new one without them?",
+                  [](Session& s) { s.files.closeAll(); });
+            }),
+       item("open", "Open...", "Ctrl+O", "Open scenes (.gltf, .glb), bundles (.lmb.glb) or a world (.json)",
+            open)
+           .taking("FILE...", 1, kMostFiles),
+       item("watch", "Open and watch a folder...", "Ctrl+Shift+O",
+            "Open all scenes of a folder, and bake what comes or changes there", watch)
+           .taking("FOLDER", 1, 1),
+       separator(),
+       item("save", "Save world", "Ctrl+S", "Save what was edited, and which bundles stand here",
+            [](Session& session, Words words) { return saveTo(session, words, session.files.world()); })
+           .taking("[FILE]", 0, 1),
+       item("save-as", "Save world as...", "Ctrl+Shift+S", "Save the world under another name",
+            [](Session& session, Words words) { return saveTo(session, words, {}); })
+           .taking("FILE", 1, 1),
+       separator(),
+       item("close", "Close scene", "Ctrl+W",
+            "Take the scene that is selected out of the world; its files stay, undo brings it back",
+            [](Session& session, Words words) {
+              return findScene(session, wordAt(words, 0)).map([&](std::size_t entry) {
+                session.scene_steps.close(entry);
+              });
+            })
+           .taking("[SCENE]", 0, 1)
+           .onlyIf(anyOpen),
+       item("quit", "Quit", "Ctrl+Q", "End the editor; bakes go on where they were when it starts again",
+            [](Session& session) { session.files.askToQuit(); }),
+       scripted("assets", "Environment maps, scenes, bundles and worlds to choose from, searched", "[SEARCH]",
+                0, 1, assets),
+       scripted("use-asset", "Light from this environment map; open this scene, bundle or world", "FILE", 1,
+                1, useAsset)});
+}
+
+namespace {
+
+Result<void> bake(Session& session, Words words) {
+  return findScene(session, wordAt(words, 0)).and_then([&](std::size_t entry) {
+    return session.scenes.bake(entry, session.changes.editsOf(entry));
+  });
+}
+
+Result<void> bakeAll(Session& session) {
+  Result<void> first_failed;  // which keeps the others from nothing
+  for (std::size_t i = 0; i < session.scenes.entries().size(); ++i) {
+    if (session.scenes.entries()[i].source.empty()) continue;
+    if (auto asked = session.scenes.bake(i, session.changes.editsOf(i)); !asked && first_failed)
+      first_failed = std::move(asked);
+  }
+  return first_failed;
+}
+
+Result<void> cancel(Session& session, Words words) {
+  if (!words.empty())
+    return findScene(session, words[0]).map([&](std::size_t entry) { session.scenes.cancel(entry); });
+  for (std::size_t i = 0; i < session.scenes.entries().size(); ++i) session.scenes.cancel(i);
+  return {};
+}
+
+Result<void> option(Session& session, Words words) {
+  return findScene(session, wordAt(words, 2)).and_then([&](std::size_t entry) {
+    return session.scenes.setOption(entry, words[0], words[1]);
+  });
+}
+
+// Finds an unfinished bake by its scene's file name, or by its number.
+Result<std::size_t> findUnfinished(const Session& session, const std::string& word) {
+  const auto& unfinished = session.scenes.unfinished();
+  for (std::size_t i = 0; i < unfinished.size(); ++i)
+    if (unfinished[i].scene == word || unfinished[i].scene.filename() == word || std::to_string(i) == word)
+      return i;
+  return fail(word, "is no unfinished bake", "\"state\" lists them");
+}
+
+Result<void> goOn(Session& session, Words words) {
+  if (!words.empty())
+    return findUnfinished(session, words[0]).map([&](std::size_t found) { session.scenes.goOn(found); });
+  while (!session.scenes.unfinished().empty()) session.scenes.goOn(0);
+  return {};
+}
+
+}  // namespace
+
+std::vector<Command> bakeCommands() {
+  return inMenu(
+      "Bake",
+      {item("bake", "Bake", "F7",
+            "Bake the scene at hand with what was edited; what did not change is not traced again", bake)
+           .taking("[SCENE]", 0, 1)
+           .onlyIf(anyOpen),
+       item("bake-all", "Bake all", "Shift+F7", "Bake all scenes with what was edited", bakeAll)
+           .onlyIf(anyOpen),
+       item("cancel", "Cancel", "Ctrl+F7",
+            "Stop baking; what was done is kept, and the next bake goes on from there", cancel)
+           .taking("[SCENE]", 0, 1)
+           .onlyIf([](const Session& session) { return session.scenes.busy(); }),
+       item("go-on", "Go on with unfinished bakes", "",
+            "Finish bakes that an earlier session left unfinished, without opening their scenes", goOn)
+           .taking("[SCENE]", 0, 1)
+           .onlyIf([](const Session& session) { return !session.scenes.unfinished().empty(); }),
+       scripted("forget", "Give an unfinished bake of an earlier session up; what it kept stays in the cache",
+                "SCENE", 1, 1,
+                [](Session& session, Words words) {
+                  return findUnfinished(session, words[0]).map([&](std::size_t found) {
+                    session.scenes.forget(found);
+                  });
+                }),
+       scripted("bake-option", "An option of `lambent bake` for a scene, by its name without the dashes",
+                "NAME VALUE [SCENE]", 2, 3, option)});
 }
 
 }  // namespace lambent::editor

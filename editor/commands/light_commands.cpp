@@ -24,94 +24,79 @@ Result<std::string> fromInfinity(const std::string& word) {
   return word;
 }
 
-Answer addLight(Session& session, Words words) {
-  const auto word = fromInfinity(words[0]);
-  if (!word) return failAgain(word.error());
-  session.history.editWorld("add light", [&](WorldState& world) { world.lights.push_back(*word); });
-  return nullptr;
+Result<void> addLight(Session& session, Words words) {
+  return fromInfinity(words[0]).map([&](const std::string& word) {
+    session.history.editWorld("add light", [&](WorldState& world) { world.lights.push_back(word); });
+  });
 }
 
-Answer removeLight(Session& session, Words words) {
-  const auto& lights = session.document.world().lights;
+Result<void> removeLight(Session& session, Words words) {
+  std::vector<std::string> lights = session.document.world().lights;
   const std::size_t index =
       words[0].find_first_not_of("0123456789") == std::string::npos ? std::stoul(words[0]) : lights.size();
   if (index >= lights.size())
     return fail("remove-light", "there is no light " + words[0], fmt::format("there are {}", lights.size()));
-  std::vector<std::string> left = lights;
-  left.erase(left.begin() + static_cast<std::ptrdiff_t>(index));
-  session.history.editWorld("remove light", [&](WorldState& world) { replaceLights(session, world, left); });
-  return nullptr;
+  lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(index));
+  session.history.editWorld("remove light",
+                            [&](WorldState& world) { replaceLights(session, world, lights); });
+  return {};
+}
+
+std::filesystem::path workingFolder() {
+  std::error_code ignored;
+  return std::filesystem::current_path(ignored);
 }
 
 // Replaces the present environment map, or else all lights, because an environment map has its own sun.
-Answer environmentMap(Session& session, Words words) {
+Result<void> setEnvironmentMap(Session& session, Words words) {
   if (words.empty()) {
-    Dialog ask;
-    ask.kind = Dialog::Kind::OpenFile;
-    ask.title = "Light from an environment map";
-    ask.kinds = {{"Environment maps", {".hdr", ".exr"}}};
-    std::error_code ignored;
-    ask.folder = std::filesystem::current_path(ignored);
-    ask.answered = [](Session& s, const std::string& file) {
-      if (auto done = runCommand(s, "environment-map", std::array{file}); !done) s.log.error(done.error());
-    };
-    session.window.dialog = std::move(ask);
-    return nullptr;
+    session.window.dialog = Dialog{.kind = Dialog::Kind::OpenFile,
+                                   .title = "Light from an environment map",
+                                   .kinds = {{"Environment maps", {".hdr", ".exr"}}},
+                                   .folder = workingFolder(),
+                                   .answered = [](Session& s, const std::string& file) {
+                                     runOrLog(s, "environment-map", std::array{file});
+                                   }};
+    return {};
   }
-  const auto word = fromInfinity(words[0]);
-  if (!word) return failAgain(word.error());
-  session.history.editWorld("environment map " + std::filesystem::path(*word).stem().string(),
-                            [&](WorldState& world) {
-                              std::vector<std::string> with = world.lights;
-                              const auto there = std::ranges::find_if(with, [](const std::string& light) {
-                                const auto parsed = spec::parseLight(light);
-                                return parsed && std::holds_alternative<spec::EnvironmentMapLight>(*parsed);
+  return fromInfinity(words[0]).map([&](const std::string& word) {
+    session.history.editWorld("environment map " + std::filesystem::path(word).stem().string(),
+                              [&](WorldState& world) {
+                                std::vector<std::string> with = world.lights;
+                                const auto there = std::ranges::find_if(with, isEnvironmentMap);
+                                if (there != with.end())
+                                  *there = word;
+                                else
+                                  with = {word};
+                                replaceLights(session, world, std::move(with));
                               });
-                              if (there != with.end())
-                                *there = *word;
-                              else
-                                with = {*word};
-                              replaceLights(session, world, std::move(with));
-                            });
-  return nullptr;
+  });
 }
 
-Answer environmentMapFolder(Session& session, Words words) {
-  if (!words.empty()) {
-    session.environment_maps.addFolder(words[0]);
-    return nullptr;
-  }
-  Dialog ask;
-  ask.kind = Dialog::Kind::Folder;
-  ask.title = "Folder of environment maps";
-  std::error_code ignored;
-  ask.folder = std::filesystem::current_path(ignored);
-  ask.answered = [](Session& s, const std::string& folder) { s.environment_maps.addFolder(folder); };
-  session.window.dialog = std::move(ask);
-  return nullptr;
+void addEnvironmentMapFolder(Session& session, Words words) {
+  if (!words.empty()) return session.assets.addFolder(words[0]);
+  session.window.dialog =
+      Dialog{.kind = Dialog::Kind::Folder,
+             .title = "Folder of environment maps",
+             .folder = workingFolder(),
+             .answered = [](Session& s, const std::string& folder) { s.assets.addFolder(folder); }};
 }
 
-Answer lights(Session& session, Words words) {
-  std::vector<std::string> checked;
-  for (const std::string& given : words) {
-    const auto word = fromInfinity(given);
-    if (!word) return failAgain(word.error());
-    checked.push_back(*word);
-  }
-  session.history.editWorld("lights", [&](WorldState& world) { replaceLights(session, world, checked); });
-  return nullptr;
+Result<void> setLights(Session& session, Words words) {
+  for (const std::string& word : words)
+    if (const auto checked = fromInfinity(word); !checked) return failAgain(checked.error());
+  session.history.editWorld("lights", [&](WorldState& world) {
+    replaceLights(session, world, {words.begin(), words.end()});
+  });
+  return {};
 }
 
-Answer exposure(Session& session, Words words) {
-  std::optional<float> ev;
-  if (words[0] != "auto") {
-    char* end = nullptr;
-    ev = std::strtof(words[0].c_str(), &end);
-    if (*end != '\0' || !(*ev >= -64.0f && *ev <= 64.0f))
-      return fail("exposure", words[0] + " is not a number of stops", "give -64..64 or auto");
-  }
+Result<void> setExposure(Session& session, Words words) {
+  const std::optional<float> ev = words[0] == "auto" ? std::nullopt : spec::parseNumber(words[0]);
+  if (words[0] != "auto" && !(ev && *ev >= -64.0f && *ev <= 64.0f))
+    return fail("exposure", words[0] + " is not a number of stops", "give -64..64 or auto");
   session.history.editWorld("exposure", [&](WorldState& world) { world.exposure_ev = ev; });
-  return nullptr;
+  return {};
 }
 
 constexpr std::size_t kMostLights = 100;
@@ -122,7 +107,7 @@ json rgb(const glm::vec3& v) {
   return {v.r, v.g, v.b};
 }
 
-Answer keys(Session& session, Words) {
+Answer listKeys(Session& session) {
   session.followDocument();
   json rows = json::array();
   for (const KeyLight& key : keyLightsOf(session))
@@ -155,37 +140,35 @@ Result<std::vector<float>> numbers(Words words) {
   return values;
 }
 
-Answer moveKey(Session& session, Words words) {
+Result<void> moveKey(Session& session, Words words) {
   const auto key = keyNumber(session, words[0]);
   if (!key) return failAgain(key.error());
   const auto angles = numbers(words.subspan(1));
   if (!angles) return failAgain(angles.error());
-  if (!((*angles)[1] >= -90.0f && (*angles)[1] <= 90.0f))
+  const float azimuth_deg = (*angles)[0], elevation_deg = (*angles)[1];
+  if (!(elevation_deg >= -90.0f && elevation_deg <= 90.0f))
     return fail("move-key", words[2] + " is no elevation", "give -90..90 degrees");
-  return answerOf(
-      moveKeyLight(session, *key, spec::directionFromAzimuthElevation((*angles)[0], (*angles)[1])));
+  return moveKeyLight(session, *key, spec::directionFromAzimuthElevation(azimuth_deg, elevation_deg));
 }
 
-Answer dimKey(Session& session, Words words) {
+Result<void> dimKey(Session& session, Words words) {
   const auto key = keyNumber(session, words[0]);
   if (!key) return failAgain(key.error());
   const auto factors = numbers(words.subspan(1));
   if (!factors) return failAgain(factors.error());
   if (factors->size() == 2) return fail("dim-key", "needs one factor or three", "give R or R G B");
   const std::vector<float>& f = *factors;
-  return answerOf(dimKeyLight(session, *key, f.size() == 1 ? glm::vec3(f[0]) : glm::vec3(f[0], f[1], f[2])));
+  return dimKeyLight(session, *key, f.size() == 1 ? glm::vec3(f[0]) : glm::vec3(f[0], f[1], f[2]));
 }
 
-Answer resetKey(Session& session, Words words) {
-  if (words.empty()) return answerOf(resetKeyLights(session, {}));
-  const auto key = keyNumber(session, words[0]);
-  if (!key) return failAgain(key.error());
-  return answerOf(resetKeyLights(session, *key));
+Result<void> resetKey(Session& session, Words words) {
+  if (words.empty()) return resetKeyLights(session, {});
+  return keyNumber(session, words[0]).and_then([&](std::size_t key) { return resetKeyLights(session, key); });
 }
 
-Answer quality(Session& session, Words words) {
+Result<void> setQuality(Session& session, Words words) {
   frame::FrameSettings settings = session.stage.settings();
-  if (auto put = frame::putQuality(settings, words[0]); !put) return failAgain(put.error());
+  if (auto put = frame::putQuality(settings, words[0]); !put) return put;
   session.history.editWorld("quality " + words[0], [&](WorldState& world) {
     for (const std::string_view name : frame::qualitySettings()) {
       const frame::SettingRow* row = frame::findSetting(name);
@@ -198,15 +181,10 @@ Answer quality(Session& session, Words words) {
     }
   });
   session.viewing.changed = true;
-  return nullptr;
+  return {};
 }
 
-Answer measureQuality(Session& session, Words) {
-  session.qualities.measure();
-  return nullptr;
-}
-
-Answer qualityCosts(Session& session, Words) {
+Answer qualityCosts(Session& session) {
   json rows = json::array();
   for (const QualityStudy::Row& row : session.qualities.rows())
     rows.push_back({{"quality", row.quality},
@@ -218,34 +196,32 @@ Answer qualityCosts(Session& session, Words) {
   return json{{"qualities", rows}, {"width", size.width}, {"height", size.height}};
 }
 
-constexpr std::array kLightRows = {
-    scripted("lights", "The lights from infinity, in place of those there are", "LIGHT...", 1, kMostLights,
-             &lights),
-    scripted("add-light", "One more light from infinity", "LIGHT", 1, 1, &addLight),
-    scripted("remove-light", "Take one away, counted from 0", "NUMBER", 1, 1, &removeLight),
-    formerly("probe",
-             scripted("environment-map", "Light from this environment map; without a name a dialog asks",
-                      "[FILE]", 0, 1, &environmentMap)),
-    formerly("probe-folder", scripted("environment-map-folder", "Show the environment maps of a folder",
-                                      "[FOLDER]", 0, 1, &environmentMapFolder)),
-    scripted("exposure", "Stops above radiance 1 = white", "EV|auto", 1, 1, &exposure),
-    scripted("keys", "The key lights that were found: where they stand, how strong they are", "", 0, 0,
-             &keys),
-    scripted("move-key", "A key light stands there, in degrees of the world", "NUMBER AZ EL", 3, 3, &moveKey),
-    scripted("dim-key", "Factors on a key light: of what was found in an environment map, of what a sun has",
-             "NUMBER R [G B]", 2, 4, &dimKey),
-    scripted("reset-key", "A key light of an environment map, or all of them, as found", "[NUMBER]", 0, 1,
-             &resetKey),
-    scripted("quality", "How many key lights there are and how finely they shadow", "low|default|high", 1, 1,
-             &quality),
-    scripted("measure-quality", "What each quality costs and loses in this view", "", 0, 0, &measureQuality),
-    scripted("quality-costs", "What was measured of them", "", 0, 0, &qualityCosts),
-};
-
 }  // namespace
 
-std::span<const Command> lightCommands() {
-  return kLightRows;
+std::vector<Command> lightCommands() {
+  return {scripted("lights", "The lights from infinity, in place of those there are", "LIGHT...", 1,
+                   kMostLights, setLights),
+          scripted("add-light", "One more light from infinity", "LIGHT", 1, 1, addLight),
+          scripted("remove-light", "Take one away, counted from 0", "NUMBER", 1, 1, removeLight),
+          scripted("environment-map", "Light from this environment map; without a name a dialog asks",
+                   "[FILE]", 0, 1, setEnvironmentMap),
+          scripted("environment-map-folder", "Show the environment maps of a folder", "[FOLDER]", 0, 1,
+                   addEnvironmentMapFolder),
+          scripted("exposure", "Stops above radiance 1 = white", "EV|auto", 1, 1, setExposure),
+          scripted("keys", "The key lights that were found: where they stand, how strong they are", "", 0, 0,
+                   listKeys),
+          scripted("move-key", "A key light stands there, in degrees of the world", "NUMBER AZ EL", 3, 3,
+                   moveKey),
+          scripted("dim-key",
+                   "Factors on a key light: of what was found in an environment map, of what a sun has",
+                   "NUMBER R [G B]", 2, 4, dimKey),
+          scripted("reset-key", "A key light of an environment map, or all of them, as found", "[NUMBER]", 0,
+                   1, resetKey),
+          scripted("quality", "How many key lights there are and how finely they shadow", "low|default|high",
+                   1, 1, setQuality),
+          scripted("measure-quality", "What each quality costs and loses in this view", "", 0, 0,
+                   [](Session& session) { session.qualities.measure(); }),
+          scripted("quality-costs", "What was measured of them", "", 0, 0, qualityCosts)};
 }
 
 }  // namespace lambent::editor

@@ -1,87 +1,96 @@
-// Declares the parts of the command list. Each part has a file of its own; command_list.cpp joins them.
+// Declares the parts of the command list and how their rows are made. Each part has a file of its own;
+// command_list.cpp joins them.
 #pragma once
 
 #include <array>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/session/names.hpp"
 #include "editor/session/session.hpp"
 
 namespace lambent::editor {
 
-std::span<const Command> fileCommands();
-std::span<const Command> editCommands();
-std::span<const Command> createCommands();
-std::span<const Command> viewCommands();
-std::span<const Command> handleCommands();
-std::span<const Command> cameraCommands();
-std::span<const Command> layoutCommands();
-std::span<const Command> lightCommands();
-std::span<const Command> bakeCommands();
-std::span<const Command> stateCommands();  // commands by which scripts ask about the editor's state
+std::vector<Command> fileCommands();
+std::vector<Command> editCommands();
+std::vector<Command> createCommands();
+std::vector<Command> viewCommands();
+std::vector<Command> windowCommands();
+std::vector<Command> lightCommands();
+std::vector<Command> bakeCommands();
+std::vector<Command> stateCommands();  // commands by which scripts ask about the editor's state
 
 using Answer = Result<nlohmann::json>;
 
+inline constexpr std::array kModes = {"move", "turn", "scale"};       // in the order of GizmoMode
 inline constexpr std::array kPivots = {"primary", "center", "each"};  // in the order of GizmoPivot
 
-// Makes a separator line in a menu.
-constexpr Command separator(const char* menu) {
-  return {.id = "", .title = "-", .menu = menu, .shortcut = "", .help = "", .arguments = ""};
-}
-
-// Makes a menu item.
-constexpr Command item(const char* menu, const char* id, const char* title, const char* shortcut,
-                       const char* help, Answer (*run)(Session&, Words)) {
-  return {.id = id,
-          .title = title,
-          .menu = menu,
-          .shortcut = shortcut,
-          .help = help,
-          .arguments = "",
-          .run = run};
-}
-
-// Makes a menu item that is checked while `is` says so.
-constexpr Command toggle(bool (*is)(const Session&), Command command) {
-  command.checked = is;
+// Makes a command of a function of the session and, if it takes any, words. The function returns a JSON
+// value, whether it failed, or nothing.
+template <typename Function>
+Command item(const char* id, const char* title, const char* shortcut, const char* help, Function function) {
+  Command command{.id = id, .title = title, .shortcut = shortcut, .help = help};
+  command.run = [function](Session& session, Words words) -> Answer {
+    const auto call = [&] {
+      if constexpr (std::is_invocable_v<Function, Session&, Words>)
+        return function(session, words);
+      else
+        return function(session);
+    };
+    using Returned = decltype(call());
+    if constexpr (std::is_void_v<Returned>) {
+      call();
+      return nullptr;
+    } else if constexpr (std::is_same_v<Returned, Result<void>>) {
+      if (const auto done = call(); !done) return failAgain(done.error());
+      return nullptr;
+    } else {
+      return call();
+    }
+  };
   return command;
 }
 
-// Makes a command that can be run only while `is` says so.
-constexpr Command enabled(bool (*is)(const Session&), Command command) {
-  command.enabled = is;
-  return command;
-}
-
-// Makes a command that takes words.
-constexpr Command withWords(const char* arguments, std::size_t least, std::size_t most, Command command) {
-  command.arguments = arguments, command.least_words = least, command.most_words = most;
-  return command;
+// Makes a menu item that switches what `flag` returns a reference to.
+template <typename Flag>
+Command toggle(const char* id, const char* title, const char* shortcut, const char* help, Flag flag) {
+  return item(id, title, shortcut, help,
+              [flag](Session& session) {
+                flag(session) = !flag(session);
+                session.viewing.changed = true;
+              })
+      .checkedIf([flag](const Session& session) { return flag(session); });
 }
 
 // Makes a command for scripts only, without menu item and shortcut.
-constexpr Command scripted(const char* id, const char* help, const char* arguments, std::size_t least,
-                           std::size_t most, Answer (*run)(Session&, Words)) {
-  return withWords(arguments, least, most, item("Script", id, "", "", help, run));
+template <typename Function>
+Command scripted(const char* id, const char* help, const char* arguments, std::size_t least, std::size_t most,
+                 Function function) {
+  return item(id, "", "", help, function).taking(arguments, least, most);
 }
 
-// Also accepts the id that the command had before version 0.11.
-constexpr Command formerly(const char* id, Command command) {
-  command.former = id;
-  return command;
+inline Command separator() {
+  return {.id = "", .title = "-", .shortcut = "", .help = ""};
+}
+
+// Puts the rows that have a title into a menu.
+inline std::vector<Command> inMenu(const char* menu, std::vector<Command> rows) {
+  for (Command& row : rows)
+    if (*row.title != '\0') row.menu = menu;
+  return rows;
+}
+
+// Returns an empty word where there are fewer.
+inline std::string wordAt(Words words, std::size_t index) {
+  return index < words.size() ? words[index] : std::string();
 }
 
 inline bool anyOpen(const Session& session) {
   return !session.scenes.entries().empty();
-}
-
-inline Answer answerOf(const Result<void>& done, nlohmann::json answer = nullptr) {
-  if (!done) return failAgain(done.error());
-  return answer;
 }
 
 }  // namespace lambent::editor

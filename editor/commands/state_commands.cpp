@@ -3,7 +3,7 @@
 
 #include "editor/commands/rows.hpp"
 #include "editor/document/actions.hpp"
-#include "editor/session/status.hpp"
+#include "editor/session/scene_changes.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/spec/numbers.hpp"
 
@@ -23,40 +23,26 @@ json valueJson(const scene::Value& value) {
   return std::get<scene::Word>(value).text;
 }
 
-// Reads the words as numbers.
 Result<scene::Value> readValue(const scene::FieldInfo& field, Words words) {
-  const auto wrong = [&](const char* wanted) {
-    return fail(std::string(field.name), fmt::format("\"{}\" is no value of it", fmt::join(words, " ")),
-                wanted);
-  };
-  std::vector<float> numbers;
-  for (const std::string& word : words)
-    if (const auto number = spec::parseNumber(word)) numbers.push_back(*number);
-  const bool all_numbers = numbers.size() == words.size();
   using Kind = scene::ValueKind;
-  switch (field.kind) {
-    case Kind::Flag:
-      if (words.size() != 1 || (words[0] != "true" && words[0] != "false"))
-        return wrong("give true or false");
-      return scene::Value(words[0] == "true");
-    case Kind::Whole:
-      if (!all_numbers || numbers.size() != 1) return wrong("give a whole number");
-      return scene::Value(static_cast<std::int32_t>(numbers[0]));
-    case Kind::Number:
-      if (!all_numbers || numbers.size() != 1) return wrong("give a number");
-      return scene::Value(numbers[0]);
-    case Kind::Vector:
-      if (!all_numbers || numbers.size() != 3) return wrong("give three numbers");
-      return scene::Value(glm::vec3(numbers[0], numbers[1], numbers[2]));
-    case Kind::Rotation:
-      if (!all_numbers || numbers.size() != 4) return wrong("give x, y, z and w");
-      return scene::Value(glm::quat(numbers[3], numbers[0], numbers[1], numbers[2]));
-    case Kind::Text:
-      return scene::Value(words.empty() ? std::string() : words[0]);
-    case Kind::Word:
-      return scene::Value(scene::Word{words.empty() ? std::string() : words[0]});
+  if (field.kind == Kind::Text) return wordAt(words, 0);
+  if (field.kind == Kind::Word) return scene::Word{wordAt(words, 0)};
+  if (field.kind == Kind::Flag && words.size() == 1 && (words[0] == "true" || words[0] == "false"))
+    return words[0] == "true";
+  std::vector<float> n;
+  for (const std::string& word : words)
+    if (const auto number = spec::parseNumber(word)) n.push_back(*number);
+  if (n.size() == words.size()) {
+    if (field.kind == Kind::Whole && n.size() == 1) return static_cast<std::int32_t>(n[0]);
+    if (field.kind == Kind::Number && n.size() == 1) return n[0];
+    if (field.kind == Kind::Vector && n.size() == 3) return glm::vec3(n[0], n[1], n[2]);
+    if (field.kind == Kind::Rotation && n.size() == 4) return glm::quat(n[3], n[0], n[1], n[2]);
   }
-  return wrong("give a value");
+  constexpr std::array kWanted = {"give true or false",  // in the order of ValueKind
+                                  "give a whole number", "give a number", "give three numbers",
+                                  "give x, y, z and w"};
+  return fail(std::string(field.name), fmt::format("\"{}\" is no value of it", fmt::join(words, " ")),
+              kWanted[static_cast<std::size_t>(field.kind)]);
 }
 
 // Takes "Light.strength", a field of the selection, or "ball:Light.strength", a field of a named entity.
@@ -85,7 +71,7 @@ Result<FieldPlace> fieldPlaceOf(Session& session, const std::string& word) {
   return place;
 }
 
-Answer set(Session& session, Words words) {
+Result<void> set(Session& session, Words words) {
   const auto place = fieldPlaceOf(session, words[0]);
   if (!place) return failAgain(place.error());
   const auto value = readValue(*place->field, words.subspan(1));
@@ -93,7 +79,7 @@ Answer set(Session& session, Words words) {
   std::vector<FieldEdit> edits;
   for (const ecs::Entity entity : place->entities)
     edits.push_back({entity, place->field->component, place->field->name, *value});
-  return answerOf(session.history.setFields(edits));
+  return session.history.setFields(edits);
 }
 
 Answer get(Session& session, Words words) {
@@ -141,7 +127,6 @@ json jobJson(const baker::JobState& job) {
 }
 
 json handlesJson(const Session& session) {
-  constexpr std::array kModes = {"move", "turn", "scale"};
   const GizmoOptions& options = session.handles.gizmo.options;
   return {{"shown", session.handles.shown},
           {"mode", kModes[static_cast<std::size_t>(options.mode)]},
@@ -151,7 +136,7 @@ json handlesJson(const Session& session) {
           {"steps", {options.snap_m, options.snap_deg, options.snap_scale}}};
 }
 
-Answer state(Session& session, Words) {
+Answer state(Session& session) {
   json scenes = json::array();
   for (std::size_t i = 0; i < session.scenes.entries().size(); ++i) {
     const SceneEntry& entry = session.scenes.entries()[i];
@@ -201,7 +186,7 @@ Answer state(Session& session, Words) {
               {"errors", session.log.errors()}};
 }
 
-Answer reference(Session& session, Words) {
+Answer reference(Session& session) {
   json answer = {{"notice", session.reference.notice()}};
   if (const auto now = session.reference.snapshot()) answer["samples"] = now->spp;
   if (const auto& difference = session.reference.difference()) {
@@ -214,7 +199,7 @@ Answer reference(Session& session, Words) {
   return answer;
 }
 
-Answer passes(Session& session, Words) {
+Answer passes(Session& session) {
   json rows = json::array();
   for (const gpu::PassTime& pass : session.picture.passes)
     rows.push_back(
@@ -231,7 +216,7 @@ Answer tree(Session& session, Words words) {
   return rows;
 }
 
-Answer logEntries(Session& session, Words) {
+Answer logEntries(Session& session) {
   constexpr std::array kWords = {"note", "warning", "error"};
   json rows = json::array();
   for (const LogEntry& entry : session.log.entries())
@@ -239,7 +224,7 @@ Answer logEntries(Session& session, Words) {
   return rows;
 }
 
-Answer plan(Session& session, Words) {
+Answer plan(Session& session) {
   const auto entry = sceneAtHand(session);
   if (!entry || session.scenes.entries()[*entry].source.empty())
     return fail("plan", "no scene is open", "open a .gltf or .glb file");
@@ -255,22 +240,18 @@ Answer plan(Session& session, Words) {
 
 constexpr std::size_t kMostWords = 16;
 
-constexpr std::array kStateRows = {
-    scripted("state", "Everything at a glance", "", 0, 0, &state),
-    scripted("inspect", "All components of an entity", "[NAME]", 0, 1, &inspect),
-    scripted("get", "A field of what is selected or named", "[NAME:]COMPONENT.FIELD", 1, 1, &get),
-    scripted("set", "The same, given a value", "[NAME:]COMPONENT.FIELD VALUE...", 2, kMostWords, &set),
-    scripted("tree", "What the scene tree shows, searched", "[SEARCH]", 0, 1, &tree),
-    scripted("reference", "The reference beside: samples, difference", "", 0, 0, &reference),
-    scripted("passes", "Passes of the last frame, their times and why they ran", "", 0, 0, &passes),
-    scripted("plan", "What the bake of the scene at hand simulates", "", 0, 0, &plan),
-    scripted("log", "Notices and errors", "", 0, 0, &logEntries),
-};
-
 }  // namespace
 
-std::span<const Command> stateCommands() {
-  return kStateRows;
+std::vector<Command> stateCommands() {
+  return {scripted("state", "Everything at a glance", "", 0, 0, state),
+          scripted("inspect", "All components of an entity", "[NAME]", 0, 1, inspect),
+          scripted("get", "A field of what is selected or named", "[NAME:]COMPONENT.FIELD", 1, 1, get),
+          scripted("set", "The same, given a value", "[NAME:]COMPONENT.FIELD VALUE...", 2, kMostWords, set),
+          scripted("tree", "What the scene tree shows, searched", "[SEARCH]", 0, 1, tree),
+          scripted("reference", "The reference beside: samples, difference", "", 0, 0, reference),
+          scripted("passes", "Passes of the last frame, their times and why they ran", "", 0, 0, passes),
+          scripted("plan", "What the bake of the scene at hand simulates", "", 0, 0, plan),
+          scripted("log", "Notices and errors", "", 0, 0, logEntries)};
 }
 
 }  // namespace lambent::editor

@@ -1,7 +1,9 @@
+// Implements the commands for the view: what surfaces show, the reference, overlays, the camera, and the
+// handles.
+#include <algorithm>
 #include <array>
 
 #include "editor/commands/rows.hpp"
-#include "editor/session/viewing.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/spec/numbers.hpp"
 
@@ -11,263 +13,251 @@ namespace {
 
 using frame::SurfaceView;
 
-Answer setView(Session& session, Words words) {
-  const auto choice = frame::parseView(words[0]);
-  if (!choice) return failAgain(choice.error());
-  session.viewing.surfaces = *choice;
-  session.viewing.changed = true;
-  return nullptr;
+Command viewOf(SurfaceView view, const char* id, const char* title, const char* shortcut, const char* help) {
+  return item(id, title, shortcut, help,
+              [view](Session& session) {
+                session.viewing.surfaces.view = view;
+                session.viewing.changed = true;
+              })
+      .checkedIf([view](const Session& session) { return session.viewing.surfaces.view == view; });
 }
 
-template <SurfaceView View>
-Answer show(Session& session, Words) {
-  session.viewing.surfaces.view = View;
-  session.viewing.changed = true;
-  return nullptr;
-}
-template <SurfaceView View>
-bool shows(const Session& session) {
-  return session.viewing.surfaces.view == View;
+Result<void> setView(Session& session, Words words) {
+  return frame::parseView(words[0]).map([&](const frame::ViewChoice& view) {
+    session.viewing.surfaces = view;
+    session.viewing.changed = true;
+  });
 }
 
-Answer setSetting(Session& session, std::string name, std::string word) {
+Result<void> setSetting(Session& session, const std::string& name, const std::string& word) {
   frame::FrameSettings settings = session.stage.settings();
-  if (auto put = frame::putSetting(settings, name, word); !put) return failAgain(put.error());
-  session.history.editWorld(name, [&](WorldState& world) { world.settings[name] = std::move(word); });
+  if (auto put = frame::putSetting(settings, name, word); !put) return put;
+  session.history.editWorld(name, [&](WorldState& world) { world.settings[name] = word; });
   session.viewing.changed = true;
-  return nullptr;
-}
-Answer setting(Session& session, Words words) {
-  return setSetting(session, words[0], words[1]);
+  return {};
 }
 
-constexpr std::array kTransfers = {"unshadowed", "shadowed", "full"};
-template <std::size_t Mode>
-Answer transfer(Session& session, Words) {
-  return setSetting(session, "transfer", kTransfers[Mode]);
-}
-template <std::size_t Mode>
-bool transfers(const Session& session) {
-  return static_cast<std::size_t>(session.stage.settings().transfer) == Mode;
-}
-
-Answer frameSelected(Session& session, Words) {
-  session.viewing.frame(session.document, selectionBounds(session.document, session.selection));
-  return nullptr;
-}
-Answer frameAll(Session& session, Words) {
-  session.viewing.frame(session.document, {});
-  return nullptr;
-}
-Answer setCamera(Session& session, Words words) {
-  return answerOf(session.viewing.setCamera(session.document, words[0]));
-}
-Answer ortho(Session& session, Words) {
-  session.viewing.goal.orthographic = session.viewing.pose.orthographic = !session.viewing.goal.orthographic;
-  session.viewing.changed = true;
-  return nullptr;
-}
-bool isOrtho(const Session& session) {
-  return session.viewing.goal.orthographic;
+Command transferOf(std::size_t mode, const char* word, const char* title, const char* shortcut,
+                   const char* help) {
+  return item(word, title, shortcut, help,
+              [word](Session& session) { return setSetting(session, "transfer", word); })
+      .checkedIf([mode](const Session& session) {
+        return static_cast<std::size_t>(session.stage.settings().transfer) == mode;
+      });
 }
 
-template <SplitView Split>
-Answer split(Session& session, Words) {
-  SplitView& now = session.reference.split;
-  now = now == Split ? SplitView::Off : Split;
-  session.viewing.changed = true;
-  return nullptr;
-}
-template <SplitView Split>
-bool isSplit(const Session& session) {
-  return session.reference.split == Split;
-}
-Answer samples(Session& session, Words words) {
-  const auto number = spec::parseNumber(words[0]);
-  if (!number || *number < 1.0f || *number > 1e6f)
-    return fail("reference-samples", words[0] + " is not a number of samples", "give 1..1000000");
-  session.reference.spp = static_cast<std::uint32_t>(*number);
-  return nullptr;
-}
-Answer bands(Session& session, Words words) {
-  if (words[0] == "off") {
-    session.reference.band_limit.reset();
-    return nullptr;
-  }
-  const auto number = spec::parseNumber(words[0]);
-  if (!number || *number < 1.0f || *number > 8.0f)
-    return fail("reference-bands", words[0] + " is not a number of bands", "give 1..8, or off");
-  session.reference.band_limit = static_cast<int>(*number);
-  return nullptr;
+Command splitOf(SplitView split, const char* id, const char* title, const char* shortcut, const char* help) {
+  return item(id, title, shortcut, help,
+              [split](Session& session) {
+                SplitView& now = session.reference.split;
+                now = now == split ? SplitView::Off : split;
+                session.viewing.changed = true;
+              })
+      .checkedIf([split](const Session& session) { return session.reference.split == split; });
 }
 
-template <bool frame::OverlayOptions::*Switch>
-Answer overlay(Session& session, Words) {
-  session.viewing.overlays.*Switch = !(session.viewing.overlays.*Switch);
-  session.viewing.changed = true;
-  return nullptr;
-}
-template <bool frame::OverlayOptions::*Switch>
-bool hasOverlay(const Session& session) {
-  return session.viewing.overlays.*Switch;
+Command overlayOf(bool frame::OverlayOptions::*flag, const char* id, const char* title, const char* help) {
+  return toggle(
+      id, title, "", help, [flag](auto& session) -> auto& { return session.viewing.overlays.*flag; });
 }
 
-Answer play(Session& session, Words) {
-  session.playback.playing = !session.playback.playing;
-  return nullptr;
-}
-bool plays(const Session& session) {
-  return session.playback.playing;
-}
-Answer time(Session& session, Words words) {
-  const auto seconds = spec::parseNumber(words[0]);
-  if (!seconds || *seconds < 0.0f) return fail("time", words[0] + " is not a time", "give seconds");
-  session.playback.time_s = *seconds;
-  session.stage.world().setAnimationTime(*seconds);
-  session.viewing.changed = true;
-  return nullptr;
+// Returns the word as a number within these limits, or an error that names them.
+Result<float> numberWithin(const char* subject, const std::string& word, float least, float most,
+                           const char* what, const char* hint) {
+  const auto number = spec::parseNumber(word);
+  if (!number || *number < least || *number > most)
+    return fail(subject, fmt::format("{} is not {}", word, what), hint);
+  return *number;
 }
 
-using O = frame::OverlayOptions;
-
-constexpr std::array kViewRows = {
-    toggle(&shows<SurfaceView::Final>,
-           item("View", "view-final", "Final", "1", "The light as it is", &show<SurfaceView::Final>)),
-    toggle(&shows<SurfaceView::Irradiance>,
-           item("View", "view-irradiance", "Irradiance", "2",
-                "What arrives at surfaces, without their own color", &show<SurfaceView::Irradiance>)),
-    toggle(&shows<SurfaceView::TransferDc>,
-           item("View", "view-dc", "Average visibility", "3", "What of uniform light arrives",
-                &show<SurfaceView::TransferDc>)),
-    toggle(&shows<SurfaceView::TransferBand>,
-           item("View", "view-band", "One SH band", "4", "Energy of one band of the transfer",
-                &show<SurfaceView::TransferBand>)),
-    toggle(&shows<SurfaceView::ErrorEstimate>, item("View", "view-error", "Coding error", "5",
-                                                    "What coding the transfer costs, as the bake measured it",
-                                                    &show<SurfaceView::ErrorEstimate>)),
-    toggle(&shows<SurfaceView::Importance>,
-           item("View", "view-importance", "Importance", "6",
-                "How much the bake took surfaces to matter to pictures", &show<SurfaceView::Importance>)),
-    toggle(&shows<SurfaceView::ClusterIds>,
-           item("View", "view-clusters", "Clusters", "7", "Which samples are coded together",
-                &show<SurfaceView::ClusterIds>)),
-    toggle(&shows<SurfaceView::Normals>,
-           item("View", "view-normals", "Normals", "8", "Shading normals", &show<SurfaceView::Normals>)),
-    toggle(&shows<SurfaceView::Wireframe>,
-           item("View", "view-wireframe", "Wireframe", "9", "The triangles over the picture",
-                &show<SurfaceView::Wireframe>)),
-    scripted("view", "What surfaces show", "NAME[:BAND]", 1, 1, &setView),
-    separator("View"),
-    toggle(&transfers<0>, item("View", "unshadowed", "Unshadowed", "Shift+1",
-                               "Light without shadows or bounces", &transfer<0>)),
-    toggle(&transfers<1>,
-           item("View", "shadowed", "Shadowed", "Shift+2", "With shadows, without bounces", &transfer<1>)),
-    toggle(&transfers<2>,
-           item("View", "full", "Shadows and bounces", "Shift+3", "All that was baked", &transfer<2>)),
-    scripted("setting", "A setting of the frame, as the panel has them", "NAME VALUE", 2, 2, &setting),
-    separator("View"),
-    toggle(&isSplit<SplitView::Beside>,
-           item("View", "split", "Reference beside", "F8",
-                "The path-traced picture beside this one, refined in the background",
-                &split<SplitView::Beside>)),
-    toggle(&isSplit<SplitView::Heat>,
-           item("View", "heat", "Difference from the reference", "Shift+F8",
-                "Where the picture differs, and by how much", &split<SplitView::Heat>)),
-    scripted("reference-samples", "Samples a pixel at which the reference ends", "N", 1, 1, &samples),
-    scripted("reference-bands", "Light of the reference in so many bands only", "N|off", 1, 1, &bands),
-    separator("View"),
-    formerly("overlay-light-samples",
-             toggle(&hasOverlay<&O::light_probes>,
-                    item("View", "overlay-light-probes", "Light probes", "",
-                         "What is captured where, and its harmonics as a ball", &overlay<&O::light_probes>))),
-    toggle(&hasOverlay<&O::neighborhoods>,
-           item("View", "overlay-neighborhoods", "Shadows around bodies", "",
-                "What bodies change around them", &overlay<&O::neighborhoods>)),
-    toggle(&hasOverlay<&O::volumes>, item("View", "overlay-volumes", "Volume bounds", "",
-                                          "The boxes of volumes", &overlay<&O::volumes>)),
-    toggle(&hasOverlay<&O::groups>, item("View", "overlay-groups", "Group bounds", "",
-                                         "The boxes of rigid groups", &overlay<&O::groups>)),
-    toggle(&hasOverlay<&O::lights>, item("View", "overlay-lights", "Lights", "",
-                                         "Where lights stand, and where they shine", &overlay<&O::lights>)),
-    toggle(&hasOverlay<&O::keys>,
-           item("View", "overlay-keys", "Key lights", "",
-                "Where key lights stand on the sky, and what their shadow maps show", &overlay<&O::keys>)),
-    separator("View"),
-    item("View", "frame", "Frame selection", "F", "What is selected fills the picture", &frameSelected),
-    item("View", "frame-all", "Frame all", "Home", "All fills the picture", &frameAll),
-    toggle(&isOrtho, item("View", "orthographic", "Orthographic", "O", "A view without perspective", &ortho)),
-    scripted("camera", "Look from there: orbit:AZ,EL,DIST,FOV, pose:... or a camera's name", "CAMERA", 1, 1,
-             &setCamera),
-    toggle(&plays, item("View", "play", "Play animations", "Space", "Animations run", &play)),
-    scripted("time", "Where animations stand", "SECONDS", 1, 1, &time),
-};
-
-}  // namespace
-
-std::span<const Command> viewCommands() {
-  return kViewRows;
+Result<void> setSamples(Session& session, Words words) {
+  return numberWithin("reference-samples", words[0], 1.0f, 1e6f, "a number of samples", "give 1..1000000")
+      .map([&](float number) { session.reference.spp = static_cast<std::uint32_t>(number); });
 }
 
-namespace {
+Result<void> setBands(Session& session, Words words) {
+  session.reference.band_limit.reset();
+  if (words[0] == "off") return {};
+  return numberWithin("reference-bands", words[0], 1.0f, 8.0f, "a number of bands", "give 1..8, or off")
+      .map([&](float number) { session.reference.band_limit = static_cast<int>(number); });
+}
+
+Result<void> setTime(Session& session, Words words) {
+  return numberWithin("time", words[0], 0.0f, 1e9f, "a time", "give seconds").map([&](float seconds) {
+    session.playback.time_s = seconds;
+    session.stage.world().setAnimationTime(seconds);
+    session.viewing.changed = true;
+  });
+}
 
 bool cameraSelected(const Session& session) {
   return session.document.registry().alive(selectedCamera(session));
 }
-
+bool keepsCamera(const Session& session) {
+  return session.document.registry().alive(session.viewing.kept_camera);
+}
 // Returns the selected camera, or else the one whose picture is kept.
 ecs::Entity cameraAtHand(const Session& session) {
   return cameraSelected(session) ? selectedCamera(session) : shownCamera(session);
 }
-bool anyCamera(const Session& session) {
-  return session.document.registry().alive(cameraAtHand(session));
-}
 
-Answer look(Session& session, Words) {
-  lookThrough(session, cameraAtHand(session));
-  return nullptr;
-}
-Answer keep(Session& session, Words) {
+// Keeps the picture of the selected camera, or gives up the one that is kept.
+void keepCamera(Session& session) {
   ecs::Entity& kept = session.viewing.kept_camera;
-  const ecs::Entity selected = selectedCamera(session);  // none gives up the kept one
+  const ecs::Entity selected = selectedCamera(session);
   kept = kept == selected ? ecs::Entity{} : selected;
-  return nullptr;
-}
-bool keeps(const Session& session) {
-  return session.document.registry().alive(session.viewing.kept_camera);
-}
-bool mayKeep(const Session& session) {
-  return cameraSelected(session) || keeps(session);
-}
-Answer place(Session& session, Words) {
-  return answerOf(placeAtView(session, selectedCamera(session)));
-}
-Answer preview(Session& session, Words) {
-  session.preferences.camera_preview = !session.preferences.camera_preview;
-  return nullptr;
-}
-bool previews(const Session& session) {
-  return session.preferences.camera_preview;
 }
 
-constexpr std::array kCameraRows = {
-    separator("View"),
-    enabled(&anyCamera,
-            item("View", "look-through", "Look through this camera", "C",
-                 "The view goes where the selected camera stands, or the one whose picture is kept", &look)),
-    enabled(&cameraSelected, item("View", "camera-to-view", "Camera to view", "Shift+C",
-                                  "The selected camera goes where the view is", &place)),
-    toggle(&previews, item("View", "camera-preview", "Camera preview", "",
-                           "An inset in the view shows what a selected camera sees", &preview)),
-    enabled(&mayKeep,
-            toggle(&keeps,
-                   item("View", "keep-camera", "Keep this camera's picture", "",
-                        "The inset stays while other things are selected and edited: a second view", &keep))),
-};
+Command modeOf(GizmoMode mode, const char* title, const char* shortcut, const char* help) {
+  return item(kModes[static_cast<std::size_t>(mode)], title, shortcut, help,
+              [mode](Session& session) {
+                session.handles.gizmo.options.mode = mode;
+                session.handles.shown = true;
+              })
+      .checkedIf([mode](const Session& session) {
+        return session.handles.shown && session.handles.gizmo.options.mode == mode;
+      });
+}
+
+void switchAxes(Session& session) {
+  GizmoSpace& now = session.handles.gizmo.options.space;
+  now = now == GizmoSpace::World ? GizmoSpace::Local : GizmoSpace::World;
+}
+
+// Takes a pivot by its name, or the next one.
+Answer setPivot(Session& session, Words words) {
+  GizmoPivot& now = session.handles.gizmo.options.pivot;
+  std::size_t to = (static_cast<std::size_t>(now) + 1) % kPivots.size();
+  if (!words.empty()) {
+    const auto found = std::find(kPivots.begin(), kPivots.end(), words[0]);
+    if (found == kPivots.end())
+      return fail("pivot", "\"" + words[0] + "\" is not known", "give primary, center or each");
+    to = static_cast<std::size_t>(found - kPivots.begin());
+  }
+  now = static_cast<GizmoPivot>(to);
+  return kPivots[to];
+}
+
+// Switches snapping, or switches it on with these steps; 0 metres switch it off.
+Answer setSnap(Session& session, Words words) {
+  GizmoOptions& now = session.handles.gizmo.options;
+  if (words.empty()) return now.snap = !now.snap;
+  std::vector<float> given;
+  for (const std::string& word : words) {
+    const auto step = spec::parseNumber(word);
+    const bool off = given.empty() && words.size() == 1 && step && *step == 0.0f;
+    if (!step || (!off && !(*step > 0.0f)))
+      return fail("snap", word + " is not a step",
+                  "give metres, degrees and a factor above 0, or 0 for none");
+    given.push_back(*step);
+  }
+  now.snap = given[0] > 0.0f;
+  const std::array steps = {&now.snap_m, &now.snap_deg, &now.snap_scale};
+  for (std::size_t i = 0; now.snap && i < given.size(); ++i) *steps[i] = given[i];
+  return now.snap;
+}
 
 }  // namespace
 
-std::span<const Command> cameraCommands() {
-  return kCameraRows;
+std::vector<Command> viewCommands() {
+  using O = frame::OverlayOptions;
+  return inMenu(
+      "View",
+      {viewOf(SurfaceView::Final, "view-final", "Final", "1", "The light as it is"),
+       viewOf(SurfaceView::Irradiance, "view-irradiance", "Irradiance", "2",
+              "What arrives at surfaces, without their own color"),
+       viewOf(SurfaceView::TransferDc, "view-dc", "Average visibility", "3", "What of uniform light arrives"),
+       viewOf(SurfaceView::TransferBand, "view-band", "One SH band", "4",
+              "Energy of one band of the transfer"),
+       viewOf(SurfaceView::ErrorEstimate, "view-error", "Coding error", "5",
+              "What coding the transfer costs, as the bake measured it"),
+       viewOf(SurfaceView::Importance, "view-importance", "Importance", "6",
+              "How much the bake took surfaces to matter to pictures"),
+       viewOf(SurfaceView::ClusterIds, "view-clusters", "Clusters", "7", "Which samples are coded together"),
+       viewOf(SurfaceView::Normals, "view-normals", "Normals", "8", "Shading normals"),
+       viewOf(SurfaceView::Wireframe, "view-wireframe", "Wireframe", "9", "The triangles over the picture"),
+       scripted("view", "What surfaces show", "NAME[:BAND]", 1, 1, setView),
+       separator(),
+       transferOf(0, "unshadowed", "Unshadowed", "Shift+1", "Light without shadows or bounces"),
+       transferOf(1, "shadowed", "Shadowed", "Shift+2", "With shadows, without bounces"),
+       transferOf(2, "full", "Shadows and bounces", "Shift+3", "All that was baked"),
+       scripted("setting", "A setting of the frame, as the panel has them", "NAME VALUE", 2, 2,
+                [](Session& session, Words words) { return setSetting(session, words[0], words[1]); }),
+       separator(),
+       splitOf(SplitView::Beside, "split", "Reference beside", "F8",
+               "The path-traced picture beside this one, refined in the background"),
+       splitOf(SplitView::Heat, "heat", "Difference from the reference", "Shift+F8",
+               "Where the picture differs, and by how much"),
+       scripted("reference-samples", "Samples a pixel at which the reference ends", "N", 1, 1, setSamples),
+       scripted("reference-bands", "Light of the reference in so many bands only", "N|off", 1, 1, setBands),
+       separator(),
+       overlayOf(&O::light_probes, "overlay-light-probes", "Light probes",
+                 "What is captured where, and its harmonics as a ball"),
+       overlayOf(&O::neighborhoods, "overlay-neighborhoods", "Shadows around bodies",
+                 "What bodies change around them"),
+       overlayOf(&O::volumes, "overlay-volumes", "Volume bounds", "The boxes of volumes"),
+       overlayOf(&O::groups, "overlay-groups", "Group bounds", "The boxes of rigid groups"),
+       overlayOf(&O::lights, "overlay-lights", "Lights", "Where lights stand, and where they shine"),
+       overlayOf(&O::keys, "overlay-keys", "Key lights",
+                 "Where key lights stand on the sky, and what their shadow maps show"),
+       separator(),
+       item("frame", "Frame selection", "F", "What is selected fills the picture",
+            [](Session& session) {
+              session.viewing.frame(session.document, selectionBounds(session.document, session.selection));
+            }),
+       item("frame-all", "Frame all", "Home", "All fills the picture",
+            [](Session& session) { session.viewing.frame(session.document, {}); }),
+       item("orthographic", "Orthographic", "O", "A view without perspective",
+            [](Session& session) {
+              Viewing& viewing = session.viewing;
+              viewing.goal.orthographic = viewing.pose.orthographic = !viewing.goal.orthographic;
+              viewing.changed = true;
+            })
+           .checkedIf([](const Session& session) { return session.viewing.goal.orthographic; }),
+       scripted("camera", "Look from there: orbit:AZ,EL,DIST,FOV, pose:... or a camera's name", "CAMERA", 1,
+                1,
+                [](Session& session, Words words) {
+                  return session.viewing.setCamera(session.document, words[0]);
+                }),
+       toggle(
+           "play", "Play animations", "Space", "Animations run",
+           [](auto& session) -> auto& { return session.playback.playing; }),
+       scripted("time", "Where animations stand", "SECONDS", 1, 1, setTime),
+       separator(),
+       modeOf(GizmoMode::Move, "Move", "W", "Handles that move what is selected"),
+       modeOf(GizmoMode::Rotate, "Turn", "E", "Handles that turn what is selected"),
+       modeOf(GizmoMode::Scale, "Scale", "R", "Handles that scale what is selected"),
+       item("local-axes", "Local axes", "X", "Handles along the axes of what is selected, not of the world",
+            switchAxes)
+           .checkedIf([](const Session& session) {
+             return session.handles.gizmo.options.space == GizmoSpace::Local;
+           }),
+       item("pivot", "Next pivot", "Z",
+            "Turn and scale about the last selected, the middle of all, or each about itself", setPivot)
+           .taking("[primary|center|each]", 0, 1),
+       item("snap", "Snap", "Y", "Drags go in steps; Ctrl does so for one drag, or frees it", setSnap)
+           .taking("[METRES [DEGREES [FACTOR]]]", 0, 3)
+           .checkedIf([](const Session& session) { return session.handles.gizmo.options.snap; }),
+       toggle(
+           "gizmos", "Handles", "G", "Show handles at all",
+           [](auto& session) -> auto& { return session.handles.shown; }),
+       separator(),
+       item("look-through", "Look through this camera", "C",
+            "The view goes where the selected camera stands, or the one whose picture is kept",
+            [](Session& session) { lookThrough(session, cameraAtHand(session)); })
+           .onlyIf([](const Session& session) {
+             return session.document.registry().alive(cameraAtHand(session));
+           }),
+       item("camera-to-view", "Camera to view", "Shift+C", "The selected camera goes where the view is",
+            [](Session& session) { return placeAtView(session, selectedCamera(session)); })
+           .onlyIf(cameraSelected),
+       toggle(
+           "camera-preview", "Camera preview", "", "An inset in the view shows what a selected camera sees",
+           [](auto& session) -> auto& { return session.preferences.camera_preview; }),
+       item("keep-camera", "Keep this camera's picture", "",
+            "The inset stays while other things are selected and edited: a second view", keepCamera)
+           .checkedIf(keepsCamera)
+           .onlyIf([](const Session& session) { return cameraSelected(session) || keepsCamera(session); })});
 }
 
 }  // namespace lambent::editor

@@ -38,12 +38,7 @@ Result<std::string> copyComponent(const Document& document, ecs::Entity entity, 
 Result<std::string> copyEntities(const Document& document, std::span<const ecs::Entity> entities);
 
 enum class Pasted { Nothing, Component, Entities };
-// Describes what a clipboard text holds, so that menus can say "Paste Light".
-struct Clip {
-  Pasted kind = Pasted::Nothing;
-  std::string component;  // its name, for Pasted::Component
-};
-Clip peekClip(std::string_view text);
+Pasted peekClip(std::string_view text);
 
 // Pastes a component onto all given entities. A Created entity that lacks the component gets it if the
 // component may be added. Errors: the text was not copied by the editor; it is damaged (names the JSON path);
@@ -53,13 +48,5 @@ Result<void> pasteComponent(Document& document, History& history, std::span<cons
 // Creates the copied entities below `parent` (none: at the top of the world) and returns the topmost ones.
 Result<std::vector<ecs::Entity>> pasteEntities(Document& document, History& history, ecs::Entity parent,
                                                std::string_view text);
-
-// Returns snapshots of the entities and their descendants, parents first. Errors: those of duplicate().
-Result<std::vector<EntitySnapshot>> copiesOf(const Document& document, std::span<const ecs::Entity> entities);
-
-// Creates entities from the snapshots as one step of the history. Returns those whose parent is not among
-// them.
-Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history,
-                                            std::vector<EntitySnapshot> copies, std::string name);
 
 }  // namespace lambent::editor

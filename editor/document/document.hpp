@@ -11,11 +11,13 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
 
 #include "runtime/ecs/registry.hpp"
+#include "runtime/scene/reflection.hpp"
 #include "runtime/scene/stable_id.hpp"
 
 namespace lambent::editor {
@@ -85,7 +87,6 @@ class Document {
 
   // Returns the entity, or none if it does not exist at present.
   ecs::Entity find(StableId id) const;
-  // Returns the entity's id, or kNoId if it has none.
   StableId idOf(ecs::Entity entity) const;
   // Returns the entity's id. An entity without id gets one and becomes Created (the environment gets
   // environmentId()).
@@ -116,7 +117,6 @@ class Document {
 
 // Returns the parent, or none if it is no longer alive.
 ecs::Entity parentOf(const ecs::Registry& registry, ecs::Entity entity);
-// Returns whether `entity` is `ancestor` or one of its descendants.
 bool isBelow(const ecs::Registry& registry, ecs::Entity entity, ecs::Entity ancestor);
 // Returns the entities and their descendants, each once, parents before children.
 std::vector<ecs::Entity> withDescendants(const ecs::Registry& registry,
@@ -124,5 +124,36 @@ std::vector<ecs::Entity> withDescendants(const ecs::Registry& registry,
 // Computes the matrix from the Transforms themselves, so that it is also current between two calls of
 // updateTransforms.
 glm::mat4 worldFromNode(const ecs::Registry& registry, ecs::Entity entity);
+
+// Copies the editable state of an entity out of a registry as plain values, and creates an entity from it.
+// The history, the clipboard and duplicate use these snapshots.
+
+// Holds all fields of one component, in the order of ComponentInfo::fields.
+struct ComponentValues {
+  const scene::ComponentInfo* component = nullptr;
+  std::vector<scene::Value> values;
+};
+
+struct EntitySnapshot {
+  StableId id;      // kNoId: a new id is given
+  StableId parent;  // kNoId: the world
+  std::vector<ComponentValues> components;
+
+  const scene::Value* find(std::string_view component, std::string_view field) const;
+};
+
+ComponentValues componentValues(const ecs::Registry& registry, ecs::Entity entity,
+                                const scene::ComponentInfo& component);
+// Takes a snapshot of an entity that has an id (Document::adopt).
+EntitySnapshot takeSnapshot(const Document& document, ecs::Entity entity);
+// Creates a Created entity with these components, below the world if its parent does not exist.
+ecs::Entity makeEntity(Document& document, const EntitySnapshot& snapshot);
+std::size_t bytesOf(const EntitySnapshot& snapshot);
+std::size_t bytesOf(const scene::Value& value);
+
+// Return what the Create menu makes. Each has a Name and a Transform.
+EntitySnapshot emptyEntity(std::string name);
+EntitySnapshot lightEntity(std::string_view kind, std::string name);  // kind: a word of Light.kind
+EntitySnapshot cameraEntity(std::string name);
 
 }  // namespace lambent::editor

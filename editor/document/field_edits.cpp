@@ -111,15 +111,7 @@ class Calculation {
 }  // namespace
 
 double NumberEdit::appliedTo(double number) const {
-  switch (kind) {
-    case Kind::Set:
-      return amount;
-    case Kind::Add:
-      return number + amount;
-    case Kind::Multiply:
-      return number * amount;
-  }
-  return number;
+  return kind == Kind::Set ? amount : kind == Kind::Add ? number + amount : number * amount;
 }
 
 std::optional<NumberEdit> parseNumberEdit(std::string_view text) {
@@ -133,16 +125,8 @@ std::optional<NumberEdit> parseNumberEdit(std::string_view text) {
   if (!value) return std::nullopt;
   if (!relative) return NumberEdit{NumberEdit::Kind::Set, *value};
   if (sign == '/' && *value == 0.0) return std::nullopt;
-  switch (sign) {
-    case '+':
-      return NumberEdit{NumberEdit::Kind::Add, *value};
-    case '-':
-      return NumberEdit{NumberEdit::Kind::Add, -*value};
-    case '*':
-      return NumberEdit{NumberEdit::Kind::Multiply, *value};
-    default:
-      return NumberEdit{NumberEdit::Kind::Multiply, 1.0 / *value};
-  }
+  if (sign == '+' || sign == '-') return NumberEdit{NumberEdit::Kind::Add, sign == '+' ? *value : -*value};
+  return NumberEdit{NumberEdit::Kind::Multiply, sign == '*' ? *value : 1.0 / *value};
 }
 
 }  // namespace lambent::editor

@@ -95,7 +95,7 @@ void History::apply(const Change& change, bool forth, std::vector<std::string>& 
               info.fields[i].restore(registry, entity, component.values.values[i]);
           },
           [&](const WorldChange& world) { document_.setWorld(forth ? world.after : world.before); },
-          [&](const std::shared_ptr<OutsideChange>& outside) { outside->carryOut(forth, missing); }},
+          [&](const OutsideChange& outside) { outside.carry_out(forth, missing); }},
       change);
 }
 
@@ -156,8 +156,8 @@ std::size_t History::bytesOf(const Change& change) {
     for (const WorldState* state : {&world->before, &world->after})
       bytes += 64 * (state->settings.size() + state->view.size() + state->lights.size()) +
                512 * state->bundles.size();
-  } else if (const auto* outside = std::get_if<std::shared_ptr<OutsideChange>>(&change)) {
-    bytes += (*outside)->bytes();
+  } else if (const auto* outside = std::get_if<OutsideChange>(&change)) {
+    bytes += outside->bytes;
   }
   return bytes;
 }
@@ -236,7 +236,7 @@ bool History::modifiedInside() const {
   const auto saved = static_cast<std::size_t>(*saved_ - forgotten_);
   for (std::size_t i = std::min(saved, done_); i < std::max(saved, done_); ++i)
     for (const Change& change : steps_[i].changes)
-      if (!std::holds_alternative<std::shared_ptr<OutsideChange>>(change)) return true;
+      if (!std::holds_alternative<OutsideChange>(change)) return true;
   return false;
 }
 

@@ -6,8 +6,8 @@
 
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "editor/document/document.hpp"
-#include "editor/document/snapshot.hpp"
 #include "runtime/base/result.hpp"
+#include "runtime/scene/components.hpp"
 #include "runtime/scene/reflection.hpp"
 
 namespace lambent::editor {
@@ -38,14 +38,10 @@ struct Replay {
 };
 
 // An OutsideChange is a change of something that the document does not hold, such as which scenes are open.
-// Its owner implements undo.
-class OutsideChange {
- public:
-  virtual ~OutsideChange() = default;
+struct OutsideChange {
   // Redoes the change if `forth`, else undoes it. Appends what is no longer possible to `missing`.
-  virtual void carryOut(bool forth, std::vector<std::string>& missing) = 0;
-  // Returns the approximate memory use in bytes.
-  virtual std::size_t bytes() const = 0;
+  std::function<void(bool forth, std::vector<std::string>& missing)> carry_out;
+  std::size_t bytes = 0;  // approximate memory use
 };
 
 class History {
@@ -58,22 +54,18 @@ class History {
   // ---- Each of these edits is one step, unless a step is open.
   Result<void> setField(ecs::Entity entity, std::string_view component, std::string_view field,
                         scene::Value value);
-  // Sets all fields or, on an error, none.
-  Result<void> setFields(std::span<const FieldEdit> edits, std::string name = {});
-  // Sets fields to values that they had before (a bundle's). The fields' ranges are not checked, only their
-  // kinds.
-  Result<void> restoreFields(std::span<const FieldEdit> edits, std::string name = {});
+  // Sets all fields or, on an error, none. Values that they had before (a bundle's) need not be in range.
+  Result<void> setFields(std::span<const FieldEdit> edits, std::string name = {}, bool in_range = true);
   // Creates an entity from a snapshot. Errors: the parent has no Transform.
-  Result<ecs::Entity> create(const EntitySnapshot& snapshot, std::string name = {});
+  Result<ecs::Entity> create(const EntitySnapshot& snapshot);
   // Destroys the entities and their descendants. Descendants that belong to bundles stay, at the same place,
   // below the world. Errors: an entity that is not Created.
-  Result<void> destroy(std::span<const ecs::Entity> entities, std::string name = {});
+  Result<void> destroy(std::span<const ecs::Entity> entities);
   Result<void> destroy(ecs::Entity entity) { return destroy(std::span(&entity, 1)); }
   // Moves the entities below `parent`, or to the top of the world if it is none. keep_place: an entity keeps
   // its place in the world and its Transform changes. Errors: an entity has no Transform; the parent is the
   // entity or a descendant of it; the parent's matrix has no inverse although the place is to be kept.
-  Result<void> reparent(std::span<const ecs::Entity> entities, ecs::Entity parent, bool keep_place,
-                        std::string name = {});
+  Result<void> reparent(std::span<const ecs::Entity> entities, ecs::Entity parent, bool keep_place);
   Result<void> reparent(ecs::Entity entity, ecs::Entity parent, bool keep_place) {
     return reparent(std::span(&entity, 1), parent, keep_place);
   }
@@ -91,7 +83,7 @@ class History {
     setWorld(std::move(world), std::move(name));
   }
   // Records a change that has just been made outside the document.
-  void did(std::shared_ptr<OutsideChange> change, std::string name);
+  void did(OutsideChange change, std::string name);
 
   // ---- begin() and commit() nest; the outermost pair makes the step.
   void begin(std::string name);
@@ -144,8 +136,8 @@ class History {
   struct WorldChange {
     WorldState before, after;
   };
-  using Change = std::variant<FieldChange, ParentChange, EntityChange, ComponentChange, WorldChange,
-                              std::shared_ptr<OutsideChange>>;
+  using Change =
+      std::variant<FieldChange, ParentChange, EntityChange, ComponentChange, WorldChange, OutsideChange>;
   struct Step {
     std::string name;
     std::vector<Change> changes;
@@ -161,7 +153,6 @@ class History {
   // Enclose a single edit, as begin() and commit() do.
   void beginEdit(std::string name);
   void endEdit();
-  Result<void> editFields(std::span<const FieldEdit> edits, std::string name, bool in_range);
   void run(Change change);   // carries the change out and keeps it
   void keep(Change change);  // adds the change to the open step
   void apply(const Change& change, bool forth, std::vector<std::string>& missing);
@@ -187,7 +178,8 @@ class History {
   std::map<std::pair<StableId, const scene::FieldInfo*>, std::size_t> joinable_;
 };
 
-// Returns the name of a single entity, or "3 entities".
+// Returns edits of all fields of an entity's Transform but its parent.
+std::vector<FieldEdit> transformEdits(ecs::Entity entity, const scene::Transform& to);
 std::string entitiesName(const Document& document, std::span<const ecs::Entity> entities);
 // Returns the name of a step: "move of ball", "strength of 3 entities".
 std::string editName(const Document& document, std::span<const FieldEdit> edits);

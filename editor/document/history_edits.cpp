@@ -23,6 +23,13 @@ std::string entitiesName(const Document& document, std::span<const ecs::Entity> 
   return fmt::format("{} entities", entities.size());
 }
 
+std::vector<FieldEdit> transformEdits(ecs::Entity entity, const scene::Transform& to) {
+  return {{entity, "Transform", "translation", to.translation},
+          {entity, "Transform", "rotation", to.rotation},
+          {entity, "Transform", "scale", to.scale},
+          {entity, "Transform", "shear", to.shear}};
+}
+
 std::string editName(const Document& document, std::span<const FieldEdit> edits) {
   if (edits.empty()) return "nothing";
   std::vector<ecs::Entity> entities;
@@ -52,15 +59,7 @@ Result<void> History::setField(ecs::Entity entity, std::string_view component, s
   return setFields({&edit, 1});
 }
 
-Result<void> History::setFields(std::span<const FieldEdit> edits, std::string name) {
-  return editFields(edits, std::move(name), /*in_range=*/true);
-}
-
-Result<void> History::restoreFields(std::span<const FieldEdit> edits, std::string name) {
-  return editFields(edits, std::move(name), /*in_range=*/false);
-}
-
-Result<void> History::editFields(std::span<const FieldEdit> edits, std::string name, bool in_range) {
+Result<void> History::setFields(std::span<const FieldEdit> edits, std::string name, bool in_range) {
   ecs::Registry& registry = document_.registry();
   std::vector<const scene::FieldInfo*> infos;
   for (const FieldEdit& edit : edits) {
@@ -87,7 +86,7 @@ Result<void> History::editFields(std::span<const FieldEdit> edits, std::string n
   return {};
 }
 
-Result<ecs::Entity> History::create(const EntitySnapshot& snapshot, std::string name) {
+Result<ecs::Entity> History::create(const EntitySnapshot& snapshot) {
   if (snapshot.parent != kNoId) {
     const ecs::Entity parent = document_.find(snapshot.parent);
     if (!parent) return fail("parent " + idText(snapshot.parent), "is not there");
@@ -110,15 +109,13 @@ Result<ecs::Entity> History::create(const EntitySnapshot& snapshot, std::string 
   if (change.snapshot.id == kNoId) change.snapshot.id = document_.newId();
   const StableId id = change.snapshot.id;
   const scene::Value* label = snapshot.find("Name", "name");
-  beginEdit(!name.empty()
-                ? std::move(name)
-                : "creation of " + (label ? std::get<std::string>(*label) : std::string("an entity")));
+  beginEdit("creation of " + (label ? std::get<std::string>(*label) : std::string("an entity")));
   run(std::move(change));
   endEdit();
   return document_.find(id);
 }
 
-Result<void> History::destroy(std::span<const ecs::Entity> entities, std::string name) {
+Result<void> History::destroy(std::span<const ecs::Entity> entities) {
   const ecs::Registry& registry = document_.registry();
   for (const ecs::Entity entity : entities) {
     if (!registry.alive(entity)) return gone();
@@ -129,7 +126,7 @@ Result<void> History::destroy(std::span<const ecs::Entity> entities, std::string
   }
   if (entities.empty()) return {};
   const std::vector<ecs::Entity> all = withDescendants(registry, {entities.begin(), entities.end()});
-  beginEdit(name.empty() ? "removal of " + entitiesName(document_, entities) : std::move(name));
+  beginEdit("removal of " + entitiesName(document_, entities));
   // Entities of bundles are not destroyed: the topmost of them are first moved to the top of the world.
   for (const ecs::Entity entity : all) {
     if (document_.created(entity) || !document_.created(parentOf(registry, entity))) continue;
@@ -169,22 +166,17 @@ Result<std::vector<History::Change>> History::moves(ecs::Entity entity, ecs::Ent
     }
     scene::Transform after = registry.get<scene::Transform>(entity);
     scene::setLocalMatrix(after, parent_from_node);
-    const std::pair<std::string_view, scene::Value> values[] = {{"translation", after.translation},
-                                                                {"rotation", after.rotation},
-                                                                {"scale", after.scale},
-                                                                {"shear", after.shear}};
-    for (const auto& [field, value] : values) {
-      const scene::FieldInfo* info = *scene::findField("Transform", field);
+    for (const FieldEdit& edit : transformEdits(entity, after)) {
+      const scene::FieldInfo* info = *scene::findField(edit.component, edit.field);
       const scene::Value now = info->get(registry, entity);
-      if (!scene::sameBits(now, value)) changes.push_back(FieldChange{id, info, now, value});
+      if (!scene::sameBits(now, edit.value)) changes.push_back(FieldChange{id, info, now, edit.value});
     }
   }
   changes.push_back(ParentChange{id, document_.idOf(before), parent_id});
   return changes;
 }
 
-Result<void> History::reparent(std::span<const ecs::Entity> entities, ecs::Entity parent, bool keep_place,
-                               std::string name) {
+Result<void> History::reparent(std::span<const ecs::Entity> entities, ecs::Entity parent, bool keep_place) {
   const ecs::Registry& registry = document_.registry();
   if (parent && !registry.has<scene::Transform>(parent))
     return fail(document_.nameOf(parent), "has no place that something could hang below");
@@ -206,7 +198,7 @@ Result<void> History::reparent(std::span<const ecs::Entity> entities, ecs::Entit
     if (!changes) return failAgain(changes.error());
     std::move(changes->begin(), changes->end(), std::back_inserter(all));
   }
-  beginEdit(name.empty() ? "new parent of " + entitiesName(document_, entities) : std::move(name));
+  beginEdit("new parent of " + entitiesName(document_, entities));
   for (Change& change : all) run(std::move(change));
   endEdit();
   return {};
@@ -254,7 +246,7 @@ void History::setWorld(WorldState world, std::string name) {
   endEdit();
 }
 
-void History::did(std::shared_ptr<OutsideChange> change, std::string name) {
+void History::did(OutsideChange change, std::string name) {
   beginEdit(std::move(name));
   keep(std::move(change));
   endEdit();

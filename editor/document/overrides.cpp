@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "editor/document/snapshot.hpp"
+#include "editor/document/document.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/instantiate.hpp"
 

@@ -34,7 +34,6 @@ class Selection {
   ecs::Entity primaryEntity(const Document& document) const;
   // Returns the selected entities without those that have a selected ancestor. These are what a gizmo moves.
   std::vector<ecs::Entity> topmost(const Document& document) const;
-  // Increases with every change.
   std::uint64_t version() const { return version_; }
 
  private:

@@ -26,6 +26,97 @@ std::optional<std::uint32_t> bundleOf(const ecs::Registry& registry, ecs::Entity
   return std::nullopt;
 }
 
+// Returns the word of TreeRow::kind for an entity.
+std::string_view kindWordOf(const ecs::Registry& registry, ecs::Entity entity) {
+  if (registry.has<scene::DrawItem>(entity)) return "draw";
+  if (registry.has<scene::VolumeItem>(entity)) return "volume";
+  if (registry.has<scene::RigidGroupComponent>(entity)) return "group";
+  // The first component that the entity has decides.
+  constexpr std::pair<std::string_view, std::string_view> kKinds[] = {
+      {"Light", "light"},         {"Lamp", "lamp"},         {"Camera", "camera"},
+      {"Animation", "animation"}, {"Material", "material"}, {"Environment", "environment"},
+      {"Transform", "node"}};
+  for (const auto& [component, kind] : kKinds) {
+    const scene::ComponentInfo* info = scene::findComponent(component);
+    if (info && info->has(registry, entity)) return kind;
+  }
+  return "entity";
+}
+
+// Matches entities against the text of a filter, as TreeQuery::filter.
+class TreeFilter {
+ public:
+  explicit TreeFilter(std::string_view text);
+  bool empty() const { return terms_.empty(); }
+  bool matches(const Document& document, ecs::Entity entity, std::string_view name,
+               std::string_view kind) const;
+
+ private:
+  struct Term {
+    enum class Of : std::uint8_t { Name, Kind, Component, Id } of = Of::Name;
+    std::string text;  // lower case
+    bool negative = false;
+  };
+  std::vector<Term> terms_;
+};
+
+TreeFilter::TreeFilter(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    if (text[at] == ' ' || text[at] == '\t') {
+      ++at;
+      continue;
+    }
+    Term term;
+    bool quoted = false;
+    std::string word;
+    for (; at < text.size() && (quoted || (text[at] != ' ' && text[at] != '\t')); ++at) {
+      if (text[at] == '"')
+        quoted = !quoted;
+      else
+        word += text[at];
+    }
+    if (word.size() > 1 && word.front() == '-') {
+      term.negative = true;
+      word.erase(0, 1);
+    }
+    word = lowerCase(word);
+    constexpr std::pair<std::string_view, Term::Of> kPrefixes[] = {
+        {"type:", Term::Of::Kind}, {"has:", Term::Of::Component}, {"id:", Term::Of::Id}};
+    for (const auto& [prefix, of] : kPrefixes) {
+      if (!word.starts_with(prefix)) continue;
+      term.of = of;
+      word.erase(0, prefix.size());
+      break;
+    }
+    term.text = std::move(word);
+    if (!term.text.empty()) terms_.push_back(std::move(term));
+  }
+}
+
+bool TreeFilter::matches(const Document& document, ecs::Entity entity, std::string_view name,
+                         std::string_view kind) const {
+  return std::all_of(terms_.begin(), terms_.end(), [&](const Term& term) {
+    const bool holds = [&] {
+      switch (term.of) {
+        case Term::Of::Name:
+          return lowerCase(name).find(term.text) != std::string::npos;
+        case Term::Of::Kind:
+          return kind == term.text;
+        case Term::Of::Id:
+          return idText(document.idOf(entity)).starts_with(term.text);
+        case Term::Of::Component: {
+          const auto all = scene::components();
+          return std::any_of(all.begin(), all.end(), [&](const scene::ComponentInfo& row) {
+            return lowerCase(row.name) == term.text && row.has(document.registry(), entity);
+          });
+        }
+      }
+      return false;
+    }();
+    return holds != term.negative;
+  });
+}
+
 class TreeBuilder {
  public:
   TreeBuilder(const Document& document, const TreeQuery& query)
@@ -177,22 +268,6 @@ std::uint64_t treeVersion(const ecs::Registry& registry) {
   return sum;
 }
 
-std::string_view kindWordOf(const ecs::Registry& registry, ecs::Entity entity) {
-  if (registry.has<scene::DrawItem>(entity)) return "draw";
-  if (registry.has<scene::VolumeItem>(entity)) return "volume";
-  if (registry.has<scene::RigidGroupComponent>(entity)) return "group";
-  // The first component that the entity has decides.
-  constexpr std::pair<std::string_view, std::string_view> kKinds[] = {
-      {"Light", "light"},         {"Lamp", "lamp"},         {"Camera", "camera"},
-      {"Animation", "animation"}, {"Material", "material"}, {"Environment", "environment"},
-      {"Transform", "node"}};
-  for (const auto& [component, kind] : kKinds) {
-    const scene::ComponentInfo* info = scene::findComponent(component);
-    if (info && info->has(registry, entity)) return kind;
-  }
-  return "entity";
-}
-
 const std::vector<TreeRow>& TreeRows::of(const Document& document) {
   const std::uint64_t version = treeVersion(document.registry());
   if (version == made_of_ && query == made_by_) return rows_;
@@ -200,63 +275,6 @@ const std::vector<TreeRow>& TreeRows::of(const Document& document) {
   made_by_ = query;
   made_of_ = version;
   return rows_;
-}
-
-TreeFilter::TreeFilter(std::string_view text) {
-  for (std::size_t at = 0; at < text.size();) {
-    if (text[at] == ' ' || text[at] == '\t') {
-      ++at;
-      continue;
-    }
-    Term term;
-    bool quoted = false;
-    std::string word;
-    for (; at < text.size() && (quoted || (text[at] != ' ' && text[at] != '\t')); ++at) {
-      if (text[at] == '"')
-        quoted = !quoted;
-      else
-        word += text[at];
-    }
-    if (word.size() > 1 && word.front() == '-') {
-      term.negative = true;
-      word.erase(0, 1);
-    }
-    word = lowerCase(word);
-    constexpr std::pair<std::string_view, Term::Of> kPrefixes[] = {
-        {"type:", Term::Of::Kind}, {"has:", Term::Of::Component}, {"id:", Term::Of::Id}};
-    for (const auto& [prefix, of] : kPrefixes) {
-      if (!word.starts_with(prefix)) continue;
-      term.of = of;
-      word.erase(0, prefix.size());
-      break;
-    }
-    term.text = std::move(word);
-    if (!term.text.empty()) terms_.push_back(std::move(term));
-  }
-}
-
-bool TreeFilter::matches(const Document& document, ecs::Entity entity, std::string_view name,
-                         std::string_view kind) const {
-  return std::all_of(terms_.begin(), terms_.end(), [&](const Term& term) {
-    const bool holds = [&] {
-      switch (term.of) {
-        case Term::Of::Name:
-          return lowerCase(name).find(term.text) != std::string::npos;
-        case Term::Of::Kind:
-          return kind == term.text;
-        case Term::Of::Id:
-          return idText(document.idOf(entity)).starts_with(term.text);
-        case Term::Of::Component: {
-          const auto all = scene::components();
-          return std::any_of(all.begin(), all.end(), [&](const scene::ComponentInfo& row) {
-            return lowerCase(row.name) == term.text && row.has(document.registry(), entity);
-          });
-        }
-      }
-      return false;
-    }();
-    return holds != term.negative;
-  });
 }
 
 }  // namespace lambent::editor

@@ -56,24 +56,4 @@ class TreeRows {
   std::uint64_t made_of_ = ~std::uint64_t{0};  // treeVersion() of rows_
 };
 
-// Returns the word of TreeRow::kind for an entity.
-std::string_view kindWordOf(const ecs::Registry& registry, ecs::Entity entity);
-
-// Matches entities against the text of a filter, as TreeQuery::filter. Other lists use it, too.
-class TreeFilter {
- public:
-  explicit TreeFilter(std::string_view text);
-  bool empty() const { return terms_.empty(); }
-  bool matches(const Document& document, ecs::Entity entity, std::string_view name,
-               std::string_view kind) const;
-
- private:
-  struct Term {
-    enum class Of : std::uint8_t { Name, Kind, Component, Id } of = Of::Name;
-    std::string text;  // lower case
-    bool negative = false;
-  };
-  std::vector<Term> terms_;
-};
-
 }  // namespace lambent::editor

@@ -65,7 +65,6 @@ CameraPose fromOrbit(const spec::OrbitCamera& orbit, const scene::Box& bounds);
 // centre.
 CameraPose fromNode(const glm::mat4& world_from_node, const scene::CameraComponent& camera,
                     const scene::Box& bounds);
-// Returns the world matrix of a camera node with this pose.
 glm::mat4 nodeMatrix(const CameraPose& pose);
 
 // Convert a pose to "pose:X,Y,Z,AZ,EL,DISTANCE,FOV[,ortho]", for WorldState::view, and back.

@@ -32,6 +32,10 @@ bool isPlane(Handle handle) {
 int planeAxis(Handle handle) {
   return static_cast<int>(handle) - static_cast<int>(Handle::YZ);
 }
+glm::dvec3 planeNormal(const glm::dmat3& axes, Handle handle) {
+  const int n = planeAxis(handle);
+  return glm::cross(axes[(n + 1) % 3], axes[(n + 2) % 3]);
+}
 double snapped(double value, double step) {
   return step > 0.0 ? std::round(value / step) * step : value;
 }
@@ -97,10 +101,7 @@ bool Gizmo::shown(Handle handle) const {
   if (dragging()) return handle == active_;
   if (isPlane(handle)) {
     if (options.mode != GizmoMode::Move) return false;
-    const glm::dmat3 a = axes();
-    const int n = planeAxis(handle);
-    const glm::dvec3 normal = glm::cross(a[(n + 1) % 3], a[(n + 2) % 3]);
-    return std::abs(glm::dot(normal, projection_.toEye(pivot()))) > kLeast;
+    return std::abs(glm::dot(planeNormal(axes(), handle), projection_.toEye(pivot()))) > kLeast;
   }
   if (isAxis(handle) && options.mode != GizmoMode::Rotate) {
     const auto from = projection_.toScreen(pivot());
@@ -238,13 +239,9 @@ bool Gizmo::press(Handle handle, glm::vec2 pixel) {
   if (options.mode == GizmoMode::Rotate) {
     last_angle_ = angleAt(start_.pixel).value_or(0.0);
   } else if (isAxis(handle)) {
-    const glm::dvec3 axis = start_.axes[axisIndex(handle)];
-    if (const auto u = screenDirection(axis))
-      start_.along = projection_.alongLine(start_.pivot, axis, *u, glm::dot(*u, start_.pixel)).value_or(0.0);
+    start_.along = alongAxis(start_.pixel).value_or(0.0);
   } else {
-    const glm::dvec3 normal = isPlane(handle) ? glm::cross(start_.axes[(planeAxis(handle) + 1) % 3],
-                                                           start_.axes[(planeAxis(handle) + 2) % 3])
-                                              : projection_.back();
+    const glm::dvec3 normal = isPlane(handle) ? planeNormal(start_.axes, handle) : projection_.back();
     const Ray ray = projection_.ray(start_.pixel);
     const auto t = Projection::hitPlane(ray, start_.pivot, normal);
     start_.point = t ? ray.origin + *t * ray.direction : start_.pivot;
@@ -252,19 +249,21 @@ bool Gizmo::press(Handle handle, glm::vec2 pixel) {
   return true;
 }
 
+std::optional<double> Gizmo::alongAxis(const glm::dvec2& pixel) const {
+  const glm::dvec3 axis = start_.axes[axisIndex(active_)];
+  const auto u = screenDirection(axis);
+  return u ? projection_.alongLine(start_.pivot, axis, *u, glm::dot(*u, pixel)) : std::nullopt;
+}
+
 void Gizmo::dragMove(const glm::dvec2& pixel, bool snap) {
   const double step = snap ? double{options.snap_m} : 0.0;
   const double limit = kFarthest * start_.size_m * projection_.viewport().height / options.size_px;
   if (isAxis(active_)) {
-    const glm::dvec3 axis = start_.axes[axisIndex(active_)];
-    const auto u = screenDirection(axis);
-    const auto t = u ? projection_.alongLine(start_.pivot, axis, *u, glm::dot(*u, pixel)) : std::nullopt;
-    if (t) moved_ = snapped(std::clamp(*t - start_.along, -limit, limit), step) * axis;
+    if (const auto t = alongAxis(pixel))
+      moved_ = snapped(std::clamp(*t - start_.along, -limit, limit), step) * start_.axes[axisIndex(active_)];
     return;
   }
-  const int n = isPlane(active_) ? planeAxis(active_) : 0;
-  const glm::dvec3 normal =
-      isPlane(active_) ? glm::cross(start_.axes[(n + 1) % 3], start_.axes[(n + 2) % 3]) : projection_.back();
+  const glm::dvec3 normal = isPlane(active_) ? planeNormal(start_.axes, active_) : projection_.back();
   const Ray ray = projection_.ray(pixel);
   const auto t = Projection::hitPlane(ray, start_.point, normal);
   if (!t) return;  // beyond the plane's horizon: keep the last position
@@ -308,9 +307,7 @@ void Gizmo::dragTurn(const glm::dvec2& pixel, bool snap) {
 void Gizmo::dragScale(const glm::dvec2& pixel, bool snap) {
   double factor = 1.0;
   if (isAxis(active_)) {
-    const glm::dvec3 axis = start_.axes[axisIndex(active_)];
-    const auto u = screenDirection(axis);
-    const auto t = u ? projection_.alongLine(start_.pivot, axis, *u, glm::dot(*u, pixel)) : std::nullopt;
+    const auto t = alongAxis(pixel);
     if (!t || std::abs(start_.along) < 1e-3 * start_.size_m) return;
     factor = *t / start_.along;
   } else {
@@ -358,14 +355,6 @@ std::vector<scene::Transform> Gizmo::drag(glm::vec2 pixel, bool other_snap) {
 
 void Gizmo::release() {
   active_ = Handle::None;
-}
-
-std::vector<scene::Transform> Gizmo::cancel() {
-  std::vector<scene::Transform> before;
-  if (dragging())
-    for (const GizmoTarget& target : targets_) before.push_back(target.local);
-  release();
-  return before;
 }
 
 std::string Gizmo::readout() const {

@@ -66,7 +66,6 @@ class Gizmo {
   void setTargets(std::vector<GizmoTarget> targets);
   void setView(const spec::View& view, const Viewport& viewport);
 
-  // Returns the handle under the pixel, or None.
   Handle hit(glm::vec2 pixel) const;
   void hover(glm::vec2 pixel);
   Handle hovered() const { return hovered_; }
@@ -80,8 +79,6 @@ class Gizmo {
   // other_snap: snaps if options.snap does not, and the other way round (a modifier key is held).
   std::vector<scene::Transform> drag(glm::vec2 pixel, bool other_snap = false);
   void release();
-  // Ends the drag and returns the targets as they were.
-  std::vector<scene::Transform> cancel();
 
   // Returns a pixel at which a script can grab the handle, away from the others, or none if the handle is not
   // visible.
@@ -119,6 +116,8 @@ class Gizmo {
   std::optional<glm::dvec2> screenDirection(const glm::dvec3& direction) const;
   double distance(Handle handle, const glm::dvec2& pixel) const;  // in pixels; infinite if hidden
 
+  // Returns where the pixel is along the dragged axis, in metres from the pivot.
+  std::optional<double> alongAxis(const glm::dvec2& pixel) const;
   void dragMove(const glm::dvec2& pixel, bool snap);
   void dragTurn(const glm::dvec2& pixel, bool snap);
   void dragScale(const glm::dvec2& pixel, bool snap);

@@ -31,6 +31,17 @@ bool invertible(const glm::dmat3& linear) {
   return volume > 1e-12 * size && size > 0.0;
 }
 
+// Returns the moved Transform with the target's matrix multiplied by `linear`, whose shear it stores.
+scene::Transform transformedBy(const GizmoTarget& target, scene::Transform moved, const glm::dmat3& linear) {
+  glm::dmat4 matrix(scene::localMatrix(target.local));
+  for (int column = 0; column < 3; ++column)
+    matrix[column] = glm::dvec4(linear * glm::dvec3(matrix[column]), 0.0);
+  const glm::vec3 translation = moved.translation;
+  scene::setLocalMatrix(moved, glm::mat4(matrix));
+  moved.translation = translation;
+  return moved;
+}
+
 }  // namespace
 
 glm::dvec3 originOf(const GizmoTarget& target) {
@@ -70,13 +81,7 @@ scene::Transform turnedBy(const GizmoTarget& target, const glm::dvec3& pivot_ws,
         glm::normalize(glm::quat_cast(parent_turn) * glm::normalize(glm::dquat(target.local.rotation))));
     return turned;
   }
-  glm::dmat4 matrix(scene::localMatrix(target.local));
-  for (int column = 0; column < 3; ++column)
-    matrix[column] = glm::dvec4(parent_turn * glm::dvec3(matrix[column]), 0.0);
-  const glm::vec3 translation = turned.translation;
-  scene::setLocalMatrix(turned, glm::mat4(matrix));
-  turned.translation = translation;
-  return turned;
+  return transformedBy(target, turned, parent_turn);
 }
 
 scene::Transform scaledLocally(const GizmoTarget& target, const glm::dvec3& pivot_ws, const glm::dmat3& axes,
@@ -97,21 +102,13 @@ scene::Transform scaledLocally(const GizmoTarget& target, const glm::dvec3& pivo
 
 scene::Transform scaledInWorld(const GizmoTarget& target, const glm::dvec3& pivot_ws,
                                const glm::dvec3& factors) {
-  const glm::dmat4 world_from_parent(target.world_from_parent);
-  const glm::dmat3 linear(world_from_parent);
+  const glm::dmat3 linear{glm::mat3(target.world_from_parent)};
   if (!invertible(linear)) return target.local;
   const glm::dvec3 origin = originOf(target);
-  scene::Transform scaled = movedBy(target, pivot_ws + factors * (origin - pivot_ws) - origin);
+  const scene::Transform scaled = movedBy(target, pivot_ws + factors * (origin - pivot_ws) - origin);
   glm::dmat3 stretch(1.0);
   for (int axis = 0; axis < 3; ++axis) stretch[axis][axis] = factors[axis];
-  const glm::dmat3 parent_stretch = glm::inverse(linear) * stretch * linear;
-  glm::dmat4 matrix(scene::localMatrix(target.local));
-  for (int column = 0; column < 3; ++column)
-    matrix[column] = glm::dvec4(parent_stretch * glm::dvec3(matrix[column]), 0.0);
-  const glm::vec3 translation = scaled.translation;
-  scene::setLocalMatrix(scaled, glm::mat4(matrix));
-  scaled.translation = translation;
-  return scaled;
+  return transformedBy(target, scaled, glm::inverse(linear) * stretch * linear);
 }
 
 }  // namespace lambent::editor

@@ -28,20 +28,10 @@ float fitted(std::string_view field, double value) {
 }
 
 bool hasHandle(Kind kind, LightHandle handle) {
-  switch (handle) {
-    case LightHandle::Radius:
-      return kind == Kind::Sphere || kind == Kind::Disc;
-    case LightHandle::Range:
-      return kind == Kind::Point || kind == Kind::Spot;
-    case LightHandle::InnerCone:
-    case LightHandle::OuterCone:
-      return kind == Kind::Spot;
-    case LightHandle::Strength:
-      return true;
-    case LightHandle::None:
-      break;
-  }
-  return false;
+  if (handle == LightHandle::Radius) return kind == Kind::Sphere || kind == Kind::Disc;
+  if (handle == LightHandle::Range) return kind == Kind::Point || kind == Kind::Spot;
+  if (handle == LightHandle::Strength) return true;
+  return handle != LightHandle::None && kind == Kind::Spot;  // the cones
 }
 
 // Returns a unit vector perpendicular to `axis` that lies as much in the picture's plane as possible.
@@ -209,12 +199,6 @@ scene::LocalLightComponent LightGizmo::drag(glm::vec2 pixel) {
     case LightHandle::None:
       break;
   }
-  return light_;
-}
-
-scene::LocalLightComponent LightGizmo::cancel() {
-  if (dragging()) light_ = start_;
-  release();
   return light_;
 }
 

@@ -40,7 +40,6 @@ class LightGizmo {
   LightHandle active() const { return active_; }
   scene::LocalLightComponent drag(glm::vec2 pixel);
   void release() { active_ = LightHandle::None; }
-  scene::LocalLightComponent cancel();
 
   // Returns the pixel of the handle, or none if this kind of light does not have it or it is not visible.
   std::optional<glm::vec2> handleScreenPoint(LightHandle handle) const;

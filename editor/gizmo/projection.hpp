@@ -36,7 +36,6 @@ class Projection {
   // Returns the point's pixel, which may lie outside the viewport, or none if the point is behind the eye.
   std::optional<glm::dvec2> toScreen(const glm::dvec3& point_ws) const;
   Ray ray(const glm::dvec2& pixel) const;
-  // Returns the unit direction from the point to the eye.
   glm::dvec3 toEye(const glm::dvec3& point_ws) const;
   glm::dvec3 eye() const { return eye_; }
   glm::dvec3 right() const { return right_; }

@@ -27,16 +27,6 @@ glm::vec2 onRim(const glm::vec2& center, const glm::vec2& half, glm::vec2 way) {
   return center + reach * way;
 }
 
-Stroke ring(const glm::dvec2& center, double radius, std::uint32_t color) {
-  constexpr int kParts = 32;
-  Stroke stroke{{}, color, 2.0f, /*closed=*/true, /*filled=*/false};
-  for (int i = 0; i < kParts; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kParts;
-    stroke.points.emplace_back(center + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
-  }
-  return stroke;
-}
-
 }  // namespace
 
 void SunGizmo::setSuns(std::vector<glm::vec3> towards) {
@@ -112,7 +102,9 @@ Painting SunGizmo::paint() const {
       painting.push_back(dot(center, kDisc, color));
     } else {
       // A hollow ring marks a sun that is out of view.
-      painting.push_back(ring(center, kDisc, color));
+      painting.push_back(dot(center, kDisc, color));
+      painting.back().filled = false;
+      painting.back().width_px = 2.0f;
     }
   }
   return painting;

@@ -10,9 +10,9 @@
 #include "baker/bake/option_rows.hpp"
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/text.hpp"
-#include "editor/session/status.hpp"
-#include "editor/ui/fitting.hpp"
+#include "editor/panels/widgets.hpp"
+#include "editor/session/scene_changes.hpp"
+#include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {
 
@@ -118,35 +118,36 @@ std::string pictureErrorText(const Session& session, const SceneEntry& entry) {
 }
 
 void drawState(const SceneStatus& status) {
-  ImGui::PushStyleColor(ImGuiCol_Text, standingColor(status.standing));
-  fittedText(status.text, status.detail);
-  ImGui::PopStyleColor();
+  fittedText(standingColor(status.standing), status.text, status.detail);
+}
+
+// Draws a button with a mark, in the line of the last one if it fits there.
+bool smallButton(Marks& marks, const char* text, const std::string& mark, const char* help = "",
+                 bool first = false) {
+  if (!first) sameLineIfFits(text);
+  const bool pressed = ImGui::SmallButton(text);
+  marks.put(mark);
+  tooltip(help);
+  return pressed;
 }
 
 // Draws the buttons of an open scene. Returns false if it was closed.
 bool drawButtons(Session& session, Marks& marks, std::size_t i, bool working) {
   const SceneEntry& entry = session.scenes.entries()[i];
+  const bool has_source = !entry.source.empty();
   const std::string number = std::to_string(i), mark = fmt::format("bakes.{}.", entry.id);
   if (working) {
-    if (ImGui::SmallButton("Cancel")) runOrLog(session, "cancel", std::array{number});
-    marks.put(mark + "cancel");
-    sameLineIfFits("Options");
-  } else if (!entry.source.empty()) {
-    if (ImGui::SmallButton("Bake")) runOrLog(session, "bake", std::array{number});
-    marks.put(mark + "bake");
-    sameLineIfFits("Options");
+    if (smallButton(marks, "Cancel", mark + "cancel", "", /*first=*/true))
+      runOrLog(session, "cancel", std::array{number});
+  } else if (has_source && smallButton(marks, "Bake", mark + "bake", "", /*first=*/true)) {
+    runOrLog(session, "bake", std::array{number});
   }
-  if (!entry.source.empty()) {
-    if (ImGui::SmallButton("Options")) ImGui::OpenPopup("options");
-    marks.put(mark + "options");
-    if (ImGui::BeginPopup("options")) {
-      drawBakeOptions(session, marks, i);
-      ImGui::EndPopup();
-    }
-    sameLineIfFits("Close");
+  if (has_source && smallButton(marks, "Options", mark + "options")) ImGui::OpenPopup("options");
+  if (ImGui::BeginPopup("options")) {
+    drawBakeOptions(session, marks, i);
+    ImGui::EndPopup();
   }
-  const bool close = ImGui::SmallButton("Close");
-  marks.put(mark + "close");
+  const bool close = smallButton(marks, "Close", mark + "close", "", /*first=*/!working && !has_source);
   if (close) runOrLog(session, "close", std::array{number});
   return !close;
 }
@@ -186,13 +187,10 @@ void drawUnseen(Session& session, Marks& marks, const baker::JobState& job) {
   if (works(job)) drawProgress(job);
   fittedText(job.error ? job.error->line() : newsOf(job));
   ImGui::TableNextColumn();
-  if (works(job)) {
-    if (ImGui::SmallButton("Cancel")) session.scenes.cancelUnseen(job.id);
-    marks.put(mark + "cancel");
-    sameLineIfFits("Open");
-  }
-  if (ImGui::SmallButton("Open")) runOrLog(session, "open", std::array{job.request.scene.string()});
-  marks.put(mark + "open");
+  if (works(job) && smallButton(marks, "Cancel", mark + "cancel", "", /*first=*/true))
+    session.scenes.cancelUnseen(job.id);
+  if (smallButton(marks, "Open", mark + "open", "", /*first=*/!works(job)))
+    runOrLog(session, "open", std::array{job.request.scene.string()});
 }
 
 // Draws a bake that an earlier session left unfinished. Returns false if it is on the list no more.
@@ -207,17 +205,12 @@ bool drawUnfinished(Session& session, Marks& marks, std::size_t i) {
   ImGui::TableNextColumn();
   fittedText("its bake can go on from where it was");
   ImGui::TableNextColumn();
-  const bool go_on = ImGui::SmallButton("Go on");
-  tooltip("Bake it without opening it");
-  marks.put(mark + "go-on");
-  sameLineIfFits("Open");
-  const bool open = ImGui::SmallButton("Open");
-  tooltip("Show it, and bake it with the options of this session");
-  marks.put(mark + "open");
-  sameLineIfFits("Forget");
-  const bool forget = ImGui::SmallButton("Forget");
-  tooltip("Offer it no more; what it kept stays in the cache");
-  marks.put(mark + "forget");
+  const bool go_on =
+      smallButton(marks, "Go on", mark + "go-on", "Bake it without opening it", /*first=*/true);
+  const bool open =
+      smallButton(marks, "Open", mark + "open", "Show it, and bake it with the options of this session");
+  const bool forget =
+      smallButton(marks, "Forget", mark + "forget", "Offer it no more; what it kept stays in the cache");
   const std::string number = std::to_string(i);
   if (go_on) runOrLog(session, "go-on", std::array{number});
   if (open) runOrLog(session, "open", std::array{scene.string()});
@@ -281,6 +274,85 @@ void drawBakes(Session& session, Marks& marks) {
   });
   rows(session.scenes.unfinished().size(), [&](std::size_t i) { return drawUnfinished(session, marks, i); });
   ImGui::EndTable();
+}
+
+namespace {
+
+void sentence(const std::string& text) {
+  ImGui::Bullet();
+  ImGui::TextWrapped("%s", text.c_str());
+}
+
+void drawEffects(const baker::EffectPlan& plan) {
+  for (const baker::EffectChoice& choice : plan.effects) {
+    ImGui::PushStyleColor(ImGuiCol_Text,
+                          choice.baked ? kGoodColor : ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+    ImGui::Text("%s: %s", choice.effect.c_str(), choice.baked ? "baked" : "not baked");
+    ImGui::PopStyleColor();
+    ImGui::Indent();
+    ImGui::TextWrapped("%s", choice.reason.c_str());
+    ImGui::Unindent();
+  }
+}
+
+void drawGroup(const baker::EffectPlan& plan, std::size_t g) {
+  const baker::RigidGroup& group = plan.groups[g];
+  if (!ImGui::TreeNode(group.name.empty() ? "(no name)" : group.name.c_str())) return;
+  if (group.volume >= 0) {
+    sentence("a volume");
+  } else {
+    const auto& [count, reason] = plan.light_probes[g];
+    sentence(fmt::format("{} draws", group.draws.size()));
+    sentence(fmt::format("light from outside at {} points of {}: {}", count.count,
+                         count.of_group ? "the group" : "each cell", reason));
+  }
+  const baker::PlannedNeighborhood& around = plan.neighborhoods[g];
+  if (!around.reason.empty())
+    sentence(fmt::format("{}: {}", around.baked ? "neighborhood" : "no neighborhood", around.reason));
+  ImGui::TreePop();
+}
+
+}  // namespace
+
+void drawPlan(Session& session, Marks& marks) {
+  const auto entry = sceneAtHand(session);
+  if (!entry) {
+    sentence("Open a scene to see what its bake simulates, and why.");
+    return;
+  }
+  const SceneEntry& scene = session.scenes.entries()[*entry];
+  if (scene.source.empty()) {
+    sentence(scene.id + " is a bundle alone: its plan was made when it was baked.");
+    return;
+  }
+  const Result<ScenePlan>* made = session.plans.find(scene.source, scene.options);
+  if (!made) {
+    sentence("Reads the scene...");
+    return;
+  }
+  if (!*made) {
+    ImGui::PushStyleColor(ImGuiCol_Text, kErrorColor);
+    sentence(made->error().line());
+    ImGui::PopStyleColor();
+    return;
+  }
+  const baker::EffectPlan& plan = (*made)->plan;
+  fittedText(scene.source.filename().string(), scene.source.string());
+  marks.put("plan.scene");
+  drawEffects(plan);
+  if (ImGui::CollapsingHeader("Rigid groups", ImGuiTreeNodeFlags_DefaultOpen))
+    for (std::size_t g = 0; g < plan.groups.size(); ++g) {
+      ImGui::PushID(static_cast<int>(g));
+      drawGroup(plan, g);
+      ImGui::PopID();
+    }
+  const auto list = [](const char* title, const std::vector<std::string>& sentences) {
+    if (sentences.empty() || !ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen)) return;
+    for (const std::string& text : sentences) sentence(text);
+  };
+  list("Lamps that come near", plan.shadowed_lights);
+  list("Left out", plan.left_out);
+  list("Warnings of the import", (*made)->warnings);
 }
 
 }  // namespace lambent::editor

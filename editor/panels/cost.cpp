@@ -8,8 +8,8 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/text.hpp"
-#include "editor/ui/fitting.hpp"
+#include "editor/panels/widgets.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/frame_settings.hpp"
 
@@ -108,49 +108,6 @@ std::string percentText(double error) {
   return error <= 0.0 ? "none" : fmt::format("{:.2g} %", 100.0 * error);
 }
 
-// Plots error over value; the tooltip shows the times.
-void drawSweep(const frame::SettingRow& row, const std::vector<frame::SettingPoint>& points) {
-  std::vector<float> errors;
-  std::string table = fmt::format("{:>10}  {:>10}  {:>8}\n", row.name, "error", "ms");
-  for (const frame::SettingPoint& point : points) {
-    errors.push_back(static_cast<float>(100.0 * point.error));
-    table += fmt::format("{:>10.4g}  {:>10}  {:>8.2f}\n", point.value, percentText(point.error),
-                         frameMilliseconds(point));
-  }
-  ImGui::PlotLines("##sweep", errors.data(), static_cast<int>(errors.size()), 0, nullptr, 0.0f, FLT_MAX,
-                   ImVec2(em(8.7f), em(1.6f)));
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", table.c_str());
-}
-
-// Draws the widget of the setting itself.
-void drawSetting(Session& session, Marks& marks, const frame::SettingRow& row) {
-  frame::FrameSettings settings = session.stage.settings();
-  const double value = row.get(settings);
-  double to = value;
-  bool changed = false;
-  ImGui::SetNextItemWidth(-1.0f);
-  using Kind = frame::SettingRow::Kind;
-  if (row.kind == Kind::Switch) {
-    bool on = value != 0.0;
-    changed = ImGui::Checkbox("##knob", &on);
-    to = on ? 1.0 : 0.0;
-  } else {
-    float shown = static_cast<float>(value);
-    changed =
-        ImGui::SliderFloat("##knob", &shown, static_cast<float>(row.least), static_cast<float>(row.greatest),
-                           frame::settingWord(row, settings).c_str(), ImGuiSliderFlags_AlwaysClamp);
-    to = row.kind == Kind::Real ? double{shown} : std::round(double{shown});
-  }
-  marks.put(fmt::format("accuracy.{}", row.name));
-  if (ImGui::IsItemActivated()) session.history.beginDrag(std::string(row.label));
-  if (changed && to != value) {
-    row.put(settings, to);
-    const std::array words = {std::string(row.name), frame::settingWord(row, settings)};
-    runOrLog(session, "setting", words);
-  }
-  if (ImGui::IsItemDeactivated()) session.history.endDrag();
-}
-
 }  // namespace
 
 void drawAccuracy(Session& session, Marks& marks) {
@@ -158,50 +115,125 @@ void drawAccuracy(Session& session, Marks& marks) {
     session.settings.measureAll();
   marks.put("accuracy.measure");
   ImGui::SameLine();
-  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
   fittedText(
+      dimmed(),
       "error against the knob's finest value, same view at rest; times of a frame that shades everything");
-  ImGui::PopStyleColor();
   constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
                                      ImGuiTableFlags_ScrollY | ImGuiTableFlags_Resizable |
                                      ImGuiTableFlags_ScrollX;
-  if (!ImGui::BeginTable("knobs", 6, kTable, ImVec2(0.0f, 0.0f),
-                         std::max(ImGui::GetContentRegionAvail().x, em(44.0f))))
+  if (!ImGui::BeginTable("knobs", 5, kTable, ImVec2(0.0f, 0.0f),
+                         std::max(ImGui::GetContentRegionAvail().x, em(32.0f))))
     return;
   ImGui::TableSetupColumn("Knob", ImGuiTableColumnFlags_WidthStretch, 0.24f);
   ImGui::TableSetupColumn("Value", ImGuiTableColumnFlags_WidthStretch, 0.26f);
   ImGui::TableSetupColumn("Error", ImGuiTableColumnFlags_WidthFixed, em(5.0f));
   ImGui::TableSetupColumn("ms now", ImGuiTableColumnFlags_WidthFixed, em(4.0f));
   ImGui::TableSetupColumn("ms finest", ImGuiTableColumnFlags_WidthFixed, em(4.3f));
-  ImGui::TableSetupColumn("Error over values", ImGuiTableColumnFlags_WidthFixed, em(12.7f));
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableHeadersRow();
   for (const frame::SettingRow& row : frame::settingRows()) {
     if (!row.finest) continue;
-    const auto found = session.settings.rows().find(row.name);
+    const auto found = session.settings.costs().find(row.name);
     ImGui::PushID(row.name.data());
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     fittedText(row.label, fmt::format("{}\n{}", row.name, row.help));
     ImGui::TableNextColumn();
-    drawSetting(session, marks, row);
-    const bool known = found != session.settings.rows().end() && !found->second.cost.now.passes.empty();
-    ImGui::TableNextColumn();
-    if (known) ImGui::TextUnformatted(percentText(found->second.cost.now.error).c_str());
-    ImGui::TableNextColumn();
-    if (known) ImGui::Text("%.2f", frameMilliseconds(found->second.cost.now));
-    ImGui::TableNextColumn();
-    if (known) ImGui::Text("%.2f", frameMilliseconds(found->second.cost.finest));
-    ImGui::TableNextColumn();
-    if (found != session.settings.rows().end() && !found->second.sweep.empty()) {
-      drawSweep(row, found->second.sweep);
-      ImGui::SameLine();
+    editSetting(session, marks, row, fmt::format("accuracy.{}", row.name));
+    if (found != session.settings.costs().end()) {
+      const frame::SettingCost& cost = found->second;
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(percentText(cost.now.error).c_str());
+      for (const frame::SettingPoint* point : {&cost.now, &cost.finest}) {
+        ImGui::TableNextColumn();
+        ImGui::Text("%.2f", frameMilliseconds(*point));
+      }
     }
-    if (ImGui::SmallButton("Sweep")) session.settings.sweep(std::string(row.name));
-    marks.put(fmt::format("accuracy.sweep.{}", row.name));
     ImGui::PopID();
   }
   ImGui::EndTable();
+}
+
+namespace {
+
+const char* stateWord(frame::BundleStatus::State state) {
+  constexpr std::array kStateWords = {"closed", "loading", "as far as there is room", "whole", "damaged"};
+  return kStateWords[static_cast<std::size_t>(state)];
+}
+
+void drawTimes(const frame::FrameTimes& times) {
+  const std::vector<std::size_t> bins = times.histogram();
+  std::vector<float> heights(bins.begin(), bins.end());
+  ImGui::PlotHistogram("##times", heights.data(), static_cast<int>(heights.size()), 0, nullptr, 0.0f, FLT_MAX,
+                       ImVec2(ImGui::GetContentRegionAvail().x, em(4.6f)));
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("Frames by their time, in quarters of the median; the last bar: all beyond");
+  fittedText(fmt::format("median {:.1f} ms, worst {:.1f} ms, {} of {} over twice the median", times.median(),
+                         times.worst(), times.overTwiceMedian(), times.count()));
+}
+
+void drawBundles(const frame::StreamingStatus& status, Marks& marks) {
+  constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
+                                     ImGuiTableFlags_ScrollY | ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable("bundles", 4, kTable, ImVec2(0.0f, 0.0f),
+                         std::max(ImGui::GetContentRegionAvail().x, em(32.0f))))
+    return;
+  ImGui::TableSetupColumn("Bundle", ImGuiTableColumnFlags_WidthStretch, 0.3f);
+  ImGui::TableSetupColumn("Resident", ImGuiTableColumnFlags_WidthStretch, 0.4f);
+  ImGui::TableSetupColumn("Size in view", ImGuiTableColumnFlags_WidthFixed, em(6.0f));
+  ImGui::TableSetupColumn("State", ImGuiTableColumnFlags_WidthStretch, 0.3f);
+  ImGui::TableSetupScrollFreeze(0, 1);
+  ImGui::TableHeadersRow();
+  for (const frame::BundleStreaming& bundle : status.bundles) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    fittedText(bundle.name);
+    ImGui::TableNextColumn();
+    const double whole = static_cast<double>(std::max<std::uint64_t>(bundle.whole_bytes, 1));
+    const std::string bytes =
+        fmt::format("{} of {}, {} wanted", bytesText(static_cast<double>(bundle.resident_bytes)),
+                    bytesText(static_cast<double>(bundle.whole_bytes)),
+                    bytesText(static_cast<double>(bundle.wanted_bytes)));
+    ImGui::ProgressBar(static_cast<float>(static_cast<double>(bundle.resident_bytes) / whole),
+                       ImVec2(-1.0f, 0.0f),
+                       ellipsized(bytes, ImGui::GetContentRegionAvail().x - em(0.5f)).c_str());
+    tooltip(bytes);
+    ImGui::TableNextColumn();
+    ImGui::Text("%.2f", static_cast<double>(bundle.size));
+    ImGui::TableNextColumn();
+    fittedText(stateWord(bundle.state));
+  }
+  ImGui::EndTable();
+  marks.put("streaming.bundles");
+}
+
+}  // namespace
+
+void drawStreaming(Session& session, Marks& marks) {
+  const frame::StreamingStatus status = session.stage.world().streaming();
+  const bool limited = status.budget_bytes != ~std::uint64_t{0};
+  const double resident = static_cast<double>(status.resident_bytes);
+  ImGui::BeginChild("figures", ImVec2(0.38f * ImGui::GetContentRegionAvail().x, 0.0f));
+  if (limited)
+    ImGui::ProgressBar(
+        static_cast<float>(resident / static_cast<double>(status.budget_bytes)), ImVec2(-1.0f, 0.0f),
+        fmt::format("{} of {}", bytesText(resident), bytesText(static_cast<double>(status.budget_bytes)))
+            .c_str());
+  else
+    fittedText(fmt::format("{} on the GPU, without a limit (--max-memory)", bytesText(resident)));
+  marks.put("streaming.budget");
+  fittedText(fmt::format("{} parts wanted, {} on their way, {:.1f} MB/s", status.queued,
+                         bytesText(static_cast<double>(status.in_flight_bytes)), status.megabytes_per_s));
+  marks.put("streaming.queue");
+  fittedText(fmt::format("{} shown in full, {} partly, {} by proxy levels of detail, {} not",
+                         status.count(frame::Shown::Full), status.count(frame::Shown::Partly),
+                         status.count(frame::Shown::ProxyLod), status.count(frame::Shown::Nothing)));
+  drawTimes(session.picture.times);
+  ImGui::EndChild();
+  ImGui::SameLine();
+  ImGui::BeginChild("list");
+  drawBundles(status, marks);
+  ImGui::EndChild();
 }
 
 }  // namespace lambent::editor

@@ -6,19 +6,16 @@
 #include <imgui_stdlib.h>
 
 #include "editor/panels/panel.hpp"
-#include "editor/panels/text.hpp"
+#include "editor/panels/widgets.hpp"
 #include "editor/ui/dear_imgui.hpp"
-#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
 namespace {
 
-using Kind = Dialog::Kind;
-
 std::string answerOf(const Dialog& dialog) {
-  if (dialog.kind == Kind::Text) return dialog.name;
-  if (dialog.kind == Kind::Confirm) return {};
+  if (dialog.kind == Dialog::Kind::Text) return dialog.name;
+  if (dialog.kind == Dialog::Kind::Confirm) return {};
   const std::filesystem::path name(dialog.name);
   return (name.is_absolute() ? name : dialog.folder / name).string();
 }
@@ -44,7 +41,7 @@ std::string filterText(const Dialog& dialog, std::size_t filter) {
 }
 
 void drawFilter(Dialog& dialog, Marks& marks) {
-  if (dialog.kinds.empty() || dialog.kind == Kind::Folder) return;
+  if (dialog.kinds.empty() || dialog.kind == Dialog::Kind::Folder) return;
   ImGui::SetNextItemWidth(-1.0f);
   const bool open = ImGui::BeginCombo("##filter", filterText(dialog, dialog.filter).c_str());
   marks.put("dialog.filter");
@@ -77,7 +74,7 @@ bool drawFiles(const Session& session, Dialog& dialog, Marks& marks) {
       const bool twice = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
       if (is_folder && twice)
         enter = dialog.folder / name;
-      else if (!is_folder || dialog.kind == Kind::Folder)
+      else if (!is_folder || dialog.kind == Dialog::Kind::Folder)
         dialog.name = name, chosen = twice && !is_folder;
     }
     marks.put("dialog." + name);
@@ -86,15 +83,15 @@ bool drawFiles(const Session& session, Dialog& dialog, Marks& marks) {
   if (!enter.empty()) dialog.folder = enter, dialog.name.clear();
   ImGui::SetNextItemWidth(-1.0f);
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();  // so that a name can be typed at once
-  if (ImGui::InputTextWithHint("##name", dialog.kind == Kind::Folder ? "this folder" : "file", &dialog.name,
-                               ImGuiInputTextFlags_EnterReturnsTrue))
+  if (ImGui::InputTextWithHint("##name", dialog.kind == Dialog::Kind::Folder ? "this folder" : "file",
+                               &dialog.name, ImGuiInputTextFlags_EnterReturnsTrue))
     chosen = true;
   marks.put("dialog.name");
   drawFilter(dialog, marks);
   // The name of a folder leads into it.
   std::error_code ignored;
   const std::filesystem::path named = answerOf(dialog);
-  if (!chosen || dialog.name.empty() || dialog.kind == Kind::Folder ||
+  if (!chosen || dialog.name.empty() || dialog.kind == Dialog::Kind::Folder ||
       !std::filesystem::is_directory(named, ignored))
     return chosen;
   dialog.folder = named.lexically_normal();
@@ -110,10 +107,10 @@ void drawDialogs(Session& session, Marks& marks) {
   Dialog& dialog = *session.window.dialog;
   const std::string title = dialog.title + "###dialog";
   if (!ImGui::IsPopupOpen(title.c_str())) ImGui::OpenPopup(title.c_str());
-  ImGui::SetNextWindowSize(
-      ImVec2(std::min(em(dialog.kind == Kind::Confirm || dialog.kind == Kind::Text ? 28.0f : 41.0f),
-                      0.96f * ImGui::GetIO().DisplaySize.x),
-             0.0f));
+  ImGui::SetNextWindowSize(ImVec2(
+      std::min(em(dialog.kind == Dialog::Kind::Confirm || dialog.kind == Dialog::Kind::Text ? 28.0f : 41.0f),
+               0.96f * ImGui::GetIO().DisplaySize.x),
+      0.0f));
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.4f * screen.y), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
   if (!ImGui::BeginPopupModal(title.c_str(), nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
@@ -125,12 +122,12 @@ void drawDialogs(Session& session, Marks& marks) {
     ImGui::TextWrapped("%s", dialog.question.c_str());
     ImGui::EndChild();
   }
-  if (dialog.kind == Kind::Text) {
+  if (dialog.kind == Dialog::Kind::Text) {
     ImGui::SetNextItemWidth(-1.0f);
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     yes = ImGui::InputText("##text", &dialog.name, ImGuiInputTextFlags_EnterReturnsTrue);
     marks.put("dialog.text");
-  } else if (dialog.kind != Kind::Confirm) {
+  } else if (dialog.kind != Dialog::Kind::Confirm) {
     yes = drawFiles(session, dialog, marks);
   }
   yes |= ImGui::Button(dialog.yes.c_str(), ImVec2(em(7.4f), 0.0f));

@@ -8,14 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/panels/assets.hpp"
-#include "editor/panels/fields.hpp"
-#include "editor/panels/number_field.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/panels/widgets.hpp"
 #include "editor/session/assets.hpp"
 #include "editor/session/key_lights.hpp"
 #include "editor/ui/dear_imgui.hpp"
-#include "editor/ui/fitting.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
@@ -87,21 +84,35 @@ void drawTable(Session& session, Marks& marks, const std::vector<KeyLight>& keys
   ImGui::EndTable();
 }
 
+// Draws a number of a light as a step of its own. Returns whether it changed.
+bool dragOfLight(Session& session, Marks& marks, const char* label, float& number, const NumberLook& look,
+                 const char* step, const std::string& mark) {
+  const bool changed = dragNumber(label, number, look, session.field_edit.number);
+  tooltip(kNumberHelp);
+  asOneStep(session, step);
+  marks.put(mark);
+  return changed;
+}
+
+// Draws the position of a light on the sky. Returns whether it changed.
+bool dragOnSky(Session& session, Marks& marks, float& azimuth_deg, float& elevation_deg, double highest_deg,
+               const std::string& light, const std::string& mark) {
+  const double step = double{session.handles.gizmo.options.snap_deg};
+  const bool turned =
+      dragOfLight(session, marks, "azimuth", azimuth_deg,
+                  {.speed = 0.5, .least = -360.0, .most = 360.0, .format = "%.1f°", .step = step},
+                  ("turn of " + light).c_str(), mark + ".azimuth");
+  return dragOfLight(
+             session, marks, "elevation", elevation_deg,
+             {.speed = 0.25, .least = -highest_deg, .most = highest_deg, .format = "%.1f°", .step = step},
+             ("height of " + light).c_str(), mark + ".elevation") ||
+         turned;
+}
+
 void drawKeyLight(Session& session, Marks& marks, std::size_t index, const KeyLight& key) {
   const std::string mark = fmt::format("key.{}", index);
   float azimuth = key.azimuth_deg, elevation = key.elevation_deg;
-  HeldNumber& held = session.field_edit.number;
-  const double step = double{session.handles.gizmo.options.snap_deg};
-  bool moved =
-      dragNumber("azimuth##key", azimuth,
-                 {.speed = 0.5, .least = -360.0, .most = 360.0, .format = "%.1f°", .step = step}, held);
-  asOneStep(session, "turn of key light");
-  marks.put(mark + ".azimuth");
-  moved |= dragNumber("elevation##key", elevation,
-                      {.speed = 0.25, .least = -89.9, .most = 89.9, .format = "%.1f°", .step = step}, held);
-  asOneStep(session, "height of key light");
-  marks.put(mark + ".elevation");
-  if (moved)
+  if (dragOnSky(session, marks, azimuth, elevation, 89.9, "key light", mark))
     logRefusal(session,
                moveKeyLight(session, index, spec::directionFromAzimuthElevation(azimuth, elevation)));
   if (!key.in_map) {
@@ -113,11 +124,10 @@ void drawKeyLight(Session& session, Marks& marks, std::size_t index, const KeyLi
   // The factor is edited as a colour and a strength, like radiance.
   float strength = std::max({key.factor.r, key.factor.g, key.factor.b});
   glm::vec3 tint = strength > 0.0f ? key.factor / strength : glm::vec3(1.0f);
-  bool changed =
-      dragNumber("times##key", strength, {.speed = 0.01, .least = 0.0, .most = 1000.0, .step = 0.1}, held);
-  asOneStep(session, "strength of key light");
-  marks.put(mark + ".strength");
-  changed |= ImGui::ColorEdit3("tint##key", &tint.x, ImGuiColorEditFlags_Float);
+  bool changed = dragOfLight(session, marks, "times", strength,
+                             {.speed = 0.01, .least = 0.0, .most = 1000.0, .step = 0.1},
+                             "strength of key light", mark + ".strength");
+  changed |= ImGui::ColorEdit3("tint", &tint.x, ImGuiColorEditFlags_Float);
   asOneStep(session, "color of key light");
   marks.put(mark + ".tint");
   if (changed) logRefusal(session, dimKeyLight(session, index, strength * glm::max(tint, 0.0f)));
@@ -140,25 +150,19 @@ void drawKeyLights(Session& session, Marks& marks) {
   drawTable(session, marks, keys);
   std::optional<std::size_t>& at_hand = session.viewing.key_at_hand;
   if (at_hand && *at_hand >= keys.size()) at_hand.reset();
-  if (at_hand) drawKeyLight(session, marks, *at_hand, keys[*at_hand]);
+  if (!at_hand) return;
+  ImGui::PushID("key");
+  drawKeyLight(session, marks, *at_hand, keys[*at_hand]);
+  ImGui::PopID();
 }
 
 constexpr float kLabelEms = 5.0f;  // room for the labels behind widgets
-
-void runWithWords(Session& session, const char* command, std::initializer_list<std::string> words) {
-  const std::vector<std::string> list(words);
-  runOrLog(session, command, list);
-}
 
 void setWord(Session& session, std::size_t index, std::string word) {
   session.history.editWorld("light from outside",
                             [&](WorldState& world) { world.lights[index] = std::move(word); });
 }
 
-std::string sunWord(const spec::SunLight& sun) {
-  return fmt::format("sun:{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", sun.azimuth_deg, sun.elevation_deg,
-                     sun.angle_deg, sun.radiance.r, sun.radiance.g, sun.radiance.b);
-}
 std::string constantWord(const glm::vec3& radiance) {
   return fmt::format("constant:{:.7g},{:.7g},{:.7g}", radiance.r, radiance.g, radiance.b);
 }
@@ -170,40 +174,23 @@ bool editRadiance(Session& session, Marks& marks, const std::string& mark, glm::
   bool changed = ImGui::ColorEdit3("color", &color.x, ImGuiColorEditFlags_Float);
   asOneStep(session, "color of light");
   marks.put(mark + ".color");
-  changed |= dragNumber("radiance", strength,
-                        {.speed = 0.01 * std::max(0.1, double{strength}),
-                         .least = 0.0,
-                         .most = 1e7,
-                         .format = "%.4g",
-                         .step = 1.0},
-                        session.field_edit.number);
-  tooltip(kNumberHelp);
-  asOneStep(session, "strength of light");
-  marks.put(mark + ".radiance");
+  changed |= dragOfLight(session, marks, "radiance", strength,
+                         {.speed = 0.01 * std::max(0.1, double{strength}),
+                          .least = 0.0,
+                          .most = 1e7,
+                          .format = "%.4g",
+                          .step = 1.0},
+                         "strength of light", mark + ".radiance");
   if (changed) radiance = strength * color;
   return changed;
 }
 
 void drawSun(Session& session, Marks& marks, std::size_t index, spec::SunLight sun) {
   const std::string mark = fmt::format("environment.{}", index);
-  HeldNumber& held = session.field_edit.number;
-  const double step = double{session.handles.gizmo.options.snap_deg};
-  bool changed =
-      dragNumber("azimuth", sun.azimuth_deg,
-                 {.speed = 0.5, .least = -360.0, .most = 360.0, .format = "%.1f°", .step = step}, held);
-  tooltip(kNumberHelp);
-  asOneStep(session, "turn of sun");
-  marks.put(mark + ".azimuth");
-  changed |= dragNumber("elevation", sun.elevation_deg,
-                        {.speed = 0.25, .least = -90.0, .most = 90.0, .format = "%.1f°", .step = step}, held);
-  tooltip(kNumberHelp);
-  asOneStep(session, "height of sun");
-  marks.put(mark + ".elevation");
-  changed |= dragNumber("radius", sun.angle_deg,
-                        {.speed = 0.05, .least = 0.05, .most = 180.0, .format = "%.2f°", .step = 0.5}, held);
-  tooltip(kNumberHelp);
-  asOneStep(session, "size of sun");
-  marks.put(mark + ".radius");
+  bool changed = dragOnSky(session, marks, sun.azimuth_deg, sun.elevation_deg, 90.0, "sun", mark);
+  changed |= dragOfLight(session, marks, "radius", sun.angle_deg,
+                         {.speed = 0.05, .least = 0.05, .most = 180.0, .format = "%.2f°", .step = 0.5},
+                         "size of sun", mark + ".radius");
   changed |= editRadiance(session, marks, mark, sun.radiance);
   if (changed) setWord(session, index, sunWord(sun));
 }
@@ -221,7 +208,7 @@ void drawLight(Session& session, Marks& marks, std::size_t index, const std::str
       ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen | kTreeNodeAllowOverlap);
   marks.put(mark);
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - em(1.2f));
-  if (ImGui::SmallButton("x")) runWithWords(session, "remove-light", {std::to_string(index)});
+  if (ImGui::SmallButton("x")) runOrLog(session, "remove-light", std::array{std::to_string(index)});
   marks.put(mark + ".remove");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Take this light away");
   if (open && light) {
@@ -237,19 +224,22 @@ void drawLight(Session& session, Marks& marks, std::size_t index, const std::str
 
 void drawShelf(Session& session, Marks& marks) {
   if (!ImGui::CollapsingHeader("Environment maps", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  session.environment_maps.update(session.document.world().lights, session.scenes);
-  if (session.environment_maps.environment_maps().empty())
-    ImGui::TextDisabled("None beside the open files; add a folder of .hdr or .exr files.");
+  session.assets.update(session);
+  std::vector<Asset> maps;
+  for (const AssetGroup& group : session.assets.groups())
+    std::ranges::copy_if(group.assets, std::back_inserter(maps),
+                         [](const Asset& asset) { return asset.kind == AssetKind::EnvironmentMap; });
+  if (maps.empty()) ImGui::TextDisabled("None beside the open files; add a folder of .hdr or .exr files.");
   bool follows = false;
-  for (const Asset& environment_map : session.environment_maps.environment_maps()) {
+  for (const Asset& environment_map : maps) {
     if (std::exchange(follows, true)) sameLineIfFits(em(kTileEms));
     if (drawAssetTile(session, environment_map, kTileEms, /*selected=*/false))
-      runWithWords(session, "environment-map", {environment_map.file.string()});
+      runOrLog(session, "environment-map", std::array{environment_map.file.string()});
     marks.put("environment-map." + environment_map.file.stem().string());
     if (ImGui::IsItemHovered())
       tooltip(describe(session, environment_map) + "\nClick: the light from outside is this environment map");
   }
-  if (ImGui::Button("Add folder of environment maps...")) runWithWords(session, "environment-map-folder", {});
+  if (ImGui::Button("Add folder of environment maps...")) runOrLog(session, "environment-map-folder", {});
   marks.put("environment.add-folder");
 }
 
@@ -261,8 +251,7 @@ void drawStand(Session& session, Marks& marks) {
     if (!found) return;
     float value = std::get<float>((*found)->get(registry, entity));
     if (ImGui::SliderFloat(label, &value, least, most, format))
-      if (auto done = session.history.setField(entity, "Environment", field, value); !done)
-        session.log.error(done.error());
+      logRefusal(session, session.history.setField(entity, "Environment", field, value));
     asOneStep(session, label);
     marks.put(fmt::format("environment.{}", field));
   };
@@ -283,13 +272,15 @@ void drawEnvironment(Session& session, Marks& marks) {
   ImGui::Separator();
   const std::vector<std::string> lights = session.document.world().lights;
   for (std::size_t i = 0; i < lights.size(); ++i) drawLight(session, marks, i, lights[i]);
-  if (ImGui::Button("Add sun")) runWithWords(session, "add-light", {"sun:35,45,6,30,28,25"});
+  if (ImGui::Button("Add sun"))
+    runOrLog(session, "add-light", std::array{std::string("sun:35,45,6,30,28,25")});
   marks.put("environment.add-sun");
   sameLineIfFits("Add constant");
-  if (ImGui::Button("Add constant")) runWithWords(session, "add-light", {"constant:0.3,0.35,0.45"});
+  if (ImGui::Button("Add constant"))
+    runOrLog(session, "add-light", std::array{std::string("constant:0.3,0.35,0.45")});
   marks.put("environment.add-constant");
   sameLineIfFits("Add environment map...");
-  if (ImGui::Button("Add environment map...")) runWithWords(session, "environment-map", {});
+  if (ImGui::Button("Add environment map...")) runOrLog(session, "environment-map", {});
   marks.put("environment.add-map");
   drawKeyLights(session, marks);
   ImGui::PopItemWidth();

@@ -7,13 +7,10 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/document/actions.hpp"
-#include "editor/panels/fields.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/text.hpp"
-#include "editor/session/names.hpp"
+#include "editor/panels/widgets.hpp"
 #include "editor/session/session.hpp"
 #include "editor/ui/dear_imgui.hpp"
-#include "editor/ui/fitting.hpp"
 #include "editor/ui/marks.hpp"
 #include "runtime/scene/materials.hpp"
 
@@ -129,8 +126,7 @@ void drawComponentMenu(Session& session, const ComponentInfo& component,
       session.log.error(text.error());
   }
   const char* clip = ImGui::GetClipboardText();
-  const Clip held = peekClip(clip ? clip : "");
-  if (ImGui::MenuItem("Paste", nullptr, false, held.kind == Pasted::Component))
+  if (ImGui::MenuItem("Paste", nullptr, false, peekClip(clip ? clip : "") == Pasted::Component))
     logRefusal(session, pasteComponent(session.document, session.history, entities, clip));
   if (ImGui::MenuItem("Reset"))
     logRefusal(session, resetToDefault(session.document, session.history, session.changes.baseline(),
@@ -216,9 +212,8 @@ void drawSelected(Session& session, Marks& marks, const std::vector<ecs::Entity>
   const std::string name =
       draw ? fmt::format("primitive {} of {}", draw->primitive, session.document.nameOf(draw->node))
            : session.document.nameOf(selected.back());
-  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
-  fittedText(selected.size() == 1 ? name : fmt::format("{} and {} more", name, selected.size() - 1));
-  ImGui::PopStyleColor();
+  fittedText(dimmed(),
+             selected.size() == 1 ? name : fmt::format("{} and {} more", name, selected.size() - 1));
   marks.put("inspector.name");
   for (const ComponentInfo& component : scene::components())
     drawComponent(session, marks, component, selected);

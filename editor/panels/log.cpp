@@ -6,8 +6,8 @@
 #include <imgui.h>
 
 #include "editor/panels/panel.hpp"
-#include "editor/panels/text.hpp"
-#include "editor/ui/fitting.hpp"
+#include "editor/panels/widgets.hpp"
+#include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {
 

@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include "editor/panels/panel.hpp"
+#include "editor/panels/widgets.hpp"
 #include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {
@@ -31,20 +32,12 @@ void paint(const Painting& painting, const Viewport& viewport) {
   canvas->PopClipRect();
 }
 
-// Returns edits of one entity's Transform fields.
-void addEdits(ecs::Entity entity, const scene::Transform& to, std::vector<FieldEdit>& edits) {
-  edits.push_back({entity, "Transform", "translation", to.translation});
-  edits.push_back({entity, "Transform", "rotation", to.rotation});
-  edits.push_back({entity, "Transform", "scale", to.scale});
-  edits.push_back({entity, "Transform", "shear", to.shear});
-}
-
 void setTransforms(Session& session, const std::vector<ecs::Entity>& entities,
                    const std::vector<scene::Transform>& to) {
   std::vector<FieldEdit> edits;
-  for (std::size_t i = 0; i < to.size(); ++i) addEdits(entities[i], to[i], edits);
-  if (edits.empty()) return;
-  if (auto done = session.history.setFields(edits); !done) session.log.error(done.error());
+  for (std::size_t i = 0; i < to.size(); ++i)
+    for (FieldEdit& edit : transformEdits(entities[i], to[i])) edits.push_back(std::move(edit));
+  if (!edits.empty()) logRefusal(session, session.history.setFields(edits));
 }
 
 void setLight(Session& session, ecs::Entity entity, const scene::LocalLightComponent& to) {
@@ -53,7 +46,7 @@ void setLight(Session& session, ecs::Entity entity, const scene::LocalLightCompo
                              {entity, "Light", "range", to.range_m},
                              {entity, "Light", "inner_cone", to.inner_cone_rad},
                              {entity, "Light", "outer_cone", to.outer_cone_rad}};
-  if (auto done = session.history.setFields(edits); !done) session.log.error(done.error());
+  logRefusal(session, session.history.setFields(edits));
 }
 
 float snapped(float value, float step) {

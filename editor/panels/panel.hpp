@@ -23,8 +23,6 @@ struct Panel {
 };
 
 std::span<const Panel> panelList();
-// Returns where the panel is in this layout.
-Dock dockOf(const WindowLayout& layout, const Panel& panel);
 
 // Each is defined in a file of its own.
 void drawSceneTree(Session& session, Marks& marks);
@@ -41,6 +39,11 @@ void drawAccuracy(Session& session, Marks& marks);
 void drawStreaming(Session& session, Marks& marks);
 void drawHistory(Session& session, Marks& marks);
 void drawLog(Session& session, Marks& marks);
+
+// Draws the window's contents: panels in docks on each side and below, the view in the middle, and edges
+// between them that can be dragged. A tab's menu moves its panel to another dock, as dragging the tab there
+// does.
+void drawLayout(Session& session, Renderer& renderer, Marks& marks);
 
 // These are not in a dock: the menu bar, the view in the middle, and what is drawn above everything.
 void drawMenus(Session& session, Marks& marks);

@@ -8,8 +8,8 @@
 #include "editor/commands/command.hpp"
 #include "editor/document/tree.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/text.hpp"
-#include "editor/ui/fitting.hpp"
+#include "editor/panels/widgets.hpp"
+#include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {
 
@@ -68,9 +68,7 @@ void drawBundleStatus(Session& session, Marks& marks, const TreeRow& row) {
     if (status.standing == Standing::Good) return;
     const float name = ImGui::CalcTextSize(row.name.c_str()).x + em(0.5f);
     ImGui::SameLine(ImGui::GetItemRectMin().x - ImGui::GetWindowPos().x + name);
-    ImGui::PushStyleColor(ImGuiCol_Text, standingColor(status.standing));
-    fittedText(status.text, status.detail);
-    ImGui::PopStyleColor();
+    fittedText(standingColor(status.standing), status.text, status.detail);
     marks.put("scene." + row.name + ".state");
   }
 }
@@ -88,9 +86,7 @@ bool drawUnshown(Session& session, Marks& marks, std::size_t i) {
   ImGui::SameLine(0.0f, 6.0f);
   ImGui::TextDisabled("%s", entry.id.c_str());
   ImGui::SameLine();
-  ImGui::PushStyleColor(ImGuiCol_Text, standingColor(status.standing));
-  fittedText(status.text, status.detail);
-  ImGui::PopStyleColor();
+  fittedText(standingColor(status.standing), status.text, status.detail);
   marks.put("scene." + entry.id + ".state");
   const bool close = [&] {
     if (!ImGui::BeginPopupContextItem("unshown")) return false;
@@ -172,9 +168,7 @@ void drawSceneTree(Session& session, Marks& marks) {
   marks.put("scene.parts");
   tooltip("Also show primitives and rigid groups, which cannot be edited");
   ImGui::SameLine();
-  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
-  fittedText(fmt::format("{} selected", session.selection.ids().size()));
-  ImGui::PopStyleColor();
+  fittedText(dimmed(), fmt::format("{} selected", session.selection.ids().size()));
   const std::vector<TreeRow>& rows = session.tree.of(session.document);
   ImGui::BeginChild("rows");
   for (std::size_t i = 0; i < session.scenes.entries().size(); ++i)

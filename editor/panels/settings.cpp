@@ -8,19 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/panels/fields.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/ui/fitting.hpp"
+#include "editor/panels/widgets.hpp"
+#include "editor/ui/dear_imgui.hpp"
 #include "runtime/frame/frame_settings.hpp"
 
 namespace lambent::editor {
 
 namespace {
-
-void put(Session& session, const frame::SettingRow& row, const frame::FrameSettings& settings) {
-  const std::array words = {std::string(row.name), frame::settingWord(row, settings)};
-  runOrLog(session, "setting", words);
-}
 
 std::string capitalized(std::string_view label) {
   std::string text(label);
@@ -28,34 +23,33 @@ std::string capitalized(std::string_view label) {
   return text;
 }
 
-void drawSettingRow(Session& session, Marks& marks, const frame::SettingRow& row) {
-  using Kind = frame::SettingRow::Kind;
+}  // namespace
+
+void editSetting(Session& session, Marks& marks, const frame::SettingRow& row, const std::string& mark) {
+  using SettingKind = frame::SettingRow::Kind;
   frame::FrameSettings settings = session.stage.settings();
   const double value = row.get(settings);
-  const std::string label(row.label), name(row.name);
+  const std::string shown = frame::settingWord(row, settings);
   bool changed = false;
   double to = value;
-  if (row.name == "exposure") return;  // the environment's panel shows it
-  ImGui::PushID(name.c_str());
-  beginFieldRow(capitalized(row.label), fmt::format("{}\n{}", name, row.help));
   ImGui::SetNextItemWidth(-1.0f);
-  if (row.kind == Kind::Switch) {
+  if (row.kind == SettingKind::Switch) {
     bool on = value != 0.0;
     changed = ImGui::Checkbox("##value", &on);
     to = on ? 1.0 : 0.0;
-  } else if (row.kind == Kind::Choice) {
-    if (ImGui::BeginCombo("##value", frame::settingWord(row, settings).c_str())) {
+  } else if (row.kind == SettingKind::Choice) {
+    if (ImGui::BeginCombo("##value", shown.c_str())) {
       for (std::size_t i = 0; i < row.words.size(); ++i)
         if (ImGui::Selectable(std::string(row.words[i]).c_str(), static_cast<double>(i) == value))
           to = static_cast<double>(i), changed = true;
       ImGui::EndCombo();
     }
-  } else if (row.kind == Kind::Whole) {
+  } else if (row.kind == SettingKind::Whole) {
     // A word such as "auto", which stands for no number, lies left of the least number.
     const int least = static_cast<int>(row.least), word = row.not_a_number.empty() ? least : least - 1;
     int whole = std::isnan(value) ? word : static_cast<int>(value);
-    changed = ImGui::SliderInt("##value", &whole, word, static_cast<int>(row.greatest),
-                               frame::settingWord(row, settings).c_str(), ImGuiSliderFlags_AlwaysClamp);
+    changed = ImGui::SliderInt("##value", &whole, word, static_cast<int>(row.greatest), shown.c_str(),
+                               ImGuiSliderFlags_AlwaysClamp);
     to = whole < least ? std::numeric_limits<double>::quiet_NaN() : whole;
   } else {
     float real = static_cast<float>(value);
@@ -63,16 +57,17 @@ void drawSettingRow(Session& session, Marks& marks, const frame::SettingRow& row
                                  static_cast<float>(row.greatest), "%.3g", ImGuiSliderFlags_AlwaysClamp);
     to = double{real};
   }
-  marks.put("setting." + name);
+  marks.put(mark);
   tooltip(row.help);
-  if (ImGui::IsItemActivated()) session.history.beginDrag(label);
+  if (ImGui::IsItemActivated()) session.history.beginDrag(std::string(row.label));
   if (changed) {
     row.put(settings, to);
-    put(session, row, settings);
+    runOrLog(session, "setting", std::array{std::string(row.name), frame::settingWord(row, settings)});
   }
   if (ImGui::IsItemDeactivated()) session.history.endDrag();
-  ImGui::PopID();
 }
+
+namespace {
 
 // Draws the choice of quality, which sets the number of key lights and their shadow resolution, and its
 // costs.
@@ -146,7 +141,14 @@ void drawSlice(Session& session, Marks& marks) {
 }
 
 void drawRows(Session& session, Marks& marks) {
-  for (const frame::SettingRow& row : frame::settingRows()) drawSettingRow(session, marks, row);
+  for (const frame::SettingRow& row : frame::settingRows()) {
+    if (row.name == "exposure") continue;  // the environment's panel shows it
+    const std::string name(row.name);
+    ImGui::PushID(name.c_str());
+    beginFieldRow(capitalized(row.label), fmt::format("{}\n{}", name, row.help));
+    editSetting(session, marks, row, "setting." + name);
+    ImGui::PopID();
+  }
   beginFieldRow("Pixels", "Pixels of the picture for each of the window along an edge: less is faster");
   ImGui::SetNextItemWidth(-1.0f);
   if (ImGui::SliderFloat("##pixels", &session.viewing.scale.whole, 0.25f, 2.0f, "%.2f",

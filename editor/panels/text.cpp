@@ -1,10 +1,10 @@
-#include "editor/panels/text.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
 
 #include <fmt/format.h>
+
+#include "editor/panels/widgets.hpp"
 
 namespace lambent::editor {
 
@@ -32,29 +32,11 @@ std::string timeText(double seconds) {
 }
 
 ImVec4 severityColor(Severity severity) {
-  switch (severity) {
-    case Severity::Error:
-      return kErrorColor;
-    case Severity::Warning:
-      return kWarningColor;
-    case Severity::Note:
-      break;
-  }
-  return kNoteColor;
+  return std::array{kNoteColor, kWarningColor, kErrorColor}[static_cast<std::size_t>(severity)];
 }
 
 ImVec4 standingColor(Standing standing) {
-  switch (standing) {
-    case Standing::Failed:
-      return kErrorColor;
-    case Standing::Wanting:
-      return kWarningColor;
-    case Standing::Working:
-      return kNoteColor;
-    case Standing::Good:
-      break;
-  }
-  return kGoodColor;
+  return std::array{kGoodColor, kNoteColor, kWarningColor, kErrorColor}[static_cast<std::size_t>(standing)];
 }
 
 namespace {

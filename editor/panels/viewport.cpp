@@ -6,13 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/panels/assets.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/text.hpp"
+#include "editor/panels/widgets.hpp"
 #include "editor/render/renderer.hpp"
 #include "editor/session/viewing.hpp"
 #include "editor/ui/dear_imgui.hpp"
-#include "editor/ui/fitting.hpp"
 
 namespace lambent::editor {
 
@@ -54,10 +52,10 @@ void moveEye(Session& session, const Viewport& viewport, bool hovered) {
 void drawFrame(const Session& session, const Renderer& renderer, const ImVec2& low, const ImVec2& high) {
   ImDrawList* canvas = ImGui::GetWindowDrawList();
   // Row 0 of the frame's pictures is the bottom.
-  canvas->AddImage(handleOf(renderer.picture()), low, high, ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
+  canvas->AddImage(handleOf(renderer.picture.texture()), low, high, ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
   const ReferenceView& reference = session.reference;
   if (!reference.on()) return;
-  const gpu::Texture& beside = renderer.reference(reference.split);
+  const gpu::Texture& beside = renderer.reference.texture(reference.split);
   const float at = low.x + reference.split_at * (high.x - low.x);
   if (!beside || !reference.shows()) {
     // The plain picture must not pass for a reference or a difference.
@@ -96,7 +94,7 @@ void textOver(const ImVec2& at, const std::string& text, ImU32 color = IM_COL32(
 // over it.
 bool drawPreview(Session& session, const Renderer& renderer, Marks& marks, const ImVec2& low,
                  const ImVec2& high) {
-  const gpu::Texture& preview = renderer.preview();
+  const gpu::Texture& preview = renderer.picture.preview();
   if (!preview) return false;
   constexpr float kShare = 0.3f, kGap = 12.0f;
   const auto texels =
@@ -146,9 +144,7 @@ void drawLegends(Session& session, Marks& marks, const ImVec2& low, const ImVec2
                     100.0 * e.relative_rms, 100.0 * e.bias[0], 100.0 * e.bias[1], 100.0 * e.bias[2],
                     100.0 * e.percentile_99);
     if (reference.split == SplitView::Heat)
-      figures +=
-          fmt::format("   colors to {}{:.0f} %", reference.heat_map == baker::HeatMap::Signed ? "±" : "",
-                      100.0 * difference->range);
+      figures += fmt::format("   colors to ±{:.0f} %", 100.0 * difference->range);
     const float line = em(1.75f);
     textOver(ImVec2(low.x + 12.0f, high.y - line), ellipsized(figures, high.x - low.x - 24.0f));
     marks.put("difference", {{low.x, high.y - line}, {high.x, high.y}});
@@ -157,7 +153,7 @@ void drawLegends(Session& session, Marks& marks, const ImVec2& low, const ImVec2
 
 // Selects what is at a pixel of the picture, or adds it to the selection with Ctrl or Shift.
 void pick(Session& session, Renderer& renderer, const glm::vec2& pixel) {
-  const auto picked = renderer.pick(session, pixel.x, pixel.y);
+  const auto picked = renderer.picture.pick(session, pixel.x, pixel.y);
   if (!picked) return session.log.error(picked.error());
   const ImGuiIO& io = ImGui::GetIO();
   const bool beside = io.KeyCtrl || io.KeyShift;

@@ -1,9 +1,8 @@
-#include "editor/render/picture.hpp"
-
 #include <algorithm>
 #include <utility>
 
 #include "editor/document/selection.hpp"
+#include "editor/render/renderer.hpp"
 #include "editor/session/viewing.hpp"
 #include "runtime/effects/volume/volume.hpp"
 

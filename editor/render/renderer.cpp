@@ -57,7 +57,7 @@ Result<void> ReferencePicture::compare(Session& session, const baker::reference:
   const bool halves = snapshot.halves[0].width > 0 && snapshot.halves[1].width > 0;
   auto difference = baker::differenceOf(*picture, halves ? snapshot.halves[0] : snapshot.image,
                                         halves ? &snapshot.halves[1] : nullptr,
-                                        {.map = session.reference.heat_map}, "reference");
+                                        {.map = baker::HeatMap::Signed}, "reference");
   if (difference) {
     heat_ = textureOf("heat map", {snapshot.image.width, snapshot.image.height}, GL_RGBA8);
     write(heat_, GL_UNSIGNED_BYTE, difference->heat.texels.data());
@@ -80,18 +80,18 @@ void ReferencePicture::update(Session& session) {
 }
 
 Result<Renderer> Renderer::create(const Session& session) {
-  auto picture = Picture::create(session);
-  if (!picture) return failAgain(picture.error());
-  return Renderer(std::move(*picture));
+  auto made = Picture::create(session);
+  if (!made) return failAgain(made.error());
+  return Renderer{.picture = std::move(*made)};
 }
 
 void Renderer::update(Session& session, spec::Size size) {
-  picture_.update(session, size);
-  reference_.update(session);
+  picture.update(session, size);
+  reference.update(session);
   session.settings.update(session);
   session.qualities.update(session);
-  thumbnails_.update(session, picture_.texture());
-  materials_.update(session);
+  thumbnails.update(session, picture.texture());
+  materials.update(session);
 }
 
 }  // namespace lambent::editor

@@ -3,16 +3,156 @@
 // there. Main thread; it must not outlive the window's OpenGL context. Errors: no OpenGL 4.5.
 #pragma once
 
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <map>
 #include <optional>
+#include <vector>
 
-#include "editor/render/picture.hpp"
-#include "editor/render/thumbnails.hpp"
+#include "editor/session/assets.hpp"
 #include "editor/session/session.hpp"
+#include "runtime/base/change_gate.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/tone_map/tone_mapper.hpp"
 
 namespace lambent::editor {
+
+// Owns the textures of small pictures: those of assets, which the session finds on the CPU or which are
+// taken from the view, and those of materials. Main thread, with a current OpenGL context.
+
+class Thumbnails {
+ public:
+  // Uploads new pictures, and tells the session their textures. When a scene or a world that is shown has
+  // come to rest, a small copy of `view` (row 0 at the bottom) becomes its picture; so again when a better
+  // bake is shown. A scene beside others that has no picture gets the part of the view around it. Call it
+  // once a frame.
+  void update(Session& session, const gpu::Texture& view);
+
+ private:
+  // Holds a file, and the part of the view that shows its contents.
+  struct Shown {
+    Asset asset;
+    PicturePart part;
+    bool operator==(const Shown&) const = default;
+  };
+  // size: of the view in pixels.
+  static std::vector<Shown> shownIn(Session& session, const spec::Size& size);
+  void takeFromView(Session& session, const gpu::Texture& view);
+
+  std::map<std::filesystem::path, gpu::Texture> textures_;
+  // Tells when the view's picture must be taken: it compares the files that it shows and the version of the
+  // scenes.
+  ChangeGate<std::vector<Shown>, std::uint64_t> taken_;
+};
+
+// Makes the pictures of the materials that panels ask for: a sphere of each, drawn anew when the material
+// changes, and its textures as they are on the GPU.
+class MaterialPainter {
+ public:
+  void update(Session& session);
+
+ private:
+  struct Preview {
+    std::uint64_t version = 0;  // of the component that is on the picture
+    gpu::Texture texture;
+  };
+  std::map<ecs::Entity, Preview> previews_;
+};
+
+// Renders the runtime's picture of the world from the editor's camera, whenever something that it shows has
+// changed. The session comes in; a texture goes out, and PictureFacts for commands and panels. Only pick()
+// waits for the GPU: times, exposure and negative pixels are read once a picture is finished. Main thread,
+// with a current OpenGL context. Errors: no OpenGL 4.5; later errors are logged.
+
+// Measures how long the GPU and the CPU take for pictures, without waiting for either: it puts timestamp
+// queries around each picture and reads them in a later frame, once they are available. It also tells
+// whether the GPU still works on a picture.
+class PictureClock {
+ public:
+  struct Time {
+    // From the first command to the last on the GPU, or the CPU's time if that was longer.
+    double milliseconds = 0.0;
+    bool whole = true;  // the argument of end()
+  };
+
+  // Call these before and after the commands of a picture. whole: it has full resolution.
+  void begin();
+  void end(bool whole);
+  // Returns the time of the oldest finished picture that was not returned before.
+  std::optional<Time> take();
+  bool inFlight() const { return !pictures_.empty(); }
+
+ private:
+  struct QueryTraits {
+    static void destroy(GLuint id) { glDeleteQueries(1, &id); }
+  };
+  using Query = gpu::Handle<QueryTraits>;
+  struct Picture {
+    Query first, last;
+    double cpu_ms = 0.0;
+    bool whole = true;
+  };
+  Query timestamp();
+
+  std::deque<Picture> pictures_;  // oldest first
+  std::vector<Query> free_;
+  Query first_;
+  std::chrono::steady_clock::time_point begun_;
+};
+
+// Draws what the selected camera, or one that is kept, sees into a small picture of its own, by the frame of
+// the main picture: a second frame would keep light probes, captures and shading of its own. The main
+// picture must be drawn anew afterwards. It draws only when something in it changed: while the world comes
+// to rest, and while main pictures are slow and move, it waits.
+class CameraPreview {
+ public:
+  // Returns whether the preview is to be drawn now. edits: a number that rises with edits and selections.
+  // stale: the main picture changes by something else than edits and its view.
+  bool due(Session& session, std::uint64_t edits, bool stale);
+  // Draws it. Errors: those of the camera and the frame.
+  Result<void> draw(Session& session, frame::Frame& frame);
+  // Returns the picture, with row 0 at the bottom, or one without handle if no camera is shown.
+  const gpu::Texture& texture() const { return texture_; }
+
+ private:
+  gpu::Texture texture_;
+  ecs::Entity camera_;
+  std::uint64_t edits_ = 0;
+  bool stale_ = true;
+};
+
+class Picture {
+ public:
+  static Result<Picture> create(const Session& session);
+
+  // Renders at this size if anything has changed. Call it once a frame.
+  void update(Session& session, spec::Size size);
+  // Returns what is visible at a pixel of the last picture, counted from the top left corner, or none for the
+  // sky. Waits for the GPU.
+  Result<std::optional<frame::Picked>> pick(Session& session, float x, float y);
+  // Row 0 of the texture is the bottom.
+  const gpu::Texture& texture() const { return frame_.picture(); }
+  const gpu::Texture& preview() const { return preview_.texture(); }
+
+ private:
+  explicit Picture(frame::Frame frame) : frame_(std::move(frame)) {}
+  Result<void> draw(Session& session, const spec::View& view, spec::Size size);
+  void readFinished(Session& session);
+
+  frame::Frame frame_;
+  PictureClock clock_;
+  CameraPreview preview_;
+  // Identifies what the last picture showed.
+  struct Drawn {
+    std::uint64_t edits = 0;  // sum of the versions of history and selection
+    spec::View view;
+    spec::Size size;
+  };
+  Drawn drawn_;
+  bool unread_ = false;  // exposure and negative pixels of the last picture are still to be read
+};
 
 // Shows the path-traced reference: its newest snapshot with the exposure of the runtime's picture, or a heat
 // map of its difference from a linear picture that the runtime renders for the same view. Error figures go
@@ -42,25 +182,11 @@ class Renderer {
 
   // Renders the view at this size if anything changed, and does all other pending work. Call it once a frame.
   void update(Session& session, spec::Size size);
-  // Returns what is visible at a pixel of the last picture, as Picture::pick().
-  Result<std::optional<frame::Picked>> pick(Session& session, float x, float y) {
-    return picture_.pick(session, x, y);
-  }
-  // Returns the runtime's picture; row 0 is the bottom.
-  const gpu::Texture& picture() const { return picture_.texture(); }
-  // Returns what the selected camera sees; row 0 is the bottom. It has no handle if none is selected.
-  const gpu::Texture& preview() const { return picture_.preview(); }
-  // Returns the reference or the heat map, as `split` says; row 0 is the top. It has no handle while there is
-  // none.
-  const gpu::Texture& reference(SplitView split) const { return reference_.texture(split); }
 
- private:
-  explicit Renderer(Picture picture) : picture_(std::move(picture)) {}
-
-  Picture picture_;
-  ReferencePicture reference_;
-  Thumbnails thumbnails_;
-  MaterialPainter materials_;
+  Picture picture;
+  ReferencePicture reference{};
+  Thumbnails thumbnails{};
+  MaterialPainter materials{};
 };
 
 }  // namespace lambent::editor

@@ -1,11 +1,10 @@
-#include "editor/render/thumbnails.hpp"
-
 #include <algorithm>
 #include <utility>
 
 #include <epoxy/gl.h>
 
-#include "editor/session/asset_pictures.hpp"
+#include "editor/render/renderer.hpp"
+#include "editor/session/assets.hpp"
 #include "editor/session/materials.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/materials.hpp"

@@ -41,9 +41,8 @@ class Script {
   bool done() const { return at_ >= lines_.size() && queue_.empty(); }
   // Returns whether the line waits for a time to pass, which needs no frames.
   bool rests() const { return rests_; }
-  bool failed() const { return error_.has_value(); }
-  // Returns the error of the line that failed. Requires failed().
-  const Error& error() const { return *error_; }
+  // Returns the error of the line that failed, if one did.
+  const std::optional<Error>& error() const { return error_; }
 
  private:
   enum class Progress { Done, Waits };

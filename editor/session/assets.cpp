@@ -1,12 +1,24 @@
 #include "editor/session/assets.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <condition_variable>
+#include <deque>
 #include <fstream>
+#include <mutex>
+#include <span>
+#include <thread>
 #include <utility>
+#include <vector>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "baker/cache/bytes.hpp"
 #include "baker/pipeline/source_watch.hpp"
 #include "editor/document/world_file.hpp"
-#include "editor/session/names.hpp"
+#include "editor/gizmo/projection.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/base/lower_case.hpp"
 #include "runtime/spec/light.hpp"
@@ -37,17 +49,8 @@ bool holdsWorld(const std::filesystem::path& file) {
 }  // namespace
 
 std::string_view kindWord(AssetKind kind) {
-  switch (kind) {
-    case AssetKind::EnvironmentMap:
-      return "environment map";
-    case AssetKind::Scene:
-      return "scene";
-    case AssetKind::Bundle:
-      return "bundle";
-    case AssetKind::World:
-      return "world";
-  }
-  return {};
+  constexpr std::array<std::string_view, 4> kKindWords = {"environment map", "scene", "bundle", "world"};
+  return kKindWords[static_cast<std::size_t>(kind)];
 }
 
 std::string nameOf(const Asset& asset) {
@@ -86,45 +89,6 @@ bool matches(const Asset& asset, std::string_view search) {
 
 namespace {
 
-constexpr std::size_t kMostMaps = 64;
-
-std::vector<std::filesystem::path> foldersOf(std::vector<std::filesystem::path> folders,
-                                             const std::vector<std::string>& light_words,
-                                             const Scenes& scenes) {
-  for (const std::string& word : light_words)
-    if (const auto light = spec::parseLight(word);
-        light && std::holds_alternative<spec::EnvironmentMapLight>(*light))
-      folders.push_back(std::filesystem::path(word).parent_path());
-  for (const SceneEntry& entry : scenes.entries())
-    folders.push_back((entry.source.empty() ? entry.bundle : entry.source).parent_path());
-  for (std::filesystem::path& folder : folders) {
-    std::error_code ignored;
-    folder = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, ignored);
-  }
-  std::sort(folders.begin(), folders.end());
-  folders.erase(std::unique(folders.begin(), folders.end()), folders.end());
-  return folders;
-}
-
-}  // namespace
-
-void EnvironmentMapShelf::addFolder(const std::filesystem::path& folder) {
-  if (std::find(added_.begin(), added_.end(), folder) == added_.end()) added_.push_back(folder);
-}
-
-void EnvironmentMapShelf::update(const std::vector<std::string>& light_words, const Scenes& scenes) {
-  if (!changed_.renew(light_words, scenes.version(), added_.size())) return;
-  std::vector<std::filesystem::path> folders = foldersOf(added_, light_words, scenes);
-  if (folders == folders_) return;
-  folders_ = std::move(folders);
-  environment_maps_.clear();
-  for (const std::filesystem::path& folder : folders_)
-    for (Asset& asset : listAssets(folder, AssetKind::EnvironmentMap))
-      if (environment_maps_.size() < kMostMaps) environment_maps_.push_back(std::move(asset));
-}
-
-namespace {
-
 // Returns the folder of what was opened last, which may be a folder itself, or an empty path.
 std::filesystem::path folderInUse(const Preferences& preferences) {
   if (preferences.recent.empty()) return {};
@@ -142,6 +106,10 @@ std::vector<AssetGroup> listed(std::vector<AssetGroup> groups) {
 
 }  // namespace
 
+void AssetBrowser::addFolder(const std::filesystem::path& folder) {
+  if (std::ranges::find(added_, folder) == added_.end()) added_.push_back(folder);
+}
+
 void AssetBrowser::take() {
   groups_ = coming_.get();
 }
@@ -152,9 +120,20 @@ void AssetBrowser::update(const Session& session) {
     take();
   }
   std::vector<AssetGroup> groups;
-  const std::filesystem::path folder = folderInUse(session.preferences);
-  if (!folder.empty() && std::ranges::find(samples_, folder) == samples_.end())
-    groups.push_back({.title = folder.string(), .folders = {folder}, .assets = {}});
+  const auto add = [&](const std::filesystem::path& named) {
+    std::error_code ignored;
+    const std::filesystem::path folder =
+        std::filesystem::weakly_canonical(named.empty() ? "." : named, ignored);
+    if (std::ranges::find(samples_, folder) == samples_.end() &&
+        std::ranges::find(groups, folder.string(), &AssetGroup::title) == groups.end())
+      groups.push_back({.title = folder.string(), .folders = {folder}, .assets = {}});
+  };
+  if (const std::filesystem::path folder = folderInUse(session.preferences); !folder.empty()) add(folder);
+  for (const std::filesystem::path& folder : added_) add(folder);
+  for (const std::string& word : session.document.world().lights)
+    if (isEnvironmentMap(word)) add(std::filesystem::path(word).parent_path());
+  for (const SceneEntry& entry : session.scenes.entries())
+    add((entry.source.empty() ? entry.bundle : entry.source).parent_path());
   if (!samples_.empty()) groups.push_back({.title = "Samples", .folders = samples_, .assets = {}});
   std::vector<std::filesystem::path> folders;
   std::vector<std::filesystem::file_time_type> times;
@@ -188,6 +167,270 @@ const Asset* AssetBrowser::find(std::string_view name) const {
     for (const Asset& asset : group.assets)
       if (asset.file == name || asset.file.filename() == name) return &asset;
   return nullptr;
+}
+
+namespace {
+
+constexpr std::uint32_t kMapWidth = 128, kMapHeight = 64;
+constexpr std::uint32_t kViewWidth = 192, kViewHeight = 108;
+static_assert(kViewWidth == kSmallPictureShape * kViewHeight);
+
+std::uint8_t coded(float value) {
+  const float clamped = std::clamp(value, 0.0f, 1.0f);
+  return static_cast<std::uint8_t>(255.0f * std::pow(clamped, 1.0f / 2.2f) + 0.5f);
+}
+
+}  // namespace
+
+spec::Rgba8Image smallPictureOf(const spec::RgbImage& environment_map) {
+  std::vector<glm::vec3> texels;
+  std::vector<float> brightness;
+  for (std::uint32_t y = 0; y < kMapHeight; ++y)
+    for (std::uint32_t x = 0; x < kMapWidth; ++x) {
+      const std::size_t from_x = (2 * std::size_t{x} + 1) * environment_map.width / (2 * kMapWidth);
+      const std::size_t from_y = (2 * std::size_t{y} + 1) * environment_map.height / (2 * kMapHeight);
+      texels.push_back(environment_map.texels[from_y * environment_map.width + from_x]);
+      const float luminance = glm::dot(texels.back(), glm::vec3(0.2126f, 0.7152f, 0.0722f));
+      brightness.push_back(std::isfinite(luminance) ? luminance : 0.0f);
+    }
+  const auto median = brightness.begin() + kMapWidth * kMapHeight / 2;
+  std::nth_element(brightness.begin(), median, brightness.end());
+  const float scale = 0.22f / std::max(1e-6f, *median);
+  spec::Rgba8Image made{kMapWidth, kMapHeight, {}};
+  for (const glm::vec3& texel : texels)
+    for (const float value : {texel.r, texel.g, texel.b, 1.0f / scale})
+      made.texels.push_back(std::isfinite(value) ? coded(scale * value) : std::uint8_t{255});
+  return made;
+}
+
+spec::Rgba8Image smallPictureOf(const spec::Rgba8Image& view) {
+  // The part of the view that is shown: as wide or as high as the view, and in the shape of the small
+  // picture.
+  const std::uint32_t width = std::min(view.width, view.height * kViewWidth / kViewHeight);
+  const std::uint32_t height = std::min(view.height, view.width * kViewHeight / kViewWidth);
+  const std::uint32_t left = (view.width - width) / 2, top = (view.height - height) / 2;
+  spec::Rgba8Image made{kViewWidth, kViewHeight, {}};
+  for (std::uint32_t y = 0; y < kViewHeight; ++y)
+    for (std::uint32_t x = 0; x < kViewWidth; ++x) {
+      const std::uint32_t x_begin = left + x * width / kViewWidth, y_begin = top + y * height / kViewHeight;
+      const std::uint32_t x_end = std::max(x_begin + 1, left + (x + 1) * width / kViewWidth);
+      const std::uint32_t y_end = std::max(y_begin + 1, top + (y + 1) * height / kViewHeight);
+      std::array<std::uint32_t, 3> sum{};
+      for (std::uint32_t from_y = y_begin; from_y < y_end; ++from_y)
+        for (std::uint32_t from_x = x_begin; from_x < x_end; ++from_x)
+          for (std::size_t channel = 0; channel < 3; ++channel)
+            sum[channel] += view.texels[4 * (std::size_t{from_y} * view.width + from_x) + channel];
+      const std::uint32_t count = (x_end - x_begin) * (y_end - y_begin);
+      for (const std::uint32_t channel : sum)
+        made.texels.push_back(static_cast<std::uint8_t>((channel + count / 2) / count));
+      made.texels.push_back(255);
+    }
+  return made;
+}
+
+namespace {
+
+constexpr double kMargin = 0.1;        // on each side, as a share of the box's extent there
+constexpr double kLeastPixels = 48.0;  // the longer side of what is shown
+
+}  // namespace
+
+std::optional<PicturePart> partWithBox(const spec::View& view, const spec::Size& size,
+                                       const scene::Box& box) {
+  if (box.empty()) return std::nullopt;
+  const glm::dvec2 whole(size.width, size.height);
+  const Projection projection(view, {0.0f, 0.0f, static_cast<float>(whole.x), static_cast<float>(whole.y)});
+  glm::dvec2 low = whole, high(0.0);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 place((corner & 1) != 0 ? box.max.x : box.min.x,
+                           (corner & 2) != 0 ? box.max.y : box.min.y,
+                           (corner & 4) != 0 ? box.max.z : box.min.z);
+    const auto pixel = projection.toScreen(place);
+    if (!pixel || pixel->x < 0.0 || pixel->y < 0.0 || pixel->x > whole.x || pixel->y > whole.y)
+      return std::nullopt;
+    low = glm::min(low, *pixel), high = glm::max(high, *pixel);
+  }
+  const glm::dvec2 extent = high - low;
+  if (std::max(extent.x, extent.y) < kLeastPixels) return std::nullopt;
+  // The shape is that of small pictures, which would cut the box otherwise, as far as the picture reaches.
+  glm::dvec2 wanted = (1.0 + 2.0 * kMargin) * extent;
+  wanted = glm::min(
+      glm::max(wanted, glm::dvec2(wanted.y * kSmallPictureShape, wanted.x / kSmallPictureShape)), whole);
+  const glm::dvec2 begin = glm::clamp(0.5 * (low + high - wanted), glm::dvec2(0.0), whole - wanted);
+  return PicturePart{static_cast<std::uint32_t>(begin.x), static_cast<std::uint32_t>(begin.y),
+                     static_cast<std::uint32_t>(wanted.x), static_cast<std::uint32_t>(wanted.y)};
+}
+
+namespace {
+
+// Rises when pictures are made or written in another way.
+constexpr std::uint32_t kPictureVersion = 1;
+
+baker::Key keyOf(const Asset& asset) {
+  return baker::KeyMaker()
+      .addText("picture of an asset")
+      .add(kPictureVersion)
+      .addText(asset.file.string())
+      .add(asset.bytes)
+      .add(std::int64_t{asset.written.time_since_epoch().count()})
+      .key();
+}
+
+}  // namespace
+
+PictureCache::PictureCache(const std::filesystem::path& folder, std::uint64_t most_bytes) {
+  if (folder.empty()) return;
+  if (auto cache = baker::Cache::open(folder, most_bytes)) cache_ = std::move(*cache);
+}
+
+std::optional<spec::Rgba8Image> PictureCache::find(const Asset& asset) const {
+  if (!cache_) return std::nullopt;
+  const auto bytes = cache_->find(keyOf(asset));
+  if (!bytes) return std::nullopt;
+  baker::ByteReader reader(*bytes);
+  spec::Rgba8Image picture;
+  const bool read =
+      reader.read(picture.width) && reader.read(picture.height) && reader.readList(picture.texels);
+  if (!read || picture.texels.size() != std::size_t{4} * picture.width * picture.height) return std::nullopt;
+  return picture;
+}
+
+void PictureCache::put(const Asset& asset, const spec::Rgba8Image& picture) {
+  if (!cache_) return;
+  baker::ByteWriter writer;
+  writer.add(picture.width);
+  writer.add(picture.height);
+  writer.addList(picture.texels);
+  // Pictures that were used a moment ago may go, too, since they can be made again.
+  cache_->beginBake();
+  cache_->put(keyOf(asset), writer.bytes());
+}
+
+namespace {
+
+// How many pictures are held in memory; a window shows far fewer at a time.
+constexpr std::size_t kMostPictures = 512;
+
+}  // namespace
+
+// Finds, makes and keeps pictures on a thread of its own.
+struct AssetPictures::Worker {
+  struct Request {
+    Asset asset;
+    spec::Rgba8Image keep{};  // empty: the picture is wanted
+  };
+  struct Made {
+    Asset asset;
+    spec::Rgba8Image image{};
+    std::string error{};
+  };
+
+  explicit Worker(std::filesystem::path folder)
+      : thread([this, folder = std::move(folder)](std::stop_token stop) { run(stop, folder); }) {}
+
+  void add(Request request) {
+    const std::lock_guard hold(lock);
+    requests.push_back(std::move(request));
+    wake.notify_one();
+  }
+  std::vector<Made> take() {
+    const std::lock_guard hold(lock);
+    return std::exchange(made, {});
+  }
+
+  void run(std::stop_token stop, const std::filesystem::path& folder) {
+    PictureCache cache(folder);
+    while (true) {
+      std::unique_lock hold(lock);
+      if (!wake.wait(hold, stop, [this] { return !requests.empty(); })) return;
+      const Request request = std::move(requests.front());
+      requests.pop_front();
+      hold.unlock();
+      if (!request.keep.texels.empty()) {
+        cache.put(request.asset, request.keep);
+        continue;
+      }
+      if (stop.stop_requested()) continue;  // only what is to be kept still matters
+      Made one = make(request.asset, cache);
+      hold.lock();
+      made.push_back(std::move(one));
+    }
+  }
+  // Returns the picture that came with the file: one of its name beside it, in the shape of a view, since
+  // textures are named like their scenes, too. The samples have such pictures.
+  static spec::Rgba8Image pictureBeside(const Asset& asset) {
+    const std::filesystem::path file = asset.file.parent_path() / (nameOf(asset) + ".png");
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return {};
+    const auto picture = spec::readPng(file);
+    if (!picture || std::uint64_t{9} * picture->width != std::uint64_t{16} * picture->height) return {};
+    return smallPictureOf(*picture);
+  }
+  static Made make(const Asset& asset, PictureCache& cache) {
+    try {
+      if (auto found = cache.find(asset)) return {.asset = asset, .image = std::move(*found)};
+      if (asset.kind != AssetKind::EnvironmentMap) return {.asset = asset, .image = pictureBeside(asset)};
+      const auto map = spec::readLightImage(asset.file);
+      if (!map) return {.asset = asset, .error = map.error().line()};
+      Made one{.asset = asset, .image = smallPictureOf(*map)};
+      cache.put(asset, one.image);
+      return one;
+    } catch (const std::exception& failure) {  // out of memory, mostly
+      return {.asset = asset, .error = failure.what()};
+    }
+  }
+
+  std::mutex lock;  // protects the members below
+  std::condition_variable_any wake;
+  std::deque<Request> requests;
+  std::vector<Made> made;
+  std::jthread thread;  // it is joined before the others go
+};
+
+AssetPictures::AssetPictures(const std::filesystem::path& folder)
+    : worker_(std::make_unique<Worker>(folder)) {}
+AssetPictures::~AssetPictures() = default;
+
+const AssetPictures::Picture& AssetPictures::of(const Asset& asset) {
+  const auto [asked, first] = asked_.try_emplace(asset.file, asset);
+  Picture& picture = pictures_[asset.file];
+  if (!first && asked->second == asset) return picture;
+  asked->second = asset;
+  picture = {.coming = true};
+  ++coming_;
+  worker_->add({.asset = asset});
+  return picture;
+}
+
+bool AssetPictures::lacks(const Asset& asset) {
+  const Picture& picture = of(asset);
+  return !picture.coming && picture.texture == 0 && picture.image.texels.empty();
+}
+
+void AssetPictures::keep(const Asset& asset, spec::Rgba8Image image) {
+  asked_[asset.file] = asset;
+  worker_->add({.asset = asset, .keep = image});
+  Picture& picture = pictures_[asset.file];
+  picture.image = std::move(image);
+  picture.error.clear();
+  picture.coming = false;
+}
+
+void AssetPictures::update() {
+  for (Worker::Made& made : worker_->take()) {
+    --coming_;
+    // The file may have changed, or its picture may have come from the view, in the meantime.
+    const auto asked = asked_.find(made.asset.file);
+    if (asked == asked_.end() || asked->second != made.asset) continue;
+    Picture& picture = pictures_[made.asset.file];
+    if (!std::exchange(picture.coming, false)) continue;
+    picture.image = std::move(made.image);
+    picture.error = std::move(made.error);
+  }
+  // What is still shown is found on disk again.
+  if (pictures_.size() <= kMostPictures || busy()) return;
+  pictures_.clear();
+  asked_.clear();
 }
 
 }  // namespace lambent::editor

@@ -6,14 +6,21 @@
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "baker/cache/cache.hpp"
 #include "editor/session/scenes.hpp"
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/process.hpp"
+#include "runtime/scene/bounds.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/image.hpp"
+#include "runtime/spec/size.hpp"
 
 namespace lambent::editor {
 
@@ -38,25 +45,7 @@ std::optional<Asset> assetAt(const std::filesystem::path& file);
 // Returns the assets of a folder by name, of one kind or of all, without the folders in it. Files .json are
 // read as far as it takes to tell worlds from others.
 std::vector<Asset> listAssets(const std::filesystem::path& folder, std::optional<AssetKind> only = {});
-// Returns whether all words of the search are parts of the file's name or its kind. Case does not count.
 bool matches(const Asset& asset, std::string_view search);
-
-// Lists environment maps to choose from: those in the folders of the ones in use, of the open scenes, and in
-// folders that were added.
-class EnvironmentMapShelf {
- public:
-  void addFolder(const std::filesystem::path& folder);
-  // Lists the files again if the folders may have changed.
-  void update(const std::vector<std::string>& light_words, const Scenes& scenes);
-  const std::vector<Asset>& environment_maps() const { return environment_maps_; }
-
- private:
-  // Tells when the folders must be found again: it compares the light words, the version of the scenes and
-  // the number of added folders.
-  ChangeGate<std::vector<std::string>, std::uint64_t, std::size_t> changed_;
-  std::vector<std::filesystem::path> added_, folders_;
-  std::vector<Asset> environment_maps_;
-};
 
 struct AssetGroup {
   std::string title;
@@ -64,17 +53,17 @@ struct AssetGroup {
   std::vector<Asset> assets;
 };
 
-// Lists the assets to choose from: those of the folder in use, which is that of what was opened last, and
-// the samples that came with the program. Folders are read on another thread. It also holds what the Assets
-// panel remembers.
+// Lists the assets to choose from: those of the folder in use, which is that of what was opened last, those
+// beside open scenes and environment maps in use, those of folders that were added, and the samples that came
+// with the program. Folders are read on another thread. It also holds what the Assets panel remembers.
 class AssetBrowser {
  public:
+  void addFolder(const std::filesystem::path& folder);
   // Takes what was read, and reads the folders again if they or the open scenes have changed. Panels call it
   // in each frame in which they show assets.
   void update(const Session& session);
   // The same, but the list is complete when it returns.
   void updateNow(const Session& session);
-  // Returns whether folders are being read.
   bool busy() const;
 
   const std::vector<AssetGroup>& groups() const { return groups_; }
@@ -90,12 +79,86 @@ class AssetBrowser {
  private:
   void take();
 
-  std::vector<std::filesystem::path> samples_ = sampleFolders();
+  std::vector<std::filesystem::path> added_, samples_ = sampleFolders();
   std::vector<AssetGroup> groups_;
   // Tells when folders must be read again: it compares them, their times, and the version of the scenes.
   ChangeGate<std::vector<std::filesystem::path>, std::vector<std::filesystem::file_time_type>, std::uint64_t>
       changed_;
   std::future<std::vector<AssetGroup>> coming_;
+};
+
+// Brings the pictures of assets: those of environment maps are made of their files, those of scenes, bundles
+// and worlds are what the view showed of them last, or else a PNG of their name that lies beside them.
+// Panels ask for them; a thread finds them on disk or makes them, in the order in which they were asked for.
+// The renderer turns them into textures (editor/render/thumbnails). AssetPictures belongs to the main
+// thread.
+
+// Exposes the environment map so that its median becomes middle grey.
+spec::Rgba8Image smallPictureOf(const spec::RgbImage& environment_map);
+// Averages the middle of a picture, which is cut to the shape of the small one. Alpha becomes 1.
+spec::Rgba8Image smallPictureOf(const spec::Rgba8Image& view);
+inline constexpr double kSmallPictureShape = 16.0 / 9.0;  // width / height of pictures of views
+
+struct PicturePart {
+  std::uint32_t left = 0, top = 0, width = 0, height = 0;  // in pixels
+  bool operator==(const PicturePart&) const = default;
+};
+
+// Returns the part around the box, with a margin and in the shape of small pictures, or nothing if a corner
+// of the box is not in the picture or the part would be too small to recognise.
+std::optional<PicturePart> partWithBox(const spec::View& view, const spec::Size& size, const scene::Box& box);
+
+inline constexpr std::uint64_t kPictureCacheBytes = std::uint64_t{32} << 20;  // about 400 views
+
+// Keeps small pictures on disk, within a number of bytes: those that were not used for longest go first. A
+// picture belongs to a file as it was, by path, size and time, so a file that changed has none. Nothing
+// fails: what cannot be kept is not found again.
+class PictureCache {
+ public:
+  // Without a folder, or if it cannot be made, nothing is kept.
+  explicit PictureCache(const std::filesystem::path& folder, std::uint64_t most_bytes = kPictureCacheBytes);
+
+  std::optional<spec::Rgba8Image> find(const Asset& asset) const;
+  void put(const Asset& asset, const spec::Rgba8Image& picture);
+
+ private:
+  std::optional<baker::Cache> cache_;
+};
+
+class AssetPictures {
+ public:
+  struct Picture {
+    spec::Rgba8Image image{};   // empty: not there yet, or on the GPU
+    std::string error{};        // why an environment map cannot be read
+    std::uint32_t texture = 0;  // OpenGL name; 0: none yet
+    float aspect = 1.0f;        // width / height of the texture
+    bool coming = false;        // it is being looked for
+  };
+
+  // Pictures are kept in this folder between starts. Without it they are made anew.
+  explicit AssetPictures(const std::filesystem::path& folder);
+  ~AssetPictures();
+
+  // Returns the picture as far as it is there. The first call for a file, or for a file that changed, asks
+  // for it.
+  const Picture& of(const Asset& asset);
+  // Returns whether it is known that there is no picture of the asset. The first call asks for it, as of()
+  // does.
+  bool lacks(const Asset& asset);
+  // Gives the asset another picture, and keeps it on disk.
+  void keep(const Asset& asset, spec::Rgba8Image image);
+  void update();
+  bool busy() const { return coming_ > 0; }
+
+  std::map<std::filesystem::path, Picture>& pictures() { return pictures_; }
+
+ private:
+  struct Worker;
+
+  std::map<std::filesystem::path, Picture> pictures_;
+  std::map<std::filesystem::path, Asset> asked_;  // the files as they were when their pictures were asked for
+  std::size_t coming_ = 0;
+  std::unique_ptr<Worker> worker_;
 };
 
 }  // namespace lambent::editor

@@ -35,7 +35,6 @@ struct DialogFile {
 // cannot be read are empty.
 class DialogFiles {
  public:
-  // Call it in each frame in which the dialog is drawn.
   void update(const Session& session, const Dialog& dialog);
 
   // Home, beside what is open and what was opened, among the samples. Each folder is named once.
@@ -62,21 +61,20 @@ inline constexpr const char *kAllKinds = "All that can be opened", *kAllFiles = 
 struct Dialog {
   enum class Kind : std::uint8_t { OpenFile, SaveFile, Folder, Confirm, Text };
   Kind kind = Kind::Confirm;
-  std::string title, question;
-  std::vector<FileKind> kinds;                   // of files to list; empty: all files
-  std::size_t filter = 0;                        // 0: all these kinds; n: the nth; past the last: all files
-  std::filesystem::path folder;                  // the folder that is shown
-  std::string name;                              // the text typed so far
-  std::string yes = "OK", no = "Cancel", third;  // button texts; an empty third one has no button
-  std::function<void(Session&, const std::string& answer)> answered;
-  std::function<void(Session&)> third_chosen;
-  DialogFiles found;  // what the window lists for it
+  std::string title{}, question{};
+  std::vector<FileKind> kinds{};                   // of files to list; empty: all files
+  std::size_t filter = 0;                          // 0: all these kinds; n: the nth; past the last: all files
+  std::filesystem::path folder{};                  // the folder that is shown
+  std::string name{};                              // the text typed so far
+  std::string yes = "OK", no = "Cancel", third{};  // button texts; an empty third one has no button
+  std::function<void(Session&, const std::string& answer)> answered{};
+  std::function<void(Session&)> third_chosen{};
+  DialogFiles found{};  // what the window lists for it
 };
 
 // Returns the desktop's program for file dialogs, or an empty path without a desktop session or such a
 // program in PATH.
 std::filesystem::path desktopDialogProgram();
-// Returns the program's arguments for a question that asks for a file or a folder.
 std::vector<std::string> desktopDialogWords(const std::filesystem::path& program, const Dialog& question);
 
 // Asks for a file in the desktop's own dialog: zenity or kdialog, run as a program of its own with arguments

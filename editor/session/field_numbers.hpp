@@ -5,16 +5,32 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
+#include "runtime/ecs/registry.hpp"
+#include "runtime/scene/components.hpp"
 #include "runtime/scene/reflection.hpp"
 
 namespace lambent::editor {
 
 class Session;
+
+// A unit in which lamps are sold and measured. Components store candela for point and spot lights, lux for
+// directional ones and cd/m² for spheres and discs (1 cd = 1 W/sr up to the global scale of all light).
+struct LightUnit {
+  std::string_view name;  // "lm"
+  std::string_view help;  // what it measures
+  double factor = 1.0;    // value in this unit for each unit of the component's strength; > 0
+};
+
+// Returns the units in which this light can be given, that of the component first. Colour counts as white.
+std::vector<LightUnit> unitsOf(const scene::LocalLightComponent& light);
+// Returns the unit of this name, or the first if the light has none of that name.
+LightUnit unitOf(const scene::LocalLightComponent& light, std::string_view name);
 
 // Holds the angles of the rotation that a field shows. Many angles give one rotation, so a field that made
 // them anew from the rotation in each frame would jump to others while it is dragged beyond 90 degrees.
@@ -48,7 +64,6 @@ struct FieldEditState {
 };
 
 bool isStrengthOfLight(const scene::FieldInfo& field);
-// Returns whether the field is edited as one number or three. Colors and choices are not.
 bool hasNumbers(const scene::FieldInfo& field);
 // Returns one number or three. The entity must have the field's component.
 std::vector<double> numbersOf(const Session& session, const scene::FieldInfo& field, ecs::Entity entity,

@@ -3,18 +3,65 @@
 // file and change nothing, except that a bundle of a world file that cannot be opened is logged and skipped.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "editor/document/overrides.hpp"
 #include "editor/document/world_file.hpp"
+#include "editor/session/scenes.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::editor {
 
+// Opens and closes scenes as steps of the history. Undoing a close opens the scene's files again and restores
+// its edits; undoing an open closes the scene. A reopened scene has the same StableIds, so earlier steps stay
+// valid. If it has no bundle yet, its edits are restored when the first one is shown. Main thread.
+
 class Session;
+
+// Holds a scene that was closed, or a folder that is no longer watched.
+struct ClosedScene {
+  SceneEntry entry;
+  std::size_t place = 0;  // index among the entries
+  Overrides kept;         // edits of its bundle
+  std::filesystem::path folder;
+};
+
+class SceneSteps {
+ public:
+  explicit SceneSteps(Session& session) : session_(session) {}
+
+  // Opens everything that belongs to the path as one step. Errors: there is nothing that can be opened.
+  Result<void> open(const std::filesystem::path& path);
+  void close(std::size_t entry);
+  // Keeps those of a world file's edits whose entities do not exist, until their scenes are shown. Returns
+  // how many these are.
+  std::size_t await(const Overrides& edits);
+  // Restores the edits of scenes whose bundle is now shown. Call it once a frame.
+  void update();
+  void clear() { waiting_.clear(), awaited_.clear(); }
+
+  // The rest is for the steps themselves. bring() opens the scene again.
+  Result<void> bring(const ClosedScene& scene);
+  // Closes the scene and stores its state in `scene`. Returns false if it is not open.
+  bool take(ClosedScene& scene);
+
+ private:
+  struct Waiting {
+    SceneEntry entry;
+    Overrides kept;
+  };
+
+  Session& session_;
+  void restoreAwaited();
+
+  std::vector<Waiting> waiting_;
+  Overrides awaited_;
+};
 
 class Files {
  public:
@@ -27,12 +74,10 @@ class Files {
   Result<void> open(const std::vector<std::filesystem::path>& paths);
   // The same, but each error is logged, and the rest is opened.
   void openLogged(const std::vector<std::filesystem::path>& paths);
-  // Saves the world to this file, which becomes the world's file.
   Result<void> save(const std::filesystem::path& path);
   // Saves what closing would lose under a name of its own, beside the world's file or, if it has none, in the
   // working folder. Returns where it lies, or an empty path if nothing would be lost.
   Result<std::filesystem::path> rescue();
-  // Closes everything and begins an empty world, without asking.
   void closeAll();
 
   // Returns the world's file, or an empty path if it has none yet.
@@ -42,7 +87,6 @@ class Files {
   bool modified() const;
   // Calls `then`. If there are unsaved edits, a dialog asks first, and offers to save them.
   void unlessUnsaved(std::string question, std::function<void(Session&)> then);
-  // Quits the editor, after the same question.
   void askToQuit();
 
  private:

@@ -169,9 +169,7 @@ Result<void> dimKeyLight(Session& session, std::size_t key, const glm::vec3& fac
   if (!sun) return failAgain(sun.error());
   spec::SunLight now = sun->light;
   now.radiance *= factor;
-  const std::string word =
-      fmt::format("sun:{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", now.azimuth_deg, now.elevation_deg,
-                  now.angle_deg, now.radiance.r, now.radiance.g, now.radiance.b);
+  const std::string word = sunWord(now);
   session.history.editWorld("strength of sun",
                             [&](WorldState& world) { wordsOf(world, found->set)[sun->place] = word; });
   return {};
@@ -192,12 +190,18 @@ Result<void> resetKeyLights(Session& session, std::optional<std::size_t> key) {
   return {};
 }
 
+std::string sunWord(const spec::SunLight& sun) {
+  return fmt::format("sun:{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", sun.azimuth_deg, sun.elevation_deg,
+                     sun.angle_deg, sun.radiance.r, sun.radiance.g, sun.radiance.b);
+}
+
+bool isEnvironmentMap(const std::string& word) {
+  const auto light = spec::parseLight(word);
+  return light && std::holds_alternative<spec::EnvironmentMapLight>(*light);
+}
+
 void replaceLights(const Session& session, WorldState& world, std::vector<std::string> lights) {
   const auto stays = [&](const std::string& word) { return std::ranges::find(lights, word) != lights.end(); };
-  const auto isEnvironmentMap = [](const std::string& word) {
-    const auto light = spec::parseLight(word);
-    return light && std::holds_alternative<spec::EnvironmentMapLight>(*light);
-  };
   const bool all_stay = std::ranges::all_of(
       world.lights, [&](const std::string& word) { return !isEnvironmentMap(word) || stays(word); });
   if (!all_stay) {
@@ -294,11 +298,8 @@ void moveSun(Session& session, const SunOnSky& start, const glm::vec3& towards_w
   scene::Transform to = registry.get<scene::Transform>(start.entity);
   scene::setLocalMatrix(
       to, glm::inverse(worldFromNode(registry, parentOf(registry, start.entity))) * world_from_node);
-  const std::array<FieldEdit, 4> edits{{{start.entity, "Transform", "translation", to.translation},
-                                        {start.entity, "Transform", "rotation", to.rotation},
-                                        {start.entity, "Transform", "scale", to.scale},
-                                        {start.entity, "Transform", "shear", to.shear}}};
-  if (auto done = session.history.setFields(edits); !done) session.log.error(done.error());
+  if (auto done = session.history.setFields(transformEdits(start.entity, to)); !done)
+    session.log.error(done.error());
 }
 
 std::string sunReadout(const Session& session, const SunOnSky& sun) {

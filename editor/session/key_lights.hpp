@@ -13,6 +13,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/ecs/registry.hpp"
+#include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
 
@@ -36,7 +37,6 @@ struct KeyLight {
   std::string source() const;  // "studio.hdr", "sun 1", "piece of sun 1"
 };
 
-// Returns the key lights in the order of Environment::keys().
 std::vector<KeyLight> keyLightsOf(const Session& session);
 
 // Turns a key light to this direction in world space. If it is a piece of a sun, the whole sun turns.
@@ -47,6 +47,8 @@ Result<void> dimKeyLight(Session& session, std::size_t key, const glm::vec3& fac
 // Removes the edits of one key light, or of all without a number. Suns are not changed.
 Result<void> resetKeyLights(Session& session, std::optional<std::size_t> key);
 
+std::string sunWord(const spec::SunLight& sun);
+bool isEnvironmentMap(const std::string& word);
 // Sets the world's lights. Edits of key lights stay with their environment maps, and are removed with them.
 void replaceLights(const Session& session, WorldState& world, std::vector<std::string> lights);
 

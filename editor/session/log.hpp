@@ -39,7 +39,6 @@ class Log {
   std::vector<LogEntry> toasts(std::chrono::steady_clock::time_point now);
   // Returns whether the last frame had toasts, or the next one will.
   bool hasToasts() const;
-  // Returns the number of errors since the start, which clear() does not reset.
   std::uint64_t errors() const;
 
  private:

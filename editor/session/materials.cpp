@@ -40,19 +40,12 @@ PrimitiveFacts factsOf(const Session& session, const scene::DrawItem& draw) {
   const bundle::Description& description = session.stage.world().description(draw.bundle);
   const bundle::Mesh& mesh = description.meshes[draw.mesh];
   const bundle::Primitive& primitive = mesh.primitives[draw.primitive];
-  PrimitiveFacts facts{mesh.name, {}, primitive.vertex_count, primitive.index_count / 3};
-  switch (description.draws[draw.draw].form()) {
-    case transfer::Form::Matrix:
-      facts.shading = "glossy, per pixel";
-      break;
-    case transfer::Form::NormalMapped:
-      facts.shading = "diffuse, per pixel by its normal map";
-      break;
-    default:
-      facts.shading = "diffuse, at its vertices";
-      break;
-  }
-  return facts;
+  const transfer::Form form = description.draws[draw.draw].form();
+  return {mesh.name,
+          form == transfer::Form::Matrix         ? "glossy, per pixel"
+          : form == transfer::Form::NormalMapped ? "diffuse, per pixel by its normal map"
+                                                 : "diffuse, at its vertices",
+          primitive.vertex_count, primitive.index_count / 3};
 }
 
 namespace {

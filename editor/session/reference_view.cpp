@@ -17,10 +17,9 @@ namespace lambent::editor {
 namespace {
 
 using scene::LocalLightComponent;
-using Kind = LocalLightComponent::Kind;
 
-bool isShape(Kind kind) {
-  return kind == Kind::Sphere || kind == Kind::Disc;
+bool isShape(LocalLightComponent::Kind kind) {
+  return kind == LocalLightComponent::Kind::Sphere || kind == LocalLightComponent::Kind::Disc;
 }
 
 template <typename Visitor>
@@ -30,71 +29,60 @@ void forEachLight(const ecs::Registry& registry, const Document& document, const
       visit(light, worldFromNode(registry, entity), document.nameOf(entity));
 }
 
-gltf::Light::Type typeOf(Kind kind) {
-  if (kind == Kind::Spot) return gltf::Light::Type::Spot;
-  return kind == Kind::Directional ? gltf::Light::Type::Directional : gltf::Light::Type::Point;
+gltf::Light::Type typeOf(LocalLightComponent::Kind kind) {
+  if (kind == LocalLightComponent::Kind::Spot) return gltf::Light::Type::Spot;
+  return kind == LocalLightComponent::Kind::Directional ? gltf::Light::Type::Directional
+                                                        : gltf::Light::Type::Point;
 }
 
-}  // namespace
-
-ReferenceLamps lampsOf(const ecs::Registry& registry, const Document& document) {
-  ReferenceLamps found;
-  forEachLight(registry, document,
-               [&](const LocalLightComponent& light, const glm::mat4& place, const std::string& name) {
-                 if (isShape(light.kind)) return;
-                 found.lamps.push_back({{.name = name,
-                                         .type = typeOf(light.kind),
-                                         .color = light.color,
-                                         .intensity = light.strength,
-                                         .range_m = light.range_m,
-                                         .inner_cone_rad = light.inner_cone_rad,
-                                         .outer_cone_rad = light.outer_cone_rad},
-                                        place});
-               });
-  return found;
+std::vector<ReferenceLamp> lampsOf(const ecs::Registry& registry, const Document& document) {
+  std::vector<ReferenceLamp> lamps;
+  forEachLight(
+      registry, document,
+      [&](const LocalLightComponent& light, const glm::mat4& place, const std::string& name) {
+        if (!isShape(light.kind))
+          lamps.push_back({name,
+                           place,
+                           typeOf(light.kind),
+                           light.color,
+                           {light.strength, light.range_m, light.inner_cone_rad, light.outer_cone_rad}});
+      });
+  return lamps;
 }
 
-std::string ReferenceLamps::text() const {
-  std::string text;
-  for (const Lamp& lamp : lamps) {
-    const gltf::Light& l = lamp.light;
-    text += fmt::format("{} {} {} {} {} {} {} {}", static_cast<int>(l.type), l.color.r, l.color.g, l.color.b,
-                        l.intensity, l.range_m, l.inner_cone_rad, l.outer_cone_rad);
-    for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 4; ++row) text += fmt::format(" {}", lamp.world_from_node[column][row]);
-    text += '\n';
-  }
-  return text;
-}
-
-void addLamps(const ReferenceLamps& lamps, baker::Scene& scene) {
-  for (const ReferenceLamps::Lamp& lamp : lamps.lamps) {
+void addLamps(const std::vector<ReferenceLamp>& lamps, baker::Scene& scene) {
+  for (const ReferenceLamp& lamp : lamps) {
     gltf::Node node;
-    node.name = lamp.light.name;
+    node.name = lamp.name;
     node.parent_from_node = lamp.world_from_node;
     node.light = static_cast<std::int32_t>(scene.lights.size());
-    scene.lights.push_back(lamp.light);
+    const auto& [intensity, range_m, inner_cone_rad, outer_cone_rad] = lamp.numbers;
+    scene.lights.push_back(
+        {lamp.name, lamp.type, lamp.color, intensity, range_m, inner_cone_rad, outer_cone_rad});
     scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
     scene.nodes.push_back(std::move(node));
   }
 }
 
+// Returns the spherical and disc lights that a person has added to the world.
 std::vector<spec::Light> shapesOf(const ecs::Registry& registry, const Document& document) {
   std::vector<spec::Light> shapes;
   forEachLight(registry, document,
                [&](const LocalLightComponent& light, const glm::mat4& place, const std::string&) {
                  const glm::vec3 at(place[3]), radiance = light.power();
-                 if (light.kind == Kind::Sphere)
+                 if (light.kind == LocalLightComponent::Kind::Sphere)
                    shapes.emplace_back(spec::SphereLight{at, light.radius_m, radiance});
-                 else if (light.kind == Kind::Disc)
+                 else if (light.kind == LocalLightComponent::Kind::Disc)
                    shapes.emplace_back(
                        spec::DiscLight{at, -glm::normalize(glm::vec3(place[2])), light.radius_m, radiance});
                });
   return shapes;
 }
 
-Result<baker::Scene> makeReferenceScene(const std::vector<ReferencePart>& parts, const ReferenceLamps& lamps,
-                                        float animation_s) {
+// Joins all parts into one scene, with animations at this time in seconds. It is slow and may run on any
+// thread. Errors: those of importing a part.
+Result<baker::Scene> makeReferenceScene(const std::vector<ReferencePart>& parts,
+                                        const std::vector<ReferenceLamp>& lamps, float animation_s) {
   baker::Scene all;
   for (const ReferencePart& part : parts) {
     auto scene = baker::importScene(part.source, {});
@@ -109,8 +97,6 @@ Result<baker::Scene> makeReferenceScene(const std::vector<ReferencePart>& parts,
   addLamps(lamps, all);
   return all;
 }
-
-namespace {
 
 bool sameView(const spec::View& a, const spec::View& b) {
   return a.view_from_world == b.view_from_world && a.clip_from_view == b.clip_from_view;
@@ -214,8 +200,8 @@ void ReferenceView::followScene(const Session& session) {
     return;
   }
   if (parts->empty()) return;  // nothing is shown yet
-  ReferenceLamps lamps = lampsOf(session.stage.world().registry(), session.document);
-  SceneKey key{std::move(*parts), lamps.text(), session.playback.time_s};
+  SceneKey key{std::move(*parts), lampsOf(session.stage.world().registry(), session.document),
+               session.playback.time_s};
   if (coming_.valid() && coming_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     auto made = coming_.get();
     if (made) {
@@ -228,9 +214,9 @@ void ReferenceView::followScene(const Session& session) {
   }
   if (scene_key_ == key || coming_.valid()) return;
   scene_key_ = key;
-  coming_ = std::async(std::launch::async, [key, lamps = std::move(lamps)]() -> Result<ScenePointer> {
+  coming_ = std::async(std::launch::async, [key = std::move(key)]() -> Result<ScenePointer> {
     try {
-      auto made = makeReferenceScene(key.parts, lamps, key.animation_s);
+      auto made = makeReferenceScene(key.parts, key.lamps, key.animation_s);
       if (!made) return failAgain(made.error());
       return ScenePointer(std::make_shared<const baker::Scene>(std::move(*made)));
     } catch (const std::exception& failure) {

@@ -5,6 +5,7 @@
 // picture. Main thread; tracing runs on others.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <future>
@@ -39,27 +40,15 @@ struct ReferencePart {
   bool operator==(const ReferencePart&) const = default;
 };
 
-struct ReferenceLamps {
-  struct Lamp {
-    gltf::Light light;
-    glm::mat4 world_from_node{1.0f};
-  };
-  std::vector<Lamp> lamps;
-
-  std::string text() const;  // equal texts mean equal lamps
+// A point, spot or directional light of the world that belongs to no bundle.
+struct ReferenceLamp {
+  std::string name;
+  glm::mat4 world_from_node{1.0f};
+  gltf::Light::Type type{};
+  glm::vec3 color{1.0f};
+  std::array<float, 4> numbers{};  // intensity, range, inner and outer cone
+  bool operator==(const ReferenceLamp&) const = default;
 };
-
-// Returns the point, spot and directional lights of the world that belong to no bundle.
-ReferenceLamps lampsOf(const ecs::Registry& registry, const Document& document);
-void addLamps(const ReferenceLamps& lamps, baker::Scene& scene);
-
-// Joins all parts into one scene, with animations at this time in seconds. It is slow and may run on any
-// thread. Errors: those of importing a part.
-Result<baker::Scene> makeReferenceScene(const std::vector<ReferencePart>& parts, const ReferenceLamps& lamps,
-                                        float animation_s);
-
-// Returns the spherical and disc lights that a person has added to the world.
-std::vector<spec::Light> shapesOf(const ecs::Registry& registry, const Document& document);
 
 enum class SplitView : std::uint8_t { Off, Beside, Heat };
 
@@ -70,7 +59,6 @@ class ReferenceView {
   std::uint32_t spp = 256;
   std::optional<int> band_limit;  // SH order to which the light is limited, to show what an exact runtime of
                                   // that order would show
-  baker::HeatMap heat_map = baker::HeatMap::Signed;
 
   bool on() const { return split != SplitView::Off; }
   // Returns whether all requested samples are shown, or tracing cannot go on.
@@ -88,9 +76,7 @@ class ReferenceView {
   // picture was rendered. It returns whether there is a snapshot to show, and releases everything while the
   // view is off.
   bool update(const Session& session);
-  // Returns the view that is traced.
   const spec::View& view() const { return eye_key_->view; }
-  // Returns the snapshot that was last passed to shown().
   const std::shared_ptr<const baker::reference::Snapshot>& seen() const { return seen_; }
   void shown(std::shared_ptr<const baker::reference::Snapshot> snapshot) { seen_ = std::move(snapshot); }
   void compared(Result<baker::Difference> difference);
@@ -99,7 +85,7 @@ class ReferenceView {
   // Identifies what the traced scene was built from.
   struct SceneKey {
     std::vector<ReferencePart> parts;
-    std::string lamps;  // ReferenceLamps::text()
+    std::vector<ReferenceLamp> lamps;
     float animation_s = 0.0f;
     bool operator==(const SceneKey&) const = default;
   };

@@ -4,6 +4,7 @@
 // instance) are logged.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -41,7 +42,6 @@ class SceneChanges {
   SceneChanges(const frame::World& world, const Scenes& scenes, const History& history, Log& log)
       : world_(world), scenes_(scenes), history_(history), log_(log) {}
 
-  // Returns the unedited state of the bundles.
   const Baseline& baseline();
   // Returns the edits of the entry's scene: those that its bundle was baked with, and the new ones.
   baker::SceneEdits editsOf(std::size_t entry) const;
@@ -66,5 +66,30 @@ class SceneChanges {
   };
   std::vector<Rebake> rebakes_;  // by entry
 };
+
+// Says in one place what the picture of a scene is worth: whether it is being baked, needs a bake, misses
+// its error bound, or is as good as was asked for. The tree, the status bar and the Bakes panel all show
+// this, so that they never disagree. Also formats the window's title. Main thread.
+
+class Session;
+
+// From the best to what concerns the user most.
+enum class Standing : std::uint8_t { Good, Working, Wanting, Failed };
+
+struct SceneStatus {
+  Standing standing = Standing::Good;
+  std::string text;    // "needs a rebake"; "up to date"
+  std::string detail;  // sentences, one a line; may be empty
+};
+
+SceneStatus statusOf(Session& session, std::size_t entry);
+// Returns the status of the scene that concerns the user most, with the scene's name in its text, or an empty
+// text if all are good.
+SceneStatus worstStatus(Session& session);
+
+// Returns for example "hello* - Lambent"; the asterisk means unsaved changes.
+std::string titleOf(const Session& session);
+// Returns for example "light settles   12.3 ms"; only the time is always present.
+std::string pictureStatus(const Session& session);
 
 }  // namespace lambent::editor

@@ -19,7 +19,6 @@
 #include "editor/gizmo/light_gizmo.hpp"
 #include "editor/gizmo/projection.hpp"
 #include "editor/gizmo/sun_gizmo.hpp"
-#include "editor/session/asset_pictures.hpp"
 #include "editor/session/assets.hpp"
 #include "editor/session/dialog.hpp"
 #include "editor/session/field_numbers.hpp"
@@ -30,7 +29,6 @@
 #include "editor/session/preferences.hpp"
 #include "editor/session/reference_view.hpp"
 #include "editor/session/scene_changes.hpp"
-#include "editor/session/scene_steps.hpp"
 #include "editor/session/scenes.hpp"
 #include "editor/session/stage.hpp"
 #include "editor/session/studies.hpp"
@@ -125,7 +123,6 @@ class Session {
   SettingStudy settings;
   QualityStudy qualities;
   Plans plans;
-  EnvironmentMapShelf environment_maps;
   AssetBrowser assets;
   AssetPictures asset_pictures;
   MaterialPictures material_pictures;
@@ -143,5 +140,16 @@ class Session {
   std::vector<std::string> told_;  // bundle errors that are already in the log
   std::uint64_t world_followed_ = 0;
 };
+
+// ---- Words of scripts and menus, for entities by name, id or search, and for scenes by id or number.
+
+// Returns whether all words of the search are parts of the text.
+bool holdsWords(std::string_view text, std::string_view search);
+// Returns all matches, or an error if there is none. A match of the whole name wins over matches of parts.
+Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std::string& word);
+// Returns the scene of the primary selected entity, else the first scene, or none if no scene is open.
+std::optional<std::size_t> sceneAtHand(const Session& session);
+// Finds a scene by its id or number. An empty word means sceneAtHand().
+Result<std::size_t> findScene(const Session& session, const std::string& word);
 
 }  // namespace lambent::editor

@@ -33,7 +33,6 @@ class Stage {
   // Applies lights, edits of key lights, settings and exposure of `state`. Errors: unknown words and
   // environment maps that cannot be read; everything else is applied.
   std::vector<Error> follow(const WorldState& state);
-  // Applies rotation, fade and intensity of the environment's entity.
   void followEnvironment();
 
  private:

@@ -27,25 +27,14 @@ class SettingStudy {
  public:
   // Starts measuring every setting at its present value.
   void measureAll();
-  // Starts measuring one setting at values from its coarsest to its finest.
-  void sweep(std::string name);
-  // Measures one setting if everything is loaded and at rest. Call it once a frame.
   void update(Session& session);
   bool busy() const { return !waiting_.empty(); }
 
-  struct Row {
-    frame::SettingCost cost;
-    std::vector<frame::SettingPoint> sweep;  // by increasing value; empty: not requested
-  };
-  const std::map<std::string, Row, std::less<>>& rows() const { return rows_; }
+  const std::map<std::string, frame::SettingCost, std::less<>>& costs() const { return costs_; }
 
  private:
-  struct Task {
-    std::string name;
-    bool sweep = false;
-  };
-  std::vector<Task> waiting_;  // the last is the next
-  std::map<std::string, Row, std::less<>> rows_;
+  std::vector<std::string> waiting_;  // the last is the next
+  std::map<std::string, frame::SettingCost, std::less<>> costs_;
 };
 
 // Measures what each quality (frame/quality.hpp) costs in time and in error, the highest first. The error is
@@ -55,7 +44,6 @@ class QualityStudy {
  public:
   // Starts measuring, with the view, light and settings at the next update().
   void measure();
-  // Measures one quality if everything is loaded and at rest. Call it once a frame.
   void update(Session& session);
   bool busy() const { return !waiting_.empty(); }
 
@@ -90,7 +78,6 @@ class Plans {
   // Returns the plan, or null while it is being computed.
   const Result<ScenePlan>* find(const std::filesystem::path& scene, const baker::BakeOptions& options);
 
-  // Returns whether one is being computed.
   bool busy() const;
 
  private:

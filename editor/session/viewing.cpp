@@ -177,16 +177,11 @@ Result<void> placeAtView(Session& session, ecs::Entity camera) {
       registry.alive(parent) ? worldFromNode(registry, parent) : glm::mat4(1.0f);
   scene::Transform to = registry.get<scene::Transform>(camera);
   scene::setLocalMatrix(to, glm::inverse(world_from_parent) * nodeMatrix(pose));
-  const FieldEdit edits[] = {
-      {camera, "Transform", "translation", to.translation},
-      {camera, "Transform", "rotation", to.rotation},
-      {camera, "Transform", "scale", to.scale},
-      {camera, "Transform", "shear", to.shear},
-      {camera, "Camera", "perspective", !pose.orthographic},
-      {camera, "Camera", "yfov", glm::radians(pose.fov_deg)},
-      {camera, "Camera", "ymag", pose.halfHeight()},
-      {camera, "Camera", "xmag", pose.halfHeight() * session.viewing.size.aspect()},
-  };
+  std::vector<FieldEdit> edits = transformEdits(camera, to);
+  edits.insert(edits.end(), {{camera, "Camera", "perspective", !pose.orthographic},
+                             {camera, "Camera", "yfov", glm::radians(pose.fov_deg)},
+                             {camera, "Camera", "ymag", pose.halfHeight()},
+                             {camera, "Camera", "xmag", pose.halfHeight() * session.viewing.size.aspect()}});
   return session.history.setFields(edits, "place of " + session.document.nameOf(camera));
 }
 

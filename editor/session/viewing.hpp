@@ -94,8 +94,6 @@ class Viewing {
   void move(const Document& document, const CameraInput& input);
   // Fits the box into the picture. An empty box means the whole world.
   void frame(const Document& document, const scene::Box& box);
-  // Sets the camera from "orbit:...", "pose:..." or the name of a bundle's camera. Errors: the word is none
-  // of these.
   Result<void> setCamera(const Document& document, std::string_view word);
 
   // Write this to a world's state, and read it back if that has changed.
@@ -110,16 +108,13 @@ class Viewing {
 
 // ---- Cameras that stand in the world.
 
-// Returns the primary selected entity if it is a camera, or none.
 ecs::Entity selectedCamera(const Session& session);
 // Returns the camera whose picture the view shows as an inset: the selected one, as far as the preferences
 // want that, or else the one that is kept, or none.
 ecs::Entity shownCamera(const Session& session);
 // Returns width over height of the camera's picture: its own, or that of the view.
 float aspectOf(const Session& session, ecs::Entity camera);
-// Returns what the camera sees. Errors: its matrix is singular.
 Result<spec::View> viewOfCamera(const Session& session, ecs::Entity camera, float aspect);
-// Moves the editor's view to the camera. Its roll is lost.
 void lookThrough(Session& session, ecs::Entity camera);
 // Places the camera where the view is and gives it the view's angle, as one step.
 Result<void> placeAtView(Session& session, ecs::Entity camera);

@@ -7,6 +7,8 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
 
 #include "editor/ui/ui.hpp"
 
@@ -134,6 +136,118 @@ bool enterPressed() {
 
 bool escapePressed() {
   return keyPressed(GLFW_KEY_ESCAPE);
+}
+
+namespace {
+
+constexpr std::string_view kEllipsis = "...";
+constexpr float kTooltipEms = 32.0f;
+
+float widthOf(std::string_view text) {
+  return ImGui::CalcTextSize(text.data(), text.data() + text.size()).x;
+}
+
+}  // namespace
+
+float em(float heights) {
+  return heights * ImGui::GetFontSize();
+}
+
+std::string ellipsized(std::string_view text, float width) {
+  if (widthOf(text) <= width) return std::string(text);
+  const float room = width - widthOf(kEllipsis);
+  std::size_t fits = 0, too_long = text.size();
+  while (fits + 1 < too_long) {
+    const std::size_t middle = (fits + too_long) / 2;
+    (widthOf(text.substr(0, middle)) <= room ? fits : too_long) = middle;
+  }
+  // A character of several bytes is left out whole.
+  while (fits > 0 && (static_cast<unsigned char>(text[fits]) & 0xc0u) == 0x80u) --fits;
+  return std::string(text.substr(0, fits)).append(kEllipsis);
+}
+
+void tooltip(std::string_view text) {
+  if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(em(kTooltipEms));
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void fittedText(std::string_view text, std::string_view more) {
+  const std::string shown = ellipsized(text, ImGui::GetContentRegionAvail().x);
+  ImGui::TextUnformatted(shown.c_str());
+  if (shown == text)
+    tooltip(more);
+  else
+    tooltip(more.empty() ? std::string(text) : fmt::format("{}\n{}", text, more));
+}
+
+void fittedText(const ImVec4& color, std::string_view text, std::string_view more) {
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  fittedText(text, more);
+  ImGui::PopStyleColor();
+}
+
+ImVec4 dimmed() {
+  return ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled);
+}
+
+bool sameLineIfFits(std::string_view button) {
+  return sameLineIfFits(widthOf(button) + 2.0f * ImGui::GetStyle().FramePadding.x);
+}
+
+bool sameLineIfFits(float width) {
+  const float end = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
+  if (end > ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) return false;
+  ImGui::SameLine();
+  return true;
+}
+
+const char* numberFormat(float value, float width, int digits) {
+  constexpr std::array kFormats = {"%.0f", "%.1f", "%.2f", "%.3f", "%.4f"};
+  const float room = width - 2.0f * ImGui::GetStyle().FramePadding.x;
+  int shown = std::clamp(digits, 0, static_cast<int>(kFormats.size()) - 1);
+  while (shown > 0 && widthOf(fmt::format("{:.{}f}", value, shown)) > room) --shown;
+  return kFormats[static_cast<std::size_t>(shown)];
+}
+
+void Marks::beginFrame() {
+  before_ = std::exchange(now_, {});
+  times_.clear();
+}
+
+void Marks::put(std::string_view name) {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  // A tab has no size in its first frame, and cannot be clicked.
+  if (low.x >= high.x && low.y >= high.y) return;
+  const ImVec2 middle(0.5f * (low.x + high.x), 0.5f * (low.y + high.y));
+  // Rows that span all columns of a table are drawn while only their first column is within the clip
+  // rectangle.
+  const float left = ImGui::GetWindowPos().x, right = left + ImGui::GetWindowWidth();
+  const bool shown = left <= middle.x && middle.x < right &&
+                     ImGui::IsRectVisible({low.x, middle.y - 0.5f}, {high.x, middle.y + 0.5f});
+  put(name, {{low.x, low.y}, {high.x, high.y}, shown});
+}
+
+void Marks::put(std::string_view name, const Rectangle& where) {
+  std::uint32_t& times = times_[std::string(name)];
+  std::string own(name);
+  if (++times > 1) own += '#' + std::to_string(times);
+  // Another widget may already have the name NAME#2.
+  while (!now_.try_emplace(own, where).second) own = std::string(name) + '#' + std::to_string(++times);
+}
+
+std::optional<Rectangle> Marks::find(std::string_view name) const {
+  const auto found = before_.find(name);
+  return found == before_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<std::string> Marks::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, where] : before_) names.push_back(name);
+  return names;
 }
 
 }  // namespace lambent::editor

@@ -1,9 +1,11 @@
 // Includes Dear ImGui, of any version from 1.86 on, and hides what differs between the versions: how keys
-// are named and asked for, how a script's input is handed over, and names that were changed. It keeps no
-// state. Main thread.
+// are named and asked for, how a script's input is handed over, and names that were changed. It also fits
+// text into the room that there is. It keeps no state. Main thread.
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 
 #include <imgui.h>
 
@@ -47,5 +49,31 @@ inline constexpr ImGuiCol kColorOfKeyboardCursor = ImGuiCol_NavCursor;
 #else
 inline constexpr ImGuiCol kColorOfKeyboardCursor = ImGuiCol_NavHighlight;
 #endif
+
+// Returns so many heights of the font, in pixels. Sizes that hold text are given in these.
+float em(float heights);
+
+// Returns the text, or as much of its beginning as fits into the width with an ellipsis behind it.
+std::string ellipsized(std::string_view text, float width);
+
+// Draws a line of text that ends in an ellipsis where the room ends. Its tooltip then begins with the whole
+// text; `more`, if there is any, follows or is all of the tooltip.
+void fittedText(std::string_view text, std::string_view more = {});
+// The same in a color.
+void fittedText(const ImVec4& color, std::string_view text, std::string_view more = {});
+// The color of what matters less.
+ImVec4 dimmed();
+
+// Shows a wrapped tooltip for the last widget while the pointer is over it. Without text there is none.
+void tooltip(std::string_view text);
+
+// Goes on in the same line if a button with this text, or a widget of this width in pixels, fits there.
+// Returns whether it does.
+bool sameLineIfFits(std::string_view button);
+bool sameLineIfFits(float width);
+
+// Returns a printf format with as many digits as fit into the width for this value, at most `digits` behind
+// the point.
+const char* numberFormat(float value, float width, int digits);
 
 }  // namespace lambent::editor

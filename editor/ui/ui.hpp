@@ -38,21 +38,17 @@ class Ui {
 
   // Waits up to most_s seconds for input or another event of the window. Returns whether one came.
   bool wait(double most_s);
-  // Begins a frame.
   void begin(const ScriptedInput* scripted);
-  // Draws the frame into framebuffer 0.
   void end();
 
   bool closeRequested() const;
   void refuseClose();
   std::vector<std::filesystem::path> takeDropped();
-  // Adds a file as if it was dropped onto the window.
   void drop(std::filesystem::path file);
 
   Marks& marks() { return marks_; }
   const Marks& marks() const { return marks_; }
 
-  // Returns the seconds since the last input of the user or a script.
   double sinceInput() const;
   // Returns whether a text field is open, whose cursor blinks.
   bool typing() const;

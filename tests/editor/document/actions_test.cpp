@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "editor/document/field_edits.hpp"
 #include "editor/document/selection.hpp"
 #include "editor/document/tree.hpp"
 #include "runtime/scene/components.hpp"
@@ -35,7 +36,7 @@ TEST_F(Actions, CopiesOfComponentsGoOntoSeveralEntitiesInOneStep) {
                     stand = *history.create(emptyEntity("stand"));
   ASSERT_TRUE(history.setField(bulb, "Light", "color", glm::vec3(0.1f, 0.2f, 0.3f)));
   const std::string text = *copyComponent(document, bulb, "Light");
-  EXPECT_EQ(peekClip(text).component, "Light");
+  EXPECT_EQ(peekClip(text), Pasted::Component);
   const ecs::Entity both[] = {lamp, stand};
   const Result<void> pasted = pasteComponent(document, history, both, text);
   ASSERT_TRUE(pasted) << pasted.error().line();
@@ -78,7 +79,7 @@ TEST_F(Actions, WhatDoesNotFitChangesNothing) {
   EXPECT_NE(pasteComponent(document, history, both, wrong).error().line().find("fields.strength"),
             std::string::npos);
   EXPECT_FALSE(pasteEntities(document, history, {}, text));
-  EXPECT_EQ(peekClip("{}").kind, Pasted::Nothing);
+  EXPECT_EQ(peekClip("{}"), Pasted::Nothing);
 }
 
 TEST_F(Actions, EntitiesGoToAnotherProgramWithWhatHangsBelow) {
@@ -201,6 +202,36 @@ TEST_F(Actions, RowsAreMadeAgainWhenTheTreeChangesAndNotWhenThingsMove) {
   EXPECT_EQ(treeVersion(world.registry), before);
   ASSERT_TRUE(history.reparent(world.node("ball"), world.node("lamp"), true));
   EXPECT_NE(treeVersion(world.registry), before);
+}
+
+// Returns what the typed text makes of 10.
+double ofTen(std::string_view text) {
+  const auto edit = parseNumberEdit(text);
+  EXPECT_TRUE(edit) << text;
+  return edit ? edit->appliedTo(10.0) : -1.0;
+}
+
+TEST(NumberEdit, CalculatesWhatIsTyped) {
+  EXPECT_EQ(ofTen("2.5"), 2.5);
+  EXPECT_EQ(ofTen("-3"), -3.0) << "a number, not a difference";
+  EXPECT_EQ(ofTen(" 2*3 + 1 "), 7.0);
+  EXPECT_EQ(ofTen("1+2*3"), 7.0);
+  EXPECT_EQ(ofTen("(1+2)*-3"), -9.0);
+  EXPECT_EQ(ofTen("1e2/4"), 25.0);
+}
+
+TEST(NumberEdit, ShiftsAndScalesTheNumberThatIsThere) {
+  EXPECT_EQ(ofTen("+=1"), 11.0);
+  EXPECT_EQ(ofTen("-= 2*2"), 6.0);
+  EXPECT_EQ(ofTen("*2"), 20.0);
+  EXPECT_EQ(ofTen("*=1.5"), 15.0);
+  EXPECT_EQ(ofTen("/4"), 2.5);
+}
+
+TEST(NumberEdit, RefusesWhatHasNoFiniteResult) {
+  for (const char* text : {"", " ", "2*", "two", "1/0", "/0", "nan", "inf", "1e999", "(1", "1)", "+=", "2 3"})
+    EXPECT_FALSE(parseNumberEdit(text)) << text;
+  EXPECT_FALSE(parseNumberEdit(std::string(100'000, '('))) << "without running out of stack";
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -321,17 +320,13 @@ TEST_F(Editing, DestroyedEntitiesComeBackWithChildrenAndTheirIds) {
 }
 
 TEST_F(Editing, ChangesOutsideAreStepsAmongTheOthers) {
-  struct Door : OutsideChange {
-    explicit Door(bool& open_now) : open(open_now) {}
-    void carryOut(bool forth, std::vector<std::string>& missing) override {
-      if (open == forth) missing.push_back("the door");
-      open = forth;
-    }
-    std::size_t bytes() const override { return 1000; }
-    bool& open;
-  };
   bool open = true;
-  history.did(std::make_shared<Door>(open), "opening");
+  history.did({[&open](bool forth, std::vector<std::string>& missing) {
+                 if (open == forth) missing.push_back("the door");
+                 open = forth;
+               },
+               1000},
+              "opening");
   EXPECT_TRUE(history.modified());
   EXPECT_FALSE(history.modifiedInside());
   EXPECT_GE(history.bytes(), 1000u);

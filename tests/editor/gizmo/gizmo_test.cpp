@@ -267,7 +267,7 @@ TEST(Gizmo, AnAxisThatPointsAtTheViewerHasNoHandleAndNothingLeavesTheScene) {
     ASSERT_LT(glm::length(now), 5000.0f) << x;
     ASSERT_LT(now.z, 5.0f) << "in front of the eye";
   }
-  EXPECT_EQ(gizmo.cancel()[0].translation, target.local.translation);
+  gizmo.release();
   gizmo.setView(lookAt({0.0f, 0.0f, 5.0f}, {0.0f, 0.0f, 10.0f}, true), kViewport);
   EXPECT_FALSE(gizmo.pivotScreenPoint()) << "behind the eye";
   EXPECT_EQ(gizmo.hit({400.0f, 300.0f}), Handle::None);

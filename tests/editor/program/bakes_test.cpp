@@ -9,19 +9,12 @@
 namespace lambent {
 namespace {
 
-using nlohmann::json;
-using testing::EditorProgram;
-using testing::Played;
-using testing::told;
-
 TEST_F(EditorProgram, BakesTheScenesOfAWorldWithTheOptionsThatItWasSavedWith) {
   const Played first =
       play(fmt::format("open {0}\nbake-option rays 300\nbake-option bounces 1\nbake\nwait baked 240\n"
                        "save {1}\nstate\n",
                        path("hello.glb"), path("world.json")));
-  ASSERT_EQ(first.outcome.exit_code, 0) << told(first.outcome);
   const Played second = play(fmt::format("open {}\nwait baked 240\nstate\n", path("world.json")));
-  ASSERT_EQ(second.outcome.exit_code, 0) << told(second.outcome);
   const json& before = first.answer("state")["scenes"][0];
   const json& scene = second.answer("state")["scenes"][0];
   EXPECT_EQ(scene["bakeOptions"]["rays"], "300") << scene.dump();
@@ -54,7 +47,6 @@ state
 )",
                                          path("hello.glb")),
                              {"--no-bake"});
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::string marks = played.answer("marks").dump();
   for (const baker::OptionRow& row : baker::optionRows())
     EXPECT_NE(marks.find(fmt::format("\"bake-option.{}\"", row.name)), std::string::npos) << row.name;
@@ -79,7 +71,6 @@ marks
 state
 )",
                                          path("hello.glb")));
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::vector<json> marks = played.all("marks");
   ASSERT_EQ(marks.size(), 2u);
   const auto has = [](const json& names, const char* name) {
@@ -99,11 +90,10 @@ wait baked 240
 tree type:material
 )",
                                          path("hello.glb")));
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const json& materials = played.answer("tree");
   ASSERT_GT(materials.size(), 0u);
   const std::string name = materials[0]["name"];
-  const Played edited = play(fmt::format(R"(
+  play(fmt::format(R"(
 open {0}
 wait baked 240
 tree ""
@@ -118,8 +108,7 @@ state
 expect /scenes/0/needsRebake []
 expect /errors 0
 )",
-                                         path("hello.glb"), name));
-  ASSERT_EQ(edited.outcome.exit_code, 0) << told(edited.outcome);
+                   path("hello.glb"), name));
 }
 
 TEST_F(EditorProgram, EditsRoughnessByItsWidgetLiveWhereItCanBe) {
@@ -159,7 +148,6 @@ expect /scenes/0/needsRebake []
 expect /errors 0
 )",
                                          path("plates.glb")));
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::vector<json> roughness = played.all("get Material"), states = played.all("state");
   ASSERT_EQ(roughness.size(), 3u);
   ASSERT_EQ(states.size(), 4u);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
+#include "editor/script/script.hpp"
 #include "runtime/base/atomic_file.hpp"
 
 namespace lambent::editor {
@@ -15,11 +16,8 @@ TEST(EditorCommands, HaveNamesOfTheirOwnAndSayWhatTheyDo) {
   for (const Command& command : commandList()) {
     if (*command.id == '\0') continue;
     EXPECT_TRUE(ids.insert(command.id).second) << command.id;
-    if (*command.former != '\0') {
-      EXPECT_TRUE(ids.insert(command.former).second) << command.former;
-    }
     EXPECT_GT(std::string(command.help).size(), 5u) << command.id;
-    EXPECT_NE(command.run, nullptr) << command.id;
+    EXPECT_TRUE(command.run) << command.id;
     EXPECT_LE(command.least_words, command.most_words) << command.id;
   }
   EXPECT_GT(ids.size(), 60u);
@@ -47,6 +45,29 @@ TEST(EditorCommands, AreAllInTheManual) {
     if (*command.id == '\0') continue;
     EXPECT_NE(manual->find(std::string("`").append(command.id)), std::string::npos) << command.id;
   }
+}
+
+TEST(EditorScript, WordsArePartedByBlanksAndKeptByQuotes) {
+  const auto lines = parseScript("s", "open  \"a b.glb\"\tc\n\n# note\nset \"say \\\"hi\\\"\" \"\" # end\n");
+  ASSERT_TRUE(lines.has_value());
+  ASSERT_EQ(lines->size(), 2u);
+  EXPECT_EQ((*lines)[0].words, (std::vector<std::string>{"open", "a b.glb", "c"}));
+  EXPECT_EQ((*lines)[1].words, (std::vector<std::string>{"set", "say \"hi\"", ""}));
+  EXPECT_EQ((*lines)[1].number, 4u);
+}
+
+TEST(EditorScript, TryMarksALineThatMayFail) {
+  const auto lines = parseScript("s", "try open nothing.glb\nundo");
+  ASSERT_TRUE(lines.has_value());
+  EXPECT_TRUE((*lines)[0].may_fail);
+  EXPECT_EQ((*lines)[0].words.front(), "open");
+  EXPECT_FALSE((*lines)[1].may_fail);
+}
+
+TEST(EditorScript, AnOpenQuoteIsAnErrorWithItsLine) {
+  const auto lines = parseScript("my.script", "undo\nopen \"a b\n");
+  ASSERT_FALSE(lines.has_value());
+  EXPECT_EQ(lines.error().subject, "my.script:2");
 }
 
 }  // namespace

@@ -76,6 +76,7 @@ class EditorProgram : public ProgramTest {
     std::istringstream lines(played.outcome.out);
     for (std::string line; std::getline(lines, line);)
       if (line.starts_with('{')) played.answers.push_back(nlohmann::json::parse(line));
+    EXPECT_EQ(played.outcome.exit_code, fails ? 1 : 0) << told(played.outcome);
     return played;
   }
   // Plays the script in a small window, when hello.glb was opened and is shown without a bake.
@@ -86,8 +87,18 @@ class EditorProgram : public ProgramTest {
   }
   std::string path(const char* name) const { return (folder / name).string(); }
 
+  bool fails = false;  // whether scripts end by an error
   std::string size = "1280x800";
   std::unique_ptr<XServer> display;
 };
 
 }  // namespace lambent::testing
+
+namespace lambent {
+
+using nlohmann::json;
+using testing::EditorProgram;
+using testing::Played;
+using testing::told;
+
+}  // namespace lambent

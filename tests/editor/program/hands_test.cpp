@@ -1,18 +1,10 @@
 // Tests what a user's hands do in the editor's window: numbers that are dragged and typed, handles, layouts.
 #include <cmath>
 
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
 #include "tests/editor/program/editor_program.hpp"
 
 namespace lambent {
 namespace {
-
-using nlohmann::json;
-using testing::EditorProgram;
-using testing::Played;
-using testing::told;
 
 constexpr const char* kTwoLamps = R"(
 create-sphere 0 1 0
@@ -54,7 +46,6 @@ select a empty
 wait frames 3
 marks
 )");
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::vector<json> a = played.all("get a:Transform"), b = played.all("get b:Transform");
   ASSERT_EQ(a.size(), 4u);
   EXPECT_NEAR(a[0][1].get<double>(), 1.4, 1e-4);
@@ -100,7 +91,6 @@ wait frames 3
 drag gizmo.y 0 -60 Ctrl
 get Transform.translation
 )");
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::vector<json> places = played.all("get");
   ASSERT_EQ(places.size(), 7u);
   const auto x = [&](std::size_t i) { return places[i][0].get<double>(); };
@@ -128,7 +118,6 @@ drag sun.handle 40 15 Ctrl
 state
 )",
                                     {"--light", "sun:200,20,1,5"});
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   EXPECT_EQ(played.answer("get"), 0.5);
   EXPECT_EQ(played.answer("state")["lights"][0], "sun:-165,15,1,5");
 }
@@ -144,7 +133,6 @@ click setting.keys@0.005,0.5
 wait frames 3
 state
 )");
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::vector<json> states = played.all("state");
   ASSERT_EQ(states.size(), 2u);
   EXPECT_NEAR(std::stod(states[0]["settings"]["keys"].get<std::string>()), 16.0, 4.0) << "the middle of 32";
@@ -165,7 +153,6 @@ key Z
 wait frames 3
 state
 )");
-  ASSERT_EQ(first.outcome.exit_code, 0) << told(first.outcome);
   const json& handles = first.answer("state")["handles"];
   EXPECT_EQ(handles["mode"], "turn");
   EXPECT_EQ(handles["local"], true);
@@ -197,7 +184,6 @@ where viewport
 key F11
 )",
                                {"--scale", scale, "--fresh"});
-    ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
     const std::vector<json> views = played.all("where");
     ASSERT_EQ(views.size(), 5u);
     const auto extent = [&](std::size_t i, const char* side) { return views[i][side].get<double>(); };
@@ -222,7 +208,6 @@ where tab.Environment
 where tab.Log
 where viewport
 )");
-  ASSERT_EQ(first.outcome.exit_code, 0) << told(first.outcome);
   EXPECT_LT(first.answer("where tab.Environment")["x"], first.answer("where viewport")["x"]);
   EXPECT_GT(first.answer("where tab.Log")["x"], first.answer("where viewport")["x"]);
   const Played second = play(R"(
@@ -236,7 +221,6 @@ layout default
 wait frames 3
 where tab.Environment
 )");
-  ASSERT_EQ(second.outcome.exit_code, 0) << told(second.outcome);
   const std::vector<json> places = second.all("where");
   EXPECT_EQ(places[0], first.answer("where tab.Environment"));
   EXPECT_EQ(places[1], first.answer("where tab.Log"));
@@ -269,7 +253,6 @@ click "menu.delete-layout.my own"
 wait frames 3
 try layout "my own"
 )");
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   EXPECT_GT(played.answer("where tab.Log")["x"], played.answer("where viewport")["x"]);
   EXPECT_EQ(played.answers.back()["ok"], false) << "it was deleted";
 }
@@ -280,7 +263,6 @@ TEST_F(EditorProgram, ShowsToastsInTheView) {
     const Played played =
         play(fmt::format("drop {}\nwait frames 5\nwhere toasts\nwhere viewport\n", path("lost.glb")),
              {"--scale", scale, "--fresh"});
-    ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
     const json &toasts = played.answer("where toasts"), &view = played.answer("where viewport");
     const auto end = [](const json& area, const char* at, const char* extent) {
       return area[at].get<double>() + area[extent].get<double>();
@@ -314,7 +296,6 @@ where bakes.hello.close
 )",
                                          path("hello.glb")),
                              {"--scale", "2", "--fresh"});
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const auto end = [&](const char* mark, const char* at, const char* extent) {
     const json& area = played.answer(std::string("where ") + mark);
     return area[at].get<double>() + area[extent].get<double>();
@@ -344,7 +325,6 @@ state
 wait seconds 1.5
 state
 )");
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   std::vector<int> frames, pictures;
   for (const json& state : played.all("state")) {
     frames.push_back(state["frames"].get<int>());
@@ -377,7 +357,6 @@ select-none
 wait frames 5
 marks
 )");
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   EXPECT_GT(played.answer("where")["width"], 100.0);
   EXPECT_TRUE(played.answer("state")["eye"].get<std::string>().starts_with("pose:0,1,"))
       << "as high as the camera";
@@ -408,7 +387,6 @@ wait rest 60
 wait frames 5
 marks
 )");
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   EXPECT_GT(played.answer("where")["width"], 100.0);
   EXPECT_TRUE(played.answer("state")["eye"].get<std::string>().starts_with("pose:0,1,"))
       << "a click looks through it, though it is not selected";

@@ -10,18 +10,12 @@
 namespace lambent {
 namespace {
 
-using nlohmann::json;
-using testing::EditorProgram;
-using testing::Played;
-using testing::told;
-
 // With automatic exposure, a light that is seen makes the meter go down.
 TEST_F(EditorProgram, ShowsANewLightOfEachKindAtOnce) {
   std::string script = fmt::format("open {}\nwait loaded 60\nwait rest 60\nstate\n", path("hello.glb"));
   for (const char* kind : {"point", "spot", "directional", "sphere", "disc"})
     script += fmt::format("create-{}\nwait rest 60\nstate\nundo\nwait rest 60\n", kind);
   const Played played = play(script, {"--no-bake"});
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::vector<json> states = played.all("state");
   ASSERT_EQ(states.size(), 6u);
   const double before = states[0]["exposureEv"];
@@ -54,7 +48,6 @@ state
 )",
                                          path("hello.glb")),
                              {"--no-bake"});
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::vector<json> states = played.all("state");
   ASSERT_EQ(states.size(), 4u);
   const json before = states[0]["lights"], dragged = states[1]["lights"];
@@ -121,7 +114,6 @@ expect /1/edited true
 )";
   const Played played = play(
       fmt::format(script, path("hello.glb"), path("world.json"), LAMBENT_BINARY_DIR "/assets/studio.hdr"));
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::vector<json> keys = played.all("keys");
   ASSERT_EQ(keys.size(), 10u);
   ASSERT_GE(keys[0].size(), 2u) << "soft boxes";
@@ -164,7 +156,6 @@ expect /1/edited true
 
   const Played again =
       play(fmt::format("open {}\nwait loaded 60\nwait frames 5\nkeys\n", path("world.json")));
-  ASSERT_EQ(again.outcome.exit_code, 0) << told(again.outcome);
   const json& read = again.answer("keys")[0];
   EXPECT_EQ(read["edited"], true);
   EXPECT_NEAR(read["azimuth"].get<double>(), keys[4][0]["azimuth"].get<double>(), 2e-3);
@@ -191,7 +182,6 @@ keys
 )",
                                          path("hello.glb"), LAMBENT_BINARY_DIR "/assets/sky.hdr"),
                              {"--no-bake"});
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::vector<json> keys = played.all("keys");
   ASSERT_EQ(keys.size(), 4u);
   ASSERT_EQ(keys[0].size(), 2u) << keys[0].dump();
@@ -225,7 +215,6 @@ reference
 keys
 )",
                                          path("hello.glb"), LAMBENT_BINARY_DIR "/assets/sky.hdr"));
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   ASSERT_EQ(played.answer("keys").size(), 1u);
   EXPECT_GT(played.answer("keys")[0]["share"].get<double>(), 0.2);
   const json& figures = played.answer("reference");

@@ -5,17 +5,11 @@
 namespace lambent {
 namespace {
 
-using nlohmann::json;
-using testing::EditorProgram;
-using testing::Played;
-using testing::told;
-
 TEST_F(EditorProgram, TakesADroppedSceneAndShowsItBeforeItIsBaked) {
   const Played played =
       play(fmt::format("drop {0}\nwait frames 3\nwait loaded 60\nstate\nwait baked 240\nstate\n"
                        "tree type:light\nplan\nwait seconds 2\nplan\n",
                        path("hello.glb")));
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   EXPECT_EQ(played.answer("state")["scenes"][0]["bake"]["reached"], "final");
   EXPECT_EQ(played.answer("state")["errors"], 0);
   EXPECT_EQ(played.answer("plan")["ready"], true);
@@ -37,7 +31,6 @@ state
 tree type:bundle
 )",
                              {path("hello.glb"), "--fresh"});
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   const std::vector<json> states = played.all("state"), trees = played.all("tree");
   ASSERT_EQ(trees.size(), 2u);
   for (const json& tree : trees) EXPECT_EQ(tree.size(), 1u) << tree.dump();
@@ -48,7 +41,7 @@ tree type:bundle
 }
 
 TEST_F(EditorProgram, OpensAndClosesScenesAsStepsThatKeepEdits) {
-  const Played played = play(fmt::format(R"(
+  play(fmt::format(R"(
 open {0}
 wait loaded 60
 state
@@ -81,9 +74,8 @@ state
 expect /redo "Redo closing of hello"
 expect /errors 0
 )",
-                                         path("hello.glb")),
-                             {"--no-bake"});
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+                   path("hello.glb")),
+       {"--no-bake"});
 }
 
 // Each way to another world must ask, and leave everything as it is if the answer is no.
@@ -147,7 +139,6 @@ state
 tree empty
 )",
                                          path("world.json")));
-  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
   EXPECT_EQ(played.all("where").size(), 6u);
   const std::vector<json> states = played.all("state"), trees = played.all("tree");
   ASSERT_EQ(states.size(), 3u);

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "baker/pipeline/journal.hpp"
-#include "editor/session/status.hpp"
+#include "editor/session/scene_changes.hpp"
 #include "tests/editor/program/windowless.hpp"
 
 namespace lambent::editor {
@@ -11,7 +11,31 @@ namespace {
 
 using nlohmann::json;
 
-class WindowlessCommands : public testing::Windowless {};
+class WindowlessCommands : public testing::Windowless {
+ protected:
+  // Closes the dialog that asks, and returns it.
+  Dialog takeDialog() const {
+    EXPECT_TRUE(session->window.dialog) << "nothing asks";
+    return std::exchange(session->window.dialog, std::nullopt).value_or(Dialog{});
+  }
+  // Says under which name a world file finds the bundle that is shown, though nothing is baked.
+  void keepBundle() const {
+    const SceneEntry& entry = session->scenes.entries().front();
+    std::filesystem::copy(entry.shown, entry.bundle);
+  }
+  template <typename Condition>
+  void waitFor(const Condition& holds) const {
+    EXPECT_TRUE(lambent::testing::eventually([&] {
+      session->update(0.0);
+      return holds();
+    }));
+  }
+  // Moves the sphere of hello.glb.
+  void moveSphere() {
+    answer("select", {"has:Transform sphere"});
+    answer("set", {"Transform.translation", "0.1", "0.6", "0.2"});
+  }
+};
 
 TEST_F(WindowlessCommands, CreateSelectMoveAndTakeItBack) {
   answer("create-sphere", {"0", "1", "0"});
@@ -130,13 +154,10 @@ TEST_F(WindowlessCommands, SetOptionsOfABakeAndBake) {
 
 TEST_F(WindowlessCommands, SaveAWorldThatComesBack) {
   openHello();
-  answer("select", {"has:Transform sphere"});
-  answer("set", {"Transform.translation", "0.1", "0.6", "0.2"});
+  moveSphere();
   answer("create-point", {"0", "2", "0"});
   const std::string file = (folder.path() / "world.json").string();
-  // World files name the final bundle, and nothing is baked here.
-  const SceneEntry& entry = session->scenes.entries().front();
-  std::filesystem::copy(entry.shown, entry.bundle);
+  keepBundle();
   EXPECT_TRUE(session->files.modified());
   answer("save", {file});
   EXPECT_FALSE(session->files.modified());
@@ -150,18 +171,11 @@ TEST_F(WindowlessCommands, SaveAWorldThatComesBack) {
 
 TEST_F(WindowlessCommands, OpenAWorldOfWhichOneSceneIsGoneAndAnotherDoesNotBake) {
   openHello();
-  answer("select", {"has:Transform sphere"});
-  answer("set", {"Transform.translation", "0.1", "0.6", "0.2"});
+  moveSphere();
   const std::filesystem::path gone = folder.path() / "hello.glb", away = folder.path() / "away",
                               broken = folder.path() / "broken.glb";
   std::ofstream(broken) << "no scene";
   answer("open", {broken.string()});
-  const auto waitFor = [&](auto holds) {
-    EXPECT_TRUE(lambent::testing::eventually([&] {
-      session->update(0.0);
-      return holds();
-    }));
-  };
   waitFor([&] { return statusOf(*session, 1).text == "bake failed"; });
   const std::string file = (folder.path() / "world.json").string();
   answer("save", {file});
@@ -195,8 +209,7 @@ TEST_F(WindowlessCommands, OpenAWorldOfWhichOneSceneIsGoneAndAnotherDoesNotBake)
 TEST_F(WindowlessCommands, SayThatTheEditsOfAWorldFileCannotBeRead) {
   openHello();
   const std::string file = (folder.path() / "world.json").string();
-  const SceneEntry& entry = session->scenes.entries().front();
-  std::filesystem::copy(entry.shown, entry.bundle);
+  keepBundle();
   answer("save", {file});
   json world = json::parse(std::ifstream(file));
   world["bundles"][0]["bake_options"]["edits"] = "cut o";
@@ -214,18 +227,13 @@ TEST_F(WindowlessCommands, SayInOnePlaceThatASceneNeedsARebake) {
   const auto status = [&] { return statusOf(*session, 0); };
   // Only a preview was made of it.
   EXPECT_EQ(status().standing, Standing::Wanting) << status().text;
-  const SceneEntry& entry = session->scenes.entries().front();
-  std::filesystem::copy(entry.shown, entry.bundle);
+  keepBundle();
   answer("close");
   answer("open", {(folder.path() / "hello.glb").string()});
-  EXPECT_TRUE(lambent::testing::eventually([&] {
-    session->update(0.0);
-    return !session->scenes.busy();
-  }));
+  waitFor([&] { return !session->scenes.busy(); });
   EXPECT_EQ(status().standing, Standing::Good) << status().text;
   EXPECT_TRUE(worstStatus(*session).text.empty());
-  answer("select", {"has:Transform sphere"});
-  answer("set", {"Transform.translation", "0.1", "0.6", "0.2"});
+  moveSphere();
   session->update(0.0);
   answer("select-none");
   EXPECT_EQ(status().text, "needs a rebake");
@@ -251,10 +259,7 @@ TEST_F(WindowlessCommands, OfferUnfinishedBakesAndShowNothingOfThem) {
   EXPECT_EQ(session->scenes.entries().size(), 1u) << "only what was opened is there";
   answer("go-on", {"other.glb"});
   EXPECT_EQ(answer("state")["unfinished"], json::array());
-  EXPECT_TRUE(lambent::testing::eventually([&] {
-    session->update(0.0);
-    return !session->scenes.busy();
-  }));
+  waitFor([&] { return !session->scenes.busy(); });
   EXPECT_EQ(answer("state")["unseen"][0]["phase"], "done");
   EXPECT_EQ(session->scenes.entries().size(), 1u);
 
@@ -301,7 +306,7 @@ TEST_F(WindowlessCommands, AskBeforeAWorldTakesThePlaceOfUnsavedEdits) {
   answer("open", {scene, world});
   ASSERT_TRUE(session->window.dialog);
   EXPECT_TRUE(session->scenes.entries().empty()) << "nothing is opened before the answer";
-  const Dialog asked = *std::exchange(session->window.dialog, std::nullopt);
+  const Dialog asked = takeDialog();
   EXPECT_EQ(answer("tree", {"type:light"}).size(), 2u);
   asked.third_chosen(*session);
   EXPECT_EQ(answer("tree", {"type:light"}).size(), 2u) << "it was saved, and is open again";
@@ -311,11 +316,9 @@ TEST_F(WindowlessCommands, AskBeforeAWorldTakesThePlaceOfUnsavedEdits) {
 TEST_F(WindowlessCommands, AskForTheFileOfAWorldThatIsSavedBeforeAnotherOne) {
   answer("create-point");
   answer("new");
-  ASSERT_TRUE(session->window.dialog);
-  const Dialog asked = *std::exchange(session->window.dialog, std::nullopt);
+  const Dialog asked = takeDialog();
   asked.third_chosen(*session);
-  ASSERT_TRUE(session->window.dialog) << "it has no file yet";
-  const Dialog saving = *std::exchange(session->window.dialog, std::nullopt);
+  const Dialog saving = takeDialog();  // it has no file yet
   EXPECT_EQ(saving.kind, Dialog::Kind::SaveFile);
   const std::filesystem::path file = folder.path() / "mine.json";
   saving.answered(*session, file.string());
@@ -393,13 +396,13 @@ TEST_F(WindowlessCommands, UseAnAssetByItsName) {
       << "the folder of what was opened last";
   EXPECT_FALSE(run("use-asset", {"nowhere.hdr"}));
   const std::string world = (folder.path() / "hall.world.json").string();
-  std::filesystem::copy(session->scenes.entries().front().shown, session->scenes.entries().front().bundle);
+  keepBundle();
   answer("save", {world});
   answer("create-point");
   answer("use-asset", {"hall.world.json"});
   ASSERT_TRUE(session->window.dialog) << "the edit is not saved";
   EXPECT_TRUE(session->files.modified());
-  const Dialog asked = *std::exchange(session->window.dialog, std::nullopt);
+  const Dialog asked = takeDialog();
   asked.answered(*session, {});
   EXPECT_FALSE(session->files.modified());
   EXPECT_EQ(session->files.world(), world);
@@ -408,28 +411,18 @@ TEST_F(WindowlessCommands, UseAnAssetByItsName) {
 TEST_F(WindowlessCommands, SaveProposesTheScenesNameAndReplacesNoOtherFileUnasked) {
   openHello();
   answer("save");
-  ASSERT_TRUE(session->window.dialog);
-  const Dialog saving = *std::exchange(session->window.dialog, std::nullopt);
+  const Dialog saving = takeDialog();
   EXPECT_EQ(saving.name, "hello.json");
   EXPECT_EQ(saving.folder, folder.path());
   const std::filesystem::path file = folder.path() / "hello.json";
   std::ofstream(file) << "{}";
   saving.answered(*session, file.string());
-  ASSERT_TRUE(session->window.dialog) << "the file is there already";
-  const Dialog asked = *std::exchange(session->window.dialog, std::nullopt);
+  const Dialog asked = takeDialog();  // the file is there already
   EXPECT_EQ(std::filesystem::file_size(file), 2u);
   asked.answered(*session, {});
   EXPECT_GT(std::filesystem::file_size(file), 2u);
   saving.answered(*session, file.string());
   EXPECT_FALSE(session->window.dialog) << "it is the world's own file now";
-}
-
-TEST_F(WindowlessCommands, AreStillKnownByTheirFormerNames) {
-  EXPECT_EQ(findCommand("probe"), findCommand("environment-map"));
-  EXPECT_EQ(findCommand("probe-folder"), findCommand("environment-map-folder"));
-  EXPECT_EQ(findCommand("overlay-light-samples"), findCommand("overlay-light-probes"));
-  answer("probe-folder", {folder.path().string()});
-  for (const json& row : answer("commands")) EXPECT_NE(row["id"], "probe");
 }
 
 // The menu bar, the tree and the Bakes panel are drawn one after another, while a bake goes on.

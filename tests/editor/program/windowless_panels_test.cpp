@@ -27,16 +27,21 @@ class WindowlessPanels : public testing::Windowless {
   }
   void TearDown() override { ImGui::DestroyContext(); }
 
-  void draw(const Panel& panel) {
+  // Draws a frame. Returns the text that the panel shows, parts that are scrolled away left out.
+  std::string draw(const Panel& row) {
     marks.beginFrame();
     ImGui::GetIO().DeltaTime = 0.02f;
     ImGui::NewFrame();
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
     ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
-    ImGui::Begin(panel.name, nullptr, ImGuiWindowFlags_NoMove);
-    panel.draw(*session, marks);
+    ImGui::Begin(row.name, nullptr, ImGuiWindowFlags_NoMove);
+    ImGui::LogToBuffer(/*auto_open_depth=*/0);
+    row.draw(*session, marks);
+    std::string text = ImGui::GetCurrentContext()->LogBuffer.c_str();
+    ImGui::LogFinish();
     ImGui::End();
     ImGui::EndFrame();
+    return text;
   }
   // Draws until the marks are those of a complete frame.
   void settle(const Panel& panel) {
@@ -53,27 +58,19 @@ class WindowlessPanels : public testing::Windowless {
       draw(panel);
     }
   }
-  // Returns the text that the panel shows, parts that are scrolled away left out.
   std::string textOf(const Panel& row) {
     settle(row);
-    marks.beginFrame();
-    ImGui::NewFrame();
-    ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
-    ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
-    ImGui::Begin(row.name, nullptr, ImGuiWindowFlags_NoMove);
-    ImGui::LogToBuffer();
-    row.draw(*session, marks);
-    const std::string text = ImGui::GetCurrentContext()->LogBuffer.c_str();
-    ImGui::LogFinish();
-    ImGui::End();
-    ImGui::EndFrame();
-    return text;
+    return draw(row);
   }
   const Panel& panel(std::string_view name) const {
     for (const Panel& row : panelList())
       if (name == row.name) return row;
     ADD_FAILURE() << "no panel " << name;
     return panelList().front();
+  }
+  const Panel& settled(std::string_view name) {
+    settle(panel(name));
+    return panel(name);
   }
 
   Marks marks;
@@ -92,8 +89,7 @@ TEST_F(WindowlessPanels, AllOfThemDrawASceneThatIsOpen) {
 TEST_F(WindowlessPanels, AClickInTheTreeSelects) {
   answer("create-point");
   answer("create-camera");
-  const Panel& tree = panel("Scene");
-  settle(tree);
+  const Panel& tree = settled("Scene");
   click(tree, "scene.point");
   EXPECT_EQ(answer("state")["selected"], nlohmann::json::array({"point"}));
 }
@@ -111,8 +107,7 @@ TEST_F(WindowlessPanels, MarksOfWhatIsScrolledOutOfViewSaySo) {
 TEST_F(WindowlessPanels, AnObjectLeadsToItsMaterial) {
   openHello();
   answer("select", {"has:Transform box"});
-  const Panel& inspector = panel("Inspector");
-  settle(inspector);
+  const Panel& inspector = settled("Inspector");
   click(inspector, "inspector.material.box");
   settle(inspector);
   EXPECT_TRUE(marks.find("inspector.Material.roughness")) << "it is edited in place";
@@ -147,8 +142,7 @@ TEST_F(WindowlessPanels, ZeroHasNoSignAndBrdfsHaveNames) {
 TEST_F(WindowlessPanels, FieldsStayWhileAnEditBringsAReasonToRebake) {
   openHello();
   answer("select", {"type:material box"});
-  const Panel& inspector = panel("Inspector");
-  settle(inspector);
+  const Panel& inspector = settled("Inspector");
   const auto before = marks.find("inspector.Material.metallic");
   answer("set", {"Material.metallic", "1"});
   settle(inspector);
@@ -260,8 +254,7 @@ TEST_F(WindowlessPanels, AClickInTheHistoryGoesToThatStep) {
   answer("create-point");
   answer("create-camera");
   answer("create-empty");
-  const Panel& history = panel("History");
-  settle(history);
+  const Panel& history = settled("History");
   click(history, "history.1");
   EXPECT_EQ(session->history.stepsDone(), 1u);
   settle(history);
@@ -270,8 +263,7 @@ TEST_F(WindowlessPanels, AClickInTheHistoryGoesToThatStep) {
 }
 
 TEST_F(WindowlessPanels, AButtonOfTheEnvironmentAddsASunAsOneStep) {
-  const Panel& environment = panel("Environment");
-  settle(environment);
+  const Panel& environment = settled("Environment");
   click(environment, "environment.add-sun");
   EXPECT_EQ(session->document.world().lights.size(), 2u);
   EXPECT_EQ(session->history.stepNames().size(), 1u);

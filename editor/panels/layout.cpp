@@ -1,5 +1,3 @@
-#include "editor/app/layout.hpp"
-
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -10,11 +8,35 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/ui/fitting.hpp"
+#include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {
 
 namespace {
+
+constexpr std::array kPanels = {
+    Panel{"Scene", Dock::Left, "What is in the world: search, select, rename", &drawSceneTree},
+    Panel{"Inspector", Dock::Right, "The components of what is selected", &drawInspector},
+    Panel{"Environment", Dock::Right, "The light from outside: environment maps, sun, turn, exposure",
+          &drawEnvironment},
+    Panel{"Settings", Dock::Right, "How the picture is computed: bands, captures, effects", &drawSettings},
+    Panel{"Plan", Dock::Right, "What a scene's bake simulates, what not, and why", &drawPlan},
+    Panel{"Bakes", Dock::Bottom, "What is being baked, how far, and what came of it", &drawBakes},
+    Panel{"Assets", Dock::Bottom, "Environment maps, scenes, bundles and worlds to use or open", &drawAssets},
+    Panel{"Cost", Dock::Bottom, "What ran in the last frame, how long it took, and why", &drawCost},
+    Panel{"Accuracy", Dock::Bottom, "What each knob costs in time and in error, measured in this view",
+          &drawAccuracy},
+    Panel{"Streaming", Dock::Bottom, "What is on the GPU, what is on its way, how even frames are",
+          &drawStreaming},
+    Panel{"History", Dock::Bottom, "The steps that undo takes back; a click goes there", &drawHistory},
+    Panel{"Log", Dock::Bottom, "Notices and errors", &drawLog},
+};
+
+// Returns where the panel is in this layout.
+Dock dockOf(const WindowLayout& layout, const Panel& panel) {
+  const auto moved = layout.moved.find(panel.name);
+  return moved == layout.moved.end() ? panel.dock : moved->second;
+}
 
 struct Area {
   ImVec2 at, size;
@@ -163,6 +185,10 @@ float roomOf(const DockLayout& dock, const Room& room, float window, float left_
 }
 
 }  // namespace
+
+std::span<const Panel> panelList() {
+  return kPanels;
+}
 
 void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
   drawMenus(session, marks);
