@@ -11,7 +11,6 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 
-#include "assets/noise.hpp"
 #include "assets/scenes.hpp"
 #include "assets/shapes.hpp"
 #include "runtime/spec/image.hpp"

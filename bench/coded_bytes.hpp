@@ -6,7 +6,7 @@
 
 #include "baker/compress/cpca.hpp"
 #include "baker/effects/diffuse/diffuse.hpp"
-#include "runtime/bundle/entropy_coder.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent {
 

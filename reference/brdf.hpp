@@ -4,11 +4,14 @@
 // only the loader of measured files with baker/brdf, so that it can reveal mistakes there.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+
+#include "baker/import/scene.hpp"
 
 namespace lambent::baker::reference {
 
@@ -71,5 +74,20 @@ class AlbedoTable {
   std::size_t angles_ = 0, azimuths_ = 1, roughnesses_ = 0, strengths_ = 1;
   std::vector<glm::vec2> values_;  // [strength][roughness][azimuth][angle]
 };
+
+// Declares BRDFs that describe a whole material, instead of GGX over a diffuse part. To add one, derive a
+// class in a file of its own and add a row in whole_brdf.cpp.
+
+class WholeBrdf {
+ public:
+  virtual ~WholeBrdf() = default;
+  // Returns the BRDF; v and s are in local space, above the surface.
+  virtual glm::vec3 value(const glm::vec3& v, const glm::vec3& s) const = 0;
+  // Returns the alpha of a GGX lobe that is about as wide as the highlight, for sampling.
+  virtual float alpha() const = 0;
+};
+
+// Returns one BRDF per material, or null for GGX and diffuse materials.
+std::vector<std::shared_ptr<const WholeBrdf>> wholeBrdfs(const Scene& scene);
 
 }  // namespace lambent::baker::reference

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/warp.hpp"
-#include "runtime/spec/rotate.hpp"
+#include "reference/sampler.hpp"
+#include "runtime/spec/light.hpp"
 
 namespace lambent::baker::reference {
 

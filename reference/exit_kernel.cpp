@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include "reference/sampler.hpp"
-#include "reference/warp.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 

@@ -13,7 +13,7 @@
 #include "baker/jobs/parallel.hpp"
 #include "reference/walk.hpp"
 #include "runtime/base/atomic_file.hpp"
-#include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::baker::reference {
 

@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "reference/warp.hpp"
+#include "reference/sampler.hpp"
 #include "runtime/sh/local_light.hpp"
 
 namespace lambent::baker::reference {

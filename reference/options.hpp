@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "runtime/base/result.hpp"
-#include "runtime/spec/size.hpp"
+#include "runtime/spec/camera.hpp"
 
 namespace lambent::baker::reference {
 

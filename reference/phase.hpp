@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/warp.hpp"
+#include "reference/sampler.hpp"
 
 namespace lambent::baker::reference {
 

@@ -14,8 +14,8 @@
 
 #include "baker/jobs/progress.hpp"
 #include "reference/reference.hpp"
+#include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
-#include "runtime/spec/size.hpp"
 
 namespace lambent::baker::reference {
 

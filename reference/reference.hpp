@@ -6,6 +6,7 @@
 // same bytes, for any number of threads.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -65,5 +66,12 @@ Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces, const Re
 // checkpoint keeps what is done).
 Result<Report> render(const Scene& scene, const Request& request, const std::filesystem::path& output,
                       bool force, Progress& progress, const std::stop_token& stop);
+
+// Computes a hash of everything that decides a picture's bytes: scene, light, view, options and program. A
+// checkpoint with the same digest can be resumed.
+
+std::uint64_t digestOf(const Scene& scene, const spec::DistantLights& lights,
+                       const std::vector<spec::LocalLight>& shapes, const spec::View& view,
+                       const Options& options);
 
 }  // namespace lambent::baker::reference

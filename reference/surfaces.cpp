@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "reference/warp.hpp"
+#include "reference/sampler.hpp"
 #include "runtime/base/normal_matrix.hpp"
 #include "runtime/bundle/material_fields.hpp"
 

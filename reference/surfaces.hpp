@@ -19,7 +19,6 @@
 #include "baker/import/scene.hpp"
 #include "reference/brdf.hpp"
 #include "reference/horizons.hpp"
-#include "reference/whole_brdf.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker::reference {

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "reference/camera.hpp"
 #include "reference/exit_kernel.hpp"
-#include "reference/eye_depth.hpp"
 #include "reference/options.hpp"
 #include "reference/ray_tracer.hpp"
 #include "reference/sampler.hpp"

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/transport/texel_samples.hpp"
-#include "runtime/bundle/entropy_coder.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/volume_grid.hpp"
 #include "runtime/transfer/weights.hpp"
 

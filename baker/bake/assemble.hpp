@@ -7,8 +7,8 @@
 
 #include "baker/bake/bake_group.hpp"
 #include "baker/bake/group_scene.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/writer.hpp"
 
 namespace lambent::baker {
 

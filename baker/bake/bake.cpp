@@ -23,8 +23,7 @@
 #include "baker/jobs/stage.hpp"
 #include "baker/refine/refine.hpp"
 #include "runtime/base/atomic_file.hpp"
-#include "runtime/bundle/reader.hpp"
-#include "runtime/bundle/writer.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::baker {
 

@@ -8,8 +8,8 @@
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/trace/emitters.hpp"
 #include "baker/transport/geometry_key.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/material_fields.hpp"
-#include "runtime/bundle/reader.hpp"
 
 namespace lambent::baker {
 

@@ -11,7 +11,7 @@
 #include <zstd.h>
 
 #include "baker/cache/bytes.hpp"
-#include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::baker {
 

@@ -15,7 +15,6 @@
 #include "runtime/command_line/help.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"
-#include "runtime/spec/size.hpp"
 
 namespace lambent::baker {
 

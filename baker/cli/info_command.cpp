@@ -10,7 +10,7 @@
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {

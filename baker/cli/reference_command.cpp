@@ -14,8 +14,8 @@
 #include "runtime/base/process.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/spec/display.hpp"
+#include "runtime/spec/light.hpp"
 #include "runtime/spec/numbers.hpp"
-#include "runtime/spec/rotate.hpp"
 
 namespace lambent::baker {
 

@@ -11,7 +11,7 @@
 #include "baker/web_view/viewer_files.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/lower_case.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {

@@ -8,7 +8,7 @@
 
 #include "baker/bake/bake_unshadowed.hpp"
 #include "baker/bake/option_rows.hpp"
-#include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::baker {
 

@@ -73,4 +73,13 @@ struct EffectPlan {
 // `with_insides` keeps the backs of closed double-sided bodies, which nobody sees (closed_bodies.hpp).
 EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects, bool with_insides = false);
 
+// Finds the insides that nobody sees. Exporters mark whole scenes as double-sided, and half of what would be
+// baked then lies inside of cushions and table legs. Where every connected part of a double-sided surface is
+// closed and faces outwards, and nothing stands within, its backs are left out: the surface is baked and
+// drawn as a single-sided one. Materials that let light through or emit it keep both sides.
+
+// Removes these backs from the draws of the groups. Groups may move against each other, and what encloses
+// nothing is decided where they stand at rest; cameras, lamps and volumes count as things within.
+void leaveOutInsides(const Scene& scene, std::vector<RigidGroup>& groups);
+
 }  // namespace lambent::baker

@@ -26,8 +26,8 @@
 #include "runtime/command_line/help.hpp"
 #include "runtime/gpu/context.hpp"
 #include "runtime/gpu/out_of_memory.hpp"
+#include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"
-#include "runtime/spec/size.hpp"
 
 namespace lambent::editor {
 namespace {

@@ -20,7 +20,6 @@
 #include "runtime/scene/bounds.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
-#include "runtime/spec/size.hpp"
 
 namespace lambent::editor {
 

@@ -23,7 +23,6 @@
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/light.hpp"
-#include "runtime/spec/size.hpp"
 
 namespace lambent::editor {
 

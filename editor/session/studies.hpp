@@ -16,7 +16,6 @@
 #include "runtime/measure/measured_frame.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
-#include "runtime/spec/size.hpp"
 
 namespace lambent::editor {
 

@@ -16,7 +16,7 @@
 #include "runtime/debug/overlay_options.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/bounds.hpp"
-#include "runtime/spec/size.hpp"
+#include "runtime/spec/camera.hpp"
 #include "runtime/surface/views.hpp"
 #include "runtime/world/frame_times.hpp"
 

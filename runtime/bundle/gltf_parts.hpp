@@ -9,9 +9,9 @@
 #include <span>
 #include <string>
 
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/json_fields.hpp"
-#include "runtime/bundle/writer.hpp"
 
 namespace lambent::bundle {
 

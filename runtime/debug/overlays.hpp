@@ -22,7 +22,6 @@
 #include "runtime/shadows/key_shadows.hpp"
 #include "runtime/shadows/lit_scene.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/spec/size.hpp"
 #include "runtime/surface/neighborhoods.hpp"
 #include "runtime/tone_map/tone_mapper.hpp"
 #include "runtime/world/world.hpp"

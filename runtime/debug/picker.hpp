@@ -19,7 +19,6 @@
 #include "runtime/ecs/entity.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/spec/size.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {

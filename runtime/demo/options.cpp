@@ -11,8 +11,8 @@
 #include "runtime/base/lower_case.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/frame/frame_settings.hpp"
+#include "runtime/spec/light.hpp"
 #include "runtime/spec/numbers.hpp"
-#include "runtime/spec/rotate.hpp"
 
 namespace lambent::demo {
 

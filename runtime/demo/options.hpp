@@ -14,7 +14,6 @@
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
-#include "runtime/spec/size.hpp"
 #include "runtime/surface/views.hpp"
 
 namespace lambent::demo {

@@ -6,7 +6,7 @@
 
 #include "runtime/debug/overlay_options.hpp"
 #include "runtime/frame/frame_settings.hpp"
-#include "runtime/spec/size.hpp"
+#include "runtime/spec/camera.hpp"
 #include "runtime/surface/views.hpp"
 
 namespace lambent::frame {

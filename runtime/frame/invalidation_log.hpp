@@ -13,7 +13,6 @@
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/spec/size.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {

@@ -10,8 +10,8 @@
 
 #include "runtime/frame/frame_options.hpp"
 #include "runtime/gpu/objects.hpp"
+#include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
-#include "runtime/spec/size.hpp"
 
 namespace lambent::frame {
 

@@ -10,7 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/base/normal_matrix.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/library/convert.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/instantiate.hpp"

@@ -9,10 +9,10 @@
 
 #include <glm/geometric.hpp>
 
-#include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/spec/rotate.hpp"
+#include "runtime/spec/light.hpp"
 
 namespace lambent::lighting {
 

@@ -15,7 +15,6 @@
 #include "runtime/lighting/environment.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
-#include "runtime/spec/size.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {

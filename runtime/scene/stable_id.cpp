@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::scene {
 namespace {

@@ -18,7 +18,6 @@
 #include "runtime/shadows/shadow_casters.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/distant_lights.hpp"
-#include "runtime/spec/size.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {

@@ -23,7 +23,6 @@
 #include "runtime/shadows/local_shared.h"
 #include "runtime/shadows/shadow_casters.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/spec/size.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
@@ -122,8 +121,8 @@ class LocalShadows {
   ShadowCasters::Programs programs_;
   gpu::Texture shadows_;
   gpu::Handle<gpu::FramebufferTraits> target_;
-  std::uint32_t rows_ = 0;  // rows of the texture, one per light
-  std::uint32_t size_ = 0;  // texels along an edge of a face
+  std::uint32_t rows_ = 0;    // rows of the texture, one per light
+  std::uint32_t size_ = 0;    // texels along an edge of a face
   mutable gpu::Table block_;  // what bind() says of its view, which is no state of the shadows
   gpu::Table draws_table_, faces_;
   std::vector<LocalDraw> draws_;

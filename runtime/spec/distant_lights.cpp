@@ -5,7 +5,7 @@
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/spec/rotate.hpp"
+#include "runtime/spec/light.hpp"
 
 namespace lambent::spec {
 

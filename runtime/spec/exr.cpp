@@ -20,7 +20,7 @@
 
 #include "runtime/spec/file_bytes.hpp"
 #include "runtime/spec/image.hpp"
-#include "runtime/spec/primaries.hpp"
+#include "runtime/spec/rec709.hpp"
 
 namespace lambent::spec {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -150,6 +152,17 @@ glm::vec3 directionFromAzimuthElevation(float azimuth_deg, float elevation_deg) 
   return {static_cast<float>(std::cos(elevation) * std::sin(azimuth)),
           static_cast<float>(std::sin(elevation)),
           static_cast<float>(std::cos(elevation) * std::cos(azimuth))};
+}
+
+Result<float> parseDegrees(std::string_view word) {
+  if (const std::optional<float> value = parseNumber(word)) return *value;
+  return fail("angle \"" + std::string(word) + "\"", "is not a number", "give degrees, such as 30 or -22.5");
+}
+
+glm::mat3 lightRotation(float degrees) {
+  const double angle = std::fmod(static_cast<double>(degrees), 360.0) * std::numbers::pi / 180.0;
+  const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+  return {{c, 0.0f, -s}, {0.0f, 1.0f, 0.0f}, {s, 0.0f, c}};  // the columns are the images of +X, +Y and +Z
 }
 
 }  // namespace lambent::spec

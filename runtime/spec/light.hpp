@@ -20,6 +20,7 @@
 #include <variant>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "runtime/base/result.hpp"
@@ -90,5 +91,13 @@ Result<sh::ImageLayout> parseLightLayout(std::string_view word);
 
 // Returns the unit direction towards (azimuth, elevation): (0, 0) is +Z, (90, 0) is +X, (any, 90) is +Y.
 glm::vec3 directionFromAzimuthElevation(float azimuth_deg, float elevation_deg);
+
+// Rotates all lights about the vertical axis, as --rotate-light does. Positive degrees take +Z to +X about
+// +Y, so D degrees move a sun at azimuth A to azimuth A + D.
+
+Result<float> parseDegrees(std::string_view word);
+
+// Returns the matrix that rotates directions of the light.
+glm::mat3 lightRotation(float degrees);
 
 }  // namespace lambent::spec

@@ -14,8 +14,8 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/bundle/reader.hpp"
 #include "runtime/streaming/brdf_texture.hpp"
 #include "runtime/transfer/weights.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/base/threads.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/streaming/load_request.hpp"
 
 namespace lambent::streaming {

@@ -20,7 +20,6 @@
 #include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/lighting/probe_places.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/spec/size.hpp"
 #include "runtime/surface/reflection_probes_shared.h"
 #include "runtime/world/world.hpp"
 

@@ -18,7 +18,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/ecs/registry.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/scene/animation.hpp"

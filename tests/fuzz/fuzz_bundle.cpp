@@ -3,11 +3,10 @@
 #include <cstring>
 #include <vector>
 
-#include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/glb.hpp"
 #include "runtime/bundle/json_fields.hpp"
-#include "runtime/bundle/reader.hpp"
 #include "tests/fuzz/input_file.hpp"
 #include "tests/fuzz/json_mutator.hpp"
 

@@ -4,7 +4,7 @@
 #include "baker/cache/cache.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/jobs/progress.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "tests/fuzz/input_file.hpp"
 #include "tests/fuzz/json_mutator.hpp"
 

@@ -3,8 +3,6 @@
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
-#include "runtime/spec/rotate.hpp"
-#include "runtime/spec/size.hpp"
 #include "tests/fuzz/input_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

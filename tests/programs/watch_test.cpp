@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "assets/scenes.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
 

@@ -3,7 +3,6 @@
 
 #include "reference/sampler.hpp"
 #include "reference/surfaces.hpp"
-#include "reference/warp.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/reference/quadrature.hpp"
 #include "tests/support/shared_data.hpp"

@@ -1,9 +1,8 @@
 // Checks that every field of a material is part of the digest that decides whether a checkpoint can be
 // resumed.
-#include "reference/digest.hpp"
-
 #include <gtest/gtest.h>
 
+#include "reference/reference.hpp"
 #include "tests/support/material_values.hpp"
 
 namespace lambent::baker::reference {

@@ -8,8 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/sampler.hpp"
-#include "reference/warp.hpp"
-#include "runtime/spec/rotate.hpp"
+#include "runtime/spec/light.hpp"
 
 namespace lambent::baker::reference {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/exit_kernel.hpp"
-#include "reference/warp.hpp"
+#include "reference/sampler.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/distant_lights.hpp"
 #include "tests/reference/measure.hpp"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "reference/warp.hpp"
+#include "reference/sampler.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/reference/quadrature.hpp"
 #include "tests/support/differences.hpp"

@@ -7,7 +7,6 @@
 #include "baker/plan/rigid_groups.hpp"
 #include "reference/exit_kernel.hpp"
 #include "reference/sampler.hpp"
-#include "reference/warp.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/support/differences.hpp"

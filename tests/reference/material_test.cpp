@@ -2,7 +2,7 @@
 // maps.
 #include <gtest/gtest.h>
 
-#include "reference/warp.hpp"
+#include "reference/sampler.hpp"
 #include "tests/reference/measure.hpp"
 
 namespace lambent::baker::reference {

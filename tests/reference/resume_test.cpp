@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/film.hpp"
-#include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/container.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/support/program.hpp"
 

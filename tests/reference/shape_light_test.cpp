@@ -2,8 +2,8 @@
 // at a given time.
 #include <gtest/gtest.h>
 
-#include "reference/digest.hpp"
 #include "reference/lamps.hpp"
+#include "reference/reference.hpp"
 #include "tests/reference/measure.hpp"
 
 namespace lambent::baker::reference {

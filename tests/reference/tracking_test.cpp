@@ -1,7 +1,7 @@
 // Compares random walks through media with integrals along the ray.
 #include <gtest/gtest.h>
 
-#include "reference/eye_depth.hpp"
+#include "reference/camera.hpp"
 #include "tests/reference/media.hpp"
 
 namespace lambent::baker::reference {

@@ -9,7 +9,7 @@
 #include <sys/resource.h>
 
 #include "assets/scenes.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "tests/support/program.hpp"
 
 namespace lambent {

@@ -3,7 +3,7 @@
 
 #include "baker/bake/bake.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "tests/support/program.hpp"
 
 namespace lambent {

@@ -13,9 +13,9 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/volume_grid.hpp"
-#include "runtime/bundle/writer.hpp"
 #include "runtime/streaming/load_request.hpp"
 #include "runtime/streaming/loader.hpp"
 #include "tests/support/frame/bundle_store.hpp"

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::testing {
 

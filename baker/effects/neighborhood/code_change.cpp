@@ -9,7 +9,7 @@
 
 #include "baker/jobs/parallel.hpp"
 #include "baker/transport/samples.hpp"
-#include "runtime/bundle/entropy_coder.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::baker {
 

@@ -19,7 +19,6 @@
 #include "runtime/effects/volume/volume.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/spec/size.hpp"
 
 namespace lambent::effects::volume {
 

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "baker/import/gltf.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace lambent::baker {

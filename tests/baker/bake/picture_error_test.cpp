@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/bake/bake.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"

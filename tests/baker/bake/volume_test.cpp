@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/bake/bake_volume.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/shapes.hpp"
 

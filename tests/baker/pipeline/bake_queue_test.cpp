@@ -5,7 +5,7 @@
 #include "baker/bake/bake_unshadowed.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/journal.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "tests/baker/pipeline/pipeline_test.hpp"
 
 namespace lambent::baker {

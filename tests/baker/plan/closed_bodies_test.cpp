@@ -1,10 +1,9 @@
 // Tests of which double-sided surfaces the insides are left out, by what stands within them.
-#include "baker/plan/closed_bodies.hpp"
-
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
+#include "baker/plan/effect_plan.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace lambent::baker {

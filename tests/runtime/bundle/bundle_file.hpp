@@ -10,9 +10,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "runtime/bundle/entropy_coder.hpp"
-#include "runtime/bundle/reader.hpp"
-#include "runtime/bundle/writer.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::bundle {
 

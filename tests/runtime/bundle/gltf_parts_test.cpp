@@ -7,9 +7,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/glb.hpp"
-#include "runtime/bundle/reader.hpp"
-#include "runtime/bundle/writer.hpp"
 
 namespace lambent::bundle {
 namespace {

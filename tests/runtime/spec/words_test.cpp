@@ -5,11 +5,10 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/spec/camera.hpp"
 #include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/numbers.hpp"
-#include "runtime/spec/rotate.hpp"
-#include "runtime/spec/size.hpp"
 
 namespace lambent::spec {
 namespace {

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/bundle/writer.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/streaming/parts.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/base/threads.hpp"
-#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/streaming/loader.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"
 

@@ -14,7 +14,7 @@
 #include <stb/stb_image_write.h>
 
 #include "runtime/bundle/brdf_table.hpp"
-#include "runtime/bundle/entropy_coder.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/transfer/weights.hpp"
 

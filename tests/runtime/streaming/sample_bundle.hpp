@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "runtime/bundle/brdf_table.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/writer.hpp"
 
 namespace lambent::streaming::testing {
 

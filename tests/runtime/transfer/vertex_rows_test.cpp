@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/bundle/entropy_coder.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/transfer/weights.hpp"
 
 namespace lambent::transfer {

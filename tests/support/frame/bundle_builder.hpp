@@ -11,9 +11,9 @@
 #include <glm/mat4x4.hpp>
 
 #include "runtime/bundle/brdf_table.hpp"
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/bundle/writer.hpp"
 #include "runtime/spec/light.hpp"
 #include "tests/support/built_volume.hpp"
 

@@ -6,9 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/entropy_coder.hpp"
-#include "runtime/bundle/writer.hpp"
 #include "runtime/transfer/codebook.hpp"
 
 namespace lambent::testing {

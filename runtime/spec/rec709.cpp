@@ -1,4 +1,4 @@
-#include "runtime/spec/primaries.hpp"
+#include "runtime/spec/rec709.hpp"
 
 #include <cmath>
 
