@@ -85,6 +85,22 @@ function(lambent_embed target)
   target_include_directories(${target} PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/embedded")
 endfunction()
 
+# lambent_as_cpp(TARGET file...): the shaders' text as C++, which stands in the body of a class, as "as_cpp/FILE"
+# (runtime/base/glsl.hpp). Files are named from the root. They are headers of the system, since shaders shadow names and
+# convert between signed and unsigned.
+function(lambent_as_cpp target)
+  foreach(file ${ARGN})
+    get_filename_component(name "${file}" NAME)
+    set(out "${CMAKE_CURRENT_BINARY_DIR}/glsl/as_cpp/${name}")
+    add_custom_command(OUTPUT "${out}"
+      COMMAND "${CMAKE_COMMAND}" "-DIN=${PROJECT_SOURCE_DIR}/${file}" "-DOUT=${out}" -P "${PROJECT_SOURCE_DIR}/cmake/AsCpp.cmake"
+      DEPENDS "${PROJECT_SOURCE_DIR}/${file}" "${PROJECT_SOURCE_DIR}/cmake/AsCpp.cmake" VERBATIM)
+    target_sources(${target} PRIVATE "${out}")
+    set_source_files_properties("${out}" PROPERTIES HEADER_FILE_ONLY ON)
+  endforeach()
+  target_include_directories(${target} SYSTEM PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/glsl")
+endfunction()
+
 # lambent_test(NAME SOURCES file... LINK target... [LABELS label...] [TIMEOUT seconds])
 # Labels: gpu needs OpenGL; fast takes seconds in an optimized build and is what scripts/test-sanitized builds and runs;
 # files reads files that may be damaged, and is what scripts/test --sanitized builds and runs with sanitizers too; threads

@@ -51,7 +51,7 @@ std::vector<glm::vec3> lampPoints(const ShadowedLight& light) {
     return points;
   }
   glm::vec3 s, t;
-  ref::localBasis(light.direction_ws, s, t);
+  glsl::UnshadowedLight().localBasis(light.direction_ws, s, t);
   for (std::size_t i = 0; i < kLampPoints; ++i) {
     const float radius = std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(kLampPoints));
     const float turn = 2.0f * std::numbers::pi_v<float> * std::numbers::phi_v<float> * static_cast<float>(i);
@@ -65,13 +65,14 @@ std::vector<glm::vec3> raysTo(const spec::Disc& key) {
   const float radius = std::max(key.radius_rad, kLeastRadius_rad);
   const std::size_t count = radius < 0.05f ? 4 : kLampPoints;
   glm::vec3 s, t;
-  ref::localBasis(key.direction, s, t);
+  glsl::UnshadowedLight().localBasis(key.direction, s, t);
   std::vector<glm::vec3> rays;
   for (std::size_t i = 0; i < count; ++i) {
     const float away =
         std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(count)) * std::sin(radius);
     const float turn = 2.0f * std::numbers::pi_v<float> * std::numbers::phi_v<float> * static_cast<float>(i);
-    rays.push_back(ref::localUnit(key.direction + away * (std::cos(turn) * s + std::sin(turn) * t)));
+    rays.push_back(
+        glsl::UnshadowedLight().localUnit(key.direction + away * (std::cos(turn) * s + std::sin(turn) * t)));
   }
   return rays;
 }
@@ -111,10 +112,11 @@ std::vector<float> lampOnPatches(const ShadowedLight& lamp, const lighting::Patc
   std::vector<glm::vec3> points_ws;  // slightly above their patches
   std::vector<float> shares;         // without blockers
   for (const Patch& patch : all) {
-    const glm::vec3 normal_ws = ref::localUnit(world_from_normal * patch.normal);
+    const glm::vec3 normal_ws = glsl::UnshadowedLight().localUnit(world_from_normal * patch.normal);
     for (const glm::vec3& point : patch.points) {
       points_ws.emplace_back(world_from_group * glm::vec4(point, 1.0f));
-      shares.push_back(ref::localShare(record, normal_ws, light.position_ws - points_ws.back()));
+      shares.push_back(
+          glsl::UnshadowedLight().localShare(record, normal_ws, light.position_ws - points_ws.back()));
     }
   }
 
@@ -159,8 +161,8 @@ std::vector<std::vector<float>> keysOnPatches(std::span<const spec::Disc> keys,
       const Patch& patch = patches.all()[i];
       for (std::size_t p = 0; p < kPoints; ++p) {
         for (std::size_t k = 0; k < keys.size(); ++k) {
-          const float share = ref::sphereShare(glm::dot(patch.normal, keys[k].direction),
-                                               1.0f / std::sin(keys[k].radius_rad));
+          const float share = glsl::UnshadowedLight().sphereShare(glm::dot(patch.normal, keys[k].direction),
+                                                                  1.0f / std::sin(keys[k].radius_rad));
           if (share <= 0.0f) continue;
           float seen = 0.0f, all = 0.0f;
           // The points of a patch share the rays.

@@ -1,5 +1,4 @@
-// Computes how much of a key light a point sees, from the light's shadow map. key_light_ref.hpp is the same
-// on the CPU, term by term. The including shader defines how the map is read: keyDepth(texel) and
+// Computes how much of a key light a point sees, from the light's shadow map. The including shader defines how the map is read: keyDepth(texel) and
 // keyBlockers(texel, level). Points and directions are in view space, metres; places on a map are in texels
 // of the texture that holds all maps.
 #include "key_shared.h"

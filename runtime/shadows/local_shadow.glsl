@@ -1,5 +1,4 @@
-// Computes how much of a local light a point sees, from the light's shadow cube. local_shadow_ref.hpp is the
-// same on the CPU. The including shader defines how the cube is read: localDistance(light, face, texel) gives
+// Computes how much of a local light a point sees, from the light's shadow cube. The including shader defines how the cube is read: localDistance(light, face, texel) gives
 // metres along the ray through a texel's centre, kNothing where it hits nothing. Points and directions are
 // relative to the light's centre, world axes.
 #include "shadowed_light.glsl"

@@ -1,5 +1,5 @@
 // Computes unoccluded local lights: E/pi for unit power at a point, exact or with bounded error.
-// shadowed_light.hpp is the same on the CPU, term by term. World axes; `to_light` runs from the point to
+// World axes; `to_light` runs from the point to
 // the light's centre, metres.
 #include "local_shared.h"
 

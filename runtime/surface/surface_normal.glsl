@@ -1,5 +1,4 @@
-// Applies normal maps: computes the normal at a pixel, in the group's frame. The CPU twin is surface_normal_ref.hpp,
-// term by term.
+// Applies normal maps: computes the normal at a pixel, in the group's frame.
 
 // Describes the frame of a normal map, right-handed if `handedness` is +1. A tangent of 0 means that the surface has
 // none; its normal then stays as it is.

@@ -1,5 +1,5 @@
 // Reads the quantized weights of samples and the shares of light probes in them, for the sample stages of all
-// effects. The CPU twin is in transfer_ref.hpp (codedSampleAt, codeOf, lightShareOf).
+// effects.
 #include "transfer_shared.h"
 
 uint codeWordAt(uint word);  // word of the transfer page

@@ -1,5 +1,5 @@
 // Returns E/pi at a normal from light of bands 0..2, both in the group's frame: E/pi = sum_j (A_l/pi) y_j(n) l_j with
-// A = pi, 2pi/3, pi/4 (Ramamoorthi and Hanrahan 2001). The CPU twin is transfer_ref.hpp.
+// A = pi, 2pi/3, pi/4 (Ramamoorthi and Hanrahan 2001).
 vec3 diffuseLight(vec3 light[9], vec3 n) {
   return 0.28209479 * light[0] +
          0.32573501 * (n.y * light[1] + n.z * light[2] + n.x * light[3]) +

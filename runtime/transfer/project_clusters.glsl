@@ -1,7 +1,7 @@
 // Stage a of all effects multiplies the mean and axes of clusters with the light. A work group handles kUnitsPerGroup
 // units, each one output of one cluster under one light. The offsets of the weights go into the mean's product and
 // their scales into the axes', so that a sample needs one multiply-add per axis and channel. An entry shader defines
-// projected(). The CPU twin is projectClusters in transfer_ref.hpp.
+// projected().
 #include "transfer_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
@@ -10,12 +10,12 @@ layout(std430, binding = kBindLights) readonly buffer Lights { vec4 lights[]; };
 layout(std430, binding = kBindTransfers) readonly buffer Transfers { TransferRecord transfers[]; };
 layout(std430, binding = kBindPlaces) readonly buffer Places { uint places[]; };
 layout(std430, binding = kBindProducts) writeonly buffer Products { vec4 products[]; };
-layout(std430, binding = kBindTransfer) readonly buffer Transfer { float page[]; };
+layout(std430, binding = kBindTransfer) readonly buffer Transfer { uint page[]; };
 
 shared vec4 means[kWorkGroupSize];
 
 vec3 lightAt(uint index) { return lights[index].rgb; }
-float vectorAt(uint word) { return page[word]; }
+float vectorAt(uint word) { return uintBitsToFloat(page[word]); }
 
 // Returns one output of a mean or axis times the light whose coefficients start at `light`.
 vec4 projected(TransferRecord transfer, uint vector, uint output_index, uint light);
@@ -33,16 +33,16 @@ void main() {
   vec4 mean = vec4(0.0);
   uint first = 0u;
   if (there) {
-    first = floatBitsToUint(page[transfer.clusters_word + 2u * cluster]);
+    first = page[transfer.clusters_word + 2u * cluster];
     uint light = places[transfer.first_light + light_index];
-    uint axes = min(floatBitsToUint(page[transfer.clusters_word + 2u * cluster + 1u]), transfer.plane_count);
+    uint axes = min(page[transfer.clusters_word + 2u * cluster + 1u], transfer.plane_count);
     for (uint v = lane; v <= axes; v += kLanesPerUnit) {
       uint vector = first + v;
       vec4 value = projected(transfer, vector, output_index, light);
-      mean += page[transfer.weights_word + 2u * vector] * value;
+      mean += vectorAt(transfer.weights_word + 2u * vector) * value;
       if (v > 0u)
         products[first_product + transfer.outputs * vector + output_index] =
-            page[transfer.weights_word + 2u * vector + 1u] * value;
+            vectorAt(transfer.weights_word + 2u * vector + 1u) * value;
     }
   }
   means[gl_LocalInvocationID.x] = mean;

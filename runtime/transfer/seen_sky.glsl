@@ -1,5 +1,5 @@
 // Tells how much of the sky a rough mirror sees, from the first bands of transfer without bounces and the weights of
-// evaluate/seen_sky.hpp. The CPU twin is transfer_ref.hpp. Vectors are unit vectors in the group's frame.
+// evaluate/seen_sky.hpp. Vectors are unit vectors in the group's frame.
 #include "seen_sky_shared.h"
 
 // Evaluates each of the first bands in direction d.

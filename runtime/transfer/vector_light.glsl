@@ -1,5 +1,4 @@
-// Multiplies transfer vectors with light. It holds the mathematics only and no bindings. The CPU twin is in
-// transfer_ref.hpp.
+// Multiplies transfer vectors with light. It holds the mathematics only and no bindings.
 #include "transfer_shared.h"
 
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);  // Rec. 709
@@ -28,7 +27,7 @@ vec3 timesLight(TransferVector vector, ArrivingLight light) {
     if (light.key_share != 0.0) arriving += light.key_share * lightAt(light.key + i);
     vec3 value = vec3(vectorAt(vector.at + i));
     if (vector.channels > 1u)
-      value.gb = vec2(vectorAt(vector.at + vector.stride + i), vectorAt(vector.at + 2u * vector.stride + i));
+      value = vec3(value.r, vectorAt(vector.at + vector.stride + i), vectorAt(vector.at + 2u * vector.stride + i));
     sum += value * arriving;
   }
   return sum;

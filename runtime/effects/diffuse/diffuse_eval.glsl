@@ -1,6 +1,6 @@
-// Multiplies diffuse transfer with light. It holds the mathematics only and no bindings. The CPU twin is
-// diffuse_ref.hpp, with the same names and the same order of terms. An entry shader selects the stage
-// (LAMBENT_STAGE_VERTICES, _TEXELS or _PROXIES) and defines the fetches that the stage's functions declare.
+// Multiplies diffuse transfer with light. It holds the mathematics only and no bindings. An entry shader
+// selects the stage (LAMBENT_STAGE_VERTICES, _TEXELS or _PROXIES) and defines the fetches that the stage's functions
+// declare.
 #include "diffuse_shared.h"
 
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);  // Rec. 709
@@ -15,7 +15,7 @@ float shadedShare(vec4 shaded) { return shaded.w > 0.0 ? 1.0 : 0.0; }
 // Returns A_l / pi, with the clamped cosine's weights A_l: pi, 2pi/3, pi/4, 0, -pi/24, 0, pi/64 (Ramamoorthi and
 // Hanrahan 2001).
 float clampedCosineOverPi(int l) {
-  const float kWeights[8] = float[8](1.0, 2.0 / 3.0, 0.25, 0.0, -1.0 / 24.0, 0.0, 1.0 / 64.0, 0.0);
+  const float kWeights[8] = {1.0, 2.0 / 3.0, 0.25, 0.0, -1.0 / 24.0, 0.0, 1.0 / 64.0, 0.0};
   return kWeights[l];
 }
 
@@ -134,7 +134,7 @@ vec4 mappedRadiance(uint first, vec3 normal) {
 float keyVisibility(uint first, vec3 direction) {
   vec3 visibility[kMappedOutputs];
   for (uint j = 0u; j < kMappedOutputs; ++j) visibility[j] = vec3(sampleAt(first + j).w);
-  const float kBack[9] = float[9](1.0, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0, 4.0, 4.0);  // pi / A_l, undoes the cosine's weights
+  const float kBack[9] = {1.0, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0, 4.0, 4.0};  // pi / A_l, undoes the cosine's weights
   for (uint j = 0u; j < kMappedOutputs; ++j) visibility[j] *= kBack[j];
   return clamp(diffuseLight(visibility, direction).r, 0.0, 1.0);
 }

@@ -28,8 +28,9 @@ void main() {
 #if LAMBENT_OUTPUTS == 1
   uint at = draw.normals_word + 3u * vertex;
   vec3 normal_mesh = vec3(geometry[at], geometry[at + 1u], geometry[at + 2u]);
-  float m[12] = draw.group_from_mesh_normal;
-  mat3 group_from_mesh = mat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]);
+  mat3 group_from_mesh;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) group_from_mesh[c][r] = draw.group_from_mesh_normal[4 * c + r];
   vec3 normal = normalize(group_from_mesh * normal_mesh);
 #ifdef LAMBENT_ORDER
   vec4 light = vertexRadiance(draw, vertex, normal, LAMBENT_ORDER);

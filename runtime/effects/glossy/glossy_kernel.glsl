@@ -1,5 +1,5 @@
 // Computes what a glossy surface sends towards a view: the transferred light at its place, weighed by b(v) turned to
-// its frame. It holds the mathematics only and no bindings; glossy_ref.hpp is its CPU twin, term by term.
+// its frame. It holds the mathematics only and no bindings.
 // Vectors are unit vectors in the group's frame. The entry shader defines:
 //   LAMBENT_BANDS        bands of the transferred light: 4, 5 or 6
 //   LAMBENT_ANISOTROPIC  set if the table has azimuths

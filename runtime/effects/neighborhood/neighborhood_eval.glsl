@@ -1,5 +1,5 @@
 // Looks up the light that a body takes from its surroundings or adds to them. It holds the mathematics only and no
-// bindings; neighborhood_ref.hpp is its CPU twin, term by term. Places are counted in points of the grid: 0 is the
+// bindings. Places are counted in points of the grid: 0 is the
 // first and size - 1 the last along each axis.
 #include "neighborhood_shared.h"
 

@@ -1,5 +1,5 @@
 // Gathers light along a ray through up to LAMBENT_VOLUMES volumes at once. It holds the mathematics only and no
-// bindings. The CPU twin is volume_ref.hpp, with the same names and the same order of terms.
+// bindings.
 //
 //   L = sum_k tau_k (1 - exp(-sigma_k d_k)) S_k + tau_end L_behind,   tau_k = exp(-sum_j<k sigma_j d_j)
 //
@@ -176,12 +176,13 @@ vec3 scatteredAt(int v, MarchRecord record, VolumeRay ray, float t) {
   if (record.outputs > 1u) {
     float y[LAMBENT_BANDS * LAMBENT_BANDS];
     basisAt(ray.towards, LAMBENT_BANDS, y);
-    light.rgb *= y[0];
+    vec3 sum = y[0] * light.rgb;
     for (int j = 1; j < LAMBENT_BANDS * LAMBENT_BANDS; ++j) {
       if (uint(j) >= record.outputs) break;
       vec3 slab = vec3(float(uint(j) / record.slabs_z), 0.0, float(uint(j) % record.slabs_z));
-      light.rgb += y[j] * lightAt(v, (place + slab * transfer_size) / light_size).rgb;
+      sum += y[j] * lightAt(v, (place + slab * transfer_size) / light_size).rgb;
     }
+    light = vec4(sum, light.a);
   }
 #endif
   return light.a > 0.0 ? light.rgb / light.a : vec3(0.0);
@@ -249,8 +250,7 @@ void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_V
           if (extinction[v] == 0.0) continue;
           light += extinction[v] / all * records[v].albedo * scatteredAt(v, records[v], rays[v], place);
         }
-        sum.rgb += exp(-sum.a) * lostOf(depth) * light;
-        sum.a += depth;
+        sum += vec4(exp(-sum.a) * lostOf(depth) * light, depth);
       }
     }
     t = end;

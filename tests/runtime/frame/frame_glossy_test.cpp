@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "baker/brdf/brdf.hpp"
-#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/frame/frame.hpp"
 #include "tests/runtime/frame/ggx_table.hpp"
 #include "tests/support/frame/view_stage.hpp"
+#include "tests/support/glsl/glossy_kernels.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -77,7 +77,7 @@ TEST_F(FrameGlossy, AnOpenMetalSphereUnderASunIsWhatTheKernelMakesOfTheLight) {
   const spec::View view = stage.view();
   std::vector<glm::vec4> light;
   for (const glm::vec3& coefficient : stage.environment.light().c) light.emplace_back(coefficient, 0.0f);
-  const effects::glossy::ref::Table table(ggxTable());
+  const effects::glossy::glsl::Table table(ggxTable());
   const glm::mat4 world_from_clip = glm::inverse(view.clip_from_view * view.view_from_world);
   double squared = 0.0, power = 0.0;
   std::size_t count = 0;
@@ -87,9 +87,7 @@ TEST_F(FrameGlossy, AnOpenMetalSphereUnderASunIsWhatTheKernelMakesOfTheLight) {
       if (texel.a == 0.0f) continue;
       const std::optional<Hit> hit = hitSphere(view, world_from_clip, x, y);
       if (!hit || hit->rim > 0.97f) continue;  // the mesh's rim
-      const auto local = effects::glossy::ref::localView(true, hit->normal, {}, hit->to_eye);
-      const auto reflected = effects::glossy::ref::reflectLight(
-          table, local, effects::glossy::ref::lookUpWeights(table, local, kRoughness, 0.0f), light);
+      const auto reflected = table.reflect({hit->normal, {}, hit->to_eye, kRoughness}, light);
       const glm::vec3 expected = color * glm::vec3(reflected.f0_light) + glm::vec3(reflected.f90_light);
       squared += glm::dot(glm::vec3(texel) - expected, glm::vec3(texel) - expected);
       power += glm::dot(expected, expected);
@@ -173,7 +171,8 @@ double errorUnderASun(float roughness, bool residual, const spec::SunLight& sun)
   const auto ggx = baker::makeGgx(false);
   const lighting::Disc disc = stage.environment.discs()[0];
   const glm::dvec3 centre = disc.direction;
-  const glm::dvec3 side = effects::glossy::ref::perpendicular(disc.direction), up = glm::cross(centre, side);
+  const glm::dvec3 side = effects::glossy::glsl::Isotropic().perpendicular(disc.direction),
+                   up = glm::cross(centre, side);
   const double least = std::cos(static_cast<double>(disc.radius_rad));
   double squared = 0.0, power = 0.0;
   for (std::uint32_t y = 1; y < 96; y += 3)
@@ -181,7 +180,8 @@ double errorUnderASun(float roughness, bool residual, const spec::SunLight& sun)
       const glm::vec4 texel = image.texels[y * 96 + x];
       const std::optional<Hit> hit = hitSphere(view, world_from_clip, x, y);
       if (texel.a == 0.0f || !hit || hit->rim > 0.9f) continue;
-      const glm::dvec3 normal = hit->normal, tangent = effects::glossy::ref::perpendicular(hit->normal);
+      const glm::dvec3 normal = hit->normal,
+                       tangent = effects::glossy::glsl::Isotropic().perpendicular(hit->normal);
       const glm::dmat3 local_from_world =
           glm::transpose(glm::dmat3(tangent, glm::cross(normal, tangent), normal));
       const glm::dvec3 to_eye = local_from_world * glm::dvec3(hit->to_eye);

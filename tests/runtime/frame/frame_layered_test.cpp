@@ -1,18 +1,18 @@
-// Tests smooth dielectrics in whole frames: pictures with known answers, and the shader against its CPU twin.
+// Tests smooth dielectrics in whole frames: pictures with known answers, and the shader against its text as
+// C++.
 #include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "baker/brdf/brdf.hpp"
-#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/transfer/transfer_ref.hpp"
 #include "tests/runtime/frame/ggx_table.hpp"
 #include "tests/support/frame/view_stage.hpp"
+#include "tests/support/glsl/glossy_kernels.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -92,12 +92,14 @@ std::vector<float> seenWeights(const evaluate::SeenKernel& kernel, float cosine,
   return weights;
 }
 
-float seenAbout(const Vector& seen, const glm::vec3& normal, const glm::vec3& mirrored, float roughness) {
+float seenAbout(Vector seen, const glm::vec3& normal, const glm::vec3& mirrored, float roughness) {
   static const evaluate::SeenKernel kernel = evaluate::makeSeenKernel();
-  static const sh::ZonalFactors factors = sh::ZonalFactors::isotropic(static_cast<int>(transfer::kSeenBands));
-  const auto view = effects::glossy::ref::localView(true, normal, {}, mirrored);
-  return transfer::ref::seenShare(seen, seenWeights(kernel, view.cos_theta, roughness), factors.axes(),
-                                  glm::mat3(view.tangent, view.bitangent, view.normal));
+  const sh::ZonalFactors factors = sh::ZonalFactors::isotropic(static_cast<int>(transfer::kSeenBands));
+  std::vector<glm::vec3> axes(factors.axes().begin(), factors.axes().end());
+  const auto view = effects::glossy::glsl::Isotropic().localView(normal, {}, mirrored);
+  return transfer::glsl::SeenSky().seenShare(
+      seen.data(), seenWeights(kernel, view.cos_theta, roughness).data(), axes.data(),
+      glm::mat3(view.tangent, view.bitangent, view.normal));
 }
 
 }  // namespace
@@ -150,9 +152,9 @@ TEST_F(FrameLayered, AMirrorInTheDarkDoesNotShowTheSky) {
 
 TEST_F(FrameLayered, AMirrorBesideAWallShowsWhatTheTwinSaysWithANormalMapOrWithout) {
   const float roughness = 0.3f;
-  const Vector half = transferOf({0, 0, 1}, openTowardsX);
-  const effects::glossy::ref::Table table(ggxTable());
-  const float open = transfer::ref::seenShareOfAll(half);
+  Vector half = transferOf({0, 0, 1}, openTowardsX);
+  const effects::glossy::glsl::Table table(ggxTable());
+  const float open = transfer::glsl::SeenSky().seenShareOfAll(half.data());
   EXPECT_NEAR(open, 0.5f, 0.01f);
   for (const bool mapped : {false, true})
     for (const float azimuth : {-50.0f, 50.0f}) {
@@ -174,9 +176,9 @@ TEST_F(FrameLayered, AMirrorBesideAWallShowsWhatTheTwinSaysWithANormalMapOrWitho
       ASSERT_EQ(middle.a, 1.0f);
       const glm::vec3 to_eye = glm::normalize(view.eye_ws);
       const glm::vec3 mirrored(-to_eye.x, -to_eye.y, to_eye.z);
-      const auto local = effects::glossy::ref::localView(true, {0, 0, 1}, {}, to_eye);
-      const auto weights = effects::glossy::ref::lookUpWeights(table, local, roughness, 0.0f);
-      const float albedo = 0.04f * weights[0].x + weights[0].y;
+      const glm::vec3 lobes =
+          table.reflect({{0, 0, 1}, {}, to_eye, roughness}, std::vector<glm::vec4>(25)).albedo;
+      const float albedo = 0.04f * lobes.x + lobes.y;
       const float share = seenAbout(half, {0, 0, 1}, mirrored, roughness);
       // E/pi is all from the sky, so a tenth of it stays for what hides the rest.
       const float hidden = 0.1f * open / (1.0f - open);

@@ -18,6 +18,7 @@
 #include "runtime/shadows/key_shadows.hpp"
 #include "runtime/shadows/shadowed_light.hpp"
 #include "tests/runtime/shadows/key_stage.hpp"
+#include "tests/runtime/shadows/shadow_shaders.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
@@ -256,8 +257,8 @@ TEST_F(KeyFrame, UnderAWhiteSkyAndSunsAnOpenSphereHasEachLightOnce) {
         float direct = 0.0f;
         sh::LightVector keys = stage.environment.keyLight().truncated(kOrder);
         for (const spec::Disc& key : stage.environment.keys())
-          direct += key.radiance.r *
-                    ref::sphereShare(glm::dot(normal, key.direction), 1.0f / std::sin(key.radius_rad));
+          direct += key.radiance.r * glsl::KeyShader().sphereShare(glm::dot(normal, key.direction),
+                                                                   1.0f / std::sin(key.radius_rad));
         std::vector<float> open(kOrder * kOrder);
         sh::unoccludedTransfer(kOrder, normal, open);
         float bounced = 0.0f;

@@ -1,5 +1,5 @@
-// Compares the visibility of key lights by shadow maps, on the CPU, with closed forms and with sums over the
-// disc that do not use maps.
+// Compares the visibility of key lights by shadow maps, by the shader as C++, with closed forms and with sums
+// over the disc that do not use maps.
 #include <array>
 #include <limits>
 #include <numbers>
@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "runtime/sh/basis.hpp"
-#include "runtime/shadows/key_light_ref.hpp"
 #include "tests/runtime/shadows/key_maps.hpp"
 #include "tests/runtime/shadows/random.hpp"
+#include "tests/runtime/shadows/shadow_shaders.hpp"
 #include "tests/support/differences.hpp"
 
 namespace lambent::frame {
@@ -27,10 +27,9 @@ using testing::Random;
 
 // Distances along rays are negative if there is no hit.
 // Returns the share that is visible where all counts of which the map cannot tell.
-template <typename Map>
-float visibleOf(const Map& map, const KeyRecord& key, const glm::vec3& position, const glm::vec3& normal,
+float visibleOf(const MadeMap& map, const KeyRecord& key, const glm::vec3& position, const glm::vec3& normal,
                 const glm::vec3& shading_normal) {
-  const glm::vec2 visible = ref::keyVisible(map, key, position, normal, shading_normal);
+  const glm::vec2 visible = glsl::KeyShader{&map}.keyVisible(key, position, normal, shading_normal);
   return visible.x + visible.y;
 }
 
@@ -83,7 +82,7 @@ double visibleByRays(const KeyRecord& key, glm::vec3 position, glm::vec3 normal,
   const glm::dvec3 right{glm::normalize(glm::vec3(key.right))}, up{glm::normalize(glm::vec3(key.up))};
   double visible = 0.0, all = 0.0;
   for (int i = 0; i < kRays; ++i) {
-    const glm::dvec2 at = double{key.scale.w} * glm::dvec2(ref::keyPoint(i, kRays));
+    const glm::dvec2 at = double{key.scale.w} * glm::dvec2(glsl::KeyShader().keyPoint(i, kRays));
     const glm::dvec3 direction = glm::dvec3(glm::vec3(key.towards)) + at.x * right + at.y * up;
     const double weight = std::max(glm::dot(glm::dvec3(normal), direction), 0.0);
     all += weight;
@@ -279,7 +278,7 @@ TEST(KeyLight, NothingInTheWayIsAllOfTheLightAtAnyTilt) {
           ASSERT_NEAR(visibleOf(map, key, place, normal, normal), 1.0f, kRounding)
               << degrees << " degrees, " << size << " texels, cosine " << facing;
           // Much of the disc may be behind the plane, and the map is sure of the rest.
-          ASSERT_NEAR(ref::keyVisible(map, key, place, normal, normal).y, 0.0f, kRounding)
+          ASSERT_NEAR(glsl::KeyShader{&map}.keyVisible(key, place, normal, normal).y, 0.0f, kRounding)
               << degrees << " degrees, " << size << " texels, cosine " << facing;
         }
       }
@@ -299,7 +298,7 @@ TEST(KeyLight, WhatComesThroughACeilingThatAWallTouchesIsInDoubt) {
       double sure = 0.0, all = 0.0;
       for (int i = 0; i < 500; ++i) {
         const glm::vec3 place(0.0f, random.number(-0.3f, 0.3f), -random.number(0.6f, 1.0f) / key.scale.x);
-        const glm::vec2 visible = ref::keyVisible(map, key, place, {1, 0, 0}, {1, 0, 0});
+        const glm::vec2 visible = glsl::KeyShader{&map}.keyVisible(key, place, {1, 0, 0}, {1, 0, 0});
         sure += visible.x, all += visible.x + visible.y;
       }
       EXPECT_GT(all, 50.0) << "of 500, or the ceiling is no case; " << degrees << " degrees, cosine "
@@ -374,7 +373,8 @@ TEST(KeyLight, NoLightComesThroughThinWallsAndClosedRooms) {
         // light, in parts of what the disc gives overhead.
         const float visible = visibleOf(map, key, place, normal, normal);
         const float grazes = glm::dot(normal, towards) < 0.2f ? 3e-3f : 0.0f;
-        ASSERT_LE(visible * ref::keyShare(key, normal) / (key.radiance.w * key.radiance.w), grazes)
+        ASSERT_LE(visible * glsl::KeyShader().keyShare(key, normal) / (key.radiance.w * key.radiance.w),
+                  grazes)
             << degrees << " degrees, at " << place.x << " " << place.y << " " << place.z;
       }
     }
@@ -432,7 +432,7 @@ TEST(KeyLight, OfADiscThatIsPartlyBelowTheHorizonTheRestShines) {
         }
         return 2.0 * (1.0 - std::cos(double{degrees * kDegree})) * sum / kRays;
       }();
-      EXPECT_NEAR(ref::keyShare(key, kUp) / (sine * sine), expected / double{sine * sine},
+      EXPECT_NEAR(glsl::KeyShader().keyShare(key, kUp) / (sine * sine), expected / double{sine * sine},
                   2e-3 * double{sine});
       const float all = visibleOf(map, key, glm::vec3(0.0f), kUp, kUp);
       EXPECT_NEAR(all, 1.0f, kRounding) << "the share has the horizon in it already";
@@ -464,7 +464,7 @@ TEST(KeyLight, SharesStayBetweenNothingAndAllForDegenerateInputs) {
                  {glm::vec3(0), {half, half, 0}, {1e6f, -1e6f, 0}, {0, 0, 1e6f}, {0, 0, -1e6f}}) {
               const float visible = visibleOf(map, key, place, normal, shading);
               EXPECT_TRUE(visible >= 0.0f && visible <= 1.0f + 1e-5f) << visible;
-              const float share = ref::keyShare(key, shading);
+              const float share = glsl::KeyShader().keyShare(key, shading);
               EXPECT_TRUE(share >= 0.0f && share <= 1.0f) << share;
             }
       }

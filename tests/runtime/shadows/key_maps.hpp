@@ -16,7 +16,7 @@
 
 namespace lambent::frame {
 
-// Has the interface that frame::ref::keyVisible needs. The tile is at the texture's first texel.
+// The tile is at the texture's first texel.
 struct MadeMap {
   int size = 0;  // texels along an edge, a power of two, at least kBlockerTexels
   std::vector<float> depths;

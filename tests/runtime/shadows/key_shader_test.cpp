@@ -1,4 +1,4 @@
-// Compares key_light.glsl with its CPU twin on random lights, places and normals over blocks on a floor, and
+// Compares key_light.glsl with itself as C++ on random lights, places and normals over blocks on a floor, and
 // the pyramid over shadow maps with the minimum and maximum of all texels.
 #include <bit>
 #include <random>
@@ -9,27 +9,15 @@
 #include "lambent_shadows_embedded.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/shadows/key_light_ref.hpp"
 #include "test_key_shadows_embedded.hpp"
-#include "tests/runtime/shadows/key_maps.hpp"
+#include "tests/runtime/shadows/random.hpp"
+#include "tests/runtime/shadows/shadow_shaders.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {
 namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::test_key_shadows::find, &embedded::lambent_shadows::find};
-
-struct Random {
-  std::mt19937 engine;
-  explicit Random(std::uint32_t seed) : engine(seed) {}
-  float number(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine); }
-  glm::vec3 direction() {
-    for (;;) {
-      const glm::vec3 v(number(-1, 1), number(-1, 1), number(-1, 1));
-      if (const float squared = glm::dot(v, v); squared > 0.01f && squared < 1.0f) return glm::normalize(v);
-    }
-  }
-};
 
 // Joins maps side by side in a row of tiles, as in KeyShadows.
 struct Textures {
@@ -91,7 +79,7 @@ float depthAt(const KeyRecord& key, glm::ivec2 texel) {
 }
 
 std::vector<Case> someCases(const KeyRecord& plain) {
-  Random random(5);
+  testing::Random<float> random(5);
   std::vector<Case> cases;
   for (int i = 0; i < 4096; ++i) {
     Case c{};
@@ -117,9 +105,10 @@ std::vector<Case> someCases(const KeyRecord& plain) {
 
 using KeyShader = testing::GpuTest;
 
-TEST_F(KeyShader, DoesWhatItsTwinDoes) {
+TEST_F(KeyShader, DoesAsItsTextDoesInCpp) {
   const KeyRecord key = madeKey({0, 0, 1}, 0.1f, 2.0f, kSize);
   const MadeMap map(kSize, [&](glm::ivec2 texel) { return depthAt(key, texel); });
+  glsl::KeyShader shader{&map};
   const std::vector<Case> cases = someCases(key);
   const Textures textures(kSize, kSize, map.depths);
   const Result<gpu::Program> pyramid = pyramidProgram();
@@ -143,15 +132,15 @@ TEST_F(KeyShader, DoesWhatItsTwinDoes) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Case& c = cases[i];
     const glm::vec3 position(c.position), normal(c.normal), shading_normal(c.shading_normal);
-    const float share = ref::keyShare(c.key, shading_normal), whole = c.key.radiance.w * c.key.radiance.w;
+    const float share = shader.keyShare(c.key, shading_normal), whole = c.key.radiance.w * c.key.radiance.w;
     const glm::vec2 seen(results[2 * i]), found_bounds(results[2 * i + 1]);
     // Arc functions of GPUs are good to 1e-4.
     EXPECT_NEAR(results[2 * i].z, share, 2e-4f * whole + 1e-3f * share) << "case " << i;
-    const glm::vec2 bounds = ref::blockerBounds(map, c.key, ref::keyReceiver(c.key, position, normal).place,
-                                                glm::vec2(c.position.w));
+    const glm::vec2 bounds = shader.blockerBounds(c.key, shader.keyReceiver(c.key, position, normal).place,
+                                                  glm::vec2(c.position.w));
     // Both counts are of what is not within a bound, so that NaN counts.
     if (!(glm::distance(bounds, found_bounds) <= 1e-5f)) ++bounds_apart;
-    const glm::vec2 visible = ref::keyVisible(map, c.key, position, normal, shading_normal);
+    const glm::vec2 visible = shader.keyVisible(c.key, position, normal, shading_normal);
     if (visible.x > 0.02f && visible.x < 0.98f) ++partly;
     if (visible.y > 0.02f) ++unsure;
     // A ray on the border of two texels may fall to either side by rounding: one or two of all, rarely.
@@ -167,7 +156,7 @@ TEST_F(KeyShader, DoesWhatItsTwinDoes) {
 TEST_F(KeyShader, PyramidsHaveTheLeastAndGreatestDepthsOfTheirTile) {
   // Tiles of two sizes in one texture, and one that was left alone.
   constexpr int kWidth = 256, kHeight = 128;
-  Random random(9);
+  testing::Random<float> random(9);
   std::vector<float> texels;
   for (int i = 0; i < kWidth * kHeight; ++i) texels.push_back(random.number(0, 1));
   const Textures textures(kWidth, kHeight, texels);

@@ -1,4 +1,4 @@
-// Runs local_shadow.glsl on cases from a buffer, in a synthetic world that local_shader_test.cpp also implements.
+// Runs local_shadow.glsl on cases from a buffer, in a synthetic world.
 #include "local_shared.h"
 #include "local_shadow.glsl"
 
@@ -17,7 +17,7 @@ struct Case {
 };
 layout(std430, binding = 0) readonly buffer Cases { Case cases[]; };
 layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
-uniform layout(location = 0) uint count;
+layout(location = 0) uniform uint count;
 
 const int kSize = 64;
 

@@ -1,53 +1,40 @@
-// Compares shadowed_light.glsl and local_shadow.glsl with their CPU twins, on random lights, places and
-// normals in a world of blocks and a floor.
-#include <random>
+// Compares shadowed_light.glsl and local_shadow.glsl with themselves as C++, on random lights, places and
+// normals in the world of blocks and a floor that local_probe.comp has.
 
 #include <gtest/gtest.h>
 
 #include "lambent_shadows_embedded.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/shadows/local_shadow_ref.hpp"
+#include "runtime/shadows/local_shared.h"
 #include "test_local_shadows_embedded.hpp"
+#include "tests/runtime/shadows/random.hpp"
+#include "tests/support/glsl/glsl.hpp"
 #include "tests/support/gpu_context.hpp"
+
+namespace lambent::frame::glsl {
+namespace {
+
+using namespace lambent::glsl;
+struct Probe : Invocation {
+  uvec3 gl_GlobalInvocationID{0};
+#include "as_cpp/local_probe.comp"
+};
+
+}  // namespace
+}  // namespace lambent::frame::glsl
 
 namespace lambent::frame {
 namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::test_local_shadows::find, &embedded::lambent_shadows::find};
-constexpr int kMapSize = 64;
 
-struct Case {
-  ShadowedLightRecord light;
-  glm::vec3 position;
-  float turns;
-  glm::vec3 normal;
-  float pad0;
-  glm::vec3 horizon;
-  float pad2;
-  glm::vec3 shading_normal;
-  float pad1;
-};
-static_assert(sizeof(Case) == 128);
-
-// This is the same world as in local_probe.comp.
-float distanceAt(int face, glm::ivec2 texel) {
-  if (((texel.x / 8 + texel.y / 8 + face) & 1) == 0 && face != 3)
-    return 0.5f + 0.01f * static_cast<float>(face);
-  const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, kMapSize);
-  return direction.y < 0.0f ? -1.0f / direction.y : ref::kNothing;
-}
+using Case = glsl::Probe::Case;
+static_assert(sizeof(Case) == 128, "as in the shader's buffer");
 
 std::vector<Case> someCases() {
-  std::mt19937 engine(5);
-  const auto number = [&](float low, float high) {
-    return std::uniform_real_distribution<float>(low, high)(engine);
-  };
-  const auto direction = [&] {
-    for (;;) {
-      const glm::vec3 v(number(-1, 1), number(-1, 1), number(-1, 1));
-      if (const float squared = glm::dot(v, v); squared > 0.01f && squared < 1.0f) return glm::normalize(v);
-    }
-  };
+  testing::Random<float> random(5);
+  const auto number = [&](float low, float high) { return random.number(low, high); };
+  const auto direction = [&] { return random.direction(); };
   std::vector<Case> cases;
   for (uint i = 0; i < 4096; ++i) {
     Case c{};
@@ -78,7 +65,7 @@ std::vector<Case> someCases() {
 
 using LocalShader = testing::GpuTest;
 
-TEST_F(LocalShader, DoesWhatItsTwinDoes) {
+TEST_F(LocalShader, DoesAsItsTextDoesInCpp) {
   const std::vector<Case> cases = someCases();
   const Result<gpu::Program> program =
       gpu::Program::create("local probe", {{GL_COMPUTE_SHADER, "local_probe.comp"}}, kShaders);
@@ -94,21 +81,23 @@ TEST_F(LocalShader, DoesWhatItsTwinDoes) {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::vector<glm::vec4> results(cases.size());
   output.buffer().read(0, std::span<glm::vec4>(results));
+  glsl::Probe probe;
+  std::vector<glm::vec4> expected(cases.size());
+  probe.cases = cases;
+  probe.results = expected;
+  probe.count = static_cast<uint>(cases.size());
+  for (uint& i = probe.gl_GlobalInvocationID.x; i < probe.count; ++i) probe.main();
   std::size_t apart = 0, partly = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const Case& c = cases[i];
-    const float share = ref::localShare(c.light, c.shading_normal, c.light.position - c.position);
+    const uint kind = cases[i].light.kind;
+    const float share = expected[i].z, radiance = expected[i].y, whole = share * cases[i].light.power.y;
     // Arc functions of GPUs are good to 1e-4.
-    EXPECT_NEAR(results[i].z, share, 1e-3f * share + 2e-4f) << "case " << i << " kind " << c.light.kind;
-    const glm::vec3 radiance = ref::localRadiance(
-        distanceAt, c.light, {c.position, c.normal, c.horizon, c.shading_normal}, {kMapSize, 16, c.turns});
-    const float whole = share * c.light.power.y;
-    if (radiance.y > 0.02f * whole && radiance.y < 0.98f * whole) ++partly;
+    EXPECT_NEAR(results[i].z, share, 1e-3f * share + 2e-4f) << "case " << i << " kind " << kind;
+    if (radiance > 0.02f * whole && radiance < 0.98f * whole) ++partly;
     // A tap on the border of two texels may fall to either side by rounding: one or two taps of sixteen,
     // rarely.
-    if (!(std::abs(results[i].y - radiance.y) <= 0.01f * whole + 0.02f)) ++apart;  // so that NaN counts
-    EXPECT_NEAR(results[i].y, radiance.y, 2.5f / 16.0f * whole + 0.02f)
-        << "case " << i << " kind " << c.light.kind;
+    if (!(std::abs(results[i].y - radiance) <= 0.01f * whole + 0.02f)) ++apart;  // so that NaN counts
+    EXPECT_NEAR(results[i].y, radiance, 2.5f / 16.0f * whole + 0.02f) << "case " << i << " kind " << kind;
   }
   EXPECT_LT(apart, cases.size() / 100);
   EXPECT_GT(partly, cases.size() / 20) << "the world must have penumbras to tell anything";

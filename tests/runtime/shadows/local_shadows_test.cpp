@@ -8,7 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/shadows/local_shadow_ref.hpp"
+#include "tests/runtime/shadows/shadow_shaders.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/frame/local_stage.hpp"
 #include "tests/support/gpu_context.hpp"
@@ -169,12 +169,13 @@ TEST_F(LocalShadowsTest, ShadowsOfSeveralBlockersAreNearThoseOfRaysToEveryPointO
         for (std::uint32_t x = 0; x < kSize; ++x) {
           const glm::vec3 place(placeOf(x, kHalf), 0.0f, placeOf(y, kHalf));
           const glm::vec3 to = light - place, axis = glm::normalize(to);
+          glsl::LocalShader shader;
           glm::vec3 s, t;
-          ref::localBasis(axis, s, t);
+          shader.localBasis(axis, s, t);
           int visible = 0;
           constexpr int kRays = 400;
           for (int i = 0; i < kRays; ++i) {
-            const glm::vec2 at = kRadius * ref::discPoint(i, kRays, 0.0f);
+            const glm::vec2 at = kRadius * shader.discPoint(i, kRays, 0.0f);
             const glm::vec3 ray = to + at.x * s + at.y * t;
             visible += std::none_of(blockers.begin(), blockers.end(), [&](const Blocker& b) {
               const glm::vec3 hit = place + b.height / ray.y * ray;
@@ -213,12 +214,13 @@ TEST_F(LocalShadowsTest, TheShadowOfARoundBodyIsDarkInsideAndRightAtItsRim) {
     for (std::uint32_t x = 0; x < kSize; ++x) {
       const glm::vec3 place(placeOf(x, kHalf), 0.0f, placeOf(y, kHalf));
       const glm::vec3 to = light - place;
+      glsl::LocalShader shader;
       glm::vec3 s, t;
-      ref::localBasis(glm::normalize(to), s, t);
+      shader.localBasis(glm::normalize(to), s, t);
       int visible = 0;
       constexpr int kRays = 400;
       for (int i = 0; i < kRays; ++i) {
-        const glm::vec2 at = kRadius * ref::discPoint(i, kRays, 0.0f);
+        const glm::vec2 at = kRadius * shader.discPoint(i, kRays, 0.0f);
         const glm::vec3 ray = glm::normalize(to + at.x * s + at.y * t);
         visible += glm::length(glm::cross(ray, body - place)) > 0.3f ? 1 : 0;
       }

@@ -1,4 +1,4 @@
-// Compares unoccluded local lights, and the visibility by their shadow cubes, on the CPU, with closed forms
+// Compares unoccluded local lights, and the visibility by their shadow cubes, with closed forms
 // and with quadrature that does not use these formulas.
 #include <algorithm>
 #include <array>
@@ -9,15 +9,19 @@
 #include <gtest/gtest.h>
 
 #include "runtime/sh/basis.hpp"
-#include "runtime/shadows/local_shadow_ref.hpp"
 #include "runtime/shadows/local_shadows.hpp"
 #include "tests/runtime/shadows/random.hpp"
+#include "tests/runtime/shadows/shadow_shaders.hpp"
 
 namespace lambent::frame {
 namespace {
 
 using sh::kPi;
 using testing::Random;
+
+// The shader's functions are members of the tests.
+struct ShadowedLight : ::testing::Test, glsl::LocalShader {};
+using LocalShadow = ShadowedLight;
 
 // Returns (1/pi) times the integral of the clamped cosine over a cone about +Z, with the normal tilted in the
 // xz plane.
@@ -37,7 +41,7 @@ double coneShare(double normal_cosine, double cone_sine) {
 // Returns the same for a disc, by points on its area.
 double discSum(glm::dvec3 normal, glm::dvec3 to_light, glm::dvec3 direction, double radius) {
   glm::vec3 s, t;
-  ref::localBasis(glm::vec3(direction), s, t);
+  glsl::LocalShader().localBasis(glm::vec3(direction), s, t);
   constexpr int kRings = 500, kTurns = 500;
   double sum = 0.0;
   for (int i = 0; i < kRings; ++i)
@@ -67,25 +71,24 @@ ShadowedLightRecord lightOf(uint kind) {
 
 }  // namespace
 
-TEST(ShadowedLight, ASphereGivesWhatAQuadratureOfItsConeGivesAlsoAcrossTheHorizon) {
+TEST_F(ShadowedLight, ASphereGivesWhatAQuadratureOfItsConeGivesAlsoAcrossTheHorizon) {
   for (const float h : {1.01f, 1.3f, 2.0f, 5.0f, 20.0f, 63.0f, 65.0f, 500.0f})
     // The heights go from below the horizon to above it in steps of the sphere's size, and to straight above.
     for (const double above : {-1.2, -0.9, -0.5, -0.1, 0.0, 0.3, 0.7, 0.99, 1.0, 1.5, 1e9}) {
       const double cosine = std::clamp(above / double{h}, -1.0, 1.0);
       const double expected = coneShare(cosine, 1.0 / double{h});
       // The quadrature's error is 1e-5 of the largest result, and so is that of the cancellation.
-      EXPECT_NEAR(ref::sphereShare(static_cast<float>(cosine), h), expected, 2e-4 / (h * h) + 2e-3 * expected)
+      EXPECT_NEAR(sphereShare(static_cast<float>(cosine), h), expected, 2e-4 / (h * h) + 2e-3 * expected)
           << "h " << h << " above " << above;
     }
 }
 
-TEST(ShadowedLight, ASphereOverheadGivesPiLTimesTheSquareOfItsSine) {
-  for (const float h : {1.001f, 2.0f, 10.0f, 1000.0f})
-    EXPECT_NEAR(ref::sphereShare(1.0f, h) * h * h, 1.0f, 1e-5f);
-  EXPECT_EQ(ref::sphereShare(-1.0f, 0.5f), 1.0f) << "within the sphere all is light";
+TEST_F(ShadowedLight, ASphereOverheadGivesPiLTimesTheSquareOfItsSine) {
+  for (const float h : {1.001f, 2.0f, 10.0f, 1000.0f}) EXPECT_NEAR(sphereShare(1.0f, h) * h * h, 1.0f, 1e-5f);
+  EXPECT_EQ(sphereShare(-1.0f, 0.5f), 1.0f) << "within the sphere all is light";
 }
 
-TEST(ShadowedLight, ADiscGivesWhatAQuadratureOfItsAreaGivesAlsoAcrossTheHorizon) {
+TEST_F(ShadowedLight, ADiscGivesWhatAQuadratureOfItsAreaGivesAlsoAcrossTheHorizon) {
   Random<float> random(11);
   for (int i = 0; i < 40; ++i) {
     const glm::vec3 normal = random.direction(), direction = random.direction();
@@ -94,34 +97,34 @@ TEST(ShadowedLight, ADiscGivesWhatAQuadratureOfItsAreaGivesAlsoAcrossTheHorizon)
     const double expected = discSum(normal, to_light, direction, radius);
     const bool shines = glm::dot(direction, to_light) < 0.0f;
     // A polygon of 24 corners replaces the circle.
-    EXPECT_NEAR(ref::discShare(normal, to_light, direction, radius), shines ? expected : 0.0,
+    EXPECT_NEAR(discShare(normal, to_light, direction, radius), shines ? expected : 0.0,
                 3e-3 * expected + 1e-4);
   }
 }
 
-TEST(ShadowedLight, ADiscOverheadHasItsKnownFormFactor) {
+TEST_F(ShadowedLight, ADiscOverheadHasItsKnownFormFactor) {
   // A point on the disc's axis that faces it gets r^2 / (r^2 + d^2).
   for (const float radius : {0.01f, 0.049f, 0.051f, 0.3f, 1.0f, 10.0f, 1000.0f}) {
     const float expected = radius * radius / (radius * radius + 1.0f);
-    EXPECT_NEAR(ref::discShare({0, 1, 0}, {0, 1, 0}, {0, -1, 0}, radius), expected, 3e-3f * expected);
+    EXPECT_NEAR(discShare({0, 1, 0}, {0, 1, 0}, {0, -1, 0}, radius), expected, 3e-3f * expected);
   }
-  EXPECT_EQ(ref::discShare({0, 1, 0}, {0, 1, 0}, {0, 1, 0}, 0.5f), 0.0f) << "it shines to one side";
+  EXPECT_EQ(discShare({0, 1, 0}, {0, 1, 0}, {0, 1, 0}, 0.5f), 0.0f) << "it shines to one side";
 }
 
-TEST(ShadowedLight, PunctualLightsFadeAsTheirExtensionSays) {
+TEST_F(ShadowedLight, PunctualLightsFadeAsTheirExtensionSays) {
   ShadowedLightRecord point = lightOf(kLocalPoint);
-  EXPECT_NEAR(ref::localShare(point, {0, 0, 1}, {0, 0, 2}), 0.25 / kPi, 1e-7);
-  EXPECT_NEAR(ref::localShare(point, {0, 0, 1}, {0, 3, 4}), 0.8 / 25.0 / kPi, 1e-7);
-  EXPECT_EQ(ref::localShare(point, {0, 0, 1}, {0, 0, -2}), 0.0f);
+  EXPECT_NEAR(localShare(point, {0, 0, 1}, {0, 0, 2}), 0.25 / kPi, 1e-7);
+  EXPECT_NEAR(localShare(point, {0, 0, 1}, {0, 3, 4}), 0.8 / 25.0 / kPi, 1e-7);
+  EXPECT_EQ(localShare(point, {0, 0, 1}, {0, 0, -2}), 0.0f);
   point.range = 4.0f;
-  EXPECT_NEAR(ref::punctualShare(point, {0, 0, 2}), 0.25 * (1.0 - 1.0 / 16.0), 1e-7);
-  EXPECT_EQ(ref::punctualShare(point, {0, 0, 5}), 0.0f);
+  EXPECT_NEAR(punctualShare(point, {0, 0, 2}), 0.25 * (1.0 - 1.0 / 16.0), 1e-7);
+  EXPECT_EQ(punctualShare(point, {0, 0, 5}), 0.0f);
   ShadowedLightRecord spot = lightOf(kLocalSpot);
   const float inner = std::cos(0.2f), outer = std::cos(0.5f);
   spot.cos_outer = outer;
   spot.cone_scale = 1.0f / (inner - outer);
   const auto at = [&](float angle) {  // from the axis, one metre away
-    return ref::punctualShare(spot, {std::sin(angle), 0.0f, std::cos(angle)});
+    return punctualShare(spot, {std::sin(angle), 0.0f, std::cos(angle)});
   };
   EXPECT_NEAR(at(0.1f), 1.0f, 1e-6f);
   EXPECT_EQ(at(0.6f), 0.0f);
@@ -129,51 +132,49 @@ TEST(ShadowedLight, PunctualLightsFadeAsTheirExtensionSays) {
   EXPECT_NEAR(at(0.4f), half * half, 1e-5f);
 }
 
-TEST(ShadowedLight, StaysFiniteAtTheLightItself) {
+TEST_F(ShadowedLight, StaysFiniteAtTheLightItself) {
   for (const uint kind : {kLocalPoint, kLocalSpot, kLocalSphere, kLocalDisc}) {
     ShadowedLightRecord light = lightOf(kind);
     light.radius = 0.1f;
     light.power = glm::vec3(1e8f);
-    const auto lit = [](int, glm::ivec2) { return ref::kNothing; };
+    distance_at = [](int, glm::ivec2) { return kNothing; };
     for (const glm::vec3 place :
          {glm::vec3(0), {0, 0, 1e-20f}, {0, 0, -1e-6f}, {0.1f, 0, 0}, {0.1f, 0, -1e-9f}})
       for (const glm::vec3 normal : {glm::vec3(0, 0, 1), {0, 0, -1}, {1, 0, 0}}) {
-        const glm::vec3 radiance =
-            ref::localRadiance(lit, light, {place, normal, normal, normal}, {64, 16, 0.3f});
+        const glm::vec3 radiance = localRadiance(0, light, place, normal, normal, normal, 64, 16, 0.3f);
         // The maximum is 1e8 cd at a distance of at least a centimetre.
         EXPECT_TRUE(radiance.x >= 0.0f && radiance.x <= 1e8f * 1e4f) << kind << " " << radiance.x;
       }
   }
 }
 
-TEST(LocalShadow, EveryDirectionFindsItsTexel) {
+TEST_F(LocalShadow, EveryDirectionFindsItsTexel) {
   Random<float> random(11);
   for (int i = 0; i < 2000; ++i) {
     const glm::vec3 direction = random.direction();
-    const int face = ref::shadowFace(direction), size = 64;
-    const ref::Blocker blocker = ref::blockerAt(
-        [&](int f, glm::ivec2 texel) {
-          EXPECT_EQ(f, face);
-          EXPECT_TRUE(texel.x >= 0 && texel.y >= 0 && texel.x < size && texel.y < size);
-          return 1.0f;
-        },
-        direction, size);
+    const int face = shadowFace(direction), size = 64;
+    distance_at = [&](int f, glm::ivec2 texel) {
+      EXPECT_EQ(f, face);
+      EXPECT_TRUE(texel.x >= 0 && texel.y >= 0 && texel.x < size && texel.y < size);
+      return 1.0f;
+    };
+    const Blocker blocker = blockerAt(0, direction, size);
     EXPECT_GT(glm::dot(blocker.direction, direction), std::cos(0.75f * 2.0f / 64.0f));
   }
 }
 
-TEST(LocalShadow, FacesAreDrawnWhereTheyAreLookedUp) {
+TEST_F(LocalShadow, FacesAreDrawnWhereTheyAreLookedUp) {
   for (std::uint32_t face = 0; face < 6; ++face) {
     const FaceAxes axes = faceAxes(face);
     const int i = static_cast<int>(face);
-    EXPECT_EQ(axes.forward, ref::faceForward(i));
-    EXPECT_EQ(axes.up, ref::faceUp(i));
-    EXPECT_EQ(axes.right, ref::faceRight(i));
+    EXPECT_EQ(axes.forward, faceForward(i));
+    EXPECT_EQ(axes.up, faceUp(i));
+    EXPECT_EQ(axes.right, faceRight(i));
     EXPECT_EQ(glm::cross(axes.right, axes.up), -axes.forward) << "as a camera sees";
   }
 }
 
-TEST(LocalShadow, BoxesMeetTheFacesThatTheirPointsFall) {
+TEST_F(LocalShadow, BoxesMeetTheFacesThatTheirPointsFall) {
   Random<float> random(11);
   for (int i = 0; i < 500; ++i) {
     const glm::vec3 center = 2.0f * random.direction(), half(random.number(0.01f, 1.0f));
@@ -181,23 +182,23 @@ TEST(LocalShadow, BoxesMeetTheFacesThatTheirPointsFall) {
     for (int j = 0; j < 20; ++j) {
       const glm::vec3 point =
           center + half * glm::vec3(random.number(-1, 1), random.number(-1, 1), random.number(-1, 1));
-      EXPECT_TRUE(faceMeets(faceAxes(static_cast<std::uint32_t>(ref::shadowFace(point))), box));
+      EXPECT_TRUE(faceMeets(faceAxes(static_cast<std::uint32_t>(shadowFace(point))), box));
       EXPECT_GE(glm::length(point), nearestDistance(box) - 1e-6f);
       EXPECT_LE(glm::length(point), farthestDistance(box) + 1e-6f);
     }
   }
 }
 
-TEST(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
+TEST_F(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
   // A floor is 0.05 below the light; each texel sees the floor, out to the horizon.
-  const auto floor_only = [](int face, glm::ivec2 texel) {
-    const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, 512);
-    return direction.y < 0.0f ? -0.05f / direction.y : ref::kNothing;
+  const auto floor_only = [this](int face, glm::ivec2 texel) {
+    const glm::vec3 direction = texelDirection(face, glm::vec2(texel) + 0.5f, 512);
+    return direction.y < 0.0f ? -0.05f / direction.y : kNothing;
   };
   // A wall at x = 1 is on it, 0.5 high: the floor behind is dark.
   const auto with_wall = [&](int face, glm::ivec2 texel) {
-    const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, 512);
-    const float wall = direction.x > 0.0f ? 1.0f / direction.x : ref::kNothing;
+    const glm::vec3 direction = texelDirection(face, glm::vec2(texel) + 0.5f, 512);
+    const float wall = direction.x > 0.0f ? 1.0f / direction.x : kNothing;
     return direction.y * wall < 0.45f ? std::min(wall, floor_only(face, texel)) : floor_only(face, texel);
   };
   constexpr float kRounding = 1e-5f;  // weights of four texels sum to 1 but for that
@@ -208,19 +209,19 @@ TEST(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
   for (int i = 0; i < 2000; ++i) {
     const float x = random.number(-4, 4), z = random.number(-1, 1), turns = random.number(0, 1);
     const glm::vec3 place(x, -0.05f, z);
-    const ref::ShadowReceiver receiver = ref::shadowReceiver(place, up, up, 512);
-    EXPECT_NEAR(ref::pointVisible(floor_only, receiver, 512), 1.0f, kRounding);
-    EXPECT_NEAR(ref::discVisible(floor_only, sphere, receiver, up, {512, 16, turns}), 1.0f, kRounding);
+    const ShadowReceiver receiver = shadowReceiver(place, up, up, 512);
+    distance_at = floor_only;
+    EXPECT_NEAR(pointVisible(0, receiver, 512), 1.0f, kRounding);
+    EXPECT_NEAR(discVisible(0, sphere, receiver, up, 512, 16, turns), 1.0f, kRounding);
+    distance_at = with_wall;
     // Before the wall it is light up to the foot. Behind it, a point's shadow begins within 1 % of the
     // distance and a sphere's within 6 %.
     const bool before = x < 0.98f;
     if (before || x > 1.012f * 1.02f) {
-      EXPECT_NEAR(ref::pointVisible(with_wall, receiver, 512), before ? 1.0f : 0.0f, kRounding)
-          << x << " " << z;
+      EXPECT_NEAR(pointVisible(0, receiver, 512), before ? 1.0f : 0.0f, kRounding) << x << " " << z;
     }
     if (before || x > 1.06f) {
-      EXPECT_NEAR(ref::discVisible(with_wall, sphere, receiver, up, {512, 16, turns}), before ? 1.0f : 0.0f,
-                  kRounding)
+      EXPECT_NEAR(discVisible(0, sphere, receiver, up, 512, 16, turns), before ? 1.0f : 0.0f, kRounding)
           << x << " " << z;
     }
   }
@@ -228,7 +229,7 @@ TEST(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
 
 // The walls stand at one distance from the light at their nearest, and at much more at their farthest, as
 // those of a lamp's shade do. Seen from a point outside, they are steep in places.
-TEST(LocalShadow, ALampInAClosedShellLightsNothingOutsideOfIt) {
+TEST_F(LocalShadow, ALampInAClosedShellLightsNothingOutsideOfIt) {
   constexpr float kWall = 0.4f;
   const auto box = [](glm::vec3 d) {
     return kWall / std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
@@ -242,8 +243,8 @@ TEST(LocalShadow, ALampInAClosedShellLightsNothingOutsideOfIt) {
   Random<float> random(11);
   ShadowedLightRecord sphere = lightOf(kLocalSphere);
   for (std::size_t shell = 0; shell < shells.size(); ++shell) {
-    const auto walls = [&](int face, glm::ivec2 texel) {
-      return shells[shell](ref::texelDirection(face, glm::vec2(texel) + 0.5f, kSize));
+    distance_at = [&](int face, glm::ivec2 texel) {
+      return shells[shell](texelDirection(face, glm::vec2(texel) + 0.5f, kSize));
     };
     for (const float radius : {0.05f, 0.1f, 0.15f}) {
       sphere.radius = radius;
@@ -251,8 +252,8 @@ TEST(LocalShadow, ALampInAClosedShellLightsNothingOutsideOfIt) {
         const glm::vec3 towards = random.direction();
         const glm::vec3 place = random.number(0.9f, 4.0f) * towards;
         const glm::vec3 normal = glm::normalize(-towards + 0.8f * random.direction());
-        const ref::ShadowReceiver receiver = ref::shadowReceiver(place, normal, normal, kSize);
-        EXPECT_EQ(ref::discVisible(walls, sphere, receiver, normal, {kSize, 16, random.number(0, 1)}), 0.0f)
+        const ShadowReceiver receiver = shadowReceiver(place, normal, normal, kSize);
+        EXPECT_EQ(discVisible(0, sphere, receiver, normal, kSize, 16, random.number(0, 1)), 0.0f)
             << "shell " << shell << ", radius " << radius << ", place " << place.x << " " << place.y << " "
             << place.z;
       }

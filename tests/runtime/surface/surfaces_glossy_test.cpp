@@ -1,5 +1,5 @@
 // Tests the surface shaders of glossy draws alone: a rectangle in two draws fills the picture, with random
-// rows, samples and tables, and is compared with the kernel's CPU twin and closed forms.
+// rows, samples and tables, and is compared with the shaders' text as C++ and closed forms.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -10,18 +10,18 @@
 #include "runtime/draws/glossy_record.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/surface_shared.h"
-#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/surface/surface_normal_ref.hpp"
 #include "runtime/surface/surface_program.hpp"
 #include "tests/runtime/effects/glossy/random_table.hpp"
+#include "tests/runtime/surface/surface_normal.hpp"
 #include "tests/support/differences.hpp"
+#include "tests/support/glsl/glossy_kernels.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {
 namespace {
 
-namespace kernel = effects::glossy::ref;
+namespace kernel = effects::glossy::glsl;
 constexpr std::uint32_t kGlossySize = 16;
 using Picture = std::vector<glm::vec4>;
 
@@ -123,8 +123,8 @@ glm::vec3 expectedAt(const Scene& scene, const glm::vec3& place) {
   const std::size_t triangle = place.x >= place.y ? 0 : 3;
   std::array<std::uint32_t, 3> corners;
   for (std::size_t c = 0; c < 3; ++c) corners[c] = scene.indices[triangle + c];
-  const glm::vec3 shares = kernel::cornerWeights(place, scene.positions[corners[0]],
-                                                 scene.positions[corners[1]], scene.positions[corners[2]]);
+  const glm::vec3 shares = kernel::Isotropic().cornerWeights(
+      place, scene.positions[corners[0]], scene.positions[corners[1]], scene.positions[corners[2]]);
   std::vector<glm::vec4> light(n, glm::vec4(0.0f));
   for (int c = 0; c < 3; ++c) {
     const auto& row = scene.rows[corners[static_cast<std::size_t>(c)]];
@@ -137,26 +137,23 @@ glm::vec3 expectedAt(const Scene& scene, const glm::vec3& place) {
   const auto texel = [&](const TextureSlot& slot, std::uint32_t unit) {
     return slot.set == kAbsent ? glm::vec4(1.0f) : scene.texels[unit];
   };
-  const ref::TangentFrame frame = ref::frameFromTangent(scene.normal, scene.tangent);
+  glsl::SurfaceNormal shader;
+  const auto frame = shader.frameFromTangent(scene.normal, scene.tangent);
   const glm::vec3 normal =
       surface.facing *
       (surface.normal_texture.set == kAbsent
            ? frame.normal
-           : ref::perturbedNormal(frame, glm::vec3(scene.texels[kUnitNormal]), surface.normal_scale));
+           : shader.perturbedNormal(frame, glm::vec3(scene.texels[kUnitNormal]), surface.normal_scale));
   const glm::vec3 to_eye = glm::normalize(glm::vec3(scene.eye) - scene.eye.w * place);
   const kernel::Table table(scene.table);
   const glm::vec3 base(surface.base_color);
-  if (scene.kind.family == bundle::BrdfFamily::Measured) {
-    const kernel::LocalView view = kernel::localView(true, normal, {}, to_eye);
-    return glm::vec3(
-               kernel::reflectLight(table, view, kernel::lookUpWeights(table, view, 0, 0), light).light) +
-           glm::vec3(surface.emission);
-  }
+  if (scene.kind.family == bundle::BrdfFamily::Measured)
+    return glm::vec3(table.reflect({normal, {}, to_eye}, light).light) + glm::vec3(surface.emission);
   const glm::vec4 mr = texel(glossy.metallic_roughness_texture, kUnitMetallicRoughness);
   const float roughness = glossy.roughness * mr.g, metallic = glossy.metallic * mr.b;
   const glm::vec3 dielectric =
       glm::vec3(glossy.dielectric) * glm::vec3(texel(glossy.specular_color_texture, kUnitSpecularColor));
-  const kernel::Fresnel fresnel = kernel::fresnelOf(
+  const auto fresnel = kernel::Isotropic().fresnelOf(
       base, metallic, dielectric, glossy.dielectric.w * texel(glossy.specular_texture, kUnitSpecular).a);
   glm::vec2 direction(1.0f, 0.0f);
   float anisotropy = glossy.anisotropy;
@@ -167,12 +164,10 @@ glm::vec3 expectedAt(const Scene& scene, const glm::vec3& place) {
   direction = {glossy.direction_cos * direction.x - glossy.direction_sin * direction.y,
                glossy.direction_sin * direction.x + glossy.direction_cos * direction.y};
   const glm::vec3 bitangent = frame.handedness * glm::cross(frame.normal, frame.tangent);
-  const glm::vec3 along = ref::alongSurface(normal, direction.x * frame.tangent + direction.y * bitangent);
-  const kernel::LocalView view = kernel::localView(scene.table.isotropic(), normal, along, to_eye);
-  const kernel::Reflected reflected =
-      kernel::reflectLight(table, view, kernel::lookUpWeights(table, view, roughness, anisotropy), light);
+  const glm::vec3 along = shader.alongSurface(normal, direction.x * frame.tangent + direction.y * bitangent);
+  const kernel::Reflection reflected = table.reflect({normal, along, to_eye, roughness, anisotropy}, light);
   return fresnel.f0 * glm::vec3(reflected.f0_light) + fresnel.f90 * glm::vec3(reflected.f90_light) +
-         kernel::diffuseAlbedo(base, metallic, fresnel, glm::vec2(reflected.albedo)) *
+         kernel::Isotropic().diffuseAlbedo(base, metallic, fresnel, glm::vec2(reflected.albedo)) *
              glm::vec3(reflected.diffuse) +
          glm::vec3(surface.emission);
 }

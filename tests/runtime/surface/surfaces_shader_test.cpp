@@ -1,5 +1,5 @@
 // Tests the surface shaders alone: one rectangle fills the picture, with a record, vertices, light and
-// textures that each test writes, and is compared with closed forms and surface_normal_ref.hpp.
+// textures that each test writes, and is compared with closed forms and surface_normal.glsl as C++.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -12,8 +12,8 @@
 #include "runtime/bundle/gltf_types.hpp"
 #include "runtime/draws/surface_shared.h"
 #include "runtime/gpu/program.hpp"
-#include "runtime/surface/surface_normal_ref.hpp"
 #include "runtime/surface/surface_program.hpp"
+#include "tests/runtime/surface/surface_normal.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {
@@ -169,6 +169,12 @@ const Light kLight = [] {
   return light;
 }();
 
+// E/pi of kLight at a normal.
+glm::vec3 diffuseLight(const glm::vec3& normal) {
+  Light light = kLight;
+  return glsl::SurfaceNormal().diffuseLight(light.data(), normal);
+}
+
 }  // namespace
 
 // Texels count by their share that is shaded, and vertices by the rest.
@@ -284,14 +290,15 @@ TEST_F(SurfaceShader, ReceivesLightAtThePixelsNormalAsTheReferenceDoes) {
     const glm::vec3 normal = glm::normalize(normal_matrix * vertices.normal);
     for (const float facing : {1.0f, -1.0f}) {
       record.facing = facing;
-      const ref::TangentFrame stored = ref::frameFromTangent(
+      glsl::SurfaceNormal shader;
+      const auto stored = shader.frameFromTangent(
           normal, glm::vec4(group_from_mesh * glm::vec3(vertices.tangent), -1.0f * mirrored));
-      const ref::TangentFrame derived = ref::frameFromDerivatives(
-          normal, group_from_mesh[0], group_from_mesh[1], {0.5f, 0.0f}, {0.0f, -0.5f});
+      const auto derived = shader.frameFromDerivatives(normal, group_from_mesh[0], group_from_mesh[1],
+                                                       {0.5f, 0.0f}, {0.0f, -0.5f});
       for (const bool tangents : {true, false}) {
         record.tangents_word = tangents ? 24 : kAbsent;
-        const glm::vec3 bent = ref::perturbedNormal(tangents ? stored : derived, texel, 0.8f);
-        const glm::vec3 expected = glm::vec3(record.base_color) * ref::diffuseLight(kLight, facing * bent);
+        const glm::vec3 bent = shader.perturbedNormal(tangents ? stored : derived, texel, 0.8f);
+        const glm::vec3 expected = glm::vec3(record.base_color) * diffuseLight(facing * bent);
         const Picture image = drawLight(record, vertices, kLight);
         ASSERT_FALSE(image.empty());
         // Derivatives are differences of interpolated positions, 1e-7 of 1 over steps of 1/16.
@@ -321,7 +328,7 @@ TEST_F(SurfaceShader, UsesTheVertexNormalWhereThereIsNoNormalTexture) {
   vertices.normal = glm::normalize(glm::vec3(0.5f, -0.2f, 1.0f));
   const Picture image = drawLight(diffuseRecord(), vertices, kLight);
   ASSERT_FALSE(image.empty());
-  EXPECT_LT(glm::distance(glm::vec3(at(image, 8, 8)), ref::diffuseLight(kLight, vertices.normal)), 1e-5f);
+  EXPECT_LT(glm::distance(glm::vec3(at(image, 8, 8)), diffuseLight(vertices.normal)), 1e-5f);
 }
 
 TEST_F(SurfaceShader, UniformLightHidesTheNormalMap) {

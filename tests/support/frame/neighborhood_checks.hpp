@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include "baker/brdf/brdf.hpp"
-#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/frame/neighborhood_stage.hpp"
 #include "tests/support/gpu_context.hpp"

@@ -1,4 +1,5 @@
-// Runs the diffuse effect and its proxies on random cells, and compares what they write with their CPU twin.
+// Runs the diffuse effect and its proxies on random cells, and compares what they write with what their
+// kernels write as C++.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +8,8 @@
 #include <vector>
 
 #include "runtime/effects/diffuse/diffuse.hpp"
-#include "runtime/effects/diffuse/diffuse_ref.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
+#include "tests/runtime/effects/diffuse/diffuse_kernels.hpp"
 #include "tests/runtime/effects/diffuse/shading_bench.hpp"
 #include "tests/support/differences.hpp"
 
@@ -27,11 +28,11 @@ struct DiffuseBench : testing::ShadingBench<Diffuse> {
     return shaded;
   }
 
-  using Pages = std::vector<std::vector<uint>>;
-  static Pages pagesOf(gpu::Arena& arena) {
-    Pages pages(std::max(arena.pageCount(), 1u));
+  template <typename Value = uint>
+  static std::vector<std::vector<Value>> pagesOf(gpu::Arena& arena) {
+    std::vector<std::vector<Value>> pages(std::max(arena.pageCount(), 1u));
     for (std::uint32_t i = 0; i < arena.pageCount(); ++i) {
-      pages[i].resize(arena.page(i).byteCount() / 4);
+      pages[i].resize(arena.page(i).byteCount() / sizeof(Value));
       arena.page(i).read(0, std::span(pages[i]));
     }
     return pages;
@@ -50,65 +51,62 @@ struct DiffuseBench : testing::ShadingBench<Diffuse> {
         if (place.incident[k].light != nullptr) place.incident[k].key = &incident[(k + 1) % incident.size()];
   }
 
-  // Returns the largest difference from the twin over vertices and samples, relative to the largest value.
+  // Returns the largest difference from the kernels as C++ over vertices and samples, relative to the largest
+  // value.
   double differenceToTwin() {
-    const Pages transfer = pagesOf(residency.transfer()), rows = pagesOf(residency.rows()),
-                geometry = pagesOf(residency.geometry()), radiance = pagesOf(residency.radiance());
+    const auto transfer = pagesOf(residency.transfer()), rows = pagesOf(residency.rows());
+    const auto geometry = pagesOf<float>(residency.geometry()),
+               radiance = pagesOf<float>(residency.radiance());
+    const auto shaded = pagesOf<glm::vec4>(residency.samples());
     const Tables& tables = diffuse.tables();
     std::vector<std::vector<glm::vec4>> samples;
-    for (std::uint32_t i = 0; i < residency.samples().pageCount(); ++i)
-      samples.emplace_back(residency.samples().page(i).byteCount() / 16, glm::vec4(0.0f));
+    for (const auto& page : shaded) samples.emplace_back(page.size(), glm::vec4(0.0f));
     std::vector<glm::vec4> products(tables.product_count);
     for (std::size_t i = 0; i < tables.cells.size(); ++i) {
       const streaming::ResidentCell& resident = residency.cells()[i];
       if (!resident.usable()) continue;
-      transfer::ref::Memory memory;
-      memory.lights = lights.coefficients();
-      memory.transfer = transfer[resident.block.page];
-      for (uint t = 0; t < tables.cells[i].count; ++t) {
-        const transfer::TransferRecord& record = tables.transfers[tables.cells[i].first + t];
-        transfer::ref::projectVectors(memory, record, tables.places, products);
-        for (uint position = 0; position < record.sample_count; ++position)
-          transfer::ref::shadeVector(memory, record, tables.places, products, position,
-                                     samples[residency.groups()[resident.group].samples.page]);
-      }
+      for (uint t = 0; t < tables.cells[i].count; ++t)
+        transfer::glsl::shadeVectors({.lights = lights.coefficients(),
+                                      .page = transfer[resident.block.page],
+                                      .places = tables.places,
+                                      .gaunt = {},
+                                      .products = products,
+                                      .samples = samples[residency.groups()[resident.group].samples.page]},
+                                     tables.transfers[tables.cells[i].first + t]);
     }
     double difference = 0.0, largest = 0.0;
-    const Pages shaded = pagesOf(residency.samples());
+    const auto compare = [&](float got, float wanted) {
+      largest = testing::larger(largest, double{std::abs(wanted)});
+      difference = testing::larger(difference, double{std::abs(got - wanted)});
+    };
     for (std::size_t page = 0; page < samples.size(); ++page)
       for (std::size_t i = 0; i < samples[page].size(); ++i)
-        for (int k = 0; k < 4 && samples[page][i] != glm::vec4(0.0f); ++k) {
-          const double wanted = double{samples[page][i][k]};
-          const double got = double{std::bit_cast<float>(shaded[page][4 * i + static_cast<std::size_t>(k)])};
-          largest = testing::larger(largest, std::abs(wanted));
-          difference = testing::larger(difference, std::abs(got - wanted));
-        }
+        for (int k = 0; k < 4 && samples[page][i] != glm::vec4(0.0f); ++k)
+          compare(shaded[page][i][k], samples[page][i][k]);
     for (std::size_t i = 0; i < tables.draws.size(); ++i) {
       const streaming::ResidentDraw& resident = residency.draws()[i];
       const DrawRecord& draw = tables.draws[i];
-      const transfer::ref::Memory memory{.lights = lights.coefficients(),
-                                         .transfer = {},
-                                         .samples = samples[residency.groups()[resident.group].samples.page],
-                                         .rows = rows[resident.rows.page],
-                                         .geometry = geometry[residency.meshes()[resident.mesh].block.page]};
-      const std::vector<uint>& result = radiance[resident.radiance.page];
-      for (uint v = 0; v < draw.vertex_count; ++v) {
-        std::vector<float> expected;
-        if (draw.outputs == 1) {
-          const glm::vec4 light = ref::shadeVertex(memory, draw, v);
-          expected = {light.x, light.y, light.z, light.w};
-        } else {
-          for (const glm::vec3& light : ref::vertexLight(memory, draw, v))
-            expected.insert(expected.end(), {light.x, light.y, light.z});
-        }
-        for (std::size_t k = 0; k < expected.size(); ++k) {
-          // The light that comes straight is a large number where nothing is known of shadows.
-          const float wanted = std::min(expected[k], 100.0f);
-          const float got =
-              std::min(std::bit_cast<float>(result[draw.radiance_word + expected.size() * v + k]), 100.0f);
-          if (wanted < 100.0f) largest = testing::larger(largest, std::abs(wanted));
-          difference = testing::larger(difference, std::abs(got - wanted));
-        }
+      const std::vector<float>& got = radiance[resident.radiance.page];
+      std::vector<float> wanted(got.size());
+      const auto shadeBy = [&](auto kernel) {
+        kernel.lights = lights.coefficients();
+        kernel.draws = std::span(&draw, 1);
+        kernel.row_words = rows[resident.rows.page];
+        kernel.geometry = geometry[residency.meshes()[resident.mesh].block.page];
+        kernel.samples = samples[residency.groups()[resident.group].samples.page];
+        kernel.radiance_out = wanted;
+        glsl::run(kernel, draw.vertex_count);
+      };
+      if (draw.outputs == 1)
+        shadeBy(glsl::Vertices{});
+      else
+        shadeBy(glsl::MappedVertices{});
+      const uint end = draw.radiance_word + draw.vertex_count * (draw.outputs == 1 ? 4 : 3 * draw.outputs);
+      for (uint word = draw.radiance_word; word < end; ++word) {
+        // The light that comes straight is a large number where nothing is known of shadows.
+        if (wanted[word] < 100.0f) compare(got[word], wanted[word]);
+        difference = testing::larger(
+            difference, double{std::abs(std::min(got[word], 100.0f) - std::min(wanted[word], 100.0f))});
       }
     }
     return difference / largest;

@@ -1,4 +1,4 @@
-// Compares kernels with their CPU twin on random codes and lights, and tests what makes them run.
+// Compares kernels with what they compute as C++, on random codes and lights, and tests what makes them run.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -36,8 +36,8 @@ TEST_F(DiffuseGpu, ShadesTexelsAsItsTwinAndAveragesThemInMipLevels) {
   bench.uploadTransfer(4);
   bench.shade();
   EXPECT_LT(bench.differenceToTwin(), 1e-3) << "vertices are shaded as without texels";
-  const DiffuseBench::Pages samples = DiffuseBench::pagesOf(bench.residency.samples()),
-                            rows = DiffuseBench::pagesOf(bench.residency.rows());
+  const auto samples = DiffuseBench::pagesOf<glm::vec4>(bench.residency.samples());
+  const auto rows = DiffuseBench::pagesOf(bench.residency.rows());
   std::size_t textures = 0;
   for (std::size_t d = 0; d < bench.diffuse.tables().draws.size(); ++d) {
     const DrawRecord& draw = bench.diffuse.tables().draws[d];
@@ -45,22 +45,13 @@ TEST_F(DiffuseGpu, ShadesTexelsAsItsTwinAndAveragesThemInMipLevels) {
     EXPECT_EQ(draw.texels, draw.outputs == 1 ? 32u : 0u);
     if (draw.texels == 0) continue;
     ++textures;
-    std::vector<glm::vec4> shaded;
-    for (const auto& page = samples[bench.residency.groups()[resident.group].samples.page];
-         4 * shaded.size() < page.size();)
-      shaded.emplace_back(std::bit_cast<float>(page[4 * shaded.size()]),
-                          std::bit_cast<float>(page[4 * shaded.size() + 1]),
-                          std::bit_cast<float>(page[4 * shaded.size() + 2]),
-                          std::bit_cast<float>(page[4 * shaded.size() + 3]));
-    const transfer::ref::Memory memory{.lights = {},
-                                       .transfer = {},
-                                       .samples = shaded,
-                                       .rows = rows[resident.texel_rows.page],
-                                       .geometry = {}};
+    glsl::ShadeTexels kernel;
+    kernel.samples = samples[bench.residency.groups()[resident.group].samples.page];
+    kernel.row_words = rows[resident.texel_rows.page];
     const std::vector<glm::vec4> texels = bench.textureOf(d, 0);
     glm::vec4 mean(0.0f), widest(0.0f);
     for (uint texel = 0; texel < texels.size(); ++texel) {
-      const glm::vec4 wanted = ref::texelRadiance(memory, draw, texel);
+      const glm::vec4 wanted = kernel.texelRadiance(draw, texel);
       EXPECT_EQ(wanted.w, 1.0f);
       EXPECT_LT(glm::length(texels[texel] - wanted), 1e-3f * glm::length(wanted)) << "half floats";
       mean += texels[texel] / static_cast<float>(texels.size());
@@ -86,9 +77,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinWithClustersLampsBothBlocksAndNormalMaps) {
                                    .cells = 2,
                                    .mapped_cells = mapped,
                                    .samples = 423});
-        bench.uploadMeshes();
-        bench.uploadRows();
-        bench.uploadTransfer(4);
+        bench.uploadAll(4);
         for (const evaluate::TransferMode mode :
              {evaluate::TransferMode::Full, evaluate::TransferMode::Shadowed}) {
           bench.shade(mode);
@@ -111,9 +100,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereSomeLampsStandApart) {
                                  .samples = 222});
       if (keys) bench.shineByKeyLights();
       for (lighting::GroupPlace& place : bench.places) place.lamps_apart = {1.0f, 0.0f, 0.25f};
-      bench.uploadMeshes();
-      bench.uploadRows();
-      bench.uploadTransfer(4);
+      bench.uploadAll(4);
       bench.shade();
       EXPECT_LT(bench.differenceToTwin(), 1e-3) << full << " channels";
       for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers) {
@@ -147,9 +134,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
                                    .samples = 222,
                                    .light_probes = lights});
         bench.shineByKeyLights();
-        bench.uploadMeshes();
-        bench.uploadRows();
-        bench.uploadTransfer(4);
+        bench.uploadAll(4);
         for (const evaluate::TransferMode mode :
              {evaluate::TransferMode::Full, evaluate::TransferMode::Shadowed}) {
           bench.shade(mode);
@@ -192,9 +177,7 @@ TEST_F(DiffuseGpu, BlendsSeveralLightProbesAsItsTwin) {
                                  .mapped_cells = mapped,
                                  .samples = 423,
                                  .light_probes = lights});
-      bench.uploadMeshes();
-      bench.uploadRows();
-      bench.uploadTransfer(7);
+      bench.uploadAll(7);
       bench.shade();
       EXPECT_LT(bench.differenceToTwin(), 1e-3) << lights << " lights, " << mapped << " mapped cells";
     }
@@ -203,9 +186,7 @@ TEST_F(DiffuseGpu, BlendsSeveralLightProbesAsItsTwin) {
 TEST_F(DiffuseGpu, ShadesOnlyCellsWhoseLightProbesChanged) {
   testing::BundleMaker maker(22);
   DiffuseBench bench(maker, {.groups = 2, .cells = 2, .light_probes = 4});
-  bench.uploadMeshes();
-  bench.uploadRows();
-  bench.uploadTransfer(7);
+  bench.uploadAll(7);
   bench.shade();
   bench.places[1].incident[0].version = 2;  // which no cell uses
   bench.shade();
@@ -244,17 +225,15 @@ TEST_F(DiffuseGpu, ProxiesSendOutWhatTheirSamplesReceive) {
     std::vector<glm::vec4> radiance(bench.proxies.triangles().size());
     ASSERT_EQ(radiance.size(), 3u * 77u);
     bench.proxies.radiance().read(0, std::span(radiance));
+    const auto samples = DiffuseBench::pagesOf<glm::vec4>(bench.residency.samples());
     for (std::size_t g = 0; g < 3; ++g) {
-      const gpu::Buffer& page = bench.residency.samples().page(bench.residency.groups()[g].samples.page);
-      std::vector<glm::vec4> samples(page.byteCount() / sizeof(glm::vec4));
-      page.read(0, std::span(samples));
-      transfer::ref::Memory memory;
-      memory.lights = bench.lights.coefficients();
-      memory.samples = samples;
+      glsl::ShadeProxies kernel;
+      kernel.lights = bench.lights.coefficients();
+      kernel.samples = samples[bench.residency.groups()[g].samples.page];
+      kernel.entries = bench.proxies.entries();
       const ProxyGroupRecord& group = bench.proxies.groups()[g];
       for (uint t = group.first_triangle; t < group.first_triangle + group.triangle_count; ++t) {
-        const glm::vec3 expected =
-            ref::proxyRadiance(memory, group, bench.proxies.triangles()[t], bench.proxies.entries());
+        const glm::vec3 expected = kernel.proxyRadiance(group, bench.proxies.triangles()[t]);
         EXPECT_LT(glm::distance(glm::vec3(radiance[t]), expected), 1e-3f * (1.0f + glm::length(expected)))
             << "triangle " << t << (transfer_here ? " with" : " without") << " transfer"
             << (step == Step::KeyLights ? " and key lights" : "");
@@ -270,9 +249,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinWithMorePlanesThanLanes) {
   testing::BundleMaker maker(12);
   DiffuseBench bench(
       maker, {.order = 8, .shadowed_channels = 3, .planes = 70, .groups = 1, .cells = 2, .samples = 66});
-  bench.uploadMeshes();
-  bench.uploadRows();
-  bench.uploadTransfer(70);
+  bench.uploadAll(70);
   bench.shade();
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
 }
@@ -295,9 +272,7 @@ TEST_F(DiffuseGpu, NormalMappedDrawsHaveTheLightItselfUntilTransferIsThere) {
 TEST_F(DiffuseGpu, ALampThatDimsIsShadedAgainAndUnshadowedIsDark) {
   testing::BundleMaker maker(18);
   DiffuseBench bench(maker, {.lamps = 2, .groups = 1});
-  bench.uploadMeshes();
-  bench.uploadRows();
-  bench.uploadTransfer(7);
+  bench.uploadAll(7);
   EXPECT_EQ(bench.shade(), 5u) << "two kernels project, then the environment, the lamps, the vertices";
   EXPECT_EQ(bench.shade(), 0u);
   const auto before = DiffuseBench::pagesOf(bench.residency.radiance());
@@ -315,9 +290,7 @@ TEST_F(DiffuseGpu, ALampThatDimsIsShadedAgainAndUnshadowedIsDark) {
 TEST_F(DiffuseGpu, MatchesItsTwinOverSeveralPages) {
   testing::BundleMaker maker(16);
   DiffuseBench bench(maker, {.groups = 4}, /*page_bytes=*/6000);
-  bench.uploadMeshes();
-  bench.uploadRows();
-  bench.uploadTransfer(7);
+  bench.uploadAll(7);
   EXPECT_GT(bench.residency.transfer().pageCount(), 1u);
   EXPECT_GT(bench.residency.radiance().pageCount(), 1u);
   bench.shade();
@@ -341,9 +314,7 @@ TEST_F(DiffuseGpu, ShadesUnshadowedUntilTransferIsThere) {
 TEST_F(DiffuseGpu, UnshadowedModeLeavesTransferAside) {
   testing::BundleMaker maker(14);
   DiffuseBench bench(maker, {});
-  bench.uploadMeshes();
-  bench.uploadRows();
-  bench.uploadTransfer(7);
+  bench.uploadAll(7);
   bench.shade();
   EXPECT_EQ(bench.shade(evaluate::TransferMode::Unshadowed), 1u);
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
@@ -389,9 +360,7 @@ TEST_F(DiffuseGpu, WhatComesInPiecesIsShadedAsWhatComesWhole) {
 TEST_F(DiffuseGpu, RunsOnlyWhenLightRotationOrResidencyChanged) {
   testing::BundleMaker maker(15);
   DiffuseBench bench(maker, {});
-  bench.uploadMeshes();
-  bench.uploadRows();
-  bench.uploadTransfer(1);
+  bench.uploadAll(1);
   EXPECT_EQ(bench.shade(), 3u);
   EXPECT_EQ(bench.shade(), 0u) << "a still frame";
   bench.environment.setTurn(10.0f);

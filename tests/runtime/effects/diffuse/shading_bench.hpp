@@ -61,6 +61,11 @@ struct ShadingBench {
     for (const auto& plane : made.planes[cell])
       if (plane.plane.value < count) upload(plane);
   }
+  void uploadAll(std::uint32_t count = kAllPlanes) {
+    uploadMeshes();
+    uploadRows();
+    uploadTransfer(count);
+  }
   // Shades once and returns the number of dispatches.
   template <typename Mode>
   std::uint32_t shadeIn(Mode mode) {

@@ -1,12 +1,12 @@
-// Compares the CPU twin with closed forms and with plain decoding; needs no GPU.
+// Compares the kernels, compiled as C++, with closed forms and with plain decoding; needs no GPU.
 #include <cstring>
 
 #include <gtest/gtest.h>
 
-#include "runtime/effects/diffuse/diffuse_ref.hpp"
 #include "runtime/sh/light_vector.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
+#include "tests/runtime/effects/diffuse/diffuse_kernels.hpp"
 
 namespace lambent::effects::diffuse {
 namespace {
@@ -22,19 +22,19 @@ std::vector<glm::vec4> randomLight(testing::BundleMaker& maker, int order, bool 
 
 }  // namespace
 
-TEST(DiffuseTwin, ShadesUnshadowedAsTheClosedFormOfOpenTransfer) {
+TEST(DiffuseKernels, ShadesUnshadowedAsTheClosedFormOfOpenTransfer) {
   testing::BundleMaker maker(3);
   for (int order = 1; order <= 8; ++order) {
     const std::vector<glm::vec4> light = randomLight(maker, order);
-    transfer::ref::Memory memory;
-    memory.lights = light;
+    glsl::Vertices kernel;
+    kernel.lights = light;
     for (int i = 0; i < 50; ++i) {
       const glm::vec3 normal = i == 0 ? glm::vec3(0, 0, 1) : i == 1 ? glm::vec3(0, -1, 0) : maker.direction();
       std::vector<float> transfer(static_cast<std::size_t>(order * order));
       sh::unoccludedTransfer(order, normal, transfer);
       glm::vec3 expected(0.0f);
       for (std::size_t k = 0; k < transfer.size(); ++k) expected += transfer[k] * glm::vec3(light[k]);
-      const glm::vec3 got = ref::unshadowedRadiance(memory, normal, 0, order);
+      const glm::vec3 got = kernel.unshadowedRadiance(normal, 0, order);
       // The tolerance is for float recurrences on up to 64 coefficients of size 1.
       EXPECT_LT(glm::distance(got, expected), 1e-5f * static_cast<float>(order)) << "order " << order;
     }
@@ -183,7 +183,7 @@ std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
         const glm::vec3 straight = times(s, j, 0, shape.shadowed_channels, transfer::kKeyBlock);
         glm::vec3 sum = times(s, j, first, channels, 0);
         if (full) sum += times(s, j, first, channels, transfer::kKeyBlock) - straight;
-        const float luminance = glm::dot(straight, transfer::ref::kLuminance);
+        const float luminance = glm::dot(straight, glsl::Vertices::kLuminance);
         out[s * shape.outputs + j] +=
             glm::vec4(sum, t == 0 && j == 0 ? std::max(luminance, 0.0f) : luminance);
       }
@@ -193,7 +193,7 @@ std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
 
 }  // namespace
 
-TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
+TEST(DiffuseKernels, ShadesSamplesAsDecodedTransferTimesLight) {
   testing::BundleMaker maker(4);
   for (const bool keys : {false, true})
     for (const std::uint32_t clusters : {1u, 3u, 300u})
@@ -225,13 +225,14 @@ TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
               std::vector<glm::vec4> samples(expected.size(), glm::vec4(0.0f));
               for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
                 const Page page(made, t, full, keys);
-                transfer::ref::Memory memory;
-                memory.lights = light;
-                memory.transfer = page.words;
                 std::vector<glm::vec4> products(lights * page.words.size());
-                transfer::ref::projectVectors(memory, page.record, page.places, products);
-                for (uint p = 0; p < page.record.sample_count; ++p)
-                  transfer::ref::shadeVector(memory, page.record, page.places, products, p, samples);
+                transfer::glsl::shadeVectors({.lights = light,
+                                              .page = page.words,
+                                              .places = page.places,
+                                              .gaunt = {},
+                                              .products = products,
+                                              .samples = samples},
+                                             page.record);
               }
               for (std::size_t i = 0; i < samples.size(); ++i) {
                 // Values are of size 1, sums of 100 floats.
@@ -244,7 +245,7 @@ TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
             }
 }
 
-TEST(DiffuseTwin, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirOwnAlone) {
+TEST(DiffuseKernels, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirOwnAlone) {
   // The result is the plain sum above, computed by hand: one column, one vector, no codes.
   std::vector<glm::vec4> light(transfer::kLightStride, glm::vec4(0.0f));
   light[0] = {1.0f, 2.0f, 3.0f, 0.0f};
@@ -254,11 +255,11 @@ TEST(DiffuseTwin, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirO
   std::vector<uint> words;
   for (const float value : {kShadowed, kFull.r, kFull.g, kFull.b})
     words.push_back(std::bit_cast<uint>(value));
-  transfer::ref::Memory memory;
-  memory.lights = light;
-  memory.transfer = words;
+  transfer::glsl::ProjectVectors kernel;
+  kernel.lights = light;
+  kernel.page = words;
   const auto project = [&](const transfer::TransferRecord& record) {
-    return transfer::ref::projectOnLight(memory, record, 0, 0, 0);
+    return kernel.projectOnLight(record, 0, 0, record.columns, 0);
   };
   transfer::TransferRecord record{};
   record.columns = record.outputs = record.order = 1;
@@ -271,28 +272,17 @@ TEST(DiffuseTwin, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirO
   record.bounced = 1;
   record.straight_channels = 1;
   EXPECT_EQ(project(record), glm::vec4(kFull * (rest + key) - kShadowed * key,
-                                       glm::dot(kShadowed * key, transfer::ref::kLuminance)));
+                                       glm::dot(kShadowed * key, glsl::Vertices::kLuminance)));
   record.channels = 1;  // without bounces
   record.first_value = 0;
   record.bounced = 0;
   EXPECT_EQ(project(record),
-            glm::vec4(kShadowed * rest, glm::dot(kShadowed * key, transfer::ref::kLuminance)));
+            glm::vec4(kShadowed * rest, glm::dot(kShadowed * key, glsl::Vertices::kLuminance)));
   record.channels = 3;  // bounces that have a transfer of their own: nothing of it is straight
   record.first_value = 1;
   record.bounced = 1;
   record.straight_channels = 0;
   EXPECT_EQ(project(record), glm::vec4(kFull * (rest + key), 0.0f));
-}
-
-TEST(DiffuseTwin, MappedLightOfAnUnshadowedVertexIsTheLight) {
-  testing::BundleMaker maker(5);
-  const std::vector<glm::vec4> light = randomLight(maker, 3);
-  transfer::ref::Memory memory;
-  memory.lights = light;
-  DrawRecord draw{};
-  draw.rows_word = kNoRows;
-  const ref::MappedLight found = ref::vertexLight(memory, draw, 0);
-  for (std::size_t j = 0; j < 9; ++j) EXPECT_EQ(found[j], glm::vec3(light[j]));
 }
 
 }  // namespace lambent::effects::diffuse

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "baker/brdf/brdf.hpp"
-#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
+#include "tests/support/glsl/glossy_kernels.hpp"
 
 namespace lambent::effects::glossy {
 namespace {
@@ -15,13 +15,11 @@ namespace {
 // Views an unoccluded sphere of this many rings from a distance of three radii, and returns the relative RMS
 // difference between radiance at interpolated normals and radiance interpolated between the triangles'
 // corners.
-double facetError(const ref::Table& table, float roughness, int rings, std::span<const glm::vec4> light) {
+double facetError(const glsl::Table& table, float roughness, int rings, std::span<const glm::vec4> light) {
   lambent::testing::BundleMaker maker(71);
   const glm::vec3 eye(0.0f, 0.0f, 3.0f);
   const auto radiance = [&](const glm::vec3& normal, const glm::vec3& place) {
-    const ref::LocalView view = ref::localView(true, normal, {}, glm::normalize(eye - place));
-    const ref::Reflected got =
-        ref::reflectLight(table, view, ref::lookUpWeights(table, view, roughness, 0.0f), light);
+    const glsl::Reflection got = table.reflect({normal, {}, glm::normalize(eye - place), roughness}, light);
     return got.f0_light.x + got.f90_light.x;
   };
   const auto vertex = [&](int r, int s) {
@@ -54,7 +52,7 @@ double facetError(const ref::Table& table, float roughness, int rings, std::span
 TEST(GlossyFacets, VerticesAreTooFewForHighlightsOnCoarseMeshes) {
   const bundle::BrdfTable ggx = baker::integrateTable(
       *baker::makeGgx(false), 5, {.angles = 16, .azimuths = 1, .roughnesses = 11, .strengths = 1});
-  const ref::Table table(ggx);
+  const glsl::Table table(ggx);
   const sh::LightVector sun = sh::discLight(5, glm::normalize(glm::vec3(1, 2, 2)), 0.2, glm::vec3(10.0f)) +
                               sh::constantLight(5, glm::vec3(0.5f));
   std::vector<glm::vec4> light;

@@ -1,13 +1,13 @@
-// Shades random glossy cells on the GPU and by the CPU twin, from the same memory.
+// Shades random glossy cells on the GPU and by the kernels as C++, from the same memory.
 #pragma once
 
 #include <algorithm>
 #include <vector>
 
 #include "runtime/effects/glossy/glossy.hpp"
-#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "tests/runtime/effects/diffuse/shading_bench.hpp"
 #include "tests/support/differences.hpp"
+#include "tests/support/glsl/glossy_kernels.hpp"
 
 namespace lambent::effects::glossy::testing {
 
@@ -15,11 +15,6 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
   using ShadingBench::ShadingBench;
   Glossy& glossy = effect;
 
-  void uploadAll() {
-    uploadMeshes();
-    uploadRows();
-    uploadTransfer();
-  }
   std::uint32_t shade(evaluate::TransferMode mode = evaluate::TransferMode::Full) { return shadeIn(mode); }
 
   static std::vector<glm::vec4> samplesOf(gpu::Arena& arena, std::uint32_t page) {
@@ -28,8 +23,8 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
     return samples;
   }
 
-  // Returns the largest difference between a glossy sample and the twin's, in RGB and visibility, relative to
-  // the largest value.
+  // Returns the largest difference between a glossy sample and the C++ kernels', in RGB and visibility,
+  // relative to the largest value.
   double differenceToTwin() {
     double difference = 0.0, largest = 0.0;
     const evaluate::TransferTable& tables = glossy.tables();
@@ -40,26 +35,27 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
       const std::vector<glm::vec4> got =
           samplesOf(residency.samples(), residency.groups()[cell.group].samples.page);
       std::vector<glm::vec4> wanted(got.size(), glm::vec4(0.0f));
-      transfer::ref::Memory memory;
-      memory.lights = lights.coefficients();
       const FillRecord& fill = glossy.fills()[i];
       if (tables.cells[i].count == 0 || !cell.usable()) {
-        for (uint e = 0; e < fill.output_count; ++e)
-          wanted[fill.first_output + e] = ref::openLight(memory, fill, e % fill.outputs);
+        glsl::Fill kernel;
+        kernel.lights = lights.coefficients();
+        kernel.fills = std::span(&fill, 1);
+        kernel.samples = wanted;
+        lambent::glsl::run(kernel, fill.output_count);
       } else {
         std::vector<uint> page(residency.transfer().page(cell.block.page).byteCount() / 4);
         residency.transfer().page(cell.block.page).read(0, std::span(page));
-        memory.transfer = page;
         for (uint t = 0; t < tables.cells[i].count; ++t) {
           const transfer::TransferRecord& record = tables.transfers[tables.cells[i].first + t];
-          if (record.visibility != 0)
-            transfer::ref::projectVisibilities(memory,
-                                               gauntWords(record.order, transfer::bandsOf(record.outputs)),
-                                               record, tables.places, products);
-          else
-            transfer::ref::projectVectors(memory, record, tables.places, products);
-          for (uint position = 0; position < record.sample_count; ++position)
-            transfer::ref::shadeMatrix(memory, record, tables.places, products, position, wanted);
+          std::vector<uint> gaunt;
+          if (record.visibility != 0) gaunt = gauntWords(record.order, transfer::bandsOf(record.outputs));
+          transfer::glsl::shadeMatrices({.lights = lights.coefficients(),
+                                         .page = page,
+                                         .places = tables.places,
+                                         .gaunt = gaunt,
+                                         .products = products,
+                                         .samples = wanted},
+                                        record);
         }
       }
       for (uint e = fill.first_output; e < fill.first_output + fill.output_count; ++e)

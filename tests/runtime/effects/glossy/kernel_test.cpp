@@ -1,12 +1,12 @@
-// Compares the kernel's CPU twin with spherical harmonics that are evaluated and rotated directly.
+// Compares the kernel, compiled as C++, with spherical harmonics that are evaluated and rotated directly.
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/effects/glossy/random_table.hpp"
+#include "tests/support/glsl/glossy_kernels.hpp"
 
 namespace lambent::effects::glossy {
 
@@ -51,19 +51,24 @@ glm::vec4 product(std::uint32_t bands, std::span<const float> local, const glm::
 
 TEST(GlossyKernel, BandsOfTheLightAreItsHarmonicsBandByBand) {
   lambent::testing::BundleMaker maker(51);
-  for (const std::uint32_t bands : {4u, 5u, 6u})
+  const auto check = [&]<int Bands>() {
     for (int i = 0; i < 30; ++i) {
       const glm::vec3 direction = i == 0 ? glm::vec3(0, 0, 1) : maker.direction();
-      const std::vector<glm::vec4> light = randomLight(maker, bands);
-      const ref::Bands got = ref::bandsAt(static_cast<int>(bands), direction, light);
-      std::vector<float> y(bands * bands);
-      sh::evaluate(static_cast<int>(bands), direction, y);
-      for (std::uint32_t l = 0; l < bands; ++l) {
+      std::vector<glm::vec4> light = randomLight(maker, Bands);
+      glm::vec4 got[Bands];
+      glsl::Kernel<Bands, glsl::Lobes::Two>().bandsAt(direction, light.data(), got);
+      float y[Bands * Bands];
+      sh::evaluate(Bands, direction, y);
+      for (int l = 0; l < Bands; ++l) {
         glm::vec4 expected(0.0f);
-        for (std::uint32_t k = l * l; k < (l + 1) * (l + 1); ++k) expected += y[k] * light[k];
-        EXPECT_LT(glm::distance(got[l], expected), 5e-6f) << "band " << l;
+        for (int k = l * l; k < (l + 1) * (l + 1); ++k) expected += y[k] * light[static_cast<std::size_t>(k)];
+        EXPECT_LT(glm::distance(got[l], expected), 5e-6f) << "band " << l << " of " << Bands;
       }
     }
+  };
+  check.operator()<4>();
+  check.operator()<5>();
+  check.operator()<6>();
 }
 
 TEST(GlossyKernel, WeighsTheLightByTheTableTurnedToTheFrame) {
@@ -73,26 +78,24 @@ TEST(GlossyKernel, WeighsTheLightByTheTableTurnedToTheFrame) {
       for (const std::uint32_t lobes : {2u, 3u}) {
         if (lobes == 3 && !isotropic) continue;
         const bundle::BrdfTable table = randomTable(maker, bands, isotropic, lobes);
-        const ref::Table packed(table);
+        const glsl::Table packed(table);
         for (int i = 0; i < 4; ++i) {
-          const glm::vec3 normal = maker.direction(), tangent = ref::perpendicular(normal);
+          const glm::vec3 normal = maker.direction(), tangent = glsl::Isotropic().perpendicular(normal);
           const glm::vec3 away = maker.direction();
           const glm::vec3 to_eye = glm::dot(away, normal) < 0.0f ? -away : away;
           const float roughness = maker.uniform(0, 1), strength = maker.uniform(0, 1);
           const std::vector<glm::vec4> light = randomLight(maker, bands);
-          const ref::LocalView view = ref::localView(isotropic, normal, tangent, to_eye);
-          const ref::Reflected got =
-              ref::reflectLight(packed, view, ref::lookUpWeights(packed, view, roughness, strength), light);
+          const glsl::Reflection got = packed.reflect({normal, tangent, to_eye, roughness, strength}, light);
           std::vector<float> b(lobes * bands * bands);
           bundle::lookUp(table,
-                         {.cos_theta = view.cos_theta, .cos_phi = view.azimuth.x, .sin_phi = view.azimuth.y},
+                         {.cos_theta = got.cos_theta, .cos_phi = got.azimuth.x, .sin_phi = got.azimuth.y},
                          roughness, strength, b);
           std::vector<float> cosine(bands * bands);
           sh::unoccludedTransfer(static_cast<int>(bands), normal, cosine);
           glm::vec4 diffuse(0.0f);
           for (std::size_t k = 0; k < cosine.size(); ++k) diffuse += cosine[k] * light[k];
           EXPECT_LT(glm::distance(got.diffuse, diffuse), 1e-5f);
-          const glm::mat3 group_from_local(view.tangent, view.bitangent, view.normal);
+          const glm::mat3 group_from_local(got.tangent, got.bitangent, got.normal);
           const std::size_t n = bands * bands;
           for (std::size_t a = 0; a < lobes; ++a) {
             const glm::vec4 expected =
@@ -114,16 +117,14 @@ TEST(GlossyKernel, UniformLightReturnsTheDirectionalAlbedoFromEveryView) {
   lambent::testing::BundleMaker maker(53);
   for (const bool isotropic : {true, false}) {
     const bundle::BrdfTable table = randomTable(maker, 5, isotropic);
-    const ref::Table packed(table);
+    const glsl::Table packed(table);
     std::vector<glm::vec4> light(25, glm::vec4(0.0f));
     light[0] = glm::vec4(3.5449077f);
     for (int i = 0; i < 50; ++i) {
       const glm::vec3 normal = maker.direction();
       // Views from below among them.
-      const ref::LocalView view =
-          ref::localView(isotropic, normal, ref::perpendicular(normal), maker.direction());
-      const ref::Reflected got =
-          ref::reflectLight(packed, view, ref::lookUpWeights(packed, view, 0.4f, 0.7f), light);
+      const glsl::Reflection got = packed.reflect(
+          {normal, glsl::Isotropic().perpendicular(normal), maker.direction(), 0.4f, 0.7f}, light);
       EXPECT_NEAR(got.f0_light.x, got.albedo.x, 1e-5f);
       EXPECT_NEAR(got.f90_light.y, got.albedo.y, 1e-5f);
       EXPECT_NEAR(got.f0_light.w, got.albedo.x, 1e-5f) << "visibility 1";
@@ -137,11 +138,12 @@ TEST(GlossyKernel, DiffuseAndReflectedLightTogetherNeverExceedWhatArrives) {
   for (int i = 0; i < 500; ++i) {
     const glm::vec3 base(maker.uniform(0, 1), maker.uniform(0, 1), maker.uniform(0, 1));
     const float metallic = maker.uniform(0, 1), specular = maker.uniform(0, 1);
-    const ref::Fresnel fresnel = ref::fresnelOf(base, metallic, glm::vec3(maker.uniform(0, 3)), specular);
+    const auto fresnel =
+        glsl::Isotropic().fresnelOf(base, metallic, glm::vec3(maker.uniform(0, 3)), specular);
     // Albedos of the lobes: together at most 1.
     const float a = maker.uniform(0, 1), b = maker.uniform(0, 1 - a);
     const glm::vec3 rho = fresnel.f0 * a + fresnel.f90 * b;
-    const glm::vec3 all = rho + ref::diffuseAlbedo(base, metallic, fresnel, {a, b});
+    const glm::vec3 all = rho + glsl::Isotropic().diffuseAlbedo(base, metallic, fresnel, {a, b});
     for (int c = 0; c < 3; ++c) {
       EXPECT_LE(all[c], 1.0f + 1e-6f);
       EXPECT_GE(all[c], 0.0f);
@@ -151,10 +153,11 @@ TEST(GlossyKernel, DiffuseAndReflectedLightTogetherNeverExceedWhatArrives) {
 
 TEST(GlossyKernel, AViewBelowTheSurfaceCountsAsOneAlongIt) {
   const glm::vec3 normal(0, 0, 1);
-  const ref::LocalView view = ref::localView(true, normal, {}, glm::normalize(glm::vec3(1, 1, -0.5f)));
-  EXPECT_EQ(view.cos_theta, ref::kLeastViewCosine);
+  glsl::Isotropic kernel;
+  const auto view = kernel.localView(normal, {}, glm::normalize(glm::vec3(1, 1, -0.5f)));
+  EXPECT_EQ(view.cos_theta, bundle::kLeastViewCosine);
   EXPECT_LT(glm::distance(view.tangent, glm::normalize(glm::vec3(1, 1, 0))), 1e-6f);
-  const ref::LocalView pole = ref::localView(true, normal, {}, normal);
+  const auto pole = kernel.localView(normal, {}, normal);
   EXPECT_EQ(pole.cos_theta, 1.0f);
   EXPECT_NEAR(glm::length(pole.tangent), 1.0f, 1e-6f);
 }
@@ -166,7 +169,7 @@ TEST(GlossyKernel, CornerWeightsAreBarycentricAndFiniteOnAnyTriangle) {
       const glm::vec3 a = size * maker.direction(), b = size * maker.direction(),
                       c = size * maker.direction();
       const float u = maker.uniform(0, 1), v = maker.uniform(0, 1 - u);
-      const glm::vec3 weights = ref::cornerWeights(a + u * (b - a) + v * (c - a), a, b, c);
+      const glm::vec3 weights = glsl::Isotropic().cornerWeights(a + u * (b - a) + v * (c - a), a, b, c);
       EXPECT_LT(glm::distance(weights, glm::vec3(1 - u - v, u, v)), 1e-3f) << "size " << size;
     }
   // Slivers and points: weights stay in 0..1 and sum to 1, along the line where there is one.
@@ -174,13 +177,13 @@ TEST(GlossyKernel, CornerWeightsAreBarycentricAndFiniteOnAnyTriangle) {
   const std::array<glm::vec3, 3> slivers[] = {
       {a, b, b}, {a, a, b}, {b, a, b}, {middle, b, a}, {a, middle, b}};
   for (const auto& corners : slivers) {
-    const glm::vec3 weights = ref::cornerWeights(place, corners[0], corners[1], corners[2]);
+    const glm::vec3 weights = glsl::Isotropic().cornerWeights(place, corners[0], corners[1], corners[2]);
     EXPECT_NEAR(weights.x + weights.y + weights.z, 1.0f, 1e-6f);
     EXPECT_LT(glm::distance(weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2], place),
               1e-6f);
   }
-  EXPECT_EQ(ref::cornerWeights(b, a, a, a), glm::vec3(1.0f / 3.0f));
-  const glm::vec3 outside = ref::cornerWeights({5, 5, 0}, a, b, {0, 1, 0});
+  EXPECT_EQ(glsl::Isotropic().cornerWeights(b, a, a, a), glm::vec3(1.0f / 3.0f));
+  const glm::vec3 outside = glsl::Isotropic().cornerWeights({5, 5, 0}, a, b, {0, 1, 0});
   EXPECT_NEAR(outside.x + outside.y + outside.z, 1.0f, 1e-6f);
   EXPECT_GE(std::min(outside.x, std::min(outside.y, outside.z)), 0.0f);
 }

@@ -1,11 +1,11 @@
-// Compares the CPU twin of projection and samples with closed forms.
+// Compares projection and open samples, by the kernels as C++, with closed forms.
 #include <gtest/gtest.h>
 
 #include "runtime/effects/glossy/glossy.hpp"
-#include "runtime/effects/glossy/glossy_ref.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
+#include "tests/support/glsl/glossy_kernels.hpp"
 
 namespace lambent::effects::glossy {
 namespace {
@@ -27,33 +27,34 @@ struct OneVector {
   }
   void setVisibility(std::size_t k, float value) { page[k] = std::bit_cast<uint>(value); }
   glm::vec4 output(uint i) const {
-    transfer::ref::Memory memory;
-    memory.lights = lights;
-    memory.transfer = page;
-    return transfer::ref::projectVisibility(memory, gaunt, record, 0, i, 0);
+    transfer::glsl::ProjectVisibility kernel;
+    kernel.lights = lights;
+    kernel.page = page;
+    kernel.gaunt = gaunt;
+    return kernel.projectVisibility(record, 0, i, 0);
   }
 };
 
 }  // namespace
 
-TEST(GlossyTwin, AnOpenSampleReceivesTheLightItself) {
+TEST(GlossyKernels, AnOpenSampleReceivesTheLightItself) {
   lambent::testing::BundleMaker maker(41);
   for (const std::uint32_t in : {3u, 5u, 6u})
     for (const std::uint32_t out : {4u, 5u, 6u}) {
       OneVector one(in, out);
-      one.setVisibility(0, ref::kSqrtFourPi);
+      one.setVisibility(0, glsl::Fill::kSqrtFourPi);
       for (glm::vec4& light : one.lights) light = {maker.uniform(-1, 1), maker.uniform(-1, 1), 1.0f, 0.0f};
       for (uint i = 0; i < out * out; ++i) {
         const glm::vec4 expected = i < in * in ? one.lights[i] : glm::vec4(0.0f);
         const glm::vec4 got = one.output(i);
         EXPECT_LT(glm::distance(glm::vec3(got), glm::vec3(expected)), 1e-5f)
             << in << " in, " << out << " out";
-        EXPECT_NEAR(got.w, i == 0 ? ref::kSqrtFourPi : 0.0f, 1e-6f);
+        EXPECT_NEAR(got.w, i == 0 ? glsl::Fill::kSqrtFourPi : 0.0f, 1e-6f);
       }
     }
 }
 
-TEST(GlossyTwin, IsTheProductOfVisibilityAndLightPointByPoint) {
+TEST(GlossyKernels, IsTheProductOfVisibilityAndLightPointByPoint) {
   // V and L of few bands: their product has no more bands than the outputs, so it holds in every direction.
   lambent::testing::BundleMaker maker(42);
   OneVector one(3, 5);
@@ -79,18 +80,18 @@ TEST(GlossyTwin, IsTheProductOfVisibilityAndLightPointByPoint) {
   }
 }
 
-TEST(GlossyTwin, FillsOpenSamplesWithTheLightAndFullVisibility) {
+TEST(GlossyKernels, FillsOpenSamplesWithTheLightAndFullVisibility) {
   const std::vector<glm::vec4> lights(9, glm::vec4(1.0f, 2.0f, 3.0f, 0.0f));
-  transfer::ref::Memory memory;
-  memory.lights = lights;
+  glsl::Fill kernel;
+  kernel.lights = lights;
   FillRecord fill{
       .first_output = 0, .output_count = 25, .outputs = 25, .light = 0, .coefficients = 9, .open = 1};
-  EXPECT_EQ(ref::openLight(memory, fill, 0), glm::vec4(1.0f, 2.0f, 3.0f, ref::kSqrtFourPi));
-  EXPECT_EQ(ref::openLight(memory, fill, 8), glm::vec4(1.0f, 2.0f, 3.0f, 0.0f));
-  EXPECT_EQ(ref::openLight(memory, fill, 9), glm::vec4(0.0f));
+  EXPECT_EQ(kernel.openLight(fill, 0), glm::vec4(1.0f, 2.0f, 3.0f, glsl::Fill::kSqrtFourPi));
+  EXPECT_EQ(kernel.openLight(fill, 8), glm::vec4(1.0f, 2.0f, 3.0f, 0.0f));
+  EXPECT_EQ(kernel.openLight(fill, 9), glm::vec4(0.0f));
   // Grid points of a neighborhood store changes, so unloaded ones give 0.
   fill.coefficients = fill.open = 0;
-  for (std::uint32_t i = 0; i < 25; ++i) EXPECT_EQ(ref::openLight(memory, fill, i), glm::vec4(0.0f));
+  for (std::uint32_t i = 0; i < 25; ++i) EXPECT_EQ(kernel.openLight(fill, i), glm::vec4(0.0f));
 }
 
 }  // namespace lambent::effects::glossy

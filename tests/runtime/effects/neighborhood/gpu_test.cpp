@@ -1,4 +1,5 @@
-// Writes shaded points into the texture and reads them back, and compares with the CPU twin on random data.
+// Writes shaded points into the texture and reads them back, and compares with the shaders as C++ on random
+// data.
 
 #include <random>
 
@@ -6,9 +7,9 @@
 
 #include "lambent_effects_neighborhood_embedded.hpp"
 #include "runtime/effects/neighborhood/neighborhood.hpp"
-#include "runtime/effects/neighborhood/neighborhood_ref.hpp"
 #include "test_effects_neighborhood_gpu_embedded.hpp"
 #include "tests/runtime/effects/diffuse/shading_bench.hpp"
+#include "tests/runtime/effects/neighborhood/neighborhood_kernels.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -38,17 +39,15 @@ struct Bench : lambent::testing::ShadingBench<glossy::Glossy> {
     EXPECT_TRUE(done) << done.error().line();
     return counters;
   }
-  ref::Atlas atlas() const {
-    const glm::uvec3 size = neighborhood.atlasSize();
-    ref::Atlas result(size.x, size.y, size.z);
+  glsl::Texels atlas() const {
+    glsl::Texels result(neighborhood.atlasSize());
     glGetTextureImage(neighborhood.texture(), 0, GL_RGBA, GL_FLOAT,
-                      static_cast<GLsizei>(result.texels.size() * sizeof(glm::vec4)), result.texels.data());
+                      static_cast<GLsizei>(result.values.size() * sizeof(glm::vec4)), result.values.data());
     return result;
   }
-  // Computes the same texels by the twin, from the same samples.
-  ref::Atlas twin() const {
-    const glm::uvec3 size = neighborhood.atlasSize();
-    ref::Atlas result(size.x, size.y, size.z);
+  // Computes the same texels by the kernel as C++, from the same samples.
+  glsl::Texels twin() const {
+    glsl::Texels result(neighborhood.atlasSize());
     for (const Grid& grid : neighborhood.grids()) {
       const streaming::ResidentGroup& group = residency.groups()[grid.group];
       auto& arena = const_cast<streaming::Residency&>(residency).samples();
@@ -58,13 +57,13 @@ struct Bench : lambent::testing::ShadingBench<glossy::Glossy> {
       for (std::uint32_t c = group.first_cell; c < group.first_cell + group.cell_count; ++c) {
         const streaming::ResidentCell& cell = residency.cells()[c];
         if (cell.domain != transfer::Domain::GridPoint) continue;
-        ref::write(result,
-                   {.grid = grid.place,
-                    .first_output = cell.first_output,
-                    .first_point = first_point,
-                    .point_count = cell.sample_count,
-                    .pad = 0},
-                   samples);
+        glsl::write(result,
+                    {.grid = grid.place,
+                     .first_output = cell.first_output,
+                     .first_point = first_point,
+                     .point_count = cell.sample_count,
+                     .pad = 0},
+                    samples);
         first_point += cell.sample_count;
       }
     }
@@ -98,13 +97,14 @@ TEST_F(NeighborhoodGpu, WritesAndLooksUpAsItsTwinDoes) {
     bench.uploadTransfer();
     EXPECT_EQ(bench.run().dispatches, 1u);
     EXPECT_EQ(bench.neighborhood.gridsWrittenLast(), 2u);
-    const ref::Atlas got = bench.atlas(), wanted = bench.twin();
+    const glsl::Texels got = bench.atlas(), wanted = bench.twin();
+    glsl::Lookup lookup{.atlas = got};
     float largest = 0.0f;
-    for (std::size_t i = 0; i < got.texels.size(); ++i)
+    for (std::size_t i = 0; i < got.values.size(); ++i)
       for (int c = 0; c < 4; ++c) {
-        largest = testing::larger(largest, std::abs(wanted.texels[i][c]));
-        ASSERT_NEAR(got.texels[i][c], wanted.texels[i][c],
-                    1e-3f * std::max(1.0f, std::abs(wanted.texels[i][c])));
+        largest = testing::larger(largest, std::abs(wanted.values[i][c]));
+        ASSERT_NEAR(got.values[i][c], wanted.values[i][c],
+                    1e-3f * std::max(1.0f, std::abs(wanted.values[i][c])));
       }
     EXPECT_GT(largest, 0.01f);
 
@@ -130,9 +130,9 @@ TEST_F(NeighborhoodGpu, WritesAndLooksUpAsItsTwinDoes) {
       out.buffer().read(0, std::span(results));
       for (std::size_t i = 0; i < queries.size(); ++i) {
         const glm::vec3 place(queries[i].place), n(queries[i].normal);
-        const glm::vec3 received = ref::gridIrradiance(got, place, grid.place, n);
-        const glm::vec4 last = ref::gridOutput(got, place, grid.place, grid.place.outputs - 1);
-        EXPECT_NEAR(results[2 * i].a, ref::gridShare(place, grid.place), 1e-5f);
+        const glm::vec3 received = lookup.gridIrradiance(place, grid.place, n);
+        const glm::vec4 last = lookup.gridOutput(place, grid.place, grid.place.outputs - 1);
+        EXPECT_NEAR(results[2 * i].a, lookup.gridShare(place, grid.place), 1e-5f);
         // Samplers may place texels to 1/256.
         const float tolerance = 0.01f * grid.place.scale * largest;
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(results[2 * i][c], received[c], tolerance);
@@ -168,7 +168,7 @@ TEST_F(NeighborhoodGpu, IsReadyOnceAllHasArrivedAndWritesOnlyWhatChanged) {
   bench.run();
   EXPECT_EQ(bench.neighborhood.gridsWrittenLast(), 2u);
   bench.run(glossy::TransferMode::Unshadowed);
-  for (const glm::vec4& texel : bench.atlas().texels) ASSERT_EQ(texel, glm::vec4(0.0f));
+  for (const glm::vec4& texel : bench.atlas().values) ASSERT_EQ(texel, glm::vec4(0.0f));
 }
 
 TEST_F(NeighborhoodGpu, HoldsNothingWithoutGrids) {

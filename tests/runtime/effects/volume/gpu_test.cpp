@@ -1,4 +1,4 @@
-// Compares the kernels with their CPU twin, and tests what makes them run.
+// Compares the kernels with what they compute as C++, and tests what makes them run.
 #include "tests/runtime/effects/volume/volume_bench.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
@@ -35,15 +35,15 @@ BuiltVolume cloud(unsigned seed, std::uint32_t bits = 16, std::uint32_t outputs 
 
 std::vector<glm::vec4> pictureOfTwin(const Bench& bench, const spec::View& view, const glm::vec4& before,
                                      const std::vector<float>& depths) {
-  std::vector<ref::Medium> media;
+  std::vector<Medium> media;
   for (std::size_t v = 0; v < bench.built.size(); ++v) media.push_back(bench.mediumOf(v, view));
   std::vector<glm::vec4> texels;
   for (std::uint32_t y = 0; y < kSide; ++y)
     for (std::uint32_t x = 0; x < kSide; ++x) {
       const PixelRay ray = rayOf(view, x, y);
       const float depth = depths[y * kSide + x];
-      const float end = depth < 1.0f ? viewZ(view, 2.0f * depth - 1.0f) / ray.direction.z : ref::kInfinity;
-      const glm::vec4 found = ref::march(media, {ray.origin, ray.direction, ray.begin, end});
+      const float end = depth < 1.0f ? viewZ(view, 2.0f * depth - 1.0f) / ray.direction.z : kInfinity;
+      const glm::vec4 found = march(media, {ray.origin, ray.direction, ray.begin, end});
       const float through = std::exp(-found.a);
       texels.push_back(
           glm::vec4(glm::vec3(found) + through * glm::vec3(before), 1.0f - through * (1.0f - before.a)));
@@ -144,13 +144,10 @@ TEST_F(VolumeGpu, BringsSamplesToTheirTexels) {
                                  .light = bench.lights.firstOf(0),
                                  .g = built.g,
                                  .pad = 0};
-      ref::Texels<glm::vec4> expected;
-      expected.size = layout.texture_size;
-      expected.values.assign(std::size_t{expected.size.x} * expected.size.y * expected.size.z,
-                             glm::vec4(0.0f));
+      glsl::Texels expected(layout.texture_size);
       const std::vector<uint> voxels = built.voxels();
-      ref::scatter(record, voxels, samples, bench.lights.coefficients(), expected);
-      const ref::Medium found = bench.mediumOf(0, orbit(0.0f));
+      scatter(record, voxels, samples, bench.lights.coefficients(), expected);
+      const Medium found = bench.mediumOf(0, orbit(0.0f));
       ASSERT_EQ(found.light.values.size(), expected.values.size());
       for (std::size_t i = 0; i < expected.values.size(); ++i)
         ASSERT_LT(glm::distance(found.light.values[i], expected.values[i]), 1e-5f) << outputs << " at " << i;

@@ -1,4 +1,4 @@
-// Compares rays through media on the CPU twin with closed forms; gpu_test.cpp compares the shaders with it.
+// Compares rays through media, by the shaders as C++, with closed forms.
 #include <numbers>
 
 #include <glm/gtc/quaternion.hpp>
@@ -9,10 +9,7 @@
 namespace lambent::effects::volume {
 namespace {
 
-using testing::BuiltVolume;
-using testing::clumps;
-using testing::mediumOf;
-using testing::whiteLight;
+using namespace testing;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
@@ -20,6 +17,19 @@ BuiltVolume homogeneous(float extinction) {
   BuiltVolume built;
   built.density_max = extinction;
   built.density = [extinction](const glm::vec3&) { return extinction; };
+  return built;
+}
+
+// Makes clumps of so many voxels, from -1 to 1 m along each axis.
+BuiltVolume clumped(unsigned seed, const glm::uvec3& size, float density_max) {
+  BuiltVolume built;
+  built.size = size;
+  built.group_from_grid =
+      glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), 2.0f / glm::vec3(size));
+  built.density_max = density_max;
+  built.density = [=, shape = clumps(seed, static_cast<float>(size.x))](const glm::vec3& at) {
+    return density_max * shape(at);
+  };
   return built;
 }
 
@@ -71,15 +81,15 @@ float chord(const Aim& aim) {
 
 }  // namespace
 
-TEST(VolumeTwin, AHomogeneousBoxTransmitsTheExponentialOfItsChord) {
+TEST(VolumeMarch, AHomogeneousBoxTransmitsTheExponentialOfItsChord) {
   for (const float extinction : {1e-6f, 0.1f, 1.0f, 2.5f}) {
     BuiltVolume built = homogeneous(extinction);
     built.size = glm::uvec3(32);
     built.group_from_grid =
         glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), glm::vec3(1.0f / 16.0f));
-    const ref::Medium medium = mediumOf(built, whiteLight);
+    const Medium medium = mediumOf(built, whiteLight);
     for (const Aim& aim : someAims(300)) {
-      const glm::vec4 found = ref::march(std::span(&medium, 1), {aim.origin, aim.direction});
+      const glm::vec4 found = march(medium, {aim.origin, aim.direction});
       EXPECT_NEAR(found.a, extinction * chord(aim), 2e-5f * extinction)
           << extinction << " " << aim.origin.x << " " << aim.origin.y << " " << aim.origin.z << " along "
           << aim.direction.x << " " << aim.direction.y << " " << aim.direction.z;
@@ -88,20 +98,13 @@ TEST(VolumeTwin, AHomogeneousBoxTransmitsTheExponentialOfItsChord) {
   }
 }
 
-TEST(VolumeTwin, AtAnyDensityScattersNoMoreThanItTakesAway) {
+TEST(VolumeMarch, AtAnyDensityScattersNoMoreThanItTakesAway) {
   // The medium is white, with light 1 in it and behind it: the result is 1 everywhere, up to the 1e-4 at
   // which rays end.
   for (const float density_max : {0.0f, 1e-6f, 0.3f, 10.0f, 300.0f, 1e6f}) {
-    BuiltVolume built;
-    built.size = {24, 20, 28};
-    built.group_from_grid =
-        glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), 2.0f / glm::vec3(24, 20, 28));
-    const auto shape = clumps(3, 24.0f);
-    built.density_max = density_max;
-    built.density = [=](const glm::vec3& at) { return density_max * shape(at); };
-    const ref::Medium medium = mediumOf(built, whiteLight);
+    const Medium medium = mediumOf(clumped(3, {24, 20, 28}, density_max), whiteLight);
     for (const Aim& aim : someAims(300)) {
-      const glm::vec4 found = ref::march(std::span(&medium, 1), {aim.origin, aim.direction});
+      const glm::vec4 found = march(medium, {aim.origin, aim.direction});
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] + std::exp(-found.a), 1.0f, 1e-3f) << density_max;
       ASSERT_TRUE(std::isfinite(found.a));
       if (density_max == 0.0f) {
@@ -111,20 +114,19 @@ TEST(VolumeTwin, AtAnyDensityScattersNoMoreThanItTakesAway) {
   }
 }
 
-TEST(VolumeTwin, AStepIsExactWhereDensityIsConstantAndLightLinear) {
+TEST(VolumeMarch, AStepIsExactWhereDensityIsConstantAndLightLinear) {
   // The light is x, on a ray along x: the result is int s exp(-s u) (x0 + u) du for any step, thick or thin.
   for (const float extinction : {1e-3f, 1.0f, 50.0f, 1e4f}) {
     BuiltVolume built = homogeneous(extinction);
     built.transfer_size = glm::uvec3(8);
-    const ref::Medium medium = mediumOf(built, [](const glm::uvec3& texel) {
+    const Medium medium = mediumOf(built, [](const glm::uvec3& texel) {
       return glm::vec4(glm::vec3(static_cast<float>(texel.x)), 1.0f);
     });
     // Texel x has its centre at -1 + (x + 0.5) / 4 m; the outermost half voxel is left out.
     const float begin = 3.0f - 0.875f, length = 1.75f;
     for (const float step : {0.25f, 0.5f, 8.0f}) {
       const glm::vec4 found =
-          ref::march(std::span(&medium, 1),
-                     {glm::vec3(-3.0f, 0.1f, 0.2f), glm::vec3(1, 0, 0), begin, begin + length}, step);
+          march(medium, {glm::vec3(-3.0f, 0.1f, 0.2f), glm::vec3(1, 0, 0), begin, begin + length}, step);
       const double s = extinction, d = length;
       const double expected = 4.0 * (-std::expm1(-s * d) / s - d * std::exp(-s * d));
       EXPECT_NEAR(found.r, expected, 2e-3 * expected) << extinction << " step " << step;
@@ -132,7 +134,7 @@ TEST(VolumeTwin, AStepIsExactWhereDensityIsConstantAndLightLinear) {
   }
 }
 
-TEST(VolumeTwin, ABallTransmitsTheExponentialOfItsChord) {
+TEST(VolumeMarch, ABallTransmitsTheExponentialOfItsChord) {
   BuiltVolume built;
   built.size = glm::uvec3(96);
   built.group_from_grid =
@@ -144,28 +146,21 @@ TEST(VolumeTwin, ABallTransmitsTheExponentialOfItsChord) {
     const glm::vec3 place(built.group_from_grid * glm::vec4(grid, 1.0f));
     return kExtinction * std::clamp(0.5f + (1.0f - glm::length(place)) * 40.0f, 0.0f, 1.0f);
   };
-  const ref::Medium medium = mediumOf(built, whiteLight);
+  const Medium medium = mediumOf(built, whiteLight);
   for (const float offset : {0.0f, 0.3f, 0.6f, 0.8f}) {
     const glm::vec3 direction = glm::normalize(glm::vec3(0.3f, -0.2f, -1.0f));
     const glm::vec3 across = glm::normalize(glm::cross(direction, glm::vec3(0, 1, 0)));
-    const glm::vec4 found =
-        ref::march(std::span(&medium, 1), {offset * across - 4.0f * direction, direction});
+    const glm::vec4 found = march(medium, {offset * across - 4.0f * direction, direction});
     const float expected = std::exp(-2.0f * kExtinction * std::sqrt(1.0f - offset * offset));
     EXPECT_NEAR(std::exp(-found.a), expected, 0.01f * expected) << offset;
   }
 }
 
-TEST(VolumeTwin, HalfTheStepChangesThePictureByLessThanHalfAPercent) {
+TEST(VolumeMarch, HalfTheStepChangesThePictureByLessThanHalfAPercent) {
   for (const float density_max : {2.0f, 20.0f, 200.0f}) {
-    BuiltVolume built;
-    built.size = glm::uvec3(48);
-    built.group_from_grid =
-        glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), glm::vec3(2.0f / 48.0f));
-    const auto shape = clumps(5, 48.0f);
-    built.density_max = density_max;
-    built.density = [=](const glm::vec3& at) { return density_max * shape(at); };
+    BuiltVolume built = clumped(5, glm::uvec3(48), density_max);
     built.transfer_size = glm::uvec3(16);
-    const ref::Medium medium = mediumOf(built, [](const glm::uvec3& texel) {
+    const Medium medium = mediumOf(built, [](const glm::uvec3& texel) {
       const glm::vec3 t(texel);
       return glm::vec4(0.6f + 0.4f * glm::sin(0.9f * t), 1.0f);
     });
@@ -173,8 +168,7 @@ TEST(VolumeTwin, HalfTheStepChangesThePictureByLessThanHalfAPercent) {
     const float default_step = MarchOptions{}.step_voxels;
     for (const Aim& aim : someAims(1500)) {
       const auto seen = [&](float step) {
-        const glm::vec4 found =
-            ref::march(std::span(&medium, 1), {aim.origin, aim.direction, 0.0f, ref::kInfinity}, step);
+        const glm::vec4 found = march(medium, {aim.origin, aim.direction, 0.0f, kInfinity}, step);
         return glm::dvec3(found) + std::exp(-double{found.a}) * glm::dvec3(0.2, 0.5, 1.0);
       };
       const glm::dvec3 whole = seen(default_step), half = seen(0.5f * default_step);
@@ -185,30 +179,22 @@ TEST(VolumeTwin, HalfTheStepChangesThePictureByLessThanHalfAPercent) {
   }
 }
 
-TEST(VolumeTwin, JitterChangesNothingThatCanBeSeen) {
-  BuiltVolume built;
-  built.size = glm::uvec3(48);
-  built.group_from_grid =
-      glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), glm::vec3(2.0f / 48.0f));
-  const auto shape = clumps(5, 48.0f);
-  built.density_max = 20.0f;
-  built.density = [=](const glm::vec3& at) { return 20.0f * shape(at); };
-  const ref::Medium medium = mediumOf(built, whiteLight);
+TEST(VolumeMarch, JitterChangesNothingThatCanBeSeen) {
+  const Medium medium = mediumOf(clumped(5, glm::uvec3(48), 20.0f), whiteLight);
   double change = 0.0, power = 0.0;
   int number = 0;
   for (const Aim& aim : someAims(1000)) {
     const float jitter = static_cast<float>(++number % 16 + 1) / 16.0f;
-    const float plain = std::exp(-ref::march(std::span(&medium, 1), {aim.origin, aim.direction}).a);
-    const float jittered = std::exp(
-        -ref::march(std::span(&medium, 1), {aim.origin, aim.direction, 0.0f, ref::kInfinity}, 1.0f, jitter)
-             .a);
+    const float plain = std::exp(-march(medium, {aim.origin, aim.direction}).a);
+    const float jittered =
+        std::exp(-march(medium, {aim.origin, aim.direction, 0.0f, kInfinity}, 1.0f, jitter).a);
     change += std::pow(plain - jittered, 2.0);
     power += std::pow(plain, 2.0);
   }
   EXPECT_LT(std::sqrt(change / power), 0.005);
 }
 
-TEST(VolumeTwin, OverlappingVolumesAddTheirExtinctions) {
+TEST(VolumeMarch, OverlappingVolumesAddTheirExtinctions) {
   // There are two boxes, one of them rotated and moved; only the first one's light is 1.
   BuiltVolume first = homogeneous(0.7f), second = homogeneous(1.3f);
   second.size = {5, 9, 16};
@@ -216,60 +202,46 @@ TEST(VolumeTwin, OverlappingVolumesAddTheirExtinctions) {
       glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), 2.0f / glm::vec3(5, 9, 16));
   const glm::mat4 place = glm::translate(glm::mat4(1.0f), glm::vec3(0.6f, 0.3f, -0.2f)) *
                           glm::mat4_cast(glm::angleAxis(0.7f, glm::normalize(glm::vec3(1, 2, 3))));
-  const std::vector<ref::Medium> media = {mediumOf(first, whiteLight), mediumOf(second, whiteLight, place)};
-  const std::vector<ref::Medium> lit = {
+  const std::vector<Medium> media = {mediumOf(first, whiteLight), mediumOf(second, whiteLight, place)};
+  const std::vector<Medium> lit = {
       media[0], mediumOf(
                     second, [](const glm::uvec3&) { return glm::vec4(0, 0, 0, 1); }, place)};
   for (const Aim& aim : someAims(500)) {
     const glm::mat4 back = glm::inverse(place);
     const Aim turned{glm::vec3(back * glm::vec4(aim.origin, 1.0f)),
                      glm::vec3(back * glm::vec4(aim.direction, 0.0f))};
-    const glm::vec4 found = ref::march(media, {aim.origin, aim.direction});
+    const glm::vec4 found = march(media, {aim.origin, aim.direction});
     EXPECT_NEAR(found.a, 0.7f * chord(aim) + 1.3f * chord(turned), 1e-4f);
     EXPECT_NEAR(found.r + std::exp(-found.a), 1.0f, 1e-4f);
   }
   // The ray starts and ends where both are: light is shared in proportion to extinction.
   const glm::vec3 origin(0.3f, 0.2f, 0.0f), along = glm::normalize(glm::vec3(1, 0.2f, 0.1f));
-  const glm::vec4 found = ref::march(lit, {origin, along, 0.0f, 0.3f});
+  const glm::vec4 found = march(lit, {origin, along, 0.0f, 0.3f});
   EXPECT_NEAR(found.r, 0.35f * (1.0f - std::exp(-2.0f * 0.3f)), 1e-5f);
 }
 
-TEST(VolumeTwin, RaysEndAtTheSurfaceAndMayStartInside) {
-  const ref::Medium medium = mediumOf(homogeneous(2.0f), whiteLight);
+TEST(VolumeMarch, RaysEndAtTheSurfaceAndMayStartInside) {
+  const Medium medium = mediumOf(homogeneous(2.0f), whiteLight);
   const auto depth = [&](float begin, float end) {
-    return ref::march(std::span(&medium, 1), {glm::vec3(-1.5f, 0.1f, 0.1f), glm::vec3(1, 0, 0), begin, end})
-        .a;
+    return march(medium, {glm::vec3(-1.5f, 0.1f, 0.1f), glm::vec3(1, 0, 0), begin, end}).a;
   };
   EXPECT_EQ(depth(0.0f, 0.4f), 0.0f) << "a wall before it";
   EXPECT_NEAR(depth(0.0f, 1.1f), 1.2f, 1e-5f);
   EXPECT_NEAR(depth(1.0f, 1.1f), 0.2f, 1e-5f);
-  EXPECT_NEAR(depth(2.0f, ref::kInfinity), 1.0f, 1e-5f);
-  EXPECT_EQ(depth(2.6f, ref::kInfinity), 0.0f) << "behind the eye";
+  EXPECT_NEAR(depth(2.0f, kInfinity), 1.0f, 1e-5f);
+  EXPECT_EQ(depth(2.6f, kInfinity), 0.0f) << "behind the eye";
 }
 
-TEST(VolumeTwin, SeveralStopsAreWhatSeveralRaysWouldSee) {
-  BuiltVolume built;
-  built.size = glm::uvec3(24);
-  built.group_from_grid =
-      glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), glm::vec3(2.0f / 24.0f));
-  const auto shape = clumps(9, 24.0f);
-  built.density_max = 5.0f;
-  built.density = [=](const glm::vec3& at) { return 5.0f * shape(at); };
-  const ref::Medium medium = mediumOf(built, whiteLight);
+TEST(VolumeMarch, SeveralStopsAreWhatSeveralRaysWouldSee) {
+  const Medium medium = mediumOf(clumped(9, glm::uvec3(24), 5.0f), whiteLight);
   for (const Aim& aim : someAims(200)) {
-    const float stops[] = {1.9f, 2.4f};
-    const auto both = ref::marchVolumes(std::span(&medium, 1),
-                                        {ref::enterVolume(medium.record, aim.origin, aim.direction, 0.0f)},
-                                        stops, 0.1f, 1.0f);
-    for (std::size_t i = 0; i < 2; ++i) {
-      const glm::vec4 one =
-          ref::march(std::span(&medium, 1), {aim.origin, aim.direction, 0.0f, stops[i]}, 0.1f);
-      EXPECT_LT(glm::distance(both[i], one), 2e-3f);
-    }
+    const auto both = marchTo<2>({1.9f, 2.4f}, medium, {aim.origin, aim.direction}, 0.1f, 1.0f);
+    EXPECT_LT(glm::distance(both[0], march(medium, {aim.origin, aim.direction, 0.0f, 1.9f}, 0.1f)), 2e-3f);
+    EXPECT_LT(glm::distance(both[1], march(medium, {aim.origin, aim.direction, 0.0f, 2.4f}, 0.1f)), 2e-3f);
   }
 }
 
-TEST(VolumeTwin, SkippingEmptyBlocksLosesNothing) {
+TEST(VolumeMarch, SkippingEmptyBlocksLosesNothing) {
   std::mt19937 engine(11);
   BuiltVolume built;
   built.size = {33, 17, 40};
@@ -282,28 +254,27 @@ TEST(VolumeTwin, SkippingEmptyBlocksLosesNothing) {
     return sparse[voxel.x + 33 * (voxel.y + 17 * voxel.z)];
   };
   built.density_max = 1.0f;
-  const ref::Medium medium = mediumOf(built, whiteLight);
+  const Medium medium = mediumOf(built, whiteLight);
   EXPECT_GT(std::count(medium.block_maxima.begin(), medium.block_maxima.end(), 0.0f), 10);
-  ref::Medium filled = medium;
+  Medium filled = medium;
   filled.block_maxima.assign(medium.block_maxima.size(), 1.0f);
   for (const Aim& aim : someAims(1000)) {
-    const float expected = ref::march(std::span(&filled, 1), {aim.origin, aim.direction}).a;
-    EXPECT_NEAR(ref::march(std::span(&medium, 1), {aim.origin, aim.direction}).a, expected,
-                1e-5f + 1e-4f * expected);
+    const float expected = march(filled, {aim.origin, aim.direction}).a;
+    EXPECT_NEAR(march(medium, {aim.origin, aim.direction}).a, expected, 1e-5f + 1e-4f * expected);
   }
 }
 
-TEST(VolumeTwin, AVolumeThatIsScaledKeepsItsOpticalDepth) {
+TEST(VolumeMarch, AVolumeThatIsScaledKeepsItsOpticalDepth) {
   // Transfer is of the volume as baked: grown to twice its size it looks the same.
   const BuiltVolume built = homogeneous(2.0f);
-  const ref::Medium small = mediumOf(built, whiteLight),
-                    large = mediumOf(built, whiteLight, glm::scale(glm::mat4(1.0f), glm::vec3(2.0f)));
+  const Medium small = mediumOf(built, whiteLight),
+               large = mediumOf(built, whiteLight, glm::scale(glm::mat4(1.0f), glm::vec3(2.0f)));
   for (const Aim& aim : someAims(100))
-    EXPECT_NEAR(ref::march(std::span(&small, 1), {aim.origin, aim.direction}).a,
-                ref::march(std::span(&large, 1), {2.0f * aim.origin, aim.direction}).a, 1e-4f);
+    EXPECT_NEAR(march(small, {aim.origin, aim.direction}).a,
+                march(large, {2.0f * aim.origin, aim.direction}).a, 1e-4f);
 }
 
-TEST(VolumeTwin, ForwardScatteringIsBrightTowardsTheLight) {
+TEST(VolumeMarch, ForwardScatteringIsBrightTowardsTheLight) {
   // For a beam from s0 in n bands, S(d) = sum_l g^l (2l + 1)/4pi P_l(s0 . d).
   const glm::vec3 towards_light = glm::normalize(glm::vec3(0.3f, 0.8f, -0.5f));
   for (const float g : {-0.6f, 0.0f, 0.5f, 0.8f})
@@ -314,7 +285,7 @@ TEST(VolumeTwin, ForwardScatteringIsBrightTowardsTheLight) {
       std::vector<float> y(outputs);
       sh::evaluate(static_cast<int>(transfer::bandsOf(outputs)), towards_light, y);
       const glm::mat4 place = glm::mat4_cast(glm::angleAxis(0.9f, glm::normalize(glm::vec3(-1, 2, 1))));
-      ref::Medium medium = mediumOf(built, whiteLight, place);
+      Medium medium = mediumOf(built, whiteLight, place);
       const SlabLayout layout = slabLayoutOf(built.transfer_size, outputs);
       std::vector<glm::vec4> samples;
       std::vector<uint> voxels = built.voxels();
@@ -330,10 +301,8 @@ TEST(VolumeTwin, ForwardScatteringIsBrightTowardsTheLight) {
                                  .light = 0,
                                  .g = g,
                                  .pad = 0};
-      ref::scatter(record, voxels, samples, {}, medium.light);
-      const auto seen = [&](const glm::vec3& along) {
-        return ref::march(std::span(&medium, 1), {-3.0f * along, along}).r;
-      };
+      scatter(record, voxels, samples, {}, medium.light);
+      const auto seen = [&](const glm::vec3& along) { return march(medium, {-3.0f * along, along}).r; };
       const glm::vec3 light_ws = glm::vec3(place * glm::vec4(towards_light, 0.0f));
       for (const Aim& aim : someAims(50)) {
         const double x = glm::dot(aim.direction, light_ws);
@@ -355,13 +324,13 @@ TEST(VolumeTwin, ForwardScatteringIsBrightTowardsTheLight) {
     }
 }
 
-TEST(VolumeTwin, VoxelsWithoutLightDoNotDarkenTheirNeighbours) {
+TEST(VolumeMarch, VoxelsWithoutLightDoNotDarkenTheirNeighbours) {
   const BuiltVolume built = homogeneous(1e5f);
-  const ref::Medium medium = mediumOf(
+  const Medium medium = mediumOf(
       built, [](const glm::uvec3& texel) { return texel.x == 0 ? glm::vec4(0.0f) : glm::vec4(1.0f); });
   for (const float y : {-0.7f, 0.0f, 0.3f})
     for (const float x : {-0.9f, -0.7f, 0.4f}) {
-      const float seen = ref::march(std::span(&medium, 1), {glm::vec3(x, y, 3.0f), glm::vec3(0, 0, -1)}).r;
+      const float seen = march(medium, {glm::vec3(x, y, 3.0f), glm::vec3(0, 0, -1)}).r;
       EXPECT_NEAR(seen, x < -0.8f ? 0.0f : 1.0f, 1e-3f) << x << " " << y;
     }
 }
@@ -382,7 +351,7 @@ TEST(VolumeRectangle, HoldsEveryPixelWhoseRayMeetsTheBox) {
     const glm::mat4 clip_from_view = perspective
                                          ? glm::perspective(number(0.3f, 2.0f), 40.0f / 24.0f, 0.1f, 30.0f)
                                          : glm::ortho(-2.0f, 3.0f, -1.0f, 1.5f, 0.1f, 30.0f);
-    const ref::Medium medium = mediumOf(built, whiteLight, glm::mat4(1.0f), view_from_world);
+    const Medium medium = mediumOf(built, whiteLight, glm::mat4(1.0f), view_from_world);
     const Rectangle found =
         rectangleOf(clip_from_view * view_from_world * built.group_from_grid, built.size, picture);
     for (std::uint32_t y = 0; y < picture.height; ++y)
@@ -392,8 +361,8 @@ TEST(VolumeRectangle, HoldsEveryPixelWhoseRayMeetsTheBox) {
         const glm::vec4 near = view_from_clip * glm::vec4(clip, -1.0f, 1.0f),
                         far = view_from_clip * glm::vec4(clip, 1.0f, 1.0f);
         const glm::vec3 begin = glm::vec3(near) / near.w, end = glm::vec3(far) / far.w;
-        const glm::vec4 gathered = ref::march(
-            std::span(&medium, 1), {begin, glm::normalize(end - begin), 0.0f, glm::distance(begin, end)});
+        const glm::vec4 gathered =
+            march(medium, {begin, glm::normalize(end - begin), 0.0f, glm::distance(begin, end)});
         const auto px = static_cast<std::int32_t>(x), py = static_cast<std::int32_t>(y);
         const bool inside =
             px >= found.x && px < found.x + found.width && py >= found.y && py < found.y + found.height;

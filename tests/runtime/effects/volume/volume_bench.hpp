@@ -99,8 +99,8 @@ struct Bench {
     EXPECT_TRUE(done) << done.error().line();
   }
 
-  // Returns volume v as the twin sees it, with the texture that the GPU wrote.
-  ref::Medium mediumOf(std::size_t v, const spec::View& view) const {
+  // Returns volume v with the texture that the GPU wrote.
+  Medium mediumOf(std::size_t v, const spec::View& view) const {
     const glm::uvec3 size = slabLayoutOf(built[v].transfer_size, built[v].shape.outputs).texture_size;
     std::vector<glm::vec4> texels(std::size_t{size.x} * size.y * size.z);
     glGetTextureImage(volume.lightOf(v).id(), 0, GL_RGBA, GL_FLOAT,
