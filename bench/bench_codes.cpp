@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "baker/compress/cpca.hpp"
-#include "baker/effects/diffuse/diffuse.hpp"
+#include "baker/effects/surface/cell_vectors.hpp"
 #include "bench/coded_bytes.hpp"
 #include "bench/group_workload.hpp"
 
@@ -96,12 +96,14 @@ int main(int argc, char** argv) {
   };
   const auto work = loadGroup(options.scene, paint, map);
   const SampleSet& samples = work->samples;
-  const TracedScene view = work->view();
   Progress progress;
-  const DirectPass pass(view, {options.order, options.rays, options.bounces != 0, std::size_t{2} << 30});
-  const auto direct = bakeDirect(pass, view, {progress});
+  const DirectPass pass(work->view(), {.order = options.order,
+                                       .rays = options.rays,
+                                       .keep_hits = options.bounces != 0,
+                                       .hit_memory = std::size_t{2} << 30});
+  auto direct = bakeDirect(pass, {progress});
   std::optional<BounceResult> bounced;
-  if (options.bounces != 0) bounced = bakeBounces(pass, *direct, view, {options.bounces, 1e-3}, {progress});
+  if (options.bounces != 0) bounced = bakeBounces({pass, *direct}, {options.bounces, 1e-3}, {progress});
   std::vector<CellVectors> cells;
   for (const SampleCell& cell : samples.cells)
     for (CellVectors& parts : cellVectors(cell, samples, *direct, bounced ? &*bounced : nullptr,

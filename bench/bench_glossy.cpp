@@ -8,7 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include "baker/brdf/surface_brdfs.hpp"
-#include "baker/effects/glossy/glossy_bounces.hpp"
+#include "baker/effects/surface/bounces.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "bench/group_workload.hpp"
 #include "bench/scene_argument.hpp"
@@ -33,24 +33,21 @@ struct Timed {
 
 Timed run(const GroupWorkload& work, const ExitKernels& kernels, bool hits) {
   Progress progress;
-  const TracedScene view = work.view();
-  const DirectPass plain(view, {.order = 5,
-                                .rays = kRays,
-                                .keep_hits = hits,
-                                .hit_memory = std::size_t{4} << 30,
-                                .colored_kernels = !kernels.grey});
-  const GlossyPass glossy(plain, view, 5);
+  const DirectPass pass(work.view(), {.order = 5,
+                                      .rays = kRays,
+                                      .keep_hits = hits,
+                                      .hit_memory = std::size_t{4} << 30,
+                                      .colored_kernels = !kernels.grey});
   Timed timed;
   auto start = std::clock();
-  auto direct = bakeDirect(plain, view, {progress});
-  auto seen = bakeGlossyDirect(glossy, std::size_t{4} << 30, direct->looks, {progress});
-  diffuseFromGlossy(glossy, seen->field, *direct, {});
+  auto direct = bakeDirect(pass, {progress});
   timed.direct_seconds = secondsSince(start);
-  timed.rays = static_cast<double>(direct->field.rays + seen->rays);
+  timed.rays =
+      static_cast<double>(direct->of(SurfacePart::Matte).rays + direct->of(SurfacePart::Glossy).rays);
   if (!hits) return timed;
   start = std::clock();
-  GlossyBounces partner(glossy, kernels, *direct, *seen, 5);
-  bakeBounces(plain, *direct, view, {.bounces = 1}, {progress}, glossy.size() > 0 ? &partner : nullptr);
+  bakeBounces({.pass = pass, .direct = *direct, .kernels = work.samples.glossy.empty() ? nullptr : &kernels},
+              {.bounces = 1}, {progress});
   timed.bounce_seconds = secondsSince(start);
   return timed;
 }

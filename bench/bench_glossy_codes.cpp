@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "baker/brdf/kernel_power.hpp"
-#include "baker/effects/glossy/glossy.hpp"
-#include "baker/effects/glossy/glossy_bounces.hpp"
-#include "baker/effects/glossy/glossy_direct.hpp"
+#include "baker/effects/surface/bounces.hpp"
+#include "baker/effects/surface/cell_vectors.hpp"
+#include "baker/effects/surface/direct.hpp"
 #include "bench/coded_bytes.hpp"
 #include "bench/group_workload.hpp"
 
@@ -61,27 +61,23 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
-GlossyField transport(const GroupWorkload& work, const SurfaceBrdfs& brdfs, const Options& options) {
-  const TracedScene view = work.view();
+DirectResult transport(const GroupWorkload& work, const SurfaceBrdfs& brdfs, const Options& options) {
   Progress progress;
-  const DirectPass plain(view, {.order = kOrder,
-                                .rays = options.rays,
-                                .keep_hits = options.bounces > 0,
-                                .hit_memory = std::size_t{1} << 30,
-                                .colored_kernels = !brdfs.grey()});
-  auto direct = bakeDirect(plain, view, {progress});
-  const GlossyPass pass(plain, view, kOrder);
-  auto glossy = bakeGlossyDirect(pass, std::size_t{1} << 30, direct->looks, {progress});
-  diffuseFromGlossy(pass, glossy->field, *direct, {});
+  const DirectPass pass(work.view(), {.order = kOrder,
+                                      .rays = options.rays,
+                                      .keep_hits = options.bounces > 0,
+                                      .hit_memory = std::size_t{1} << 30,
+                                      .colored_kernels = !brdfs.grey(),
+                                      .order_out = kOrder});
+  auto direct = bakeDirect(pass, {progress});
   if (options.bounces > 0) {
     const ExitKernels kernels{.grey = brdfs.grey(),
                               .at = [&](std::uint32_t triangle, float u, float v, const glm::vec3& to,
                                         std::span<float> out) { brdfs.exitKernel(triangle, u, v, to, out); }};
-    GlossyBounces bounces(pass, kernels, *direct, *glossy, kOrder);
-    bakeBounces(plain, *direct, view, {options.bounces, 1e-3}, {progress}, &bounces);
-    bounces.finish();
+    bakeBounces({.pass = pass, .direct = *direct, .kernels = &kernels}, {options.bounces, 1e-3, kOrder},
+                {progress});
   }
-  return std::move(glossy->field);
+  return std::move(*direct);
 }
 
 // Holds visibility and bounced light of all cells, and the error of both together; each gets the same share
@@ -123,11 +119,12 @@ int main(int argc, char** argv) {
   const BrdfTables tables = orExit(BrdfTables::make(work->scene, kOrder, kOrder));
   DecodedImages images(work->scene);
   const SurfaceBrdfs brdfs = orExit(SurfaceBrdfs::load(work->scene, work->geometry, tables, images, kOrder));
-  const GlossyField field = transport(*work, brdfs, options);
+  const DirectResult direct = transport(*work, brdfs, options);
   std::vector<std::vector<CellVectors>> cells;
   for (const SampleCell& cell : work->samples.cells) {
     if (cell.kind != SampleKind::Glossy) continue;
-    cells.push_back(glossyCellVectors(cell, field, work->colors->greyEmission()));
+    cells.push_back(cellVectors(cell, work->samples, direct, nullptr,
+                                {.sky = true, .lights = work->colors->greyEmission()}));
     std::erase_if(cells.back(), [](const CellVectors& part) { return part.shape.order == 0; });
   }
 
@@ -140,7 +137,7 @@ int main(int argc, char** argv) {
     std::printf(
         "%s: %.0f vertices, %zu glossy samples; zstd %d; visibility | bounced light\n"
         "bytes/vertex    error | clusters  axes   bytes = book +  ids + weights   error  seconds\n",
-        options.scene, vertices, field.size(), kZstdLevel);
+        options.scene, vertices, direct.glossy.size(), kZstdLevel);
   const auto row = [&](CodingSettings settings) {
     settings.kernel_power = kernelPower(work->geometry, brdfs, kOrder);
     const Measured m = measure(cells, settings);
@@ -149,7 +146,7 @@ int main(int argc, char** argv) {
     if (!options.csv) std::printf("%12.2f  %6.3f %%", all, 100.0 * m.error);
     for (std::size_t p = 0; p < 2; ++p) {
       const CodedBytes& part = m.parts[p];
-      const double axes = static_cast<double>(part.codes) / static_cast<double>(field.size());
+      const double axes = static_cast<double>(part.codes) / static_cast<double>(direct.glossy.size());
       if (options.csv)
         std::printf("%s,%u,%d,%g,%.3f,%.6f,%s,%zu,%.2f,%.3f,%.3f,%.3f,%.3f,%.6f,%.2f\n", options.scene,
                     settings.clusters, settings.axes, double{settings.bound}, all, m.error,

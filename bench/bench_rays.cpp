@@ -137,9 +137,8 @@ Timed runBare(const Workload& work, const DirectionTable& table, Call call) {
 Timed runPass(const Workload& work) {
   Progress progress;
   const auto start = Clock::now();
-  const TracedScene view = work.group->view();
-  const auto direct = bakeDirect(DirectPass(view, {.order = 5, .rays = kRays}), view, {progress});
-  return {direct->field.rays, secondsSince(start)};
+  const auto direct = bakeDirect(DirectPass(work.group->view(), {.order = 5, .rays = kRays}), {progress});
+  return {direct->of(SurfacePart::Matte).rays, secondsSince(start)};
 }
 
 void report(benchmark::State& state, const Timed& timed) {
@@ -149,15 +148,14 @@ void report(benchmark::State& state, const Timed& timed) {
 
 // Returns the seconds of the first gather pass over those of the direct pass with hits kept, in one run.
 double bounceRatio(const Workload& work) {
-  const TracedScene view = work.group->view();
-  const DirectPass pass(view,
+  const DirectPass pass(work.group->view(),
                         {.order = 5, .rays = kRays, .keep_hits = true, .hit_memory = std::size_t{4} << 30});
   Progress progress;
   const auto start = Clock::now();
-  const auto direct = bakeDirect(pass, view, {progress});
+  auto direct = bakeDirect(pass, {progress});
   const double direct_seconds = secondsSince(start);
   const auto bounce_start = Clock::now();
-  bakeBounces(pass, *direct, view, {.bounces = 1}, {progress});
+  bakeBounces({pass, *direct}, {.bounces = 1}, {progress});
   return secondsSince(bounce_start) / direct_seconds;
 }
 

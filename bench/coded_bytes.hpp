@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "baker/compress/cpca.hpp"
-#include "baker/effects/diffuse/diffuse.hpp"
+#include "baker/effects/surface/cell_vectors.hpp"
 #include "runtime/bundle/container.hpp"
 
 namespace lambent {

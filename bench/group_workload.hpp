@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/effects/diffuse/bounces.hpp"
+#include "baker/effects/surface/bounces.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/transport/ray_scene.hpp"
 

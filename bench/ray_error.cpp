@@ -9,7 +9,7 @@
 #include <string>
 
 #include "baker/compress/cpca.hpp"
-#include "baker/effects/diffuse/diffuse.hpp"
+#include "baker/effects/surface/cell_vectors.hpp"
 #include "bench/group_workload.hpp"
 
 namespace {
@@ -25,13 +25,13 @@ struct Baked {
 
 Baked bakeWith(const GroupWorkload& work, std::size_t rays, int bounces) {
   const auto start = std::chrono::steady_clock::now();
-  const TracedScene view = work.view();
   const DirectPass pass(
-      view, {.order = kOrder, .rays = rays, .keep_hits = bounces > 0, .hit_memory = std::size_t{4} << 30});
+      work.view(),
+      {.order = kOrder, .rays = rays, .keep_hits = bounces > 0, .hit_memory = std::size_t{4} << 30});
   Progress progress;
-  Baked baked{*bakeDirect(pass, view, {progress}), {}, 0.0};
-  if (bounces > 0) baked.bounced = bakeBounces(pass, baked.direct, view, {bounces, 0.0}, {progress});
-  baked.direct.hits = HitStore();
+  Baked baked{*bakeDirect(pass, {progress}), {}, 0.0};
+  if (bounces > 0) baked.bounced = bakeBounces({pass, baked.direct}, {bounces, 0.0}, {progress});
+  baked.direct.parts = {};
   baked.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return baked;
 }

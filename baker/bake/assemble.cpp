@@ -25,11 +25,7 @@ std::uint32_t outputsOf(SampleKind kind, int glossy_order) {
 class Assembler {
  public:
   explicit Assembler(const SceneBake& bake)
-      : scene_(bake.scene),
-        plan_(bake.plan),
-        options_(bake.options),
-        tables_(bake.tables),
-        report_(bake.report) {}
+      : scene_(bake.scene), plan_(bake.plan), options_(bake.options), tables_(bake.tables) {}
 
   void copyScene() {
     description_.generator = generatorOf(scene_, options_);
@@ -155,7 +151,7 @@ class Assembler {
     addImportance(baked, kFirstPlanePriority + static_cast<std::uint32_t>(most_planes));
   }
 
-  AssembledBundle take() { return {std::move(description_), std::move(blobs_)}; }
+  AssembledBundle take() { return {std::move(description_), std::move(blobs_), std::move(report_)}; }
 
  private:
   std::uint32_t addView(bundle::Blob bytes) {
@@ -345,7 +341,7 @@ class Assembler {
   const EffectPlan& plan_;
   const BakeOptions& options_;
   const BrdfTables& tables_;
-  BakeReport& report_;
+  BakeReport report_;
   bundle::Description description_;
   std::vector<bundle::Blob> blobs_;
 };

@@ -15,9 +15,10 @@ namespace lambent::baker {
 struct AssembledBundle {
   bundle::Description description;
   std::vector<bundle::Blob> blobs;
+  BakeReport report;  // sizes by kind
 };
 
-// `baked` has one entry per plan group. Adds the sizes by kind to the report.
+// `baked` has one entry per plan group.
 AssembledBundle assemble(const SceneBake& bake, ShippedMeshes meshes, const std::vector<BakedGroup>& baked);
 
 }  // namespace lambent::baker

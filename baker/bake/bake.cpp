@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -16,9 +17,9 @@
 #include "baker/bake/option_rows.hpp"
 #include "baker/bake/result_bytes.hpp"
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/effect_list.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
+#include "baker/effects/surface/bounces.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/refine/refine.hpp"
@@ -49,8 +50,8 @@ Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, 
 // Returns the meshes as they ship: edges are split where the options and shadows ask for it, then meshes are
 // coded.
 Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_maps, DecodedImages& images,
-                               const BakeContext& context) {
-  const auto& [scene, options, plan, tables, report] = bake;
+                               const BakeContext& context, RefineReport& refinement) {
+  const auto& [scene, options, plan, tables] = bake;
   auto split = splitMeshes(scene, plan.groups, options.max_edge_m);
   if (!split) return failAgain(split.error());
   const bool with_glossy = !tables.entries.empty();
@@ -66,7 +67,7 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
     auto refined = refineMeshes({scene, plan.groups, plan.transport, alpha_maps, with_glossy, images}, refine,
                                 *split, context);
     if (!refined) return failAgain(refined.error());
-    report.refinement = *refined;
+    refinement = *refined;
   }
   return shipMeshes(scene, plan.groups, std::move(*split), context);
 }
@@ -74,20 +75,23 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
 struct BakedScene {
   ShippedMeshes meshes;
   std::vector<BakedGroup> groups;
+  BakeReport report;
 };
 
 Result<BakedScene> bakeAll(const SceneBake& whole, const AlphaMaps& alpha_maps, DecodedImages& images,
                            const BakeContext& context) {
   context.progress.beginPart();
-  auto meshes = meshesOf(whole, alpha_maps, images, context);
+  BakedScene baked;
+  auto meshes = meshesOf(whole, alpha_maps, images, context, baked.report.refinement);
   if (!meshes) return failAgain(meshes.error());
-  BakedScene baked{std::move(*meshes), {}};
+  baked.meshes = std::move(*meshes);
   for (std::size_t g = 0; g < whole.plan.groups.size(); ++g) {
     context.progress.beginPart();
     auto group = whole.plan.groups[g].volume >= 0
                      ? bakeVolume(whole, alpha_maps, g, baked.groups, context)
                      : bakeGroup(whole, {baked.meshes, alpha_maps, images}, g, context);
     if (!group) return failAgain(group.error());
+    baked.report.add(std::move(group->report));
     baked.groups.push_back(std::move(*group));
   }
   if (context.stopped()) return whole.stopped();
@@ -96,7 +100,6 @@ Result<BakedScene> bakeAll(const SceneBake& whole, const AlphaMaps& alpha_maps, 
 
 Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
                                       const std::filesystem::path& output, const BakeContext& context) {
-  BakeReport report;
   context.progress.begin("plan");
   const auto plan = planFor(scene, options);
   if (!plan) return failAgain(plan.error());
@@ -107,12 +110,14 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   if (plan->bakes("glossy")) tables = brdfTablesOf(scene, options, context);
   if (!tables) return failAgain(tables.error());
 
-  const SceneBake whole{scene, options, *plan, *tables, report};
+  const SceneBake whole{scene, options, *plan, *tables};
   auto baked = bakeAll(whole, *alpha_maps, images, context);
   if (!baked) return failAgain(baked.error());
   context.progress.beginPart();
   context.progress.begin("writing");
   AssembledBundle bundle = assemble(whole, std::move(baked->meshes), baked->groups);
+  BakeReport report = std::move(baked->report);
+  report.add(std::move(bundle.report));
   // What cannot be opened must not take the place of a bundle that can.
   const auto opens = [](const std::filesystem::path& part) -> Result<void> {
     if (const auto reader = bundle::Reader::open(part); !reader) return failAgain(reader.error());
@@ -150,6 +155,23 @@ Result<void> leaveNeighborhoods(EffectPlan& plan, int order) {
 }
 
 }  // namespace
+
+void BakeReport::add(BakeReport part) {
+  vertices += part.vertices, triangles += part.triangles, samples += part.samples;
+  filled_samples += part.filled_samples, texel_samples += part.texel_samples;
+  rays += part.rays, rays_kept += part.rays_kept, ray_seconds += part.ray_seconds;
+  mesh_bytes += part.mesh_bytes, transfer_bytes += part.transfer_bytes;
+  proxy_bytes += part.proxy_bytes, image_bytes += part.image_bytes;
+  glossy_samples += part.glossy_samples, lights += part.lights;
+  hit_bytes = std::max(hit_bytes, part.hit_bytes);
+  worst_error = std::max(worst_error, part.worst_error);
+  worst_glossy_error = std::max(worst_glossy_error, part.worst_glossy_error);
+  left_out = std::max(left_out, part.left_out);
+  if (part.pass_energy.size() > pass_energy.size()) pass_energy = std::move(part.pass_energy);
+  const auto append = [](auto&& from, auto& to) { std::ranges::move(from, std::back_inserter(to)); };
+  append(part.groups, groups), append(part.neighborhoods, neighborhoods);
+  append(part.volumes, volumes), append(part.notices, notices);
+}
 
 const char* reuseName(Reuse reuse) {
   switch (reuse) {

@@ -1,5 +1,7 @@
 #include "baker/bake/bake_around.hpp"
 
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "baker/effects/neighborhood/neighborhood.hpp"
@@ -11,21 +13,20 @@ namespace {
 
 // Neighborhoods get this share of the bound on coded transfer, since they are seen against nearly open sky,
 // where errors show.
-// show.
 constexpr double kShareOfBound = 1.0 / 3.0;
 // The bound on the change at the faces of grids around bodies that are moved by hand. These grids have no
 // more points than others, and lie close around the body, where its contact with what it stands on shows.
 constexpr double kBoundByHand = 0.03;
 
-void tellAround(const Around& around, BakedAround baked, std::optional<BakedNeighborhood>& out) {
-  BakeReport& report = around.bake.report;
+void take(const Around& around, BakedAround baked, BakedGroup& out) {
+  BakeReport& report = out.report;
   const std::string& name = around.bake.plan.groups[around.group].name;
   if (!baked.grid) {
     report.notices.push_back(fmt::format(
         "rigid group \"{}\": nothing comes within reach of its neighborhood, and none was baked", name));
     return;
   }
-  out = std::move(baked.grid);
+  out.neighborhood = std::move(baked.grid);
   const NeighborhoodFigures& figures = baked.figures;
   report.rays += figures.rays;
   report.rays_kept += figures.rays_kept;
@@ -62,15 +63,15 @@ BakeContext contextOf(const Around& around, const BakeContext& body) {
   return body.keyed(key.key());
 }
 
-bool findAround(const Around& around, const BakeContext& context, std::optional<BakedNeighborhood>& out) {
+bool findAround(const Around& around, const BakeContext& context, BakedGroup& out) {
   BakedAround found;
   if (!findKept(context, found)) return false;
-  tellAround(around, std::move(found), out);
+  take(around, std::move(found), out);
   return true;
 }
 
 bool bakeAround(const Around& around, const Body& body, const Box3& bounds, const BakeContext& context,
-                std::optional<BakedNeighborhood>& out) {
+                BakedGroup& out) {
   const PlannedNeighborhood& plan = around.plan();
   const BakeOptions& options = around.bake.options;
   NeighborhoodSettings settings;
@@ -89,7 +90,7 @@ bool bakeAround(const Around& around, const Body& body, const Box3& bounds, cons
   settings.coding.bound = kShareOfBound * double{options.effectiveErrorBound()};
   auto baked = bakeNeighborhood(body, settings, context);
   if (!baked) return false;
-  tellAround(around, std::move(*baked), out);
+  take(around, std::move(*baked), out);
   return true;
 }
 

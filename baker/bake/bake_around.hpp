@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 
+#include "baker/bake/bake_group.hpp"
 #include "baker/bake/group_scene.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/body.hpp"
@@ -25,14 +25,13 @@ struct Around {
 // depend on.
 BakeContext contextOf(const Around& around, const BakeContext& body);
 
-// Looks for a result in the cache. If there is one, adds it to the report and sets `out`, or leaves `out`
-// unset and adds a notice if the result is that there is no neighborhood. Returns false if it has to be
-// baked.
-bool findAround(const Around& around, const BakeContext& context, std::optional<BakedNeighborhood>& out);
+// Looks for a result in the cache. If there is one, sets the neighborhood of `out` and reports it, or adds a
+// notice if the result is that there is none. Returns false if it has to be baked.
+bool findAround(const Around& around, const BakeContext& context, BakedGroup& out);
 
 // Does the same by baking it. `bounds` are those of the body, relative to `origin`. Returns false if stopped.
 bool bakeAround(const Around& around, const Body& body, const Box3& bounds, const BakeContext& context,
-                std::optional<BakedNeighborhood>& out);
+                BakedGroup& out);
 
 // Returns the rays per grid point around surfaces. A sample of a surface spreads its rays over a hemisphere;
 // a point in free space spreads them over the directions that the body fills, and the body's rim counts.

@@ -13,9 +13,8 @@
 #include "baker/brdf/kernel_power.hpp"
 #include "baker/cache/bytes.hpp"
 #include "baker/compress/kept_transfer.hpp"
-#include "baker/effects/diffuse/diffuse.hpp"
-#include "baker/effects/glossy/glossy.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
+#include "baker/effects/surface/cell_vectors.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/proxy/capture_proxy.hpp"
 #include "baker/transport/face_points.hpp"
@@ -68,6 +67,10 @@ class CellCoder {
     for (const float share : importance.shares) weights.push_back(std::clamp(count * share, kLeast, kMost));
     return weights;
   }
+  std::vector<CellVectors> vectorsOf(const SampleCell& cell) const {
+    const BounceResult* const bounced = light_.bounced ? &*light_.bounced : nullptr;
+    return cellVectors(cell, group_.samples, light_.direct, bounced, grey_);
+  }
   std::span<const float> weightsOf(const SampleCell& cell) const {
     return std::span(weights_).subspan(cell.first, cell.count);
   }
@@ -85,7 +88,7 @@ class CellCoder {
 // up to the square of the bound. A bound that was asked for is kept at any price.
 std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, SurfaceFigures& figures) {
   std::vector<CodedTransfer> coded;
-  const std::vector<CellVectors> parts = glossyCellVectors(cell, light_.glossy->field, grey_.lights);
+  const std::vector<CellVectors> parts = vectorsOf(cell);
   double shown = 0.0;
   bool any_bounced = false;
   for (const CellVectors& part : parts) {
@@ -119,8 +122,7 @@ std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, Surface
 
 std::vector<CodedTransfer> CellCoder::codeDiffuse(const SampleCell& cell, SurfaceFigures& figures) {
   std::vector<CodedTransfer> coded;
-  for (const CellVectors& vectors :
-       cellVectors(cell, group_.samples, light_.direct, light_.bounced ? &*light_.bounced : nullptr, grey_)) {
+  for (const CellVectors& vectors : vectorsOf(cell)) {
     coded.push_back(coding_.code(vectors.vectors, cell.count, vectors.shape,
                                  {.bound = figures.codes_bound, .weights = weightsOf(cell)}));
     figures.worst_error = std::max(figures.worst_error, double{coded.back().error});
@@ -235,34 +237,35 @@ Result<bundle::CaptureProxy> proxyOf(GroupScene& group, const BakeContext& conte
   return proxy;
 }
 
-// Adds to the report what it says of a group and its samples.
-BakeReport::Group& tell(const GroupScene& group, const BakedGroup& baked) {
-  BakeReport& report = group.bake.report;
-  report.vertices += group.geometry.positions.size();
-  report.triangles += group.geometry.triangles.size();
-  report.samples += group.samples.size();
-  report.lights += group.lights.size();
+// Returns what there is to report of a group and its samples.
+BakeReport reportOf(const GroupScene& group, const BakedGroup& baked) {
+  BakeReport report;
+  report.vertices = group.geometry.positions.size();
+  report.triangles = group.geometry.triangles.size();
+  report.samples = group.samples.size();
+  report.lights = group.lights.size();
+  report.notices = group.notices;
   BakeReport::Group& told = report.groups.emplace_back();
   told.name = group.group.name;
   told.light_probes = baked.light_probes.points.size();
   for (const bundle::ProxyLevel& level : baked.proxy.levels)
     told.proxy_triangles.push_back(level.triangle_count);
-  return told;
+  return report;
 }
 
 // Adds to the report what it says of the light of surfaces, and of what each effect cost.
-void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, BakeReport::Group& told) {
-  BakeReport& report = group.bake.report;
-  report.filled_samples += figures.filled_samples;
-  report.glossy_samples += figures.glossy_samples;
-  report.hit_bytes = std::max(report.hit_bytes, figures.hit_bytes);
-  report.worst_error = std::max(report.worst_error, figures.worst_error);
-  report.worst_glossy_error = std::max(report.worst_glossy_error, figures.worst_glossy_error);
-  report.left_out = std::max(report.left_out, figures.left_out);
+void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, BakeReport& report) {
+  BakeReport::Group& told = report.groups.back();
+  report.filled_samples = figures.filled_samples;
+  report.glossy_samples = figures.glossy_samples;
+  report.hit_bytes = figures.hit_bytes;
+  report.worst_error = figures.worst_error;
+  report.worst_glossy_error = figures.worst_glossy_error;
+  report.left_out = figures.left_out;
   told.picture_error = figures.picture_error;
   told.codes_bound = figures.codes_bound, told.glossy_codes_bound = figures.glossy_codes_bound;
-  if (figures.pass_energy.size() > report.pass_energy.size()) report.pass_energy = figures.pass_energy;
-  report.ray_seconds += figures.ray_seconds;
+  report.pass_energy = figures.pass_energy;
+  report.ray_seconds = figures.ray_seconds;
   const auto add = [&](const char* name, const SurfaceFigures::Rays& rays) {
     const Reuse reuse = found                               ? Reuse::Found
                         : rays.traced > 0 || rays.kept == 0 ? Reuse::Baked
@@ -276,12 +279,12 @@ void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, Ba
 
 // Bakes the neighborhood of surfaces whose light is baked. Returns false if stopped.
 bool bakeAroundSurfaces(const Around& around, const GroupScene& group, const SurfaceTransport& light,
-                        const BakeContext& context, std::optional<BakedNeighborhood>& out) {
+                        const BakeContext& context, BakedGroup& out) {
   const SurfaceBody body(group.view(), {.direct = light.direct.field,
                                         .bounced = light.bounced ? &light.bounced->field : nullptr,
                                         .sends = group.bake.options.bounces != 0,
                                         .brdfs = group.brdfs(),
-                                        .glossy = light.glossy ? &light.glossy->field : nullptr});
+                                        .glossy = light.glossy()});
   return bakeAround(around, body, {group.geometry.bounds_min, group.geometry.bounds_max}, context, out);
 }
 
@@ -295,7 +298,7 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
   auto proxy = proxyOf(group, context);
   if (!proxy) return failAgain(proxy.error());
   baked.proxy = std::move(*proxy);
-  BakeReport::Group& told = tell(group, baked);
+  baked.report = reportOf(group, baked);
   const auto finished = [&] {
     baked.geometry = std::move(group.geometry);
     baked.samples = std::move(group.samples);
@@ -310,9 +313,9 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
   const BakeContext around_context = contextOf(around, cells_context);
   SurfaceCells cells;
   const bool found = findKept(cells_context, cells);
-  if (found) tell(group, cells.figures, found, told);
+  if (found) tell(group, cells.figures, found, baked.report);
   const bool any_around = bake.plan.neighborhoods[index].baked && !group.geometry.triangles.empty();
-  const bool around_found = any_around && findAround(around, around_context, baked.neighborhood);
+  const bool around_found = any_around && findAround(around, around_context, baked);
   const auto take = [&](SurfaceCells& from) {
     baked.cells = std::move(from.cells);
     baked.importance = std::move(from.importance);
@@ -328,15 +331,14 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
     CachedCoding coding(context);
     auto coded = codeSurfaces(group, *light, coding, context.progress);
     if (!coded) return bake.stopped();
-    tell(group, coded->figures, found, told);
+    tell(group, coded->figures, found, baked.report);
     keepValue(cells_context, *coded);
     coding.drop();
     take(*coded);
   } else {
-    bake.report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
+    baked.report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
   }
-  if (any_around && !around_found &&
-      !bakeAroundSurfaces(around, group, *light, around_context, baked.neighborhood))
+  if (any_around && !around_found && !bakeAroundSurfaces(around, group, *light, around_context, baked))
     return bake.stopped();
   dropTransport(group, *light, context);
   return finished();

@@ -28,6 +28,7 @@ struct BakedGroup {
   bundle::CaptureProxy proxy;         // group frame
   std::optional<BakedVolume> volume;  // if set, the members above are empty but for light_probes
   std::optional<BakedNeighborhood> neighborhood;
+  BakeReport report;  // of this group
 };
 
 // Bakes group `index` of the plan, which is one of surfaces. Results of earlier runs with the same inputs are

@@ -94,8 +94,9 @@ Result<BakeReport> bakeUnshadowedOnTheseThreads(const Scene& scene, const BakeOp
     report.vertices += baked.back().geometry.positions.size();
     report.triangles += baked.back().geometry.triangles.size();
   }
-  const SceneBake whole{scene, options, *plan, tables, report};
+  const SceneBake whole{scene, options, *plan, tables};
   AssembledBundle bundle = assemble(whole, std::move(*meshes), baked);
+  report.add(std::move(bundle.report));
   bundle.description.generator.settings["transfer"] = "none";
   if (context.stopped()) return whole.stopped();
   if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs); !written)

@@ -241,8 +241,9 @@ struct PlacedVolume {
   VolumeSettings settings;
 };
 
-// Errors: no memory for the hierarchy, "stopped".
-Result<VolumeTransfer> transferOf(const PlacedVolume& placed, const BakeContext& context) {
+// Adds to `ray_seconds`. Errors: no memory for the hierarchy, "stopped".
+Result<VolumeTransfer> transferOf(const PlacedVolume& placed, const BakeContext& context,
+                                  double& ray_seconds) {
   std::optional<RayScene> rays;
   Occluders occluders;
   if (placed.within.geometry) {
@@ -259,18 +260,18 @@ Result<VolumeTransfer> transferOf(const PlacedVolume& placed, const BakeContext&
   context.progress.end();
   const std::vector<Progress::Stage> stages = context.progress.finished();
   for (const Progress::Stage& stage : std::span(stages).subspan(stages_before))
-    if (stage.unit == "samples" || stage.unit == "places") placed.bake.report.ray_seconds += stage.seconds;
+    if (stage.unit == "samples" || stage.unit == "places") ray_seconds += stage.seconds;
   if (!transfer) return placed.bake.stopped();
   return std::move(*transfer);
 }
 
 void tellVolume(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDensity& density,
                 const std::string& name, BakeReport& report) {
-  report.worst_error = std::max(report.worst_error, coded.worst_error);
-  report.worst_glossy_error = std::max(report.worst_glossy_error, coded.worst_glossy_error);
-  report.samples += coded.voxels.size();
-  report.rays += coded.rays;
-  report.rays_kept += coded.rays_kept;
+  report.worst_error = coded.worst_error;
+  report.worst_glossy_error = coded.worst_glossy_error;
+  report.samples = coded.voxels.size();
+  report.rays = coded.rays;
+  report.rays_kept = coded.rays_kept;
   report.volumes.push_back({.name = volume.name,
                             .voxels = volume.density.size(),
                             .samples = coded.voxels.size(),
@@ -331,7 +332,7 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
 
 Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
                               const std::vector<BakedGroup>& baked, const BakeContext& context) {
-  const auto& [scene, options, plan, tables, report] = bake;
+  const auto& [scene, options, plan, tables] = bake;
   const RigidGroup& group = plan.groups[index];
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
   context.progress.begin("density");
@@ -364,7 +365,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   // The transfer is baked only if a result that follows from it is not in the cache.
   std::optional<MarchedVolume> light;
   const auto bakeLight = [&](const auto& use) -> Result<void> {
-    auto transfer = transferOf(placed, own);
+    auto transfer = transferOf(placed, own, result.report.ray_seconds);
     if (!transfer) return failAgain(transfer.error());
     if (!use(*transfer)) return bake.stopped();
     light.emplace(std::move(*transfer));
@@ -382,16 +383,16 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   });
   if (!found) return failAgain(made.error());
   coding.drop();
-  tellVolume(coded, volume, density, group.name, report);
+  tellVolume(coded, volume, density, group.name, result.report);
   out.voxels = std::move(coded.voxels);
   out.cells = std::move(coded.cells);
 
-  if (!around.plan().baked || findAround(around, around_context, result.neighborhood)) return result;
+  if (!around.plan().baked || findAround(around, around_context, result)) return result;
   if (!light)
     if (made = bakeLight([](const VolumeTransfer&) { return true; }); !made) return failAgain(made.error());
   const auto [low, high] = out.bounds();
   const VolumeBody body(*light, low, high, /*scatters=*/true);
-  if (!bakeAround(around, body, Box3{low, high}, around_context, result.neighborhood)) return bake.stopped();
+  if (!bakeAround(around, body, Box3{low, high}, around_context, result)) return bake.stopped();
   return result;
 }
 

@@ -36,17 +36,17 @@ GroupScene::GroupScene(const SceneBake& of, const SurfaceInputs& inputs, std::si
   place(!bake.tables.entries.empty());
   if (const std::uint64_t bytes = bytesShaded(samples, bake.options.glossy_order);
       anyGlossy() && bytes > kMostBytesShaded) {
-    bake.report.notices.push_back(fmt::format(
-        "rigid group \"{}\": {} glossy samples take {} MiB on the GPU, more than the {} MiB that one piece "
-        "may have; its surfaces have diffuse transfer and mirror little but the sky. Part it into several "
-        "groups (extras.lambent.movable), or lower --glossy-order",
-        group.name, samples.glossy.size(), bytes >> 20, kMostBytesShaded >> 20));
+    notices.push_back(
+        fmt::format("rigid group \"{}\": {} glossy samples take {} MiB on the GPU, more than the {} MiB that "
+                    "one piece may have; its surfaces have diffuse transfer and mirror little but the sky. "
+                    "Part it into several groups (extras.lambent.movable), or lower --glossy-order",
+                    group.name, samples.glossy.size(), bytes >> 20, kMostBytesShaded >> 20));
     place(/*with_glossy=*/false);
   }
   for (std::size_t d = 0; d < group.draws.size(); ++d) {
     const PlannedDraw& draw = group.draws[d];
     if (bake.scene.meshes[draw.mesh].primitives[draw.primitive].texels > 0 && geometry.draws[d].texels == 0)
-      bake.report.notices.push_back(fmt::format(
+      notices.push_back(fmt::format(
           "mesh \"{}\", primitive {}: is glossy or has a normal map, so texture_transfer is left out and it "
           "keeps transfer at vertices; give it a diffuse material without a normal map",
           bake.scene.meshes[draw.mesh].name, draw.primitive));

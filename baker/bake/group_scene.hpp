@@ -4,27 +4,26 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "baker/bake/bake.hpp"
 #include "baker/bake/group_keys.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
-#include "baker/effects/diffuse/direct.hpp"
+#include "baker/effects/surface/direct.hpp"
 #include "baker/import/image.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/transport/surface_colors.hpp"
 
 namespace lambent::baker {
 
-// A SceneBake is the bake of one scene: what is asked for, what is planned, and the report that all stages
-// add to.
+// A SceneBake is the bake of one scene: what is asked for, and what is planned.
 struct SceneBake {
   const Scene& scene;
   const BakeOptions& options;
   const EffectPlan& plan;
   const BrdfTables& tables;  // of the scene's glossy materials; empty if all are shown as diffuse
-  BakeReport& report;
 
   tl::unexpected<Error> stopped() const {
     return fail(scene.source.string(), "stopped; nothing was written");
@@ -41,7 +40,7 @@ struct SurfaceInputs {
 class GroupScene {
  public:
   // Places the samples of group `index` of the plan. All arguments must outlive this. If the runtime could
-  // not hold the group's glossy samples, they become diffuse, and the report says so.
+  // not hold the group's glossy samples, they become diffuse, and a notice says so.
   GroupScene(const SceneBake& bake, const SurfaceInputs& inputs, std::size_t index,
              const BakeContext& context);
   GroupScene(const GroupScene&) = delete;  // the loaded parts refer to the geometry
@@ -53,7 +52,8 @@ class GroupScene {
   GroupGeometry geometry;
   SampleSet samples;
   std::vector<PlannedLight> lights;
-  GroupKeys keys;  // not set without a cache
+  GroupKeys keys;                    // not set without a cache
+  std::vector<std::string> notices;  // about results that differ from the plan
 
   const PlannedTransport& transport() const { return bake.plan.transport[index]; }
   // Returns whether light that bounces between surfaces is baked.

@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "baker/bake/picture_sums.hpp"
-#include "baker/effects/diffuse/hemisphere.hpp"
+#include "baker/effects/surface/hemisphere.hpp"
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -25,9 +25,7 @@ constexpr std::size_t kTimesFewRays = 8, kLeastManyRays = 1024, kMostManyRays = 
 class Arriving {
  public:
   Arriving(const TracedScene& scene, int order)
-      : scene_(scene),
-        bands_(static_cast<std::size_t>(sh::coefficientCount(order))),
-        per_pixel_(shadedPerPixel(scene.lights)) {}
+      : scene_(scene), bands_(squared(order)), per_pixel_(shadedPerPixel(scene.lights)) {}
 
   // Which lamps count: those that are shaded per pixel send direct light that is exact, so that of vertices
   // is not shown.
@@ -96,12 +94,12 @@ class DiffusePoints {
         traced_(traced),
         scene_(scene),
         baked_(baked),
-        arriving_(scene, baked.direct.order) {}
+        arriving_(scene, baked.direct.field.order) {}
 
   void addTo(PictureSums& sums) {
     decode();
-    const auto& noisy = traced_.noisy->direct();
-    const auto& exact = traced_.exact->direct();
+    const auto& noisy = traced_.noisy->direct;
+    const auto& exact = traced_.exact->direct;
     const double noise_of_exact =
         noiseOfMany(traced_.noisy->pass().settings().rays, traced_.exact->pass().settings().rays);
     const std::size_t size = 3 * sums.coefficients();
@@ -115,8 +113,8 @@ class DiffusePoints {
       };
       addPoint(noisy.field, All, few), addPoint(exact.field, All, many);
       addPoint(exact.field, PerPixel, fields), addPoint(exact.field, PerPixel, codes);
-      if (!baked_.bounced_at_points.empty())
-        addPoint(baked_.bounced_at_points[0], All, few), addPoint(baked_.bounced_at_points[1], All, many);
+      if (baked_.bounced)
+        addPoint(traced_.noisy->bounced, All, few), addPoint(traced_.exact->bounced, All, many);
       PictureSums::Point point{
           .eye = points_.eyes[p], .squared_shares = 0.0, .noise_of_exact = noise_of_exact};
       for (const SampleShare& shown : shownAt(p)) {
@@ -131,7 +129,7 @@ class DiffusePoints {
         const SampleStretch& mapped = scene_.samples.normal_mapped;
         const bool nine = sample >= mapped.begin && sample < mapped.end;
         const std::size_t row = nine ? sample - mapped.begin : sample;
-        const TransferField& direct = nine ? baked_.mapped : baked_.direct;
+        const TransferField& direct = nine ? baked_.direct.mapped : baked_.direct.field;
         addShown(direct.at(row), direct.channels, AtVertices, fields);
         if (baked_.bounced) {
           const TransferField& bounced = nine ? baked_.bounced->mapped : baked_.bounced->field;
@@ -154,7 +152,7 @@ class DiffusePoints {
     return shownSamples(scene_.geometry, scene_.samples, points_.points.triangles[p], points_.weights[p]);
   }
   bool seen(std::size_t p) const {
-    return traced_.noisy->direct().looks.valid[p] != 0 && traced_.exact->direct().looks.valid[p] != 0;
+    return traced_.noisy->direct.looks.valid[p] != 0 && traced_.exact->direct.looks.valid[p] != 0;
   }
   void decode() {
     if (!baked_.cells) return;
@@ -203,18 +201,19 @@ class GlossyPoints {
         traced_(traced),
         scene_(scene),
         baked_(baked),
-        outputs_(static_cast<std::size_t>(sh::coefficientCount(baked.glossy->order_out))),
-        columns_(static_cast<std::size_t>(sh::coefficientCount(baked.glossy->order_in))),
+        glossy_(baked.direct.glossy),
+        outputs_(squared(glossy_.order_out)),
+        columns_(squared(glossy_.order_in)),
         kernel_(3 * outputs_),
         matrix_(outputs_ * columns_) {}
 
   void addTo(PictureSums& sums) {
     decode();
-    const GlossyField &noisy = traced_.noisy_glossy->direct().field,
-                      &exact = traced_.exact_glossy->direct().field;
-    const double noise_of_exact = noiseOfMany(traced_.noisy_glossy->pass().plain().settings().rays,
-                                              traced_.exact_glossy->pass().plain().settings().rays);
-    const std::size_t size = baked_.glossy->visibilitySize() + bouncedSize();
+    const GlossyField &noisy = traced_.noisy_glossy->direct.glossy,
+                      &exact = traced_.exact_glossy->direct.glossy;
+    const double noise_of_exact = noiseOfMany(traced_.noisy_glossy->pass().settings().rays,
+                                              traced_.exact_glossy->pass().settings().rays);
+    const std::size_t size = glossy_.visibilitySize() + bouncedSize();
     std::vector<float> transfer(size), of_codes(size);
     std::vector<float> many(3 * (columns_ + 1)), few(many), fields(many), codes(many);
     for (std::size_t p = 0; p < points_.eyes.size(); ++p) {
@@ -238,7 +237,7 @@ class GlossyPoints {
       for (int corner = 0; corner < 3; ++corner) {
         const std::uint32_t sample = sampleOf(p, corner);
         point.squared_shares += double{weights[corner]} * double{weights[corner]};
-        addSample(*baked_.glossy, sample - baked_.glossy->first_sample, weights[corner], transfer);
+        addSample(glossy_, sample - glossy_.first_sample, weights[corner], transfer);
         if (!baked_.cells) continue;
         const std::vector<float>& decoded = decoded_.at(sample);
         for (std::size_t i = 0; i < size; ++i) of_codes[i] += weights[corner] * decoded[i];
@@ -252,10 +251,11 @@ class GlossyPoints {
 
  private:
   std::size_t bouncedSize() const {
-    return baked_.glossy->bounced.empty() ? 0 : baked_.glossy->channels * outputs_ * columns_;
+    return glossy_.bounced.empty() ? 0 : glossy_.channels * outputs_ * columns_;
   }
   bool seen(std::size_t p) const {
-    return traced_.noisy_glossy->looks().valid[p] != 0 && traced_.exact_glossy->looks().valid[p] != 0;
+    return traced_.noisy_glossy->direct.looks.valid[p] != 0 &&
+           traced_.exact_glossy->direct.looks.valid[p] != 0;
   }
   std::uint32_t sampleOf(std::size_t p, int corner) const {
     return scene_.samples.vertex_sample[scene_.geometry.triangles[points_.points.triangles[p]][corner]];
@@ -269,13 +269,13 @@ class GlossyPoints {
   }
   // Computes the radiance that leaves by kernel_ where `transfer` is visibility and bounced light.
   void exit(std::span<const float> transfer, std::span<float> out) {
-    const auto visibility = transfer.first(baked_.glossy->visibilitySize());
+    const auto visibility = transfer.first(glossy_.visibilitySize());
     const auto bounced = transfer.subspan(visibility.size());
     std::fill(matrix_.begin(), matrix_.end(), 0.0f);
     sh::addVisibilityMatrix(traced_.exact_glossy->pass().gaunt(), visibility, matrix_);
     std::fill(out.begin(), out.end(), 0.0f);
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::size_t first = baked_.glossy->channels == 3 ? c * matrix_.size() : 0;
+      const std::size_t first = glossy_.channels == 3 ? c * matrix_.size() : 0;
       for (std::size_t k = 0, at = 0; k < outputs_; ++k)
         for (std::size_t i = 0; i < columns_; ++i, ++at)
           out[c * (columns_ + 1) + i] +=
@@ -286,13 +286,13 @@ class GlossyPoints {
     if (!baked_.cells) return;
     for (std::size_t p = 0; p < points_.eyes.size(); ++p)
       for (int corner = 0; corner < 3 && seen(p); ++corner)
-        decoded_[sampleOf(p, corner)].resize(baked_.glossy->visibilitySize() + bouncedSize());
+        decoded_[sampleOf(p, corner)].resize(glossy_.visibilitySize() + bouncedSize());
     for (std::size_t c = 0; c < scene_.samples.cells.size(); ++c) {
       const SampleCell& cell = scene_.samples.cells[c];
       if (cell.kind != SampleKind::Glossy) continue;
       for (const CodedTransfer& coded : (*baked_.cells)[c]) {
         if (coded.shape.order == 0) continue;  // light of the group's lamps
-        const std::size_t first = coded.shape.isVisibility() ? 0 : baked_.glossy->visibilitySize();
+        const std::size_t first = coded.shape.isVisibility() ? 0 : glossy_.visibilitySize();
         decodeCell(cell, coded, decoded_, [&](std::span<const float> vector, std::vector<float>& out) {
           std::copy(vector.begin(), vector.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
         });
@@ -304,6 +304,7 @@ class GlossyPoints {
   const TracedView& traced_;
   const TracedScene& scene_;
   const BakedVertices& baked_;
+  const GlossyField& glossy_;
   std::size_t outputs_, columns_;
   std::vector<float> kernel_, matrix_;
   Decoded decoded_;  // visibility, and then bounced light
@@ -317,27 +318,22 @@ std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order
   const BakeContext unkept = context.keyed(Key{});
   const char* const stage = "error of pictures";
   const std::size_t few = vertices.settings().rays, twice = kLeastTimes * few;
-  const auto trace = [&](std::size_t rays) {
+  const auto trace = [&](const ViewPoints& of, std::size_t rays) {
     DirectSettings settings = vertices.settings();
     settings.rays = rays;
-    auto points = std::make_shared<TracedPoints>(scene, traced.view.diffuse.points, settings);
-    return points->look(unkept, stage) ? points : nullptr;
-  };
-  const auto trace_glossy = [&](std::size_t rays) {
-    DirectSettings settings = vertices.settings();
-    settings.rays = rays;
-    auto points =
-        std::make_shared<TracedGlossyPoints>(scene, traced.view.glossy.points, settings, glossy_order);
-    return points->look(settings.hit_memory, unkept, stage) ? points : nullptr;
+    settings.order_out = glossy_order;
+    auto points = std::make_unique<TracedPoints>(scene, of.points, settings);
+    return points->look(unkept, stage) ? std::move(points) : nullptr;
   };
   if (scene.samples.glossy.begin > 0) {
-    traced.noisy = trace(few);
-    traced.exact = trace(std::max(twice, std::clamp(kTimesFewRays * few, kLeastManyRays, kMostManyRays)));
+    traced.noisy = trace(traced.view.diffuse, few);
+    traced.exact = trace(traced.view.diffuse,
+                         std::max(twice, std::clamp(kTimesFewRays * few, kLeastManyRays, kMostManyRays)));
     if (!traced.noisy || !traced.exact) return std::nullopt;
   }
   if (!scene.samples.glossy.empty()) {
-    traced.noisy_glossy = trace_glossy(few);
-    traced.exact_glossy = trace_glossy(twice);
+    traced.noisy_glossy = trace(traced.view.glossy, few);
+    traced.exact_glossy = trace(traced.view.glossy, twice);
     if (!traced.noisy_glossy || !traced.exact_glossy) return std::nullopt;
   }
   return traced;
@@ -345,7 +341,7 @@ std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order
 
 std::optional<bundle::PictureError> measurePictureError(const TracedView& traced, const TracedScene& scene,
                                                         const BakedVertices& baked) {
-  PictureSums sums(baked.direct.order, traced.view.eye_weights);
+  PictureSums sums(baked.direct.field.order, traced.view.eye_weights);
   if (traced.noisy) DiffusePoints(traced, scene, baked).addTo(sums);
   if (traced.noisy_glossy) GlossyPoints(traced, scene, baked).addTo(sums);
   return sums.result();

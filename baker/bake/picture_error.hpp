@@ -8,16 +8,14 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/picture_sums.hpp"
 #include "baker/cache/bytes.hpp"
 #include "baker/compress/cpca.hpp"
-#include "baker/effects/diffuse/bounces.hpp"
-#include "baker/effects/diffuse/traced_points.hpp"
-#include "baker/effects/glossy/traced_points.hpp"
+#include "baker/effects/surface/bounces.hpp"
+#include "baker/effects/surface/inside_faces.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
@@ -35,8 +33,7 @@ inline bool read(ByteReader& in, bundle::PictureError& error) {
 // surfaces of the kind in the group.
 struct TracedView {
   View view;
-  std::shared_ptr<TracedPoints> noisy, exact;
-  std::shared_ptr<TracedGlossyPoints> noisy_glossy, exact_glossy;
+  std::unique_ptr<TracedPoints> noisy, exact, noisy_glossy, exact_glossy;
 };
 
 // Matrices have `glossy_order` bands. Returns nothing if stopped. Without surfaces in sight, there are no
@@ -44,14 +41,10 @@ struct TracedView {
 std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order, const TracedScene& scene,
                                     const Importance& importance, const BakeContext& context);
 
-// What the bake knows of the vertices, and what bounces brought to the points: to the noisy ones, then to the
-// exact ones. Without bounces, `bounced` is null and the list is empty; without glossy surfaces `glossy` and
-// `brdfs` are null.
+// What the bake knows of the vertices. Without bounces `bounced` is null, without glossy surfaces `brdfs` is.
 struct BakedVertices {
-  const TransferField &direct, &mapped;  // of all samples, and of normal-mapped ones (DirectResult)
+  const DirectResult& direct;
   const BounceResult* bounced;
-  std::span<const TransferField> bounced_at_points;
-  const GlossyField* glossy;
   const SurfaceBrdfs* brdfs;
   // These are SurfaceCells::cells. If null, codes do not count, as if they were exact.
   const std::vector<std::vector<CodedTransfer>>* cells;

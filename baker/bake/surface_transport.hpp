@@ -2,37 +2,18 @@
 // faces, and the bounces between them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/picture_error.hpp"
-#include "baker/effects/diffuse/bounces.hpp"
-#include "baker/effects/diffuse/direct.hpp"
-#include "baker/effects/glossy/glossy_direct.hpp"
+#include "baker/effects/surface/bounces.hpp"
+#include "baker/effects/surface/direct.hpp"
 #include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
-
-// Fits direct light at the vertices so that interpolation over faces shows it best: it traces rays from
-// inside the faces over which light changes, and fits the vertices to what they see by least squares
-// (trace/vertex_fit.hpp). Bounces gather from the fitted values, and fit what they bring in the same way.
-
-struct FitFigures {
-  std::size_t points = 0;  // points inside faces
-  std::uint64_t rays = 0, rays_kept = 0;
-  double ray_seconds = 0.0;
-};
-
-// Fits diffuse samples, with and without normal maps. If hits are kept for bounces, the points inside faces
-// are kept in direct.inside. The key of the context is that of the rays of the vertices. Returns nothing if
-// stopped. The result does not depend on the number of threads.
-std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const TracedScene& scene, DirectResult& direct,
-                                     const BakeContext& context);
-// Fits glossy samples. If hits are kept for bounces, the hits of the points inside faces are kept too, as far
-// as the memory for hits allows, in glossy.inside.
-std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy, const BakeContext& context);
 
 // SurfaceFigures measure the bake of one group's surfaces, whether it was done now or found in the cache.
 struct SurfaceFigures {
@@ -41,7 +22,8 @@ struct SurfaceFigures {
   double worst_error = 0.0, worst_glossy_error = 0.0, left_out = 0.0;
   std::vector<double> pass_energy;
   struct Rays {
-    std::uint64_t traced = 0, kept = 0;  // in this run; saved by results of earlier runs
+    std::uint64_t traced = 0,
+                  kept = 0;  // in this run; saved by results of earlier runs
   };
   Rays diffuse, glossy;
   double ray_seconds = 0.0;  // of this run
@@ -51,12 +33,12 @@ struct SurfaceFigures {
 
 struct SurfaceTransport {
   DirectResult direct;
-  std::optional<GlossyDirect> glossy;  // set if there are glossy samples
   std::optional<BounceResult> bounced;
-  // Samples inside faces that gathered bounces too.
-  std::size_t inside_diffuse = 0, inside_glossy = 0;
+  std::array<std::size_t, 2> inside = {};  // samples inside faces that gathered bounces too, by SurfacePart
   TracedView view;
   SurfaceFigures figures;  // without the errors of coding
+
+  const GlossyField* glossy() const { return direct.glossy.visibility.empty() ? nullptr : &direct.glossy; }
 };
 
 // The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay until

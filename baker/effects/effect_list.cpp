@@ -5,9 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "baker/effects/diffuse/diffuse.hpp"
-#include "baker/effects/glossy/glossy.hpp"
 #include "baker/effects/neighborhood/neighborhood.hpp"
+#include "baker/effects/surface/surface_plan.hpp"
 #include "baker/effects/volume/volume.hpp"
 
 namespace lambent::baker {

@@ -28,7 +28,7 @@ constexpr double kGlossyRay_s = 2.5e-6, kGlossySample_s = 2.6e-4;
 constexpr double kGrowth = 2.0;
 // Stages of a group share that so, roughly. Of diffuse and of glossy samples, codes take these shares of all.
 constexpr double kProbing = 1.0, kDirect = 1.0, kBounce = 0.3, kPatches = 0.09;
-// So many passes gather light; the rest passes between patches (effects/diffuse/bounces.hpp).
+// So many passes gather light; the rest passes between patches (effects/surface/bounces.hpp).
 constexpr int kMostGathered = 2;
 constexpr double kDiffuseCoding = 0.05, kGlossyCoding = 0.5;
 // A point of a neighborhood's grid takes so much with drafts' 256 rays, and its codes without matrices and

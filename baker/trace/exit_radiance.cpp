@@ -10,9 +10,8 @@
 
 namespace lambent::baker {
 
-ExitRadiance::ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples,
-                           const BouncePartner* partner)
-    : geometry_(geometry), glossy_begin_(samples.glossy.begin), partner_(partner) {
+ExitRadiance::ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples, const GlossyExit* glossy)
+    : geometry_(geometry), glossy_begin_(samples.glossy.begin), glossy_(glossy) {
   triangle_samples_.reserve(geometry.triangles.size());
   for (const glm::uvec3& t : geometry.triangles)
     triangle_samples_.emplace_back(samples.vertex_sample[t.x], samples.vertex_sample[t.y],
@@ -63,9 +62,9 @@ void ExitRadiance::addCorners(const CornerWeights& corners, const TransferField&
 
 void ExitRadiance::addGlossy(const GatherHit& hit, const glm::vec3& to, float chance, float weight,
                              const Bounce& bounce, std::span<float> sum) const {
-  if (!partner_) return;
+  if (!glossy_) return;
   const glm::uvec3 corners = triangle_samples_[hit.triangle];
-  const glm::vec3 reflected = weight * partner_->addExit(hit, corners, to, chance, weight, sum);
+  const glm::vec3 reflected = weight * glossy_->add(hit, corners, to, chance, weight, sum);
   if (!bounce.of_patches) return;
   const PatchRadiance& patches = *bounce.of_patches;
   const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
@@ -84,7 +83,7 @@ void ExitRadiance::addGlossy(const GatherHit& hit, const glm::vec3& to, float ch
 }
 
 glm::vec3 ExitRadiance::albedo(const GatherHit& hit, const glm::vec3& to) const {
-  if (partner_ && !isDiffuse(hit)) return partner_->albedo(hit, to);
+  if (glossy_ && !isDiffuse(hit)) return glossy_->albedo(hit, to);
   return glm::vec3(hit.albedo[0], hit.albedo[1], hit.albedo[2]) * (1.0f / 65535.0f);
 }
 

@@ -12,7 +12,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-#include "baker/jobs/bake_context.hpp"
+#include "baker/trace/glossy_exit.hpp"
 #include "baker/trace/hits.hpp"
 #include "baker/trace/patches.hpp"
 #include "baker/trace/transfer_field.hpp"
@@ -35,27 +35,6 @@ struct Bounce {
   // in all directions.
   const PatchRadiance* of_patches = nullptr;
   double growth = 1.0;  // energy of what this pass passes on, relative to what the previous one brought
-};
-
-// A BouncePartner stands for surfaces that are not diffuse, whose samples are SampleSet::glossy. They take
-// part in every pass, as senders and as receivers.
-class BouncePartner {
- public:
-  virtual ~BouncePartner() = default;
-  // Does what ExitRadiance::addGlossy does, for a hit on one of the partner's triangles. `corners` are the
-  // triangle's samples. Returns albedo() of the hit.
-  virtual glm::vec3 addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to,
-                            float chance, float weight, std::span<float> sum) const = 0;
-  // Returns how much of uniform light the hit point reflects towards `to`, for each channel.
-  virtual glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const = 0;
-  // Calls `take` with what the rays of one of the partner's samples met, and how much of the light leaves it
-  // towards the sample.
-  virtual void visitHits(std::size_t sample, const ExitRadiance& exit, const TakeHit& take) const = 0;
-  // Gathers one pass over the partner's samples. `now` is the diffuse transfer of all samples; this adds to
-  // it at the partner's own samples. The key of the context is that of this pass. Returns false if stopped.
-  virtual bool gather(const Bounce& bounce, TransferField& now, const BakeContext& context) = 0;
-  // Makes what was gathered last the input of the next pass.
-  virtual void advance() = 0;
 };
 
 // CornerWeights says how much the corners of a triangle count, in each channel, in the light that diffuse
@@ -85,11 +64,11 @@ struct CornerWeights {
 // ExitRadiance returns the light that leaves hits, after the previous pass.
 class ExitRadiance {
  public:
-  // `partner` is null if all surfaces are diffuse. Geometry and samples must outlive this.
-  ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples, const BouncePartner* partner);
+  // `glossy` is null if all surfaces are diffuse. All must outlive this.
+  ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples, const GlossyExit* glossy);
 
   bool isDiffuse(const GatherHit& hit) const { return triangle_samples_[hit.triangle].x < glossy_begin_; }
-  bool anyGlossy() const { return partner_ != nullptr; }
+  bool anyGlossy() const { return glossy_ != nullptr; }
   // Adds weight * albedo * interpolated transfer to `sum`, which has the layout of a sample of `before`.
   void addDiffuse(const GatherHit& hit, float weight, const TransferField& before,
                   std::span<float> sum) const {
@@ -141,7 +120,7 @@ class ExitRadiance {
   std::vector<glm::uvec3> triangle_samples_;
   std::vector<const TexelMap*> map_of_triangle_;  // null: has none; empty if no triangle has one
   std::size_t glossy_begin_;
-  const BouncePartner* partner_;
+  const GlossyExit* glossy_;
 };
 
 // ExitToSample does the same for one sample, which receives the light along its rays.

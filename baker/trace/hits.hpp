@@ -133,12 +133,15 @@ struct RangeHits {
 class HitStore {
  public:
   HitStore() = default;
-  HitStore(std::size_t samples, std::size_t limit_bytes)
-      : ranges_((samples + kSamplesPerRange - 1) / kSamplesPerRange), limit_bytes_(limit_bytes) {}
-  HitStore(HitStore&& other) noexcept
-      : ranges_(std::move(other.ranges_)), limit_bytes_(other.limit_bytes_), held_(other.held_.load()) {}
+  // Samples begin with `first`.
+  HitStore(std::size_t samples, std::size_t limit_bytes, std::size_t first = 0)
+      : ranges_((samples + kSamplesPerRange - 1) / kSamplesPerRange),
+        first_(first),
+        limit_bytes_(limit_bytes) {}
+  HitStore(HitStore&& other) noexcept { *this = std::move(other); }
   HitStore& operator=(HitStore&& other) noexcept {
     ranges_ = std::move(other.ranges_);
+    first_ = other.first_;
     limit_bytes_ = other.limit_bytes_;
     held_ = other.held_.load();
     return *this;
@@ -164,12 +167,13 @@ class HitStore {
     }
   }
   const RangeHits& range(std::size_t index) const { return ranges_[index]; }
+  std::size_t first() const { return first_; }
   std::size_t bytes() const { return held_; }
   std::size_t bytesLeft() const { return limit_bytes_ - held_; }
 
  private:
   std::vector<RangeHits> ranges_;
-  std::size_t limit_bytes_ = 0;
+  std::size_t first_ = 0, limit_bytes_ = 0;
   std::atomic<std::size_t> held_ = 0;
 };
 
@@ -180,7 +184,8 @@ class StoredHits {
   // Store and pass must outlive this.
   template <typename Pass>
   StoredHits(const HitStore& store, const Pass& pass, std::size_t begin, std::size_t end)
-      : hits_(&store.range(begin / kSamplesPerRange)), first_(begin - begin % kSamplesPerRange) {
+      : hits_(&store.range((begin - store.first()) / kSamplesPerRange)),
+        first_(begin - (begin - store.first()) % kSamplesPerRange) {
     if (hits_->kept) return;
     pass.traceAgain(begin, end, again_);
     hits_ = &again_;

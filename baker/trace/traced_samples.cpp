@@ -106,7 +106,7 @@ TracedRanges::TracedRanges(const TracedScene& scene, std::size_t samples, Settin
       unpainted_(rays_.size()) {}
 
 void TracedRanges::offer(std::size_t range, RangeHits&& hits) {
-  paint_(range * kSamplesPerRange, hits);
+  paint_(store_.first() + range * kSamplesPerRange, hits);
   store_.offer(range, std::move(hits));
 }
 

@@ -74,8 +74,6 @@ Output directRows(TransferField& field, GreyColumns grey, std::ptrdiff_t first_r
           }};
 }
 
-using SampleEdges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-
 std::uint32_t fillFromNeighbours(const SampleEdges& edges, std::vector<std::uint8_t> valid, std::size_t size,
                                  std::span<float> values) {
   std::uint32_t filled = 0;

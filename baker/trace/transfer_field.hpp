@@ -5,10 +5,10 @@
 
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "baker/jobs/stage.hpp"
+#include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
 
@@ -18,9 +18,6 @@ struct TransferField {
   std::uint32_t channels = 1;  // 1 if red, green and blue are the same, else 3
   std::uint32_t columns = 25;
   std::vector<float> vectors;  // [((sample * outputs + output) * channels + channel) * columns + column]
-
-  std::uint64_t rays = 0;            // traced
-  std::uint32_t filled_samples = 0;  // number of samples inside something, filled from their neighbours
 
   std::size_t vectorSize() const { return std::size_t{outputs} * channels * columns; }
   std::size_t size() const { return vectors.size() / vectorSize(); }
@@ -57,13 +54,12 @@ Output directRows(TransferField& field, GreyColumns grey, std::ptrdiff_t first_r
 
 // `edges` are those of sampleEdges(). Returns how many samples were filled. Samples that no valid sample is
 // connected to keep their value.
-std::uint32_t fillFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
-                                 std::vector<std::uint8_t> valid, TransferField& field);
+std::uint32_t fillFromNeighbours(const SampleEdges& edges, std::vector<std::uint8_t> valid,
+                                 TransferField& field);
 
 // Does the same for the samples from `first` on alone, with `size` values each; edges to other samples do not
 // count. `valid` has one entry for each sample of the whole set.
-std::uint32_t fillStretchFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
-                                        const std::vector<std::uint8_t>& valid, std::size_t first,
-                                        std::size_t size, std::span<float> values);
+std::uint32_t fillStretchFromNeighbours(const SampleEdges& edges, const std::vector<std::uint8_t>& valid,
+                                        std::size_t first, std::size_t size, std::span<float> values);
 
 }  // namespace lambent::baker

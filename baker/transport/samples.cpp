@@ -256,8 +256,7 @@ SampleSet buildSamples(const GroupGeometry& geometry, bool with_texels) {
   return samples;
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> sampleEdges(const GroupGeometry& geometry,
-                                                                 const SampleSet& samples) {
+SampleEdges sampleEdges(const GroupGeometry& geometry, const SampleSet& samples) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   if (samples.vertex_sample.empty()) return edges;
   edges.reserve(geometry.triangles.size() * 3);

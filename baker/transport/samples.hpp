@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -85,9 +86,10 @@ float reachOf(const glm::uvec3& corners, const GroupGeometry& geometry);
 // Without texels, draws that have some get the samples of their vertices alone, as refinement needs them.
 SampleSet buildSamples(const GroupGeometry& geometry, bool with_texels = true);
 
+using SampleEdges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
 // Returns the pairs of samples that share an edge of a face, or of neighbouring texels, each once as
 // (smaller, larger), sorted. The list is empty if samples do not belong to vertices.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> sampleEdges(const GroupGeometry& geometry,
-                                                                 const SampleSet& samples);
+SampleEdges sampleEdges(const GroupGeometry& geometry, const SampleSet& samples);
 
 }  // namespace lambent::baker

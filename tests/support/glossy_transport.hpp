@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cmath>
-#include <memory>
+#include <optional>
 
-#include "baker/effects/glossy/glossy_bounces.hpp"
-#include "baker/effects/glossy/traced_points.hpp"
+#include "baker/effects/surface/bounces.hpp"
+#include "baker/effects/surface/inside_faces.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
@@ -14,10 +14,11 @@
 namespace lambent::testing {
 
 struct GlossyBake {
-  baker::DirectResult direct;
-  baker::GlossyDirect glossy;  // if there are bounces, the whole field
+  baker::DirectResult direct;  // if there are bounces, with the whole field of glossy samples
   baker::BounceResult bounced;
   std::size_t hits_inside = 0;  // size in bytes of the points inside faces
+
+  std::size_t hitBytes() const { return direct.of(baker::SurfacePart::Glossy).hits.bytes(); }
 };
 
 // Selects what is also gathered inside faces and fitted.
@@ -35,40 +36,37 @@ struct GlossyBakeSettings {
 
 inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kernels,
                              const GlossyBakeSettings& settings) {
-  const baker::TracedScene view = t.diffuse();
-  const baker::DirectPass plain(view, {.order = settings.order,
-                                       .rays = settings.rays,
-                                       .keep_hits = settings.bounces != 0,
-                                       .hit_memory = settings.hit_memory,
-                                       .colored_kernels = !kernels.grey});
-  const baker::GlossyPass pass(plain, view,
-                               settings.exit_order > 0 ? settings.exit_order : settings.order_out);
+  const baker::DirectPass pass(
+      t.diffuse(), {.order = settings.order,
+                    .rays = settings.rays,
+                    .keep_hits = settings.bounces != 0,
+                    .hit_memory = settings.hit_memory,
+                    .colored_kernels = !kernels.grey,
+                    .order_out = settings.exit_order > 0 ? settings.exit_order : settings.order_out});
   baker::Progress progress;
-  auto direct = baker::bakeDirect(plain, view, {progress});
+  auto direct = baker::bakeDirect(pass, {progress});
   EXPECT_TRUE(direct.has_value());
-  auto glossy = baker::bakeGlossyDirect(pass, settings.hit_memory, direct->looks, {progress});
-  EXPECT_TRUE(glossy.has_value());
+  GlossyBake bake{std::move(*direct), {}};
+  std::optional<baker::InsideFaces> inside;
   if (settings.fit != Fit::Nothing) {
     std::vector<std::uint32_t> triangles;
     for (std::uint32_t i = 0; i < t.geometry.triangles.size(); ++i)
       if (t.samples.vertex_sample[t.geometry.triangles[i].x] >= t.samples.glossy.begin)
         triangles.push_back(i);
-    const auto inside = std::make_shared<baker::GlossyInsideFaces>(pass, triangles);
-    const auto found = inside->look(glossy->hits.bytesLeft(), {progress});
-    EXPECT_TRUE(found && inside->fit(found->visibility, glossy->field.visibility, {}));
-    if (settings.fit == Fit::AllLight) glossy->inside = inside;
+    inside.emplace(pass, baker::SurfacePart::Glossy, triangles,
+                   bake.direct.of(baker::SurfacePart::Glossy).hits.bytesLeft());
+    EXPECT_TRUE(inside->look({progress}) && inside->fitDirect(bake.direct, {}));
+    EXPECT_TRUE(baker::diffuseFromGlossy(pass, bake.direct, {}));
+    bake.hits_inside = inside->points().direct.of(baker::SurfacePart::Glossy).hits.bytes();
   }
-  EXPECT_TRUE(baker::diffuseFromGlossy(pass, glossy->field, *direct, {}));
-  GlossyBake bake{std::move(*direct), std::move(*glossy), {}};
   if (settings.bounces == 0) return bake;
-  baker::GlossyBounces partner(pass, kernels, bake.direct, bake.glossy, settings.order_out);
-  auto bounced = baker::bakeBounces(plain, bake.direct, view, {settings.bounces, settings.tail_error},
-                                    {progress}, &partner);
+  auto bounced = baker::bakeBounces({.pass = pass,
+                                     .direct = bake.direct,
+                                     .kernels = &kernels,
+                                     .fits = {nullptr, settings.fit == Fit::AllLight ? &*inside : nullptr}},
+                                    {settings.bounces, settings.tail_error, settings.order_out}, {progress});
   EXPECT_TRUE(bounced.has_value());
-  partner.finish();
   bake.bounced = std::move(*bounced);
-  if (bake.glossy.inside) bake.hits_inside = bake.glossy.inside->points().direct().hits.bytes();
-  bake.glossy.inside.reset();  // it refers to the pass
   return bake;
 }
 
@@ -100,8 +98,7 @@ inline std::vector<float> shadowMatrix(const baker::GlossyField& field, std::siz
   const auto table = sh::makeGauntTable(field.order_in, field.order_out);
   std::vector<float> matrix(
       static_cast<std::size_t>(field.order_in * field.order_in * field.order_out * field.order_out));
-  sh::addVisibilityMatrix(
-      table, std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()), matrix);
+  sh::addVisibilityMatrix(table, field.visibilityOf(s), matrix);
   return matrix;
 }
 

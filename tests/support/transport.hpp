@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/effects/diffuse/bounces.hpp"
-#include "baker/effects/diffuse/direct.hpp"
+#include "baker/effects/surface/bounces.hpp"
+#include "baker/effects/surface/direct.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/plan/rigid_groups.hpp"
 #include "baker/transport/direction_table.hpp"
@@ -53,10 +53,10 @@ struct Transport {
     const baker::DirectPass pass(
         view, {.order = order, .rays = ray_count, .keep_hits = bounces != 0, .hit_memory = hit_memory});
     baker::Progress progress;
-    auto first = baker::bakeDirect(pass, view, {progress});
+    auto first = baker::bakeDirect(pass, {progress});
     EXPECT_TRUE(first.has_value());
     if (bounces == 0) return {std::move(*first), {}};
-    auto rest = baker::bakeBounces(pass, *first, view, {bounces, tail_error}, {progress});
+    auto rest = baker::bakeBounces({pass, *first}, {bounces, tail_error}, {progress});
     EXPECT_TRUE(rest.has_value());
     return {std::move(*first), std::move(*rest)};
   }

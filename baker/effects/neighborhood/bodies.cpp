@@ -70,9 +70,7 @@ SurfaceBody::SurfaceBody(const TracedScene& scene, const BakedSurfaces& baked)
       for (std::size_t c = 0; c < matrix_channels_; ++c) {
         const std::size_t at = (s * matrix_channels_ + c) * size;
         const auto matrix = std::span(matrices_).subspan(at, size);
-        sh::addVisibilityMatrix(
-            gaunt, std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()),
-            matrix);
+        sh::addVisibilityMatrix(gaunt, field.visibilityOf(s), matrix);
         if (!field.bounced.empty())
           for (std::size_t i = 0; i < size; ++i) matrix[i] += field.bounced[at + i];
       }

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "baker/brdf/surface_brdfs.hpp"
-#include "baker/effects/diffuse/bounces.hpp"
-#include "baker/effects/glossy/glossy_transport.hpp"
+#include "baker/effects/surface/bounces.hpp"
+#include "baker/effects/surface/direct.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/volume/marched_volume.hpp"
 

@@ -124,7 +124,7 @@ double errorOnFloor(const Transport& t) {
   points.normal_mapped = points.glossy = {points.size(), points.size()};
   const TracedScene at_points{t.scene, t.geometry, points, t.rays, t.colors, t.lights};
   Progress progress;
-  const auto truth = bakeDirect(DirectPass(at_points, {.order = 5, .rays = 2048}), at_points, {progress});
+  const auto truth = bakeDirect(DirectPass(at_points, {.order = 5, .rays = 2048}), {progress});
   const TransferField field = t.direct();
   double wrong = 0.0, all = 0.0;
   for (std::size_t p = 0; p < places.size(); ++p) {

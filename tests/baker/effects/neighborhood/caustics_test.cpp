@@ -54,7 +54,7 @@ struct Metal {
                                    .bounced = &baked.bounced.field,
                                    .sends = true,
                                    .brdfs = &brdfs,
-                                   .glossy = &baked.glossy.field}) {}
+                                   .glossy = &baked.direct.glossy}) {}
   Scene scene;
   Transport transport;
   DecodedImages images;

@@ -1,0 +1,168 @@
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "baker/effects/surface/bounces.hpp"
+#include "baker/effects/surface/gather.hpp"
+#include "baker/effects/surface/inside_faces.hpp"
+#include "baker/jobs/parallel.hpp"
+#include "baker/transport/face_points.hpp"
+#include "tests/support/glossy_transport.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::Transport;
+
+// Makes a box on a coarse floor, diffuse or of metal.
+Scene boxOnCoarseFloor(float metallic) {
+  Scene scene = testing::sceneOf({testing::grid({0.0f, 0.0f, 0.0f}, 4.0f, 10),
+                                  testing::box({0.13f, 0.4f, -0.21f}, {0.7f, 0.8f, 0.7f}, 3)});
+  scene.materials[0].metallic = metallic;
+  scene.materials[0].roughness = metallic > 0.0f ? 0.3f : 1.0f;
+  return scene;
+}
+
+// Measures the relative error of interpolating over the samples, at points of faces that the fit did not use:
+// root mean square, weighted by area.
+class Truth {
+ public:
+  explicit Truth(const Transport& t) : t_(t) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> uniform;
+    for (std::uint32_t i = 0; i < t.geometry.triangles.size(); ++i) {
+      const float root = std::sqrt(uniform(random)), along = uniform(random);
+      const glm::vec3 shares(1.0f - root, root * (1.0f - along), root * along);
+      const glm::uvec3 corners = t.geometry.triangles[i];
+      const FacePoint point = facePoint(t.geometry, corners, shares);
+      shares_.push_back(shares);
+      areas_.push_back(
+          0.5f * glm::length(glm::cross(t.geometry.positions[corners.y] - t.geometry.positions[corners.x],
+                                        t.geometry.positions[corners.z] - t.geometry.positions[corners.x])));
+      points.positions.push_back(point.position);
+      points.normals.push_back(point.normal);
+      points.origins.push_back(point.origin);
+    }
+    for (std::uint32_t i = 0; i <= points.size(); ++i) points.origin_offsets.push_back(i);
+    const bool glossy = t.samples.glossy.begin == 0;
+    (glossy ? points.glossy : points.diffuse) = SampleStretch{0, points.size()};
+    if (!glossy) points.normal_mapped = points.glossy = {points.size(), points.size()};
+  }
+
+  double error(std::size_t width, std::span<const float> truth, const std::vector<std::uint8_t>& valid,
+               std::span<const float> samples) const {
+    double wrong = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < shares_.size(); ++i) {
+      if (valid[i] == 0) continue;
+      for (std::size_t k = 0; k < width; ++k) {
+        double shown = 0.0;
+        for (int c = 0; c < 3; ++c)
+          shown += double{shares_[i][c]} *
+                   double{samples[t_.samples.vertex_sample[t_.geometry.triangles[i][c]] * width + k]};
+        const double is = truth[i * width + k];
+        wrong += double{areas_[i]} * (shown - is) * (shown - is);
+        all += double{areas_[i]} * is * is;
+      }
+    }
+    return std::sqrt(wrong / all);
+  }
+
+  SampleSet points;
+
+ private:
+  const Transport& t_;
+  std::vector<glm::vec3> shares_;
+  std::vector<float> areas_;
+};
+
+constexpr std::size_t kRays = 1024, kTrueRays = 4096;
+
+TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
+  const Transport t(boxOnCoarseFloor(1.0f), /*with_glossy=*/true);
+  ASSERT_EQ(t.samples.glossy.begin, 0u);
+  const Truth truth(t);
+  Progress progress;
+  const auto there =
+      bakeDirect(DirectPass(t.diffuse().withSamples(truth.points), {.rays = kTrueRays}), {progress});
+
+  const auto bakeFitted = [&](unsigned threads) {
+    std::pair<GlossyField, GlossyField> out;
+    withThreads(threads, [&] {
+      const DirectPass pass(t.diffuse(), {.rays = kRays});
+      auto direct = bakeDirect(pass, {progress});
+      out.first = direct->glossy;
+      std::unique_ptr<InsideFaces> inside;
+      ASSERT_TRUE(fitInsideFaces(pass, SurfacePart::Glossy, {progress}, *direct, inside));
+      ASSERT_TRUE(inside);
+      EXPECT_GT(inside->points().size(), 0u);
+      EXPECT_LT(inside->points().size(), t.geometry.triangles.size());  // far from the box all see the same
+      out.second = direct->glossy;
+    });
+    return out;
+  };
+  const auto [before, after] = bakeFitted(0);
+  const auto errorOf = [&](const GlossyField& field) {
+    return truth.error(field.visibilitySize(), there->glossy.visibility, there->looks.valid,
+                       field.visibility);
+  };
+  RecordProperty("before", std::to_string(errorOf(before)));
+  RecordProperty("after", std::to_string(errorOf(after)));
+  EXPECT_LT(errorOf(after), 0.9 * errorOf(before));
+  EXPECT_EQ(bakeFitted(1).second.visibility, after.visibility);
+}
+
+TEST(FitVertices, ShowsBouncedLightOverMatteFacesBetterThanWhatTheVerticesReceive) {
+  const Transport t(boxOnCoarseFloor(0.0f));
+  const Truth truth(t);
+  Progress progress;
+  const DirectPass pass(t.diffuse(), {.rays = kRays, .keep_hits = true, .hit_memory = 1u << 30});
+  auto direct = bakeDirect(pass, {progress});
+  std::unique_ptr<InsideFaces> inside;
+  ASSERT_TRUE(fitInsideFaces(pass, SurfacePart::Matte, {progress}, *direct, inside));
+  ASSERT_TRUE(inside);
+  const DirectPass true_pass(t.diffuse().withSamples(truth.points),
+                             {.rays = kTrueRays, .keep_hits = true, .hit_memory = 1u << 30});
+  const auto there = bakeDirect(true_pass, {progress});
+  const ExitRadiance exit(t.geometry, t.samples, nullptr);
+  TransferField truly = there->field.zeros(truth.points.size()), mapped = there->mapped;
+  for (std::size_t s = 0; s < truth.points.size(); s += kSamplesGathered)
+    BounceGather(true_pass, *there, exit)
+        .matte({.number = 1, .thinly = false, .exit = exit, .before = direct->field}, s,
+               std::min(s + kSamplesGathered, truth.points.size()), truly, mapped);
+  const auto bounced = [&](unsigned threads, const InsideFaces* fitted) {
+    std::optional<BounceResult> result;
+    withThreads(threads, [&] {
+      result = bakeBounces({.pass = pass, .direct = *direct, .fits = {fitted, nullptr}}, {.bounces = 1},
+                           {progress});
+    });
+    return std::move(result->field.vectors);
+  };
+  const auto error = [&](const std::vector<float>& vectors) {
+    return truth.error(direct->field.vectorSize(), truly.vectors, there->looks.valid, vectors);
+  };
+  const std::vector<float> fitted = bounced(0, inside.get());
+  EXPECT_EQ(bounced(1, inside.get()), fitted);
+  const double before = error(bounced(0, nullptr)), after = error(fitted);
+  RecordProperty("before", std::to_string(before));
+  RecordProperty("after", std::to_string(after));
+  EXPECT_LT(after, 0.9 * before);
+}
+
+TEST(FitVertices, LeavesAnOpenBodyOfMetalAsItIsAndTracesNothing) {
+  Scene scene = testing::sceneOf({testing::icosphere({0.0f, 0.0f, 0.0f}, 1.0f, 3)});
+  scene.materials[0].metallic = 1.0f;
+  scene.materials[0].roughness = 0.3f;
+  const Transport t(scene, /*with_glossy=*/true);
+  const DirectPass pass(t.diffuse(), {.rays = 256});
+  Progress progress;
+  auto direct = bakeDirect(pass, {progress});
+  const std::vector<float> before = direct->glossy.visibility;
+  std::unique_ptr<InsideFaces> inside;
+  ASSERT_TRUE(fitInsideFaces(pass, SurfacePart::Glossy, {progress}, *direct, inside));
+  EXPECT_EQ(direct->glossy.visibility, before);
+  EXPECT_FALSE(inside);
+}
+
+}  // namespace
+}  // namespace lambent::baker
