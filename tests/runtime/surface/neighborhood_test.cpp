@@ -2,6 +2,7 @@
 
 #include "tests/support/differences.hpp"
 #include "tests/support/frame/neighborhood_checks.hpp"
+#include "tests/support/glsl/glossy_kernels.hpp"
 
 namespace lambent::frame {
 
@@ -232,21 +233,20 @@ TEST_F(NeighborhoodFrame, GlossyReceiversReflectTheChangedLight) {
   stage.half = 2.0f;
   const spec::RgbaImage image = stage.picture();
   ASSERT_EQ(stage.frame->counts()["neighborhood_receivers"], 1u);
-  namespace glossy = effects::glossy::ref;
-  const glossy::Table table(*scene.table);
+  const effects::glossy::glsl::Table table(*scene.table);
+  effects::glossy::glsl::Isotropic kernel;
   const sh::LightVector light = stage.environment.light().truncated(kOrder);
   const glm::vec3 up(0, 1, 0);
   const auto expected = [&](const glm::vec3& place) {
     const auto change = changeOf(light, kOrder, kOrder, blackSphere(1.0f)(2 * kOrder - 1, place - middle));
     std::vector<glm::vec4> sum;
     for (std::size_t i = 0; i < change.size(); ++i) sum.emplace_back(light.c[i] + change[i], 0.0f);
-    const auto local = glossy::localView(true, up, {}, up);
-    const auto reflected =
-        glossy::reflectLight(table, local, glossy::lookUpWeights(table, local, 0.6f, 0.0f), sum);
+    const auto reflected = table.reflect({up, {}, up, 0.6f, 0.0f}, sum);
     const glm::vec3 base(floor.material.base_color);
-    const auto fresnel = glossy::fresnelOf(base, 0.5f, glm::vec3(0.04f), 1.0f);
+    const auto fresnel = kernel.fresnelOf(base, 0.5f, glm::vec3(0.04f), 1.0f);
     return fresnel.f0 * glm::vec3(reflected.f0_light) + fresnel.f90 * glm::vec3(reflected.f90_light) +
-           glossy::diffuseAlbedo(base, 0.5f, fresnel, reflected.albedo) * glm::vec3(reflected.diffuse);
+           kernel.diffuseAlbedo(base, 0.5f, fresnel, glm::vec2(reflected.albedo)) *
+               glm::vec3(reflected.diffuse);
   };
   EXPECT_LT(worst(stage, image, 2.0f, expected, expected(glm::vec3(100.0f, 0.0f, 0.0f))), 0.01);
 }

@@ -21,8 +21,6 @@ using testing::Transport;
 using testing::turned;
 using testing::uniformRadiance;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 bundle::MeshData cup() {
   auto mesh = flipped(box({0, 0, 0}, {2, 1, 2}, 6));
   std::vector<std::uint32_t> kept;
@@ -164,7 +162,8 @@ TEST(GlossyBounces, InASphereSpreadALampEvenly) {
   const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 256, .bounces = -1, .tail_error = 1e-4});
   const GlossyField& field = baked.direct.glossy;
   const float seen = 0.5f * (1.0f + 1.25f - 0.375f);
-  const float uniform = std::sqrt(4.0f * kPi) * seen / (kPi * 4.0f);
+  const float uniform =
+      std::sqrt(4.0f * std::numbers::pi_v<float>) * seen / (std::numbers::pi_v<float> * 4.0f);
   for (std::size_t s = 0; s < field.size(); ++s)
     for (std::size_t i = 0; i < 25; ++i) {
       const float added = field.lights_full[s * 25 + i] - field.lights_shadowed[s * 25 + i];
@@ -263,8 +262,8 @@ TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
       for (std::size_t i = 0; i < y.size(); ++i) (i < 25 ? value : beyond) += double{lobe[i]} * double{y[i]};
       value += beyond;
       for (std::size_t i = 0; i < expected.size(); ++i)
-        expected[i] += value * double{y[i]} * 2.0 * double{kPi} / kDirections;
-      lost += beyond * double{y[0]} * 2.0 * double{kPi} / kDirections;
+        expected[i] += value * double{y[i]} * 2.0 * double{std::numbers::pi_v<float>} / kDirections;
+      lost += beyond * double{y[0]} * 2.0 * double{std::numbers::pi_v<float>} / kDirections;
     }
   }
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(double{left[i]}, expected[i], 0.01) << i;
