@@ -90,11 +90,6 @@ test('pictures are those of lambent-demo', { skip, timeout: 900000 }, async (t) 
       const { lamps, all } = await page.evaluate((options) => window.lambentTest.lampsHalved(options), own);
       assert.ok(lamps === 1 && all < 1e-3, `${lamps} lamps of half the strength give ${percent(all)} else than half`);
     }
-    const turns = { ...own, lights: LIGHTS.soft };
-    const cost = await page.evaluate((options) => window.lambentTest.lightCost(options), turns);
-    const ms = ({ light, commands, drawn }) =>
-      `${light.toFixed(1)} ms for light and ${commands.toFixed(1)} ms for commands, drawn after ${drawn.toFixed(0)} ms`;
-    t.diagnostic(`JavaScript takes ${ms(cost.turning)} while light turns; ${ms(cost.still)} while it stays`);
     assert.deepEqual(messages, [], 'the console has neither errors nor warnings');
     await page.close();
   }

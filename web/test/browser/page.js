@@ -242,37 +242,6 @@ async function samples(bundle, rgb, outputs) {
   return all;
 }
 
-// Turns the light and returns milliseconds per change: of JavaScript for light and for the picture's commands, and until
-// the GPU has drawn it; and the same of a picture whose light stays.
-async function lightCost({ bundle, lights, camera: words, size, changes = 8 }) {
-  const gltf = await loader().loadAsync(bundle), scene = new THREE.Scene(), baked = gltf.userData.lambent;
-  scene.add(gltf.scene);
-  const light = (await Promise.all(lights.map(lightOf))).reduce((a, b) => a.add(b));
-  const camera = cameraOf(gltf, words, size[0] / size[1]), gl = renderer.getContext();
-  renderer.setSize(...size);
-  const run = (turns) => {
-    const sums = { light: 0, commands: 0, drawn: 0 };
-    for (let i = 0; i < changes; ++i) {
-      if (turns) baked.light = light.rotateY(0.1 * i);
-      scene.updateMatrixWorld();
-      const start = performance.now();
-      baked.update();
-      const lit = performance.now();
-      renderer.render(scene, camera);
-      const sent = performance.now();
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-      sums.light += lit - start;
-      sums.commands += sent - lit;
-      sums.drawn += performance.now() - start;
-    }
-    return Object.fromEntries(Object.entries(sums).map(([key, value]) => [key, value / changes]));
-  };
-  run(true); // compiles
-  const result = { turning: run(true), still: run(false) };
-  baked.dispose();
-  return result;
-}
-
 // Projects an environment map twice: its pixels, and a scene with it as its background.
 async function projections(map) {
   const texture = await new HDRLoader().setDataType(THREE.FloatType).loadAsync(map), scene = new THREE.Scene();
@@ -406,5 +375,5 @@ async function loseContext({ bundle, lights, camera: words, size, time }) {
 }
 
 window.lambentTest = {
-  fromAfar, lampsHalved, loseContext, render, samples, lightCost, projections, progressive, sunny, newerFormat, ready: true,
+  fromAfar, lampsHalved, loseContext, render, samples, projections, progressive, sunny, newerFormat, ready: true,
 };
