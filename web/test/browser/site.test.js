@@ -1,5 +1,6 @@
 // Opens the site from a plain file server on a screen of a desk and of a phone, dark and light: every picture on it is
-// live (on the phone the first, as all are one code), and its sliders change it. LAMBENT_TEST_SITE is the folder that web/site/make.js wrote.
+// live (on the phone the first, as all are one code), and its sliders change it. LAMBENT_TEST_SITE is the folder that
+// web/site/make.js wrote.
 import assert from 'node:assert/strict';
 import { existsSync, mkdirSync, readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
