@@ -76,8 +76,7 @@ class AlbedoTable {
 };
 
 // Declares BRDFs that describe a whole material, instead of GGX over a diffuse part. To add one, derive a
-// class in a file of its own and add a row in whole_brdf.cpp.
-
+// class in a file of its own and add a row in wholeBrdfs().
 class WholeBrdf {
  public:
   virtual ~WholeBrdf() = default;

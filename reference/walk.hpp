@@ -165,7 +165,7 @@ struct Walk {
     return std::any_of(paths.begin(), paths.end(), [](const Path& path) { return path.alive; });
   }
 
-  // These are in walk_lights.cpp: next-event estimation towards discs and environment maps, an emissive
+  // These gather light: next-event estimation towards discs and environment maps, an emissive
   // triangle, shapes and a punctual light, and the light that a path's own direction hits.
   void gatherLights(bool first);
   void addShadow(std::size_t p, const glm::vec3& dir, float far, const glm::vec3& radiance,

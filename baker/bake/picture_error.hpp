@@ -41,7 +41,8 @@ struct TracedView {
 std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order, const TracedScene& scene,
                                     const Importance& importance, const BakeContext& context);
 
-// What the bake knows of the vertices. Without bounces `bounced` is null, without glossy surfaces `brdfs` is.
+// Holds what the bake knows of the vertices. Without bounces `bounced` is null, without glossy surfaces
+// `brdfs` is.
 struct BakedVertices {
   const DirectResult& direct;
   const BounceResult* bounced;

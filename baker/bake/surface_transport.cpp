@@ -15,7 +15,7 @@ namespace {
 // The light that further passes would add may be this share of the bound on the coding error.
 constexpr double kTailShare = 0.3;
 
-// By SurfacePart; null if nothing is fitted.
+// The array is indexed by SurfacePart; an entry is null if nothing is fitted.
 using Fits = std::array<std::unique_ptr<InsideFaces>, 2>;
 
 // Traces direct light of one part of the samples, and fits it to points inside faces. Without bounces these

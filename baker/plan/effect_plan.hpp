@@ -70,7 +70,7 @@ struct EffectPlan {
   bool bakes(std::string_view effect) const;
 };
 
-// `with_insides` keeps the backs of closed double-sided bodies, which nobody sees (closed_bodies.hpp).
+// `with_insides` keeps the backs of closed double-sided bodies, which nobody sees.
 EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects, bool with_insides = false);
 
 // Finds the insides that nobody sees. Exporters mark whole scenes as double-sided, and half of what would be

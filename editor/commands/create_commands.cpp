@@ -22,8 +22,8 @@ using LampKind = scene::LocalLightComponent::Kind;
 constexpr float kShareOfWay = 0.35f;  // from the surface towards the camera
 constexpr float kRadiusOfDistance = 0.1f;
 constexpr float kOfWhite = 0.5f;  // what a white surface that faces the light is shown as
-// Where a new directional light stands, seen from the camera: over its shoulder, so that it shows on what the
-// camera sees, with shadows to one side.
+// A new directional light stands over the camera's shoulder, so that it lights what the camera sees and
+// casts shadows to one side.
 constexpr float kShoulderDeg = 40.0f, kHighDeg = 50.0f;
 
 // Rounds to two digits, as a person would choose it.

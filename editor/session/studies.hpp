@@ -36,8 +36,8 @@ class SettingStudy {
   std::map<std::string, frame::SettingCost, std::less<>> costs_;
 };
 
-// Measures what each quality (frame/quality.hpp) costs in time and in error, the highest first. The error is
-// the relative RMS of linear radiance against the picture at high quality, whose own errors only the
+// Measures what each quality (frame/frame_settings.hpp) costs in time and in error, the highest first. The
+// error is the relative RMS of linear radiance against the picture at high quality, whose own errors only the
 // reference shows.
 class QualityStudy {
  public:

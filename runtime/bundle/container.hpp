@@ -26,12 +26,10 @@ namespace lambent::bundle {
 
 // XXH3-64 is the checksum and the digest of the whole format. It is fast enough to be checked on every read.
 // It detects accidents, not forgery.
-
 std::uint64_t checksum(std::span<const std::byte> bytes);
 
 // Compresses and decompresses all payloads, with zstd. Damaged or truncated bytes are reported as an Error
 // that names `subject`.
-
 std::vector<std::byte> compressZstd(std::span<const std::byte> bytes, int level);
 Result<std::vector<std::byte>> decompressZstd(std::span<const std::byte> bytes, std::size_t raw_length,
                                               const std::string& subject);
@@ -89,17 +87,17 @@ class Reader {
   std::unique_ptr<File> file_;
 };
 
-// Writes bundles, the counterpart of reader.hpp. A bundle is a valid GLB 2.0 file.
-
+// Holds the bytes of a view.
 using Blob = std::vector<std::byte>;
 
 // Looks at a whole bundle before it takes the place of the old one.
 using PartCheck = std::function<Result<void>(const std::filesystem::path& part)>;
 
-// Writes a bundle and fills `description.views`: blobs[i] becomes view i, and each animation gets another
-// view for its keyframes after them. Every animation must have at least one channel with keys. The file
-// appears whole or not at all, and equal input gives equal bytes. Fails if transfer is not finite, if the
-// file would exceed the 4 GiB of a GLB, if it cannot be written, or if `check` finds fault with it.
+// Writes a bundle, which is a valid GLB 2.0 file, and fills `description.views`: blobs[i] becomes view i, and
+// each animation gets another view for its keyframes after them. Every animation must have at least one
+// channel with keys. The file appears whole or not at all, and equal input gives equal bytes. Fails if
+// transfer is not finite, if the file would exceed the 4 GiB of a GLB, if it cannot be written, or if `check`
+// finds fault with it.
 Result<void> write(const std::filesystem::path& path, Description description, const std::vector<Blob>& blobs,
                    const PartCheck& check = {});
 

@@ -95,7 +95,7 @@ class GroupLights {
   // Returns how many light probes the last update wrote.
   std::uint32_t renewedSamples() const { return renewed_; }
   void bindStorage(std::uint32_t binding) const { table_.bindStorage(binding); }
-  // Returns the coefficients as uploaded, for CPU twins.
+  // Returns the coefficients as uploaded, for tests that run kernels on the CPU.
   std::span<const glm::vec4> coefficients() const { return coefficients_; }
 
  private:

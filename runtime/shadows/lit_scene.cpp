@@ -353,20 +353,28 @@ float shareThrough(std::span<const lighting::IncidentBody* const> bodies, Blocke
 
 std::size_t ApartOcclusion::update(LitScene& scene, std::span<const bundle::CaptureProxy* const> proxies,
                                    std::uint64_t version) {
-  Inputs inputs{.version = version, .groups = {}, .lights = scene.lights, .bodies = {}};
-  for (lighting::LocalLight& light : inputs.lights) light.power = {};
-  for (const lighting::IncidentBody& body : scene.bodies) inputs.bodies.push_back(body.body.world_from_proxy);
-  for (const lighting::IncidentGroup& group : scene.groups)
-    inputs.groups.push_back({group.samples_ws, group.apart, group.left_out});
+  Inputs inputs{
+      .version = version, .groups = std::vector<Group>(scene.groups.size()), .lights = {}, .bodies = {}};
+  bool any = false;
+  for (std::size_t g = 0; g < scene.groups.size(); ++g) {
+    const lighting::IncidentGroup& group = scene.groups[g];
+    if (group.left_out.empty() || std::ranges::all_of(group.apart, [](float share) { return share == 0.0f; }))
+      continue;
+    inputs.groups[g] = {group.samples_ws, group.apart, group.left_out};
+    any = true;
+  }
+  if (any) {
+    inputs.lights = scene.lights;
+    for (lighting::LocalLight& light : inputs.lights) light.power = {};
+    for (const lighting::IncidentBody& body : scene.bodies)
+      inputs.bodies.push_back(body.body.world_from_proxy);
+  }
   std::size_t probes = 0;
   if (open_.size() != scene.groups.size() || inputs != traced_) {
     open_.assign(scene.groups.size(), {});
     Blockers blockers(proxies);
     for (std::size_t g = 0; g < scene.groups.size(); ++g) {
       const Group& group = inputs.groups[g];
-      if (group.left_out.empty() ||
-          std::ranges::all_of(group.apart, [](float share) { return share == 0.0f; }))
-        continue;
       probes += group.samples_ws.size();
       for (const glm::vec3& sample : group.samples_ws)
         for (std::size_t k = 0; k < scene.lights.size(); ++k) {

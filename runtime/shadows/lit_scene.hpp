@@ -109,7 +109,7 @@ class ApartOcclusion {
   };
   struct Inputs {  // all that the shares depend on
     std::uint64_t version = 0;
-    std::vector<Group> groups;
+    std::vector<Group> groups;  // empty for groups of which nothing is traced; if all are, so are the rest
     std::vector<lighting::LocalLight> lights;  // without their power
     std::vector<glm::mat4> bodies;             // world_from_proxy
     bool operator==(const Inputs&) const = default;

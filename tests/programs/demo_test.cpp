@@ -22,16 +22,8 @@ namespace {
 
 using testing::Outcome;
 
-class DemoProgram : public ::testing::Test {
+class DemoProgram : public testing::ProgramTest {
  protected:
-  void SetUp() override {
-    folder =
-        std::filesystem::path(::testing::TempDir()) /
-        fmt::format("{}-demo-{}", getpid(), ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
   Outcome run(const std::string& arguments) const {
     const std::filesystem::path err = folder / "stderr.txt";
     const std::string command = fmt::format("{} {} 2>{}", quoted(LAMBENT_DEMO), arguments, quoted(err));
@@ -54,8 +46,6 @@ class DemoProgram : public ::testing::Test {
 
   // Quotes it as one word of a shell command.
   static std::string quoted(const std::filesystem::path& path) { return fmt::format("'{}'", path.string()); }
-
-  std::filesystem::path folder;
 };
 
 // Ends the calling TEST if there is no device that draws.

@@ -31,7 +31,7 @@ struct BounceSettings {
 
 inline constexpr int kMostBounces = 64;
 
-// What bounces start from.
+// Holds what bounces start from.
 struct LightToBounce {
   const DirectPass& pass;
   DirectResult& direct;  // of all samples, traced by `pass`; receives what bounces bring to glossy ones, and

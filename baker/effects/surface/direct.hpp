@@ -127,7 +127,8 @@ class DirectPass {
   TracedScene scene_;
   DirectSettings settings_;
   InsideTestTables inside_test_;
-  // Of diffuse, normal-mapped and glossy samples, by RayCount; set for the kinds that there are.
+  // Indexed by the kind of sample (diffuse, normal-mapped, glossy), then by RayCount; set for kinds that
+  // exist.
   std::array<std::array<std::optional<Hemisphere>, kRayCounts>, 3> hemispheres_;
   std::optional<sh::GauntTable> gaunt_;
   Emitters emitters_;

@@ -83,7 +83,7 @@ class ProjectionTable {
 //   diffuse        E/pi at the sample's normal; rays are distributed by the cosine
 //   normal-mapped  E/pi, and the nine values l'_j; rays are uniform over the hemisphere
 //   glossy         l' of any direction; rays are uniform. Below the horizon, where the BRDF reads nothing, it
-//                  continues as its mirror image (glossy_field.hpp), so only harmonics with even l + m are
+//                  continues as its mirror image (direct.hpp), so only harmonics with even l + m are
 //                  left: n(n+1)/2 of n². They are called "even" here, and listed by ascending index, so those
 //                  of a lower order come first. They are orthogonal over the hemisphere, which makes exact
 //                  weights easy (docs/design/glossy.md, "Visibility").

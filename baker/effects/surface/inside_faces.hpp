@@ -73,7 +73,7 @@ class InsideFaces {
   const TracedScene vertices_;
   SurfacePart part_;
   TracedPoints points_;
-  // Of diffuse, normal-mapped and glossy samples; set where there are points of the kind.
+  // Indexed by the kind of sample (diffuse, normal-mapped, glossy); set where there are points of the kind.
   std::array<std::optional<VertexFit>, 3> fits_;
 };
 

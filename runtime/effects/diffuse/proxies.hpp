@@ -42,7 +42,7 @@ class Proxies {
   // Changes when what the group sends out was computed anew; no two groups ever return the same number.
   std::uint64_t versionOf(std::size_t group) const { return kept_[group].version; }
 
-  // Return what was uploaded, for comparison with the CPU twin.
+  // Return what was uploaded, for tests that run the kernel on the CPU.
   const std::vector<ProxyGroupRecord>& groups() const { return groups_; }
   const std::vector<ProxyTriangleRecord>& triangles() const { return triangles_; }
   const std::vector<ProxyEntryRecord>& entries() const { return entries_; }
