@@ -98,7 +98,8 @@ function(lambent_as_cpp target)
     target_sources(${target} PRIVATE "${out}")
     set_source_files_properties("${out}" PROPERTIES HEADER_FILE_ONLY ON)
   endforeach()
-  target_include_directories(${target} SYSTEM PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/glsl")
+  # A shader of one room may include one of another, so as_cpp itself is searched, too.
+  target_include_directories(${target} SYSTEM PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/glsl" "${CMAKE_CURRENT_BINARY_DIR}/glsl/as_cpp")
 endfunction()
 
 # lambent_test(NAME SOURCES file... LINK target... [LABELS label...] [TIMEOUT seconds])

@@ -14,7 +14,6 @@
 #include "lambent_bounces_embedded.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/lighting/light_pieces.hpp"
-#include "runtime/shadows/shadowed_light.hpp"
 
 namespace lambent::frame {
 
@@ -23,7 +22,9 @@ static_assert(kPatchLinks == lighting::kLinks);
 namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_bounces::find};
-constexpr std::size_t kOtherLevel = 1;  // level of the blockers' proxies
+constexpr SurfaceFunction kBounceFunctions[] = {
+    {SurfaceHook::Vertex, CalledBy::Diffuse, "bounced_vertex.glsl", "addBounces"},
+    {SurfaceHook::Gathered, CalledBy::Glossy, "bounced_corners.glsl", "addBounces"}};
 // If bounces of uniform direct light add less than this, bands suffice for key lights.
 constexpr float kWorthPatches = 0.02f;
 constexpr float kFarAway = 1e3f;  // distance of key lights, in radii of the room
@@ -57,7 +58,8 @@ glm::vec3 unit(const glm::vec3& v) {
 }  // namespace
 
 PatchBounces::PatchBounces()
-    : patches_("lamp patches"),
+    : SurfaceModule(kBounceFunctions),
+      patches_("lamp patches"),
       bounced_("lamp light at vertices"),
       directions_("lamp link directions"),
       block_("lamp draw") {}
@@ -70,45 +72,29 @@ void PatchBounces::drop() {
   counts_ = {};
 }
 
-// Lamps within the group's bounds always use patches.
-std::uint32_t PatchBounces::within(const LitScene& scene, std::size_t group) {
-  return group < scene.local_masks.size() ? scene.local_masks[group] : 0u;
-}
-
-std::uint32_t PatchBounces::beside(const LitScene& scene, std::size_t group) {
-  // Columns bounce by themselves.
-  const std::uint32_t others = ~(within(scene, group) | scene.columnMask(group));
-  return group < scene.pixel_masks.size() ? scene.pixel_masks[group] & others : 0u;
-}
-
-bool PatchBounces::apart(const World& world, const LitScene& scene, const PatchLights& lights,
-                         std::size_t group) {
-  return world.residency().groups()[group].volume < 0 &&
-         (!lights.keys.empty() || (lights.bands->hasKeys() && beside(scene, group) != 0));
-}
-
-bool PatchBounces::mendsBands(const World& world, const LitScene& scene, const PatchLights& lights,
-                              std::size_t group) const {
+PatchBounces::Task PatchBounces::taskOf(const World& world, const LightPlan& plan, const PatchLights& lights,
+                                        std::size_t group) const {
+  const std::uint32_t beside = plan.beside_masks[group];
   const auto& transport = rooms_[group].room.transport();
-  return apart(world, scene, lights, group) && transport && transport->bounced() >= kWorthPatches;
+  Task task;
+  task.apart = world.residency().groups()[group].volume < 0 &&
+               (!lights.keys.empty() || (lights.bands->hasKeys() && beside != 0));
+  task.mends_bands = task.apart && transport && transport->bounced() >= kWorthPatches;
+  // Lamps within the group's bounds always use patches.
+  task.lamps = plan.within_masks[group] | (task.mends_bands ? beside : 0u);
+  for (std::size_t k = 0; k < plan.shadowed_lights.size(); ++k)
+    if (!shines(plan.shadowed_lights[k])) task.lamps &= ~(1u << k);
+  return task;
 }
 
-std::uint32_t PatchBounces::lampsIn(const LitScene& scene, std::size_t group, bool mends_bands) {
-  std::uint32_t lamps = within(scene, group) | (mends_bands ? beside(scene, group) : 0u);
-  for (std::size_t k = 0; k < scene.shadowed_lights.size(); ++k)
-    if (!shines(scene.shadowed_lights[k])) lamps &= ~(1u << k);
-  return lamps;
-}
-
-RoomLights PatchBounces::lightsIn(const World& world, const LitScene& scene, const PatchLights& lights,
+RoomLights PatchBounces::lightsIn(const World& world, const LightPlan& plan, const PatchLights& lights,
                                   std::size_t group) const {
   const streaming::ResidentGroup& resident = world.residency().groups()[group];
-  const bool mends_bands = mendsBands(world, scene, lights, group);
-  const std::uint32_t lamps = lampsIn(scene, group, mends_bands);
+  const Task task = taskOf(world, plan, lights, group);
   RoomLights found;
-  for (std::size_t k = 0; k < scene.shadowed_lights.size(); ++k)
-    if ((lamps >> k & 1u) != 0) found.lamps.push_back(scene.shadowed_lights[k]);
-  if (!mends_bands) return found;
+  for (std::size_t k = 0; k < plan.shadowed_lights.size(); ++k)
+    if ((task.lamps >> k & 1u) != 0) found.lamps.push_back(plan.shadowed_lights[k]);
+  if (!task.mends_bands) return found;
   const glm::quat group_from_world = glm::conjugate(world.rotationOf(group));
   for (spec::Disc key : lights.keys) {
     key.direction = group_from_world * key.direction;
@@ -128,15 +114,15 @@ RoomLights PatchBounces::lightsIn(const World& world, const LitScene& scene, con
 }
 
 // Returns the bodies that may stand between the group's surfaces and its lights.
-std::vector<lighting::RayTriangle> PatchBounces::othersAround(const World& world, const LitScene& scene,
+std::vector<lighting::RayTriangle> PatchBounces::othersAround(const World& world, const LightPlan& plan,
                                                               std::size_t group, const RoomLights& lights) {
   if (lights.none()) return {};
-  const std::uint32_t own = scene.groups[group].body;
+  const std::uint32_t own = plan.groups[group].body;
   if (own == lighting::CapturePoint::kNoBody) return {};
-  const lighting::IncidentBody& room = scene.bodies[own];
+  const lighting::IncidentBody& room = plan.bodies[own];
   const glm::mat4 group_from_world = glm::inverse(world.worldFromGroup(group));
   std::vector<glm::vec3> ends;  // where lines from the room to its lights end
-  for (const lighting::ShadowedLight& lamp : lights.lamps) ends.push_back(lamp.position_ws);
+  for (const lighting::LocalLight& lamp : lights.lamps) ends.push_back(lamp.position_ws);
   for (const spec::Disc& key : lights.keys)
     ends.push_back(room.center_ws + kFarAway * room.radius_m * (world.rotationOf(group) * key.direction));
   const auto inTheWay = [&](const lighting::IncidentBody& other) {
@@ -145,22 +131,13 @@ std::vector<lighting::RayTriangle> PatchBounces::othersAround(const World& world
     });
   };
   std::vector<lighting::RayTriangle> triangles;
-  for (std::size_t g = 0; g < scene.groups.size(); ++g) {
-    const std::uint32_t body = scene.groups[g].body;
+  for (std::size_t g = 0; g < plan.groups.size(); ++g) {
+    const std::uint32_t body = plan.groups[g].body;
     if (body == own || body == lighting::CapturePoint::kNoBody) continue;
-    const lighting::IncidentBody& other = scene.bodies[body];
+    const lighting::IncidentBody& other = plan.bodies[body];
     if (!inTheWay(other)) continue;
-    const bundle::CaptureProxy& proxy = *world.residency().groups()[g].proxy;
-    if (proxy.levels.empty()) continue;
-    const bundle::ProxyLevel& level = proxy.levels[std::min(kOtherLevel, proxy.levels.size() - 1)];
-    const glm::mat4 group_from_other = group_from_world * other.body.world_from_proxy;
-    for (std::uint32_t t = 0; t < level.triangle_count; ++t) {
-      const bundle::ProxyTriangle& from = proxy.triangles[level.first_triangle + t];
-      lighting::RayTriangle& triangle = triangles.emplace_back();
-      triangle.front_only = from.front_only;
-      for (std::size_t k = 0; k < 3; ++k)
-        triangle.corners[k] = group_from_other * glm::vec4(proxy.positions[from.vertices[k]], 1.0f);
-    }
+    lighting::appendBlockers(*world.residency().groups()[g].proxy,
+                             group_from_world * other.body.world_from_proxy, triangles);
   }
   return triangles;
 }
@@ -229,15 +206,15 @@ bool PatchBounces::take(const World& world, std::size_t group, bool wait) {
   return true;
 }
 
-bool PatchBounces::prepare(World& world, const LitScene& scene, const PatchLights& lights, std::size_t group,
+bool PatchBounces::prepare(World& world, const LightPlan& plan, const PatchLights& lights, std::size_t group,
                            bool wait) {
   if (!world.residency().groups()[group].proxy) return false;
   bool came = false;
   // For a group with only key lights, form factors come first: they tell whether links are worth making.
   for (int stage = 0; stage < 2; ++stage) {
-    const bool mends_bands = mendsBands(world, scene, lights, group);
-    const bool links = lampsIn(scene, group, mends_bands) != 0 || (mends_bands && !lights.keys.empty());
-    if (!links && (!apart(world, scene, lights, group) || rooms_[group].room.transport())) return came;
+    const Task task = taskOf(world, plan, lights, group);
+    const bool links = task.lamps != 0 || (task.mends_bands && !lights.keys.empty());
+    if (!links && (!task.apart || rooms_[group].room.transport())) return came;
     ask(world, group, links);
     if (!take(world, group, wait)) return came;
     came = true;
@@ -245,12 +222,12 @@ bool PatchBounces::prepare(World& world, const LitScene& scene, const PatchLight
   return came;
 }
 
-Result<void> PatchBounces::update(World& world, const LitScene& scene, const PatchLights& lights, bool on,
+Result<void> PatchBounces::update(World& world, const LightPlan& plan, const PatchLights& lights, bool on,
                                   bool wait, gpu::Counters& counters) {
   const auto& groups = world.residency().groups();
   counts_ = {};
   bool any = !lights.keys.empty();
-  for (const std::uint32_t mask : scene.pixel_masks) any |= mask != 0;
+  for (const std::uint32_t mask : plan.pixel_masks) any |= mask != 0;
   if (!on || (!any && rooms_.size() == 0)) {
     drop();
     return {};
@@ -260,11 +237,11 @@ Result<void> PatchBounces::update(World& world, const LitScene& scene, const Pat
   bool changed = groups_moved || draws_moved;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     Room& room = rooms_[g];
-    changed |= prepare(world, scene, lights, g, wait);
+    changed |= prepare(world, plan, lights, g, wait);
     if (room.coming.valid()) ++counts_.rooms_to_come;
     if (!room.room.transport()) continue;
-    const RoomLights found = lightsIn(world, scene, lights, g);
-    room.room.light(found, world.worldFromGroup(g), othersAround(world, scene, g, found));
+    const RoomLights found = lightsIn(world, plan, lights, g);
+    room.room.light(found, world.worldFromGroup(g), othersAround(world, plan, g, found));
     counts_.lights_bounced += room.room.tracedLast();
     if (!room.room.givenOff().empty()) {
       ++counts_.rooms;

@@ -21,10 +21,11 @@
 #include "runtime/base/result.hpp"
 #include "runtime/bounces/patch_room.hpp"
 #include "runtime/bounces/patch_shared.h"
+#include "runtime/draws/surface_module.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "runtime/lighting/group_lights.hpp"
-#include "runtime/shadows/lit_scene.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
@@ -42,7 +43,7 @@ struct PatchLights {
   const lighting::GroupLights* bands = nullptr;  // the light probes' light, with keys apart
 };
 
-class PatchBounces {
+class PatchBounces final : public SurfaceModule {
  public:
   static constexpr std::uint32_t kNothing = 0xffffffffu;
 
@@ -50,16 +51,19 @@ class PatchBounces {
 
   // Updates all groups. If `wait` is set, waits for form factors and links. If `on` is false, frees
   // everything.
-  Result<void> update(World& world, const LitScene& scene, const PatchLights& lights, bool on, bool wait,
+  Result<void> update(World& world, const LightPlan& plan, const PatchLights& lights, bool on, bool wait,
                       gpu::Counters& counters);
 
   // Returns where the light of a draw's first vertex lies, in words; kNothing if it has none.
   std::uint32_t wordOf(std::size_t draw) const { return draw < words_.size() ? words_[draw] : kNothing; }
   // Returns whether any draw has such light.
   bool any() const { return !words_.empty(); }
-  // Rises when wordOf() changes for any draw.
-  std::uint64_t layoutVersion() const { return layout_version_; }
-  void bindStorage(std::uint32_t binding) const { bounced_.bindStorage(binding); }
+  bool reaches(std::size_t draw, const SurfaceDraw&) const override { return wordOf(draw) != kNothing; }
+  std::uint64_t version() const override { return layout_version_; }
+  void describe(std::size_t draw, SurfaceDraw& record) const override { record.bounced_word = wordOf(draw); }
+  void bindFor(SurfaceReceiver receiver) const override {
+    bounced_.bindStorage(isGlossy(receiver) ? kBindGlossyBounced : kBindBounced);
+  }
 
   // Returns the radiance that the triangles of the group's capture proxy send to other groups; empty: none.
   std::span<const glm::vec3> sentBy(std::size_t group) const {
@@ -101,27 +105,21 @@ class PatchBounces {
     std::uint64_t gathered = 0;  // the version of its room that was gathered
   };
   void drop();
-  // Return a bit for each shadowed light: those within the group's bounds, and others that shine on it per
-  // pixel.
-  static std::uint32_t within(const LitScene& scene, std::size_t group);
-  static std::uint32_t beside(const LitScene& scene, std::size_t group);
-  // Returns whether transfer carries bounced light of lights that are shaded per pixel: key lights, and lamps
-  // beside.
-  static bool apart(const World& world, const LitScene& scene, const PatchLights& lights, std::size_t group);
-  // Returns whether patches also correct what stands apart, because the group's surfaces see enough of each
-  // other.
-  bool mendsBands(const World& world, const LitScene& scene, const PatchLights& lights,
-                  std::size_t group) const;
-  // Returns the lamps that patches bounce, a bit each.
-  static std::uint32_t lampsIn(const LitScene& scene, std::size_t group, bool mends_bands);
-  // Returns these lamps, and what stands apart if it has patches.
-  RoomLights lightsIn(const World& world, const LitScene& scene, const PatchLights& lights,
+  // States what patches do in a group.
+  struct Task {
+    bool apart = false;        // transfer carries bounced light of lights that are shaded per pixel
+    bool mends_bands = false;  // patches correct that, because the surfaces see enough of each other
+    std::uint32_t lamps = 0;   // a bit for each shadowed light that they bounce
+  };
+  Task taskOf(const World& world, const LightPlan& plan, const PatchLights& lights, std::size_t group) const;
+  // Returns these lamps, and what stands apart if patches correct it.
+  RoomLights lightsIn(const World& world, const LightPlan& plan, const PatchLights& lights,
                       std::size_t group) const;
-  static std::vector<lighting::RayTriangle> othersAround(const World& world, const LitScene& scene,
+  static std::vector<lighting::RayTriangle> othersAround(const World& world, const LightPlan& plan,
                                                          std::size_t group, const RoomLights& lights);
   void ask(World& world, std::size_t group, bool links);
   // Requests what the group needs for its lights and takes what arrived; returns whether anything did.
-  bool prepare(World& world, const LitScene& scene, const PatchLights& lights, std::size_t group, bool wait);
+  bool prepare(World& world, const LightPlan& plan, const PatchLights& lights, std::size_t group, bool wait);
   // Returns whether anything arrived.
   bool take(const World& world, std::size_t group, bool wait);
   static Points pointsOf(World& world, std::size_t draw);

@@ -16,8 +16,8 @@ namespace lambent::frame {
 
 namespace {
 
+using lighting::LocalLight;
 using lighting::Patch;
-using lighting::ShadowedLight;
 
 constexpr std::size_t kLampPoints = 16;  // points on a lamp with an extent
 constexpr float kLightSurface = 1.01f;   // as in local_shadows.cpp
@@ -43,10 +43,10 @@ std::vector<glm::vec3> ballPoints() {
   return points;
 }
 
-std::vector<glm::vec3> lampPoints(const ShadowedLight& light) {
+std::vector<glm::vec3> lampPoints(const LocalLight& light) {
   if (!hasExtent(light)) return {light.position_ws};
   std::vector<glm::vec3> points;
-  if (light.kind == ShadowedLight::Kind::Sphere) {
+  if (light.kind == LocalLight::Kind::Sphere) {
     for (const glm::vec3& point : ballPoints()) points.push_back(light.position_ws + light.radius_m * point);
     return points;
   }
@@ -79,11 +79,11 @@ std::vector<glm::vec3> raysTo(const spec::Disc& key) {
 
 // Returns what may block the lamp's light. Triangles within a spherical lamp that are no larger than it
 // belong to the lamp itself.
-lighting::TriangleTree blockersOf(const ShadowedLight& light, const lighting::Patches& patches,
+lighting::TriangleTree blockersOf(const LocalLight& light, const lighting::Patches& patches,
                                   std::span<const lighting::RayTriangle> others,
                                   const glm::mat4& world_from_group) {
   const auto isLamp = [&](const lighting::RayTriangle& triangle) {
-    return light.kind == ShadowedLight::Kind::Sphere &&
+    return light.kind == LocalLight::Kind::Sphere &&
            std::ranges::all_of(triangle.corners, [&](const glm::vec3& corner) {
              const glm::vec3 corner_ws(world_from_group * glm::vec4(corner, 1.0f));
              return glm::distance(corner_ws, light.position_ws) <= kLightSurface * light.radius_m;
@@ -99,10 +99,10 @@ lighting::TriangleTree blockersOf(const ShadowedLight& light, const lighting::Pa
 
 }  // namespace
 
-std::vector<float> lampOnPatches(const ShadowedLight& lamp, const lighting::Patches& patches,
+std::vector<float> lampOnPatches(const LocalLight& lamp, const lighting::Patches& patches,
                                  std::span<const lighting::RayTriangle> others,
                                  const glm::mat4& world_from_group) {
-  ShadowedLight light = lamp;
+  LocalLight light = lamp;
   if (const float length = glm::length(light.direction_ws); length > 0.0f) light.direction_ws /= length;
   const ShadowedLightRecord record = recordOf(light, 0.0f);
   const std::vector<Patch>& all = patches.all();
@@ -195,7 +195,7 @@ double changeBetween(const std::vector<glm::vec3>& before, const std::vector<glm
   return power > 0.0 ? std::min(std::sqrt(change / power), 1.0) : 0.0;
 }
 
-lighting::ShadowedLight ofUnitPower(lighting::ShadowedLight lamp) {
+lighting::LocalLight ofUnitPower(lighting::LocalLight lamp) {
   lamp.power = glm::vec3(1.0f);
   return lamp;
 }
@@ -205,7 +205,7 @@ spec::Disc ofUnitPower(spec::Disc key) {
   return key;
 }
 
-bool sameLight(const lighting::ShadowedLight& a, const lighting::ShadowedLight& b) {
+bool sameLight(const lighting::LocalLight& a, const lighting::LocalLight& b) {
   return a == b;
 }
 
@@ -213,7 +213,7 @@ bool sameLight(const spec::Disc& a, const spec::Disc& b) {
   return a.direction == b.direction && a.radius_rad == b.radius_rad;
 }
 
-using Light = std::variant<lighting::ShadowedLight, spec::Disc>;
+using Light = std::variant<lighting::LocalLight, spec::Disc>;
 bool sameSource(const Light& a, const Light& b) {
   if (a.index() != b.index()) return false;
   return a.index() == 0 ? sameLight(std::get<0>(a), std::get<0>(b))
@@ -225,7 +225,7 @@ bool sameSource(const Light& a, const Light& b) {
 std::vector<PatchRoom::Source> PatchRoom::shineAll(const RoomLights& lights,
                                                    const std::vector<Source>& kept) {
   std::vector<Source> sources;
-  for (const lighting::ShadowedLight& lamp : lights.lamps) sources.push_back({ofUnitPower(lamp), {}});
+  for (const lighting::LocalLight& lamp : lights.lamps) sources.push_back({ofUnitPower(lamp), {}});
   for (const spec::Disc& key : lights.keys) sources.push_back({ofUnitPower(key), {}});
 
   std::vector<spec::Disc> new_keys;
@@ -245,7 +245,7 @@ std::vector<PatchRoom::Source> PatchRoom::shineAll(const RoomLights& lights,
   const std::vector<std::vector<float>> by_key = keysOnPatches(new_keys, transport_->patches(), others_);
   auto next_key = by_key.begin();
   for (Source* source : to_trace) {
-    const auto* lamp = std::get_if<lighting::ShadowedLight>(&source->light);
+    const auto* lamp = std::get_if<lighting::LocalLight>(&source->light);
     source->direct = lamp != nullptr ? lampOnPatches(*lamp, transport_->patches(), others_, world_from_group_)
                                      : *next_key++;
   }
@@ -282,7 +282,7 @@ void PatchRoom::light(const RoomLights& lights, const glm::mat4& world_from_grou
   others_.assign(others.begin(), others.end());
 
   std::vector<glm::vec3> powers;
-  for (const lighting::ShadowedLight& lamp : lights.lamps) powers.push_back(lamp.power);
+  for (const lighting::LocalLight& lamp : lights.lamps) powers.push_back(lamp.power);
   for (const spec::Disc& key : lights.keys) powers.push_back(key.radiance);
   sources_ = shineAll(lights, kept);
   const bool same_sources = std::ranges::equal(

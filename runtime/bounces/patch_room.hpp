@@ -35,7 +35,7 @@ namespace lambent::frame {
 
 // Returns E/pi at each patch for unit power, averaged over the patch's points. `others` are further blockers
 // in the group's frame.
-std::vector<float> lampOnPatches(const lighting::ShadowedLight& light, const lighting::Patches& patches,
+std::vector<float> lampOnPatches(const lighting::LocalLight& light, const lighting::Patches& patches,
                                  std::span<const lighting::RayTriangle> others,
                                  const glm::mat4& world_from_group);
 
@@ -55,9 +55,9 @@ struct KeyBands {
 };
 
 struct RoomLights {
-  std::vector<lighting::ShadowedLight> lamps{};  // world
-  std::vector<spec::Disc> keys{};                // directions in the group's frame
-  std::vector<KeyBands> bands{};                 // at least one if there are keys
+  std::vector<lighting::LocalLight> lamps{};  // world
+  std::vector<spec::Disc> keys{};             // directions in the group's frame
+  std::vector<KeyBands> bands{};              // at least one if there are keys
   bool none() const { return lamps.empty() && keys.empty(); }
 };
 
@@ -88,8 +88,8 @@ class PatchRoom {
 
  private:
   struct Source {
-    std::variant<lighting::ShadowedLight, spec::Disc> light;  // at unit power
-    std::vector<float> direct;                                // E/pi of each patch
+    std::variant<lighting::LocalLight, spec::Disc> light;  // at unit power
+    std::vector<float> direct;                             // E/pi of each patch
   };
   // Traces rays for the lights that are not in `kept`.
   std::vector<Source> shineAll(const RoomLights& lights, const std::vector<Source>& kept);

@@ -17,7 +17,6 @@
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/shadows/key_shadows.hpp"
-#include "runtime/shadows/lit_scene.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/distant_lights.hpp"
 #include "runtime/surface/neighborhoods.hpp"

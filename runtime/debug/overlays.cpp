@@ -292,7 +292,7 @@ Result<void> ProbeMarkers::update(const OverlayOptions& options, const OverlaySc
 void ProbeMarkers::place(const OverlayOptions& options, const OverlayScene& scene) {
   const streaming::Residency& residency = scene.world.residency();
   const auto group_count =
-      static_cast<std::uint32_t>(std::min(residency.groups().size(), scene.lit_scene.groups.size()));
+      static_cast<std::uint32_t>(std::min(residency.groups().size(), scene.light_plan.groups.size()));
   std::size_t count = 0, at = 0;
   for (std::uint32_t g = 0; g < group_count; ++g)
     if (options.shows(g)) count += residency.groups()[g].light_probes.size();
@@ -302,7 +302,7 @@ void ProbeMarkers::place(const OverlayOptions& options, const OverlayScene& scen
   const float scene_radius = bounds.empty() || bounds.radius() == 0.0f ? 1.0f : bounds.radius();
   for (std::uint32_t g = 0; g < group_count; ++g) {
     if (!options.shows(g)) continue;
-    const lighting::IncidentGroup& group = scene.lit_scene.groups[g];
+    const lighting::IncidentGroup& group = scene.light_plan.groups[g];
     const glm::quat group_from_world = glm::conjugate(scene.world.rotationOf(g));
     const float radius = radiusFor(scene_radius, group.samples_ws);
     for (std::size_t s = 0; s < group.samples_ws.size(); ++s, ++at) {
@@ -325,7 +325,7 @@ void ProbeMarkers::place(const OverlayOptions& options, const OverlayScene& scen
 
 Result<void> ProbeMarkers::capture(const OverlayScene& scene, gpu::Counters& counters) {
   const streaming::Residency& residency = scene.world.residency();
-  if (points_.empty() || scene.lit_scene.bodies.empty() ||
+  if (points_.empty() || scene.light_plan.bodies.empty() ||
       scene.proxies.groups().size() != residency.groups().size()) {
     cubes_ = {};
     cubes_changed_.forget();
@@ -346,7 +346,7 @@ Result<void> ProbeMarkers::capture(const OverlayScene& scene, gpu::Counters& cou
     for (const std::uint32_t body : point.left_out) shine.push_back(body);
   }
   std::vector<lighting::CaptureBody> bodies;
-  for (const lighting::IncidentBody& body : scene.lit_scene.bodies) {
+  for (const lighting::IncidentBody& body : scene.light_plan.bodies) {
     bodies.push_back(body.body);
     for (int column = 0; column < 4; ++column) seen.push_back(body.body.world_from_proxy[column]);
   }

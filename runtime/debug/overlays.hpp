@@ -15,12 +15,12 @@
 #include "runtime/debug/overlay_options.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
 #include "runtime/gpu/program.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "runtime/lighting/capture.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/shadows/key_shadows.hpp"
-#include "runtime/shadows/lit_scene.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/surface/neighborhoods.hpp"
 #include "runtime/tone_map/tone_mapper.hpp"
@@ -36,7 +36,7 @@ struct OverlayScene {
   World& world;
   const lighting::Environment& environment;
   const lighting::Sky& sky;
-  const LitScene& lit_scene;
+  const LightPlan& light_plan;
   const lighting::GroupLights& lights;
   const Neighborhoods& neighborhoods;
   const KeyShadows& key_shadows;

@@ -1,5 +1,5 @@
 // Defines modules, which add light to surfaces in the raster pass. For some points of the surfaces' programs
-// a module has a GLSL function, in a file that the module's room embeds. Surfaces asks each module which
+// a module has a GLSL function, in a file of kSurfaceShaders. Surfaces asks each module which
 // draws it reaches, and puts a program together for every set of modules that some draw has
 // (surface_program.hpp). The functions have these forms:
 //   Vertex       void f(uint vertex, inout vec3 radiance), for normal-mapped draws
@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "runtime/draws/surface_shared.h"
-#include "runtime/gpu/program.hpp"
 
 namespace lambent::frame {
 
@@ -57,11 +56,10 @@ struct SurfaceFunction {
 
 class SurfaceModule {
  public:
+  explicit SurfaceModule(std::span<const SurfaceFunction> functions) : functions_(functions) {}
   virtual ~SurfaceModule() = default;
 
-  virtual std::span<const SurfaceFunction> functions() const = 0;
-  // Returns the tables that hold the files of its functions.
-  virtual std::span<const gpu::FindText> shaders() const = 0;
+  std::span<const SurfaceFunction> functions() const { return functions_; }
   // Returns whether the draw has light of this module; `record` is complete but for what modules describe.
   virtual bool reaches(std::size_t draw, const SurfaceDraw& record) const = 0;
   // Changes when the answer of reaches() or describe() changes for any draw.
@@ -69,7 +67,10 @@ class SurfaceModule {
   // Writes what the module's functions read of the draw's record.
   virtual void describe(std::size_t, SurfaceDraw&) const {}
   // Binds what the functions read, before draws with such a receiver are drawn.
-  virtual void bind(SurfaceReceiver receiver) const = 0;
+  virtual void bindFor(SurfaceReceiver) const {}
+
+ private:
+  std::span<const SurfaceFunction> functions_;
 };
 
 // Lists the modules of a frame.

@@ -57,13 +57,10 @@ struct FrameSettings {
 
   lighting::CaptureOptions capture{.order = 0};  // order 0: that of the groups' transfer
   std::uint32_t captures_per_step = 16;          // largest number of light probes captured per frame
-  // Limits the number of light probes per group; other samples take the light of the nearest of these.
-  std::uint32_t light_probes = kAllLightProbes;
   // Sets the step of rays through volumes, in voxels; linear pictures use half of it.
   float march_step_voxels = 1.0f;
   std::optional<float> exposure_ev;  // stops; nothing: automatic
 
-  static constexpr std::uint32_t kAllLightProbes = 4096;
   static constexpr std::uint32_t kAutoKeys = 16;
   bool operator==(const FrameSettings&) const = default;
 };

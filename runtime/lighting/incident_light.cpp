@@ -156,12 +156,14 @@ void IncidentLight::followBodies(std::span<const IncidentBody> bodies) {
 void IncidentLight::noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights) {
   followGroups(groups);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    bool changed = groups_[g].lit_by != groups[g].lit_by || groups_[g].apart != groups[g].apart ||
+    const auto same = [](const LightCarrier& a, const LightCarrier& b) {
+      return a.harmonics() == b.harmonics() && a.apart() == b.apart();
+    };
+    bool changed = !std::ranges::equal(groups_[g].carriers, groups[g].carriers, same) ||
                    lights.size() != lights_before_.size();
     for (std::size_t k = 0; k < lights.size() && !changed; ++k)
-      changed = groups[g].lit_by[k] != 0 && lights[k] != lights_before_[k];
-    groups_[g].lit_by = groups[g].lit_by;
-    groups_[g].apart = groups[g].apart;
+      changed = groups[g].carriers[k].harmonics() && lights[k] != lights_before_[k];
+    groups_[g].carriers = groups[g].carriers;
     if (changed) ++groups_[g].lights;
   }
   lights_before_.assign(lights.begin(), lights.end());
@@ -184,7 +186,7 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
                                  const glm::vec3& position_ws, std::span<const LocalLight> lights,
                                  std::span<const float> open) {
   ++counts_.samples;
-  const bool lit = std::ranges::find(group.lit_by, std::uint8_t{1}) != group.lit_by.end();
+  const bool lit = std::ranges::any_of(group.carriers, &LightCarrier::harmonics);
   if (sample.fade_begins) {
     sample.fade_from = sample.plain ? environment.restLight().truncated(order_) : sample.light;
     sample.fade_from_key = sample.plain ? environment.keyLight().truncated(order_) : sample.key;
@@ -228,11 +230,11 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
           sh::discLight(order_, disc.direction, double{disc.radius_rad}, disc.radiance), share);
   }
   for (std::size_t k = 0; k < lights.size(); ++k) {
-    if (group.lit_by[k] == 0) continue;
+    if (!group.carriers[k].harmonics()) continue;
     const float share = visible(&Drawn::query_of_light, k);
     if (share <= 0.0f) continue;
     const sh::LightVector light = lightAt(lights[k], position_ws, order_);
-    const float apart = k < group.apart.size() ? group.apart[k] : 0.0f;
+    const float apart = group.carriers[k].apart();
     add(now, light, (1.0f - apart) * share);
     if (apart > 0.0f) add(key, light, apart * share * (open.empty() ? 1.0f : open[k]));
   }
@@ -470,9 +472,9 @@ void IncidentLight::askForLights(const Environment& environment, const IncidentG
   }
   for (std::size_t k = 0; k < lights.size(); ++k) {
     std::optional<LightQuery> query;
-    if (group.lit_by[k] != 0) query = queryOf(lights[k], point.position_ws);
+    if (group.carriers[k].harmonics()) query = queryOf(lights[k], point.position_ws);
     // The part of the light that is kept apart has no shape to correct in the light without it.
-    if (query && k < group.apart.size()) query->radiance *= 1.0f - group.apart[k];
+    if (query) query->radiance *= 1.0f - group.carriers[k].apart();
     ask(query, drawn.query_of_light);
   }
 }

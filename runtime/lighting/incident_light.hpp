@@ -82,10 +82,7 @@ struct IncidentBody {
 struct IncidentGroup {
   std::uint32_t body = CapturePoint::kNoBody;  // index of its own body
   std::vector<glm::vec3> samples_ws;
-  std::vector<std::uint8_t> lit_by;  // per local light, 1: carried by harmonics; 0: not
-  // Gives, for each local light with lit_by 1, the share of its direct light that is shaded per pixel, 0..1.
-  // That share is added to the key lights, of which transfer carries only the bounces. Empty means 0 for all.
-  std::vector<float> apart{};
+  std::vector<LightCarrier> carriers{};  // per local light
   // Gives the share of such light that the bodies in left_out let through, indexed by sample, then light.
   // Empty means 1.
   std::vector<float> open{};
@@ -191,8 +188,7 @@ class IncidentLight {
     std::vector<Sample> samples;
     std::uint64_t samples_seen = 0;    // copy of IncidentGroup::samples
     std::vector<glm::vec3> places_ws;  // of the samples
-    std::vector<std::uint8_t> lit_by;
-    std::vector<float> apart;
+    std::vector<LightCarrier> carriers;
     std::uint64_t lights = 0;  // rises when one of its lights changes, or which lights these are
   };
   struct Request {

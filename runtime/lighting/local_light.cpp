@@ -42,31 +42,4 @@ std::optional<LightQuery> queryOf(const LocalLight& light, const glm::vec3& poin
   return query;
 }
 
-std::optional<ShadowedLight> shadowedLightOf(const LocalLight& light) {
-  ShadowedLight near{.position_ws = light.position_ws,
-                     .direction_ws = light.direction_ws,
-                     .radius_m = light.extent_m(),
-                     .power = light.power,
-                     .range_m = light.range_m,
-                     .inner_cone_rad = light.inner_cone_rad,
-                     .outer_cone_rad = light.outer_cone_rad};
-  switch (light.kind) {
-    case LocalLight::Kind::Point:
-      near.kind = ShadowedLight::Kind::Point;
-      return near;
-    case LocalLight::Kind::Spot:
-      near.kind = ShadowedLight::Kind::Spot;
-      return near;
-    case LocalLight::Kind::Sphere:
-      near.kind = ShadowedLight::Kind::Sphere;
-      return near;
-    case LocalLight::Kind::Disc:
-      near.kind = ShadowedLight::Kind::Disc;
-      return near;
-    case LocalLight::Kind::Directional:
-      return std::nullopt;
-  }
-  return std::nullopt;
-}
-
 }  // namespace lambent::lighting

@@ -4,13 +4,17 @@
 // Nothing changes after construction, so any number of threads may ask at once. No GL.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+
+#include "runtime/bundle/capture_proxy.hpp"
 
 namespace lambent::lighting {
 
@@ -19,6 +23,21 @@ struct RayTriangle {
   bool front_only = false;             // rays from behind pass through it
   bool operator==(const RayTriangle&) const = default;
 };
+
+// Appends the triangles of a proxy's level that blocks light, placed by the matrix.
+inline void appendBlockers(const bundle::CaptureProxy& proxy, const glm::mat4& place,
+                           std::vector<RayTriangle>& triangles) {
+  constexpr std::size_t kBlockerLevel = 1;
+  if (proxy.levels.empty()) return;
+  const bundle::ProxyLevel& level = proxy.levels[std::min(kBlockerLevel, proxy.levels.size() - 1)];
+  for (std::uint32_t t = 0; t < level.triangle_count; ++t) {
+    const bundle::ProxyTriangle& from = proxy.triangles[level.first_triangle + t];
+    RayTriangle& triangle = triangles.emplace_back();
+    triangle.front_only = from.front_only;
+    for (std::size_t k = 0; k < 3; ++k)
+      triangle.corners[k] = glm::vec3(place * glm::vec4(proxy.positions[from.vertices[k]], 1.0f));
+  }
+}
 
 struct RayHit {
   std::uint32_t triangle = 0;

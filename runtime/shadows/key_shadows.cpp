@@ -20,6 +20,8 @@ constexpr std::uint32_t kLeastRays = 8;
 constexpr std::uint64_t kFinestTiles = 2;  // limit on the texels of all maps, in areas of the finest
 constexpr double kMargin = 0.05;           // margin that lets the camera move before a map is drawn again
 constexpr double kWasted = 4.0;  // a map that covers this many times the visible area is drawn again
+constexpr SurfaceFunction kKeyFunctions[] = {
+    {SurfaceHook::Received, CalledBy::All, "key_surface.glsl", "addKeyLights"}};
 // These are the uniform locations of key_blockers.comp.
 constexpr GLint kFirst = 0, kSize = 1, kLevel = 2;
 
@@ -66,7 +68,7 @@ glm::mat4 clipFromWorld(const KeyRegion& region) {
 
 }  // namespace
 
-KeyShadows::KeyShadows() : views_("key map views"), block_("key lights") {}
+KeyShadows::KeyShadows() : SurfaceModule(kKeyFunctions), views_("key map views"), block_("key lights") {}
 
 Result<void> KeyShadows::compile() {
   if (pyramid_program_) return {};

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "runtime/base/result.hpp"
+#include "runtime/draws/surface_module.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/shadows/key_region.hpp"
 #include "runtime/shadows/key_shared.h"
@@ -28,7 +29,7 @@ struct KeyShadowOptions {
   bool operator==(const KeyShadowOptions&) const = default;
 };
 
-class KeyShadows {
+class KeyShadows final : public SurfaceModule {
  public:
   KeyShadows();
 
@@ -41,6 +42,8 @@ class KeyShadows {
 
   // Returns whether any key light shines.
   bool any() const { return !maps_.empty(); }
+  bool reaches(std::size_t, const SurfaceDraw& record) const override { return any() && record.unlit == 0; }
+  std::uint64_t version() const override { return any() ? 1 : 0; }
   std::uint32_t mapsDrawn() const { return maps_drawn_; }  // by the last update
   std::uint32_t mapCount() const { return static_cast<std::uint32_t>(maps_.size()); }
   std::uint64_t bytesResident() const;

@@ -15,32 +15,34 @@ namespace lambent::frame {
 
 namespace {
 
-using lighting::ShadowedLight;
+using lighting::LocalLight;
 constexpr std::uint32_t kFaces = 6, kFullCubes = 4;
 constexpr std::size_t kFaceStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr float kLocalPlane_m = 2e-3f;
 constexpr float kLightSurface = 1.01f;  // the body of a spherical lamp may be larger by this factor
 static_assert(kShadowedLights == lighting::kMaxShadowedLights);
+constexpr SurfaceFunction kLocalFunctions[] = {
+    {SurfaceHook::Received, CalledBy::All, "local_surface.glsl", "addLocalLights"}};
 
 // Returns whether both cast the same shadows, whatever their colour and cones.
-bool sameShadows(const ShadowedLight& a, const ShadowedLight& b) {
+bool sameShadows(const LocalLight& a, const LocalLight& b) {
   return a.kind == b.kind && a.position_ws == b.position_ws && a.radius_m == b.radius_m &&
          a.body_radius_m == b.body_radius_m && a.range_m == b.range_m &&
          (!hasDirection(a) || a.direction_ws == b.direction_ws);
 }
 
-ShadowFace faceOf(const ShadowedLight& light, float reach, std::uint32_t face) {
+ShadowFace faceOf(const LocalLight& light, float reach, std::uint32_t face) {
   const FaceAxes axes = faceAxes(face);
   return {.right = axes.right,
           .clip_near = kLocalPlane_m,
           .up = axes.up,
           .reach = reach,
           .forward = axes.forward,
-          .hole = light.kind == ShadowedLight::Kind::Sphere
+          .hole = light.kind == LocalLight::Kind::Sphere
                       ? kLightSurface * std::max(light.radius_m, light.body_radius_m)
                       : 0.0f,
           .position = light.position_ws,
-          .behind = light.kind == ShadowedLight::Kind::Disc ? 1.0f : 0.0f,
+          .behind = light.kind == LocalLight::Kind::Disc ? 1.0f : 0.0f,
           .direction = light.direction_ws,
           .pad = 0.0f};
 }
@@ -50,7 +52,7 @@ scene::Box around(const scene::Box& box, glm::vec3 center) {
 }
 
 // Returns whether part of the box stands where the light may shine.
-bool reaches(const ShadowedLight& light, const scene::Box& from_light) {
+bool mayShineOn(const LocalLight& light, const scene::Box& from_light) {
   return nearestDistance(from_light) <= rangeOf(light) &&
          (!hasDirection(light) || mostAlong(from_light, light.direction_ws) > 0.0f);
 }
@@ -58,7 +60,8 @@ bool reaches(const ShadowedLight& light, const scene::Box& from_light) {
 }  // namespace
 
 LocalShadows::LocalShadows(const LocalOptions& options)
-    : options_{.size = std::clamp(options.size, 16u, 4096u),
+    : SurfaceModule(kLocalFunctions),
+      options_{.size = std::clamp(options.size, 16u, 4096u),
                .samples = std::clamp(options.samples, 1u, 256u)},
       block_("local lights"),
       draws_table_("near draws"),
@@ -126,14 +129,14 @@ std::vector<std::uint32_t> LocalShadows::findChanged(World& world) {
   std::vector<std::uint32_t> changed;
   for (std::uint32_t k = 0; k < lights_.size(); ++k) {
     Cube& cube = cubes_[k];
-    const ShadowedLight& light = lights_[k];
+    const LocalLight& light = lights_[k];
     const bool light_same = cube.drawn && sameShadows(cube.light, light);
     if ((lights_used_ >> k & 1u) == 0 || (light_same && world_same)) continue;
     std::vector<ShadowCaster> casters;
     float reach = 0.0f;
     for (const ShadowCaster& caster : casters_.all()) {
       const scene::Box box = around(caster.bounds_ws, light.position_ws);
-      if (!reaches(light, box)) continue;
+      if (!mayShineOn(light, box)) continue;
       casters.push_back(caster);
       reach = std::max(reach, farthestDistance(box));
     }
@@ -148,14 +151,14 @@ std::vector<std::uint32_t> LocalShadows::findChanged(World& world) {
   return changed;
 }
 
-Result<void> LocalShadows::update(World& world, std::span<const ShadowedLight> lights,
+Result<void> LocalShadows::update(World& world, std::span<const LocalLight> lights,
                                   std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters,
                                   std::span<const ecs::Entity> own_lamps) {
   cubes_drawn_ = 0;
-  const std::span<const ShadowedLight> kept =
+  const std::span<const LocalLight> kept =
       lights.first(std::min<std::size_t>(lights.size(), kShadowedLights));
   lights_.assign(kept.begin(), kept.end());
-  for (ShadowedLight& light : lights_)
+  for (LocalLight& light : lights_)
     if (const float length = glm::length(light.direction_ws); length > 0.0f) light.direction_ws /= length;
   own_lamps_.assign(own_lamps.begin(), own_lamps.end());
   own_lamps_.resize(lights_.size());

@@ -17,6 +17,7 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
+#include "runtime/draws/surface_module.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/local_light.hpp"
 #include "runtime/scene/bounds.hpp"
@@ -72,7 +73,7 @@ struct LocalOptions {
   std::uint32_t samples = 16;  // sample points on a light with an extent, 1..256
 };
 
-class LocalShadows {
+class LocalShadows final : public SurfaceModule {
  public:
   explicit LocalShadows(const LocalOptions& options = {});
 
@@ -81,7 +82,7 @@ class LocalShadows {
   // A light whose entry in `own_lamps` is not null does not light the draws of that emissive material
   // (World::lampOfDraw()). Call it after World::updateTransforms(). Changes the bound framebuffer, viewport
   // and program.
-  Result<void> update(World& world, std::span<const lighting::ShadowedLight> lights,
+  Result<void> update(World& world, std::span<const lighting::LocalLight> lights,
                       std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters,
                       std::span<const ecs::Entity> own_lamps = {});
 
@@ -92,8 +93,8 @@ class LocalShadows {
   // Returns the lights of a draw of the residency: bit k is set if light k lights it.
   std::uint32_t lightsOf(std::size_t draw) const { return draw < draws_.size() ? draws_[draw].lights : 0; }
   bool any() const { return any_; }
-  // Rises when lightsOf() changes for any draw.
-  std::uint64_t version() const { return version_; }
+  bool reaches(std::size_t draw, const SurfaceDraw&) const override { return lightsOf(draw) != 0; }
+  std::uint64_t version() const override { return version_; }
   // Makes the next update draw all cubes.
   void forget() {
     for (Cube& cube : cubes_) cube.drawn = false;
@@ -103,7 +104,7 @@ class LocalShadows {
 
  private:
   struct Cube {  // as last drawn
-    lighting::ShadowedLight light;
+    lighting::LocalLight light;
     std::vector<ShadowCaster> casters;
     float reach = 0.0f;
     bool drawn = false;
@@ -132,7 +133,7 @@ class LocalShadows {
              std::uint64_t>
       masks_changed_;
   std::vector<ecs::Entity> own_lamps_;  // one per light
-  std::vector<lighting::ShadowedLight> lights_;
+  std::vector<lighting::LocalLight> lights_;
   std::uint32_t lights_used_ = 0;  // how many shine on any group
   bool any_ = false;
   std::uint64_t version_ = 0;

@@ -27,11 +27,11 @@ LAMBENT_CONSTANT kUnitLocalShadows = 8u;    // texture unit of the shadow cubes
 
 LAMBENT_CONSTANT kShadowedLights = 8u;  // lighting::kMaxShadowedLights
 
-// These are the values of lighting::ShadowedLight::Kind.
+// These are the values of scene::LocalLightComponent::Kind.
 LAMBENT_CONSTANT kLocalPoint = 0u;
 LAMBENT_CONSTANT kLocalSpot = 1u;
-LAMBENT_CONSTANT kLocalSphere = 2u;
-LAMBENT_CONSTANT kLocalDisc = 3u;
+LAMBENT_CONSTANT kLocalSphere = 3u;
+LAMBENT_CONSTANT kLocalDisc = 4u;
 
 struct ShadowedLightRecord {
   vec3 position;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "runtime/base/glsl.hpp"
 #include "runtime/lighting/local_light.hpp"
@@ -13,30 +12,7 @@
 
 namespace lambent::frame {
 
-inline bool hasExtent(const lighting::ShadowedLight& light) {
-  return light.kind == lighting::ShadowedLight::Kind::Sphere ||
-         light.kind == lighting::ShadowedLight::Kind::Disc;
-}
-
-inline bool hasDirection(const lighting::ShadowedLight& light) {
-  return light.kind == lighting::ShadowedLight::Kind::Spot ||
-         light.kind == lighting::ShadowedLight::Kind::Disc;
-}
-
-// Returns whether the light gives any light. One with a value that is not finite gives none.
-inline bool shines(const lighting::ShadowedLight& light) {
-  const auto finite = [](glm::vec3 v) { return std::isfinite(v.x + v.y + v.z); };
-  return finite(light.power) && finite(light.position_ws) && finite(light.direction_ws) &&
-         light.power != glm::vec3(0.0f) &&
-         (!hasExtent(light) || (light.radius_m > 0.0f && std::isfinite(light.radius_m)));
-}
-
-// Returns the distance at which its light ends. Lights with an extent have no limit.
-inline float rangeOf(const lighting::ShadowedLight& light) {
-  return !hasExtent(light) && light.range_m > 0.0f ? light.range_m : std::numeric_limits<float>::infinity();
-}
-
-inline ShadowedLightRecord recordOf(const lighting::ShadowedLight& light, float reach) {
+inline ShadowedLightRecord recordOf(const lighting::LocalLight& light, float reach) {
   const float inner = std::cos(light.inner_cone_rad), outer = std::cos(light.outer_cone_rad);
   return {.position = light.position_ws,
           .reach = reach,

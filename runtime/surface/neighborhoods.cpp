@@ -22,59 +22,15 @@ using effects::neighborhood::Receiver;
 
 namespace {
 
+constexpr SurfaceFunction kPixelChange[] = {
+    {SurfaceHook::Received, CalledBy::Diffuse, "neighborhood_surface.glsl", "addNeighborhoods"},
+    {SurfaceHook::Received, CalledBy::Glossy, "neighborhood_glossy.glsl", "addReflectedNeighborhoods"}};
+constexpr SurfaceFunction kVertexChange[] = {
+    {SurfaceHook::Vertex, CalledBy::Diffuse, "neighborhood_vertex.glsl", "addVertexChange"}};
+
 const bundle::Group& describedGroup(const World& world, std::size_t group) {
   const streaming::ResidentGroup& resident = world.residency().groups()[group];
   return world.description(resident.bundle).groups[resident.index.value];
-}
-
-// Returns the box of the grid's points. If `grown` is set, it is larger by the distance of two points on each
-// side.
-scene::Box boxOf(const bundle::NeighborhoodGrid& grid, bool grown) {
-  const glm::vec3 margin =
-      grown ? (grid.bounds_max - grid.bounds_min) / glm::vec3(grid.size - 1u) : glm::vec3(0.0f);
-  return {grid.bounds_min - margin, grid.bounds_max + margin};
-}
-
-bool hasSurfaces(const bundle::Group& group) {
-  return !group.volume && std::ranges::any_of(group.cells, [](const bundle::Cell& cell) {
-    return cell.domain == transfer::Domain::Vertex;
-  });
-}
-
-// Returns whether the grid also carries the light of the group's own lamps, if it has any.
-bool carriesLamps(const bundle::Group& group) {
-  return group.lights.empty() || std::ranges::all_of(group.cells, [](const bundle::Cell& cell) {
-           return cell.domain != transfer::Domain::GridPoint ||
-                  std::ranges::any_of(cell.transfers, [](const bundle::CellTransfer& part) {
-                    return !part.fromEnvironment();
-                  });
-         });
-}
-
-// Returns the share of a light's direct light that the group receives by harmonics, or nothing if a light
-// column of its own carries it.
-std::optional<float> byHarmonics(const LitScene& scene, std::size_t group, std::size_t shadowed_light) {
-  const std::size_t source = scene.local_sources[shadowed_light];
-  const lighting::IncidentGroup& lit = scene.groups[group];
-  if (lit.lit_by[source] != 0) return 1.0f - lit.apart[source];
-  if ((scene.pixel_masks[group] >> shadowed_light & 1u) != 0) return 0.0f;
-  return std::nullopt;
-}
-
-// Returns whether the body's shadow in the light of lamps would reach the receiver twice, by grid and by
-// shadow cube, or not at all. Volumes stand in no shadow cube.
-bool localShadowsDiffer(const LitScene& scene, std::size_t body, std::size_t receiver) {
-  for (std::size_t n = 0; n < scene.local_sources.size(); ++n) {
-    const std::optional<float> sent = byHarmonics(scene, body, n), had = byHarmonics(scene, receiver, n);
-    if (sent && had && *sent != *had) return true;
-  }
-  // The receiver may have a column light by a cube. If that is a material, the body takes it as light of
-  // another body, so its grid always has it.
-  return std::ranges::any_of(scene.column_cubes, [&](const ColumnCube& cube) {
-    if (cube.group != receiver) return false;
-    const lighting::IncidentGroup& lit = scene.groups[body];
-    return !cube.source || (lit.lit_by[*cube.source] != 0 && lit.apart[*cube.source] < 1.0f);
-  });
 }
 
 double scaleOf(const glm::mat4& matrix) {
@@ -121,7 +77,7 @@ void Neighborhoods::noticeGrids(const World& world) {
       grids.push_back({.group = g, .id = groups[g].id, .key = world.keyOf(g), .points = *points});
   }
   effect_.setGrids(std::move(grids), world.residency());
-  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  GridPairs pairs;
   for (const auto& [body, receiver] : pairs_) {
     const auto body_now = now.find(group_keys_[body]), receiver_now = now.find(group_keys_[receiver]);
     if (body_now != now.end() && receiver_now != now.end())
@@ -137,38 +93,22 @@ std::size_t Neighborhoods::readyGrids() const {
   return static_cast<std::size_t>(std::ranges::count_if(effect_.grids(), &Grid::ready));
 }
 
-void Neighborhoods::chooseCarriers(const World& world, LitScene& scene, bool on) {
+PlannedGrids Neighborhoods::gridsNow(const World& world, bool on) {
   noticeGrids(world);
   // Changes of carriers that result from motion fade. Those that result from what arrives, or from a setting,
   // are immediate.
   const bool fades = ready_when_chosen_ == readyGrids() && on == on_;
   on_ = on;
   ready_when_chosen_ = readyGrids();
-  for (lighting::IncidentGroup& group : scene.groups) group.fades = fades;
-  counts_ = {.grids = static_cast<std::uint32_t>(effect_.grids().size())};
-  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  const auto group_count = static_cast<std::uint32_t>(world.residency().groups().size());
-  for (const Grid& grid : effect_.grids()) {
-    if (!grid.ready || !carriesLamps(describedGroup(world, grid.group))) continue;
-    ++counts_.ready;
-    if (!on) continue;
-    const glm::mat4 world_from_body = world.worldFromGroup(grid.group);
-    for (std::uint32_t b = 0; b < group_count; ++b) {
-      const bool before = pairs_.contains({grid.group, b});
-      if (b == grid.group || !hasSurfaces(describedGroup(world, b)) ||
-          !meet(boxOf(grid.points, before), world_from_body, world.groupBounds(b), world.worldFromGroup(b)) ||
-          (world.residency().groups()[grid.group].volume < 0 && localShadowsDiffer(scene, grid.group, b)))
-        continue;
-      pairs.insert({grid.group, b});
-      std::vector<std::uint32_t>& left_out = scene.groups[b].left_out;
-      const std::uint32_t body = scene.groups[grid.group].body;
-      if (body != lighting::CapturePoint::kNoBody && !std::ranges::binary_search(left_out, body))
-        left_out.insert(std::ranges::upper_bound(left_out, body), body);
-    }
-  }
-  counts_.pairs = static_cast<std::uint32_t>(pairs.size());
-  if (pairs != pairs_) receivers_changed_.forget();
-  pairs_ = std::move(pairs);
+  return {.grids = effect_.grids(), .before = &pairs_, .on = on, .fades = fades};
+}
+
+void Neighborhoods::takePairs(const LightPlan& plan) {
+  counts_ = {.grids = static_cast<std::uint32_t>(effect_.grids().size()),
+             .ready = plan.grids_ready,
+             .pairs = static_cast<std::uint32_t>(plan.grid_pairs.size())};
+  if (plan.grid_pairs != pairs_) receivers_changed_.forget();
+  pairs_ = plan.grid_pairs;
 }
 
 Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& lights,
@@ -226,7 +166,8 @@ void Neighborhoods::findReceivers(const World& world, evaluate::TransferMode mod
       if (!grid.ready || !pairs_.contains({grid.group, draw.group})) continue;
       const glm::mat4 world_from_body = world.worldFromGroup(grid.group),
                       world_from_mesh = world.worldFromMesh(d);
-      if (!meet(boxOf(grid.points, /*grown=*/false), world_from_body, bounds, world_from_mesh)) continue;
+      if (!meet({grid.points.bounds_min, grid.points.bounds_max}, world_from_body, bounds, world_from_mesh))
+        continue;
       const glm::dvec3 low(grid.points.bounds_min), size = glm::dvec3(grid.points.bounds_max) - low;
       glm::dmat4 grid_from_body(1.0);
       for (int axis = 0; axis < 3; ++axis) {
@@ -291,5 +232,12 @@ void Neighborhoods::bind() const {
 void Neighborhoods::bindVertices() const {
   vertex_receivers_.bindStorage(kBindRadianceChange);
 }
+
+NeighborhoodModule::NeighborhoodModule(const Neighborhoods& neighborhoods, const bool& shown,
+                                       bool at_vertices)
+    : SurfaceModule(at_vertices ? std::span<const SurfaceFunction>(kVertexChange) : kPixelChange),
+      neighborhoods_(neighborhoods),
+      on_(shown),
+      at_vertices_(at_vertices) {}
 
 }  // namespace lambent::frame

@@ -1,18 +1,7 @@
-// Owns neighborhoods in a frame: it chooses which bodies change the light of which groups by their grids
-// rather than by captures, and finds what each draw then receives. It reads where groups stand and what is
-// resident, and writes the texture of the neighborhood effect and the tables of the surface pass. Without
-// grids it holds and runs nothing. Render thread only.
-//
-// Each ordered pair (body k, receiving group B) has one carrier. It is the grid of k if all of these
-// conditions hold, and captures otherwise:
-// - The grid has arrived.
-// - B has surfaces and is another group than k.
-// - B's bounds meet the grid's box. Once the grid carries the pair, B's bounds need only meet the box grown
-//   by the distance of two points on every side, so that the carrier does not alternate.
-// - k has no lamps of its own, or its grid carries them.
-// - k is a volume, or the share of every local light that shadow cubes carry is the same for k and B.
-//   Otherwise k's shadow, which the cubes contain, would count twice or not at all.
-// The grid of a volume acts on every group with surfaces, including the one that the volume stands within.
+// Owns neighborhoods in a frame: the light plan chooses which bodies change the light of which groups by
+// their grids rather than by captures, and this finds what each draw then receives. It reads where groups
+// stand and what is resident, and writes the texture of the neighborhood effect and the tables of the surface
+// pass. Without grids it holds and runs nothing. Render thread only.
 //
 // A draw receives from a grid at its vertices, through transfer of its own (so that it shades itself under
 // the changed light), if the grid has all bands of that transfer, the draw is diffuse without a normal map,
@@ -21,17 +10,16 @@
 #pragma once
 
 #include <cstdint>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
+#include "runtime/draws/surface_module.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/neighborhood/neighborhood.hpp"
 #include "runtime/effects/neighborhood/vertex_receivers.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "runtime/lighting/group_lights.hpp"
-#include "runtime/shadows/lit_scene.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
@@ -56,9 +44,11 @@ class Neighborhoods {
 
   // Returns whether any group has a grid.
   bool any() const { return !effect_.grids().empty(); }
-  // Notices new bundles, chooses carriers, and leaves bodies out of captures. Call it before the light is
-  // updated. If `on` is false, captures carry all pairs at once.
-  void chooseCarriers(const World& world, LitScene& scene, bool on = true);
+  // Notices new bundles, and returns the grids for the light plan. If `on` is false, captures carry all pairs
+  // at once.
+  PlannedGrids gridsNow(const World& world, bool on);
+  // Takes what the plan chose.
+  void takePairs(const LightPlan& plan);
   // Copies what was shaded into the texture. Call it after the glossy effect.
   Result<void> update(World& world, const lighting::GroupLights& lights,
                       const effects::glossy::Glossy& glossy, evaluate::TransferMode mode,
@@ -80,7 +70,7 @@ class Neighborhoods {
   const effects::neighborhood::Neighborhood& effect() const { return effect_; }
   // Returns the pairs that grids carry, as indices of groups in the residency: that of the body, that which
   // receives.
-  const std::set<std::pair<std::uint32_t, std::uint32_t>>& pairs() const { return pairs_; }
+  const GridPairs& pairs() const { return pairs_; }
 
  private:
   std::size_t readyGrids() const;
@@ -89,7 +79,7 @@ class Neighborhoods {
   void findReceivers(const World& world, evaluate::TransferMode mode, bool keys);
 
   effects::neighborhood::Neighborhood effect_;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_;
+  GridPairs pairs_;
   std::vector<effects::neighborhood::Receiver> receivers_, found_;  // indexed by draw; found in this step
   std::vector<effects::neighborhood::Arrival> arrivals_;
   std::vector<effects::neighborhood::VertexDraw> vertex_draws_;
@@ -105,6 +95,26 @@ class Neighborhoods {
   std::uint32_t left_out_ = 0;
   std::uint64_t version_ = 1;
   NeighborhoodCounts counts_;
+};
+
+// Adds what bodies with grids change around them, per pixel, or at the vertices of draws that have transfer
+// of their own. It refers to what must outlive it.
+class NeighborhoodModule final : public SurfaceModule {
+ public:
+  NeighborhoodModule(const Neighborhoods& neighborhoods, const bool& shown, bool at_vertices);
+  bool reaches(std::size_t draw, const SurfaceDraw&) const override {
+    return on_ && (at_vertices_ ? neighborhoods_.receivesAtVertices(draw) : neighborhoods_.receives(draw));
+  }
+  std::uint64_t version() const override { return on_ ? neighborhoods_.version() : 0; }
+  void bindFor(SurfaceReceiver) const override {
+    neighborhoods_.bind();
+    if (at_vertices_) neighborhoods_.bindVertices();
+  }
+
+ private:
+  const Neighborhoods& neighborhoods_;
+  const bool& on_;
+  bool at_vertices_;
 };
 
 }  // namespace lambent::frame

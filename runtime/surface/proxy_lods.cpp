@@ -5,8 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include "runtime/shadows/lit_scene.hpp"
-#include "runtime/shadows/shadowed_light_choice.hpp"
+#include "runtime/light_plan/shadowed_lights.hpp"
 #include "runtime/streaming/sizes.hpp"
 #include "runtime/surface/surface_program.hpp"
 

@@ -21,6 +21,13 @@ namespace lambent::frame {
 
 namespace {
 
+constexpr SurfaceFunction kSpecular[] = {
+    {SurfaceHook::MirroredSky, CalledBy::Ggx, "specular_environment.glsl", "addSpecularEnvironment"},
+    {SurfaceHook::MirroredSky, CalledBy::Layered, "layered_environment.glsl", "addLayeredEnvironment"}};
+constexpr SurfaceFunction kProbes[] = {
+    {SurfaceHook::MirroredSky, CalledBy::Ggx, "glossy_probes.glsl", "addGlossyProbes"},
+    {SurfaceHook::MirroredSky, CalledBy::Layered, "layered_probes.glsl", "addLayeredProbes"}};
+
 constexpr GLint kFromMesh = 0, kCount = 1, kMesh = 2;  // uniform locations
 
 }  // namespace
@@ -257,5 +264,13 @@ void ReflectionProbes::bind(SurfaceReceiver receiver) const {
   glBindSampler(unit, 0);
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
 }
+
+SpecularEnvironmentModule::SpecularEnvironmentModule(
+    const std::optional<lighting::PrefilteredEnvironment>& environment, const bool& shown)
+    : SurfaceModule(kSpecular), environment_(environment), on_(shown) {}
+
+ReflectionProbeModule::ReflectionProbeModule(const ReflectionProbes& probes,
+                                             const SpecularEnvironmentModule& environment)
+    : SurfaceModule(kProbes), probes_(probes), environment_(environment) {}
 
 }  // namespace lambent::frame

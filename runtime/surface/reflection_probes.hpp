@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -85,6 +86,37 @@ class ReflectionProbes {
   gpu::Texture drawn_, depth_, weighted_, weights_;
   gpu::Framebuffer target_;
   gpu::Table block_, angles_;
+};
+
+// Adds what mirrors show of the environment beyond the few bands of light, if it has been prefiltered and is
+// shown. Modules refer to what brings their light, which must outlive them.
+class SpecularEnvironmentModule final : public SurfaceModule {
+ public:
+  SpecularEnvironmentModule(const std::optional<lighting::PrefilteredEnvironment>& environment,
+                            const bool& shown);
+  bool reaches(std::size_t, const SurfaceDraw&) const override { return on_ && environment_.has_value(); }
+  std::uint64_t version() const override { return on_ && environment_ ? 1 : 0; }
+  void bindFor(SurfaceReceiver) const override { environment_->bind(); }
+
+ private:
+  const std::optional<lighting::PrefilteredEnvironment>& environment_;
+  const bool& on_;
+};
+
+// Shows the room in mirrors, where reflection probes know it. It needs the specular environment, whose
+// function is called before.
+class ReflectionProbeModule final : public SurfaceModule {
+ public:
+  ReflectionProbeModule(const ReflectionProbes& probes, const SpecularEnvironmentModule& environment);
+  bool reaches(std::size_t draw, const SurfaceDraw& record) const override {
+    return probes_.shownBy(draw) && environment_.reaches(draw, record);
+  }
+  std::uint64_t version() const override { return probes_.layoutVersion() + environment_.version(); }
+  void bindFor(SurfaceReceiver receiver) const override { probes_.bind(receiver); }
+
+ private:
+  const ReflectionProbes& probes_;
+  const SpecularEnvironmentModule& environment_;
 };
 
 }  // namespace lambent::frame

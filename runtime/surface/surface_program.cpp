@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "lambent_bounces_embedded.hpp"
 #include "lambent_draws_embedded.hpp"
 #include "lambent_effects_glossy_embedded.hpp"
 #include "lambent_effects_neighborhood_embedded.hpp"
@@ -17,13 +18,11 @@
 
 namespace lambent::frame {
 
-const gpu::FindText kSurfaceShaders[7] = {&embedded::lambent_surface::find,
-                                          &embedded::lambent_draws::find,
-                                          &embedded::lambent_transfer::find,
-                                          &embedded::lambent_lighting::find,
-                                          &embedded::lambent_shadows::find,
-                                          &embedded::lambent_effects_glossy::find,
-                                          &embedded::lambent_effects_neighborhood::find};
+const gpu::FindText kSurfaceShaders[8] = {
+    &embedded::lambent_surface::find,        &embedded::lambent_draws::find,
+    &embedded::lambent_transfer::find,       &embedded::lambent_lighting::find,
+    &embedded::lambent_shadows::find,        &embedded::lambent_bounces::find,
+    &embedded::lambent_effects_glossy::find, &embedded::lambent_effects_neighborhood::find};
 
 namespace {
 
@@ -123,12 +122,10 @@ Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
                                         std::span<const SurfaceModule* const> modules, bool finest_texels) {
   const SurfaceReceiver receiver = kind.receiver();
   std::vector<SurfaceFunction> functions;
-  std::vector<gpu::FindText> tables(std::begin(kSurfaceShaders), std::end(kSurfaceShaders));
   for (std::size_t m = 0; m < modules.size(); ++m) {
     if ((kind.modules & bitOf(m)) == 0) continue;
     std::ranges::copy_if(modules[m]->functions(), std::back_inserter(functions),
                          [&](const SurfaceFunction& function) { return calls(receiver, function.by); });
-    tables.insert(tables.end(), modules[m]->shaders().begin(), modules[m]->shaders().end());
   }
   std::vector<gpu::WrittenFile> written = {
       {"surface_kind.glsl", kindText(kind, finest_texels)},
@@ -146,7 +143,7 @@ Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
   }
   return gpu::Program::create("surface",
                               {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}},
-                              {.tables = tables, .defines = defines, .written = written});
+                              {.tables = kSurfaceShaders, .defines = defines, .written = written});
 }
 
 }  // namespace lambent::frame

@@ -256,7 +256,7 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
       glBindSampler(kUnitIrradiance, 0);  // the texture's own sampling is used
     }
     for (std::size_t m = 0; m < modules_.size(); ++m)
-      if ((kind.modules & bitOf(m)) != 0) modules_[m]->bind(kind.receiver());
+      if ((kind.modules & bitOf(m)) != 0) modules_[m]->bindFor(kind.receiver());
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
     DrawIndices::draw(run.first_command, run.command_count, counters);
   }

@@ -12,10 +12,9 @@
 #include "runtime/effects/diffuse/proxies.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/frame/pass_list.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/lighting/incident_light.hpp"
-#include "runtime/shadows/lit_scene.hpp"
-#include "runtime/surface/light_modules.hpp"
 #include "runtime/surface/neighborhoods.hpp"
 
 namespace lambent::frame {
@@ -23,7 +22,7 @@ namespace lambent::frame {
 namespace {
 
 // Computes the light at the groups' light probes: the environment, lights in the scene, and light between
-// bodies. It decides which carrier brings each light.
+// bodies.
 using lighting::GroupLights;
 using Incident = std::optional<lighting::IncidentLight>;
 
@@ -39,12 +38,12 @@ class LightPass final : public FramePass {
       : FramePass({.name = "light",
                    .reads = resources<World>(),
                    .reads_before = resources<Incident, Neighborhoods>(),
-                   .writes = resources<LitScene, Incident, GroupLights, Neighborhoods>(),
+                   .writes = resources<LightPlan, Incident, GroupLights, Neighborhoods>(),
                    .causes = kLightCauses,
                    .counts = {"groups", "bodies", "local_lights", "shadowed_lights",
                               "shadowed_lights_left_out", "light_probes", "light_probes_risen",
                               "light_probes_occluded", "light_probes_written"}}) {
-    board.offer(scene_);
+    board.offer(plan_);
     board.offer(incident_);
     board.offer(group_lights_);
   }
@@ -54,20 +53,20 @@ class LightPass final : public FramePass {
     // Captures depend on the previous light, so they are drawn anew when the carriers change. Otherwise the
     // result would depend on which carriers were in use before.
     if (carriers_.renew(settings.captures, settings.neighborhoods, settings.local_shadows,
-                        settings.local_radii, settings.light_probes) &&
+                        settings.local_radii) &&
         incident_)
       incident_->forget();
-    gatherScene(frame);
+    makePlan(frame);
     if (Result<void> done = prepareSampling(frame); !done) return done;
     if (incident_) sample(frame);
     group_lights_.update(frame.environment, settings.window, placesOf(frame), frame.counters(),
                          static_cast<int>(settings.order));
     if (frame.counters().uploaded_bytes > 0) frame.because("light");
-    frame.count("groups", scene_.groups.size());
-    frame.count("bodies", scene_.bodies.size());
-    frame.count("local_lights", scene_.lights.size());
-    frame.count("shadowed_lights", scene_.shadowed_lights.size());
-    frame.count("shadowed_lights_left_out", scene_.local_left_out);
+    frame.count("groups", plan_.groups.size());
+    frame.count("bodies", plan_.bodies.size());
+    frame.count("local_lights", plan_.lights.size());
+    frame.count("shadowed_lights", plan_.shadowed_lights.size());
+    frame.count("shadowed_lights_left_out", plan_.local_left_out);
     frame.count("light_probes_written", group_lights_.renewedSamples());
     return {};
   }
@@ -78,41 +77,28 @@ class LightPass final : public FramePass {
   bool settled() const override { return !incident_ || incident_->atRest(); }
 
  private:
-  void gatherScene(const FrameContext& frame) {
+  void makePlan(const FrameContext& frame) {
     const FrameSettings& settings = frame.settings();
-    const std::vector<ecs::Entity> cubes_before = std::move(scene_.column_entities);
-    scene_ = gatherLitScene(frame.world, meanRadiance(frame.environment),
-                            {.shadowed_lights = settings.local_shadows,
-                             .column_lights = settings.local_shadows && frame.options.keysApart(),
-                             .local_radii = frame.options.keysApart() ? settings.local_radii : 0.0f,
-                             .bodies = settings.captures,
-                             .most_suns = frame.environment.mostKeys(),
-                             .cubes_before = cubes_before});
+    const std::vector<ecs::Entity> cubes_before = std::move(plan_.column_entities);
     Neighborhoods& neighborhoods = frame.write<Neighborhoods>();
-    if (settings.neighborhoods || neighborhoods.any())
-      neighborhoods.chooseCarriers(frame.world, scene_, settings.neighborhoods);
-    keepFewerSamples(frame.world, settings.light_probes);
+    const bool by_grids = settings.neighborhoods || neighborhoods.any();
+    plan_ = makeLightPlan(
+        frame.world, meanRadiance(frame.environment),
+        {.shadowed_lights = settings.local_shadows,
+         .column_lights = settings.local_shadows && frame.options.keysApart(),
+         .local_radii = frame.options.keysApart() ? settings.local_radii : 0.0f,
+         .bodies = settings.captures,
+         .most_suns = frame.environment.mostKeys(),
+         .cubes_before = cubes_before,
+         .grids = by_grids ? neighborhoods.gridsNow(frame.world, settings.neighborhoods) : PlannedGrids{}});
+    if (by_grids) neighborhoods.takePairs(plan_);
     frame.count("light_probes_occluded",
-                apart_occlusion_.update(scene_, proxiesOf(frame.world.residency()).proxies,
+                apart_occlusion_.update(plan_, proxiesOf(frame.world.residency()).proxies,
                                         frame.world.residency().proxiesVersion()));
   }
 
-  // Keeps at most `most` light probes per group. Other samples take the light of the nearest kept one.
-  void keepFewerSamples(const World& world, std::uint32_t most) {
-    const auto& groups = world.residency().groups();
-    fewer_samples_.assign(groups.size(), {});
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      if (groups[g].light_probes.size() <= most) continue;
-      fewer_samples_[g] = lighting::fewerSamples(groups[g].light_probes, most);
-      std::vector<glm::vec3> kept;
-      for (const std::uint32_t sample : fewer_samples_[g].kept)
-        kept.push_back(scene_.groups[g].samples_ws[sample]);
-      scene_.groups[g].samples_ws = std::move(kept);
-    }
-  }
-
   Result<void> prepareSampling(const FrameContext& frame) {
-    if (!incident_ && !scene_.needsSampling()) return {};
+    if (!incident_ && !plan_.needsSampling()) return {};
     lighting::CaptureOptions options = frame.settings().capture;
     if (options.order == 0) {
       options.order = std::max(1, capture_order_);  // never falls, so that captured light stays valid
@@ -137,7 +123,7 @@ class LightPass final : public FramePass {
   }
 
   void sample(const FrameContext& frame) {
-    incident_->update(frame.environment, scene_.groups, scene_.lights, frame.options.wait_for_captures);
+    incident_->update(frame.environment, plan_.groups, plan_.lights, frame.options.wait_for_captures);
     const lighting::IncidentCounts& counts = incident_->counts();
     if (counts.arrived > 0) frame.log.note(Cause::Captured, "captures arrived");
     if (counts.fading > 0) frame.log.note(Cause::Captured, "light fades from carrier to carrier");
@@ -151,31 +137,23 @@ class LightPass final : public FramePass {
     for (std::size_t g = 0; g < groups.size(); ++g)
       places.push_back({.world_from_group = frame.world.rotationOf(g),
                         .order = groups[g].order,
-                        .lamps = scene_.lamps[g],
-                        .lamps_apart = scene_.lamps_apart[g],
-                        .incident = incidentOf(g, groups[g].light_probes.size()),
-                        .key = scene_.groups[g].key,
+                        .lamps = plan_.lamps[g],
+                        .lamps_apart = plan_.lamps_apart[g],
+                        .incident = incident_
+                                        ? incident_->incidentOf(g)
+                                        : std::vector<lighting::Incident>(groups[g].light_probes.size()),
+                        .key = plan_.groups[g].key,
                         .parted = frame.options.keysApart() && groups[g].volume < 0});
     return places;
   }
 
-  std::vector<lighting::Incident> incidentOf(std::size_t group, std::size_t count) const {
-    if (!incident_) return std::vector<lighting::Incident>(count);
-    std::vector<lighting::Incident> kept = incident_->incidentOf(group);
-    if (fewer_samples_[group].place.empty()) return kept;
-    std::vector<lighting::Incident> all;
-    for (const std::uint32_t place : fewer_samples_[group].place) all.push_back(kept[place]);
-    return all;
-  }
-
-  LitScene scene_;
+  LightPlan plan_;
   ApartOcclusion apart_occlusion_;
   Incident incident_;  // made once there is something to sample
   GroupLights group_lights_;
-  ChangeGate<bool, bool, bool, float, std::uint32_t> carriers_;  // settings that choose carriers
-  ChangeGate<std::uint64_t> proxies_;                            // version that the captures have
+  ChangeGate<bool, bool, bool, float> carriers_;  // settings that choose carriers
+  ChangeGate<std::uint64_t> proxies_;             // version that the captures have
   int capture_order_ = 0;
-  std::vector<lighting::FewerSamples> fewer_samples_;  // per group; empty: all are kept
 };
 
 // Bounces lights among the surfaces, and key lights, by patches.
@@ -183,22 +161,22 @@ class PatchBouncesPass final : public FramePass {
  public:
   explicit PatchBouncesPass(Blackboard& board)
       : FramePass({.name = "patch bounces",
-                   .reads = resources<World, LitScene, lighting::GroupLights>(),
+                   .reads = resources<World, LightPlan, lighting::GroupLights>(),
                    .writes = resources<PatchBounces>(),
                    .causes = kLightCauses,
                    .counts = {"patch_rooms", "patch_rooms_to_come", "patches", "lights_bounced",
                               "patch_draws_gathered"}}) {
     board.offer(bounces_);
-    board.get<SurfaceModules>().push_back(&module_);
+    board.get<SurfaceModules>().push_back(&bounces_);
   }
 
   bool due(const FrameContext& frame) override {
-    return !frame.read<LitScene>().shadowed_lights.empty() || !frame.keys().empty() || bounces_.any();
+    return !frame.read<LightPlan>().shadowed_lights.empty() || !frame.keys().empty() || bounces_.any();
   }
   Result<void> update(FrameContext& frame) override {
     const FrameSettings& settings = frame.settings();
     const bool on = settings.patch_bounces && settings.transfer == evaluate::TransferMode::Full;
-    Result<void> done = bounces_.update(frame.world, frame.read<LitScene>(),
+    Result<void> done = bounces_.update(frame.world, frame.read<LightPlan>(),
                                         {.keys = frame.keys(), .bands = &frame.read<lighting::GroupLights>()},
                                         on, frame.options.wait_for_captures, frame.counters());
     const PatchBounceCounts& counts = bounces_.counts();
@@ -213,7 +191,6 @@ class PatchBouncesPass final : public FramePass {
 
  private:
   PatchBounces bounces_;
-  BounceModule module_{bounces_};
 };
 
 // Updates the light between bodies: shades their capture proxies, and captures the surroundings of light
@@ -229,8 +206,8 @@ class CapturePass final : public FramePass {
   explicit CapturePass(Blackboard& board)
       : FramePass(
             {.name = "capture",
-             .reads = resources<World, LitScene, GroupLights, PatchBounces, Diffuse, Glossy, Incident>(),
-             .writes = resources<LitScene, Proxies, Incident>(),
+             .reads = resources<World, LightPlan, GroupLights, PatchBounces, Diffuse, Glossy, Incident>(),
+             .writes = resources<Proxies, Incident>(),
              .causes = kLightCauses,
              .counts = {"light_probes_captured", "light_probes_waiting", "capture_pages", "capture_tiles",
                         "capture_bodies_drawn", "capture_triangles", "capture_pixels"}}) {
@@ -241,10 +218,10 @@ class CapturePass final : public FramePass {
     Incident& incident = frame.write<Incident>();
     if (!incident) return {};
     if (Result<void> done = shadeProxies(frame); !done) return done;
-    LitScene& scene = frame.write<LitScene>();
-    sumDrift(frame, scene);
-    Result<void> done = incident->capture(frame.environment, {scene.groups, scene.bodies, scene.lights},
-                                          proxies_.radiance(), mostCaptures(frame), frame.counters());
+    const auto& plan = frame.read<LightPlan>();
+    Result<void> done =
+        incident->capture(frame.environment, {plan.groups, driftingBodies(frame, plan), plan.lights},
+                          proxies_.radiance(), mostCaptures(frame), frame.counters());
     const lighting::IncidentCounts& counts = incident->counts();
     frame.count("light_probes_captured", counts.captured);
     frame.count("light_probes_waiting", counts.waiting);
@@ -273,10 +250,12 @@ class CapturePass final : public FramePass {
                           added);
   }
 
-  void sumDrift(const FrameContext& frame, LitScene& scene) {
+  // Returns the bodies with the sums of how their light has changed.
+  std::vector<lighting::IncidentBody> driftingBodies(const FrameContext& frame, const LightPlan& plan) {
     const auto& lights = frame.read<GroupLights>();
-    radiance_.follow(scene.groups, &lighting::IncidentGroup::key);
-    for (std::size_t g = 0; g < scene.groups.size(); ++g) {
+    std::vector<lighting::IncidentBody> bodies = plan.bodies;
+    radiance_.follow(plan.groups, &lighting::IncidentGroup::key);
+    for (std::size_t g = 0; g < plan.groups.size(); ++g) {
       Radiance& radiance = radiance_[g];
       if (std::exchange(radiance.version, proxies_.versionOf(g)) != proxies_.versionOf(g)) {
         const double bounced = frame.read<PatchBounces>().driftOf(g);
@@ -288,9 +267,10 @@ class CapturePass final : public FramePass {
         if (!by_light && !by_bounces) radiance.drift += 1.0;
         radiance.bounced = bounced;
       }
-      if (const std::uint32_t body = scene.groups[g].body; body != lighting::CapturePoint::kNoBody)
-        scene.bodies[body].radiance_drift = radiance.drift;
+      if (const std::uint32_t body = plan.groups[g].body; body != lighting::CapturePoint::kNoBody)
+        bodies[body].radiance_drift = radiance.drift;
     }
+    return bodies;
   }
 
   // Returns how many captures may be drawn. In the step in which bundles arrived or were removed there are

@@ -46,7 +46,7 @@ class OverlayPass final : public FramePass {
  public:
   OverlayPass()
       : FramePass({.name = "overlays",
-                   .reads = resources<World, PictureTargets, lighting::Sky, LitScene, lighting::GroupLights,
+                   .reads = resources<World, PictureTargets, lighting::Sky, LightPlan, lighting::GroupLights,
                                       Neighborhoods, KeyShadows, Proxies, ToneMapper>(),
                    .writes = resources<PictureTargets>(),
                    .causes = kPictureCauses}) {}
@@ -70,7 +70,7 @@ class OverlayPass final : public FramePass {
     const OverlayScene scene{frame.world,
                              frame.environment,
                              frame.read<lighting::Sky>(),
-                             frame.read<LitScene>(),
+                             frame.read<LightPlan>(),
                              frame.read<lighting::GroupLights>(),
                              frame.read<Neighborhoods>(),
                              frame.read<KeyShadows>(),

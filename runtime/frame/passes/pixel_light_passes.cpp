@@ -5,12 +5,12 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/frame/pass_list.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/shadows/key_shadows.hpp"
-#include "runtime/shadows/lit_scene.hpp"
 #include "runtime/shadows/local_shadows.hpp"
-#include "runtime/surface/light_modules.hpp"
+#include "runtime/surface/reflection_probes.hpp"
 
 namespace lambent::frame {
 
@@ -85,16 +85,16 @@ class LocalShadowsPass final : public FramePass {
  public:
   explicit LocalShadowsPass(Blackboard& board)
       : FramePass({.name = "shadows",
-                   .reads = resources<World, LitScene>(),
+                   .reads = resources<World, LightPlan>(),
                    .writes = resources<LocalShadows>(),
                    .causes = kLightCauses | Cause::Materials,
                    .counts = {"shadow_cubes_drawn"}}) {
     board.offer(shadows_);
-    board.get<SurfaceModules>().push_back(&module_);
+    board.get<SurfaceModules>().push_back(&shadows_);
   }
 
   Result<void> update(FrameContext& frame) override {
-    const auto& scene = frame.read<LitScene>();
+    const auto& scene = frame.read<LightPlan>();
     Result<void> done = shadows_.update(frame.world, scene.shadowed_lights, scene.pixel_masks,
                                         frame.counters(), scene.own_lamps);
     if (shadows_.cubesDrawn() > 0) frame.because("lights among surfaces");
@@ -105,7 +105,6 @@ class LocalShadowsPass final : public FramePass {
 
  private:
   LocalShadows shadows_;
-  LocalLightModule module_{shadows_};
 };
 
 class KeyShadowsPass final : public FramePass {
@@ -117,7 +116,7 @@ class KeyShadowsPass final : public FramePass {
                    .causes = kPictureCauses,
                    .counts = {"key_lights", "key_maps_drawn"}}) {
     board.offer(shadows_);
-    board.get<SurfaceModules>().push_back(&module_);
+    board.get<SurfaceModules>().push_back(&shadows_);
   }
 
   bool due(const FrameContext& frame) override { return !frame.environment.keys().empty() || shadows_.any(); }
@@ -135,7 +134,6 @@ class KeyShadowsPass final : public FramePass {
 
  private:
   KeyShadows shadows_;
-  KeyLightModule module_{shadows_};
 };
 
 }  // namespace

@@ -17,13 +17,12 @@
 #include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/frame/frame_pass.hpp"
 #include "runtime/frame/pass_list.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/shadows/key_shadows.hpp"
-#include "runtime/shadows/lit_scene.hpp"
 #include "runtime/shadows/local_shadows.hpp"
-#include "runtime/surface/light_modules.hpp"
 #include "runtime/surface/neighborhoods.hpp"
 #include "runtime/surface/proxy_lods.hpp"
 #include "runtime/surface/reflection_probes.hpp"
@@ -267,7 +266,7 @@ class RasterPass final : public FramePass {
   RasterPass(Surfaces surfaces, Blackboard& board)
       : FramePass(
             {.name = "raster",
-             .reads = resources<World, LitScene, GroupLights, Diffuse, Neighborhoods, PatchBounces, Sky,
+             .reads = resources<World, LightPlan, GroupLights, Diffuse, Neighborhoods, PatchBounces, Sky,
                                 evaluate::SeenSky, Prefiltered, LocalShadows, KeyShadows, ReflectionProbes>(),
              .writes = resources<PictureTargets, Surfaces, std::optional<DataView>, Prefiltered>(),
              .causes = kPictureCauses,
@@ -310,7 +309,7 @@ class RasterPass final : public FramePass {
     surfaces_.drawOpaque(frame.world, frame.counters());
     if (shown == SurfaceView::Final || shown == SurfaceView::Wireframe) {
       if (Result<void> done =
-              proxy_lods_.prepare(frame.world, frame.environment, frame.read<LitScene>().lights,
+              proxy_lods_.prepare(frame.world, frame.environment, frame.read<LightPlan>().lights,
                                   {.order = frame.settings().order,
                                    .window = frame.settings().window,
                                    .diffuse = frame.settings().diffuse},

@@ -5,7 +5,6 @@
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/frame/pass_list.hpp"
-#include "runtime/surface/light_modules.hpp"
 #include "runtime/surface/neighborhoods.hpp"
 
 namespace lambent::frame {
@@ -135,8 +134,8 @@ class NeighborhoodPass final : public FramePass {
  private:
   Neighborhoods neighborhoods_;
   bool shown_ = true;
-  NeighborhoodModule at_pixels_{neighborhoods_, shown_};
-  VertexChangeModule at_vertices_{neighborhoods_, shown_};
+  NeighborhoodModule at_pixels_{neighborhoods_, shown_, /*at_vertices=*/false};
+  NeighborhoodModule at_vertices_{neighborhoods_, shown_, /*at_vertices=*/true};
 };
 
 }  // namespace

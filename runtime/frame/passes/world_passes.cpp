@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "runtime/frame/pass_list.hpp"
-#include "runtime/shadows/lit_scene.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "runtime/world/frame_times.hpp"
 
 namespace lambent::frame {

@@ -11,17 +11,17 @@
 
 namespace lambent::frame {
 
+using lighting::LocalLight;
 using lighting::Patch;
 using lighting::PatchTransport;
-using lighting::ShadowedLight;
 using testing::RoomBuilder;
 
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-ShadowedLight pointLamp(glm::vec3 position, glm::vec3 power = glm::vec3(1.0f)) {
-  ShadowedLight light;
+LocalLight pointLamp(glm::vec3 position, glm::vec3 power = glm::vec3(1.0f)) {
+  LocalLight light;
   light.position_ws = position;
   light.power = power;
   return light;
@@ -32,7 +32,7 @@ PatchRoom boxRoom(float albedo = 0.5f) {
       RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(albedo)).proxy()));
 }
 
-void shine(PatchRoom& room, std::vector<ShadowedLight> lamps,
+void shine(PatchRoom& room, std::vector<LocalLight> lamps,
            const std::vector<lighting::RayTriangle>& others = {}) {
   room.light({.lamps = std::move(lamps)}, glm::mat4(1.0f), others);
 }
@@ -49,20 +49,20 @@ double received(const lighting::Patches& patches, const std::vector<float>& dire
 
 TEST(LampLight, AllLightOfALampArrivesInAClosedRoom) {
   const lighting::Patches patches(RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(0.5f)).surface());
-  ShadowedLight point = pointLamp({0.8f, 1.3f, 1.1f});
+  LocalLight point = pointLamp({0.8f, 1.3f, 1.1f});
   EXPECT_NEAR(received(patches, lampOnPatches(point, patches, {}, glm::mat4(1.0f)), 4.0 * kPi), 1.0, 0.01);
-  ShadowedLight sphere = point;
-  sphere.kind = ShadowedLight::Kind::Sphere;
+  LocalLight sphere = point;
+  sphere.kind = LocalLight::Kind::Sphere;
   sphere.radius_m = 0.3f;  // flux pi L 4 pi r²
   EXPECT_NEAR(received(patches, lampOnPatches(sphere, patches, {}, glm::mat4(1.0f)), kPi * 4.0 * kPi * 0.09),
               1.0, 0.01);
-  ShadowedLight disc = sphere;
-  disc.kind = ShadowedLight::Kind::Disc;
+  LocalLight disc = sphere;
+  disc.kind = LocalLight::Kind::Disc;
   disc.direction_ws = {0, -2, 0};  // of any length
   EXPECT_NEAR(received(patches, lampOnPatches(disc, patches, {}, glm::mat4(1.0f)), kPi * kPi * 0.09), 1.0,
               0.01);
-  ShadowedLight spot = point;
-  spot.kind = ShadowedLight::Kind::Spot;
+  LocalLight spot = point;
+  spot.kind = LocalLight::Kind::Spot;
   spot.direction_ws = {1, 0, 0};
   const std::vector<float> ahead = lampOnPatches(spot, patches, {}, glm::mat4(1.0f));
   for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -75,8 +75,8 @@ TEST(LampLight, WhatIsNoLargerThanTheLampAndWithinItCastsNoShadow) {
   RoomBuilder builder;
   builder.wall({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, glm::vec3(0.5f));  // a floor
   const lighting::Patches patches(builder.surface());
-  ShadowedLight bulb = pointLamp({0, 1, 0});
-  bulb.kind = ShadowedLight::Kind::Sphere;
+  LocalLight bulb = pointLamp({0, 1, 0});
+  bulb.kind = LocalLight::Kind::Sphere;
   bulb.radius_m = 0.1f;
   const auto shadowBy = [&](float half) {
     const lighting::RayTriangle plate{.corners = {glm::vec3(-half, 0.95f, -half),
@@ -140,7 +140,7 @@ TEST(PatchRoom, ATurnedAndScaledRoomTakesTheSameShareOfLight) {
   const glm::mat4 world_from_group = glm::translate(glm::mat4(1.0f), glm::vec3(3, -1, 2)) *
                                      glm::rotate(glm::mat4(1.0f), 0.7f, glm::normalize(glm::vec3(1, 2, 3))) *
                                      glm::scale(glm::mat4(1.0f), glm::vec3(2.0f));
-  const std::vector<ShadowedLight> lamp = {pointLamp(glm::vec3(world_from_group * glm::vec4(1, 2, 1, 1)))};
+  const std::vector<LocalLight> lamp = {pointLamp(glm::vec3(world_from_group * glm::vec4(1, 2, 1, 1)))};
   placed.light({.lamps = lamp}, world_from_group, {});
   for (std::size_t i = 0; i < plain.givenOff().size(); ++i)
     ASSERT_NEAR(4.0f * placed.givenOff()[i].r, plain.givenOff()[i].r, 0.02f * plain.givenOff()[i].r);

@@ -6,9 +6,9 @@
 
 #include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/frame.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/lights.hpp"
-#include "runtime/shadows/lit_scene.hpp"
 #include "tests/support/frame/view_stage.hpp"
 
 namespace lambent::frame {
@@ -195,11 +195,11 @@ TEST_F(FrameVolume, TheSurfacesThatItStandsInAreNotCapturedAtItsLightProbes) {
     BuiltVolume volume = mist(1.0f);
     volume.within = within;
     VolumeStage stage(BundleBuilder().add({sphereMesh(8, 16), colored(glm::vec4(1.0f))}).volume(volume));
-    const LitScene before = gatherLitScene(stage.world, 1.0f);
+    const LightPlan before = makeLightPlan(stage.world, 1.0f);
     EXPECT_FALSE(before.needsSampling()) << "there is no body yet";
     bundle::CaptureProxy proxy;
     ASSERT_TRUE(stage.world.residency().upload(0, streaming::ProxyChunk{{}, proxy}));
-    const LitScene scene = gatherLitScene(stage.world, 1.0f);
+    const LightPlan scene = makeLightPlan(stage.world, 1.0f);
     ASSERT_EQ(scene.bodies.size(), 1u);
     EXPECT_EQ(scene.groups[0].body, 0u);
     EXPECT_EQ(scene.groups[1].body, lighting::CapturePoint::kNoBody);

@@ -63,7 +63,7 @@ TEST_F(IncidentLightTest, DrawsWhatAWalkOverAllBodiesFindsChanged) {
   };
   for (std::uint32_t b = 0; b < kBodies; ++b) {
     bodies.push_back({.body = {}, .radius_m = 0.2f * bounds.radius_m, .key = 100 + b});
-    groups.push_back({.body = b, .samples_ws = {}, .lit_by = {}, .key = 100 + b, .samples = b});
+    groups.push_back({.body = b, .samples_ws = {}, .key = 100 + b, .samples = b});
     place(b, {uniform(-5, 5), uniform(-5, 5), uniform(-5, 5)});
   }
   groups[7].left_out = {3, 9};

@@ -41,7 +41,7 @@ std::vector<Case> someCases() {
     c.light = {.position = {number(-1, 1), number(-1, 1), number(-1, 1)},
                .reach = 1.0f,
                .direction = direction(),
-               .kind = i % 4,
+               .kind = std::array{kLocalPoint, kLocalSpot, kLocalSphere, kLocalDisc}[i % 4],
                .power = {number(0, 2), number(0, 100), 1.0f},
                .radius = number(0.01f, 0.5f),
                .cos_outer = number(0.2f, 0.8f),

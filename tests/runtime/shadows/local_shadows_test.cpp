@@ -33,8 +33,8 @@ TEST_F(LocalShadowsTest, AFloorUnderASphereHasItsIrradianceWithinAPercent) {
 
 TEST_F(LocalShadowsTest, PunctualLightsAndSeveralLightsAddUp) {
   Stage stage(BundleBuilder().add(level(0.0f, 5.0f, {0, 0}, 0.5f)));
-  ShadowedLight spot;
-  spot.kind = ShadowedLight::Kind::Spot;
+  LocalLight spot;
+  spot.kind = LocalLight::Kind::Spot;
   spot.position_ws = {0, 1, 0};
   spot.direction_ws = {0, -1, 0};
   spot.power = {10, 0, 1};
@@ -47,9 +47,9 @@ TEST_F(LocalShadowsTest, PunctualLightsAndSeveralLightsAddUp) {
     return 0.5f * 10.0f / d2 * cosine / kPi * share * share * std::max(1.0f - d2 * d2 / 16.0f, 0.0f);
   };
   expectFloor(stage.picture(above(2.0f), spot), 2.0f, 0.01f, expected, "spot");
-  ShadowedLight sphere = sphereLight({0.5f, 1.0f, 0.5f}, 0.1f, {3, 2, 1});
+  LocalLight sphere = sphereLight({0.5f, 1.0f, 0.5f}, 0.1f, {3, 2, 1});
   const auto alone = stage.picture(above(2.0f), sphere);
-  const std::vector<ShadowedLight> both = {spot, sphere};
+  const std::vector<LocalLight> both = {spot, sphere};
   const auto together = stage.picture(above(2.0f), both);
   for (std::uint32_t y = 0; y < kSize; ++y)
     for (std::uint32_t x = 0; x < kSize; ++x) {
@@ -67,7 +67,7 @@ TEST_F(LocalShadowsTest, BlendedSurfacesAreLitAndCastNoShadowAndUnlitOnesStayAsT
   glass.material.alpha_mode = gltf::AlphaMode::Blend;
   sign.material.unlit = true;
   Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(glass).add(sign));
-  ShadowedLight light;
+  LocalLight light;
   light.position_ws = {0, 2, 0};
   light.power = glm::vec3(8.0f * kPi);
   const auto picture = stage.picture(above(1.0f), light);
@@ -87,7 +87,7 @@ TEST_F(LocalShadowsTest, AFloorThatLightGrazesIsLitAllOver) {
   Stage stage(BundleBuilder().add(level(0.0f, 5.0f)));
   constexpr float kHeight = 0.05f;
   const auto distance2 = [](glm::vec2 at) { return glm::dot(at, at) + kHeight * kHeight; };
-  ShadowedLight light = sphereLight({0, kHeight, 0}, 0.02f, glm::vec3(100.0f));
+  LocalLight light = sphereLight({0, kHeight, 0}, 0.02f, glm::vec3(100.0f));
   expectFloor(
       stage.picture(above(4.0f), light), 4.0f, 0.01f,
       [&](glm::vec2 at) {
@@ -96,11 +96,11 @@ TEST_F(LocalShadowsTest, AFloorThatLightGrazesIsLitAllOver) {
         return 100.0f * kHeight / d / (h * h);
       },
       "sphere");
-  light.kind = ShadowedLight::Kind::Point;
+  light.kind = LocalLight::Kind::Point;
   expectFloor(
       stage.picture(above(4.0f), light), 4.0f, 0.01f,
       [&](glm::vec2 at) { return 100.0f * kHeight / std::pow(distance2(at), 1.5f) / kPi; }, "point");
-  light.kind = ShadowedLight::Kind::Disc;
+  light.kind = LocalLight::Kind::Disc;
   light.direction_ws = {0, -1, 0};
   const auto disc = stage.picture(above(4.0f), light);
   for (std::uint32_t y = 0; y < kSize; ++y)
@@ -119,8 +119,8 @@ TEST_F(LocalShadowsTest, AnEdgeCastsAPenumbraOfTheRightWidthAndShape) {
     Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(level(1.0f, 2.0f, {-2.0f, 0})),
                 {.samples = samples});
     constexpr float kHalf = 0.5f, kRadius = 0.2f;
-    for (const ShadowedLight::Kind kind : {ShadowedLight::Kind::Sphere, ShadowedLight::Kind::Disc}) {
-      ShadowedLight light = sphereLight({0, 2, 0}, kRadius, glm::vec3(10.0f));
+    for (const LocalLight::Kind kind : {LocalLight::Kind::Sphere, LocalLight::Kind::Disc}) {
+      LocalLight light = sphereLight({0, 2, 0}, kRadius, glm::vec3(10.0f));
       light.kind = kind;
       light.direction_ws = {0, -1, 0};
       const auto picture = stage.picture(above(kHalf), light);
@@ -131,8 +131,7 @@ TEST_F(LocalShadowsTest, AnEdgeCastsAPenumbraOfTheRightWidthAndShape) {
           const glm::vec3 to(-placeOf(x, kHalf), 2.0f, -placeOf(y, kHalf));
           const float d2 = glm::dot(to, to), cosine = 2.0f / std::sqrt(d2);
           mean += picture[y * kSize + x].r;
-          whole +=
-              10.0f * kRadius * kRadius / d2 * cosine * (kind == ShadowedLight::Kind::Disc ? cosine : 1.0f);
+          whole += 10.0f * kRadius * kRadius / d2 * cosine * (kind == LocalLight::Kind::Disc ? cosine : 1.0f);
         }
         // This is the fraction of a disc beyond a line at s radii from its centre.
         const float s = std::clamp(placeOf(x, kHalf) / kRadius, -1.0f, 1.0f);
@@ -240,8 +239,8 @@ TEST_F(LocalShadowsTest, ALightWithoutExtentCastsEdgesAsSharpAsItsTexels) {
   Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(level(1.0f, 2.0f, {-2.0f, 0})));
   constexpr float kHalf = 0.5f;
   // 2/512 of the distance; the floor has I cos / (d^2 pi), least in the corners.
-  ShadowedLight point = sphereLight({0, 2, 0}, 0.0f, glm::vec3(10.0f));
-  point.kind = ShadowedLight::Kind::Point;
+  LocalLight point = sphereLight({0, 2, 0}, 0.0f, glm::vec3(10.0f));
+  point.kind = LocalLight::Kind::Point;
   const auto sharp = stage.picture(above(kHalf), point);
   for (std::uint32_t y = 0; y < kSize; ++y)
     for (std::uint32_t x = 0; x < kSize; ++x) {
@@ -266,8 +265,8 @@ TEST_F(LocalShadowsTest, AClosedRoomIsLitEverywhereWithoutLinesInItsCorners) {
     builder.add({quadMesh(), grey(1.0f), glm::rotate(glm::mat4(1.0f), turn, x) * out});
   Stage stage(builder);
   const glm::vec3 place(0.3f, -0.2f, 0.1f), eye(-0.5f, 0.4f, 0.6f);
-  for (const ShadowedLight::Kind kind : {ShadowedLight::Kind::Point, ShadowedLight::Kind::Sphere}) {
-    ShadowedLight light = sphereLight(place, 0.1f, glm::vec3(100.0f));
+  for (const LocalLight::Kind kind : {LocalLight::Kind::Point, LocalLight::Kind::Sphere}) {
+    LocalLight light = sphereLight(place, 0.1f, glm::vec3(100.0f));
     light.kind = kind;
     for (const glm::vec3 towards : {glm::vec3(1, -1, -1), glm::vec3(1, 1, -1), glm::vec3(1, -1, 0.8f)}) {
       const spec::View view{.view_from_world = glm::lookAt(eye, towards, y),
@@ -291,8 +290,7 @@ TEST_F(LocalShadowsTest, AClosedRoomIsLitEverywhereWithoutLinesInItsCorners) {
             }
           const glm::vec3 to = place - (eye + far * ray);
           const float d2 = glm::dot(to, to), cosine = glm::dot(to, normal) / std::sqrt(d2);
-          const float wanted =
-              100.0f * cosine / d2 * (kind == ShadowedLight::Kind::Point ? 1.0f / kPi : 0.01f);
+          const float wanted = 100.0f * cosine / d2 * (kind == LocalLight::Kind::Point ? 1.0f / kPi : 0.01f);
           wrong += std::abs(picture[row * kSize + column].r - wanted) > 0.02f * wanted ? 1 : 0;
         }
       // Pixels that two walls share.
@@ -328,11 +326,10 @@ TEST_F(LocalShadowsTest, BlockersShadowFromOnePercentOfTheDistanceOn) {
 TEST_F(LocalShadowsTest, StaysFiniteWhereTheLightTouchesTheSurface) {
   Stage stage(BundleBuilder().add(level(0.0f, 1.0f)));
   for (const float height : {0.0f, 1e-6f, -1e-3f, 0.05f})
-    for (const ShadowedLight::Kind kind : {ShadowedLight::Kind::Point, ShadowedLight::Kind::Spot,
-                                           ShadowedLight::Kind::Sphere, ShadowedLight::Kind::Disc}) {
+    for (const LocalLight::Kind kind : {LocalLight::Kind::Point, LocalLight::Kind::Spot,
+                                        LocalLight::Kind::Sphere, LocalLight::Kind::Disc}) {
       // The light is at a pixel's centre.
-      ShadowedLight light =
-          sphereLight({placeOf(32, 0.5f), height, placeOf(32, 0.5f)}, 0.1f, glm::vec3(1e8f));
+      LocalLight light = sphereLight({placeOf(32, 0.5f), height, placeOf(32, 0.5f)}, 0.1f, glm::vec3(1e8f));
       light.kind = kind;
       light.direction_ws = {0, -1, 0};
       float most = 0.0f;
@@ -340,7 +337,7 @@ TEST_F(LocalShadowsTest, StaysFiniteWhereTheLightTouchesTheSurface) {
         ASSERT_TRUE(pixel.r >= 0.0f && std::isfinite(pixel.r) && pixel.r <= 1e12f);
         most = testing::larger(most, pixel.r);
       }
-      if (kind == ShadowedLight::Kind::Sphere) {
+      if (kind == LocalLight::Kind::Sphere) {
         EXPECT_NEAR(most, 1e8f, 1e5f) << "within a sphere of radiance L, E = pi L";
       }
       if (height == 0.05f) {
@@ -351,7 +348,7 @@ TEST_F(LocalShadowsTest, StaysFiniteWhereTheLightTouchesTheSurface) {
 
 TEST_F(LocalShadowsTest, ADrawThatNoLightShinesOnCostsNothingAndChangesNoPixel) {
   Stage stage(BundleBuilder().add(level(0.0f, 1.0f)), {}, /*sky=*/1.0f);
-  const ShadowedLight light = sphereLight({0, 1, 0}, 0.1f, glm::vec3(10.0f));
+  const LocalLight light = sphereLight({0, 1, 0}, 0.1f, glm::vec3(10.0f));
   const auto plain = stage.picture(above(0.5f), {}, /*plain=*/true);
   EXPECT_GT(plain[0].r, 0.9f);
   const gpu::Counters before = stage.raster;
@@ -366,21 +363,21 @@ TEST_F(LocalShadowsTest, ADrawThatNoLightShinesOnCostsNothingAndChangesNoPixel) 
   EXPECT_EQ(stage.picture(above(0.5f), light), plain);
   stage.masks = {1u};
   const float none = std::numeric_limits<float>::quiet_NaN();
-  for (const ShadowedLight& dark :
+  for (const LocalLight& dark :
        {sphereLight({0, 1, 0}, 0.1f, glm::vec3(0.0f)), sphereLight({0, 1, 0}, 0.0f, glm::vec3(1.0f)),
         sphereLight({0, none, 0}, 0.1f, glm::vec3(1.0f)),
         sphereLight({0, 1, 0}, 0.1f, glm::vec3(std::numeric_limits<float>::infinity()))})
     EXPECT_EQ(stage.picture(above(0.5f), dark), plain);
   EXPECT_EQ(stage.shadows.draws, 0u);
   EXPECT_NE(stage.picture(above(0.5f), light), plain);
-  EXPECT_EQ(stage.picture(above(0.5f), std::span<const ShadowedLight>{}), plain) << "and off again";
+  EXPECT_EQ(stage.picture(above(0.5f), std::span<const LocalLight>{}), plain) << "and off again";
 }
 
 TEST_F(LocalShadowsTest, DrawsACubeOnlyWhenItsLightOrWhatItSeesMoved) {
   Stage stage(BundleBuilder().add(level(0.0f, 1.0f)).add(level(0.5f, 0.1f)).add(level(0.0f, 0.1f, {50, 0})));
-  std::vector<ShadowedLight> lights = {sphereLight({0, 1, 0}, 0.1f, glm::vec3(10.0f)),
-                                       sphereLight({0.3f, 1, 0}, 0.1f, glm::vec3(10.0f))};
-  lights[1].kind = ShadowedLight::Kind::Point;
+  std::vector<LocalLight> lights = {sphereLight({0, 1, 0}, 0.1f, glm::vec3(10.0f)),
+                                    sphereLight({0.3f, 1, 0}, 0.1f, glm::vec3(10.0f))};
+  lights[1].kind = LocalLight::Kind::Point;
   lights[1].range_m = 5.0f;
   stage.update(lights);
   EXPECT_EQ(stage.shadowed_lights.cubesDrawn(), 2u);
@@ -421,8 +418,8 @@ TEST_F(LocalShadowsTest, MasksLetLightThroughWhereTheirAlphaIsLow) {
       builder.addTexture(2, 1, {255, 255, 255, 255, 255, 255, 255, 0}, nearest);
   blocker.material.alpha_mode = gltf::AlphaMode::Mask;
   Stage stage(builder.add(level(0.0f, 5.0f)).add(blocker));
-  ShadowedLight light = sphereLight({0, 2, 0}, 0.0f, glm::vec3(10.0f));
-  light.kind = ShadowedLight::Kind::Point;
+  LocalLight light = sphereLight({0, 2, 0}, 0.0f, glm::vec3(10.0f));
+  light.kind = LocalLight::Kind::Point;
   const auto picture = stage.picture(above(1.0f), light);
   for (std::uint32_t y = 0; y < kSize; ++y)
     for (std::uint32_t x = 0; x < kSize; ++x) {
@@ -437,7 +434,7 @@ TEST_F(LocalShadowsTest, MasksLetLightThroughWhereTheirAlphaIsLow) {
 }
 
 TEST_F(LocalShadowsTest, NormalMappedDrawsAndTurnedGroupsAreLitAsPlainOnes) {
-  const ShadowedLight light = sphereLight({0.4f, 1.0f, 0.2f}, 0.2f, glm::vec3(10.0f));
+  const LocalLight light = sphereLight({0.4f, 1.0f, 0.2f}, 0.2f, glm::vec3(10.0f));
   std::vector<glm::vec4> plain;
   const glm::quat turn = glm::angleAxis(1.1f, glm::normalize(glm::vec3(1, 2, 3)));
   for (const bool normal_mapped : {false, true})

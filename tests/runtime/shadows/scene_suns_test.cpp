@@ -7,7 +7,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/shadows/lit_scene.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "tests/runtime/shadows/key_stage.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"

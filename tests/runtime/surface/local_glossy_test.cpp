@@ -16,8 +16,8 @@ TEST_F(LocalGlossyTest, APointLightOnAMetalFloorGivesItsGgxHighlight) {
   floor.material.roughness = kRoughness;
   Stage stage(BundleBuilder(5).add(floor).glossy(5, bundle::BrdfFamily::Ggx,
                                                  effects::glossy::testing::evenTable(5, true, 0.8f, 0.1f)));
-  ShadowedLight point;
-  point.kind = ShadowedLight::Kind::Point;
+  LocalLight point;
+  point.kind = LocalLight::Kind::Point;
   point.position_ws = {0.4f, 1.0f, -0.3f};
   point.power = {10, 5, 1};
   const auto picture = stage.picture(above(2.0f), point);

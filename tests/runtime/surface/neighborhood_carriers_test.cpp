@@ -1,6 +1,6 @@
 // Tests that each pair of bodies uses one carrier, grid or capture, and that nothing pops when it changes.
 
-#include "runtime/shadows/lit_scene.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/frame/neighborhood_checks.hpp"
 
@@ -108,7 +108,7 @@ TEST_F(NeighborhoodFrame, AVolumesGridActsOnTheGroupThatItStandsWithin) {
   EXPECT_LT(
       worst(stage, image, 2.5f, ideal(stage.environment, {{0.0f, 1.5f, 0.0f}}), openLight(stage.environment)),
       0.015);
-  const LitScene lit = gatherLitScene(stage.world, 1.0f);
+  const LightPlan lit = makeLightPlan(stage.world, 1.0f);
   EXPECT_TRUE(lit.groups[1].left_out.empty()) << "the floor has no proxy";
 }
 

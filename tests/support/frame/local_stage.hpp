@@ -17,13 +17,12 @@
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/shadows/local_shadows.hpp"
-#include "runtime/surface/light_modules.hpp"
 #include "runtime/surface/surfaces.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 
 namespace lambent::frame {
 
-using lighting::ShadowedLight;
+using lighting::LocalLight;
 using testing::BuiltMesh;
 using testing::BundleBuilder;
 using testing::quadMesh;
@@ -56,9 +55,9 @@ inline float placeOf(std::uint32_t pixel, float half) {
   return half * (2.0f * (static_cast<float>(pixel) + 0.5f) / static_cast<float>(kSize) - 1.0f);
 }
 
-inline ShadowedLight sphereLight(glm::vec3 position, float radius, glm::vec3 radiance) {
-  ShadowedLight light;
-  light.kind = ShadowedLight::Kind::Sphere;
+inline LocalLight sphereLight(glm::vec3 position, float radius, glm::vec3 radiance) {
+  LocalLight light;
+  light.kind = LocalLight::Kind::Sphere;
   light.position_ws = position;
   light.radius_m = radius;
   light.power = radiance;
@@ -95,14 +94,14 @@ struct Stage {
   }
   ~Stage() { std::filesystem::remove(path); }
 
-  void update(std::span<const ShadowedLight> lights) {
+  void update(std::span<const LocalLight> lights) {
     shadows = {};
     world.updateTransforms();
     const Result<void> done = shadowed_lights.update(world, lights, masks, shadows);
     ASSERT_TRUE(done) << done.error().line();
   }
   // Renders a picture; row 0 is the top. `plain` draws without local lights.
-  std::vector<glm::vec4> picture(const spec::View& view, std::span<const ShadowedLight> lights,
+  std::vector<glm::vec4> picture(const spec::View& view, std::span<const LocalLight> lights,
                                  bool plain = false) {
     if (!plain) update(lights);
     world.updateTransforms();
@@ -115,8 +114,7 @@ struct Stage {
                         .lamps = world.lampsOf(g)});
     group_lights.update(environment, sh::Window::Off, places, counters);
     EXPECT_TRUE(diffuse.shade(world.residency(), group_lights, evaluate::TransferMode::Full, counters));
-    const LocalLightModule local_lights(shadowed_lights);
-    const SurfaceModule* const modules[] = {&local_lights};
+    const SurfaceModule* const modules[] = {&shadowed_lights};
     const Result<void> done = surfaces->prepare(
         world, diffuse, view,
         {.options = {}, .modules = plain ? std::span<const SurfaceModule* const>() : modules}, raster);
@@ -142,7 +140,7 @@ struct Stage {
       result.insert(result.end(), texels.begin() + y * kSize, texels.begin() + (y + 1) * kSize);
     return result;
   }
-  std::vector<glm::vec4> picture(const spec::View& view, const ShadowedLight& light) {
+  std::vector<glm::vec4> picture(const spec::View& view, const LocalLight& light) {
     return picture(view, std::span(&light, 1));
   }
 };

@@ -1,4 +1,4 @@
-#include "runtime/shadows/shadowed_light_choice.hpp"
+#include "runtime/light_plan/shadowed_lights.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -89,7 +89,7 @@ ColumnLight columnOf(std::vector<float> radii_m, float radiance) {
   ColumnLight light;
   for (const float radius : radii_m)
     light.shapes.push_back(
-        {.kind = lighting::ShadowedLight::Kind::Sphere, .radius_m = radius, .power = glm::vec3(radiance)});
+        {.kind = lighting::LocalLight::Kind::Sphere, .radius_m = radius, .power = glm::vec3(radiance)});
   return light;
 }
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/shadows/lit_scene.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -24,13 +24,13 @@ struct Walled {
                      .radius_m = 1.5f,
                      .key = 7}};
     scene.groups = {
-        {.samples_ws = {{-1, 0, 0}, {-1, 5, 0}}, .lit_by = {1}, .apart = {1.0f}, .left_out = {0}}};
+        {.samples_ws = {{-1, 0, 0}, {-1, 5, 0}}, .carriers = {{.per_pixel = 1.0f}}, .left_out = {0}}};
   }
   std::size_t update() { return occlusion.update(scene, std::array{&std::as_const(wall)}, version); }
   const std::vector<float>& open() const { return scene.groups[0].open; }
 
   bundle::CaptureProxy wall;
-  LitScene scene;
+  LightPlan scene;
   ApartOcclusion occlusion;
   std::uint64_t version = 1;
 };
@@ -59,7 +59,7 @@ TEST(ApartOcclusion, TracesNothingWhileNothingMovesAndAnewWhereAnythingDoes) {
   EXPECT_EQ(walled.open(), (std::vector<float>{0.0f, 1.0f}));
   ++walled.version;
   EXPECT_EQ(walled.update(), 2u);
-  walled.scene.groups[0].apart = {0.0f};
+  walled.scene.groups[0].carriers = {{}};
   EXPECT_EQ(walled.update(), 0u);
   EXPECT_TRUE(walled.open().empty());
 }

@@ -40,7 +40,7 @@ struct ColumnLight {
   std::uint32_t column = 0;
   bool material = false;
   ecs::Entity entity{};  // of the light, or of the lamp of the material
-  std::vector<lighting::ShadowedLight> shapes;
+  std::vector<lighting::LocalLight> shapes;
 };
 
 // Returns the column lights of all groups of surfaces that shine now, stand in their places and have a known
@@ -48,7 +48,7 @@ struct ColumnLight {
 std::vector<ColumnLight> findColumnLights(const World& world);
 
 // Returns the intensity of a light, as luminance in candela.
-float intensityOf(const lighting::ShadowedLight& light);
+float intensityOf(const lighting::LocalLight& light);
 
 // Returns about what each light brings to the picture: its mean irradiance over what the camera sees of the
 // bounds of its group, as if nothing was in the way. Without a camera it is the light's intensity.

@@ -1,4 +1,4 @@
-#include "runtime/shadows/shadowed_light_choice.hpp"
+#include "runtime/light_plan/shadowed_lights.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,6 @@
 
 #include "runtime/scene/affine.hpp"
 #include "runtime/shadows/key_region.hpp"
-#include "runtime/shadows/shadowed_light.hpp"
 
 namespace lambent::frame {
 
@@ -86,11 +85,11 @@ bool hasItsSize(const glm::mat4& world_from_group) {
   return true;
 }
 
-std::vector<lighting::ShadowedLight> spheresOf(const bundle::GroupLight& light, glm::vec3 radiance,
-                                               const glm::mat4& world_from_group) {
-  std::vector<lighting::ShadowedLight> spheres;
+std::vector<lighting::LocalLight> spheresOf(const bundle::GroupLight& light, glm::vec3 radiance,
+                                            const glm::mat4& world_from_group) {
+  std::vector<lighting::LocalLight> spheres;
   for (const bundle::LampSphere& sphere : light.spheres)
-    spheres.push_back({.kind = lighting::ShadowedLight::Kind::Sphere,
+    spheres.push_back({.kind = lighting::LocalLight::Kind::Sphere,
                        .position_ws = glm::vec3(world_from_group * glm::vec4(sphere.center, 1.0f)),
                        .radius_m = sphere.radius_m,
                        .body_radius_m = sphere.body_radius_m,
@@ -100,9 +99,9 @@ std::vector<lighting::ShadowedLight> spheresOf(const bundle::GroupLight& light, 
 
 // Returns the shape of a light at a node, or nothing if it is neither a point nor a spot, or differs from
 // what was baked.
-std::vector<lighting::ShadowedLight> punctualOf(const World& world, ecs::Entity entity,
-                                                const gltf::Light& baked, glm::vec3 intensity) {
-  using Kind = lighting::ShadowedLight::Kind;
+std::vector<lighting::LocalLight> punctualOf(const World& world, ecs::Entity entity, const gltf::Light& baked,
+                                             glm::vec3 intensity) {
+  using Kind = lighting::LocalLight::Kind;
   const auto* light = world.registry().tryGet<scene::LocalLightComponent>(entity);
   const auto* place = world.registry().tryGet<scene::WorldTransform>(entity);
   if (!light || !place) return {};
@@ -113,11 +112,9 @@ std::vector<lighting::ShadowedLight> punctualOf(const World& world, ecs::Entity 
   if (spot &&
       (light->inner_cone_rad != baked.inner_cone_rad || light->outer_cone_rad != baked.outer_cone_rad))
     return {};
-  const glm::vec3 ahead = -glm::vec3(place->world_from_node[2]);
-  const float length = glm::length(ahead);
   return {{.kind = spot ? Kind::Spot : Kind::Point,
            .position_ws = glm::vec3(place->world_from_node[3]),
-           .direction_ws = length > 0.0f ? ahead / length : glm::vec3(0.0f, 0.0f, -1.0f),
+           .direction_ws = lighting::shiningAlong(place->world_from_node),
            .power = intensity,
            .range_m = light->range_m,
            .inner_cone_rad = light->inner_cone_rad,
@@ -139,7 +136,7 @@ std::vector<glm::vec3> pointsSeen(const World& world, std::size_t group, const s
   return points;
 }
 
-float meanIrradiance(const lighting::ShadowedLight& light, std::span<const glm::vec3> points) {
+float meanIrradiance(const lighting::LocalLight& light, std::span<const glm::vec3> points) {
   float sum = 0.0f, widest = 0.0f;
   for (const glm::vec3& point : points) widest = std::max(widest, glm::distance(point, points.back()));
   for (const glm::vec3& point : points) {
@@ -147,7 +144,7 @@ float meanIrradiance(const lighting::ShadowedLight& light, std::span<const glm::
     const float squared = glm::dot(way, way), least = kNearest * widest;
     // Few points may all miss a narrow cone that shines on something between them.
     float cone = 1.0f;
-    if (light.kind == lighting::ShadowedLight::Kind::Spot &&
+    if (light.kind == lighting::LocalLight::Kind::Spot &&
         glm::dot(way, light.direction_ws) < std::cos(light.outer_cone_rad) * std::sqrt(squared))
       cone = kBesideCone;
     sum += cone * intensityOf(light) / (squared + least * least);
@@ -178,13 +175,14 @@ std::vector<ColumnLight> findColumnLights(const World& world) {
         one.shapes = punctualOf(world, entities[k], description.lights[static_cast<std::size_t>(carried)],
                                 strengths[k]);
       }
-      if (!one.shapes.empty() && std::ranges::all_of(one.shapes, shines)) found.push_back(std::move(one));
+      if (!one.shapes.empty() && std::ranges::all_of(one.shapes, lighting::shines))
+        found.push_back(std::move(one));
     }
   }
   return found;
 }
 
-float intensityOf(const lighting::ShadowedLight& light) {
+float intensityOf(const lighting::LocalLight& light) {
   const float luminance = glm::dot(light.power, glm::vec3(0.2126f, 0.7152f, 0.0722f));
   return hasExtent(light) ? luminance * std::numbers::pi_v<float> * light.radius_m * light.radius_m
                           : luminance;
@@ -197,7 +195,7 @@ std::vector<float> effectsOf(const World& world, std::span<const ColumnLight> li
     const auto [seen, made] = seen_of_group.try_emplace(light.group);
     if (made && world.view()) seen->second = pointsSeen(world, light.group, *world.view());
     effects.push_back(0.0f);
-    for (const lighting::ShadowedLight& shape : light.shapes)
+    for (const lighting::LocalLight& shape : light.shapes)
       effects.back() += world.view() ? meanIrradiance(shape, seen->second) : intensityOf(shape);
   }
   return effects;

@@ -1,0 +1,124 @@
+// Decides, once per frame, which carrier brings each light to each rigid group, and gathers the scene as the
+// lighting system sees it: groups as receivers and as bodies, lights, and which lights have shadow cubes. All
+// passes read this table, and nothing else decides. Direct light is shadowed (per pixel, by maps) or carried
+// by harmonics (at light probes, or by the columns of a group's transfer):
+// - The group's own column carries the light if it belongs to the group and stands where it stood in the
+//   bake. If its shape is known and a shadow cube is free, only its bounces go by the column.
+// - A shadow cube, if the light stands within the bounds of a group of surfaces; patches bounce it.
+// - A shadow cube, if the light stands beside any group, within a few of its radii. It then shines so on all
+//   groups of surfaces, so that what stands between them casts each shadow once. Its bounces travel as
+//   harmonics, kept apart as for key lights. Near the limit of that distance the light fades to the next
+//   carrier.
+// - A shadow map, if the light is directional and among the brightest of these (sunsOf): then it is a key
+//   light of the environment and not in `lights`.
+// - Harmonics at the group's light probes otherwise.
+// Light and shadow of a body with a neighborhood grid reach a group by that grid or by captures
+// (chooseGrids). Each path of light has exactly one carrier, or it would count twice. No GL; no errors.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "runtime/bundle/capture_proxy.hpp"
+#include "runtime/effects/neighborhood/neighborhood.hpp"
+#include "runtime/lighting/incident_light.hpp"
+#include "runtime/world/world.hpp"
+
+namespace lambent::frame {
+
+// Names pairs of groups of the residency: a body, and a receiver that takes the body's light and shadow from
+// its grid.
+using GridPairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+struct LightPlan {
+  std::vector<lighting::IncidentGroup> groups;  // in the order of residency().groups()
+  std::vector<std::vector<glm::vec3>> lamps;    // per group, its own lights' strengths by column
+  std::vector<std::vector<float>> lamps_apart;  // per group and column: share shaded per pixel, 0 or 1
+  std::vector<lighting::IncidentBody> bodies;
+  std::vector<lighting::LocalLight> lights;
+  // At most kMaxShadowedLights, with their power times the share shaded per pixel. Column lights come last.
+  std::vector<lighting::LocalLight> shadowed_lights;
+  // For each of these, the entity of an emissive material whose own surfaces it does not light, or null.
+  std::vector<ecs::Entity> own_lamps;
+  // Per group, bit k for shadowed light k: it shines on the group per pixel; it does so from within its
+  // bounds, so that patches bounce it; from beside, so that harmonics do. Columns bounce the rest.
+  std::vector<std::uint32_t> pixel_masks, within_masks, beside_masks;
+  std::vector<bool> material_cubes;          // per group: an emissive material of its columns has a cube
+  std::vector<ecs::Entity> column_entities;  // of the column lights that have cubes
+  GridPairs grid_pairs;                      // which grids carry
+  std::uint32_t grids_ready = 0;             // grids that may carry
+  std::uint32_t local_left_out = 0;  // lights within bounds without a free shadow cube: harmonics carry them
+
+  // Returns whether anything but the environment reaches any group from outside.
+  bool needsSampling() const;
+};
+
+// Holds the grids that bodies have, for the choice between them and captures.
+struct PlannedGrids {
+  std::span<const effects::neighborhood::Grid> grids{};
+  const GridPairs* before = nullptr;  // the pairs of the step before; not null if there are grids
+  bool on = false;                    // false: captures carry all pairs
+  bool fades = false;                 // a change of carriers results from motion, so it fades
+};
+
+struct LightPlanOptions {
+  bool shadowed_lights = true;  // false: harmonics carry all lights that stand in the scene
+  bool column_lights = false;   // true: column lights are shaded per pixel where shadow cubes are free
+  float local_radii = 0.0f;     // lights within this many radii of a group's centre are beside it
+  bool bodies = true;           // false: groups neither light nor shadow each other
+  std::uint32_t most_suns = 0;  // as for sunsOf()
+  // Column lights that had cubes in the step before.
+  std::span<const ecs::Entity> cubes_before{};
+  PlannedGrids grids{};
+};
+
+// Lists the brightest directional lights of the world, at most so many, in the order of their entities.
+struct Suns {
+  std::vector<ecs::Entity> entities;
+  std::vector<spec::Disc> discs;  // in world axes; far smaller than the sun, as the lights are parallel
+};
+Suns sunsOf(const World& world, std::uint32_t most);
+
+// Makes the plan. `surroundings` is the mean radiance against which bodies count as bright.
+LightPlan makeLightPlan(const World& world, float surroundings, const LightPlanOptions& options = {});
+
+// Lists the proxies of the groups that have one, in the order of the bodies, and the keys of these groups.
+struct BodyProxies {
+  std::vector<const bundle::CaptureProxy*> proxies;
+  std::vector<std::uint64_t> keys;
+};
+BodyProxies proxiesOf(const streaming::Residency& residency);
+
+// Finds what bodies hide of lamps that are shaded per pixel, when these bodies reach a group by their
+// neighborhood grids and are left out of its captures. Shadow cubes occlude the direct light of such lamps;
+// this gives the occlusion for their bounced light. It traces rays from the light probes to the lamps among
+// the bodies' proxies, where anything of this has moved since the last step. No GL.
+class ApartOcclusion {
+ public:
+  // Fills IncidentGroup::open of all groups. `proxies` is indexed by CaptureBody::proxy, and `version`
+  // changes when they do. Returns for how many light probes rays were traced.
+  std::size_t update(LightPlan& plan, std::span<const bundle::CaptureProxy* const> proxies,
+                     std::uint64_t version);
+
+ private:
+  struct Group {
+    std::vector<glm::vec3> samples_ws;
+    std::vector<lighting::LightCarrier> carriers;
+    std::vector<std::uint32_t> left_out;
+    bool operator==(const Group&) const = default;
+  };
+  struct Inputs {  // all that the shares depend on
+    std::uint64_t version = 0;
+    std::vector<Group> groups;  // empty for groups of which nothing is traced; if all are, so are the rest
+    std::vector<lighting::LocalLight> lights;  // without their power
+    std::vector<glm::mat4> bodies;             // world_from_proxy
+    bool operator==(const Inputs&) const = default;
+  };
+  Inputs traced_;
+  std::vector<std::vector<float>> open_;  // per group, as in IncidentGroup
+};
+
+}  // namespace lambent::frame
