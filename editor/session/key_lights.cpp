@@ -13,7 +13,7 @@
 
 #include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/session.hpp"
-#include "runtime/lighting/light_pieces.hpp"
+#include "runtime/lighting/key_lights.hpp"
 #include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/spec/key_edit.hpp"

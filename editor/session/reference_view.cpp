@@ -133,7 +133,7 @@ std::shared_ptr<const spec::DistantLights> editedLight(const lighting::Environme
   auto light = std::make_shared<spec::DistantLights>();
   for (std::size_t set = 0; set < lighting::Environment::kSets; ++set) {
     const float share = environment.shareOf(set);
-    const lighting::Environment::Shown shown = environment.shownOf(set);
+    const lighting::Environment::Part shown = environment.shownOf(set);
     light->constant += share * shown.constant;
     for (spec::Disc disc : shown.discs) {
       disc.radiance *= share;

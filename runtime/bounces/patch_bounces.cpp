@@ -13,7 +13,7 @@
 
 #include "lambent_bounces_embedded.hpp"
 #include "runtime/draws/surface_record.hpp"
-#include "runtime/lighting/light_pieces.hpp"
+#include "runtime/lighting/key_lights.hpp"
 
 namespace lambent::frame {
 

@@ -195,44 +195,24 @@ double changeBetween(const std::vector<glm::vec3>& before, const std::vector<glm
   return power > 0.0 ? std::min(std::sqrt(change / power), 1.0) : 0.0;
 }
 
-lighting::LocalLight ofUnitPower(lighting::LocalLight lamp) {
-  lamp.power = glm::vec3(1.0f);
-  return lamp;
-}
-
-spec::Disc ofUnitPower(spec::Disc key) {
-  key.radiance = glm::vec3(1.0f);
-  return key;
-}
-
-bool sameLight(const lighting::LocalLight& a, const lighting::LocalLight& b) {
-  return a == b;
-}
-
-bool sameLight(const spec::Disc& a, const spec::Disc& b) {
-  return a.direction == b.direction && a.radius_rad == b.radius_rad;
-}
-
-using Light = std::variant<lighting::LocalLight, spec::Disc>;
-bool sameSource(const Light& a, const Light& b) {
-  if (a.index() != b.index()) return false;
-  return a.index() == 0 ? sameLight(std::get<0>(a), std::get<0>(b))
-                        : sameLight(std::get<1>(a), std::get<1>(b));
-}
-
 }  // namespace
 
 std::vector<PatchRoom::Source> PatchRoom::shineAll(const RoomLights& lights,
                                                    const std::vector<Source>& kept) {
   std::vector<Source> sources;
-  for (const lighting::LocalLight& lamp : lights.lamps) sources.push_back({ofUnitPower(lamp), {}});
-  for (const spec::Disc& key : lights.keys) sources.push_back({ofUnitPower(key), {}});
+  for (lighting::LocalLight lamp : lights.lamps) {
+    lamp.power = glm::vec3(1.0f);
+    sources.push_back({lamp, {}});
+  }
+  for (spec::Disc key : lights.keys) {
+    key.radiance = glm::vec3(1.0f);
+    sources.push_back({key, {}});
+  }
 
   std::vector<spec::Disc> new_keys;
   std::vector<Source*> to_trace;
   for (Source& source : sources) {
-    const auto found = std::ranges::find_if(
-        kept, [&](const Source& other) { return sameSource(source.light, other.light); });
+    const auto found = std::ranges::find(kept, source.light, &Source::light);
     if (found != kept.end()) {
       source.direct = found->direct;
       continue;
@@ -285,8 +265,7 @@ void PatchRoom::light(const RoomLights& lights, const glm::mat4& world_from_grou
   for (const lighting::LocalLight& lamp : lights.lamps) powers.push_back(lamp.power);
   for (const spec::Disc& key : lights.keys) powers.push_back(key.radiance);
   sources_ = shineAll(lights, kept);
-  const bool same_sources = std::ranges::equal(
-      sources_, kept, [](const Source& a, const Source& b) { return sameSource(a.light, b.light); });
+  const bool same_sources = std::ranges::equal(sources_, kept, {}, &Source::light, &Source::light);
   const bool same_bands = lights.bands == bands_;
   const bool same = same_sources && powers == powers_ && same_bands;
   powers_ = std::move(powers);

@@ -23,7 +23,6 @@
 
 #include "runtime/lighting/local_light.hpp"
 #include "runtime/lighting/patch_transport.hpp"
-#include "runtime/lighting/patches.hpp"
 #include "runtime/spec/distant_lights.hpp"
 
 namespace lambent::frame {

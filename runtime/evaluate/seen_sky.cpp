@@ -12,7 +12,7 @@
 
 #include "runtime/bundle/brdf_table.hpp"
 #include "runtime/evaluate/transfer_table.hpp"
-#include "runtime/lighting/prefiltered_environment.hpp"
+#include "runtime/lighting/sky.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 

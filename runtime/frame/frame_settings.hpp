@@ -55,8 +55,8 @@ struct FrameSettings {
   // Bodies light and shadow each other as they stand now; if false, only as they were baked.
   bool captures = true;
 
-  lighting::CaptureOptions capture{.order = 0};  // order 0: that of the groups' transfer
-  std::uint32_t captures_per_step = 16;          // largest number of light probes captured per frame
+  lighting::CaptureOptions capture{};    // its order is that of the groups' transfer, whatever stands here
+  std::uint32_t captures_per_step = 16;  // largest number of light probes captured per frame
   // Sets the step of rays through volumes, in voxels; linear pictures use half of it.
   float march_step_voxels = 1.0f;
   std::optional<float> exposure_ev;  // stops; nothing: automatic

@@ -1,5 +1,3 @@
-#include "runtime/light_plan/shadowed_lights.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,8 +9,9 @@
 #include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "runtime/light_plan/light_plan.hpp"
 #include "runtime/scene/affine.hpp"
-#include "runtime/shadows/key_region.hpp"
+#include "runtime/shadows/key_shadows.hpp"
 
 namespace lambent::frame {
 

@@ -14,9 +14,8 @@
 #include <glm/vec4.hpp>
 
 #include "runtime/base/threads.hpp"
-#include "runtime/lighting/capture_queries.hpp"
+#include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/capture_shared.h"
-#include "runtime/lighting/capture_sky.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/projection.hpp"
@@ -115,12 +114,6 @@ Capture::Capture(const CaptureOptions& options)
       hidden_("capture hidden lights") {}
 
 Result<Capture> Capture::create(const CaptureOptions& options, const Environment& environment) {
-  if (options.size < 4 || options.size > 64)
-    return fail("light capture", "a size of " + std::to_string(options.size), "4 to 64 texels");
-  if (options.subsamples < 1 || options.subsamples > 16)
-    return fail("light capture", std::to_string(options.subsamples) + " subsamples", "1 to 16");
-  if (options.order < 1 || options.order > sh::kMaxOrder)
-    return fail("light capture", "order " + std::to_string(options.order), "1 to 8");
   Capture capture(options);
   // The layout is [texel][coefficient], padded to vec4s because the shaders fetch four at a time.
   const std::vector<float> weights = sh::cubeWeights(options.order, static_cast<int>(options.size));

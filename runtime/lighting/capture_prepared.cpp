@@ -1,5 +1,3 @@
-#include "runtime/lighting/capture_prepared.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/base/finite.hpp"
+#include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/capture_shared.h"
 
 namespace lambent::lighting::capture {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -21,6 +22,7 @@ namespace {
 // An edit applies to a key light up to this far away, or within its disc, because other settings divide the
 // same picture a little differently.
 constexpr float kSameKey_rad = 0.01f;
+constexpr float kLargest = std::numeric_limits<float>::max();
 
 // Combines values into a checksum. Checksums and sizes enter as they are; data held by reference enters by
 // its own checksum.
@@ -203,9 +205,9 @@ void Environment::setSuns(std::vector<Disc> suns) {
   mix();
 }
 
-Environment::Rest Environment::restOf(std::size_t index) const {
+Environment::Part Environment::restOf(std::size_t index) const {
   const Set& set = sets_[index];
-  Rest rest{.environment_maps = {}, .constant = set.lights.constant, .discs = set.parted.discs};
+  Part rest{.environment_maps = {}, .constant = set.lights.constant, .discs = set.parted.discs};
   for (std::size_t k = 0; k < set.lights.environment_maps.size(); ++k) {
     const std::optional<spec::EnvironmentMap>& parted = set.parted.environment_maps[k];
     rest.environment_maps.push_back(parted ? &*parted : &set.lights.environment_maps[k]);
@@ -213,9 +215,9 @@ Environment::Rest Environment::restOf(std::size_t index) const {
   return rest;
 }
 
-Environment::Shown Environment::shownOf(std::size_t index) const {
+Environment::Part Environment::shownOf(std::size_t index) const {
   const Set& set = sets_[index];
-  Shown shown{.environment_maps = {}, .constant = set.lights.constant, .discs = set.lights.discs};
+  Part shown{.environment_maps = {}, .constant = set.lights.constant, .discs = set.lights.discs};
   for (std::size_t k = 0; k < set.lights.environment_maps.size(); ++k)
     shown.environment_maps.push_back(set.pictures[k] ? &*set.pictures[k] : &set.lights.environment_maps[k]);
   for (std::size_t k = 0; k < set.key_discs.size(); ++k)
@@ -315,26 +317,24 @@ void Environment::mix() {
   version_ = seal.value();
 }
 
-void Environment::setTurn(float degrees) {
-  if (degrees == turn_degrees_ || !std::isfinite(degrees)) return;
-  turn_degrees_ = degrees;
+void Environment::change(float& kept, float value, float least, float greatest) {
+  if (!std::isfinite(value)) return;
+  value = std::clamp(value, least, greatest);
+  if (value == kept) return;
+  kept = value;
   mix();
+}
+
+void Environment::setTurn(float degrees) {
+  change(turn_degrees_, degrees, -kLargest, kLargest);
 }
 
 void Environment::setFade(float fade) {
-  if (!std::isfinite(fade)) return;
-  fade = std::clamp(fade, 0.0f, 1.0f);
-  if (fade == fade_) return;
-  fade_ = fade;
-  mix();
+  change(fade_, fade, 0.0f, 1.0f);
 }
 
 void Environment::setIntensity(float intensity) {
-  if (!std::isfinite(intensity)) return;
-  intensity = std::max(intensity, 0.0f);
-  if (intensity == intensity_) return;
-  intensity_ = intensity;
-  mix();
+  change(intensity_, intensity, 0.0f, kLargest);
 }
 
 }  // namespace lambent::lighting

@@ -94,23 +94,18 @@ class Environment {
 
   // Returns the lights as loaded, without edits, in the lights' own frame at full radiance.
   const spec::DistantLights& set(std::size_t index) const { return sets_[index].lights; }
-  // Holds the lights of a set without its key lights: environment maps without their peaks, and the remaining
-  // discs.
-  struct Rest {
-    std::vector<const spec::EnvironmentMap*> environment_maps;
-    glm::vec3 constant{0.0f};
-    std::span<const Disc> discs;
-  };
-  Rest restOf(std::size_t index) const;
-  const std::vector<Disc>& keysOf(std::size_t index) const { return sets_[index].key_discs; }
-  // Holds what the camera sees: the lights as loaded, but edited key lights are removed from the pictures and
-  // added as discs.
-  struct Shown {
+  struct Part {
     std::vector<const spec::EnvironmentMap*> environment_maps;
     glm::vec3 constant{0.0f};
     std::vector<Disc> discs;
   };
-  Shown shownOf(std::size_t index) const;
+  // Returns the lights of a set without its key lights: environment maps without their peaks, and the
+  // remaining discs.
+  Part restOf(std::size_t index) const;
+  // Returns what the camera sees: the lights as loaded, but edited key lights are removed from the pictures
+  // and added as discs.
+  Part shownOf(std::size_t index) const;
+  const std::vector<Disc>& keysOf(std::size_t index) const { return sets_[index].key_discs; }
   // Describes a key light as found and as edited. foundKeys() returns them in the order of keys(), in
   // which the suns of the scene come after them.
   struct FoundKey {
@@ -159,6 +154,7 @@ class Environment {
   Environment() = default;
   void part(Set& set) const;
   void applyEdits(std::size_t index);
+  void change(float& kept, float value, float least, float greatest);
   void mix();
   void seal();  // updates lights_version_
 

@@ -41,6 +41,20 @@ bool hasLampsApart(const GroupPlace& place) {
          });
 }
 
+// Return what arrives at a light probe in world axes: the light without key lights (all light if the place
+// is not parted), and the key lights.
+sh::LightVector lightOf(const Environment& environment, const GroupPlace& place, std::size_t sample) {
+  const Incident& incident = place.incident[sample];
+  if (place.parted) return incident.light != nullptr ? *incident.light : environment.restLight();
+  return incident.light != nullptr ? *incident.light + *incident.key : environment.light();
+}
+
+sh::LightVector keyLightOf(const Environment& environment, const GroupPlace& place, std::size_t sample) {
+  if (!place.parted) return sh::LightVector(1);
+  const Incident& incident = place.incident[sample];
+  return incident.key != nullptr ? *incident.key : environment.keyLight();
+}
+
 }  // namespace
 
 void GroupLights::layOut(std::span<const GroupPlace> groups) {
@@ -133,20 +147,6 @@ void GroupLights::update(const Environment& environment, sh::Window window,
   if (!any_changed || coefficients_.empty()) return;
   table_.assign(std::span<const glm::vec4>(coefficients_));
   counters.uploaded_bytes += coefficients_.size() * sizeof(glm::vec4);
-}
-
-sh::LightVector GroupLights::lightOf(const Environment& environment, const GroupPlace& place,
-                                     std::size_t sample) {
-  const Incident& incident = place.incident[sample];
-  if (place.parted) return incident.light != nullptr ? *incident.light : environment.restLight();
-  return incident.light != nullptr ? *incident.light + *incident.key : environment.light();
-}
-
-sh::LightVector GroupLights::keyLightOf(const Environment& environment, const GroupPlace& place,
-                                        std::size_t sample) {
-  if (!place.parted) return sh::LightVector(1);
-  const Incident& incident = place.incident[sample];
-  return incident.key != nullptr ? *incident.key : environment.keyLight();
 }
 
 void GroupLights::followWindows(const Environment& environment, sh::Window window,

@@ -127,11 +127,6 @@ class GroupLights {
   // share the work.
   void followWindows(const Environment& environment, sh::Window window, std::span<const GroupPlace> groups,
                      std::span<const Renewal> renewals);
-  // Return what arrives at a light probe in world axes: the light without key lights (all light if the place
-  // is not parted), and the key lights.
-  static sh::LightVector lightOf(const Environment& environment, const GroupPlace& place, std::size_t sample);
-  static sh::LightVector keyLightOf(const Environment& environment, const GroupPlace& place,
-                                    std::size_t sample);
   // Returns the index into environment_windows_ that applies to a place.
   static std::size_t environmentWindow(const GroupPlace& place) {
     return 2 * std::size_t{place.order} + (place.parted ? 1 : 0);

@@ -19,12 +19,11 @@ constexpr std::size_t kGone = ~std::size_t{0};
 
 // Returns whether either part of a light (with and without key lights) changed by more than kLeastChange of
 // the whole.
-bool differs(const sh::LightVector& now, const sh::LightVector& key, const sh::LightVector& before,
-             const sh::LightVector& key_before) {
+bool differs(const DividedLight& now, const DividedLight& before) {
   double change = 0.0, power = 0.0;
   for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i) {
-    const glm::dvec3 rest_change(now.c[i] - before.c[i]), key_change(key.c[i] - key_before.c[i]),
-        whole(before.c[i] + key_before.c[i]);
+    const glm::dvec3 rest_change(now.rest.c[i] - before.rest.c[i]),
+        key_change(now.key.c[i] - before.key.c[i]), whole(before.rest.c[i] + before.key.c[i]);
     change += glm::dot(rest_change, rest_change) + glm::dot(key_change, key_change);
     power += glm::dot(whole, whole);
   }
@@ -188,8 +187,9 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   ++counts_.samples;
   const bool lit = std::ranges::any_of(group.carriers, &LightCarrier::harmonics);
   if (sample.fade_begins) {
-    sample.fade_from = sample.plain ? environment.restLight().truncated(order_) : sample.light;
-    sample.fade_from_key = sample.plain ? environment.keyLight().truncated(order_) : sample.key;
+    sample.fade_from = sample.plain ? DividedLight{environment.restLight().truncated(order_),
+                                                   environment.keyLight().truncated(order_)}
+                                    : sample.light;
     sample.fade_steps = kCarrierSteps;
     sample.fade_begins = false;
   }
@@ -220,13 +220,13 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
     const std::int32_t query = ((*sample.drawn).*queries)[index];
     return query < 0 ? 1.0f : sample.drawn->result.visible[static_cast<std::size_t>(query)];
   };
-  sh::LightVector now(order_), key(order_);
-  add(now, sample.drawn ? sample.drawn->result.light : environment.skyLight().truncated(order_), 1.0f);
+  DividedLight now{sh::LightVector(order_), sh::LightVector(order_)};
+  add(now.rest, sample.drawn ? sample.drawn->result.light : environment.skyLight().truncated(order_), 1.0f);
   for (std::size_t i = 0; i < environment.discs().size(); ++i) {
     const spec::Disc& disc = environment.discs()[i];
     const float share = visible(&Drawn::query_of_disc, i);
     if (share > 0.0f && disc.radiance != glm::vec3(0.0f))
-      add(environment.isKey(i) ? key : now,
+      add(environment.isKey(i) ? now.key : now.rest,
           sh::discLight(order_, disc.direction, double{disc.radius_rad}, disc.radiance), share);
   }
   for (std::size_t k = 0; k < lights.size(); ++k) {
@@ -235,22 +235,20 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
     if (share <= 0.0f) continue;
     const sh::LightVector light = lightAt(lights[k], position_ws, order_);
     const float apart = group.carriers[k].apart();
-    add(now, light, (1.0f - apart) * share);
-    if (apart > 0.0f) add(key, light, apart * share * (open.empty() ? 1.0f : open[k]));
+    add(now.rest, light, (1.0f - apart) * share);
+    if (apart > 0.0f) add(now.key, light, apart * share * (open.empty() ? 1.0f : open[k]));
   }
   if (fading) {
     ++counts_.fading;
     const float before = static_cast<float>(--sample.fade_steps) / static_cast<float>(kCarrierSteps);
     for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i) {
-      now.c[i] = (1.0f - before) * now.c[i] + before * sample.fade_from.c[i];
-      key.c[i] = (1.0f - before) * key.c[i] + before * sample.fade_from_key.c[i];
+      now.rest.c[i] = (1.0f - before) * now.rest.c[i] + before * sample.fade_from.rest.c[i];
+      now.key.c[i] = (1.0f - before) * now.key.c[i] + before * sample.fade_from.key.c[i];
     }
   }
   const bool renewed = std::exchange(sample.renewed, false);
-  if (!renewed && !sample.plain && sample.version != 0 && !differs(now, key, sample.light, sample.key))
-    return;
+  if (!renewed && !sample.plain && sample.version != 0 && !differs(now, sample.light)) return;
   sample.light = now;
-  sample.key = key;
   sample.plain = false;
   sample.version = ++version_;
   ++counts_.risen;
@@ -262,9 +260,7 @@ bool IncidentLight::somethingShines(const Environment& environment, std::span<co
                                static_cast<double>(environment.version() & 0xffffffffu)};
   for (const Group& group : groups_) shine.push_back(static_cast<double>(group.lights));
   for (const IncidentBody& body : bodies) shine.push_back(body.radiance_drift);
-  const bool changed = shine != shine_before_;
-  shine_before_ = std::move(shine);
-  return changed;
+  return shines_.renew(shine);
 }
 
 bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
@@ -277,11 +273,7 @@ bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
     places.insert(places.end(), group.samples_ws.begin(), group.samples_ws.end());
     left_out.push_back(group.left_out);
   }
-  const bool moves = poses != bodies_before_ || places != places_before_ || left_out != left_out_before_;
-  left_out_before_ = std::move(left_out);
-  bodies_before_ = std::move(poses);
-  places_before_ = std::move(places);
-  return moves;
+  return moves_.renew(poses, places, left_out);
 }
 
 Result<void> IncidentLight::capture(const Environment& environment, const IncidentScene& scene,
@@ -486,8 +478,8 @@ bool IncidentLight::atRest() const {
 std::vector<Incident> IncidentLight::incidentOf(std::size_t group) const {
   std::vector<Incident> incident;
   for (const Sample& sample : groups_[group].samples)
-    incident.push_back({.light = sample.plain ? nullptr : &sample.light,
-                        .key = sample.plain ? nullptr : &sample.key,
+    incident.push_back({.light = sample.plain ? nullptr : &sample.light.rest,
+                        .key = sample.plain ? nullptr : &sample.light.key,
                         .version = sample.version});
   return incident;
 }

@@ -7,8 +7,8 @@
 // Captures are drawn for probes whose surroundings changed: the sky turned, a light moved, or bodies moved or
 // shine differently by so much that the light may have changed by kMovingChange. Smaller changes are caught
 // up with when everything stands still. The light of a probe is handed on only if it changed by more than
-// kLeastChange, so that bodies which light each other come to rest. Render thread only. create() fails if an
-// option is out of range or a shader does not compile, capture() if Capture::run() does.
+// kLeastChange, so that bodies which light each other come to rest. Render thread only. create() fails if a
+// shader does not compile, capture() if Capture::run() does.
 #pragma once
 
 #include <cstdint>
@@ -68,6 +68,12 @@ inline constexpr float kMovingChange = 0.02f;  // relative change while things m
 inline constexpr std::uint32_t kCarrierSteps = 8;
 inline constexpr float kRestingChange = 0.25f * kLeastChange;  // relative change when nothing moves
 
+// Holds the light without key lights and without lamps that are shaded per pixel, and the part of those that
+// no body hides.
+struct DividedLight {
+  sh::LightVector rest{1}, key{1};
+};
+
 // Describes a body, and how its radiance changes.
 struct IncidentBody {
   CaptureBody body;
@@ -83,7 +89,7 @@ struct IncidentGroup {
   std::uint32_t body = CapturePoint::kNoBody;  // index of its own body
   std::vector<glm::vec3> samples_ws;
   std::vector<LightCarrier> carriers{};  // per local light
-  // Gives the share of such light that the bodies in left_out let through, indexed by sample, then light.
+  // Gives the share of each light that the bodies in left_out let through, indexed by sample, then light.
   // Empty means 1.
   std::vector<float> open{};
   // Lists the bodies (rising indices) whose light and shadow reach the group by another carrier. They are not
@@ -117,8 +123,8 @@ class IncidentLight {
   static Result<IncidentLight> create(const CaptureOptions& options, const Environment& environment);
 
   // Uses captures with other options from now on. Captures on their way are dropped, and all samples that see
-  // a body are drawn again; until then they keep their light. Proxies must be set again. Fails if an option
-  // is out of range.
+  // a body are drawn again; until then they keep their light. Proxies must be set again. Fails if a shader
+  // does not compile.
   Result<void> renew(const CaptureOptions& options, const Environment& environment);
 
   // Makes all samples that see a body be drawn again.
@@ -172,9 +178,7 @@ class IncidentLight {
     // The light that was handed on last follows, with the inputs that it was made from.
     std::uint64_t version = 0;  // 0: nothing yet; unique among all samples
     bool plain = true;          // it is the environment's own light
-    // The light without key lights and without lamps that are shaded per pixel, and the part of those that no
-    // body hides.
-    sh::LightVector light{1}, key{1};
+    DividedLight light;
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;
     std::vector<float> open;
@@ -182,7 +186,7 @@ class IncidentLight {
     std::vector<std::uint32_t> left_out;
     bool fade_begins = false;
     std::uint32_t fade_steps = 0;  // steps that remain
-    sh::LightVector fade_from{1}, fade_from_key{1};
+    DividedLight fade_from;
   };
   struct Group {
     std::vector<Sample> samples;
@@ -236,10 +240,9 @@ class IncidentLight {
   std::uint64_t version_ = 0;             // the last version given to a sample
   std::uint32_t renewal_ = 0;
   std::vector<LocalLight> lights_before_;
-  std::vector<glm::mat4> bodies_before_;
-  std::vector<glm::vec3> places_before_;
-  std::vector<std::vector<std::uint32_t>> left_out_before_;
-  std::vector<double> shine_before_;
+  // Poses of bodies, places of samples and what is left out; and what somethingShines() lists.
+  ChangeGate<std::vector<glm::mat4>, std::vector<glm::vec3>, std::vector<std::vector<std::uint32_t>>> moves_;
+  ChangeGate<std::vector<double>> shines_;
   bool nothing_to_draw_ = false;  // at the last search for changes
   IncidentCounts counts_;
 };

@@ -8,7 +8,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "runtime/lighting/light_pieces.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/image_layout.hpp"
 

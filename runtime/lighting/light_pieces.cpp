@@ -1,5 +1,3 @@
-#include "runtime/lighting/light_pieces.hpp"
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "runtime/lighting/key_lights.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 

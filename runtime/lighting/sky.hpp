@@ -7,19 +7,44 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <future>
 #include <span>
+#include <vector>
 
 #include <glm/mat4x4.hpp>
 
+#include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/environment.hpp"
+#include "runtime/lighting/prefiltered_shared.h"
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/window.hpp"
 
 namespace lambent::lighting {
 
 // The tables of GLSL text that programs of this room include files from.
 extern const gpu::FindText kLightingShaders[1];
+
+// Returns a size with about one texel of a cube map per texel of the environment maps; a constant needs only
+// one. The size is a power of two because mip levels are read, and halving an odd size drops a row of texels,
+// in which a lamp may stand.
+std::uint32_t cubeSizeFor(std::span<const spec::EnvironmentMap* const> environment_maps,
+                          std::uint32_t largest);
+
+// Fills the first level of a cube map from texelsOf(face), with a thread for each face.
+template <typename TexelsOf>
+void fillCube(const gpu::Texture& cube, GLenum type, const TexelsOf& texelsOf) {
+  const auto size = static_cast<GLsizei>(cube.desc().width);
+  std::vector<std::future<decltype(texelsOf(0))>> faces;
+  for (int face = 0; face < 6; ++face)
+    faces.push_back(std::async(std::launch::async, [&texelsOf, face] { return texelsOf(face); }));
+  for (int face = 0; face < 6; ++face)
+    glTextureSubImage3D(cube.id(), 0, 0, 0, face, size, size, 1, GL_RGBA, type,
+                        faces[static_cast<std::size_t>(face)].get().data());
+}
 
 // Resamples environment maps and a constant, in their own frame, with about one texel of the cube per texel
 // of the environment maps.
@@ -49,6 +74,69 @@ class Sky {
   gpu::VertexArray no_vertices_;
   std::uint32_t disc_count_ = 0;
   std::uint64_t lights_ = 0, pictures_ = 0;  // versions
+};
+
+// Owns what rough mirrors show of the sky beyond the few SH bands that surfaces receive: P(L) - P(L_n),
+// prefiltered with a round lobe. L is the light without key lights, whose
+// highlights surfaces shade from their discs; where key lights are wide (pieces of windows or soft boxes),
+// their true shape is kept in second cube maps of all light, for mirrors that are sharp enough to show it.
+// P(L) is a cube map per set of lights with roughness along its mip levels, in the lights' own frame; it is
+// made once, and turning, fading and dimming only change how it is mixed. P(L_n) has n bands, each scaled by
+// the lobe's, and is subtracted where a surface looks it up (specular_environment.glsl), so that light of few
+// bands leaves nothing. Render thread only. make() fails if a kernel does not compile on this device.
+
+// Computes the lobe with which a rough surface blurs its reflection of the sky. It is taken to be
+// rotationally symmetric about the mirrored view, as if one looked along the normal (Karis 2013, split sum):
+// K(theta) ~ D_GGX(theta / 2) max(cos theta, 0) with integral 1, theta measured from the mirrored direction.
+// No GL.
+struct ReflectedLobe {
+  float alpha = 0.0f;             // 0: a mirror
+  float scale = 0.0f;             // K = scale * cos(theta) / (cos²(theta/2) (alpha² - 1) + 1)²
+  std::vector<float> angles_rad;  // the centres of kLobeShares equal shares of the lobe
+  // The lobe scales the bands of light by these factors: ∫ K P_l(cos theta).
+  std::array<float, sh::kMaxOrder> bands{};
+
+  float density(float cos_theta) const;
+};
+
+inline constexpr int kLobeShares = 256;
+
+// Makes the lobe for a perceptual roughness, 0..1; alpha = roughness².
+ReflectedLobe makeReflectedLobe(float roughness);
+
+// Returns the roughness of a mip level. Steps are finer where the lobe is narrow. specular_environment.glsl
+// has the inverse.
+float roughnessOfLevel(std::uint32_t level, std::uint32_t levels);
+
+class PrefilteredEnvironment {
+ public:
+  // `sky` must be the sky of this environment.
+  static Result<PrefilteredEnvironment> make(const Environment& environment, const Sky& sky,
+                                             gpu::Counters& counters);
+  // Returns a version: make() gives the same result if it is the same.
+  static std::uint64_t sourceVersion(const Environment& environment);
+
+  // Updates the uniform block to the current environment and to the light that surfaces have of it: this many
+  // bands, windowed.
+  void update(const Environment& environment, int order, sh::Window window, gpu::Counters& counters);
+  void bind() const;
+
+  // Return what was uploaded, for tests.
+  const ReflectionValues& values() const { return values_; }
+  const gpu::Texture& cube(std::size_t set) const { return cubes_[set]; }
+
+ private:
+  // Makes P(L) of one set of lights, with roughness along the mip levels.
+  struct Source;
+  static gpu::Texture prefilter(const Source& source, gpu::Counters& counters);
+
+  PrefilteredEnvironment() : block_("reflection") {}
+
+  std::array<gpu::Texture, Environment::kSets> cubes_, whole_;
+  bool has_whole_ = false;
+  ReflectionValues values_{};
+  gpu::Table block_;
+  ChangeGate<std::uint64_t, int, sh::Window> changed_;  // environment, order, window
 };
 
 }  // namespace lambent::lighting

@@ -67,20 +67,6 @@ LocalShadows::LocalShadows(const LocalOptions& options)
       draws_table_("near draws"),
       faces_("shadow faces") {}
 
-Result<void> LocalShadows::compile() {
-  if (programs_[0]) return {};
-  for (const bool masked : {false, true}) {
-    std::vector<gpu::Define> defines;
-    if (masked) defines.push_back({"LAMBENT_MASKED", "1"});
-    Result<gpu::Program> program = gpu::Program::create(
-        "shadow caster", {{GL_VERTEX_SHADER, "local_caster.vert"}, {GL_FRAGMENT_SHADER, "local_caster.frag"}},
-        kShadowShaders, defines);
-    if (!program) return failAgain(program.error());
-    programs_[masked ? 1 : 0] = std::move(*program);
-  }
-  return {};
-}
-
 void LocalShadows::updateMasks(const World& world, std::span<const std::uint32_t> mask_of_group,
                                gpu::Counters& counters) {
   const streaming::Residency& residency = world.residency();
@@ -164,7 +150,11 @@ Result<void> LocalShadows::update(World& world, std::span<const LocalLight> ligh
   own_lamps_.resize(lights_.size());
   updateMasks(world, mask_of_group, counters);
   if (!any_) return {};
-  if (Result<void> done = compile(); !done) return done;
+  if (!programs_[0]) {
+    auto made = ShadowCasters::compile("shadow caster", "local_caster.vert", "local_caster.frag");
+    if (!made) return failAgain(made.error());
+    programs_ = std::move(*made);
+  }
   makeRoom(static_cast<std::uint32_t>(std::bit_width(lights_used_)));
   const std::vector<std::uint32_t> changed = findChanged(world);
   if (!changed.empty()) drawCubes(world, changed, counters);

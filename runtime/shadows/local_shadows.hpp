@@ -110,7 +110,6 @@ class LocalShadows final : public SurfaceModule {
     bool drawn = false;
   };
   void updateMasks(const World& world, std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters);
-  Result<void> compile();
   void makeRoom(std::uint32_t rows);
   // Returns the lights whose cubes must be drawn, and records their casters.
   std::vector<std::uint32_t> findChanged(World& world);

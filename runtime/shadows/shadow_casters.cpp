@@ -24,6 +24,20 @@ bool ShadowCaster::operator==(const ShadowCaster& other) const {
 
 ShadowCasters::ShadowCasters(std::string_view label) : records_(label), commands_(label), indices_(label) {}
 
+Result<ShadowCasters::Programs> ShadowCasters::compile(std::string_view label, std::string_view vertex,
+                                                       std::string_view fragment) {
+  Programs programs;
+  for (const bool masked : {false, true}) {
+    std::vector<gpu::Define> defines;
+    if (masked) defines.push_back({"LAMBENT_MASKED", "1"});
+    Result<gpu::Program> program = gpu::Program::create(
+        label, {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}, kShadowShaders, defines);
+    if (!program) return failAgain(program.error());
+    programs[masked ? 1 : 0] = std::move(*program);
+  }
+  return programs;
+}
+
 bool ShadowCasters::follow(const World& world) {
   const streaming::Residency& residency = world.residency();
   if (!changed_.renew(residency.version(), world.transformsVersion(), world.materialsVersion())) return false;

@@ -13,6 +13,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "runtime/base/change_gate.hpp"
+#include "runtime/base/result.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/scene/bounds.hpp"
@@ -58,6 +59,7 @@ class ShadowCasters {
   };
   // Holds the programs for opaque casters and for masked ones, in this order.
   using Programs = std::array<gpu::Program, 2>;
+  static Result<Programs> compile(std::string_view label, std::string_view vertex, std::string_view fragment);
   // Clears the tiles of the bound framebuffer's depth to 1 and draws them. Changes viewport, scissor, depth
   // and culling state.
   void draw(World& world, std::span<const Tile> tiles, const Programs& programs, const TileViews& views,

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include "runtime/light_plan/shadowed_lights.hpp"
+#include "runtime/light_plan/light_plan.hpp"
 #include "runtime/streaming/sizes.hpp"
 #include "runtime/surface/surface_program.hpp"
 

@@ -1,4 +1,4 @@
-// Looks up the prefiltered environment (prefiltered_environment.hpp) as rough mirrors show it.
+// Looks up the prefiltered environment (lighting/sky.hpp) as rough mirrors show it.
 #include "prefiltered_shared.h"
 layout(std140, binding = kBindReflection) uniform ReflectionBlock { ReflectionValues reflection; };
 layout(binding = kUnitFirstReflection) uniform samplerCube first_reflection;

@@ -257,7 +257,7 @@ void ReflectionProbes::filter(std::size_t probe, gpu::Counters& counters) {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-void ReflectionProbes::bind(SurfaceReceiver receiver) const {
+void ReflectionProbes::bindFor(SurfaceReceiver receiver) const {
   const GLuint unit = isLayered(receiver) ? kUnitProbesLayered : kUnitProbesGlossy;
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindProbes, block_.buffer().id());
   images_.bind(unit);
@@ -269,8 +269,7 @@ SpecularEnvironmentModule::SpecularEnvironmentModule(
     const std::optional<lighting::PrefilteredEnvironment>& environment, const bool& shown)
     : SurfaceModule(kSpecular), environment_(environment), on_(shown) {}
 
-ReflectionProbeModule::ReflectionProbeModule(const ReflectionProbes& probes,
-                                             const SpecularEnvironmentModule& environment)
-    : SurfaceModule(kProbes), probes_(probes), environment_(environment) {}
+ReflectionProbes::ReflectionProbes()
+    : SurfaceModule(kProbes), block_("reflection probes"), angles_("probe lobe") {}
 
 }  // namespace lambent::frame

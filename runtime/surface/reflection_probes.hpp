@@ -18,8 +18,8 @@
 #include "runtime/draws/surface_module.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/lighting/probe_places.hpp"
+#include "runtime/lighting/sky.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/surface/reflection_probes_shared.h"
 #include "runtime/world/world.hpp"
@@ -45,51 +45,8 @@ inline constexpr std::uint32_t kProbeFaceTexels = 128;  // along an edge of a fa
 // order.
 spec::View probeFaceView(const glm::vec3& place_ws, int face, float near_m, float far_m);
 
-class ReflectionProbes {
- public:
-  static Result<ReflectionProbes> create();
-
-  // Sets where probes are, at most kMostProbes. Those that stay where they were, in the same order, stay
-  // captured.
-  void place(std::vector<glm::vec3> places_ws);
-  const std::vector<glm::vec3>& places() const { return places_; }
-  // Sets which draws look probes up, by index in the residency.
-  void showBy(std::vector<std::uint8_t> draws);
-  bool shownBy(std::size_t draw) const {
-    return !places_.empty() && draw < draws_.size() && draws_[draw] != 0;
-  }
-  // Rises when shownBy() changes for any draw.
-  std::uint64_t layoutVersion() const { return layout_version_; }
-
-  // Captures a probe: binds and clears a target for each face and calls `draw`, which draws what is opaque
-  // and then what is blended. Depths are those of the view. While it draws, surfaces look no probes up.
-  Result<void> capture(std::size_t probe, float near_m, float far_m,
-                       const std::function<Result<void>(const spec::View&, const spec::Size&)>& draw,
-                       gpu::Counters& counters);
-
-  void bind(SurfaceReceiver receiver) const;
-
- private:
-  ReflectionProbes() : block_("reflection probes"), angles_("probe lobe") {}
-  void uploadBlock(bool looked_up);
-  void makeTargets();
-  void store(std::size_t probe, int face, const glm::mat4& clip_from_view, gpu::Counters& counters) const;
-  void filter(std::size_t probe, gpu::Counters& counters);
-
-  gpu::Program store_, filter_;
-  std::vector<lighting::ReflectedLobe> lobes_;  // one per level
-  std::vector<glm::vec3> places_;
-  std::vector<std::uint8_t> captured_;  // one per place
-  std::vector<std::uint8_t> draws_;
-  std::uint64_t layout_version_ = 0;
-  gpu::Texture images_;  // see ProbeValues
-  gpu::Texture drawn_, depth_, weighted_, weights_;
-  gpu::Framebuffer target_;
-  gpu::Table block_, angles_;
-};
-
 // Adds what mirrors show of the environment beyond the few bands of light, if it has been prefiltered and is
-// shown. Modules refer to what brings their light, which must outlive them.
+// shown. It refers to what must outlive it.
 class SpecularEnvironmentModule final : public SurfaceModule {
  public:
   SpecularEnvironmentModule(const std::optional<lighting::PrefilteredEnvironment>& environment,
@@ -103,20 +60,50 @@ class SpecularEnvironmentModule final : public SurfaceModule {
   const bool& on_;
 };
 
-// Shows the room in mirrors, where reflection probes know it. It needs the specular environment, whose
-// function is called before.
-class ReflectionProbeModule final : public SurfaceModule {
+// Shows the room in mirrors, where reflection probes know it, with the specular environment, whose function
+// is called before.
+class ReflectionProbes final : public SurfaceModule {
  public:
-  ReflectionProbeModule(const ReflectionProbes& probes, const SpecularEnvironmentModule& environment);
+  static Result<ReflectionProbes> create();
+
+  // Sets where probes are, at most kMostProbes. Those that stay where they were, in the same order, stay
+  // captured.
+  void place(std::vector<glm::vec3> places_ws);
+  const std::vector<glm::vec3>& places() const { return places_; }
+  // Sets which draws look probes up, by index in the residency.
+  void showBy(std::vector<std::uint8_t> draws);
+  void setEnvironment(const SpecularEnvironmentModule& environment) { environment_ = &environment; }
   bool reaches(std::size_t draw, const SurfaceDraw& record) const override {
-    return probes_.shownBy(draw) && environment_.reaches(draw, record);
+    return !places_.empty() && draw < draws_.size() && draws_[draw] != 0 &&
+           environment_->reaches(draw, record);
   }
-  std::uint64_t version() const override { return probes_.layoutVersion() + environment_.version(); }
-  void bindFor(SurfaceReceiver receiver) const override { probes_.bind(receiver); }
+  std::uint64_t version() const override { return layout_version_ + environment_->version(); }
+  void bindFor(SurfaceReceiver receiver) const override;
+
+  // Captures a probe: binds and clears a target for each face and calls `draw`, which draws what is opaque
+  // and then what is blended. Depths are those of the view. While it draws, surfaces look no probes up.
+  Result<void> capture(std::size_t probe, float near_m, float far_m,
+                       const std::function<Result<void>(const spec::View&, const spec::Size&)>& draw,
+                       gpu::Counters& counters);
 
  private:
-  const ReflectionProbes& probes_;
-  const SpecularEnvironmentModule& environment_;
+  ReflectionProbes();
+  void uploadBlock(bool looked_up);
+  void makeTargets();
+  void store(std::size_t probe, int face, const glm::mat4& clip_from_view, gpu::Counters& counters) const;
+  void filter(std::size_t probe, gpu::Counters& counters);
+
+  const SpecularEnvironmentModule* environment_ = nullptr;  // set before draws ask
+  gpu::Program store_, filter_;
+  std::vector<lighting::ReflectedLobe> lobes_;  // one per level
+  std::vector<glm::vec3> places_;
+  std::vector<std::uint8_t> captured_;  // one per place
+  std::vector<std::uint8_t> draws_;
+  std::uint64_t layout_version_ = 0;
+  gpu::Texture images_;  // see ProbeValues
+  gpu::Texture drawn_, depth_, weighted_, weights_;
+  gpu::Framebuffer target_;
+  gpu::Table block_, angles_;
 };
 
 }  // namespace lambent::frame

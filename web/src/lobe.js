@@ -1,5 +1,5 @@
 // The lobe with which a rough surface blurs its reflection of the sky, as lambent-demo takes it
-// (runtime/lighting/prefiltered_environment.cpp): K(theta) ~ D_GGX(theta / 2) max(cos theta, 0) about the mirrored view, with
+// (runtime/lighting/sky.cpp): K(theta) ~ D_GGX(theta / 2) max(cos theta, 0) about the mirrored view, with
 // integral 1. It scales the bands of light by ∫ K P_l.
 import { DataTexture, FloatType, RGBAFormat } from 'three';
 

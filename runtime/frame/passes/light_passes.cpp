@@ -100,11 +100,9 @@ class LightPass final : public FramePass {
   Result<void> prepareSampling(const FrameContext& frame) {
     if (!incident_ && !plan_.needsSampling()) return {};
     lighting::CaptureOptions options = frame.settings().capture;
-    if (options.order == 0) {
-      options.order = std::max(1, capture_order_);  // never falls, so that captured light stays valid
-      for (const streaming::ResidentGroup& group : frame.world.residency().groups())
-        options.order = std::max(options.order, static_cast<int>(group.order));
-    }
+    options.order = std::max(1, capture_order_);  // never falls, so that captured light stays valid
+    for (const streaming::ResidentGroup& group : frame.world.residency().groups())
+      options.order = std::max(options.order, static_cast<int>(group.order));
     if (!incident_) {
       auto made = lighting::IncidentLight::create(options, frame.environment);
       if (!made) return failAgain(made.error());

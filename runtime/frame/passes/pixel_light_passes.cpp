@@ -6,7 +6,6 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/frame/pass_list.hpp"
 #include "runtime/light_plan/light_plan.hpp"
-#include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/shadows/key_shadows.hpp"
 #include "runtime/shadows/local_shadows.hpp"

@@ -18,7 +18,6 @@
 #include "runtime/frame/frame_pass.hpp"
 #include "runtime/frame/pass_list.hpp"
 #include "runtime/light_plan/light_plan.hpp"
-#include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/shadows/key_shadows.hpp"
@@ -88,10 +87,10 @@ class ReflectionProbesPass final : public FramePass {
                    .counts = {"reflection_probes", "reflection_probes_captured"}}),
         voxelizer_(std::move(voxelizer)),
         probes_(std::move(probes)),
-        modules_(board.get<SurfaceModules>()),
-        module_(probes_, board.get<SpecularEnvironmentModule>()) {
+        modules_(board.get<SurfaceModules>()) {
+    probes_.setEnvironment(board.get<SpecularEnvironmentModule>());
     board.offer(probes_);
-    board.get<SurfaceModules>().push_back(&module_);
+    board.get<SurfaceModules>().push_back(&probes_);
   }
 
   bool due(const FrameContext& frame) override {
@@ -246,7 +245,6 @@ class ReflectionProbesPass final : public FramePass {
   SurfaceVoxelizer voxelizer_;
   ReflectionProbes probes_;
   const SurfaceModules& modules_;
-  ReflectionProbeModule module_;
   KeyShadows keys_;
   std::vector<std::vector<glm::vec3>> places_;  // of each group, in its frame
   std::vector<std::uint8_t> stale_;             // of each probe: it must be captured

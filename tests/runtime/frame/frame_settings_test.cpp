@@ -41,7 +41,7 @@ TEST(FrameSettings, WordsAreThoseOfTheCommandLine) {
   FrameSettings settings;
   ASSERT_TRUE(putSetting(settings, "transfer", "shadowed"));
   ASSERT_TRUE(putSetting(settings, "specular-environment", "off"));
-  ASSERT_TRUE(putSetting(settings, "capture-order", "auto"));
+  ASSERT_TRUE(putSetting(settings, "reflection-probes", "off"));
   ASSERT_TRUE(putSetting(settings, "exposure", "-1.5"));
   EXPECT_EQ(settings.transfer, evaluate::TransferMode::Shadowed);
   EXPECT_FALSE(settings.residual);

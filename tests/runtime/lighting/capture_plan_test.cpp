@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/lighting/capture_prepared.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "tests/runtime/lighting/capture_scenes.hpp"
 
@@ -53,33 +52,6 @@ TEST(CaptureClosed, KnowsBodiesWhoseDarkSidesCannotBeSeenFromOutside) {
   }
   both.levels[0].triangle_count = 24;
   EXPECT_FALSE(closed(both));
-}
-
-TEST(CapturePlan, RectanglesHoldAllOfABody) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<float> place(-4, 4), angle(0, 6);
-  const bundle::CaptureProxy cube = cubeProxy();
-  const capture::ProxyBounds bounds = capture::ProxyBounds::of(cube);
-  for (int trial = 0; trial < 400; ++trial) {
-    const CaptureBody body{
-        0, glm::translate(glm::mat4(1), glm::vec3(place(random), place(random), place(random))) *
-               glm::rotate(glm::mat4(1), angle(random),
-                           glm::normalize(glm::vec3(place(random), 1, place(random))))};
-    std::array<std::optional<capture::TexelRect>, 6> rects;
-    for (std::uint32_t face = 0; face < 6; ++face)
-      rects[face] = capture::faceRect(16, face, {}, body, bounds);
-    for (int i = 0; i < 200; ++i) {
-      glm::vec3 p = glm::vec3(place(random), place(random), place(random)) / 4.0f;
-      p[i % 3] = i % 2 ? 1.0f : -1.0f;
-      const glm::dvec3 at(glm::vec3(body.world_from_proxy * glm::vec4(p, 1)));
-      const std::uint32_t face = capture::faceOf(at);
-      const glm::dvec3 on_face = capture::faceFromWorld(face) * at;
-      const double x = (on_face.x / on_face.z + 1) * 8, y = (on_face.y / on_face.z + 1) * 8;
-      ASSERT_TRUE(rects[face]);
-      EXPECT_TRUE(x >= rects[face]->x0 && x <= rects[face]->x1 && y >= rects[face]->y0 &&
-                  y <= rects[face]->y1);
-    }
-  }
 }
 
 TEST(CapturePlan, TilesAreApartAndInTheAtlas) {

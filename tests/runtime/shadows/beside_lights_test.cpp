@@ -101,26 +101,6 @@ TEST_F(BesideLights, EachPathOfTheLightComesOnceAtEveryDistance) {
   }
 }
 
-TEST_F(BesideLights, TheLightDoesNotJumpWhereItsCarrierChanges) {
-  NeighborhoodScene scene;
-  scene.receivers = {floorOf(0.3f)};
-  BesideStage stage(scene);
-  stage.half = 0.3f;
-  const float radius = 0.3f * std::numbers::sqrt2_v<float>;
-  float before = 0.0f;
-  for (float radii = 4.5f; radii < 6.5f; radii += 0.05f) {
-    const glm::vec3 lamp = radii * radius * glm::normalize(glm::vec3(0.4f, 1.0f, 0.1f));
-    stage.moveLamp(lamp);
-    // This is the corner, where bands give a fifth more. Times the squared distance, the light changes little
-    // otherwise.
-    const float now = radii * radii * stage.picture().texels[0].r;
-    if (before > 0.0f) {
-      EXPECT_NEAR(now, before, 0.02f * before) << radii << " radii away";
-    }
-    before = now;
-  }
-}
-
 TEST_F(BesideLights, AGridTakesNothingOfWhatShadowCubesBring) {
   NeighborhoodScene scene;
   scene.receivers = {floorOf(4.0f)};

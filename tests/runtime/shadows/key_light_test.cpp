@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "runtime/sh/basis.hpp"
-#include "tests/runtime/shadows/key_maps.hpp"
 #include "tests/runtime/shadows/random.hpp"
 #include "tests/runtime/shadows/shadow_shaders.hpp"
 #include "tests/support/differences.hpp"

@@ -22,12 +22,7 @@ using SceneSuns = testing::GpuTest;
 // Has a floor of 6 m and a wall of 2 m on it, both with bounces.
 BundleBuilder floorAndWall() {
   BundleBuilder builder(5);
-  builder.bounces().transfer([](const glm::vec3& normal) {
-    std::vector<float> both = testing::openTransfer(5)(normal), full = both;
-    for (float& value : full) value *= 1.5f;
-    both.insert(both.end(), full.begin(), full.end());
-    return both;
-  });
+  withBounces(builder);
   gltf::Material grey;
   grey.base_color = {0.8f, 0.8f, 0.8f, 1.0f};
   const glm::mat4 one(1.0f);

@@ -52,21 +52,6 @@ TEST_F(NeighborhoodFrame, TurnedBodiesAndTurnedReceiversGetTheSameLight) {
     }
 }
 
-TEST_F(NeighborhoodFrame, BodiesThatMoveAndTurnTakeTheirShadowsAlong) {
-  NeighborhoodScene scene;
-  scene.receivers = {floorOf(8.0f)};
-  scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, kWide, kWideHalf)};
-  NeighborhoodStage stage(scene, {kSun, kWhite});
-  stage.half = 2.0f;
-  stage.picture();
-  stage.edit("body").translation = {0.7f, 1.8f, -0.4f};
-  stage.edit("body").rotation = kTurn;
-  const spec::RgbaImage image = stage.picture();
-  EXPECT_LT(worst(stage, image, 2.0f, ideal(stage.environment, {{0.7f, 1.8f, -0.4f}}),
-                  openLight(stage.environment)),
-            0.025);
-}
-
 TEST_F(NeighborhoodFrame, ScaledBodiesHaveScaledNeighborhoods) {
   NeighborhoodScene scene;
   scene.receivers = {floorOf(8.0f)};

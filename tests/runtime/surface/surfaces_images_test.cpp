@@ -1,10 +1,13 @@
 // Tests in which colour space each image of a bundle is stored on the GPU, depending on how materials use it.
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/draws/view.hpp"
 #include "runtime/streaming/residency.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {
+
 using SurfaceImages = testing::GpuTest;
 
 TEST_F(SurfaceImages, ColoursAreSrgbNormalsLinearAndAnImageThatIsBothIsHeldTwice) {
@@ -46,5 +49,32 @@ TEST_F(SurfaceImages, ColoursAreSrgbNormalsLinearAndAnImageThatIsBothIsHeldTwice
   // The size is 4 x 3 texels of four bytes, and a third more for mip levels.
   EXPECT_EQ(residency.bytesResident(), 6u * 64u) << "five images, one of them twice";
 }
+
+// Tests what counts as out of view.
+
+namespace {
+
+scene::Box cubeAt(glm::vec3 center) {
+  return {center - 0.5f, center + 0.5f};
+}
+
+TEST(OutOfView, IsWhatLiesBeyondAPlaneOfTheFrustum) {
+  const glm::mat4 perspective = glm::perspective(glm::radians(90.0f), 1.0f, 0.1f, 100.0f);
+  EXPECT_FALSE(outOfView(perspective, cubeAt({0, 0, -5})));
+  EXPECT_FALSE(outOfView(perspective, cubeAt({5.4f, 0, -5}))) << "a part of it is in view";
+  EXPECT_TRUE(outOfView(perspective, cubeAt({6.6f, 0, -5})));
+  EXPECT_TRUE(outOfView(perspective, cubeAt({0, 0, 5}))) << "behind the eye";
+  EXPECT_TRUE(outOfView(perspective, cubeAt({0, 0, -200})));
+  EXPECT_FALSE(outOfView(perspective, {glm::vec3(-50), glm::vec3(50)})) << "the eye is in it";
+}
+
+TEST(OutOfView, HoldsForParallelRaysToo) {
+  const glm::mat4 flat = glm::ortho(-1.0f, 1.0f, -1.0f, 1.0f, 1.0f, 20.0f);
+  EXPECT_FALSE(outOfView(flat, cubeAt({1.4f, 0, -5})));
+  EXPECT_TRUE(outOfView(flat, cubeAt({1.6f, 0, -5})));
+  EXPECT_TRUE(outOfView(flat, cubeAt({0, 0, 0})));
+}
+
+}  // namespace
 
 }  // namespace lambent::frame

@@ -46,35 +46,6 @@ struct Vertices {
   glm::vec2 texcoord1{0.5f, 0.5f};
 };
 
-SurfaceDraw diffuseRecord() {
-  const TextureSlot none{.texture_from_coordinates = glm::mat3x2(1.0f), .set = kAbsent, .pad = 0};
-  return {.world_from_mesh = glm::mat4(1.0f),
-          .group_from_mesh = glm::mat3x4(1.0f),
-          .group_from_mesh_normal = glm::mat3x4(1.0f),
-          .world_from_group = glm::vec4(0, 0, 0, 1),
-          .base_color = glm::vec4(1.0f),
-          .emission = glm::vec4(0.0f),
-          .base_color_texture = none,
-          .emissive_texture = none,
-          .normal_texture = none,
-          .normal_scale = 1.0f,
-          .facing = 1.0f,
-          .positions_word = 0,
-          .normals_word = 12,
-          .tangents_word = 24,
-          .texcoords0_word = 40,
-          .texcoords1_word = 48,
-          .colors_word = kAbsent,
-          .radiance_word = 0,
-          .alpha_mode = kAlphaOpaque,
-          .alpha_cutoff = 0.5f,
-          .unlit = 0,
-          .bounced_word = kAbsent,
-          .irradiance_set = kAbsent,
-          .transmission = 0.0f,
-          .pane_reflectance = 0.0f};
-}
-
 TextureSlot slot(std::uint32_t set, const gltf::TextureRef& reference = {}) {
   return {.texture_from_coordinates = transformed(reference), .set = set, .pad = 0};
 }
@@ -191,7 +162,7 @@ TEST_F(SurfaceShader, TakesIrradianceFromTexelsAndTheRestFromVertices) {
   glTextureSubImage2D(textures[kUnitIrradiance].id(), 0, 0, 0, kSide, kSide, GL_RGBA, GL_FLOAT,
                       texels.data());
   textures[kUnitIrradiance].interpolate();
-  SurfaceDraw record = diffuseRecord();
+  SurfaceDraw record = plainRecord();
   record.irradiance_set = 0;
   const glm::vec3 at_vertices(0.5f, 1.5f, 3.0f);
   const Picture shown = drawRadiance(record, at_vertices);
@@ -219,7 +190,7 @@ TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordi
   textures[kUnitBaseColor] = picture(1, 1, {255, 128, 0, 255}, GL_RGBA8);
   textures[kUnitEmissive] =
       picture(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}, GL_SRGB8_ALPHA8);
-  SurfaceDraw record = diffuseRecord();
+  SurfaceDraw record = plainRecord();
   record.base_color = {0.5f, 0.5f, 0.5f, 1.0f};
   record.emission = {5.0f, 6.0f, 7.0f, 0.0f};
   record.base_color_texture = slot(1);
@@ -255,20 +226,6 @@ TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordi
   EXPECT_EQ(at(image, 3, 3), at(image, 12, 12));
 }
 
-TEST_F(SurfaceShader, ShowsTheBaseColourOfUnlitSurfacesWhateverTheLight) {
-  textures[kUnitBaseColor] = picture(1, 1, {255, 51, 255, 255}, GL_RGBA8);
-  SurfaceDraw record = diffuseRecord();
-  record.base_color = {0.25f, 0.5f, 1.0f, 0.5f};
-  record.base_color_texture = slot(0);
-  record.alpha_mode = kAlphaBlend;
-  record.unlit = 1;
-  for (const float radiance : {0.0f, 3.0f}) {
-    const Picture image = drawRadiance(record, glm::vec3(radiance));
-    ASSERT_FALSE(image.empty());
-    EXPECT_LT(glm::distance(at(image, 5, 9), glm::vec4(0.25f, 0.1f, 1.0f, 0.5f)), 1e-6f);
-  }
-}
-
 TEST_F(SurfaceShader, ReceivesLightAtThePixelsNormalAsTheReferenceDoes) {
   const glm::vec3 texel = glm::vec3(220, 70, 200) / 255.0f;
   textures[kUnitNormal] = picture(1, 1, {220, 70, 200, 255}, GL_RGBA8);
@@ -281,7 +238,7 @@ TEST_F(SurfaceShader, ReceivesLightAtThePixelsNormalAsTheReferenceDoes) {
     Vertices vertices;
     vertices.normal = glm::normalize(glm::vec3(0.2f, 0.1f, 1.0f));
     vertices.tangent = {glm::normalize(glm::vec3(1.0f, 0.3f, -0.2f)), -1.0f};
-    SurfaceDraw record = diffuseRecord();
+    SurfaceDraw record = plainRecord();
     record.group_from_mesh = glm::mat3x4(group_from_mesh);
     record.group_from_mesh_normal = glm::mat3x4(normal_matrix);
     record.base_color = {0.5f, 1.0f, 0.25f, 1.0f};
@@ -317,28 +274,10 @@ TEST_F(SurfaceShader, TakesTheSameMipLevelAlsoWhereTrianglesMeet) {
   const std::vector<std::uint8_t> white(16, 255), black(4, 0);
   glTextureSubImage2D(texture.id(), 0, 0, 0, 2, 2, GL_RGBA, GL_UNSIGNED_BYTE, white.data());
   glTextureSubImage2D(texture.id(), 1, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, black.data());
-  SurfaceDraw record = diffuseRecord();
+  SurfaceDraw record = plainRecord();
   record.base_color_texture = slot(0, {.texture = 0, .texcoord = 0, .offset = {0.3f, 0.6f}});
   for (const glm::vec4& pixel : drawRadiance(record, glm::vec3(1.0f)))
     EXPECT_LT(glm::distance(pixel, glm::vec4(1.0f)), 1e-6f);
-}
-
-TEST_F(SurfaceShader, UsesTheVertexNormalWhereThereIsNoNormalTexture) {
-  Vertices vertices;
-  vertices.normal = glm::normalize(glm::vec3(0.5f, -0.2f, 1.0f));
-  const Picture image = drawLight(diffuseRecord(), vertices, kLight);
-  ASSERT_FALSE(image.empty());
-  EXPECT_LT(glm::distance(glm::vec3(at(image, 8, 8)), diffuseLight(vertices.normal)), 1e-5f);
-}
-
-TEST_F(SurfaceShader, UniformLightHidesTheNormalMap) {
-  textures[kUnitNormal] = picture(2, 1, {255, 128, 128, 255, 10, 200, 180, 255}, GL_RGBA8);
-  SurfaceDraw record = diffuseRecord();
-  record.normal_texture = slot(0);
-  Light uniform{};
-  uniform[0] = glm::vec3(3.54490770f, 1.77245385f, 0.0f);  // radiance 1 and 1/2: sqrt(4 pi) times
-  for (const glm::vec4& pixel : drawLight(record, {}, uniform))
-    EXPECT_LT(glm::distance(pixel, glm::vec4(1.0f, 0.5f, 0.0f, 1.0f)), 1e-6f);
 }
 
 }  // namespace lambent::frame
