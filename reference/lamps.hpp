@@ -11,7 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "reference/surfaces.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::baker::reference {

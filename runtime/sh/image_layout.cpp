@@ -1,11 +1,14 @@
 #include "runtime/sh/image_layout.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::sh {
@@ -206,6 +209,100 @@ double cubeTexelSolidAngle(int size, int x, int y) {
 double rectangleSolidAngle(double u0, double u1, double v0, double v1) {
   return cornerSolidAngle(u1, v1) - cornerSolidAngle(u0, v1) - cornerSolidAngle(u1, v0) +
          cornerSolidAngle(u0, v0);
+}
+
+LightVector projectImage(int order, ImageLayout layout, int width, int height,
+                         std::span<const glm::vec3> texels) {
+  assert(texels.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const auto count = static_cast<std::size_t>(coefficientCount(order));
+  std::array<std::array<double, kMaxCoefficients>, 3> sum{};
+  std::array<double, kMaxCoefficients> basis;
+
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double solid_angle_sr = texelSolidAngle(layout, width, height, x, y);
+      if (solid_angle_sr <= 0) continue;
+      const glm::vec3& radiance =
+          texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+      if (!isFinite(radiance)) continue;
+      evaluate(order, texelDirection(layout, width, height, x, y), basis);
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        const double weight = static_cast<double>(radiance[static_cast<int>(channel)]) * solid_angle_sr;
+        for (std::size_t i = 0; i < count; ++i) sum[channel][i] += weight * basis[i];
+      }
+    }
+  }
+  LightVector light{.order = order};
+  for (std::size_t i = 0; i < count; ++i) light.c[i] = glm::vec3(glm::dvec3(sum[0][i], sum[1][i], sum[2][i]));
+  return light;
+}
+
+namespace {
+
+// Nodes and weights of 6-point Gauss-Legendre quadrature on [-1, 1]. Integrands are smooth over a texel: 6 x
+// 6 points give the means of y to 1e-4 for a whole face, and up to rounding for faces of 4 or more texels per
+// edge.
+struct GaussNode {
+  double at, weight;
+};
+constexpr std::array<GaussNode, 6> kGauss = {{{-0.93246951420315203, 0.17132449237917035},
+                                              {-0.66120938646626451, 0.36076157304813861},
+                                              {-0.23861918608319691, 0.46791393457269105},
+                                              {0.23861918608319691, 0.46791393457269105},
+                                              {0.66120938646626451, 0.36076157304813861},
+                                              {0.93246951420315203, 0.17132449237917035}}};
+
+// Writes Omega (2 y(centre) - mean y) of a texel for all coefficients.
+void sharpenedWeights(int order, int size, int face, int x, int y, double* weights) {
+  const double half = 1.0 / size;
+  const double sc = 2 * (x + 0.5) / size - 1, tc = 2 * (y + 0.5) / size - 1;
+  const auto count = static_cast<std::size_t>(coefficientCount(order));
+  const double solid_angle_sr = cubeTexelSolidAngle(size, x, y);
+
+  std::array<double, kMaxCoefficients> basis, integral{};
+  double area = 0;
+  for (const GaussNode& u : kGauss) {
+    for (const GaussNode& v : kGauss) {
+      const glm::dvec3 dir = cubeFaceDirection(face, sc + half * u.at, tc + half * v.at);
+      const double squared = glm::dot(dir, dir), length = std::sqrt(squared);
+      const double weight = u.weight * v.weight / (squared * length);
+      evaluate(order, dir / length, basis);
+      area += weight;
+      for (std::size_t i = 0; i < count; ++i) integral[i] += weight * basis[i];
+    }
+  }
+  evaluate(order, cubeTexelDirection(size, face, x, y), basis);
+  for (std::size_t i = 0; i < count; ++i) weights[i] = solid_angle_sr * (2 * basis[i] - integral[i] / area);
+}
+
+}  // namespace
+
+std::vector<float> cubeWeights(int order, int size) {
+  assert(order >= 1 && order <= kMaxOrder && size >= 1);
+  const auto count = static_cast<std::size_t>(coefficientCount(order));
+  const std::size_t texel_count = 6 * static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+  const auto forEachTexel = [&](auto&& f) {
+    std::size_t k = 0;
+    for (int face = 0; face < 6; ++face)
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) f(k++, face, x, y);
+  };
+  // Uniform light must have no coefficient except the first. Without the correction, weights of bands 4 and
+  // up that share the cube's symmetry sum to slightly more than 0 over the whole cube.
+  std::vector<double> sharpened(count * texel_count);
+  std::array<double, kMaxCoefficients> excess{};  // per steradian
+  forEachTexel([&](std::size_t k, int face, int x, int y) {
+    double* const weights = sharpened.data() + k * count;
+    sharpenedWeights(order, size, face, x, y, weights);
+    for (std::size_t i = 1; i < count; ++i) excess[i] += weights[i] / (4 * kPi);
+  });
+  std::vector<float> table(count * texel_count);
+  forEachTexel([&](std::size_t k, int, int x, int y) {
+    const double solid_angle_sr = cubeTexelSolidAngle(size, x, y);
+    for (std::size_t i = 0; i < count; ++i)
+      table[i * texel_count + k] = static_cast<float>(sharpened[k * count + i] - excess[i] * solid_angle_sr);
+  });
+  return table;
 }
 
 }  // namespace lambent::sh

@@ -7,9 +7,7 @@
 namespace lambent::streaming {
 
 BrdfTexels packBrdf(const bundle::BrdfTable& table) {
-  const auto order = static_cast<int>(table.order);
-  const sh::ZonalFactors factors =
-      table.isotropic() ? sh::ZonalFactors::isotropic(order) : sh::ZonalFactors::anisotropic(order);
+  const sh::ZonalFactors factors(static_cast<int>(table.order), table.isotropic());
   const auto count = static_cast<std::uint32_t>(factors.weightCount());
   const std::uint32_t stride = table.lobes == 2 ? 2 : 4;
   BrdfTexels texels;

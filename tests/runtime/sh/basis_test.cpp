@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/sh/zonal.hpp"
 #include "tests/runtime/sh/sphere.hpp"
 
 namespace lambent::sh {
@@ -113,6 +114,17 @@ TEST(ShBasis, EvaluatesBatchesAsSingleDirections) {
         EXPECT_EQ(batch[i * stride + count], 77.0f) << "wrote past the batch";
     }
   }
+}
+
+TEST(ShLightVector, AddsAndScalesAsFunctionsDo) {
+  const glm::vec3 dir(0.36f, 0.48f, -0.8f);
+  const LightVector disc = discLight(5, {0, 1, 0}, 0.5, {1, 2, 3});
+  const LightVector sky = constantLight(3, {0.5f, 0.25f, 0});
+  const LightVector sum = 2.0f * disc + sky * glm::vec3(2, 4, 8);
+  EXPECT_EQ(sum.order, 5);
+  const glm::vec3 expected = 2.0f * disc.evaluate(dir) + glm::vec3(1, 1, 0);
+  for (int channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(sum.evaluate(dir)[channel], expected[channel], 1e-6f);
 }
 
 }  // namespace

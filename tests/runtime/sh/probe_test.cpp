@@ -10,7 +10,7 @@
 #define STBI_ONLY_HDR
 #include <stb_image.h>
 
-#include "runtime/sh/projection.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/window.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/differences.hpp"

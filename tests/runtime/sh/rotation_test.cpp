@@ -142,16 +142,6 @@ TEST(ShRotation, DoesNotDriftOver100000SmallTurns) {
   EXPECT_LE(lambent::testing::largestDifference(turned, expected), 1e-9);
 }
 
-TEST(ShRotation, RefusesWhatIsNoRotation) {
-  EXPECT_TRUE(Rotation::make(glm::dmat3(1), 5).has_value());
-  EXPECT_FALSE(Rotation::make(glm::dmat3(-1), 5).has_value()) << "mirror";
-  EXPECT_FALSE(Rotation::make(glm::dmat3(2), 5).has_value()) << "scale";
-  EXPECT_FALSE(Rotation::make(glm::dmat3(0), 5).has_value());
-  EXPECT_FALSE(Rotation::make(glm::dmat3(std::numeric_limits<double>::quiet_NaN()), 5).has_value());
-  EXPECT_FALSE(Rotation::make(glm::dmat3(1), 0).has_value());
-  EXPECT_FALSE(Rotation::make(glm::dmat3(1), kMaxBasisOrder + 1).has_value());
-}
-
 TEST(ShRotation, FindsTheRotationInAScaledOrDriftedMatrix) {
   Random random(10);
   for (int k = 0; k < 20; ++k) {

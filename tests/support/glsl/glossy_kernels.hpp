@@ -38,8 +38,7 @@ struct Sampled {
 };
 
 inline vec3 zonalAxis(int bands, Lobes lobes, std::size_t i) {
-  const auto factors =
-      lobes == Lobes::Anisotropic ? sh::ZonalFactors::anisotropic(bands) : sh::ZonalFactors::isotropic(bands);
+  const sh::ZonalFactors factors(bands, lobes != Lobes::Anisotropic);
   return factors.axes()[std::min(i, factors.axes().size() - 1)];
 }
 // There are 11 axes at most; kernels read as many as they have.
@@ -57,10 +56,8 @@ struct Kernel;
 #include "tests/support/glsl/glossy_kernels_of_bands.inc"
 #undef LAMBENT_BANDS
 #define LAMBENT_BANDS 5
-#include "tests/support/glsl/glossy_kernels_of_bands.inc"
 #undef LAMBENT_BANDS
 #define LAMBENT_BANDS 6
-#include "tests/support/glsl/glossy_kernels_of_bands.inc"
 #undef LAMBENT_BANDS
 #undef LAMBENT_TEST_AXES
 

@@ -1,4 +1,6 @@
-// Draws a line as a quad of its width in pixels, clipped at the plane of the eye.
+// Draws a line as a quad of its width in pixels, clipped at the plane of the eye; `strength` is lower for hidden
+// parts.
+#ifdef LAMBENT_VERTEX
 #include "surface_shared.h"
 
 layout(std140, binding = kBindView) uniform ViewBlock {
@@ -37,3 +39,15 @@ void main() {
   vec2 aside = 0.5 * line.from_and_width.w * (corner.y * vec2(-along.y, along.x) + (2.0 * corner.x - 1.0) * along);
   gl_Position = end + vec4(2.0 * aside / size_px * end.w, 0.0, 0.0);
 }
+#else
+#include "overlay_colors.glsl"
+
+layout(location = 1) uniform float strength;
+layout(location = 0) in vec4 line_color;
+layout(location = 0) out vec4 color;
+
+void main() {
+  float alpha = strength * line_color.a;
+  color = vec4(alpha * shownColor(line_color.rgb), alpha);
+}
+#endif
