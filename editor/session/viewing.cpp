@@ -10,8 +10,8 @@
 #include <glm/trigonometric.hpp>
 
 #include "editor/session/session.hpp"
-#include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/transforms.hpp"
 
 namespace lambent::editor {
 

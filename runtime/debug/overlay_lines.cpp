@@ -13,7 +13,6 @@
 #include "runtime/debug/overlays.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/components.hpp"
-#include "runtime/world/boxes.hpp"
 
 namespace lambent::frame {
 

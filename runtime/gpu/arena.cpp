@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/gpu/out_of_memory.hpp"
+#include "runtime/gpu/objects.hpp"
 
 namespace lambent::gpu {
 

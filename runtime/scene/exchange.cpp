@@ -1,5 +1,3 @@
-#include "runtime/scene/exchange.hpp"
-
 #include <cassert>
 #include <limits>
 #include <map>
@@ -10,8 +8,8 @@
 
 #include "runtime/bundle/keyframes.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "runtime/scene/materials.hpp"
-#include "runtime/scene/stable_id.hpp"
 #include "runtime/scene/transforms.hpp"
 
 namespace lambent::scene {

@@ -123,8 +123,8 @@ struct AxisAngles {
 };
 
 // These are the axes after z. They were found by random descent on the worst condition number of the band
-// matrices y_lm(a_i) up to band 5, each with its first axes: 2.1 in the plane, 3.5 on the sphere
-// (zonal_factors_test.cpp prints them). Axes for bands 6 to 8 were then added one band at a time: the
+// matrices y_lm(a_i) up to band 5, each with its first axes: 2.1 in the plane, 3.5 on the sphere.
+// Axes for bands 6 to 8 were then added one band at a time: the
 // condition numbers are 2.7, 3.7 and 2.8 in the plane, 11.7, 7.8 and 8.4 on the sphere. Opposite axes are
 // equivalent, so all are on the upper side.
 constexpr std::array<AxisAngles, 8> kInPlane = {{{70.877, 0},

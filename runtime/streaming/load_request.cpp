@@ -1,5 +1,3 @@
-#include "runtime/streaming/load_request.hpp"
-
 #include <algorithm>
 #include <cassert>
 #include <span>
@@ -11,7 +9,8 @@
 
 #include "runtime/bundle/volume_grid.hpp"
 #include "runtime/streaming/images.hpp"
-#include "runtime/streaming/sizes.hpp"
+#include "runtime/streaming/loader.hpp"
+#include "runtime/streaming/resident_tables.hpp"
 
 namespace lambent::streaming {
 

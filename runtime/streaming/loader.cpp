@@ -8,8 +8,6 @@
 #include <new>
 #include <utility>
 
-#include "runtime/streaming/load_request.hpp"
-
 namespace lambent::streaming {
 namespace {
 
@@ -170,11 +168,6 @@ std::vector<Ready> Loader::take(std::size_t max_bytes) {
   }
   if (!taken.empty()) state_->room.notify_all();
   return taken;
-}
-
-void Loader::waitForMore() {
-  std::unique_lock lock(state_->mutex);
-  state_->more.wait(lock, [&] { return state_->frontIsReady() || state_->next_take >= state_->end(); });
 }
 
 void Loader::waitForMore(std::chrono::milliseconds most) {

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -33,7 +34,7 @@ namespace lambent::frame {
 
 struct WorldOptions {
   // The bundles may take this much GPU memory together; what the camera sees large comes first
-  // (interest.hpp). Only a replacement being loaded, a texture while it gets finer levels, and a single
+  // (streaming/parts.hpp). Only a replacement being loaded, a texture while it gets finer levels, and a single
   // bundle whose surfaces alone exceed the limit come on top.
   std::uint64_t max_resident_bytes = ~std::uint64_t{0};
 };
@@ -120,7 +121,7 @@ class World {
   // Removes the bundle's entities, its memory and what was being loaded. Other bundles keep their slots.
   void close(std::uint32_t bundle);
   // Shows this file in place of the bundle, in one frame, once all of it is here. Until then the old one
-  // stays, and it stays for good if the file turns out damaged. Changes made by hand are kept (exchange.hpp),
+  // stays, and it stays for good if the file turns out damaged. Changes made by hand are kept (exchangeInstance),
   // and entities that occur in both stay the same. An earlier replacement still being loaded is cancelled.
   // Fails if the file is not a bundle, which status() then reports too.
   Result<void> replace(std::uint32_t bundle, const std::filesystem::path& path);
@@ -231,7 +232,7 @@ class World {
     Proxies proxies;
     std::vector<std::uint32_t> steps;  // for each unit, the steps that are loaded
     streaming::Loader loader;
-    streaming::Residency::Staged staged = 0;
+    streaming::Residency::Place staged;
   };
   struct Bundle {
     std::shared_ptr<const bundle::Reader> reader;
@@ -255,6 +256,15 @@ class World {
   void setParts(Bundle& bundle, streaming::Parts parts) const;
   std::vector<std::uint32_t> stepsForReplacement(std::uint32_t slot, const streaming::Parts& parts) const;
   void dropReplacement(Bundle& bundle);
+  // What a loader brings, and where it goes.
+  struct Arrivals {
+    streaming::Loader& loader;
+    streaming::Residency::Place place;
+    std::function<Result<void>(streaming::Ready)> accept;  // uploads an item at once
+    std::function<void()> arrived;                         // is called for each item that is complete
+  };
+  // Uploads what is ready within the budget. Returns the first error.
+  std::optional<Error> receive(const Arrivals& from, std::uint64_t& budget_bytes, gpu::Counters& counters);
   void uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::Counters& counters);
   void swapIn(std::uint32_t slot);
   // Rebuilds what is kept per group and draw after the residency's tables have changed.

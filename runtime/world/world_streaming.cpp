@@ -3,10 +3,10 @@
 #include <thread>
 #include <tuple>
 
-#include "runtime/gpu/out_of_memory.hpp"
+#include "runtime/gpu/objects.hpp"
 #include "runtime/scene/bounds.hpp"
-#include "runtime/streaming/interest.hpp"
-#include "runtime/streaming/sizes.hpp"
+#include "runtime/streaming/parts.hpp"
+#include "runtime/streaming/resident_tables.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
@@ -283,45 +283,11 @@ void World::countOne(Bundle& bundle) {
 
 void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Counters& counters) {
   Bundle& bundle = *bundles_[slot];
-  const auto spend = [&](std::uint64_t bytes) {
-    budget_bytes -= std::min(budget_bytes, bytes);
-    counters.uploaded_bytes += bytes;
-  };
-  // Large items are uploaded over several frames.
-  const auto comes = [&] {
-    if (!residency_.comes(slot)) return false;
-    const Result<std::uint64_t> bytes =
-        gpu::orOutOfMemory([&] { return residency_.proceed(slot, budget_bytes); });
-    if (!bytes) {
-      bundle.error = inBundle(*bundle.reader, bytes.error());
-      return false;
-    }
-    spend(*bytes);
-    if (residency_.comes(slot)) return true;
-    countOne(bundle);
-    return false;
-  };
-  if (comes()) return;
-  std::vector<streaming::Ready> items;
-  if (!bundle.error) items = bundle.batch->loader.take(budget_bytes);
-  for (streaming::Ready& item : items) {
-    const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
-    // An item larger than the budget is uploaded alone.
-    const bool in_pieces =
-        bytes > budget_bytes && items.size() == 1 && streaming::Residency::comesInPieces(item);
-    if (!in_pieces) spend(bytes);
-    const Result<void> done = gpu::orOutOfMemory(
-        [&] { return in_pieces ? residency_.begin(slot, std::move(item)) : accept(slot, std::move(item)); });
-    if (!done) {
-      bundle.error = inBundle(*bundle.reader, done.error());
-      break;
-    }
-    if (in_pieces) {
-      if (comes()) return;
-    } else {
-      countOne(bundle);
-    }
-  }
+  const auto put = [&](streaming::Ready item) { return this->accept(slot, std::move(item)); };
+  const auto arrived = [&] { countOne(bundle); };
+  if (const auto error = receive({bundle.batch->loader, slot, put, arrived}, budget_bytes, counters))
+    bundle.error = inBundle(*bundle.reader, *error);
+  if (residency_.comes(slot)) return;
   if (const auto error = bundle.batch->loader.error()) bundle.error = *error;
   if (bundle.error || bundle.batch->pieces.empty()) retire(bundle);
 }
@@ -364,6 +330,72 @@ StreamingStatus World::streaming() const {
         status.queued += static_cast<std::uint32_t>(bundle.parts.units[u][s].work.size());
   }
   return status;
+}
+
+// The part of World that shows a proxy level of detail for a bundle whose surfaces are not here.
+
+std::size_t StreamingStatus::count(Shown shown) const {
+  return static_cast<std::size_t>(std::ranges::count(bundles, shown, &BundleStreaming::shown));
+}
+
+std::vector<ProxyLod> World::proxyLods() const {
+  std::vector<ProxyLod> list;
+  for (std::uint32_t slot = 0; slot < bundles_.size(); ++slot) {
+    if (!bundles_[slot]) continue;
+    const Bundle& bundle = *bundles_[slot];
+    if (bundle.parts.hasProxyLod() && bundle.steps.front() > 0 && !hasSurfaces(bundle.parts, bundle.steps))
+      list.push_back({.bundle = slot, .id = bundle.proxies_id, .proxies = bundle.proxies});
+  }
+  return list;
+}
+
+bool World::showsSurfaces(std::uint32_t slot) const {
+  if (!isOpen(slot)) return false;
+  const Bundle& bundle = *bundles_[slot];
+  return !bundle.parts.hasProxyLod() || hasSurfaces(bundle.parts, bundle.steps);
+}
+
+// Proxies stay here for when the surfaces are dropped, and other groups see them in any case.
+Result<void> World::accept(std::uint32_t slot, streaming::Ready item) {
+  Bundle& bundle = *bundles_[slot];
+  auto* ready = std::get_if<streaming::ProxyChunk>(&item);
+  if (ready == nullptr || !bundle.parts.hasProxyLod()) return residency_.upload(slot, std::move(item));
+  bundle.proxies.resize(bundle.reader->description().groups.size());
+  bundle.proxies[ready->group.value] = std::move(ready->proxy);
+  bundle.proxies_id = next_proxies_id_++;
+  return {};
+}
+
+Result<void> World::beginSurfaces(std::uint32_t slot) {
+  const Bundle& bundle = *bundles_[slot];
+  if (Result<void> added = residency_.add(bundle.reader->description(), slot); !added) return added;
+  rebuildTables();
+  for (std::uint32_t g = 0; g < bundle.proxies.size(); ++g)
+    if (bundle.proxies[g])
+      if (Result<void> done =
+              residency_.upload(slot, streaming::ProxyChunk{bundle::GroupIndex{g}, *bundle.proxies[g]});
+          !done)
+        return done;
+  return {};
+}
+
+void World::endSurfaces(std::uint32_t slot) {
+  Bundle& bundle = *bundles_[slot];
+  retire(bundle);
+  residency_.remove(slot);
+  const std::uint32_t proxy_lod = bundle.parts.hasProxyLod() ? bundle.steps.front() : 0;
+  std::ranges::fill(bundle.steps, 0u);
+  bundle.steps.front() = std::min(proxy_lod, bundle.parts.surfaceSteps() - 1);
+  ++proxy_lods_version_;
+  rebuildTables();
+}
+
+void World::dropProxyLod(Bundle& bundle) {
+  if (bundle.steps.front() == 0 && !bundle.batch) return;
+  retire(bundle);
+  bundle.proxies.clear();
+  bundle.steps.front() = 0;
+  ++proxy_lods_version_;
 }
 
 }  // namespace lambent::frame

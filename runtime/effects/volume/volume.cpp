@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "lambent_effects_volume_embedded.hpp"
-#include "runtime/streaming/load_request.hpp"
+#include "runtime/streaming/loader.hpp"
 
 namespace lambent::effects::volume {
 

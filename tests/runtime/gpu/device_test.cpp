@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/gpu/arena.hpp"
-#include "runtime/gpu/out_of_memory.hpp"
+#include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/gpu/window.hpp"

@@ -66,22 +66,16 @@ TEST(ShImageLayout, LooksUpTheTexelThatADirectionCameFrom) {
       }
 }
 
-TEST(ShImageLayout, PutsLatLongAxesWhereTheConventionsSay) {
+TEST(ShImageLayout, PutsAxesWhereTheConventionsSay) {
   expectAt(ImageLayout::LatLong, 200, 100, {1, 0, 0}, 100, 50);  // the centre
   expectAt(ImageLayout::LatLong, 200, 100, {0, 0, 1}, 150, 50);  // right of it
   expectAt(ImageLayout::LatLong, 200, 100, {0, 0, -1}, 50, 50);
   EXPECT_NEAR(imageCoordinates(ImageLayout::LatLong, 200, 100, {0, 1, 0}).y, 0, 1e-12);
   EXPECT_NEAR(imageCoordinates(ImageLayout::LatLong, 200, 100, {0, -1, 0}).y, 100, 1e-12);
-}
-
-TEST(ShImageLayout, PutsAngularMapAxesWhereTheConventionsSay) {
   expectAt(ImageLayout::AngularMap, 100, 100, {0, 0, -1}, 50, 50);
   expectAt(ImageLayout::AngularMap, 100, 100, {1, 0, 0}, 75, 50);
   expectAt(ImageLayout::AngularMap, 100, 100, {0, 1, 0}, 50, 25);
   expectAt(ImageLayout::AngularMap, 100, 100, {0, 0, 1}, 100, 50);  // the rim, at its right end
-}
-
-TEST(ShImageLayout, PutsCrossSquaresWhereTheConventionsSay) {
   expectAt(ImageLayout::VerticalCross, 30, 40, {0, 1, 0}, 15, 5);
   expectAt(ImageLayout::VerticalCross, 30, 40, {-1, 0, 0}, 5, 15);
   expectAt(ImageLayout::VerticalCross, 30, 40, {0, 0, -1}, 15, 15);

@@ -1,11 +1,11 @@
-#include "runtime/streaming/interest.hpp"
-
 #include <limits>
 #include <numeric>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <gtest/gtest.h>
+
+#include "runtime/streaming/parts.hpp"
 
 namespace lambent::streaming {
 namespace {

@@ -1,6 +1,5 @@
 // Tests the intersection of boxes against points in them.
-
-#include "runtime/world/boxes.hpp"
+#include "runtime/scene/bounds.hpp"
 
 #include <random>
 
@@ -10,10 +9,10 @@
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 
-namespace lambent::frame {
+namespace lambent::scene {
 
 TEST(Boxes, TurnedAtAnEdgeTheyMeetJustWhereTheEdgeReaches) {
-  const scene::Box box{glm::vec3(-1.0f), glm::vec3(1.0f)};
+  const Box box{glm::vec3(-1.0f), glm::vec3(1.0f)};
   const glm::mat4 turned = glm::mat4_cast(glm::angleAxis(glm::radians(45.0f), glm::vec3(0, 0, 1)));
   const auto at = [&](float x) { return glm::translate(glm::mat4(1.0f), glm::vec3(x, 0.0f, 0.0f)); };
   EXPECT_TRUE(meet(box, glm::mat4(1.0f), box, at(1.99f)));
@@ -22,7 +21,7 @@ TEST(Boxes, TurnedAtAnEdgeTheyMeetJustWhereTheEdgeReaches) {
   EXPECT_FALSE(meet(box, glm::mat4(1.0f), box, at(2.42f) * turned));
   EXPECT_TRUE(meet(box, glm::mat4(1.0f), {glm::vec3(-0.1f), glm::vec3(0.1f)}, turned))
       << "one within the other";
-  EXPECT_FALSE(meet(box, glm::mat4(1.0f), scene::Box{}, glm::mat4(1.0f)));
+  EXPECT_FALSE(meet(box, glm::mat4(1.0f), Box{}, glm::mat4(1.0f)));
   EXPECT_TRUE(meet(box, at(1e6f), box, at(1e6f + 1.5f))) << "far from the origin";
 }
 
@@ -37,7 +36,7 @@ TEST(Boxes, MeetWhereverAPointOfOneIsInTheOther) {
     matrix[3] = glm::vec4(0.7f * normal(random), 0.7f * normal(random), 0.7f * normal(random), 1.0f);
     return matrix;
   };
-  const scene::Box a{glm::vec3(-1.0f, -0.2f, -0.5f), glm::vec3(1.0f, 0.3f, 0.5f)},
+  const Box a{glm::vec3(-1.0f, -0.2f, -0.5f), glm::vec3(1.0f, 0.3f, 0.5f)},
       b{glm::vec3(0.0f), glm::vec3(1.0f)};
   int met = 0, apart = 0;
   for (int round = 0; round < 500; ++round) {
@@ -61,4 +60,4 @@ TEST(Boxes, MeetWhereverAPointOfOneIsInTheOther) {
   EXPECT_GT(met + apart, 470) << "few are too small a share for 4000 points";
 }
 
-}  // namespace lambent::frame
+}  // namespace lambent::scene
