@@ -9,11 +9,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include "runtime/ecs/entity.hpp"
-
-namespace lambent::ecs {
-class Registry;
-}
+#include "runtime/ecs/registry.hpp"
 
 namespace lambent::scene {
 

@@ -17,8 +17,8 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include "runtime/ecs/entity.hpp"
 #include "runtime/ecs/fields.hpp"
+#include "runtime/ecs/registry.hpp"
 #include "runtime/scene/bounds.hpp"
 
 namespace lambent::scene {

@@ -15,37 +15,19 @@ namespace lambent::sh {
 
 namespace {
 
-// Squares of the cross by row and column. Squares in the middle row and column show the cube from inside with
-// +Y up. The bottom one is attached below -Y, so it shows +Z rotated by 180 degrees.
-enum class Square { None, PlusX, MinusX, PlusY, MinusY, PlusZ, MinusZ };
-constexpr Square kSquares[4][3] = {{Square::None, Square::PlusY, Square::None},
-                                   {Square::MinusX, Square::MinusZ, Square::PlusX},
-                                   {Square::None, Square::MinusY, Square::None},
-                                   {Square::None, Square::PlusZ, Square::None}};
+// Squares of the cross by row and column, as faces of the cube; -1: none. Squares in the middle row and
+// column show the cube from inside with +Y up. The bottom one is attached below -Y, so it shows +Z rotated by
+// 180 degrees.
+constexpr int kSquares[4][3] = {{-1, 2, -1}, {1, 5, 0}, {-1, 3, -1}, {-1, 4, -1}};
 
 // Returns the direction at (u, v) of a square, with u to the right and v up, both in [-1, 1].
-glm::dvec3 squareDirection(Square square, double u, double v) {
-  switch (square) {
-    case Square::PlusX:
-      return {1, v, u};
-    case Square::MinusX:
-      return {-1, v, -u};
-    case Square::PlusY:
-      return {u, 1, v};
-    case Square::MinusY:
-      return {u, -1, -v};
-    case Square::PlusZ:
-      return {u, -v, 1};
-    case Square::MinusZ:
-      return {u, v, -1};
-    case Square::None:
-      break;
-  }
-  return glm::dvec3(0);
+glm::dvec3 squareDirection(int face, double u, double v) {
+  const double sign = face == 0 || face == 1 || face == 5 ? -1 : 1;
+  return cubeFaceDirection(face, sign * u, sign * v);
 }
 
 struct CrossTexel {
-  Square square;
+  int face;       // -1: an empty square
   double u0, v0;  // lower left corner
   double edge;
 };
@@ -120,9 +102,9 @@ glm::dvec3 texelDirection(ImageLayout layout, int width, int height, int x, int 
     }
     case ImageLayout::VerticalCross: {
       const CrossTexel texel = crossTexel(width, x, y);
-      if (texel.square == Square::None) return glm::dvec3(0);
+      if (texel.face < 0) return glm::dvec3(0);
       return glm::normalize(
-          squareDirection(texel.square, texel.u0 + texel.edge / 2, texel.v0 + texel.edge / 2));
+          squareDirection(texel.face, texel.u0 + texel.edge / 2, texel.v0 + texel.edge / 2));
     }
   }
   return glm::dvec3(0);
@@ -142,7 +124,7 @@ double texelSolidAngle(ImageLayout layout, int width, int height, int x, int y) 
     }
     case ImageLayout::VerticalCross: {
       const CrossTexel texel = crossTexel(width, x, y);
-      if (texel.square == Square::None) return 0;
+      if (texel.face < 0) return 0;
       return rectangleSolidAngle(texel.u0, texel.u0 + texel.edge, texel.v0, texel.v0 + texel.edge);
     }
   }

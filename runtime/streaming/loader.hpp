@@ -3,11 +3,14 @@
 // (residency.hpp). Items are delivered in the order of their priority, whatever the number of threads.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <variant>
@@ -20,7 +23,7 @@
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/streaming/brdf_texture.hpp"
+#include "runtime/streaming/textures.hpp"
 #include "runtime/transfer/weights.hpp"
 
 namespace lambent::streaming {
@@ -166,6 +169,8 @@ inline glm::uvec3 blocksOf(const glm::uvec3& size) {
 // bundle::VolumeGrid.
 std::vector<float> blockMaxima(std::span<const std::byte> codes, std::uint32_t bits, const glm::uvec3& size);
 
+// Workers claim items in order and put the loaded item into its slot; take() empties slots from the front. So
+// items keep the order of the list, however many workers there are and however long each item takes.
 class Loader {
  public:
   // Starts `workers` (at least 1) that load the whole bundle in the order of requestsOf(). The loader must be
@@ -175,8 +180,8 @@ class Loader {
   Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, ThreadPool& threads,
          unsigned workers);
   ~Loader();  // waits until the workers have finished their current items
-  Loader(Loader&&) noexcept;
-  Loader& operator=(Loader&&) noexcept;
+  Loader(const Loader&) = delete;
+  Loader& operator=(const Loader&) = delete;
 
   // Returns loaded items in order, up to about max_bytes, but at least one if any is ready. Never waits.
   std::vector<Ready> take(std::size_t max_bytes);
@@ -195,8 +200,38 @@ class Loader {
   bool idle() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  struct Slot {
+    std::optional<Ready> ready;
+    std::size_t held = 0;  // bytes that are reserved, and later those of `ready`
+  };
+  static constexpr std::size_t kNone = ~std::size_t{0};
+
+  void runWorker();
+  std::optional<Result<Ready>> loadOne(std::size_t at);
+  // Waits for memory. Returns false if the item is not wanted any more.
+  bool reserve(std::size_t at, std::size_t bytes);
+
+  // The caller of these holds the mutex.
+  void hold(std::size_t at, std::size_t bytes);
+  std::size_t end() const { return std::min(work_.size(), failed_at_); }
+  bool frontIsReady() const { return next_take_ < end() && slots_[next_take_].ready.has_value(); }
+
+  const std::shared_ptr<const bundle::Reader> reader_;
+  const std::vector<Work> work_;
+
+  mutable std::mutex mutex_;      // guards the members below
+  std::condition_variable more_;  // signals that an item is ready or no more will come
+  std::condition_variable room_;  // signals that an item was taken or is not wanted any more
+  std::vector<Slot> slots_;       // one per item of the work
+  std::size_t next_claim_ = 0;
+  std::size_t next_take_ = 0;
+  std::size_t held_bytes_ = 0;
+  std::size_t failed_at_ = kNone;
+  Error failure_;
+  std::uint64_t bytes_read_ = 0;
+  bool stopping_ = false;
+  std::size_t working_ = 0;        // number of workers that have not ended
+  std::condition_variable ended_;  // signals that a worker has ended
 };
 
 }  // namespace lambent::streaming

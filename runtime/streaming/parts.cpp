@@ -12,9 +12,8 @@
 #include <glm/gtc/matrix_access.hpp>
 
 #include "runtime/gpu/arena.hpp"
-#include "runtime/streaming/brdf_texture.hpp"
-#include "runtime/streaming/images.hpp"
 #include "runtime/streaming/resident_tables.hpp"
+#include "runtime/streaming/textures.hpp"
 
 namespace lambent::streaming {
 
@@ -217,15 +216,15 @@ float sizeSeen(const spec::View& view, const glm::vec3& center_ws, float radius_
   return seen;
 }
 
-void choose(std::span<Interest> bundles, std::uint64_t max_bytes) {
+void choose(std::span<Interest* const> bundles, std::uint64_t max_bytes) {
   std::vector<Candidate> candidates;
   for (std::uint32_t b = 0; b < bundles.size(); ++b) {
-    Interest& bundle = bundles[b];
-    for (std::uint32_t u = 0; u < bundle.parts->units.size(); ++u) {
-      const Unit& unit = bundle.parts->units[u];
+    Interest& bundle = *bundles[b];
+    for (std::uint32_t u = 0; u < bundle.parts.units.size(); ++u) {
+      const Unit& unit = bundle.parts.units[u];
       for (std::uint32_t s = 0; s < unit.size(); ++s) {
         const float stays = s < bundle.target[u] ? kStays : 1.0f;
-        candidates.push_back({stays * worthOf(*bundle.parts, u, s, bundle.size[u]), b, u, s, unit[s].bytes});
+        candidates.push_back({stays * worthOf(bundle.parts, u, s, bundle.size[u]), b, u, s, unit[s].bytes});
       }
     }
     std::ranges::fill(bundle.target, 0u);
@@ -235,16 +234,16 @@ void choose(std::span<Interest> bundles, std::uint64_t max_bytes) {
   });
   std::uint64_t taken = 0;
   const auto take = [&](const Candidate& candidate, std::uint64_t most) {
-    Interest& bundle = bundles[candidate.bundle];
+    Interest& bundle = *bundles[candidate.bundle];
     // If a step did not fit, later steps of the unit cannot be taken.
     if (bundle.target[candidate.unit] != candidate.step) return;
-    if (candidate.unit != 0 && bundle.target[0] != bundle.parts->surfaceSteps()) return;
+    if (candidate.unit != 0 && bundle.target[0] != bundle.parts.surfaceSteps()) return;
     if (taken + candidate.bytes > most) return;
     taken += candidate.bytes;
     ++bundle.target[candidate.unit];
   };
   const auto isProxyLod = [&](const Candidate& candidate) {
-    return candidate.unit == 0 && candidate.step + 1 < bundles[candidate.bundle].parts->surfaceSteps();
+    return bundles[candidate.bundle]->parts.isProxyLod(candidate.unit, candidate.step);
   };
   const auto largest = std::ranges::find_if(
       candidates, [&](const Candidate& candidate) { return candidate.unit == 0 && !isProxyLod(candidate); });

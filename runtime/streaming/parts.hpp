@@ -47,6 +47,10 @@ struct Parts {
   // of detail or nothing.
   std::uint32_t surfaceSteps() const { return static_cast<std::uint32_t>(units.front().size()); }
   bool hasProxyLod() const { return surfaceSteps() > 1; }
+  // Returns whether this step brings the proxy level of detail.
+  bool isProxyLod(std::uint32_t unit, std::uint32_t step) const {
+    return unit == 0 && step + 1 < surfaceSteps();
+  }
 
   // Returns the number of planes of a transfer in the first `steps` steps of the group's unit.
   std::uint32_t planesIn(bundle::GroupIndex group, std::uint32_t steps, bundle::CellIndex cell,
@@ -68,11 +72,10 @@ Result<Parts> partsOf(const bundle::Reader& reader, bool limited);
 // number of steps per unit. The same camera path gives the same choices, however fast loading is. A choice
 // stays until something else is clearly worth more, so that nothing is loaded and dropped again and again.
 // Nothing here uses GL or threads.
-
 struct Interest {
-  const Parts* parts = nullptr;
+  Parts parts;
   std::vector<float> size;  // sizeSeen() of each unit; the first unit has the largest of all
-  // Steps of each unit: the previous choice on input, the new one on output.
+  // Steps of each unit that should be here: the previous choice on input, the new one on output.
   std::vector<std::uint32_t> target;
 };
 
@@ -87,6 +90,6 @@ float worthOf(const Parts& parts, std::uint32_t unit, std::uint32_t step, float 
 // in any case. Proxy levels of detail come next, largest first, for up to a quarter of the memory, so that no
 // part of the world is empty. The remaining steps follow by value. Surfaces have more value than shadows, and
 // these more than their finer detail, unless another bundle is much larger in view.
-void choose(std::span<Interest> bundles, std::uint64_t max_bytes);
+void choose(std::span<Interest* const> bundles, std::uint64_t max_bytes);
 
 }  // namespace lambent::streaming

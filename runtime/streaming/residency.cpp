@@ -74,9 +74,8 @@ ResidentVolume& volumeOf(ResidentTables& tables, const ResidentBundle& bundle, b
 
 }  // namespace
 
-Residency::Residency(std::uint64_t max_page_bytes)
-    : max_page_bytes_(max_page_bytes),
-      geometry_("geometry", gpu::Arena::kMaxPageBytes, staging_),
+Residency::Residency()
+    : geometry_("geometry", gpu::Arena::kMaxPageBytes, staging_),
       transfer_("transfer", gpu::Arena::kMaxPageBytes, staging_),
       samples_("samples", gpu::Arena::kMaxPageBytes, staging_),
       rows_("rows", gpu::Arena::kMaxPageBytes, staging_),
@@ -85,7 +84,7 @@ Residency::Residency(std::uint64_t max_page_bytes)
 Result<ResidentTables> Residency::make(const bundle::Description& description) {
   const Needs needs = needsOf(description);
   const auto page_bytes = [&](std::uint64_t need) {
-    return std::min(std::max(need, kMinPageBytes), max_page_bytes_);
+    return std::min(std::max(need, kMinPageBytes), gpu::Arena::kMaxPageBytes);
   };
   geometry_.setPageBytes(page_bytes(needs.geometry));
   transfer_.setPageBytes(page_bytes(needs.transfer));
@@ -235,7 +234,7 @@ Result<void> Residency::put(At at, const WeightsChunk& item) {
 
 Result<void> Residency::reserveCell(ResidentCell& cell) {
   if (cell.block) return {};
-  const Result<gpu::Allocation> block = transfer_.allocateWithRoom(4ull * layOut(cell, 0), wholeBytes(cell));
+  const Result<gpu::Allocation> block = transfer_.allocate(4ull * layOut(cell, 0), wholeBytes(cell));
   if (!block) return failAgain(block.error());
   cell.block = *block;
   layOut(cell, block->word());
@@ -243,7 +242,7 @@ Result<void> Residency::reserveCell(ResidentCell& cell) {
 }
 
 Result<void> Residency::moveCell(ResidentCell& cell) {
-  const Result<gpu::Allocation> block = transfer_.allocateWithRoom(cell.block.byte_count, wholeBytes(cell));
+  const Result<gpu::Allocation> block = transfer_.allocate(cell.block.byte_count, wholeBytes(cell));
   if (!block) return failAgain(block.error());
   const auto move = [&](gpu::Allocation& from, const gpu::Allocation& to) {
     transfer_.copy(from, to);
@@ -340,12 +339,6 @@ std::uint64_t Residency::bytesResident() const {
   for (const auto& [staged, tables] : staged_) bytes += tables.bundles.front().texture_bytes;
   for (const auto& [place, upload] : coming_)
     bytes += bytesOfTexture(upload.color) + bytesOfTexture(upload.linear);
-  return bytes;
-}
-
-std::uint64_t Residency::bytesReserved() const {
-  std::uint64_t bytes = 0;
-  for (const gpu::Arena* arena : arenas()) bytes += arena->bytesReserved();
   return bytes;
 }
 

@@ -23,8 +23,7 @@ namespace lambent::streaming {
 
 class Residency {
  public:
-  // Pages are as large as a bundle needs, up to max_page_bytes.
-  explicit Residency(std::uint64_t max_page_bytes = gpu::Arena::kMaxPageBytes);
+  Residency();
 
   // Says where a bundle is: in a slot, or staged, so not in the tables yet.
   struct Place {
@@ -97,8 +96,6 @@ class Residency {
 
   // Returns the GPU memory in use by arenas and textures, including staged bundles and unfinished uploads.
   std::uint64_t bytesResident() const;
-  // Returns this memory plus the free memory in pages of the arenas.
-  std::uint64_t bytesReserved() const;
   std::uint64_t planesResident() const;
 
  private:
@@ -148,7 +145,6 @@ class Residency {
   // Clears the shaded samples of a group and causes it to be shaded again.
   void forgetShading(const ResidentGroup& group);
 
-  std::uint64_t max_page_bytes_;
   ResidentTables tables_;
   std::map<std::uint32_t, ResidentTables> staged_;  // by number
   std::uint32_t next_staged_ = 0;

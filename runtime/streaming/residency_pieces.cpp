@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <glm/gtc/packing.hpp>
 
-#include "runtime/streaming/images.hpp"
 #include "runtime/streaming/residency.hpp"
+#include "runtime/streaming/textures.hpp"
 
 namespace lambent::streaming {
 

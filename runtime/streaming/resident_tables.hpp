@@ -14,8 +14,7 @@
 #include "runtime/bundle/description.hpp"
 #include "runtime/gpu/arena.hpp"
 #include "runtime/gpu/objects.hpp"
-#include "runtime/streaming/brdf_texture.hpp"
-#include "runtime/streaming/images.hpp"
+#include "runtime/streaming/textures.hpp"
 #include "runtime/transfer/seen_sky_shared.h"
 
 namespace lambent::streaming {

@@ -8,7 +8,7 @@
 
 #include "runtime/bundle/keyframes.hpp"
 #include "runtime/scene/components.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "runtime/scene/transforms.hpp"
 #include "tests/runtime/scene/values.hpp"
 

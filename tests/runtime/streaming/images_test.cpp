@@ -1,5 +1,3 @@
-#include "runtime/streaming/images.hpp"
-
 #include <cstdlib>
 #include <span>
 #include <string>
@@ -7,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/streaming/textures.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"
 
 namespace lambent::streaming {

@@ -7,7 +7,7 @@
 
 #include "runtime/effects/glossy/glossy_shared.h"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/streaming/brdf_texture.hpp"
+#include "runtime/streaming/textures.hpp"
 #include "tests/support/glsl/transfer.hpp"
 
 namespace lambent::effects::glossy::glsl {

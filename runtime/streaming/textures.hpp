@@ -1,4 +1,4 @@
-// Texture images of a bundle: decoding them, their mip levels, and how materials read them.
+// Textures of a bundle: decoding of images, their mip levels, how materials read them, and tables of b(v).
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,12 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec4.hpp>
+
 #include "runtime/base/result.hpp"
+#include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/description.hpp"
+#include "runtime/gpu/objects.hpp"
 
 namespace lambent::streaming {
 
@@ -33,8 +37,8 @@ Result<ImageSize> imageSize(std::span<const std::byte> file, const std::string& 
 Result<std::vector<std::uint8_t>> decodeRgba(std::span<const std::byte> file, const std::string& subject);
 
 // Computes sizes and texels of mip levels. An image that is needed from level l on is decoded whole, reduced
-// to that level here and uploaded as a texture of its own. The GPU makes the coarser levels. Nothing here
-// uses GL, and the functions may be called from any thread.
+// to that level here and uploaded as a texture of its own. The GPU makes the coarser levels. These
+// functions do not use GL and may be called from any thread.
 
 // Returns the size of a mip level, rounded as in OpenGL.
 ImageSize sizeAt(const ImageSize& size, std::uint32_t level);
@@ -67,5 +71,33 @@ std::vector<ImageUse> imageUses(const bundle::Description& description);
 
 // Returns the images that a material reads, each once. Material -1 has none.
 std::vector<std::uint32_t> imagesOf(const bundle::Description& description, std::int32_t material);
+
+// Packs a table of b(v) into a texture for shaders. The texture array holds the zonal weights of every node
+// (runtime/sh/zonal.hpp) as floats, four per texel. The hardware interpolates between texels of a
+// layer; glossy_kernel.glsl reads them. The axes of the texture are:
+//   x:     u of the view's angle (bundle::angleAxis)
+//   y:     roughness if isotropic, else azimuth
+//   layer: texel t of a node if isotropic, else (strength * roughnesses + roughness) * texels + t, where the
+//          shader interpolates between strengths and between roughnesses
+// Weight p of lobe a is component 2p + a of the node if there are two lobes, and 4p + a if there are three.
+struct BrdfTexels {
+  std::uint32_t width = 0, height = 0, layers = 0;
+  std::uint32_t per_node = 0;     // texels per node
+  std::vector<glm::vec4> values;  // [layer][y][x]
+
+  std::uint64_t bytes() const { return sizeof(glm::vec4) * values.size(); }
+};
+BrdfTexels packBrdf(const bundle::BrdfTable& table);
+
+// Holds a table on the GPU.
+struct BrdfTexture {
+  gpu::Texture texture;  // empty until it is loaded
+  std::uint32_t order = 0, lobes = 2;
+  bool isotropic = true;
+  std::uint32_t angles = 2, azimuths = 1, roughnesses = 1, strengths = 1;
+};
+// Fails, naming `subject`, if the texture needs more layers than the device supports.
+Result<BrdfTexture> makeBrdfTexture(const bundle::BrdfTable& table, const BrdfTexels& texels,
+                                    const std::string& subject);
 
 }  // namespace lambent::streaming
