@@ -14,41 +14,28 @@
 
 #include "baker/jobs/parallel.hpp"
 #include "reference/film.hpp"
-#include "reference/light_cache.hpp"
-#include "reference/traced_scene.hpp"
+#include "reference/lights.hpp"
 
 namespace lambent::baker::reference {
 
-namespace {
-
-// A TexelPlace lies between texels `low` and `high`; `share` is the weight of `high`.
-struct TexelPlace {
-  std::size_t low, high;
-  float share;
-};
-
-std::vector<TexelPlace> places(std::uint32_t from, std::uint32_t to) {
-  std::vector<TexelPlace> out;
-  out.reserve(to);
-  for (std::uint32_t i = 0; i < to; ++i) {
+spec::RgbaImage enlarged(const spec::RgbaImage& image, const spec::Size& size) {
+  // Lies between texels `low` and `high`; `share` is the weight of `high`.
+  struct Place {
+    std::size_t low, high;
+    float share;
+  };
+  const auto placeOf = [](std::uint32_t i, std::uint32_t from, std::uint32_t to) {
     const double at = std::clamp((i + 0.5) * from / to - 0.5, 0.0, from - 1.0);
     const auto low = static_cast<std::size_t>(at);
-    out.push_back({low, std::min<std::size_t>(low + 1, from - 1), static_cast<float>(at - std::floor(at))});
-  }
-  return out;
-}
-
-}  // namespace
-
-spec::RgbaImage enlarged(const spec::RgbaImage& image, const spec::Size& size) {
-  const std::vector<TexelPlace> columns = places(image.width, size.width),
-                                rows = places(image.height, size.height);
+    return Place{low, std::min<std::size_t>(low + 1, from - 1), static_cast<float>(at - std::floor(at))};
+  };
   spec::RgbaImage out{.width = size.width, .height = size.height, .texels = {}};
   out.texels.reserve(std::size_t{size.width} * size.height);
-  for (const TexelPlace& y : rows)
-    for (const TexelPlace& x : columns) {
-      const auto between = [&](std::size_t row) {
-        return glm::mix(image.texels[row * image.width + x.low], image.texels[row * image.width + x.high],
+  for (std::uint32_t row = 0; row < size.height; ++row)
+    for (std::uint32_t column = 0; column < size.width; ++column) {
+      const Place y = placeOf(row, image.height, size.height), x = placeOf(column, image.width, size.width);
+      const auto between = [&](std::size_t at) {
+        return glm::mix(image.texels[at * image.width + x.low], image.texels[at * image.width + x.high],
                         x.share);
       };
       out.texels.push_back(glm::mix(between(y.low), between(y.high), y.share));

@@ -7,8 +7,8 @@
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 
-#include "reference/phase.hpp"
 #include "reference/sampler.hpp"
+#include "reference/volumes.hpp"
 
 namespace lambent::baker::reference {
 

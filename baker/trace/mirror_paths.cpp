@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/brdf/follow_highlight.hpp"
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/transport/panes.hpp"
 #include "baker/transport/samples.hpp"

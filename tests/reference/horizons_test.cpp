@@ -1,9 +1,8 @@
 // Tests surfaces whose smooth normals differ from their triangles' normals: light between the two planes is
 // that of the mirror image, and no energy is lost.
-#include "reference/horizons.hpp"
-
 #include <gtest/gtest.h>
 
+#include "reference/brdf.hpp"
 #include "reference/sampler.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/reference/quadrature.hpp"

@@ -23,15 +23,7 @@ Scene floorAndCard(const gltf::Material& material, float width = 2.0f) {
 
 // Makes a texture of `texels` (RGBA, n wide, 1 high), read without filtering.
 gltf::TextureRef stripes(Scene& scene, const std::vector<std::uint8_t>& texels) {
-  spec::Rgba8Image image{static_cast<std::uint32_t>(texels.size() / 4), 1, texels};
-  const std::vector<std::uint8_t> bytes = spec::encodePng(image);
-  SceneImage file{"stripes", "image/png", {}};
-  for (const std::uint8_t byte : bytes) file.file_bytes.push_back(std::byte{byte});
-  scene.images.push_back(std::move(file));
-  gltf::Texture out{.image = static_cast<std::int32_t>(scene.images.size()) - 1, .sampler = {}};
-  out.sampler.mag_filter = 9728;  // NEAREST
-  scene.textures.push_back(out);
-  return {.texture = static_cast<std::int32_t>(scene.textures.size()) - 1};
+  return testing::addTexture(scene, {static_cast<std::uint32_t>(texels.size() / 4), 1, texels});
 }
 
 const spec::Light kZenith = spec::SunLight{.elevation_deg = 90, .angle_deg = 1, .radiance = glm::vec3(1000)};

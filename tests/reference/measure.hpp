@@ -22,13 +22,9 @@ inline baker::reference::Report rendered(const baker::Scene& scene,
 // Adds a camera as the first of the scene, so that it is the default.
 inline void lookAt(baker::Scene& scene, glm::vec3 eye, glm::vec3 target, float fov_deg) {
   scene.cameras = {{.name = "eye", .yfov_rad = glm::radians(fov_deg)}};
-  gltf::Node node;
-  node.camera = 0;
   const glm::vec3 along = glm::normalize(target - eye);
   const glm::vec3 up = std::abs(along.y) > 0.9f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
-  node.parent_from_node = glm::inverse(glm::lookAt(eye, target, up));
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
+  addNode(scene, glm::inverse(glm::lookAt(eye, target, up))).camera = 0;
 }
 
 struct Measured {
@@ -84,11 +80,19 @@ inline void paint(baker::Scene& scene, std::size_t mesh, const gltf::Material& m
 
 // Adds the mesh with a node of its own, without a transform.
 inline void add(baker::Scene& scene, const bundle::MeshData& mesh, const gltf::Material& material) {
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back({});
-  scene.nodes.back().mesh = static_cast<std::int32_t>(scene.meshes.size());
+  addNode(scene).mesh = static_cast<std::int32_t>(scene.meshes.size());
   scene.meshes.push_back({"", {{mesh, 0}}});
   paint(scene, scene.meshes.size() - 1, material);
+}
+
+// Adds a texture that is read without filtering.
+inline gltf::TextureRef addTexture(baker::Scene& scene, const spec::Rgba8Image& image) {
+  const std::vector<std::uint8_t> png = spec::encodePng(image);
+  const auto bytes = std::as_bytes(std::span(png));
+  scene.textures.push_back({.image = static_cast<std::int32_t>(scene.images.size()), .sampler = {}});
+  scene.textures.back().sampler.mag_filter = 9728;  // NEAREST
+  scene.images.push_back({"texture", "image/png", {bytes.begin(), bytes.end()}});
+  return {.texture = static_cast<std::int32_t>(scene.textures.size()) - 1};
 }
 
 // Gives each triangle vertices of its own with its face normal.

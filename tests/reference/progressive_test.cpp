@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "reference/light_cache.hpp"
+#include "reference/lights.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/reference/media.hpp"

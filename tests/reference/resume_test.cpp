@@ -5,11 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "reference/film.hpp"
+#include "reference/reference.hpp"
 #include "runtime/bundle/container.hpp"
 #include "tests/reference/measure.hpp"
+#include "tests/support/material_values.hpp"
 #include "tests/support/program.hpp"
 
 namespace lambent::baker::reference {
+
 namespace {
 
 using testing::bytesOf;
@@ -78,6 +81,22 @@ TEST_F(Resume, BeginsAnewWhenTheWordsOrTheBytesAreOthers) {
   ASSERT_TRUE(damaged);
   EXPECT_EQ(damaged->notices.size(), 1u);
   EXPECT_EQ(damaged->image.texels, other->image.texels);
+}
+
+// Checks that every field of a material is part of the digest that decides whether a checkpoint can be
+// resumed.
+
+std::uint64_t digestWith(const gltf::Material& material) {
+  Scene scene;
+  scene.materials = {material};
+  return digestOf(scene, {}, {}, {}, {});
+}
+
+TEST(ReferenceDigest, ChangesWithEveryFieldOfAMaterial) {
+  const gltf::Material plain = testing::materialWithEverything();
+  gltf::forEachMaterialField([&](const auto& field) {
+    EXPECT_NE(digestWith(testing::changed(plain, field)), digestWith(plain)) << field.name;
+  });
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // at a given time.
 #include <gtest/gtest.h>
 
-#include "reference/lamps.hpp"
+#include "reference/lights.hpp"
 #include "reference/reference.hpp"
 #include "tests/reference/measure.hpp"
 

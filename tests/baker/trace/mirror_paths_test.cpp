@@ -41,14 +41,7 @@ struct Lacquered {
     scene.materials[1].roughness = roughness;
     scene.materials[1].base_color = glm::vec4(glm::vec3(base), 1.0f);
     scene.meshes[0].primitives[0].material = 1;
-    if (lamp) {
-      gltf::Node node;
-      node.parent_from_node = glm::translate(glm::mat4(1.0f), {0, 0, 1});
-      node.light = 0;
-      scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-      scene.nodes.push_back(node);
-      scene.lights.emplace_back();
-    }
+    if (lamp) testing::addPointLight(scene, {0, 0, 1});
     return scene;
   }
 
