@@ -66,11 +66,32 @@ inline baker::reference::Options samples(std::uint32_t spp, std::optional<std::u
   return options;
 }
 
-// Returns a white Lambert material.
-inline gltf::Material matte() {
+// Returns a grey Lambert material.
+inline gltf::Material matte(float albedo = 1.0f) {
   gltf::Material material;
   material.metallic = 0.0f;
+  material.base_color = glm::vec4(glm::vec3(albedo), 1.0f);
   return material;
+}
+
+// Returns a material that shines and reflects nothing.
+inline gltf::Material lamp(float radiance) {
+  gltf::Material material = matte(0.0f);
+  material.emissive = glm::vec3(radiance);
+  return material;
+}
+
+// Makes a floor and a ball above it; the request is for a picture of them in the light of sky and sun.
+inline baker::Scene ballOnAFloor() {
+  baker::Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 8), icosphere({0, 0.6f, 0}, 0.5f, 3)});
+  scene.materials[0].base_color = glm::vec4(0.7f, 0.6f, 0.5f, 1);
+  return scene;
+}
+inline baker::reference::Request ballInTheSun(const baker::reference::Options& options) {
+  return {.lights = {spec::ConstantLight{.radiance = glm::vec3(0.3f)},
+                     spec::SunLight{.elevation_deg = 40, .angle_deg = 4, .radiance = glm::vec3(50)}},
+          .camera = spec::OrbitCamera{30, 20, 2, 40},
+          .options = options};
 }
 
 inline void paint(baker::Scene& scene, std::size_t mesh, const gltf::Material& material) {

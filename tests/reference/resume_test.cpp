@@ -19,15 +19,6 @@ using testing::bytesOf;
 
 class Resume : public testing::ProgramTest {
  protected:
-  Resume() {
-    scene = testing::sceneOf({testing::grid({0, 0, 0}, 4.0f, 8), testing::icosphere({0, 0.6f, 0}, 0.5f, 3)});
-    scene.materials[0].base_color = glm::vec4(0.7f, 0.6f, 0.5f, 1);
-    request.lights = {testing::uniform(0.3f),
-                      spec::SunLight{.elevation_deg = 40, .angle_deg = 4, .radiance = glm::vec3(50)}};
-    request.camera = spec::OrbitCamera{30, 20, 2, 40};
-    request.options = {.size = {64, 48}, .spp = 100};
-  }
-
   // Requests a stop once `share` of the remaining work is done.
   Result<Report> renderUntil(const std::filesystem::path& output, double share) const {
     Progress progress;
@@ -43,8 +34,8 @@ class Resume : public testing::ProgramTest {
     return render(scene, request, output, false, progress, stop.get_token());
   }
 
-  Scene scene;
-  Request request;
+  const Scene scene = testing::ballOnAFloor();
+  Request request = testing::ballInTheSun({.size = {64, 48}, .spp = 100});
 };
 
 TEST_F(Resume, EndsInTheBytesOfAPictureThatWasNotInterrupted) {

@@ -10,16 +10,10 @@ namespace {
 
 using testing::expectMean;
 using testing::formFactor;
+using testing::lamp;
 using testing::measured;
 using testing::samples;
 using testing::sceneOf;
-
-gltf::Material lamp(float radiance) {
-  gltf::Material material = testing::matte();
-  material.base_color = glm::vec4(0, 0, 0, 1);
-  material.emissive = glm::vec3(radiance);
-  return material;
-}
 
 TEST(EmissiveSurface, OfAClosedBoxIsTheGeometricSeries) {
   // With radiance e and albedo rho everywhere, the result is e (1 + rho + rho² + ...).

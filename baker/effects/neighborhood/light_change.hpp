@@ -22,6 +22,7 @@
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/transport/direction_table.hpp"
+#include "runtime/sh/gaunt.hpp"
 
 namespace lambent::baker {
 

@@ -12,6 +12,7 @@
 #include "baker/effects/neighborhood/light_change.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/plan/neighborhoods.hpp"
+#include "runtime/sh/gaunt.hpp"
 
 namespace lambent::baker {
 

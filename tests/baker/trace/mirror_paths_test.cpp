@@ -9,8 +9,7 @@
 
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/differences.hpp"
-#include "tests/support/shapes.hpp"
-#include "tests/support/transport.hpp"
+#include "tests/support/glossy_transport.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -26,10 +25,8 @@ using testing::turned;
 struct Lacquered {
   Lacquered(const std::vector<bundle::MeshData>& meshes, float base, float roughness, bool lamp = false)
       : transport(sceneWith(meshes, base, roughness, lamp), /*with_glossy=*/true),
-        images(transport.scene),
-        tables(std::move(*BrdfTables::make(transport.scene, 5, 5))),
-        brdfs(std::move(*SurfaceBrdfs::load(transport.scene, transport.geometry, tables, images, 5))),
-        mirrors(transport.geometry, transport.rays, transport.colors, brdfs, lamp) {
+        surfaces(transport),
+        mirrors(transport.geometry, transport.rays, transport.colors, surfaces.brdfs, lamp) {
     EXPECT_TRUE(transport.samples.glossy.empty()) << "smooth dielectrics have diffuse samples";
     transport.mirrors = &mirrors;
   }
@@ -46,9 +43,7 @@ struct Lacquered {
   }
 
   Transport transport;
-  DecodedImages images;
-  BrdfTables tables;
-  SurfaceBrdfs brdfs;
+  testing::TransportBrdfs surfaces;
   MirrorPaths mirrors;
 };
 
@@ -132,7 +127,7 @@ TEST(MirrorPaths, ALampsLightLeavesALacqueredFloorInAllDirectionsByWhatItReflect
       const double lamp = glm::length(to_lamp), plate = glm::length(to_plate);
       const double irradiance = to_lamp.z / (lamp * lamp * lamp), cosine = to_plate.z / plate;
       expected += irradiance / std::numbers::pi *
-                  double{floor.brdfs.layerAlbedo(0, static_cast<float>(cosine))} * cosine * cosine /
+                  double{floor.surfaces.brdfs.layerAlbedo(0, static_cast<float>(cosine))} * cosine * cosine /
                   (plate * plate * std::numbers::pi) * (8.0 / kSteps) * (8.0 / kSteps);
     }
   EXPECT_GT(expected, 1e-3);

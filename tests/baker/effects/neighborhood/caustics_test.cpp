@@ -1,5 +1,4 @@
 // Tests light that polished bodies focus, by quantities that mirrors conserve by symmetry.
-#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/glossy_transport.hpp"
@@ -25,24 +24,16 @@ struct Metal {
           return made;
         }()),
         transport(scene, true),
-        images(transport.scene),
-        tables(std::move(*BrdfTables::make(transport.scene, 5, 5))),
-        brdfs(std::move(*SurfaceBrdfs::load(transport.scene, transport.geometry, tables, images, 5))),
-        baked(testing::bakeGlossy(
-            transport,
-            {brdfs.grey(), [this](std::uint32_t t, float u, float v, const glm::vec3& to,
-                                  std::span<float> out) { brdfs.exitKernel(t, u, v, to, out); }},
-            {.rays = 256, .bounces = 1})),
+        surfaces(transport),
+        baked(testing::bakeGlossy(transport, surfaces.kernels(), {.rays = 256, .bounces = 1})),
         body(transport.diffuse(), {.direct = baked.direct.field,
                                    .bounced = &baked.bounced.field,
                                    .sends = true,
-                                   .brdfs = &brdfs,
+                                   .brdfs = &surfaces.brdfs,
                                    .glossy = &baked.direct.glossy}) {}
   Scene scene;
   Transport transport;
-  DecodedImages images;
-  BrdfTables tables;
-  SurfaceBrdfs brdfs;
+  testing::TransportBrdfs surfaces;
   testing::GlossyBake baked;
   SurfaceBody body;
 };

@@ -1,5 +1,4 @@
 // Compares interreflection over glossy surfaces, and between glossy and diffuse ones, with closed forms.
-#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/surface/gather.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/glossy_transport.hpp"
@@ -296,15 +295,8 @@ TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
     Scene scene = glossyScene({testing::cup({2, 1, 2}, 6), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 2)});
     scene.materials[0].roughness = roughness;
     const Transport t(scene, true);
-    DecodedImages images(scene);
-    const auto tables = BrdfTables::make(scene, 5, 5);
-    ASSERT_TRUE(tables.has_value());
-    const auto brdfs = SurfaceBrdfs::load(t.scene, t.geometry, *tables, images, 5);
-    ASSERT_TRUE(brdfs.has_value());
-    const ExitKernels kernels{brdfs->grey(),
-                              [&](std::uint32_t triangle, float u, float v, const glm::vec3& to,
-                                  std::span<float> out) { brdfs->exitKernel(triangle, u, v, to, out); }};
-    const auto baked = bakeGlossy(t, kernels, {.rays = 512, .bounces = 12});
+    const testing::TransportBrdfs surfaces(t);
+    const auto baked = bakeGlossy(t, surfaces.kernels(), {.rays = 512, .bounces = 12});
     const GlossyField& field = baked.direct.glossy;
     double largest = 0.0, most = 0.0;
     for (std::size_t s = 0; s < field.size(); ++s) {

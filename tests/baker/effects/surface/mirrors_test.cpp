@@ -6,7 +6,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/trace/mirror_paths.hpp"
 #include "tests/support/differences.hpp"
@@ -49,17 +48,13 @@ bundle::MeshData ring(float height, int around) {
 struct Room {
   explicit Room(const Scene& scene, bool follow = true)
       : transport(scene, true),
-        images(transport.scene),
-        tables(std::move(*BrdfTables::make(transport.scene, 5, 5))),
-        brdfs(std::move(*SurfaceBrdfs::load(transport.scene, transport.geometry, tables, images, 5))),
-        mirrors(transport.geometry, transport.rays, transport.colors, brdfs, !transport.lights.empty()) {
+        surfaces(transport),
+        mirrors(transport.geometry, transport.rays, transport.colors, surfaces.brdfs,
+                !transport.lights.empty()) {
     if (follow) transport.mirrors = &mirrors;
   }
   GlossyBake bake(const GlossyBakeSettings& settings) const {
-    const ExitKernels kernels{brdfs.grey(),
-                              [this](std::uint32_t triangle, float u, float v, const glm::vec3& to,
-                                     std::span<float> out) { brdfs.exitKernel(triangle, u, v, to, out); }};
-    return bakeGlossy(transport, kernels, settings);
+    return bakeGlossy(transport, surfaces.kernels(), settings);
   }
   // The sum of direct light and bounces at the diffuse sample nearest to a place.
   std::vector<float> transferAt(const GlossyBake& baked, const glm::vec3& place) const {
@@ -71,9 +66,7 @@ struct Room {
   }
 
   Transport transport;
-  DecodedImages images;
-  BrdfTables tables;
-  SurfaceBrdfs brdfs;
+  testing::TransportBrdfs surfaces;
   MirrorPaths mirrors;
 };
 
