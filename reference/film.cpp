@@ -183,12 +183,12 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
     for (const Path& path : walk.paths) out.replicas[path.replica] += weight * glm::dvec3(path.sum);
   };
   const auto materialOf = [&](const Hit& hit) -> const gltf::Material& {
-    return world_.surfaces.surfaces()[hit.surface].material;
+    return world_.scene.surfaces.surfaces()[hit.surface].material;
   };
   const auto blended = [&](const Hit& hit) { return materialOf(hit).alpha_mode == gltf::AlphaMode::Blend; };
   const Ray ray = world_.eye.through(x, y);
   std::vector<Hit> layers;
-  world_.rays.visible(ray, layers);
+  world_.scene.rays->visible(ray, layers);
   out.rays = 1;
   // Depth ignores blended surfaces, panes and volumes, as the runtime's depth buffer does.
   if (!layers.empty() && !blended(layers.back()) && !materialOf(layers.back()).transmits())
@@ -197,7 +197,7 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
   const auto any = [&] { return through.r > 0.0 || through.g > 0.0 || through.b > 0.0; };
   // Each step adds the volumes in front of layer i, from the previous layer on.
   std::optional<EyeDepth> eye;
-  if (!world_.volumes.empty()) eye.emplace(world_.volumes, ray, 0.0, double{kInfinity});
+  if (!world_.scene.volumes.empty()) eye.emplace(world_.scene.volumes, ray, 0.0, double{kInfinity});
   double depth = 0.0;
   const auto passVolumes = [&](std::uint32_t i) {
     if (!eye) return;
@@ -210,10 +210,10 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
     through *= std::exp(begin - depth);
   };
   std::uint32_t layer = 0;
-  PaneWay panes(world_.surfaces, ray);
+  PaneWay panes(world_.scene.surfaces, ray);
   for (; layer < layers.size() && any(); ++layer) {
     passVolumes(layer);
-    const SurfacePoint point = world_.surfaces.pointAt(layers[layer], ray.dir);
+    const SurfacePoint point = world_.scene.surfaces.pointAt(layers[layer], ray.dir);
     glm::dvec3 weight = through;
     if (materialOf(layers[layer]).transmits()) {
       through *= glm::dvec3(panes.pass(layers[layer]));
@@ -259,31 +259,19 @@ bool addSamples(const Integrator& integrator, Film& film, const Rows& rows, std:
   });
 }
 
-TracedScene::TracedScene(const Scene& scene, Surfaces surfaces)
-    : surfaces_(std::move(surfaces)),
-      emissive_(surfaces_),
-      punctual_(punctualLights(scene)),
-      volumes_(Volumes::build(scene, notices_)),
-      rays_(RayTracer::build(surfaces_)) {}
+TracedScene::TracedScene(const Scene& scene, Surfaces built)
+    : surfaces(std::move(built)),
+      emissive(surfaces),
+      punctual(punctualLights(scene)),
+      volumes(Volumes::build(scene, notices)),
+      rays(RayTracer::build(surfaces)) {}
 
 Result<std::unique_ptr<const TracedScene>> TracedScene::build(const Scene& scene) {
   auto surfaces = Surfaces::build(scene);
   if (!surfaces) return failAgain(std::move(surfaces.error()));
-  std::unique_ptr<TracedScene> traced(new TracedScene(scene, std::move(*surfaces)));
-  if (!traced->rays_) return failAgain(std::move(traced->rays_.error()));
+  auto traced = std::make_unique<TracedScene>(scene, std::move(*surfaces));
+  if (!traced->rays) return failAgain(std::move(traced->rays.error()));
   return traced;
-}
-
-World TracedScene::under(const Environment& environment, const std::vector<spec::LocalLight>& shapes,
-                         const EyeRays& eye) const {
-  return {.surfaces = surfaces_,
-          .rays = *rays_,
-          .environment = environment,
-          .emissive = emissive_,
-          .punctual = punctual_,
-          .shapes = shapes,
-          .volumes = volumes_,
-          .eye = eye};
 }
 
 }  // namespace lambent::baker::reference

@@ -31,42 +31,27 @@ namespace lambent::baker::reference {
 // ray-tracing hierarchy, the lights of the file, and volumes. The importer's Scene comes in, with all nodes
 // in place. It is slow to build, but any number of threads may trace pictures of it at the same time. The
 // Scene must outlive it.
-
-// Bundles references to everything that paths of one picture need.
-struct World {
-  const Surfaces& surfaces;
-  const RayTracer& rays;
-  const Environment& environment;
-  const EmissiveTriangles& emissive;
-  const std::vector<PunctualLight>& punctual;
-  const std::vector<spec::LocalLight>& shapes;
-  const Volumes& volumes;
-  EyeRays eye;
-};
-
-class TracedScene {
- public:
+struct TracedScene {
   // Errors: a texture cannot be decoded, or Embree has no memory.
   static Result<std::unique_ptr<const TracedScene>> build(const Scene& scene);
+  TracedScene(const Scene& scene, Surfaces built);  // for build()
+  TracedScene(const TracedScene&) = delete;         // parts refer to the surfaces
+  TracedScene& operator=(const TracedScene&) = delete;
 
-  const Surfaces& surfaces() const { return surfaces_; }
-  const Volumes& volumes() const { return volumes_; }
-  // Returns what was left out, one sentence each.
-  const std::vector<std::string>& notices() const { return notices_; }
+  Surfaces surfaces;
+  EmissiveTriangles emissive;
+  std::vector<PunctualLight> punctual;
+  std::vector<std::string> notices;  // what was left out, one sentence each
+  Volumes volumes;
+  Result<RayTracer> rays;  // always there after build()
+};
 
-  // Combines the scene with a light and a view. This object and all arguments must outlive the result.
-  World under(const Environment& environment, const std::vector<spec::LocalLight>& shapes,
-              const EyeRays& eye) const;
-
- private:
-  TracedScene(const Scene& scene, Surfaces surfaces);
-
-  Surfaces surfaces_;
-  EmissiveTriangles emissive_;
-  std::vector<PunctualLight> punctual_;
-  std::vector<std::string> notices_;
-  Volumes volumes_;
-  Result<RayTracer> rays_;
+// A World is a scene in a light, as seen by a camera: everything that paths of one picture need.
+struct World {
+  const TracedScene& scene;
+  const Environment& environment;
+  const std::vector<spec::LocalLight>& shapes;
+  EyeRays eye;
 };
 
 struct PixelSum {

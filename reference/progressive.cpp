@@ -149,7 +149,7 @@ class ProgressiveReference::Worker {
         lights_.environment(request.lights, request.light_factors, options, request.more_light);
     if (!environment) return failAgain(std::move(environment.error()));
     if (auto built = build(job.scene); !built) return failAgain(std::move(built.error()));
-    const auto view = viewOf(*traced_scene_, traced_->surfaces(), request);
+    const auto view = viewOf(*traced_scene_, traced_->surfaces, request);
     if (!view) return failAgain(view.error());
     const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights, traced_scene_->origin);
     enter(job, ProgressivePhase::Tracing);
@@ -158,7 +158,7 @@ class ProgressiveReference::Worker {
     for (const auto& [by, samples] : kCoarse) {
       Options coarse = options;
       coarse.size = coarser(options.size, by);
-      const World world = traced_->under(**environment, shapes, EyeRays(*view, coarse.size));
+      const World world{*traced_, **environment, shapes, EyeRays(*view, coarse.size)};
       Film film(coarse.size, 0);
       if (!fill(job, Integrator(world, coarse), film, std::min(samples, options.spp))) return {};
       shown = enlarged(film.image(), options.size);
@@ -168,10 +168,10 @@ class ProgressiveReference::Worker {
       publish(job, std::move(out));
     }
 
-    const World world = traced_->under(**environment, shapes, EyeRays(*view, options.size));
+    const World world{*traced_, **environment, shapes, EyeRays(*view, options.size)};
     const Integrator integrator(world, options);
     Film film(options.size, 0);
-    const std::uint32_t together = samplesInPass(options, world.volumes);
+    const std::uint32_t together = samplesInPass(options, traced_->volumes);
     Clock::time_point shown_at = Clock::now();
     const auto showRows = [&](std::uint32_t first, std::uint32_t last) {
       for (std::uint32_t y = first; y < last; ++y) film.putRow(y, shown);
@@ -222,7 +222,7 @@ class ProgressiveReference::Worker {
     snapshot.generation = job.generation;
     snapshot.seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
     snapshot.notices = lights_.notices();
-    snapshot.notices.insert(snapshot.notices.end(), traced_->notices().begin(), traced_->notices().end());
+    snapshot.notices.insert(snapshot.notices.end(), traced_->notices.begin(), traced_->notices.end());
     auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
     const std::lock_guard hold(lock_);
     if (job.generation == status_.generation) std::swap(snapshot_, shared);

@@ -160,10 +160,10 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights, scene.origin);
   const auto traced = TracedScene::build(scene);
   if (!traced) return failAgain(traced.error());
-  report.notices.insert(report.notices.end(), (*traced)->notices().begin(), (*traced)->notices().end());
+  report.notices.insert(report.notices.end(), (*traced)->notices.begin(), (*traced)->notices.end());
   if (auto fits = checkMemory(options, of_picture, picture); !fits)  // textures and light are there now
     return failAgain(std::move(fits.error()));
-  const auto view = viewOf(scene, (*traced)->surfaces(), request);
+  const auto view = viewOf(scene, (*traced)->surfaces, request);
   if (!view) return failAgain(view.error());
   Film film(options.size, digestOf(scene, lights, shapes, *view, options));
   const Environment environment(std::move(lights), options.rotate_light_deg,
@@ -176,9 +176,10 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
     left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
   // Trace the paths.
   progress.begin("paths", left, "samples");
-  const World world = (*traced)->under(environment, shapes, EyeRays(*view, options.size));
-  auto done = renderAll(Integrator(world, options), film,
-                        {options.spp, samplesInPass(options, world.volumes)}, checkpoint, progress, stop);
+  const World world{**traced, environment, shapes, EyeRays(*view, options.size)};
+  auto done =
+      renderAll(Integrator(world, options), film, {options.spp, samplesInPass(options, (*traced)->volumes)},
+                checkpoint, progress, stop);
   if (!done) return failAgain(std::move(done.error()));
   report.image = film.image();
   report.rays = film.rays();

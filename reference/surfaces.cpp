@@ -45,17 +45,16 @@ std::size_t wrapped(double at, std::uint32_t size, std::uint32_t mode) {
 Result<Textures> Textures::load(const Scene& scene) {
   Textures out;
   out.textures_ = scene.textures;
-  out.images_.resize(scene.images.size());
+  out.images_.resize(scene.textures.size());
+  DecodedImages images(scene);
   std::optional<Error> error;
   const auto load = [&](const gltf::TextureRef& ref) {
     if (ref.texture < 0 || error) return;
-    const std::int32_t image = scene.textures[static_cast<std::size_t>(ref.texture)].image;
-    if (image < 0 || out.images_[static_cast<std::size_t>(image)]) return;
-    auto decoded = decodeImage(scene.images[static_cast<std::size_t>(image)]);
-    if (decoded)
-      out.images_[static_cast<std::size_t>(image)] = std::move(*decoded);
+    auto image = images.ofTexture(ref.texture);
+    if (image)
+      out.images_[static_cast<std::size_t>(ref.texture)] = std::move(*image);
     else
-      error = std::move(decoded.error());
+      error = std::move(image.error());
   };
   for (const gltf::Material& material : scene.materials)
     gltf::forEachMaterialTexture([&](const auto& field) { load(material.*field.member); });
@@ -66,9 +65,10 @@ Result<Textures> Textures::load(const Scene& scene) {
 template <typename Decode>
 glm::vec4 Textures::lookUp(const gltf::TextureRef& ref, const glm::vec2& uv, const Decode& decode) const {
   if (ref.texture < 0) return glm::vec4(1.0f);
-  const gltf::Texture& texture = textures_[static_cast<std::size_t>(ref.texture)];
-  if (texture.image < 0 || !images_[static_cast<std::size_t>(texture.image)]) return glm::vec4(1.0f);
-  const DecodedImage& image = *images_[static_cast<std::size_t>(texture.image)];
+  const auto index = static_cast<std::size_t>(ref.texture);
+  if (!images_[index]) return glm::vec4(1.0f);
+  const gltf::Texture& texture = textures_[index];
+  const DecodedImage& image = *images_[index];
   const glm::vec2 turned = ref.apply(uv);
   const bool nearest = texture.sampler.mag_filter == kNearest;
   const double x = std::clamp(double{turned.x} * image.width, -1e12, 1e12) - (nearest ? 0.0 : 0.5);

@@ -41,7 +41,7 @@ class Textures {
   glm::vec4 lookUp(const gltf::TextureRef& ref, const glm::vec2& uv, const Decode& decode) const;
 
   std::vector<gltf::Texture> textures_;
-  std::vector<std::optional<DecodedImage>> images_;
+  std::vector<std::shared_ptr<const DecodedImage>> images_;  // by texture; null: none
 };
 
 inline float largest(const glm::vec3& v) {

@@ -150,7 +150,9 @@ struct Walk {
   // Returns the ray direction for a direction (Horizons), with the same length.
   glm::vec3 rayFor(const Path& path, const glm::vec3& dir, bool first) const;
   // Returns whether paths can hit lights at a finite distance.
-  bool findsLights() const { return !world.emissive.empty() || !(world.shapes.empty() || shapesAreSky()); }
+  bool findsLights() const {
+    return !world.scene.emissive.empty() || !(world.shapes.empty() || shapesAreSky());
+  }
   // Returns whether the first OUT bands replace the phase function at this vertex, as they replace the BRDF.
   // Directions are then drawn half from the phase function and half uniformly.
   bool phaseIsLimited(bool first) const { return first && options.band_limit && options.band_limit->out; }
@@ -159,7 +161,7 @@ struct Walk {
   // is.
   bool shapesAreSky() const { return options.band_limit.has_value() && !world.shapes.empty(); }
   std::uint32_t mostReflections() const {
-    return options.bounces.value_or(world.volumes.empty() ? kMostVertices : kMostReflections);
+    return options.bounces.value_or(world.scene.volumes.empty() ? kMostVertices : kMostReflections);
   }
   bool anyAlive() const {
     return std::any_of(paths.begin(), paths.end(), [](const Path& path) { return path.alive; });

@@ -71,8 +71,7 @@ void contract(const float* kernels, const MatrixView& matrix, float weight, floa
 
 glm::vec3 GlossyExit::add(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
                           float weight, std::span<float> sum) const {
-  const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
-              v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
+  const float u = hit.uAt(), v = hit.vAt();
   const std::size_t outputs = light.environment.outputs, columns = light.environment.columns,
                     lights = light.lights.columns, channels = light.lights.channels;
   const std::uint32_t picked = chance < u ? corners.y : chance < u + v ? corners.z : corners.x;
@@ -107,8 +106,7 @@ glm::vec3 GlossyExit::add(const GatherHit& hit, const glm::uvec3& corners, const
 
 glm::vec3 GlossyExit::albedo(const GatherHit& hit, const glm::vec3& to) const {
   std::array<float, 3> constant;  // the kernel's first band alone
-  kernels.at(hit.triangle, static_cast<float>(hit.u) * (1.0f / 65535.0f),
-             static_cast<float>(hit.v) * (1.0f / 65535.0f), to, constant);
+  kernels.at(hit.triangle, hit.uAt(), hit.vAt(), to, constant);
   return kUniform * glm::vec3(constant[0], constant[1], constant[2]);
 }
 
@@ -129,8 +127,7 @@ glm::uvec3 ExitRadiance::samplesOf(const GatherHit& hit) const {
 }
 
 std::uint32_t ExitRadiance::texelOf(const GatherHit& hit) const {
-  const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
-              v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
+  const float u = hit.uAt(), v = hit.vAt();
   return sampleOfTexel(geometry_, *map_of_triangle_[hit.triangle], hit.triangle, {1.0f - u - v, u, v});
 }
 
@@ -169,8 +166,7 @@ void ExitRadiance::addGlossy(const GatherHit& hit, const glm::vec3& to, float ch
   const glm::vec3 reflected = weight * glossy_->add(hit, corners, to, chance, weight, sum);
   if (!bounce.of_patches) return;
   const PatchRadiance& patches = *bounce.of_patches;
-  const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
-              v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
+  const float u = hit.uAt(), v = hit.vAt();
   const std::array<float, 3> shares = {1.0f - u - v, u, v};
   const std::size_t columns = patches.field.columns;
   for (int corner = 0; corner < 3; ++corner) {
@@ -186,7 +182,7 @@ void ExitRadiance::addGlossy(const GatherHit& hit, const glm::vec3& to, float ch
 
 glm::vec3 ExitRadiance::albedo(const GatherHit& hit, const glm::vec3& to) const {
   if (glossy_ && !isDiffuse(hit)) return glossy_->albedo(hit, to);
-  return glm::vec3(hit.albedo[0], hit.albedo[1], hit.albedo[2]) * (1.0f / 65535.0f);
+  return hit.albedoAt();
 }
 
 ExitToSample::ExitToSample(const Bounce& bounce, const DirectionTable& table, const glm::vec3& normal,

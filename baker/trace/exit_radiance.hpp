@@ -99,8 +99,7 @@ struct CornerWeights {
 
   static CornerWeights of(const GatherHit& hit, float weight) {
     CornerWeights corners{.triangle = hit.triangle};
-    const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
-                v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
+    const float u = hit.uAt(), v = hit.vAt();
     for (std::size_t c = 0; c < 3; ++c) {
       const float albedo = weight * static_cast<float>(hit.albedo[c]) * (1.0f / 65535.0f);
       corners.of_corner[0][c] = albedo * (1.0f - u - v);

@@ -31,6 +31,8 @@ struct GatherHit {
   static std::uint16_t unorm(float value) {
     return static_cast<std::uint16_t>(std::clamp(value, 0.0f, 1.0f) * 65535.0f + 0.5f);
   }
+  float uAt() const { return static_cast<float>(u) * (1.0f / 65535.0f); }
+  float vAt() const { return static_cast<float>(v) * (1.0f / 65535.0f); }
   void setAlbedo(const glm::vec3& value) {
     for (int c = 0; c < 3; ++c) albedo[c] = unorm(value[c]);
   }

@@ -79,8 +79,7 @@ void paintHits(const TracedScene& scene, std::size_t first, const RayDirection& 
       GatherHit hit = hits.hits[h];
       // Colours are looked up at the rounded place, so that they are the same whether the hit was traced or
       // found in the cache.
-      const glm::vec3 albedo = colors.albedo(hit.triangle, static_cast<float>(hit.u) * (1.0f / 65535.0f),
-                                             static_cast<float>(hit.v) * (1.0f / 65535.0f));
+      const glm::vec3 albedo = colors.albedo(hit.triangle, hit.uAt(), hit.vAt());
       // A glossy surface that is black still has a specular reflection.
       if (albedo == glm::vec3(0.0f) && !colors.glossy(hit.triangle)) continue;
       const glm::vec3 before = hit.albedoAt();

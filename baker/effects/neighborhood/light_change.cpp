@@ -14,7 +14,6 @@
 #include "baker/trace/transfer_field.hpp"
 #include "baker/transport/direction_table.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/gaunt.hpp"
 
 namespace lambent::baker {
 

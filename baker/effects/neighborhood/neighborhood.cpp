@@ -15,7 +15,6 @@
 #include "baker/transport/samples.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/gaunt.hpp"
 
 namespace lambent::baker {
 
