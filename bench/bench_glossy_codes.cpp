@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "baker/brdf/kernel_power.hpp"
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/surface/cell_vectors.hpp"
 #include "baker/effects/surface/direct.hpp"

@@ -16,7 +16,7 @@
 #include "baker/embree/embree.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/transport/direction_table.hpp"
-#include "baker/transport/ray_packets.hpp"
+#include "baker/transport/ray_scene.hpp"
 #include "bench/group_workload.hpp"
 #include "bench/scene_argument.hpp"
 

@@ -7,8 +7,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "baker/effects/volume/first_light.hpp"
 #include "baker/effects/volume/volume.hpp"
+#include "baker/effects/volume/volume_rays.hpp"
 #include "baker/import/density_file.hpp"
 
 namespace {

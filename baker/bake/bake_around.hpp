@@ -6,8 +6,8 @@
 #include "baker/bake/bake_group.hpp"
 #include "baker/bake/group_scene.hpp"
 #include "baker/compress/kept_transfer.hpp"
-#include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
+#include "baker/effects/neighborhood/light_change.hpp"
 #include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {

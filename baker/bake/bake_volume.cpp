@@ -11,7 +11,6 @@
 #include "baker/bake/group_scene.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
-#include "baker/effects/volume/marched_volume.hpp"
 #include "baker/effects/volume/volume.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/transport/geometry_key.hpp"
@@ -363,7 +362,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   CodedVolume coded;
   CachedCoding coding(context);
   // The transfer is baked only if a result that follows from it is not in the cache.
-  std::optional<MarchedVolume> light;
+  std::optional<VolumeTransfer> light;
   const auto bakeLight = [&](const auto& use) -> Result<void> {
     auto transfer = transferOf(placed, own, result.report.ray_seconds);
     if (!transfer) return failAgain(transfer.error());
@@ -391,7 +390,11 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   if (!light)
     if (made = bakeLight([](const VolumeTransfer&) { return true; }); !made) return failAgain(made.error());
   const auto [low, high] = out.bounds();
-  const VolumeBody body(*light, low, high, /*scatters=*/true);
+  const auto march = [&](const glm::vec3& origin, const glm::vec3& direction, float t_max,
+                         std::span<float> scattered) {
+    return marchVolume(*light, origin, direction, t_max, scattered);
+  };
+  const VolumeBody body(march, light->order, low, high, /*scatters=*/true);
   if (!bakeAround(around, body, Box3{low, high}, around_context, result)) return bake.stopped();
   return result;
 }

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "baker/bake/bake.hpp"
-#include "baker/brdf/brdf_kinds.hpp"
+#include "baker/brdf/brdf.hpp"
 #include "baker/cache/key.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/trace/emitters.hpp"

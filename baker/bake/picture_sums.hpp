@@ -13,7 +13,7 @@
 
 #include "baker/importance/importance.hpp"
 #include "baker/trace/traced_samples.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {

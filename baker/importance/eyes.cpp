@@ -12,7 +12,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
 

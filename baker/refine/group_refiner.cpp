@@ -11,8 +11,8 @@
 #include <glm/geometric.hpp>
 
 #include "baker/jobs/parallel.hpp"
-#include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
+#include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
 

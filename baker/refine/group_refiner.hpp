@@ -17,7 +17,6 @@
 #include "baker/refine/marked_edges.hpp"
 #include "baker/refine/probed_points.hpp"
 #include "baker/refine/refine.hpp"
-#include "baker/transport/face_points.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
 

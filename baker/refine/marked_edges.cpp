@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 
 #include "baker/import/mesh_edits.hpp"
-#include "baker/transport/face_points.hpp"
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {

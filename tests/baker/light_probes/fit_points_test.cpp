@@ -5,7 +5,7 @@
 
 #include "baker/light_probes/blend_weights.hpp"
 #include "baker/light_probes/light_points.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

@@ -1,4 +1,4 @@
-#include "baker/effects/volume/first_light.hpp"
+#include "baker/effects/volume/volume_rays.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -26,30 +26,44 @@ SphereTable::SphereTable(std::size_t rays, int order, const glm::dquat& turn)
   }
 }
 
-Arrival FirstLight::look(const glm::vec3& place, const SphereTable& table, std::span<float> transfer) {
-  const std::size_t columns = transfer.size();
+namespace {
+
+// Computes scale / (4 pi) int f y_i ds of a function f with the mean `mean`, where `lost` are the sums of
+// (1 - f) y_i over the table. Losses are taken off the closed form of f = 1 (y_0, then zeros), so that thin
+// air is exact; the sums of y_i over the table, which are nearly 0, are corrected for thick air.
+void project(const SphereTable& table, double scale, double mean, std::span<const double> lost,
+             std::span<float> out) {
+  const double share = 1.0 / static_cast<double>(table.size());
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = static_cast<float>(
+        scale * (i == 0 ? kMeanOfBandZero * mean : (1.0 - mean) * table.mean(i) - lost[i] * share));
+}
+
+}  // namespace
+
+Arrival FirstLight::look(const glm::vec3& place, const SphereTable& table, std::span<float> transfer,
+                         std::span<float> clear) {
   reach_.resize(table.size());
   occluders_.reach(place, table.directions(), reach_);
-  lost_.assign(columns, 0.0);
+  lost_.assign(transfer.size(), 0.0);
+  gone_.assign(clear.size(), 0.0);
   double met = 0.0, out = 0.0, open = 0.0;
   for (std::size_t r = 0; r < table.size(); ++r) {
     const double depth = double{density_.opticalDepth(place, table.direction(r), reach_[r])};
-    const double clear = std::exp(-depth), gone = -std::expm1(-depth);
+    const double through = std::exp(-depth), gone = -std::expm1(-depth);
     met += gone;
-    out += clear;
+    out += through;
     const bool blocked = std::isfinite(reach_[r]);
     const double missing = blocked ? 1.0 : gone;
-    open += blocked ? 0.0 : clear;
+    open += blocked ? 0.0 : through;
     const auto y = table.harmonics(r);
-    for (std::size_t i = 0; i < columns; ++i) lost_[i] += missing * double{y[i]};
+    for (std::size_t i = 0; i < lost_.size(); ++i) lost_[i] += missing * double{y[i]};
+    for (std::size_t i = 0; i < gone_.size(); ++i) gone_[i] += gone * double{y[i]};
   }
   const double share = 1.0 / static_cast<double>(table.size());
-  // Losses are taken off the closed form of an open sky (y_0, then zeros), so that thin air is exact. The
-  // sums of y_i over the table, which are nearly 0, are corrected for thick air.
-  open *= share;
-  for (std::size_t i = 0; i < columns; ++i)
-    transfer[i] =
-        static_cast<float>(i == 0 ? kMeanOfBandZero * open : (1.0 - open) * table.mean(i) - lost_[i] * share);
+  const double scale = clear.empty() ? 1.0 : 4.0 * std::numbers::pi;
+  project(table, scale, open * share, lost_, transfer);
+  project(table, scale, out * share, gone_, clear);
   return {met * share, out * share};
 }
 
