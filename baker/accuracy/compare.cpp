@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <span>
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "runtime/base/finite.hpp"
+#include "runtime/spec/rec709.hpp"
 
 namespace lambent::baker {
 
@@ -122,6 +125,148 @@ Result<spec::RgbaImage> shrunk(const spec::RgbaImage& picture, std::uint32_t n, 
           sum += glm::dvec4(picture.texels[std::size_t{row} * picture.width + column]);
       out.texels.emplace_back(share * sum);
     }
+  return out;
+}
+
+namespace {
+
+using Color = std::array<std::uint8_t, 3>;
+
+// These are ColorBrewer's RdBu in 11 steps, reversed, and matplotlib's inferno (CC0) at every tenth.
+constexpr std::array<Color, 11> kSigned = {{{5, 48, 97},
+                                            {33, 102, 172},
+                                            {67, 147, 195},
+                                            {146, 197, 222},
+                                            {209, 229, 240},
+                                            {247, 247, 247},
+                                            {253, 219, 199},
+                                            {244, 165, 130},
+                                            {214, 96, 77},
+                                            {178, 24, 43},
+                                            {103, 0, 31}}};
+constexpr std::array<Color, 11> kMagnitude = {{{0, 0, 4},
+                                               {22, 11, 57},
+                                               {66, 10, 104},
+                                               {106, 23, 110},
+                                               {147, 38, 103},
+                                               {188, 55, 84},
+                                               {221, 81, 58},
+                                               {243, 120, 25},
+                                               {252, 165, 10},
+                                               {246, 215, 70},
+                                               {252, 255, 164}}};
+constexpr Color kUncovered = {48, 48, 48}, kApart = {150, 60, 220};
+constexpr float kFloor = 0.05f;  // relative to the picture's RMS luminance
+
+struct Pixels {
+  std::vector<float> values;  // values of the map in pixels that all pictures cover
+  std::vector<std::uint32_t> at, apart;
+};
+
+// Counts pixels as comparePictures() does.
+Pixels pixelsOf(const spec::RgbaImage& picture, const spec::RgbaImage& a, const spec::RgbaImage& b) {
+  Pixels out;
+  for (std::uint32_t i = 0; i < picture.texels.size(); ++i) {
+    const auto [least, most] = std::minmax({picture.texels[i].w, a.texels[i].w, b.texels[i].w});
+    if (least >= spec::kLeastCoverage)
+      out.at.push_back(i);
+    else if (most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage)
+      out.apart.push_back(i);
+  }
+  return out;
+}
+
+void measure(Pixels& pixels, const spec::RgbaImage& picture, const spec::RgbaImage& a,
+             const spec::RgbaImage& b, HeatMap map) {
+  const auto mean = [&](std::uint32_t i) { return 0.5f * (a.texels[i] + b.texels[i]); };
+  double squares = 0.0;
+  for (const std::uint32_t i : pixels.at) {
+    const double y = double{spec::luminanceOf(mean(i))};
+    squares +=
+        map == HeatMap::Signed ? y * y : double{glm::dot(glm::vec3(a.texels[i]), glm::vec3(b.texels[i]))};
+  }
+  const auto scale = std::max(
+      static_cast<float>(std::sqrt(std::max(squares, 0.0) / static_cast<double>(pixels.at.size()))), 1e-30f);
+  pixels.values.reserve(pixels.at.size());
+  for (const std::uint32_t i : pixels.at) {
+    const glm::vec4 apart = picture.texels[i] - mean(i);
+    pixels.values.push_back(map == HeatMap::Signed ? spec::luminanceOf(apart) /
+                                                         std::max(spec::luminanceOf(mean(i)), kFloor * scale)
+                                                   : glm::length(glm::vec3(apart)) / scale);
+  }
+}
+
+// Rounds up to 1, 2 or 5 times a power of ten; equal pictures get a thousandth.
+double rounded(double range) {
+  if (!(range > 1e-3)) return 1e-3;
+  const double power = std::pow(10.0, std::floor(std::log10(range)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (range <= step * power * (1.0 + 1e-9)) return step * power;
+  return 10.0 * power;
+}
+
+double rangeOf(std::span<const float> values) {
+  std::vector<float> sizes(values.size());
+  std::transform(values.begin(), values.end(), sizes.begin(), [](float v) { return std::abs(v); });
+  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), at, sizes.end());
+  return rounded(double{*at});
+}
+
+void put(spec::Rgba8Image& image, std::uint32_t i, const Color& color) {
+  std::copy(color.begin(), color.end(), image.texels.begin() + 4 * static_cast<std::ptrdiff_t>(i));
+}
+
+}  // namespace
+
+Result<HeatMap> parseHeatMap(std::string_view word) {
+  if (word == "signed") return HeatMap::Signed;
+  if (word == "magnitude") return HeatMap::Magnitude;
+  return fail("--heat-map", fmt::format("\"{}\" is not a map", word), "give signed or magnitude");
+}
+
+std::array<std::uint8_t, 3> heatColor(HeatMap map, double share) {
+  const auto& colors = map == HeatMap::Signed ? kSigned : kMagnitude;
+  const double from_0 = map == HeatMap::Signed ? 0.5 * (share + 1.0) : share;
+  const double at = std::clamp(from_0, 0.0, 1.0) * static_cast<double>(colors.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(at), colors.size() - 2);
+  Color out;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const double from = colors[low][k], to = colors[low + 1][k];
+    out[k] = static_cast<std::uint8_t>(std::lround(glm::mix(from, to, at - static_cast<double>(low))));
+  }
+  return out;
+}
+
+Result<Difference> differenceOf(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
+                                const spec::RgbaImage* reference2, const HeatOptions& options,
+                                const std::string& subject) {
+  if (options.range && !(*options.range > 0.0 && std::isfinite(*options.range)))
+    return fail("--heat-range", fmt::format("{} is not a range", *options.range),
+                "give a share above 0, as 0.1");
+  auto figures = comparePictures(picture, reference, reference2, subject);
+  if (!figures) return failAgain(std::move(figures.error()));
+  const spec::RgbaImage& second = reference2 ? *reference2 : reference;
+  Pixels pixels = pixelsOf(picture, reference, second);
+  measure(pixels, picture, reference, second, options.map);
+  Difference out{.figures = *figures,
+                 .heat = {.width = picture.width,
+                          .height = picture.height,
+                          .texels = std::vector<std::uint8_t>(4 * picture.texels.size(), 255)},
+                 .range = options.range ? *options.range : rangeOf(pixels.values)};
+  // All pixels share one table, so that colours are interpolated once.
+  constexpr int kSteps = 512;
+  std::array<Color, kSteps + 1> table;
+  const double least = options.map == HeatMap::Signed ? -1.0 : 0.0;
+  for (int k = 0; k <= kSteps; ++k)
+    table[static_cast<std::size_t>(k)] = heatColor(options.map, glm::mix(least, 1.0, k / double{kSteps}));
+  for (std::uint32_t i = 0; i < picture.texels.size(); ++i) put(out.heat, i, kUncovered);
+  for (const std::uint32_t i : pixels.apart) put(out.heat, i, kApart);
+  for (std::size_t p = 0; p < pixels.at.size(); ++p) {
+    const double share = std::clamp(double{pixels.values[p]} / out.range, least, 1.0);
+    put(out.heat, pixels.at[p],
+        table[static_cast<std::size_t>(std::lround((share - least) / (1.0 - least) * kSteps))]);
+  }
   return out;
 }
 

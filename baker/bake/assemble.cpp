@@ -1,10 +1,9 @@
-#include "baker/bake/assemble.hpp"
-
 #include <algorithm>
 #include <tuple>
 
 #include <glm/geometric.hpp>
 
+#include "baker/bake/bake_group.hpp"
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/volume_grid.hpp"

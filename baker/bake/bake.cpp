@@ -9,12 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "baker/bake/assemble.hpp"
 #include "baker/bake/bake_group.hpp"
-#include "baker/bake/bake_volume.hpp"
-#include "baker/bake/group_keys.hpp"
 #include "baker/bake/group_scene.hpp"
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "baker/bake/result_bytes.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/effects/effect_list.hpp"

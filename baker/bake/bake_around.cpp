@@ -1,9 +1,8 @@
-#include "baker/bake/bake_around.hpp"
-
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "baker/bake/bake_group.hpp"
 #include "baker/effects/neighborhood/neighborhood.hpp"
 #include "baker/jobs/stage.hpp"
 

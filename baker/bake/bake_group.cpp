@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "baker/bake/bake_around.hpp"
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/bake/result_bytes.hpp"

@@ -1,13 +1,10 @@
-#include "baker/bake/bake_unshadowed.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <utility>
 
-#include "baker/bake/assemble.hpp"
+#include "baker/bake/bake.hpp"
 #include "baker/bake/bake_group.hpp"
-#include "baker/bake/bake_volume.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/effects/volume/volume.hpp"
 #include "baker/jobs/parallel.hpp"

@@ -1,5 +1,3 @@
-#include "baker/bake/bake_volume.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "baker/bake/bake_around.hpp"
+#include "baker/bake/bake_group.hpp"
 #include "baker/bake/group_scene.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"

@@ -1,8 +1,7 @@
-#include "baker/bake/group_keys.hpp"
-
 #include <fmt/format.h>
 
 #include "baker/bake/bake.hpp"
+#include "baker/bake/group_scene.hpp"
 #include "baker/brdf/brdf_kinds.hpp"
 #include "baker/cache/key.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/accuracy/compare.hpp"
-#include "baker/accuracy/difference.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"

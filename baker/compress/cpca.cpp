@@ -11,8 +11,6 @@
 
 #include "baker/compress/cpca_clusters.hpp"
 #include "baker/compress/cpca_quantize.hpp"
-#include "baker/compress/cpca_space.hpp"
-#include "baker/compress/cpca_spectrum.hpp"
 #include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {

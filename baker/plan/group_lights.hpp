@@ -31,7 +31,7 @@ struct PlannedLight {
   std::uint32_t index = 0;  // into the scene's materials or nodes
   glm::vec3 color{1.0f};    // strength as in the file: radiance, or colour x intensity of a punctual light
   glm::mat4 group_from_node{1.0f};  // used for punctual lights only
-  // Used for materials only: the spheres as which it emits, if it does (group_lights.hpp).
+  // Used for materials only: the spheres as which it emits, if it does.
   std::vector<bundle::LampSphere> spheres{};
 };
 

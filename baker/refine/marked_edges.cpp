@@ -1,5 +1,3 @@
-#include "baker/refine/marked_edges.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/import/mesh_edits.hpp"
+#include "baker/refine/group_refiner.hpp"
 #include "baker/transport/face_points.hpp"
 #include "baker/transport/samples.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "baker/jobs/stage.hpp"
 #include "baker/refine/group_refiner.hpp"
-#include "baker/refine/marked_edges.hpp"
 #include "baker/refine/probed_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 

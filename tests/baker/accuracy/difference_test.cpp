@@ -1,8 +1,8 @@
-#include "baker/accuracy/difference.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "baker/accuracy/compare.hpp"
 
 namespace lambent::baker {
 namespace {

@@ -1,6 +1,6 @@
-#include "baker/accuracy/perceptual.hpp"
-
 #include <gtest/gtest.h>
+
+#include "baker/accuracy/compare.hpp"
 
 namespace lambent::baker {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/group_keys.hpp"
+#include "baker/bake/group_scene.hpp"
 #include "tests/support/material_values.hpp"
 #include "tests/support/shapes.hpp"
 

@@ -1,10 +1,10 @@
 // Checks that every row of the table of options is read, written, validated and recorded.
-#include "baker/bake/option_rows.hpp"
-
 #include <map>
 #include <set>
 
 #include <gtest/gtest.h>
+
+#include "baker/bake/options.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -57,7 +57,7 @@ TEST(OptionRows, TakeEveryWordAndGiveItBack) {
     BakeOptions usual;
     ASSERT_TRUE(row.read(options, row.word(usual))) << row.name << " by the word for its default";
     EXPECT_EQ(row.word(options), row.word(usual)) << row.name;
-    for (const std::string_view word : row.words) {
+    for (const auto& [word, value] : row.words) {
       ASSERT_TRUE(row.put(options, word)) << row.name << " " << word;
       EXPECT_EQ(row.word(options), word) << row.name;
     }

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/bake/bake_volume.hpp"
+#include "baker/bake/bake_group.hpp"
 #include "runtime/bundle/container.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/shapes.hpp"

@@ -1,5 +1,3 @@
-#include "baker/light_probes/blend_weights.hpp"
-
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -8,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "baker/light_probes/light_probes.hpp"
 #include "tests/support/differences.hpp"
 
 namespace lambent::baker {

@@ -3,8 +3,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "baker/light_probes/blend_weights.hpp"
-#include "baker/light_probes/light_points.hpp"
+#include "baker/light_probes/light_probes.hpp"
 #include "baker/transport/face_points.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"

@@ -1,10 +1,10 @@
-#include "baker/light_probes/light_points.hpp"
-
 #include <algorithm>
 #include <random>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+
+#include "baker/light_probes/light_probes.hpp"
 
 namespace lambent::baker {
 namespace {
