@@ -1,9 +1,6 @@
 #include "baker/bake/bake.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -12,7 +9,6 @@
 #include "baker/bake/bake_group.hpp"
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/options.hpp"
-#include "baker/bake/result_bytes.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/effects/effect_list.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
@@ -24,6 +20,18 @@
 #include "runtime/bundle/container.hpp"
 
 namespace lambent::baker {
+
+template <>
+inline constexpr auto kKeptMembers<bundle::BrdfTable> =
+    std::tuple(&bundle::BrdfTable::order, &bundle::BrdfTable::lobes, &bundle::BrdfTable::angles,
+               &bundle::BrdfTable::azimuths, &bundle::BrdfTable::roughnesses, &bundle::BrdfTable::strengths,
+               &bundle::BrdfTable::values);
+template <>
+inline constexpr auto kKeptMembers<BrdfTables::Entry> = std::tuple(&BrdfTables::Entry::family,
+                                                                   &BrdfTables::Entry::name,
+                                                                   &BrdfTables::Entry::table);
+template <>
+inline constexpr auto kKeptMembers<BrdfTables> = std::tuple(&BrdfTables::of_material, &BrdfTables::entries);
 
 namespace {
 
@@ -69,32 +77,6 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
   return shipMeshes(scene, plan.groups, std::move(*split), context);
 }
 
-struct BakedScene {
-  ShippedMeshes meshes;
-  std::vector<BakedGroup> groups;
-  BakeReport report;
-};
-
-Result<BakedScene> bakeAll(const SceneBake& whole, const AlphaMaps& alpha_maps, DecodedImages& images,
-                           const BakeContext& context) {
-  context.progress.beginPart();
-  BakedScene baked;
-  auto meshes = meshesOf(whole, alpha_maps, images, context, baked.report.refinement);
-  if (!meshes) return failAgain(meshes.error());
-  baked.meshes = std::move(*meshes);
-  for (std::size_t g = 0; g < whole.plan.groups.size(); ++g) {
-    context.progress.beginPart();
-    auto group = whole.plan.groups[g].volume >= 0
-                     ? bakeVolume(whole, alpha_maps, g, baked.groups, context)
-                     : bakeGroup(whole, {baked.meshes, alpha_maps, images}, g, context);
-    if (!group) return failAgain(group.error());
-    baked.report.add(std::move(group->report));
-    baked.groups.push_back(std::move(*group));
-  }
-  if (context.stopped()) return whole.stopped();
-  return baked;
-}
-
 Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
                                       const std::filesystem::path& output, const BakeContext& context) {
   context.progress.begin("plan");
@@ -108,13 +90,23 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   if (!tables) return failAgain(tables.error());
 
   const SceneBake whole{scene, options, *plan, *tables};
-  auto baked = bakeAll(whole, *alpha_maps, images, context);
-  if (!baked) return failAgain(baked.error());
+  BakeReport report;
+  context.progress.beginPart();
+  auto meshes = meshesOf(whole, *alpha_maps, images, context, report.refinement);
+  if (!meshes) return failAgain(meshes.error());
+  std::vector<BakedGroup> groups;
+  for (std::size_t g = 0; g < plan->groups.size(); ++g) {
+    context.progress.beginPart();
+    auto group = plan->groups[g].volume >= 0
+                     ? bakeVolume(whole, *alpha_maps, g, groups, context, report)
+                     : bakeGroup(whole, {*meshes, *alpha_maps, images}, g, context, report);
+    if (!group) return failAgain(group.error());
+    groups.push_back(std::move(*group));
+  }
+  if (context.stopped()) return whole.stopped();
   context.progress.beginPart();
   context.progress.begin("writing");
-  AssembledBundle bundle = assemble(whole, std::move(baked->meshes), baked->groups);
-  BakeReport report = std::move(baked->report);
-  report.add(std::move(bundle.report));
+  AssembledBundle bundle = assemble(whole, std::move(*meshes), groups, report);
   // What cannot be opened must not take the place of a bundle that can.
   const auto opens = [](const std::filesystem::path& part) -> Result<void> {
     if (const auto reader = bundle::Reader::open(part); !reader) return failAgain(reader.error());
@@ -152,23 +144,6 @@ Result<void> leaveNeighborhoods(EffectPlan& plan, int order) {
 }
 
 }  // namespace
-
-void BakeReport::add(BakeReport part) {
-  vertices += part.vertices, triangles += part.triangles, samples += part.samples;
-  filled_samples += part.filled_samples, texel_samples += part.texel_samples;
-  rays += part.rays, rays_kept += part.rays_kept, ray_seconds += part.ray_seconds;
-  mesh_bytes += part.mesh_bytes, transfer_bytes += part.transfer_bytes;
-  proxy_bytes += part.proxy_bytes, image_bytes += part.image_bytes;
-  glossy_samples += part.glossy_samples, lights += part.lights;
-  hit_bytes = std::max(hit_bytes, part.hit_bytes);
-  worst_error = std::max(worst_error, part.worst_error);
-  worst_glossy_error = std::max(worst_glossy_error, part.worst_glossy_error);
-  left_out = std::max(left_out, part.left_out);
-  if (part.pass_energy.size() > pass_energy.size()) pass_energy = std::move(part.pass_energy);
-  const auto append = [](auto&& from, auto& to) { std::ranges::move(from, std::back_inserter(to)); };
-  append(part.groups, groups), append(part.neighborhoods, neighborhoods);
-  append(part.volumes, volumes), append(part.notices, notices);
-}
 
 const char* reuseName(Reuse reuse) {
   switch (reuse) {

@@ -81,9 +81,6 @@ struct BakeReport {
   std::vector<Progress::Stage> stages;
   CacheFigures cache;                // what was read and written; zeros without a cache
   std::vector<std::string> notices;  // sentences about results that differ from the plan
-
-  // Adds what a part of the bake has to report.
-  void add(BakeReport part);
 };
 
 // Bakes the scene into a bundle at `output`. Results are looked up in the cache of the context and kept

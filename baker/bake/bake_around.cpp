@@ -18,7 +18,7 @@ constexpr double kShareOfBound = 1.0 / 3.0;
 constexpr double kBoundByHand = 0.03;
 
 void take(const Around& around, BakedAround baked, BakedGroup& out) {
-  BakeReport& report = out.report;
+  BakeReport& report = around.report;
   const std::string& name = around.bake.plan.groups[around.group].name;
   if (!baked.grid) {
     report.notices.push_back(fmt::format(

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/options.hpp"
-#include "baker/bake/result_bytes.hpp"
-#include "baker/bake/surface_transport.hpp"
 #include "baker/brdf/kernel_power.hpp"
 #include "baker/cache/bytes.hpp"
 #include "baker/compress/kept_transfer.hpp"
@@ -21,17 +21,50 @@
 
 namespace lambent::baker {
 
+template <>
+inline constexpr auto kKeptMembers<LightProbes::Cell> = std::tuple(&LightProbes::Cell::points,
+                                                                   &LightProbes::Cell::weights);
+template <>
+inline constexpr auto kKeptMembers<LightProbes> = std::tuple(&LightProbes::points, &LightProbes::cells);
+
+template <>
+inline constexpr auto kKeptMembers<bundle::ProxyTriangle> = std::tuple(
+    &bundle::ProxyTriangle::vertices, &bundle::ProxyTriangle::front_only, &bundle::ProxyTriangle::emission,
+    &bundle::ProxyTriangle::light, &bundle::ProxyTriangle::first_entry, &bundle::ProxyTriangle::entry_count);
+template <>
+inline constexpr auto kKeptMembers<bundle::ProxyEntry> = std::tuple(&bundle::ProxyEntry::sample,
+                                                                    &bundle::ProxyEntry::reflectance);
+template <>
+inline constexpr auto kKeptMembers<bundle::ProxyLevel> = std::tuple(&bundle::ProxyLevel::first_triangle,
+                                                                    &bundle::ProxyLevel::triangle_count,
+                                                                    &bundle::ProxyLevel::error_m);
+template <>
+inline constexpr auto kKeptMembers<bundle::PatchTriangle> = std::tuple(&bundle::PatchTriangle::vertices,
+                                                                       &bundle::PatchTriangle::front_only,
+                                                                       &bundle::PatchTriangle::albedo,
+                                                                       &bundle::PatchTriangle::detail);
+template <>
+inline constexpr auto kKeptMembers<bundle::PatchSurface> = std::tuple(&bundle::PatchSurface::positions,
+                                                                      &bundle::PatchSurface::triangles,
+                                                                      &bundle::PatchSurface::error_m);
+template <>
+inline constexpr auto kKeptMembers<bundle::CaptureProxy> = std::tuple(&bundle::CaptureProxy::positions,
+                                                                      &bundle::CaptureProxy::triangles,
+                                                                      &bundle::CaptureProxy::entries,
+                                                                      &bundle::CaptureProxy::levels,
+                                                                      &bundle::CaptureProxy::patches);
+
+template <>
+inline constexpr auto kKeptMembers<SurfaceFigures> = std::tuple(
+    &SurfaceFigures::filled_samples, &SurfaceFigures::glossy_samples, &SurfaceFigures::hit_bytes,
+    &SurfaceFigures::worst_error, &SurfaceFigures::worst_glossy_error, &SurfaceFigures::left_out,
+    &SurfaceFigures::pass_energy, &SurfaceFigures::diffuse, &SurfaceFigures::glossy,
+    &SurfaceFigures::picture_error, &SurfaceFigures::codes_bound, &SurfaceFigures::glossy_codes_bound);
+template <>
+inline constexpr auto kKeptMembers<SurfaceCells> = std::tuple(&SurfaceCells::cells, &SurfaceCells::importance,
+                                                              &SurfaceCells::figures);
+
 namespace {
-
-// Codes the transfer of a group's surfaces: all that the group hands to the bundle of it.
-
-struct SurfaceCells {
-  // Transfers of each sample cell: that of the environment (for a glossy cell visibility, then bounced
-  // light), followed by that of the group's lights if it has any.
-  std::vector<std::vector<CodedTransfer>> cells;
-  std::vector<std::uint8_t> importance;  // of each sample (description.hpp)
-  SurfaceFigures figures;
-};
 
 // The share of visibility in the bound on glossy light, where light bounces: halving the error costs
 // visibility a dozen bytes a vertex, and bounced light of sharp metals a hundred
@@ -145,32 +178,6 @@ std::vector<std::uint8_t> importanceCodes(const GroupScene& group) {
   return codes;
 }
 
-void write(const SurfaceCells& cells, ByteWriter& out) {
-  const SurfaceFigures& figures = cells.figures;
-  write(cells.cells, out);
-  out.addList(cells.importance);
-  out.add(figures.filled_samples), out.add(figures.glossy_samples), out.add(figures.hit_bytes);
-  out.add(figures.worst_error), out.add(figures.worst_glossy_error), out.add(figures.left_out);
-  out.addList(figures.pass_energy);
-  out.add(figures.diffuse.traced + figures.diffuse.kept);
-  out.add(figures.glossy.traced + figures.glossy.kept);
-  out.add(figures.picture_error.value_or(bundle::PictureError{}));
-  out.add(figures.codes_bound), out.add(figures.glossy_codes_bound);
-}
-
-bool read(ByteReader& in, SurfaceCells& cells) {
-  SurfaceFigures& figures = cells.figures;
-  bundle::PictureError error;
-  const bool whole =
-      read(in, cells.cells) && in.readList(cells.importance) && in.read(figures.filled_samples) &&
-      in.read(figures.glossy_samples) && in.read(figures.hit_bytes) && in.read(figures.worst_error) &&
-      in.read(figures.worst_glossy_error) && in.read(figures.left_out) && in.readList(figures.pass_energy) &&
-      in.read(figures.diffuse.kept) && in.read(figures.glossy.kept) && in.read(error) &&
-      in.read(figures.codes_bound) && in.read(figures.glossy_codes_bound);
-  if (whole && error.points > 0) figures.picture_error = error;
-  return whole;
-}
-
 // Returns nothing if stopped.
 std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceTransport& light,
                                          CachedCoding& coding, Progress& progress) {
@@ -236,44 +243,53 @@ Result<bundle::CaptureProxy> proxyOf(GroupScene& group, const BakeContext& conte
   return proxy;
 }
 
-// Returns what there is to report of a group and its samples.
-BakeReport reportOf(const GroupScene& group, const BakedGroup& baked) {
-  BakeReport report;
-  report.vertices = group.geometry.positions.size();
-  report.triangles = group.geometry.triangles.size();
-  report.samples = group.samples.size();
-  report.lights = group.lights.size();
-  report.notices = group.notices;
-  BakeReport::Group& told = report.groups.emplace_back();
-  told.name = group.group.name;
-  told.light_probes = baked.light_probes.points.size();
+// Adds to the report what there is to say of a group and its samples.
+void reportGroup(const GroupScene& group, const BakedGroup& baked, BakeReport& report) {
+  report.vertices += group.geometry.positions.size();
+  report.triangles += group.geometry.triangles.size();
+  report.samples += group.samples.size();
+  report.lights += group.lights.size();
+  std::ranges::copy(group.notices, std::back_inserter(report.notices));
+  BakeReport::Group& own = report.groups.emplace_back();
+  own.name = group.group.name;
+  own.light_probes = baked.light_probes.points.size();
   for (const bundle::ProxyLevel& level : baked.proxy.levels)
-    told.proxy_triangles.push_back(level.triangle_count);
-  return report;
+    own.proxy_triangles.push_back(level.triangle_count);
 }
 
-// Adds to the report what it says of the light of surfaces, and of what each effect cost.
-void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, BakeReport& report) {
-  BakeReport::Group& told = report.groups.back();
-  report.filled_samples = figures.filled_samples;
-  report.glossy_samples = figures.glossy_samples;
-  report.hit_bytes = figures.hit_bytes;
-  report.worst_error = figures.worst_error;
-  report.worst_glossy_error = figures.worst_glossy_error;
-  report.left_out = figures.left_out;
-  told.picture_error = figures.picture_error;
-  told.codes_bound = figures.codes_bound, told.glossy_codes_bound = figures.glossy_codes_bound;
-  report.pass_energy = figures.pass_energy;
-  report.ray_seconds = figures.ray_seconds;
+// Adds to the report what it says of the light of the last group's surfaces, and of what each effect cost.
+void reportSurfaces(const GroupScene& group, const SurfaceFigures& figures, bool found, BakeReport& report) {
+  report.filled_samples += figures.filled_samples;
+  report.glossy_samples += figures.glossy_samples;
+  report.hit_bytes = std::max(report.hit_bytes, figures.hit_bytes);
+  report.worst_error = std::max(report.worst_error, figures.worst_error);
+  report.worst_glossy_error = std::max(report.worst_glossy_error, figures.worst_glossy_error);
+  report.left_out = std::max(report.left_out, figures.left_out);
+  report.ray_seconds += figures.ray_seconds;
+  if (figures.pass_energy.size() > report.pass_energy.size()) report.pass_energy = figures.pass_energy;
+  BakeReport::Group& own = report.groups.back();
+  own.picture_error = figures.picture_error;
+  own.codes_bound = figures.codes_bound, own.glossy_codes_bound = figures.glossy_codes_bound;
   const auto add = [&](const char* name, const SurfaceFigures::Rays& rays) {
     const Reuse reuse = found                               ? Reuse::Found
                         : rays.traced > 0 || rays.kept == 0 ? Reuse::Baked
                                                             : Reuse::Regathered;
-    told.effects.push_back({name, reuse, rays.traced, rays.kept});
+    own.effects.push_back({name, reuse, rays.traced, rays.kept});
     report.rays += rays.traced, report.rays_kept += rays.kept;
   };
   if (group.anyDiffuse()) add("diffuse", figures.diffuse);
   if (group.anyGlossy()) add("glossy", figures.glossy);
+}
+
+// Finds the cells in the cache. Returns false if there are none.
+bool findSurfaces(const BakeContext& context, SurfaceCells& cells) {
+  if (!findKept(context, cells)) {
+    cells = {};
+    return false;
+  }
+  for (SurfaceFigures::Rays* rays : {&cells.figures.diffuse, &cells.figures.glossy})
+    rays->kept += std::exchange(rays->traced, 0);
+  return true;
 }
 
 // Bakes the neighborhood of surfaces whose light is baked. Returns false if stopped.
@@ -290,57 +306,47 @@ bool bakeAroundSurfaces(const Around& around, const GroupScene& group, const Sur
 }  // namespace
 
 Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs, std::size_t index,
-                             const BakeContext& context) {
+                             const BakeContext& context, BakeReport& report) {
   GroupScene group(bake, inputs, index, context);
   BakedGroup baked;
   baked.light_probes = lightProbesOf(group, context);
   auto proxy = proxyOf(group, context);
   if (!proxy) return failAgain(proxy.error());
   baked.proxy = std::move(*proxy);
-  baked.report = reportOf(group, baked);
-  const auto finished = [&] {
-    baked.geometry = std::move(group.geometry);
-    baked.samples = std::move(group.samples);
-    baked.lights = std::move(group.lights);
-    return std::move(baked);
-  };
+  reportGroup(group, baked, report);
 
   // A result that is found needs neither colours nor rays. The body sends the light that the cells were coded
   // from, so their key serves the neighborhood too.
   const BakeContext cells_context = context.keyed(group.keys.cells);
-  const Around around{bake, index, group.geometry.origin, raysAroundSurfaces(bake.options)};
+  const Around around{bake, index, group.geometry.origin, raysAroundSurfaces(bake.options), report};
   const BakeContext around_context = contextOf(around, cells_context);
-  SurfaceCells cells;
-  const bool found = findKept(cells_context, cells);
-  if (found) tell(group, cells.figures, found, baked.report);
-  const bool any_around = bake.plan.neighborhoods[index].baked && !group.geometry.triangles.empty();
-  const bool around_found = any_around && findAround(around, around_context, baked);
-  const auto take = [&](SurfaceCells& from) {
-    baked.cells = std::move(from.cells);
-    baked.importance = std::move(from.importance);
-    baked.picture_error = from.figures.picture_error;
-    baked.codes_bound = from.figures.codes_bound, baked.glossy_codes_bound = from.figures.glossy_codes_bound;
-  };
-  if (found) take(cells);
-  if (found && (!any_around || around_found)) return finished();
-  if (auto prepared = group.prepareRays(context); !prepared) return failAgain(prepared.error());
-  const auto light = transportLight(group, context);
-  if (!light) return bake.stopped();
-  if (!found) {
-    CachedCoding coding(context);
-    auto coded = codeSurfaces(group, *light, coding, context.progress);
-    if (!coded) return bake.stopped();
-    tell(group, coded->figures, found, baked.report);
-    keepValue(cells_context, *coded);
-    coding.drop();
-    take(*coded);
-  } else {
-    baked.report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
+  const bool found = findSurfaces(cells_context, baked.surfaces);
+  if (found) reportSurfaces(group, baked.surfaces.figures, found, report);
+  const bool bakes_around =
+      around.plan().baked && !group.geometry.triangles.empty() && !findAround(around, around_context, baked);
+  if (!found || bakes_around) {
+    if (auto prepared = group.prepareRays(context); !prepared) return failAgain(prepared.error());
+    const auto light = transportLight(group, context);
+    if (!light) return bake.stopped();
+    if (found) {
+      report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
+    } else {
+      CachedCoding coding(context);
+      auto coded = codeSurfaces(group, *light, coding, context.progress);
+      if (!coded) return bake.stopped();
+      baked.surfaces = std::move(*coded);
+      reportSurfaces(group, baked.surfaces.figures, found, report);
+      keepValue(cells_context, baked.surfaces);
+      coding.drop();
+    }
+    if (bakes_around && !bakeAroundSurfaces(around, group, *light, around_context, baked))
+      return bake.stopped();
+    dropTransport(group, *light, context);
   }
-  if (any_around && !around_found && !bakeAroundSurfaces(around, group, *light, around_context, baked))
-    return bake.stopped();
-  dropTransport(group, *light, context);
-  return finished();
+  baked.geometry = std::move(group.geometry);
+  baked.samples = std::move(group.samples);
+  baked.lights = std::move(group.lights);
+  return baked;
 }
 
 }  // namespace lambent::baker

@@ -50,7 +50,7 @@ BakedGroup openSurfaces(const Scene& scene, const RigidGroup& group, const Shipp
   baked.light_probes.cells.push_back({{0}, {}});
   baked.samples.positions.push_back(center);
   baked.samples.cells.push_back({0, 1, center, center, SampleKind::Diffuse});
-  baked.cells.push_back({openTransfer(options.order, 1)});
+  baked.surfaces.cells.push_back({openTransfer(options.order, 1)});
   baked.samples.vertex_sample.assign(baked.geometry.positions.size(), kNoSample);
   return baked;
 }
@@ -92,8 +92,7 @@ Result<BakeReport> bakeUnshadowedOnTheseThreads(const Scene& scene, const BakeOp
     report.triangles += baked.back().geometry.triangles.size();
   }
   const SceneBake whole{scene, options, *plan, tables};
-  AssembledBundle bundle = assemble(whole, std::move(*meshes), baked);
-  report.add(std::move(bundle.report));
+  AssembledBundle bundle = assemble(whole, std::move(*meshes), baked, report);
   bundle.description.generator.settings["transfer"] = "none";
   if (context.stopped()) return whole.stopped();
   if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs); !written)

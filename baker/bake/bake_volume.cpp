@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -17,6 +18,22 @@
 #include "runtime/base/process.hpp"
 
 namespace lambent::baker {
+
+// A CodedVolume is what of a volume goes into the bundle, and what the report says of it.
+struct CodedVolume {
+  std::vector<std::uint32_t> voxels;
+  std::vector<CodedCell> cells;
+  double worst_error = 0.0, worst_glossy_error = 0.0, residual = 0.0;
+  std::uint64_t rays = 0, rays_kept = 0, row_bytes = 0;
+  int iterations = 0;
+};
+template <>
+inline constexpr auto kKeptMembers<CodedVolume> = std::tuple(&CodedVolume::voxels, &CodedVolume::cells,
+                                                             &CodedVolume::worst_error,
+                                                             &CodedVolume::worst_glossy_error,
+                                                             &CodedVolume::residual, &CodedVolume::rays,
+                                                             &CodedVolume::rays_kept, &CodedVolume::row_bytes,
+                                                             &CodedVolume::iterations);
 
 namespace {
 
@@ -96,28 +113,6 @@ transfer::TransferShape shapeOf(const VolumeTransfer& transfer) {
   shape.full_channels = transfer.full_channels;
   shape.outputs = static_cast<std::uint32_t>(transfer.outputs());
   return shape;
-}
-
-// A CodedVolume is what of a volume goes into the bundle, and what the report says of it.
-struct CodedVolume {
-  std::vector<std::uint32_t> voxels;
-  std::vector<CodedCell> cells;
-  double worst_error = 0.0, worst_glossy_error = 0.0, residual = 0.0;
-  std::uint64_t rays = 0, rays_kept = 0, row_bytes = 0;
-  int iterations = 0;
-};
-
-void write(const CodedVolume& coded, ByteWriter& out) {
-  out.addList(coded.voxels);
-  write(coded.cells, out);
-  out.add(coded.worst_error), out.add(coded.worst_glossy_error), out.add(coded.residual);
-  out.add(coded.rays + coded.rays_kept), out.add(coded.row_bytes), out.add(coded.iterations);
-}
-
-bool read(ByteReader& in, CodedVolume& coded) {
-  return in.readList(coded.voxels) && read(in, coded.cells) && in.read(coded.worst_error) &&
-         in.read(coded.worst_glossy_error) && in.read(coded.residual) && in.read(coded.rays_kept) &&
-         in.read(coded.row_bytes) && in.read(coded.iterations);
 }
 
 class VolumeCoder {
@@ -263,13 +258,13 @@ Result<VolumeTransfer> transferOf(const PlacedVolume& placed, const BakeContext&
   return std::move(*transfer);
 }
 
-void tellVolume(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDensity& density,
-                const std::string& name, BakeReport& report) {
-  report.worst_error = coded.worst_error;
-  report.worst_glossy_error = coded.worst_glossy_error;
-  report.samples = coded.voxels.size();
-  report.rays = coded.rays;
-  report.rays_kept = coded.rays_kept;
+void reportVolume(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDensity& density,
+                  const std::string& name, BakeReport& report) {
+  report.worst_error = std::max(report.worst_error, coded.worst_error);
+  report.worst_glossy_error = std::max(report.worst_glossy_error, coded.worst_glossy_error);
+  report.samples += coded.voxels.size();
+  report.rays += coded.rays;
+  report.rays_kept += coded.rays_kept;
   report.volumes.push_back({.name = volume.name,
                             .voxels = volume.density.size(),
                             .samples = coded.voxels.size(),
@@ -329,7 +324,8 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
 }
 
 Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
-                              const std::vector<BakedGroup>& baked, const BakeContext& context) {
+                              const std::vector<BakedGroup>& baked, const BakeContext& context,
+                              BakeReport& report) {
   const auto& [scene, options, plan, tables] = bake;
   const RigidGroup& group = plan.groups[index];
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
@@ -355,7 +351,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
                              .fit_within_voxels = true}};
   const BakeContext own =
       context.keyed(context.cache ? transferKey(scene, out, placed.settings, placed.within) : Key{});
-  const Around around{bake, index, glm::vec3(0.0f), raysAroundVolumes(options)};
+  const Around around{bake, index, glm::vec3(0.0f), raysAroundVolumes(options), report};
   const BakeContext around_context = contextOf(around, own);
 
   CodedVolume coded;
@@ -363,7 +359,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   // The transfer is baked only if a result that follows from it is not in the cache.
   std::optional<MarchedVolume> light;
   const auto bakeLight = [&](const auto& use) -> Result<void> {
-    auto transfer = transferOf(placed, own, result.report.ray_seconds);
+    auto transfer = transferOf(placed, own, report.ray_seconds);
     if (!transfer) return failAgain(transfer.error());
     if (!use(*transfer)) return bake.stopped();
     light.emplace(std::move(*transfer));
@@ -380,8 +376,9 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
     return made.has_value();
   });
   if (!found) return failAgain(made.error());
+  if (*found) coded.rays_kept += std::exchange(coded.rays, 0);
   coding.drop();
-  tellVolume(coded, volume, density, group.name, result.report);
+  reportVolume(coded, volume, density, group.name, report);
   out.voxels = std::move(coded.voxels);
   out.cells = std::move(coded.cells);
 

@@ -22,12 +22,6 @@ namespace lambent::baker {
 
 template <>
 inline constexpr bool kPlainBytes<bundle::PictureError> = true;
-inline void write(const bundle::PictureError& error, ByteWriter& out) {
-  out.add(error);
-}
-inline bool read(ByteReader& in, bundle::PictureError& error) {
-  return in.read(error);
-}
 
 // The same points, traced with as many rays as vertices, whose noise they tell, and with many. Null without
 // surfaces of the kind in the group.

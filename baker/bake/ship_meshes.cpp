@@ -13,7 +13,6 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "baker/bake/result_bytes.hpp"
 #include "baker/compress/draco_encode.hpp"
 #include "baker/import/details.hpp"
 #include "baker/import/mesh_edits.hpp"
@@ -22,6 +21,10 @@
 #include "baker/transport/geometry_key.hpp"
 
 namespace lambent::baker {
+
+template <>
+inline constexpr auto kKeptMembers<EncodedMesh> = std::tuple(&EncodedMesh::bytes, &EncodedMesh::attributes,
+                                                             &EncodedMesh::decoded);
 
 namespace {
 

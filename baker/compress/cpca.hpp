@@ -47,9 +47,8 @@ struct CodedTransfer {
 inline constexpr std::uint32_t kUsualComponents = 128, kAllComponents = 1u << 16;
 
 struct CodingSettings {
-  float bound = 0.005f;        // > 0
-  std::uint32_t clusters = 0;  // 0 means whatever codes to the fewest bytes
-  int axes = -1;               // of every cluster, whatever the bound; -1 means as many as the bound needs
+  float bound = 0.005f;                              // > 0
+  std::uint32_t clusters = 0;                        // 0 means whatever codes to the fewest bytes
   std::uint32_t most_components = kUsualComponents;  // for long vectors (matrices)
   // If this is above `bound`, and most_components leave out more than this, all components are used and this
   // bound is kept instead.

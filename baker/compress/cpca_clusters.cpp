@@ -23,13 +23,18 @@ constexpr Eigen::Index kShortPoints = 320;    // up to this length all component
 constexpr Eigen::Index kFirstSketch = 64;
 constexpr double kOnlyRounding = 1e-12;  // relative to the largest variance; points are floats
 
-// Returns a number with mean 0 and variance 1 from a counter (splitmix64). Two-valued numbers sketch as well
-// as normal ones.
-float sign(std::uint64_t counter) {
+// Hashes a counter (splitmix64; Steele, Lea and Flood 2014).
+std::uint64_t splitMix(std::uint64_t counter) {
   std::uint64_t z = (counter + 1) * 0x9e3779b97f4a7c15ull;
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ull;
   z = (z ^ z >> 27) * 0x94d049bb133111ebull;
-  return (z ^ z >> 31) & 1 ? 1.0f : -1.0f;
+  return z ^ z >> 31;
+}
+
+// Returns a number with mean 0 and variance 1 from a counter. Two-valued numbers sketch as well as normal
+// ones.
+float sign(std::uint64_t counter) {
+  return splitMix(counter) & 1 ? 1.0f : -1.0f;
 }
 
 // Returns E[x xᵀ] times a few columns. Ranges are added in order, so the result is the same for any number of
@@ -178,12 +183,9 @@ double bitPrice(double step) {
   return 2.0 * std::numbers::ln2 * step * step / 12.0;
 }
 
-// Returns a number in 0..1 from a counter (splitmix64).
+// Returns a number in 0..1 from a counter.
 double hashed(std::uint64_t counter) {
-  std::uint64_t z = (counter + 1) * 0x9e3779b97f4a7c15ull;
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ z >> 27) * 0x94d049bb133111ebull;
-  return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53;
+  return static_cast<double>(splitMix(counter) >> 11) * 0x1p-53;
 }
 
 double expectedError(const Cluster& cluster, double common_step) {
@@ -324,15 +326,6 @@ std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool hel
 
 void keepAxes(std::vector<Cluster>& clusters, double step) {
   parallelRanges(clusters.size(), 1, {}, [&](std::size_t c, std::size_t) { keepAxesOf(clusters[c], step); });
-}
-
-void keepSoMany(std::vector<Cluster>& clusters, int axes) {
-  for (Cluster& cluster : clusters) {
-    cluster.kept = 0;
-    while (cluster.kept < std::min<Eigen::Index>(axes, cluster.variances.size()) &&
-           cluster.variances(cluster.kept) > 0.0)
-      ++cluster.kept;
-  }
 }
 
 double stepFor(std::vector<Cluster>& clusters, double budget) {

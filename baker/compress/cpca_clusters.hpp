@@ -114,9 +114,6 @@ double axisGrid(Eigen::Index rank, double variance, double step, double count);
 // Decides which axes are worth their bits.
 void keepAxes(std::vector<Cluster>& clusters, double step);
 
-// Keeps the first `axes` axes of each cluster, as far as they have any variance.
-void keepSoMany(std::vector<Cluster>& clusters, int axes);
-
 // Returns the largest step for which the expected mean square error stays under `budget`, and keeps axes for
 // it.
 double stepFor(std::vector<Cluster>& clusters, double budget);
