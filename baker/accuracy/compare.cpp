@@ -132,8 +132,8 @@ namespace {
 
 using Color = std::array<std::uint8_t, 3>;
 
-// These are ColorBrewer's RdBu in 11 steps, reversed, and matplotlib's inferno (CC0) at every tenth.
-constexpr std::array<Color, 11> kSigned = {{{5, 48, 97},
+// ColorBrewer's RdBu in 11 steps, reversed.
+constexpr std::array<Color, 11> kColors = {{{5, 48, 97},
                                             {33, 102, 172},
                                             {67, 147, 195},
                                             {146, 197, 222},
@@ -144,17 +144,6 @@ constexpr std::array<Color, 11> kSigned = {{{5, 48, 97},
                                             {214, 96, 77},
                                             {178, 24, 43},
                                             {103, 0, 31}}};
-constexpr std::array<Color, 11> kMagnitude = {{{0, 0, 4},
-                                               {22, 11, 57},
-                                               {66, 10, 104},
-                                               {106, 23, 110},
-                                               {147, 38, 103},
-                                               {188, 55, 84},
-                                               {221, 81, 58},
-                                               {243, 120, 25},
-                                               {252, 165, 10},
-                                               {246, 215, 70},
-                                               {252, 255, 164}}};
 constexpr Color kUncovered = {48, 48, 48}, kApart = {150, 60, 220};
 constexpr float kFloor = 0.05f;  // relative to the picture's RMS luminance
 
@@ -177,23 +166,19 @@ Pixels pixelsOf(const spec::RgbaImage& picture, const spec::RgbaImage& a, const 
 }
 
 void measure(Pixels& pixels, const spec::RgbaImage& picture, const spec::RgbaImage& a,
-             const spec::RgbaImage& b, HeatMap map) {
+             const spec::RgbaImage& b) {
   const auto mean = [&](std::uint32_t i) { return 0.5f * (a.texels[i] + b.texels[i]); };
   double squares = 0.0;
   for (const std::uint32_t i : pixels.at) {
     const double y = double{spec::luminanceOf(mean(i))};
-    squares +=
-        map == HeatMap::Signed ? y * y : double{glm::dot(glm::vec3(a.texels[i]), glm::vec3(b.texels[i]))};
+    squares += y * y;
   }
-  const auto scale = std::max(
-      static_cast<float>(std::sqrt(std::max(squares, 0.0) / static_cast<double>(pixels.at.size()))), 1e-30f);
+  const auto scale =
+      std::max(static_cast<float>(std::sqrt(squares / static_cast<double>(pixels.at.size()))), 1e-30f);
   pixels.values.reserve(pixels.at.size());
-  for (const std::uint32_t i : pixels.at) {
-    const glm::vec4 apart = picture.texels[i] - mean(i);
-    pixels.values.push_back(map == HeatMap::Signed ? spec::luminanceOf(apart) /
-                                                         std::max(spec::luminanceOf(mean(i)), kFloor * scale)
-                                                   : glm::length(glm::vec3(apart)) / scale);
-  }
+  for (const std::uint32_t i : pixels.at)
+    pixels.values.push_back(spec::luminanceOf(picture.texels[i] - mean(i)) /
+                            std::max(spec::luminanceOf(mean(i)), kFloor * scale));
 }
 
 // Rounds up to 1, 2 or 5 times a power of ten; equal pictures get a thousandth.
@@ -219,53 +204,44 @@ void put(spec::Rgba8Image& image, std::uint32_t i, const Color& color) {
 
 }  // namespace
 
-Result<HeatMap> parseHeatMap(std::string_view word) {
-  if (word == "signed") return HeatMap::Signed;
-  if (word == "magnitude") return HeatMap::Magnitude;
-  return fail("--heat-map", fmt::format("\"{}\" is not a map", word), "give signed or magnitude");
-}
-
-std::array<std::uint8_t, 3> heatColor(HeatMap map, double share) {
-  const auto& colors = map == HeatMap::Signed ? kSigned : kMagnitude;
-  const double from_0 = map == HeatMap::Signed ? 0.5 * (share + 1.0) : share;
-  const double at = std::clamp(from_0, 0.0, 1.0) * static_cast<double>(colors.size() - 1);
-  const auto low = std::min(static_cast<std::size_t>(at), colors.size() - 2);
+std::array<std::uint8_t, 3> heatColor(double share) {
+  const double at = std::clamp(0.5 * (share + 1.0), 0.0, 1.0) * static_cast<double>(kColors.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(at), kColors.size() - 2);
   Color out;
   for (std::size_t k = 0; k < out.size(); ++k) {
-    const double from = colors[low][k], to = colors[low + 1][k];
+    const double from = kColors[low][k], to = kColors[low + 1][k];
     out[k] = static_cast<std::uint8_t>(std::lround(glm::mix(from, to, at - static_cast<double>(low))));
   }
   return out;
 }
 
 Result<Difference> differenceOf(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
-                                const spec::RgbaImage* reference2, const HeatOptions& options,
+                                const spec::RgbaImage* reference2, std::optional<double> range,
                                 const std::string& subject) {
-  if (options.range && !(*options.range > 0.0 && std::isfinite(*options.range)))
-    return fail("--heat-range", fmt::format("{} is not a range", *options.range),
-                "give a share above 0, as 0.1");
+  if (range && !(*range > 0.0 && std::isfinite(*range)))
+    return fail("--heat-range", fmt::format("{} is not a range", *range), "give a share above 0, as 0.1");
   auto figures = comparePictures(picture, reference, reference2, subject);
   if (!figures) return failAgain(std::move(figures.error()));
   const spec::RgbaImage& second = reference2 ? *reference2 : reference;
   Pixels pixels = pixelsOf(picture, reference, second);
-  measure(pixels, picture, reference, second, options.map);
+  measure(pixels, picture, reference, second);
   Difference out{.figures = *figures,
                  .heat = {.width = picture.width,
                           .height = picture.height,
                           .texels = std::vector<std::uint8_t>(4 * picture.texels.size(), 255)},
-                 .range = options.range ? *options.range : rangeOf(pixels.values)};
+                 .range = range ? *range : rangeOf(pixels.values)};
   // All pixels share one table, so that colours are interpolated once.
   constexpr int kSteps = 512;
   std::array<Color, kSteps + 1> table;
-  const double least = options.map == HeatMap::Signed ? -1.0 : 0.0;
+  constexpr double kLeast = -1.0;
   for (int k = 0; k <= kSteps; ++k)
-    table[static_cast<std::size_t>(k)] = heatColor(options.map, glm::mix(least, 1.0, k / double{kSteps}));
+    table[static_cast<std::size_t>(k)] = heatColor(glm::mix(kLeast, 1.0, k / double{kSteps}));
   for (std::uint32_t i = 0; i < picture.texels.size(); ++i) put(out.heat, i, kUncovered);
   for (const std::uint32_t i : pixels.apart) put(out.heat, i, kApart);
   for (std::size_t p = 0; p < pixels.at.size(); ++p) {
-    const double share = std::clamp(double{pixels.values[p]} / out.range, least, 1.0);
+    const double share = std::clamp(double{pixels.values[p]} / out.range, kLeast, 1.0);
     put(out.heat, pixels.at[p],
-        table[static_cast<std::size_t>(std::lround((share - least) / (1.0 - least) * kSteps))]);
+        table[static_cast<std::size_t>(std::lround((share - kLeast) / (1.0 - kLeast) * kSteps))]);
   }
   return out;
 }

@@ -304,7 +304,7 @@ class Assembler {
     transfer::VertexWeights rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < geometry.vertex_count; ++v) {
-      // Rows without a sample show the light that falls on them, unshadowed (bake_unshadowed.cpp).
+      // Rows without a sample show the light that falls on them, unshadowed (bakeUnshadowed).
       if (const std::uint32_t sample = samples.vertex_sample[geometry.first_vertex + v];
           sample != kNoSample) {
         rows.samples.push_back(sample);

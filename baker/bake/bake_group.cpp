@@ -7,12 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/brdf/kernel_power.hpp"
 #include "baker/cache/bytes.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
+#include "baker/effects/neighborhood/neighborhood.hpp"
 #include "baker/effects/surface/cell_vectors.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/proxy/capture_proxy.hpp"
@@ -20,6 +23,91 @@
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
+
+namespace {
+
+// Neighborhoods get this share of the bound on coded transfer, since they are seen against nearly open sky,
+// where errors show.
+constexpr double kShareOfBound = 1.0 / 3.0;
+// The bound on the change at the faces of grids around bodies that are moved by hand. These grids have no
+// more points than others, and lie close around the body, where its contact with what it stands on shows.
+constexpr double kBoundByHand = 0.03;
+
+void take(const Around& around, BakedAround baked, BakedGroup& out) {
+  BakeReport& report = around.report;
+  const std::string& name = around.bake.plan.groups[around.group].name;
+  if (!baked.grid) {
+    report.notices.push_back(fmt::format(
+        "rigid group \"{}\": nothing comes within reach of its neighborhood, and none was baked", name));
+    return;
+  }
+  out.neighborhood = std::move(baked.grid);
+  const NeighborhoodFigures& figures = baked.figures;
+  report.rays += figures.rays;
+  report.rays_kept += figures.rays_kept;
+  report.neighborhoods.push_back({.name = name,
+                                  .size = figures.size,
+                                  .bounds_min = figures.bounds_min,
+                                  .bounds_max = figures.bounds_max,
+                                  .inside_points = figures.inside_points,
+                                  .error = figures.error,
+                                  .change_error = figures.change_error});
+}
+
+// Returns the bounds of the surfaces that come within reach, relative to the origin.
+std::optional<Box3> receiversOf(const Around& around) {
+  const PlannedNeighborhood& plan = around.plan();
+  if (plan.receivers.empty() || plan.by_hand) return std::nullopt;
+  return Box3{plan.receivers_min - around.origin, plan.receivers_max - around.origin};
+}
+
+}  // namespace
+
+BakeContext contextOf(const Around& around, const BakeContext& body) {
+  if (!body.keeps()) return body;
+  const PlannedNeighborhood& plan = around.plan();
+  const BakeOptions& options = around.bake.options;
+  const std::optional<Box3> receivers = receiversOf(around);
+  KeyMaker key = KeyMaker::ofStage("neighborhood");
+  key.add(body.key).add(around.origin).add(std::uint64_t{around.rays});
+  key.add(plan.asked).add(plan.by_hand).add(plan.matrices).add(plan.size).add(plan.extent);
+  key.add(receivers.has_value());
+  if (receivers) key.add(receivers->low).add(receivers->high);
+  key.add(plan.receivers_face);
+  key.add(options.neighborhood_grid).add(options.effectiveErrorBound());
+  return body.keyed(key.key());
+}
+
+bool findAround(const Around& around, const BakeContext& context, BakedGroup& out) {
+  BakedAround found;
+  if (!findKept(context, found)) return false;
+  take(around, std::move(found), out);
+  return true;
+}
+
+bool bakeAround(const Around& around, const Body& body, const Box3& bounds, const BakeContext& context,
+                BakedGroup& out) {
+  const PlannedNeighborhood& plan = around.plan();
+  const BakeOptions& options = around.bake.options;
+  NeighborhoodSettings settings;
+  settings.origin = around.origin;
+  settings.matrices = plan.matrices;
+  settings.rays = around.rays;
+  settings.placement.body = bounds;
+  if (const auto receivers = receiversOf(around)) settings.placement.receivers = *receivers;
+  settings.facing = plan.receivers_face;
+  settings.placement.size = plan.size;
+  settings.placement.extent = plan.extent;
+  settings.placement.by_length = options.neighborhood_grid;
+  if (plan.by_hand) settings.placement.bound = kBoundByHand;
+  settings.placement.few_points = !plan.asked && !plan.matrices;
+  settings.fit_between_points = true;
+  settings.coding.bound = kShareOfBound * double{options.effectiveErrorBound()};
+  auto baked = bakeNeighborhood(body, settings, context);
+  if (!baked) return false;
+  take(around, std::move(*baked), out);
+  return true;
+}
 
 template <>
 inline constexpr auto kKeptMembers<LightProbes::Cell> = std::tuple(&LightProbes::Cell::points,
@@ -73,75 +161,40 @@ constexpr float kOfVisibility = 0.35f;
 // Eyes may see other errors of codes than those of all samples, so codes are made again with a better bound.
 constexpr int kMostCodings = 3;
 
-class CellCoder {
- public:
-  CellCoder(const GroupScene& group, const SurfaceTransport& light, CachedCoding& coding)
-      : group_(group),
-        light_(light),
-        options_(group.bake.options),
-        coding_(coding),
-        grey_{.sky = group.colors().greyPanes(), .lights = group.colors().greyEmission()},
-        weights_(weightsOf(*group.view().importance)),
-        kernel_power_(group.brdfs()
-                          ? kernelPower(group.geometry, *group.brdfs(), group.bake.options.glossy_order)
-                          : BandPower(kLobePower)) {}
-
-  std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, SurfaceFigures& figures);
-  std::vector<CodedTransfer> codeDiffuse(const SampleCell& cell, SurfaceFigures& figures);
-
- private:
-  // Returns how much samples matter to pictures. Eyes may come to see any of them one day, so that none
-  // counts for nothing, and none for all.
-  static std::vector<float> weightsOf(const SampleImportance& importance) {
-    constexpr float kLeast = 0.05f, kMost = 4.0f;
-    const auto count = static_cast<float>(importance.shares.size());
-    std::vector<float> weights;
-    for (const float share : importance.shares) weights.push_back(std::clamp(count * share, kLeast, kMost));
-    return weights;
-  }
-  std::vector<CellVectors> vectorsOf(const SampleCell& cell) const {
-    const BounceResult* const bounced = light_.bounced ? &*light_.bounced : nullptr;
-    return cellVectors(cell, group_.samples, light_.direct, bounced, grey_);
-  }
-  std::span<const float> weightsOf(const SampleCell& cell) const {
-    return std::span(weights_).subspan(cell.first, cell.count);
-  }
-
-  const GroupScene& group_;
-  const SurfaceTransport& light_;
-  const BakeOptions& options_;
-  CachedCoding& coding_;
-  GreyColumns grey_;
-  std::vector<float> weights_;
-  BandPower kernel_power_;
-};
+// Returns how much samples matter to pictures. Eyes may come to see any of them one day, so that none counts
+// for nothing, and none for all.
+std::vector<float> codingWeights(const SampleImportance& importance) {
+  constexpr float kLeast = 0.05f, kMost = 4.0f;
+  const auto count = static_cast<float>(importance.shares.size());
+  std::vector<float> weights;
+  for (const float share : importance.shares) weights.push_back(std::clamp(count * share, kLeast, kMost));
+  return weights;
+}
 
 // Visibility and bounced light are shown together: errors of both are relative to both, and their squares add
 // up to the square of the bound. A bound that was asked for is kept at any price.
-std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, SurfaceFigures& figures) {
+std::vector<CodedTransfer> codeGlossy(const std::vector<CellVectors>& parts, std::size_t count,
+                                      const BakeOptions& options, CodingSettings settings,
+                                      CachedCoding& coding, SurfaceFigures& figures) {
   std::vector<CodedTransfer> coded;
-  const std::vector<CellVectors> parts = vectorsOf(cell);
   double shown = 0.0;
   bool any_bounced = false;
   for (const CellVectors& part : parts) {
     if (part.shape.order == 0) continue;  // transfer of the group's lights
-    shown += transferEnergy(part.vectors, part.shape, kernel_power_);
+    shown += transferEnergy(part.vectors, part.shape, settings.kernel_power);
     any_bounced |= !part.shape.isVisibility();
   }
+  settings.most_components = options.error_bound > 0.0f ? kAllComponents : kUsualComponents;
   double square = 0.0;
   for (const CellVectors& part : parts) {
     const bool environment = part.shape.order > 0;
-    float bound = figures.glossy_codes_bound;
+    settings.bound = figures.glossy_codes_bound;
     if (environment && any_bounced)
-      bound *= part.shape.isVisibility() ? kOfVisibility : std::sqrt(1.0f - kOfVisibility * kOfVisibility);
-    coded.push_back(
-        coding_.code(part.vectors, cell.count, part.shape,
-                     {.bound = bound,
-                      .most_components = options_.error_bound > 0.0f ? kAllComponents : kUsualComponents,
-                      .loose_bound = options_.glossyLooseness() * bound,
-                      .shown_energy = environment ? shown : 0.0,
-                      .kernel_power = kernel_power_,
-                      .weights = weightsOf(cell)}));
+      settings.bound *=
+          part.shape.isVisibility() ? kOfVisibility : std::sqrt(1.0f - kOfVisibility * kOfVisibility);
+    settings.loose_bound = options.glossyLooseness() * settings.bound;
+    settings.shown_energy = environment ? shown : 0.0;
+    coded.push_back(coding.code(part.vectors, count, part.shape, settings));
     const double error = coded.back().error;
     if (environment)
       square += error * error;
@@ -152,11 +205,12 @@ std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, Surface
   return coded;
 }
 
-std::vector<CodedTransfer> CellCoder::codeDiffuse(const SampleCell& cell, SurfaceFigures& figures) {
+std::vector<CodedTransfer> codeDiffuse(const std::vector<CellVectors>& parts, std::size_t count,
+                                       const CodingSettings& settings, CachedCoding& coding,
+                                       SurfaceFigures& figures) {
   std::vector<CodedTransfer> coded;
-  for (const CellVectors& vectors : vectorsOf(cell)) {
-    coded.push_back(coding_.code(vectors.vectors, cell.count, vectors.shape,
-                                 {.bound = figures.codes_bound, .weights = weightsOf(cell)}));
+  for (const CellVectors& vectors : parts) {
+    coded.push_back(coding.code(vectors.vectors, count, vectors.shape, settings));
     figures.worst_error = std::max(figures.worst_error, double{coded.back().error});
   }
   return coded;
@@ -184,14 +238,24 @@ std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceT
   const BakeOptions& options = group.bake.options;
   SurfaceCells out{{}, importanceCodes(group), light.figures};
   out.cells.resize(group.samples.cells.size());
-  CellCoder coder(group, light, coding);
+  const GreyColumns grey{.sky = group.colors().greyPanes(), .lights = group.colors().greyEmission()};
+  const std::vector<float> weights = codingWeights(*group.view().importance);
+  const BandPower kernel_power =
+      group.brdfs() ? kernelPower(group.geometry, *group.brdfs(), options.glossy_order) : kLobePower;
   // Returns false if stopped.
   const auto code = [&](bool glossy) {
     progress.begin("coding", glossy ? group.samples.glossy.size() : group.samples.glossy.begin, "samples");
     for (std::size_t c = 0; c < out.cells.size(); ++c) {
       const SampleCell& cell = group.samples.cells[c];
       if ((cell.kind == SampleKind::Glossy) != glossy) continue;
-      out.cells[c] = glossy ? coder.codeGlossy(cell, out.figures) : coder.codeDiffuse(cell, out.figures);
+      const auto parts =
+          cellVectors(cell, group.samples, light.direct, light.bounced ? &*light.bounced : nullptr, grey);
+      const auto own = std::span(weights).subspan(cell.first, cell.count);
+      out.cells[c] = glossy
+                         ? codeGlossy(parts, cell.count, options,
+                                      {.kernel_power = kernel_power, .weights = own}, coding, out.figures)
+                         : codeDiffuse(parts, cell.count, {.bound = out.figures.codes_bound, .weights = own},
+                                       coding, out.figures);
       if (coding.stopped()) return false;
       progress.add(cell.count);
     }

@@ -115,79 +115,72 @@ transfer::TransferShape shapeOf(const VolumeTransfer& transfer) {
   return shape;
 }
 
-class VolumeCoder {
- public:
-  VolumeCoder(const VolumeTransfer& transfer, const BakeOptions& options, CachedCoding& coding)
-      : transfer_(transfer), options_(options), coding_(coding) {}
+CodedTransfer codeDense(const Part& part, const BakeOptions& options, CachedCoding& coding,
+                        CodedVolume& out) {
+  CodedTransfer coded = coding.code(part.vectors(), part.count(), shapeOf(part.transfer),
+                                    {.bound = options.effectiveErrorBound()});
+  out.worst_error = std::max(out.worst_error, double{coded.error});
+  return coded;
+}
 
-  // Cuts the samples into cells of nearly the same size and codes one after the other. Returns false if
-  // stopped.
-  bool codeCells(Progress& progress, CodedVolume& out) {
-    const std::size_t samples = transfer_.grid.samples();
-    const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
-    out.voxels = transfer_.grid.voxels();
-    out.rays = transfer_.rays, out.rays_kept = transfer_.rays_kept, out.row_bytes = transfer_.row_bytes;
-    out.iterations = transfer_.iterations, out.residual = transfer_.residual;
-    progress.begin("coding", samples, "samples");
-    for (std::size_t c = 0; c < cells && !coding_.stopped(); ++c) {
-      const Part part{transfer_, samples * c / cells, samples * (c + 1) / cells};
-      CodedCell& cell = out.cells.emplace_back();
-      cell.count = static_cast<std::uint32_t>(part.count());
-      cell.bounds_min = cell.bounds_max = transfer_.grid.place(part.begin);
-      for (std::size_t p = part.begin; p < part.end; ++p) {
-        cell.bounds_min = glm::min(cell.bounds_min, transfer_.grid.place(p));
-        cell.bounds_max = glm::max(cell.bounds_max, transfer_.grid.place(p));
-      }
-      if (transfer_.bands > 3)
-        cell.transfers = codeMatrices(part, out);
-      else
-        cell.transfers.push_back(codeDense(part, out));
-      progress.add(part.count());
+// Codes transmitted light as visibility and scattered light as matrices. They are shown together, and errors
+// count by how much of each band the phase function keeps, g^2l.
+std::vector<CodedTransfer> codeMatrices(const Part& part, const BakeOptions& options, CachedCoding& coding,
+                                        CodedVolume& out) {
+  const VolumeTransfer& transfer = part.transfer;
+  transfer::TransferShape visible = shapeOf(transfer), scattered = visible;
+  visible.full_channels = 0;
+  visible.visibility_bands = static_cast<std::uint32_t>(transfer.order + transfer.bands - 1);
+  scattered.shadowed_channels = 0;
+  BandPower power;
+  for (std::size_t l = 0; l < power.size(); ++l)
+    power[l] = std::pow(double{transfer.g}, 2.0 * static_cast<double>(l));
+  std::vector<float> matrices;
+  if (transfer.full_channels > 0) matrices = part.scattered();
+  CodingSettings settings{.bound = options.effectiveGlossyErrorBound(),
+                          .shown_energy = transferEnergy(part.visibility(), visible, power),
+                          .kernel_power = power};
+  if (!matrices.empty()) {
+    settings.shown_energy += transferEnergy(matrices, scattered, power);
+    settings.bound *= std::sqrt(0.5f);
+  }
+  std::vector<CodedTransfer> coded;
+  coded.push_back(coding.code(part.visibility(), part.count(), visible, settings));
+  if (!matrices.empty() && !coding.stopped())
+    coded.push_back(coding.code(matrices, part.count(), scattered, settings));
+  double square = 0.0;
+  for (const CodedTransfer& each : coded) square += double{each.error} * double{each.error};
+  out.worst_glossy_error = std::max(out.worst_glossy_error, std::sqrt(square));
+  return coded;
+}
+
+// Cuts the samples into cells of nearly the same size and codes one after the other. Returns false if
+// stopped.
+bool codeCells(const VolumeTransfer& transfer, const BakeOptions& options, CachedCoding& coding,
+               Progress& progress, CodedVolume& out) {
+  const std::size_t samples = transfer.grid.samples();
+  const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
+  out.voxels = transfer.grid.voxels();
+  out.rays = transfer.rays, out.rays_kept = transfer.rays_kept, out.row_bytes = transfer.row_bytes;
+  out.iterations = transfer.iterations, out.residual = transfer.residual;
+  progress.begin("coding", samples, "samples");
+  for (std::size_t c = 0; c < cells && !coding.stopped(); ++c) {
+    const Part part{transfer, samples * c / cells, samples * (c + 1) / cells};
+    CodedCell& cell = out.cells.emplace_back();
+    cell.count = static_cast<std::uint32_t>(part.count());
+    cell.bounds_min = cell.bounds_max = transfer.grid.place(part.begin);
+    for (std::size_t p = part.begin; p < part.end; ++p) {
+      cell.bounds_min = glm::min(cell.bounds_min, transfer.grid.place(p));
+      cell.bounds_max = glm::max(cell.bounds_max, transfer.grid.place(p));
     }
-    return !coding_.stopped();
+    if (transfer.bands > 3)
+      cell.transfers = codeMatrices(part, options, coding, out);
+    else
+      cell.transfers.push_back(codeDense(part, options, coding, out));
+    progress.add(part.count());
   }
-
- private:
-  CodedTransfer codeDense(const Part& part, CodedVolume& out) {
-    CodedTransfer coded = coding_.code(part.vectors(), part.count(), shapeOf(transfer_),
-                                       {.bound = options_.effectiveErrorBound()});
-    out.worst_error = std::max(out.worst_error, double{coded.error});
-    return coded;
-  }
-
-  // Codes transmitted light as visibility and scattered light as matrices. They are shown together, and
-  // errors count by how much of each band the phase function keeps, g^2l.
-  std::vector<CodedTransfer> codeMatrices(const Part& part, CodedVolume& out) {
-    transfer::TransferShape visible = shapeOf(transfer_), scattered = visible;
-    visible.full_channels = 0;
-    visible.visibility_bands = static_cast<std::uint32_t>(transfer_.order + transfer_.bands - 1);
-    scattered.shadowed_channels = 0;
-    BandPower power;
-    for (std::size_t l = 0; l < power.size(); ++l)
-      power[l] = std::pow(double{transfer_.g}, 2.0 * static_cast<double>(l));
-    std::vector<float> matrices;
-    if (transfer_.full_channels > 0) matrices = part.scattered();
-    CodingSettings settings{.bound = options_.effectiveGlossyErrorBound(),
-                            .shown_energy = transferEnergy(part.visibility(), visible, power),
-                            .kernel_power = power};
-    if (!matrices.empty()) {
-      settings.shown_energy += transferEnergy(matrices, scattered, power);
-      settings.bound *= std::sqrt(0.5f);
-    }
-    std::vector<CodedTransfer> coded;
-    coded.push_back(coding_.code(part.visibility(), part.count(), visible, settings));
-    if (!matrices.empty() && !coding_.stopped())
-      coded.push_back(coding_.code(matrices, part.count(), scattered, settings));
-    double square = 0.0;
-    for (const CodedTransfer& each : coded) square += double{each.error} * double{each.error};
-    out.worst_glossy_error = std::max(out.worst_glossy_error, std::sqrt(square));
-    return coded;
-  }
-
-  const VolumeTransfer& transfer_;
-  const BakeOptions& options_;
-  CachedCoding& coding_;
-};
+  return !coding.stopped();
+}
 
 // Within holds the surfaces that a volume never moves against.
 struct Within {
@@ -371,7 +364,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   const auto found = findOrMake(cells_context, coded, [&] {
     coded = {};
     made = bakeLight([&](const VolumeTransfer& transfer) {
-      return VolumeCoder(transfer, options, coding).codeCells(context.progress, coded);
+      return codeCells(transfer, options, coding, context.progress, coded);
     });
     return made.has_value();
   });

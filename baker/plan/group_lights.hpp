@@ -16,6 +16,15 @@
 
 namespace lambent::baker {
 
+// Numbers the corners of triangles by place, so that triangles tell which of them meet. Vertices at seams of
+// texture coordinates and normals, and at the poles of spheres, stand at one place but for rounding: those
+// nearer to each other than a share of the diagonal of all positions are one corner.
+struct CornerNumbers {
+  std::vector<std::uint32_t> of;  // of each position; empty if all are at one place
+  std::vector<glm::vec3> places;  // by their numbers
+};
+CornerNumbers cornerNumbers(std::span<const glm::vec3> positions);
+
 // Returns the spheres, at most bundle::kMaxLampSpheres, or nothing if the material has an emissive texture or
 // if any part of its surfaces in the group is not about a sphere that is closed and emits outwards.
 std::vector<bundle::LampSphere> findLampSpheres(const Scene& scene, const RigidGroup& group,
