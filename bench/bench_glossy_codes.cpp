@@ -1,8 +1,8 @@
 // Measures what glossy transfer costs in storage: bytes per vertex of visibility and bounced light together,
 // after entropy coding, against the error of reflected light.
-//   bench_glossy_codes SCENE [--rays=N] [--bounces=N] [--bounds=3,1.5,1,0.5] [--grid] [--csv]
-// Rows are error bounds, for which clusters and axes are chosen as in a bake, or with --grid, every pair of 1
-// to 512 clusters and 0 (vector quantization) to 16 axes. The goal is under 40 bytes per vertex at 1.5 %.
+//   bench_glossy_codes SCENE [--rays=N] [--bounces=N] [--bounds=3,1.5,1,0.5] [--csv]
+// Rows are error bounds, for which clusters and axes are chosen as in a bake. The goal is under 40 bytes per
+// vertex at 1.5 %.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -31,7 +31,7 @@ struct Options {
   std::vector<double> bounds = {0.03, 0.015, 0.01, 0.005};
   std::size_t rays = 1024;
   int bounces = 3;
-  bool grid = false, csv = false;
+  bool csv = false;
 };
 
 Options parse(int argc, char** argv) {
@@ -50,8 +50,6 @@ Options parse(int argc, char** argv) {
         options.bounds.push_back(std::strtod(at, &end) / 100.0);
         at = *end == ',' ? end + 1 : "";
       }
-    } else if (argument == "--grid") {
-      options.grid = true;
     } else if (argument == "--csv") {
       options.csv = true;
     } else {
@@ -131,7 +129,7 @@ int main(int argc, char** argv) {
   const auto vertices = static_cast<double>(work->geometry.positions.size());
   if (options.csv)
     std::printf(
-        "scene,clusters_asked,axes_asked,bound,bytes_per_vertex,error,part,clusters,axes,bytes,"
+        "scene,bound,bytes_per_vertex,error,part,clusters,axes,bytes,"
         "codebook,ids,weights,part_error,seconds\n");
   else
     std::printf(
@@ -148,10 +146,10 @@ int main(int argc, char** argv) {
       const CodedBytes& part = m.parts[p];
       const double axes = static_cast<double>(part.codes) / static_cast<double>(direct.glossy.size());
       if (options.csv)
-        std::printf("%s,%u,%d,%g,%.3f,%.6f,%s,%zu,%.2f,%.3f,%.3f,%.3f,%.3f,%.6f,%.2f\n", options.scene,
-                    settings.clusters, settings.axes, double{settings.bound}, all, m.error,
-                    p == 0 ? "visibility" : "bounced", part.clusters, axes, each(part.bytes()),
-                    each(part.codebook), each(part.ids), each(part.weights), part.error, part.seconds);
+        std::printf("%s,%g,%.3f,%.6f,%s,%zu,%.2f,%.3f,%.3f,%.3f,%.3f,%.6f,%.2f\n", options.scene,
+                    double{settings.bound}, all, m.error, p == 0 ? "visibility" : "bounced", part.clusters,
+                    axes, each(part.bytes()), each(part.codebook), each(part.ids), each(part.weights),
+                    part.error, part.seconds);
       else
         std::printf(" | %8zu %5.1f  %6.2f = %5.2f + %4.2f + %6.2f  %6.3f %% %5.1f", part.clusters, axes,
                     each(part.bytes()), each(part.codebook), each(part.ids), each(part.weights),
@@ -160,12 +158,6 @@ int main(int argc, char** argv) {
     if (!options.csv) std::printf("\n");
     std::fflush(stdout);
   };
-  if (options.grid) {
-    // The bound is small, so that the remaining error is that of the axes left out.
-    for (const std::uint32_t clusters : {1u, 4u, 16u, 64u, 256u, 512u})
-      for (const int axes : {0, 1, 2, 4, 8, 16}) row({.bound = 0.005f, .clusters = clusters, .axes = axes});
-  } else {
-    for (const double bound : options.bounds) row({.bound = static_cast<float>(bound)});
-  }
+  for (const double bound : options.bounds) row({.bound = static_cast<float>(bound)});
   return 0;
 }
