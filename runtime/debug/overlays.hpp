@@ -13,7 +13,7 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/debug/overlay_options.hpp"
-#include "runtime/effects/diffuse/proxies.hpp"
+#include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/capture.hpp"
 #include "runtime/lighting/environment.hpp"
