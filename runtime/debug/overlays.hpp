@@ -14,6 +14,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/debug/overlay_options.hpp"
+#include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"

@@ -1,23 +1,17 @@
-// The kernels of the glossy effect as C++: glossy_kernel.glsl for each count of bands and each kind of table,
+// The kernel of b(v) as C++: glossy_kernel.glsl for each count of bands and each kind of table,
 // and what a view sees by that of any table.
 #pragma once
 
 #include <algorithm>
 #include <functional>
 
-#include "runtime/effects/glossy/glossy_shared.h"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/streaming/textures.hpp"
 #include "tests/support/glsl/transfer.hpp"
 
-namespace lambent::effects::glossy::glsl {
+namespace lambent::glossy::glsl {
 
 using namespace lambent::glsl;
-using namespace transfer;
-
-struct Fill : Invocation {
-#include "as_cpp/glossy_fill.comp"
-};
 
 enum class Lobes { Two, Anisotropic, Measured };
 
@@ -87,4 +81,4 @@ class Table {
   std::function<Reflection(const View&, std::span<const vec4>)> reflect_;
 };
 
-}  // namespace lambent::effects::glossy::glsl
+}  // namespace lambent::glossy::glsl

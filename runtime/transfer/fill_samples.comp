@@ -1,5 +1,5 @@
 // Fills the samples of cells without transfer with the light itself, with one invocation per output of a sample.
-#include "glossy_shared.h"
+#include "transfer_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
 layout(std430, binding = kBindWork) readonly buffer Work { uint work_count; uint pad[3]; WorkItem work[]; };

@@ -5,10 +5,10 @@
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "tests/runtime/effects/glossy/random_table.hpp"
+#include "tests/runtime/evaluate/random_table.hpp"
 #include "tests/support/glsl/glossy_kernels.hpp"
 
-namespace lambent::effects::glossy {
+namespace lambent::glossy {
 
 using testing::randomTable;
 
@@ -188,4 +188,4 @@ TEST(GlossyKernel, CornerWeightsAreBarycentricAndFiniteOnAnyTriangle) {
   EXPECT_GE(std::min(outside.x, std::min(outside.y, outside.z)), 0.0f);
 }
 
-}  // namespace lambent::effects::glossy
+}  // namespace lambent::glossy

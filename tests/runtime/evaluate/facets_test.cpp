@@ -9,7 +9,7 @@
 #include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
 #include "tests/support/glsl/glossy_kernels.hpp"
 
-namespace lambent::effects::glossy {
+namespace lambent::glossy {
 namespace {
 
 // Views an unoccluded sphere of this many rings from a distance of three radii, and returns the relative RMS
@@ -70,4 +70,4 @@ TEST(GlossyFacets, VerticesAreTooFewForHighlightsOnCoarseMeshes) {
     }
 }
 
-}  // namespace lambent::effects::glossy
+}  // namespace lambent::glossy

@@ -1,13 +1,13 @@
 // Compares projection and open samples, by the kernels as C++, with closed forms.
 #include <gtest/gtest.h>
 
-#include "runtime/effects/glossy/glossy.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
 #include "tests/support/glsl/glossy_kernels.hpp"
 
-namespace lambent::effects::glossy {
+namespace lambent::evaluate {
 namespace {
 
 // Holds one vector of visibility, and light, in the layout of the kernels.
@@ -42,14 +42,14 @@ TEST(GlossyKernels, AnOpenSampleReceivesTheLightItself) {
   for (const std::uint32_t in : {3u, 5u, 6u})
     for (const std::uint32_t out : {4u, 5u, 6u}) {
       OneVector one(in, out);
-      one.setVisibility(0, glsl::Fill::kSqrtFourPi);
+      one.setVisibility(0, transfer::glsl::FillSamples::kSqrtFourPi);
       for (glm::vec4& light : one.lights) light = {maker.uniform(-1, 1), maker.uniform(-1, 1), 1.0f, 0.0f};
       for (uint i = 0; i < out * out; ++i) {
         const glm::vec4 expected = i < in * in ? one.lights[i] : glm::vec4(0.0f);
         const glm::vec4 got = one.output(i);
         EXPECT_LT(glm::distance(glm::vec3(got), glm::vec3(expected)), 1e-5f)
             << in << " in, " << out << " out";
-        EXPECT_NEAR(got.w, i == 0 ? glsl::Fill::kSqrtFourPi : 0.0f, 1e-6f);
+        EXPECT_NEAR(got.w, i == 0 ? transfer::glsl::FillSamples::kSqrtFourPi : 0.0f, 1e-6f);
       }
     }
 }
@@ -82,11 +82,11 @@ TEST(GlossyKernels, IsTheProductOfVisibilityAndLightPointByPoint) {
 
 TEST(GlossyKernels, FillsOpenSamplesWithTheLightAndFullVisibility) {
   const std::vector<glm::vec4> lights(9, glm::vec4(1.0f, 2.0f, 3.0f, 0.0f));
-  glsl::Fill kernel;
+  transfer::glsl::FillSamples kernel;
   kernel.lights = lights;
-  FillRecord fill{
+  transfer::FillRecord fill{
       .first_output = 0, .output_count = 25, .outputs = 25, .light = 0, .coefficients = 9, .open = 1};
-  EXPECT_EQ(kernel.openLight(fill, 0), glm::vec4(1.0f, 2.0f, 3.0f, glsl::Fill::kSqrtFourPi));
+  EXPECT_EQ(kernel.openLight(fill, 0), glm::vec4(1.0f, 2.0f, 3.0f, transfer::glsl::FillSamples::kSqrtFourPi));
   EXPECT_EQ(kernel.openLight(fill, 8), glm::vec4(1.0f, 2.0f, 3.0f, 0.0f));
   EXPECT_EQ(kernel.openLight(fill, 9), glm::vec4(0.0f));
   // Grid points of a neighborhood store changes, so unloaded ones give 0.
@@ -94,4 +94,4 @@ TEST(GlossyKernels, FillsOpenSamplesWithTheLightAndFullVisibility) {
   for (std::uint32_t i = 0; i < 25; ++i) EXPECT_EQ(kernel.openLight(fill, i), glm::vec4(0.0f));
 }
 
-}  // namespace lambent::effects::glossy
+}  // namespace lambent::evaluate

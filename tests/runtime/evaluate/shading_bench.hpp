@@ -1,5 +1,4 @@
-// Shades random cells on the GPU, for tests of effects that shade samples: it uploads the cells' transfer and
-// runs the effect once.
+// Shades the samples of random cells on the GPU: it uploads the cells' transfer and shades once.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +7,15 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
 
 namespace lambent::testing {
 
-template <typename Effect>
 struct ShadingBench {
   streaming::Residency residency;
-  Effect effect;
+  evaluate::Samples samples;
   lighting::GroupLights lights;
   RandomBundle made;
   std::vector<lighting::GroupPlace> places;
@@ -66,14 +65,11 @@ struct ShadingBench {
     uploadRows();
     uploadTransfer(count);
   }
-  // Shades once and returns the number of dispatches.
-  template <typename Mode>
-  std::uint32_t shadeIn(Mode mode) {
-    gpu::Counters counters;
+  void shadeSamples(evaluate::TransferMode mode, const evaluate::ShadedKinds& kinds,
+                    gpu::Counters& counters) {
     lights.update(environment, sh::Window::Off, places, counters);
-    const Result<void> shaded = effect.shade(residency, lights, mode, counters);
+    const Result<void> shaded = samples.shade(residency, lights, mode, counters, kinds);
     EXPECT_TRUE(shaded) << shaded.error().line();
-    return counters.dispatches;
   }
 };
 

@@ -1,10 +1,9 @@
 // Compares kernels with their CPU twin on random codes and lights, and tests what makes them run.
 #include "runtime/effects/diffuse/diffuse.hpp"
-#include "runtime/effects/diffuse/proxies.hpp"
-#include "tests/runtime/effects/glossy/glossy_bench.hpp"
+#include "tests/runtime/evaluate/glossy_bench.hpp"
 #include "tests/support/gpu_context.hpp"
 
-namespace lambent::effects::glossy {
+namespace lambent::evaluate {
 
 using GlossyGpu = lambent::testing::GpuTest;
 using testing::Bench;
@@ -37,15 +36,14 @@ TEST_F(GlossyGpu, MatchesItsTwinWithClustersBouncesLampsAndSeveralLightProbes) {
                             .samples = 123,
                             .light_probes = lights});
         bench.uploadAll();
-        for (const evaluate::TransferMode mode :
-             {evaluate::TransferMode::Full, evaluate::TransferMode::Shadowed,
-              evaluate::TransferMode::Unshadowed}) {
+        for (const TransferMode mode :
+             {TransferMode::Full, TransferMode::Shadowed, TransferMode::Unshadowed}) {
           bench.shade(mode);
           EXPECT_LT(bench.differenceToTwin(), 1e-4)
               << clusters << " clusters, " << lamps << " lamps, " << lights << " lights";
         }
         for (lighting::GroupPlace& place : bench.places) place.lamps_apart.assign(lamps, 1.0f);
-        bench.shade(evaluate::TransferMode::Full);
+        bench.shade(TransferMode::Full);
         EXPECT_LT(bench.differenceToTwin(), 1e-4) << "lamps stand apart, " << lamps << " lamps";
       }
 }
@@ -63,9 +61,9 @@ TEST_F(GlossyGpu, ShadesPointsOfNeighborhoodsAlsoWhereNothingIsGlossy) {
                           .samples = 105});
       bench.uploadAll();
       bench.shade();
-      EXPECT_EQ(bench.glossy.cellsShadedLast(), 4u);
+      EXPECT_EQ(bench.samples.cellsShadedLast(), 4u);
       EXPECT_LT(bench.differenceToTwin(), 1e-4) << bands << " bands";
-      bench.shade(evaluate::TransferMode::Shadowed);
+      bench.shade(TransferMode::Shadowed);
       EXPECT_LT(bench.differenceToTwin(), 1e-4) << bands << " bands";
     }
 }
@@ -89,7 +87,7 @@ TEST_F(GlossyGpu, PointsWithoutTransferChangeNothing) {
   bench.uploadTransfer();
   bench.shade();
   EXPECT_FALSE(none(points()));
-  bench.shade(evaluate::TransferMode::Unshadowed);
+  bench.shade(TransferMode::Unshadowed);
   EXPECT_TRUE(none(points()));
 }
 
@@ -98,8 +96,8 @@ TEST_F(GlossyGpu, ShadowedLeavesBouncedLightOut) {
   Bench bench(maker, {.groups = 1, .cells = 0, .glossy_cells = 1, .bounced = true});
   bench.uploadAll();
   EXPECT_EQ(bench.shade(), 4u) << "visibility, dense, samples, adding";
-  EXPECT_EQ(bench.shade(evaluate::TransferMode::Shadowed), 2u);
-  EXPECT_EQ(bench.shade(evaluate::TransferMode::Unshadowed), 1u) << "fill";
+  EXPECT_EQ(bench.shade(TransferMode::Shadowed), 2u);
+  EXPECT_EQ(bench.shade(TransferMode::Unshadowed), 1u) << "fill";
 }
 
 TEST_F(GlossyGpu, ShowsTheLightItselfUntilTransferIsThere) {
@@ -112,7 +110,7 @@ TEST_F(GlossyGpu, ShowsTheLightItselfUntilTransferIsThere) {
   EXPECT_EQ(bench.shade(), 0u);
   bench.uploadCell(1);
   EXPECT_EQ(bench.shade(), 2u) << "project and samples of the cell that arrived";
-  EXPECT_EQ(bench.glossy.cellsShadedLast(), 1u);
+  EXPECT_EQ(bench.samples.cellsShadedLast(), 1u);
   EXPECT_LT(bench.differenceToTwin(), 1e-4);
 }
 
@@ -122,22 +120,20 @@ TEST_F(GlossyGpu, RunsOnlyWhenLightOrTransferChanged) {
   bench.uploadAll();
   EXPECT_GT(bench.shade(), 0u);
   EXPECT_EQ(bench.shade(), 0u) << "a still frame";
-  const std::uint64_t version = bench.glossy.versionOf(0);
+  const std::uint64_t version = bench.samples.matricesVersionOf(0);
   bench.environment.setTurn(10.0f);
   EXPECT_EQ(bench.shade(), 2u);
-  EXPECT_EQ(bench.glossy.versionOf(0), version + 1);
+  EXPECT_EQ(bench.samples.matricesVersionOf(0), version + 1);
   bench.places[1].world_from_group = maker.rotation();
   bench.shade();
-  EXPECT_EQ(bench.glossy.cellsShadedLast(), 1u) << "of the group that turned";
+  EXPECT_EQ(bench.samples.cellsShadedLast(), 1u) << "of the group that turned";
 }
 
-TEST_F(GlossyGpu, DispatchesAndHoldsNothingWithoutGlossyCells) {
+TEST_F(GlossyGpu, DispatchesNothingWithoutGlossyCells) {
   lambent::testing::BundleMaker maker(36);
   Bench bench(maker, {.cells = 2, .mapped_cells = 1});
   bench.uploadAll();
   EXPECT_EQ(bench.shade(), 0u);
-  EXPECT_FALSE(bench.glossy.any());
-  EXPECT_TRUE(bench.glossy.tables().transfers.empty());
 }
 
 TEST_F(GlossyGpu, GlossyDrawsHaveNoRadianceAtTheirVertices) {
@@ -145,10 +141,10 @@ TEST_F(GlossyGpu, GlossyDrawsHaveNoRadianceAtTheirVertices) {
   Bench bench(maker, {.groups = 1, .cells = 0, .glossy_cells = 1});
   bench.uploadAll();
   EXPECT_EQ(bench.residency.radiance().pageCount(), 0u);
-  diffuse::Diffuse diffuse;
+  effects::diffuse::Diffuse diffuse;
   gpu::Counters counters;
   bench.shade();
-  ASSERT_TRUE(diffuse.shade(bench.residency, bench.lights, evaluate::TransferMode::Full, counters));
+  ASSERT_TRUE(diffuse.shade(bench.residency, bench.lights, TransferMode::Full, bench.samples, counters));
   EXPECT_EQ(counters.dispatches, 0u);
 }
 
@@ -158,21 +154,21 @@ TEST_F(GlossyGpu, ProxiesTakeTheFirstNineOutputsOfGlossySamples) {
   bench.uploadAll();
   for (const auto& item : bench.made.proxies) bench.upload(item);
   bench.shade();
-  diffuse::Proxies proxies;
+  effects::diffuse::Proxies proxies;
   gpu::Counters counters;
-  const std::vector<std::uint64_t> shaded = {bench.glossy.versionOf(0)};
+  const std::vector<std::uint64_t> shaded = {bench.samples.matricesVersionOf(0)};
   ASSERT_TRUE(proxies.shade(bench.residency, bench.lights, shaded, counters));
   std::vector<glm::vec4> radiance(proxies.triangles().size());
   proxies.radiance().read(0, std::span(radiance));
   const std::vector<glm::vec4> samples = Bench::samplesOf(bench.residency.samples(), 0);
   for (std::size_t t = 0; t < radiance.size(); ++t) {
-    const diffuse::ProxyTriangleRecord& triangle = proxies.triangles()[t];
+    const effects::diffuse::ProxyTriangleRecord& triangle = proxies.triangles()[t];
     std::vector<float> transfer(9);
     sh::unoccludedTransfer(3, glm::vec3(triangle.normal[0], triangle.normal[1], triangle.normal[2]),
                            transfer);
     glm::vec3 expected(0.0f);
     for (uint e = triangle.first_entry; e < triangle.first_entry + triangle.entry_count; ++e) {
-      const diffuse::ProxyEntryRecord& entry = proxies.entries()[e];
+      const effects::diffuse::ProxyEntryRecord& entry = proxies.entries()[e];
       ASSERT_EQ(entry.outputs, 25u);
       for (uint j = 0; j < 9; ++j)
         expected += glm::vec3(entry.reflectance[0], entry.reflectance[1], entry.reflectance[2]) *
@@ -183,4 +179,4 @@ TEST_F(GlossyGpu, ProxiesTakeTheFirstNineOutputsOfGlossySamples) {
   }
 }
 
-}  // namespace lambent::effects::glossy
+}  // namespace lambent::evaluate

@@ -4,18 +4,21 @@
 #include <algorithm>
 #include <vector>
 
-#include "runtime/effects/glossy/glossy.hpp"
-#include "tests/runtime/effects/diffuse/shading_bench.hpp"
+#include "tests/runtime/evaluate/shading_bench.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/glsl/glossy_kernels.hpp"
 
-namespace lambent::effects::glossy::testing {
+namespace lambent::evaluate::testing {
 
-struct Bench : lambent::testing::ShadingBench<Glossy> {
+struct Bench : lambent::testing::ShadingBench {
   using ShadingBench::ShadingBench;
-  Glossy& glossy = effect;
 
-  std::uint32_t shade(evaluate::TransferMode mode = evaluate::TransferMode::Full) { return shadeIn(mode); }
+  // Shades once and returns the number of dispatches.
+  std::uint32_t shade(TransferMode mode = TransferMode::Full) {
+    gpu::Counters counters;
+    shadeSamples(mode, {.vectors = false}, counters);
+    return counters.dispatches;
+  }
 
   static std::vector<glm::vec4> samplesOf(gpu::Arena& arena, std::uint32_t page) {
     std::vector<glm::vec4> samples(arena.page(page).byteCount() / sizeof(glm::vec4));
@@ -27,7 +30,7 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
   // relative to the largest value.
   double differenceToTwin() {
     double difference = 0.0, largest = 0.0;
-    const evaluate::TransferTable& tables = glossy.tables();
+    const TransferTable& tables = samples.tables();
     std::vector<glm::vec4> products(tables.product_count);
     for (std::size_t i = 0; i < tables.cells.size(); ++i) {
       const streaming::ResidentCell& cell = residency.cells()[i];
@@ -35,9 +38,9 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
       const std::vector<glm::vec4> got =
           samplesOf(residency.samples(), residency.groups()[cell.group].samples.page);
       std::vector<glm::vec4> wanted(got.size(), glm::vec4(0.0f));
-      const FillRecord& fill = glossy.fills()[i];
+      const transfer::FillRecord& fill = samples.fills()[i];
       if (tables.cells[i].count == 0 || !cell.usable()) {
-        glsl::Fill kernel;
+        transfer::glsl::FillSamples kernel;
         kernel.lights = lights.coefficients();
         kernel.fills = std::span(&fill, 1);
         kernel.samples = wanted;
@@ -68,4 +71,4 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
   }
 };
 
-}  // namespace lambent::effects::glossy::testing
+}  // namespace lambent::evaluate::testing

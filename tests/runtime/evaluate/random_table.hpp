@@ -4,7 +4,7 @@
 #include "runtime/bundle/brdf_table.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
 
-namespace lambent::effects::glossy::testing {
+namespace lambent::glossy::testing {
 
 inline bundle::BrdfTable randomTable(lambent::testing::BundleMaker& maker, std::uint32_t order,
                                      bool isotropic, std::uint32_t lobes = 2) {
@@ -39,4 +39,4 @@ inline bundle::BrdfTable evenTable(std::uint32_t order, bool isotropic, float f0
   return table;
 }
 
-}  // namespace lambent::effects::glossy::testing
+}  // namespace lambent::glossy::testing
