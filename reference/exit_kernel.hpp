@@ -14,7 +14,7 @@
 
 #include "reference/brdf.hpp"
 #include "reference/surfaces.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::baker::reference {
 

@@ -16,7 +16,7 @@
 
 #include "reference/options.hpp"
 #include "reference/surfaces.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 #include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/light.hpp"
 

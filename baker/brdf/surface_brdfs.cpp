@@ -60,10 +60,8 @@ struct Factored {
 };
 
 Factored factored(const BrdfTables::Entry& entry) {
-  const int order = static_cast<int>(entry.table.order);
-  Factored out{
-      entry.family, entry.table,
-      entry.table.isotropic() ? sh::ZonalFactors::isotropic(order) : sh::ZonalFactors::anisotropic(order)};
+  Factored out{entry.family, entry.table,
+               sh::ZonalFactors(static_cast<int>(entry.table.order), entry.table.isotropic())};
   const std::size_t count = entry.table.coefficients();
   for (std::size_t first = 0; first < out.table.values.size(); first += count)
     out.factors.factor(std::span(entry.table.values).subspan(first, count),

@@ -1,5 +1,3 @@
-#include "baker/importance/eyes.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,6 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
+#include "baker/importance/importance.hpp"
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {

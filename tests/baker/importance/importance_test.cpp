@@ -90,6 +90,17 @@ TEST(Importance, ACubeOnAWideGroundTakesUpAGoodPartOfPictures) {
   EXPECT_GT(near, 0.15);
 }
 
+TEST(Importance, EyesLookAtABodyFromAllAround) {
+  const Transport t(sceneOf({testing::icosphere(glm::vec3(0.0f), 1.0f, 3)}));
+  float least = 1.0f, most = -1.0f;
+  for (const SeenPoint& point : importanceOf(t).look(1536, t.geometry, t.rays)) {
+    EXPECT_GT(glm::dot(point.to_eye, point.position), -0.1f) << "eyes are outside";
+    least = std::min(least, point.position.y), most = std::max(most, point.position.y);
+  }
+  EXPECT_LT(least, -0.8f);
+  EXPECT_GT(most, 0.8f);
+}
+
 TEST(Importance, ACameraHasHalfOfAllPicturesInItsFrustum) {
   const Transport t(withCamera(sceneOf({flipped(box({0, 0, 0}, {4.0f, 3.0f, 4.0f}, 8))}), {0, 0, 1.5f}));
   double of_camera = 0.0, ahead = 0.0;
