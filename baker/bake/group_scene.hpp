@@ -66,7 +66,6 @@ struct SceneBake {
 // SurfaceInputs are the decoded meshes and images that surfaces are made of.
 struct SurfaceInputs {
   const ShippedMeshes& meshes;
-  const AlphaMaps& alpha_maps;
   DecodedImages& images;
 };
 

@@ -15,9 +15,12 @@ namespace lambent::baker {
 
 namespace {
 
-// MaskedDraw is what the filter of a cut-out geometry needs.
+// A MaskedDraw says where a cut-out surface (alphaMode MASK) lets rays through: texture, factor and vertex
+// colour are compared with the cutoff.
 struct MaskedDraw {
-  std::shared_ptr<const AlphaMap> alpha;
+  std::shared_ptr<const DecodedImage> image;  // null: only factor and vertex alpha count
+  gltf::Sampler sampler;
+  float factor = 1.0f, cutoff = 0.5f;
   std::vector<glm::uvec3> triangles;
   std::vector<glm::vec2> texcoords;
   std::vector<glm::vec4> colors;
@@ -25,8 +28,10 @@ struct MaskedDraw {
   bool blocks(std::uint32_t triangle, float u, float v) const {
     const glm::uvec3 t = triangles[triangle];
     const float w = 1.0f - u - v;
-    return alpha->blocks(w * texcoords[t.x] + u * texcoords[t.y] + v * texcoords[t.z],
-                         w * colors[t.x].w + u * colors[t.y].w + v * colors[t.z].w);
+    const glm::vec2 uv = w * texcoords[t.x] + u * texcoords[t.y] + v * texcoords[t.z];
+    const float vertex_alpha = w * colors[t.x].w + u * colors[t.y].w + v * colors[t.z].w;
+    const float texture_alpha = image ? sampleImage(*image, sampler, uv).w : 1.0f;
+    return texture_alpha * factor * vertex_alpha >= cutoff;
   }
 };
 
@@ -146,10 +151,17 @@ RayScene::~RayScene() = default;
 
 namespace {
 
-std::unique_ptr<MaskedDraw> maskedDraw(const GroupGeometry& group, const DrawGeometry& draw,
-                                       std::shared_ptr<const AlphaMap> alpha) {
+Result<std::unique_ptr<MaskedDraw>> maskedDraw(const GroupGeometry& group, const DrawGeometry& draw,
+                                               const Scene& scene, DecodedImages& images) {
+  const gltf::Material& material = scene.materials[static_cast<std::size_t>(draw.material)];
+  const std::int32_t texture = material.base_color_texture.texture;
   auto masked = std::make_unique<MaskedDraw>();
-  masked->alpha = std::move(alpha);
+  masked->factor = material.base_color.w;
+  masked->cutoff = material.alpha_cutoff;
+  auto image = images.ofTexture(texture);
+  if (!image) return failAgain(image.error());
+  masked->image = std::move(*image);
+  if (masked->image) masked->sampler = scene.textures[static_cast<std::size_t>(texture)].sampler;
   for (std::uint32_t t = 0; t < draw.triangle_count; ++t)
     masked->triangles.push_back(group.triangles[draw.first_triangle + t] - draw.first_vertex);
   const auto first = static_cast<std::ptrdiff_t>(draw.first_vertex),
@@ -161,7 +173,7 @@ std::unique_ptr<MaskedDraw> maskedDraw(const GroupGeometry& group, const DrawGeo
 
 }  // namespace
 
-Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene, AlphaMaps alpha_maps) {
+Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene, DecodedImages& images) {
   auto state = std::make_unique<State>();
   auto device = newEmbreeDevice();
   if (!device) return failAgain(std::move(device.error()));
@@ -192,7 +204,9 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
         draw.triangle_count, corners);
     if (!geometry) return fail("Embree", "has not enough memory for the scene", "bake it in parts");
     if (material && material->alpha_mode == gltf::AlphaMode::Mask) {
-      state->masked.push_back(maskedDraw(group, draw, alpha_maps[static_cast<std::size_t>(draw.material)]));
+      auto masked = maskedDraw(group, draw, scene, images);
+      if (!masked) return failAgain(masked.error());
+      state->masked.push_back(std::move(*masked));
       rtcSetGeometryUserData(geometry, state->masked.back().get());
       rtcSetGeometryOccludedFilterFunction(geometry, filterMasked);
       rtcSetGeometryIntersectFilterFunction(geometry, filterMasked);

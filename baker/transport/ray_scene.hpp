@@ -176,8 +176,8 @@ void blockBelowHorizons(const SampleRays& rays, std::span<std::uint16_t> masks);
 
 class RayScene {
  public:
-  // `alpha_maps` as loadAlphaMaps gives them. Errors: Embree cannot be set up or runs out of memory.
-  static Result<RayScene> build(const GroupGeometry& geometry, const Scene& scene, AlphaMaps alpha_maps);
+  // Errors: those of decodeImage, of cut-outs; Embree cannot be set up or runs out of memory.
+  static Result<RayScene> build(const GroupGeometry& geometry, const Scene& scene, DecodedImages& images);
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();

@@ -98,9 +98,7 @@ struct Transport {
 
   static baker::RayScene build(const baker::GroupGeometry& geometry, const baker::Scene& scene) {
     baker::DecodedImages images(scene);
-    auto maps = baker::loadAlphaMaps(scene, images);
-    EXPECT_TRUE(maps.has_value());
-    auto rays = baker::RayScene::build(geometry, scene, std::move(*maps));
+    auto rays = baker::RayScene::build(geometry, scene, images);
     EXPECT_TRUE(rays.has_value());
     return std::move(*rays);
   }
