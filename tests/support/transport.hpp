@@ -11,8 +11,8 @@
 #include "baker/effects/surface/direct.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/plan/rigid_groups.hpp"
-#include "baker/transport/direction_table.hpp"
 #include "baker/transport/ray_scene.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::testing {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "baker/transport/direction_table.hpp"
+#include "baker/transport/samples.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
