@@ -16,8 +16,8 @@
 #include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/key_lights.hpp"
 #include "runtime/lighting/triangle_tree.hpp"
-#include "runtime/scene/affine.hpp"
-#include "runtime/world/boxes.hpp"
+#include "runtime/scene/bounds.hpp"
+#include "runtime/scene/transforms.hpp"
 
 namespace lambent::frame {
 

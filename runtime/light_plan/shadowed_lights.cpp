@@ -10,7 +10,7 @@
 #include <glm/vector_relational.hpp>
 
 #include "runtime/light_plan/light_plan.hpp"
-#include "runtime/scene/affine.hpp"
+#include "runtime/scene/transforms.hpp"
 #include "runtime/shadows/key_shadows.hpp"
 
 namespace lambent::frame {

@@ -18,7 +18,6 @@
 #include "runtime/lighting/capture_shared.h"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/sh/image_layout.hpp"
-#include "runtime/sh/projection.hpp"
 
 namespace lambent::lighting {
 
@@ -442,16 +441,6 @@ std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
       out.visible[q] = visibleShare(point.queries[q], hidden[run_.first_words[record] + q], out.light);
   }
   return lights;
-}
-
-Capture::Texels Capture::texels() const {
-  Texels texels{.points = std::vector<std::uint32_t>(run_.uncovered.size()),
-                .records = &points_.buffer(),
-                .texels = &texels_.buffer(),
-                .values = &values_.buffer()};
-  for (std::uint32_t p = 0; p < run_.records.size(); ++p)
-    if (run_.records[p] != kNoRecord) texels.points[run_.records[p]] = p;
-  return texels;
 }
 
 sh::LightVector Capture::skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light) {

@@ -27,7 +27,7 @@
 #include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/capture_scene.hpp"
 #include "runtime/lighting/environment.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::lighting::capture {
 
@@ -188,15 +188,6 @@ class Capture {
     std::uint64_t triangles = 0, pixels = 0;
   };
   const Load& load() const { return load_; }
-  // Gives the texels of the last run in which a body may show, for pictures of what points see. The buffers
-  // stay valid until the next run.
-  struct Texels {
-    std::vector<std::uint32_t> points;     // for each record, the index of its point
-    const gpu::Buffer* records = nullptr;  // capture::PointRecord
-    const gpu::Buffer* texels = nullptr;   // capture::TexelRecord, which names the texel of the cube
-    const gpu::Buffer* values = nullptr;   // vec4: mean radiance of bodies, their coverage
-  };
-  Texels texels() const;
   // Returns the sky as its texels represent it, turned by the given rotation and without the correction to
   // the exact light, so that the error of the texels can be measured. Waits for the GPU. Must not be called
   // while pending().

@@ -22,7 +22,7 @@
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/lighting/capture_scene.hpp"
 #include "runtime/lighting/capture_shared.h"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::lighting::capture {
 

@@ -14,7 +14,7 @@
 
 #include "runtime/lighting/capture_scene.hpp"
 #include "runtime/scene/components.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::lighting {
 

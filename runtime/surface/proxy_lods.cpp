@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "runtime/light_plan/light_plan.hpp"
-#include "runtime/streaming/sizes.hpp"
+#include "runtime/streaming/resident_tables.hpp"
 #include "runtime/surface/surface_program.hpp"
 
 namespace lambent::frame {

@@ -8,7 +8,7 @@
 #include "runtime/frame/frame.hpp"
 #include "runtime/light_plan/light_plan.hpp"
 #include "runtime/scene/bounds.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "tests/support/frame/view_stage.hpp"
 
 namespace lambent::frame {

@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include "runtime/sh/image_layout.hpp"
-#include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
 
