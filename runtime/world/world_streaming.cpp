@@ -143,7 +143,6 @@ std::uint64_t World::bytesTaken() const {
 
 void World::retire(Bundle& bundle) {
   if (!bundle.batch) return;
-  bundle.bytes_read += bundle.batch->loader->bytesRead();
   bundle.batch->loader->stop();
   residency_.cancel(bundle.options.bundle_index);
   retired_.push_back(std::move(bundle.batch->loader));
