@@ -19,6 +19,7 @@
 #include "runtime/streaming/resident_tables.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"
 #include "tests/support/built_volume.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lambent::streaming {
 namespace {
@@ -71,7 +72,7 @@ const std::vector<std::string> kInOrder = {
 
 class LoaderTest : public ::testing::Test {
  protected:
-  std::filesystem::path path() const { return folder_ / "scene.lmb.glb"; }
+  std::filesystem::path path() const { return folder_.path() / "scene.lmb.glb"; }
 
   void write(const Sample& sample) {
     const auto written = bundle::write(path(), sample.description, sample.blobs);
@@ -117,7 +118,7 @@ class LoaderTest : public ::testing::Test {
   ThreadPool threads_;
 
  private:
-  testing::TemporaryFolder folder_;
+  lambent::testing::TemporaryFolder folder_;
 };
 
 TEST_F(LoaderTest, DeliversByPriorityWhatWasWritten) {
