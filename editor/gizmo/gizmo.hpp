@@ -57,7 +57,7 @@ class Gizmo {
   // Call both every frame. During a drag new targets are ignored, but a new view is used. The last target is
   // the primary one, about whose origin all turn and scale. Without targets there are no handles.
   void setTargets(std::vector<GizmoTarget> targets);
-  void setView(const spec::View& view, const Viewport& viewport);
+  void setView(const spec::View& view, const Viewport& viewport) { projection_ = {view, viewport}; }
 
   Handle hit(glm::vec2 pixel) const;
   void hover(glm::vec2 pixel);
@@ -71,7 +71,7 @@ class Gizmo {
   // Returns the new Transforms of the targets, in their order, or an empty list if there is no drag.
   // other_snap: snaps if options.snap does not, and the other way round (a modifier key is held).
   std::vector<scene::Transform> drag(glm::vec2 pixel, bool other_snap = false);
-  void release();
+  void release() { active_ = Handle::None; }
 
   // Returns a pixel at which a script can grab the handle, away from the others, or none if the handle is not
   // visible.

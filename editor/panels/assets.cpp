@@ -9,7 +9,6 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
 #include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {
@@ -97,8 +96,7 @@ void use(Session& session, const Asset& asset) {
 
 void drawTile(Session& session, Marks& marks, const Asset& asset) {
   AssetBrowser& browser = session.assets;
-  const bool clicked =
-      drawAssetTile(session, asset, browser.large ? kLargeTileEms : kTileEms, browser.selected == asset.file);
+  const bool clicked = drawAssetTile(session, asset, kTileEms, browser.selected == asset.file);
   marks.put("assets." + asset.file.filename().string());
   if (clicked) browser.selected = asset.file;
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) use(session, asset);
@@ -132,9 +130,6 @@ void drawAssets(Session& session, Marks& marks) {
       ImGui::InputTextWithHint("##search", "search", &browser.search, ImGuiInputTextFlags_EnterReturnsTrue);
   marks.put("assets.search");
   tooltip("Parts of a name or a kind, as sky, scene, bundle or world");
-  sameLineIfFits("large pictures");
-  ImGui::Checkbox("large pictures", &browser.large);
-  marks.put("assets.large");
   ImGui::BeginChild("tiles");
   const Asset* first = nullptr;
   const Asset* selected = nullptr;
@@ -143,7 +138,7 @@ void drawAssets(Session& session, Marks& marks) {
     for (const Asset& asset : group.assets) {
       if (!matches(asset, browser.search)) continue;
       if (titled) {
-        sameLineIfFits(em(browser.large ? kLargeTileEms : kTileEms));
+        sameLineIfFits(em(kTileEms));
       } else {
         fittedText(dimmed(), group.title);
       }
@@ -153,7 +148,7 @@ void drawAssets(Session& session, Marks& marks) {
       if (asset.file == browser.selected) selected = &asset;
     }
   }
-  if (!first) ImGui::TextDisabled("%s", browser.busy() ? "Reading the folders..." : "Nothing is found.");
+  if (!first) ImGui::TextDisabled("Nothing is found.");
   ImGui::EndChild();
   if (!enter || !first) return;
   // Enter uses what is selected. While nothing of what was found is, it uses the first.

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "baker/brdf/surface_brdfs.hpp"
+#include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/surface/direct.hpp"
-#include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/volume/marched_volume.hpp"
 
 namespace lambent::baker {
