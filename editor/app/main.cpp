@@ -25,7 +25,7 @@
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/gpu/context.hpp"
-#include "runtime/gpu/out_of_memory.hpp"
+#include "runtime/gpu/objects.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"
 

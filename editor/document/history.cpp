@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <glm/matrix.hpp>
 
-#include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/transforms.hpp"
 
 namespace lambent::editor {
 namespace {

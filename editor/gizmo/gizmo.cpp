@@ -13,7 +13,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "editor/gizmo/projection.hpp"
-#include "runtime/scene/affine.hpp"
+#include "runtime/scene/transforms.hpp"
 
 namespace lambent::editor {
 namespace {

@@ -7,7 +7,7 @@
 #include <imgui_stdlib.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/session/scene_changes.hpp"
@@ -37,7 +37,7 @@ bool editOptionWord(Marks& marks, const baker::OptionRow& row, const std::string
   tellHelp(row);
   if (!open) return false;
   bool changed = false;
-  for (const std::string_view choice : row.words) {
+  for (const auto& [choice, value] : row.words) {
     const std::string text(choice);
     if (ImGui::Selectable(text.c_str(), text == word)) word = text, changed = true;
     marks.put(mark + "." + text);

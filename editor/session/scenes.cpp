@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 
 namespace lambent::editor {
 

@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "runtime/base/lower_case.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 

@@ -11,8 +11,8 @@
 
 #include "editor/session/session.hpp"
 #include "runtime/frame/frame_settings.hpp"
-#include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/transforms.hpp"
 
 namespace lambent::editor {
 

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "editor/gizmo/projection.hpp"
-#include "runtime/scene/affine.hpp"
+#include "runtime/scene/transforms.hpp"
 #include "tests/support/differences.hpp"
 #include "views.hpp"
 
