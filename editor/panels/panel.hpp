@@ -61,7 +61,7 @@ void drawPalette(Session& session, Marks& marks);
 // Draws the items of a menu about what is selected, for rows of the tree and the view.
 void drawSelectionMenu(Session& session, Marks& marks);
 
-// ---- What several panels draw: fields and numbers, and tiles of assets.
+// ---- What several panels draw.
 
 std::string countText(double count);   // "1.2 M"
 std::string bytesText(double bytes);   // "3.4 MiB"
@@ -123,13 +123,6 @@ void asOneStep(Session& session, const char* name);
 // Logs why an edit was refused, if it was.
 void logRefusal(Session& session, const Result<void>& done);
 
-inline constexpr float kTileEms = 7.0f;                // width
 inline constexpr const char* kDraggedAsset = "asset";  // the type of what a dragged tile carries: its path
-
-// Draws a tile of this width, in ems, as one widget, which is the last one afterwards. While there is no
-// picture, the tile has the word of the asset's kind. Returns whether it was clicked.
-bool drawAssetTile(Session& session, const Asset& asset, float width_ems, bool selected);
-// Returns path, kind, size and, if the asset cannot be read, why.
-std::string describe(Session& session, const Asset& asset);
 
 }  // namespace lambent::editor

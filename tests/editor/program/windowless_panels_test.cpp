@@ -1,4 +1,5 @@
 // Tests panels in a Dear ImGui context without window and OpenGL, whose only input comes from the test.
+#include <chrono>
 #include <fstream>
 
 #include <imgui.h>
@@ -250,6 +251,8 @@ TEST_F(WindowlessPanels, AFileDialogListsFoldersFirstAndWhatComes) {
   };
   EXPECT_EQ(listed(), "z b.glb ");
   std::ofstream(shown / "a.glb") << "x";
+  // The clock of the file system may be too coarse to tell both times apart.
+  std::filesystem::last_write_time(shown, std::filesystem::last_write_time(shown) + std::chrono::seconds(1));
   EXPECT_EQ(listed(), "z a.glb b.glb ");
   dialog.kind = Dialog::Kind::Folder;
   dialog.listed.forget();
