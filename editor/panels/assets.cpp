@@ -86,10 +86,6 @@ std::string describe(Session& session, const Asset& asset) {
                      bytesText(static_cast<double>(asset.bytes)), error.empty() ? "" : "\n", error);
 }
 
-const char* useOf(AssetKind kind) {
-  return kind == AssetKind::EnvironmentMap ? "Use as environment" : "Open";
-}
-
 void use(Session& session, const Asset& asset) {
   runOrLog(session, "use-asset", std::array{asset.file.string()});
 }
@@ -109,12 +105,6 @@ void drawTile(Session& session, Marks& marks, const Asset& asset) {
     ImGui::SetDragDropPayload(kDraggedAsset, file.c_str(), file.size() + 1);
     ImGui::TextUnformatted(asset.file.filename().c_str());
     ImGui::EndDragDropSource();
-  }
-  if (ImGui::BeginPopupContextItem()) {
-    browser.selected = asset.file;
-    if (ImGui::MenuItem(useOf(asset.kind))) use(session, asset);
-    marks.put("assets.use");
-    ImGui::EndPopup();
   }
 }
 

@@ -171,17 +171,6 @@ void drawAdd(Session& session, Marks& marks, std::span<const ecs::Entity> select
   ImGui::EndPopup();
 }
 
-// Returns the height of drawRebake: a line, a button and the reasons, each as a wrapped text behind a bullet.
-float rebakeHeight(const std::vector<std::string>& reasons) {
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const float wrap = ImGui::GetContentRegionAvail().x - ImGui::GetFontSize() - 2.0f * style.FramePadding.x;
-  float height =
-      ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing() + 4.0f * style.ItemSpacing.y;
-  for (const std::string& reason : reasons)
-    height += ImGui::CalcTextSize(reason.c_str(), nullptr, false, wrap).y + style.ItemSpacing.y;
-  return height;
-}
-
 // Lists what the picture only approximates since the bundle was baked, with a button to bake it again.
 void drawRebake(Session& session, Marks& marks, std::size_t entry, const std::vector<std::string>& reasons) {
   ImGui::Separator();
@@ -223,7 +212,10 @@ void drawInspector(Session& session, Marks& marks) {
       entry ? session.changes.needsRebakeNow(*entry) : std::vector<std::string>();
   // The reasons stand below the fields, which must not move under the pointer while an edit gives a reason.
   const float room = ImGui::GetContentRegionAvail().y;
-  const float below = reasons.empty() ? 0.0f : std::min(rebakeHeight(reasons), 0.4f * room);
+  // A title, a button, and a line for each reason; where these are wrapped, they scroll.
+  const float lines = 3.5f + static_cast<float>(reasons.size());
+  const float below =
+      reasons.empty() ? 0.0f : std::min(lines * ImGui::GetFrameHeightWithSpacing(), 0.4f * room);
   ImGui::BeginChild("fields", ImVec2(0.0f, std::max(1.0f, room - below)));
   if (selected.empty()) {
     ImGui::PushTextWrapPos(0.0f);
