@@ -350,7 +350,6 @@ void drawPlan(Session& session, Marks& marks) {
     if (sentences.empty() || !ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen)) return;
     for (const std::string& text : sentences) sentence(text);
   };
-  list("Lamps that come near", plan.shadowed_lights);
   list("Left out", plan.left_out);
   list("Warnings of the import", (*made)->warnings);
 }
