@@ -11,7 +11,7 @@
 
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/options.hpp"
-#include "baker/brdf/kernel_power.hpp"
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/cache/bytes.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
@@ -19,7 +19,7 @@
 #include "baker/effects/surface/cell_vectors.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/proxy/capture_proxy.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {

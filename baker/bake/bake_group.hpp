@@ -12,7 +12,7 @@
 #include "baker/bake/picture_error.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/compress/kept_transfer.hpp"
-#include "baker/effects/neighborhood/body.hpp"
+#include "baker/effects/neighborhood/bodies.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/surface/direct.hpp"
@@ -122,7 +122,7 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
 
 // Bakes group `index` of the plan, which is a volume. `baked` holds the groups before it, among them all
 // those of surfaces. Errors: no memory for the ray hierarchy, "stopped".
-Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
+Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std::size_t index,
                               const std::vector<BakedGroup>& baked, const BakeContext& context,
                               BakeReport& report);
 

@@ -10,7 +10,6 @@
 #include "baker/bake/group_scene.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
-#include "baker/effects/volume/marched_volume.hpp"
 #include "baker/effects/volume/volume.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/transport/geometry_key.hpp"
@@ -219,7 +218,7 @@ Key transferKey(const Scene& scene, const BakedVolume& placed, const VolumeSetti
 // A PlacedVolume is a volume in its group, and how its transfer is baked.
 struct PlacedVolume {
   const SceneBake& bake;
-  const AlphaMaps& alpha_maps;
+  DecodedImages& images;
   const SceneVolume& volume;
   const QuantizedDensity& density;
   const glm::mat4& group_from_grid;
@@ -233,7 +232,7 @@ Result<VolumeTransfer> transferOf(const PlacedVolume& placed, const BakeContext&
   std::optional<RayScene> rays;
   Occluders occluders;
   if (placed.within.geometry) {
-    auto built = RayScene::build(*placed.within.geometry, placed.bake.scene, placed.alpha_maps);
+    auto built = RayScene::build(*placed.within.geometry, placed.bake.scene, placed.images);
     if (!built) return failAgain(built.error());
     rays = std::move(*built);
     occluders = Occluders(*rays, placed.within.from_group);
@@ -316,7 +315,7 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
   return {};
 }
 
-Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
+Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std::size_t index,
                               const std::vector<BakedGroup>& baked, const BakeContext& context,
                               BakeReport& report) {
   const auto& [scene, options, plan, tables] = bake;
@@ -330,7 +329,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   out.transfer_size = options.volume_grid;
   result.light_probes.points = {out.light_probe};
   const PlacedVolume placed{bake,
-                            alpha_maps,
+                            images,
                             volume,
                             density,
                             out.group_from_grid,
@@ -351,7 +350,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   CodedVolume coded;
   CachedCoding coding(context);
   // The transfer is baked only if a result that follows from it is not in the cache.
-  std::optional<MarchedVolume> light;
+  std::optional<VolumeTransfer> light;
   const auto bakeLight = [&](const auto& use) -> Result<void> {
     auto transfer = transferOf(placed, own, report.ray_seconds);
     if (!transfer) return failAgain(transfer.error());
@@ -380,7 +379,11 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   if (!light)
     if (made = bakeLight([](const VolumeTransfer&) { return true; }); !made) return failAgain(made.error());
   const auto [low, high] = out.bounds();
-  const VolumeBody body(*light, low, high, /*scatters=*/true);
+  const auto march = [&](const glm::vec3& origin, const glm::vec3& direction, float t_max,
+                         std::span<float> scattered) {
+    return marchVolume(*light, origin, direction, t_max, scattered);
+  };
+  const VolumeBody body(march, light->order, low, high, /*scatters=*/true);
   if (!bakeAround(around, body, Box3{low, high}, around_context, result)) return bake.stopped();
   return result;
 }

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "baker/bake/bake.hpp"
-#include "baker/brdf/brdf_kinds.hpp"
+#include "baker/brdf/brdf.hpp"
 #include "baker/cache/key.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/trace/emitters.hpp"
@@ -313,7 +313,7 @@ Result<void> GroupScene::loadColors() {
 Result<void> GroupScene::findImportance(const BakeContext& context) {
   if (rays_) return {};
   context.progress.begin("hierarchy");
-  auto rays = RayScene::build(geometry, bake.scene, inputs_.alpha_maps);
+  auto rays = RayScene::build(geometry, bake.scene, inputs_.images);
   if (!rays) return failAgain(rays.error());
   rays_ = std::move(*rays);
   context.progress.begin("importance");

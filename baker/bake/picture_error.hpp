@@ -16,7 +16,7 @@
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/surface/inside_faces.hpp"
 #include "baker/importance/importance.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {

@@ -11,7 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include "baker/importance/importance.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
 

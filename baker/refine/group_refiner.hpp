@@ -22,12 +22,10 @@
 #include "baker/plan/rigid_groups.hpp"
 #include "baker/refine/refine.hpp"
 #include "baker/trace/emitters.hpp"
-#include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
-#include "baker/transport/seen_origins.hpp"
 #include "runtime/bundle/mesh.hpp"
 
 namespace lambent::baker {

@@ -8,7 +8,6 @@
 
 #include "baker/import/mesh_edits.hpp"
 #include "baker/refine/group_refiner.hpp"
-#include "baker/transport/face_points.hpp"
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {

@@ -88,8 +88,7 @@ void Renderer::update(Session& session, spec::Size size) {
   picture.update(session, size);
   reference.update(session);
   session.settings.update(session);
-  session.qualities.update(session);
-  thumbnails.update(session, picture.texture());
+  thumbnails.update(session);
   materials.update(session);
 }
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/jobs/parallel.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/bundle/description.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/shapes.hpp"

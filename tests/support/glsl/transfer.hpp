@@ -26,12 +26,17 @@ struct ShadeVectors : Invocation {
 template <uint LAMBENT_OUTPUTS>
 struct BlendVectors : Invocation {
 #define LAMBENT_MANY_LIGHTS
+#include "as_cpp/shade_vectors.comp"
 #undef LAMBENT_MANY_LIGHTS
 };
 
 template <uint LAMBENT_BANDS>
 struct ShadeMatrices : Invocation {
 #include "as_cpp/shade_matrices.comp"
+};
+
+struct FillSamples : Invocation {
+#include "as_cpp/fill_samples.comp"
 };
 
 struct DiffuseLight {
