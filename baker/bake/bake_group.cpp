@@ -78,7 +78,7 @@ BakeContext contextOf(const Around& around, const BakeContext& body) {
 
 bool findAround(const Around& around, const BakeContext& context, BakedGroup& out) {
   BakedAround found;
-  if (!findKept(context, found)) return false;
+  if (!findNeighborhood(context, found)) return false;
   take(around, std::move(found), out);
   return true;
 }
