@@ -9,7 +9,6 @@
 #include <stb/stb_image_write.h>
 
 #include "assets/shapes.hpp"
-#include "assets/teapot.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
