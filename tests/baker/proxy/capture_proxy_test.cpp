@@ -10,7 +10,6 @@
 #include <stb/stb_image_write.h>
 
 #include "assets/shapes.hpp"
-#include "assets/teapot.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/proxy/shine.hpp"
 #include "baker/proxy/simplify.hpp"
