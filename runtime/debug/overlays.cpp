@@ -20,8 +20,8 @@
 #include "lambent_transfer_embedded.hpp"
 #include "runtime/debug/overlay_lines.hpp"
 #include "runtime/debug/overlay_slice_shared.h"
+#include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/surface_shared.h"
-#include "runtime/draws/view.hpp"
 #include "runtime/effects/neighborhood/neighborhood_shared.h"
 #include "runtime/scene/bounds.hpp"
 

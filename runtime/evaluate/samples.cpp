@@ -18,12 +18,13 @@ const gpu::FindText kEvaluateShaders[2] = {&embedded::lambent_evaluate::find,
 static_assert(transfer::kLightStride == lighting::GroupLights::kStride &&
               transfer::kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
 
-Result<void> Kernels::use(std::string_view file, std::vector<gpu::Define> defines) {
-  std::string label(file);
+Result<void> Kernels::use(std::initializer_list<gpu::Stage> stages, std::vector<gpu::Define> defines) {
+  std::string label;
+  for (const gpu::Stage& stage : stages) label += fmt::format("{}{}", label.empty() ? "" : " ", stage.file);
   for (const gpu::Define& define : defines) label += fmt::format(" {} {}", define.name, define.value);
   auto found = programs_.find(label);
   if (found == programs_.end()) {
-    Result<gpu::Program> made = gpu::Program::create(label, {{GL_COMPUTE_SHADER, file}}, texts_, defines);
+    Result<gpu::Program> made = gpu::Program::create(label, stages, texts_, defines);
     if (!made) return failAgain(made.error());
     found = programs_.emplace(label, std::move(*made)).first;
   }
@@ -181,11 +182,12 @@ Result<void> Samples::shade(streaming::Residency& residency, const lighting::Gro
       residency.transfer().page(key[2]).bindStorage(transfer::kBindTransfer);
       residency.samples().page(key[3]).bindStorage(transfer::kBindSamples);
       if (key[1] == kMatrices)
-        return kernels_.use("shade_matrices.comp",
-                            {{"LAMBENT_BANDS", fmt::format("{}u", transfer::bandsOf(key[0]))}});
+        return kernels_.use(
+            "shade_samples.comp",
+            {{"LAMBENT_MATRICES", "1"}, {"LAMBENT_BANDS", fmt::format("{}u", transfer::bandsOf(key[0]))}});
       std::vector<gpu::Define> defines = {{"LAMBENT_OUTPUTS", std::to_string(key[0])}};
       if (key[1] == kSeveralLights) defines.push_back({"LAMBENT_MANY_LIGHTS", "1"});
-      return kernels_.use("shade_vectors.comp", std::move(defines));
+      return kernels_.use("shade_samples.comp", std::move(defines));
     });
   return done;
 }
@@ -249,11 +251,11 @@ Result<void> Samples::project(streaming::Residency& residency, gpu::Counters& co
       gpu::Table& gaunt = gaunts_.try_emplace({key[1], bands}, "products of harmonics").first->second;
       if (!gaunt.buffer()) gaunt.assign(std::span<const std::uint32_t>(gauntWords(key[1], bands)));
       gaunt.bindStorage(transfer::kBindGaunt);
-      return kernels_.use("project_visibility.comp");
+      return kernels_.use("project_clusters.comp", {{"LAMBENT_VISIBILITY", "1"}});
     }
     std::vector<gpu::Define> defines;
     if (key[1] != 0) defines.push_back({"LAMBENT_ORDER", fmt::format("{}u", key[1])});
-    return kernels_.use("project_vectors.comp", std::move(defines));
+    return kernels_.use("project_clusters.comp", std::move(defines));
   });
 }
 

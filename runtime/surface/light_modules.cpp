@@ -1,7 +1,7 @@
 #include "runtime/surface/light_modules.hpp"
 
 #include "lambent_bounces_embedded.hpp"
-#include "runtime/surface/surface_program.hpp"
+#include "runtime/surface/surfaces.hpp"
 
 namespace lambent::frame {
 
@@ -18,16 +18,16 @@ constexpr SurfaceFunction kBounces[] = {
     {SurfaceHook::Gathered, CalledBy::Glossy, "bounced_corners.glsl", "addBounces"}};
 constexpr SurfaceFunction kNeighborhoods[] = {
     {SurfaceHook::Received, CalledBy::Diffuse, "neighborhood_surface.glsl", "addNeighborhoods"},
-    {SurfaceHook::Received, CalledBy::Glossy, "neighborhood_glossy.glsl", "addReflectedNeighborhoods"}};
+    {SurfaceHook::Received, CalledBy::Glossy, "neighborhood_surface.glsl", "addReflectedNeighborhoods"}};
 constexpr SurfaceFunction kVertexChange[] = {
     {SurfaceHook::Vertex, CalledBy::Diffuse, "neighborhood_vertex.glsl", "addVertexChange"}};
 constexpr SurfaceFunction kSpecular[] = {
     {SurfaceHook::MirroredSky, CalledBy::Ggx, "specular_environment.glsl", "addSpecularEnvironment"},
-    {SurfaceHook::MirroredSky, CalledBy::Layered, "layered_environment.glsl", "addLayeredEnvironment"}};
+    {SurfaceHook::MirroredSky, CalledBy::Layered, "specular_environment.glsl", "addLayeredEnvironment"}};
 
 constexpr SurfaceFunction kProbes[] = {
-    {SurfaceHook::MirroredSky, CalledBy::Ggx, "glossy_probes.glsl", "addGlossyProbes"},
-    {SurfaceHook::MirroredSky, CalledBy::Layered, "layered_probes.glsl", "addLayeredProbes"}};
+    {SurfaceHook::MirroredSky, CalledBy::Ggx, "reflection_probes.glsl", "addGlossyProbes"},
+    {SurfaceHook::MirroredSky, CalledBy::Layered, "reflection_probes.glsl", "addLayeredProbes"}};
 
 }  // namespace
 

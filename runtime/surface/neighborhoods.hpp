@@ -28,7 +28,6 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/neighborhood/neighborhood.hpp"
-#include "runtime/effects/neighborhood/vertex_receivers.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/shadows/lit_scene.hpp"
 #include "runtime/world/world.hpp"

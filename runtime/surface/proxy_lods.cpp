@@ -8,7 +8,7 @@
 #include "runtime/shadows/lit_scene.hpp"
 #include "runtime/shadows/shadowed_light_choice.hpp"
 #include "runtime/streaming/sizes.hpp"
-#include "runtime/surface/surface_program.hpp"
+#include "runtime/surface/surfaces.hpp"
 
 namespace lambent::frame {
 

@@ -12,7 +12,7 @@
 #include "runtime/bundle/gltf_types.hpp"
 #include "runtime/draws/surface_shared.h"
 #include "runtime/gpu/program.hpp"
-#include "runtime/surface/surface_program.hpp"
+#include "runtime/surface/surfaces.hpp"
 #include "tests/runtime/surface/surface_normal.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -255,20 +255,6 @@ TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordi
   EXPECT_EQ(at(image, 3, 3), at(image, 12, 12));
 }
 
-TEST_F(SurfaceShader, ShowsTheBaseColourOfUnlitSurfacesWhateverTheLight) {
-  textures[kUnitBaseColor] = picture(1, 1, {255, 51, 255, 255}, GL_RGBA8);
-  SurfaceDraw record = diffuseRecord();
-  record.base_color = {0.25f, 0.5f, 1.0f, 0.5f};
-  record.base_color_texture = slot(0);
-  record.alpha_mode = kAlphaBlend;
-  record.unlit = 1;
-  for (const float radiance : {0.0f, 3.0f}) {
-    const Picture image = drawRadiance(record, glm::vec3(radiance));
-    ASSERT_FALSE(image.empty());
-    EXPECT_LT(glm::distance(at(image, 5, 9), glm::vec4(0.25f, 0.1f, 1.0f, 0.5f)), 1e-6f);
-  }
-}
-
 TEST_F(SurfaceShader, ReceivesLightAtThePixelsNormalAsTheReferenceDoes) {
   const glm::vec3 texel = glm::vec3(220, 70, 200) / 255.0f;
   textures[kUnitNormal] = picture(1, 1, {220, 70, 200, 255}, GL_RGBA8);
@@ -329,16 +315,6 @@ TEST_F(SurfaceShader, UsesTheVertexNormalWhereThereIsNoNormalTexture) {
   const Picture image = drawLight(diffuseRecord(), vertices, kLight);
   ASSERT_FALSE(image.empty());
   EXPECT_LT(glm::distance(glm::vec3(at(image, 8, 8)), diffuseLight(vertices.normal)), 1e-5f);
-}
-
-TEST_F(SurfaceShader, UniformLightHidesTheNormalMap) {
-  textures[kUnitNormal] = picture(2, 1, {255, 128, 128, 255, 10, 200, 180, 255}, GL_RGBA8);
-  SurfaceDraw record = diffuseRecord();
-  record.normal_texture = slot(0);
-  Light uniform{};
-  uniform[0] = glm::vec3(3.54490770f, 1.77245385f, 0.0f);  // radiance 1 and 1/2: sqrt(4 pi) times
-  for (const glm::vec4& pixel : drawLight(record, {}, uniform))
-    EXPECT_LT(glm::distance(pixel, glm::vec4(1.0f, 0.5f, 0.0f, 1.0f)), 1e-6f);
 }
 
 }  // namespace lambent::frame
