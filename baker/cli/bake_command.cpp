@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "baker/cli/bake_report.hpp"
 #include "baker/cli/bake_scene.hpp"
 #include "baker/cli/commands.hpp"

@@ -28,7 +28,7 @@ void addAccuracyCommand(CLI::App& app, Command& run);
 void addExportCommand(CLI::App& app, Command& run);
 void addViewCommand(CLI::App& app, Command& run);
 
-// Adds the options of a bake from their table (baker/bake/option_rows.hpp).
+// Adds the options of a bake from their table (baker/bake/options.hpp).
 void addBakeOptions(CLI::App& command, BakeOptions& options);
 
 }  // namespace lambent::baker

@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/decisions/decisions.hpp"

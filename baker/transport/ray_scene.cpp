@@ -4,49 +4,16 @@
 #include <array>
 #include <bit>
 #include <cassert>
-#include <cstring>
 #include <limits>
 #include <tuple>
 #include <utility>
 
 #include "baker/embree/embree.hpp"
 #include "baker/transport/group_geometry.hpp"
-#include "baker/transport/ray_packets.hpp"
-
-#if defined(__SSE2__)
-#include <pmmintrin.h>
-#include <xmmintrin.h>
-#endif
 
 namespace lambent::baker {
 
 namespace {
-
-struct ReleaseDevice {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct ReleaseScene {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
-using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
-
-// Flushes denormals while Embree runs, as Embree asks for. The mode is restored afterwards, so that other
-// code on the thread is not affected.
-class FlushDenormals {
- public:
-#if defined(__SSE2__)
-  FlushDenormals() : saved_(_mm_getcsr()) {
-    _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
-  }
-  ~FlushDenormals() {
-    _mm_setcsr(saved_);
-  }
-
- private:
-  unsigned saved_;
-#endif
-};
 
 // MaskedDraw is what the filter of a cut-out geometry needs.
 struct MaskedDraw {
@@ -144,8 +111,29 @@ struct SurfaceSides {
   bool double_sided = false;
 };
 
+namespace {
+
+// Returns the face that lane k of a traced packet hits.
+FirstHit faceOf(const RTCRayHit16& rays, std::size_t k, const std::vector<SurfaceSides>& surfaces) {
+  const RTCRay16& ray = rays.ray;
+  const RTCHit16& hit = rays.hit;
+  if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) return {};
+  const SurfaceSides& sides = surfaces[hit.geomID[k]];
+  const float along = ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
+  const bool behind = along > 0.0f, other_side = behind && sides.double_sided;
+  FirstHit out{.triangle = (other_side ? sides.back : sides.front) + hit.primID[k],
+               .u = hit.u[k],
+               .v = hit.v[k],
+               .distance = ray.tfar[k],
+               .back = behind && !sides.double_sided};
+  if (other_side) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
+  return out;
+}
+
+}  // namespace
+
 struct RayScene::State {
-  Device device;
+  EmbreeDevice device;
   EmbreeScene scene, panes;                         // panes is null if there are none
   std::vector<std::unique_ptr<MaskedDraw>> masked;  // user data of geometries, which must stay in place
   std::vector<SurfaceSides> surfaces;               // by geometry id, which both scenes share
@@ -157,26 +145,6 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 RayScene::~RayScene() = default;
 
 namespace {
-
-// Makes an Embree geometry with its own buffers for a draw, or null if Embree has no memory for it.
-RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const DrawGeometry& draw,
-                         std::span<const std::uint8_t> flipped_faces) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(glm::vec3), draw.vertex_count);
-  auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), draw.triangle_count));
-  if (!vertices || !indices) {
-    rtcReleaseGeometry(geometry);
-    return nullptr;
-  }
-  std::memcpy(vertices, &group.positions[draw.first_vertex], draw.vertex_count * sizeof(glm::vec3));
-  for (std::uint32_t t = 0; t < draw.triangle_count; ++t)
-    indices[t] = !flipped_faces.empty() && flipped_faces[draw.first_triangle + t] != 0
-                     ? glm::uvec3(0)  // a degenerate triangle, which no ray hits
-                     : group.triangles[draw.first_triangle + t] - draw.first_vertex;
-  return geometry;
-}
 
 std::unique_ptr<MaskedDraw> maskedDraw(const GroupGeometry& group, const DrawGeometry& draw,
                                        std::shared_ptr<const AlphaMap> alpha) {
@@ -195,11 +163,9 @@ std::unique_ptr<MaskedDraw> maskedDraw(const GroupGeometry& group, const DrawGeo
 
 Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene, AlphaMaps alpha_maps) {
   auto state = std::make_unique<State>();
-  // Embree's thread count follows TBB's, which withThreads() limits; its result does not depend on it.
-  state->device.reset(rtcNewDevice(nullptr));
-  if (!state->device)
-    return fail("Embree", "cannot be set up",
-                "give it more memory, or check that Embree runs on this processor");
+  auto device = newEmbreeDevice();
+  if (!device) return failAgain(std::move(device.error()));
+  state->device = std::move(*device);
   state->scene.reset(rtcNewScene(state->device.get()));
   rtcSetSceneBuildQuality(state->scene.get(), RTC_BUILD_QUALITY_HIGH);
 
@@ -216,8 +182,14 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
       state->panes.reset(rtcNewScene(state->device.get()));
       rtcSetSceneFlags(state->panes.get(), kSceneFlagQueryFilter);
     }
-    RTCGeometry geometry = makeGeometry(state->device.get(), group, draw,
-                                        pane ? std::span<const std::uint8_t>() : flipped_faces);
+    const auto corners = [&](std::uint32_t t) {
+      return !pane && flipped_faces[draw.first_triangle + t] != 0
+                 ? glm::uvec3(0)  // a degenerate triangle, which no ray hits
+                 : group.triangles[draw.first_triangle + t] - draw.first_vertex;
+    };
+    RTCGeometry geometry = newTriangles(
+        state->device.get(), std::span(group.positions).subspan(draw.first_vertex, draw.vertex_count),
+        draw.triangle_count, corners);
     if (!geometry) return fail("Embree", "has not enough memory for the scene", "bake it in parts");
     if (material && material->alpha_mode == gltf::AlphaMode::Mask) {
       state->masked.push_back(maskedDraw(group, draw, alpha_maps[static_cast<std::size_t>(draw.material)]));
@@ -299,23 +271,17 @@ std::uint32_t RayScene::traceHits(const SampleRays& rays, bool mostly_blocked, s
     }
     forgetHits(packet.rays);
     closest.intersect(state_->scene.get(), packet.lanes.valid.data(), packet.rays);
-    const RTCRay16& ray = packet.rays.ray;
-    const RTCHit16& hit = packet.rays.hit;
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      if (!packet.lanes.valid[k] || hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      if (!packet.lanes.valid[k]) continue;
+      const FirstHit met = faceOf(packet.rays, k, state_->surfaces);
+      if (!met.any()) continue;
       masks[p] = static_cast<std::uint16_t>(masks[p] | 1u << k);
-      const SurfaceSides& sides = state_->surfaces[hit.geomID[k]];
-      const float along =
-          ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
-      const bool back = along > 0.0f;
-      if (back && !sides.double_sided) continue;
-      RayHit out{.ray = static_cast<std::uint32_t>(p * kPacketWidth + k),
-                 .triangle = (back ? sides.back : sides.front) + hit.primID[k],
-                 .u = hit.u[k],
-                 .v = hit.v[k],
-                 .distance = ray.tfar[k]};
-      if (back) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
-      hits.push_back(out);
+      if (!met.back)
+        hits.push_back({.ray = static_cast<std::uint32_t>(p * kPacketWidth + k),
+                        .triangle = met.triangle,
+                        .u = met.u,
+                        .v = met.v,
+                        .distance = met.distance});
     }
   }
   return traced;
@@ -340,25 +306,12 @@ void RayScene::firstHits(std::span<const RaySegment> rays, std::span<FirstHit> h
   const FlushDenormals flush;
   Packet packet;
   RayQuery query(RayOrder::Coherent);
-  RTCRay16& ray = packet.rays.ray;
   for (std::size_t first = 0; first < rays.size(); first += kPacketWidth) {
     forgetHits(packet.rays);
-    fillSegments(rays.subspan(first), ray, packet.lanes.valid);
+    fillSegments(rays.subspan(first), packet.rays.ray, packet.lanes.valid);
     query.intersect(state_->scene.get(), packet.lanes.valid.data(), packet.rays);
-    const RTCHit16& hit = packet.rays.hit;
-    for (std::size_t k = 0; k < kPacketWidth && first + k < rays.size(); ++k) {
-      FirstHit& out = hits[first + k] = {};
-      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
-      const SurfaceSides& sides = state_->surfaces[hit.geomID[k]];
-      const bool behind =
-          ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k] > 0.0f;
-      out = {.triangle = (behind && sides.double_sided ? sides.back : sides.front) + hit.primID[k],
-             .u = hit.u[k],
-             .v = hit.v[k],
-             .distance = ray.tfar[k],
-             .back = behind && !sides.double_sided};
-      if (behind && sides.double_sided) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
-    }
+    for (std::size_t k = 0; k < kPacketWidth && first + k < rays.size(); ++k)
+      hits[first + k] = faceOf(packet.rays, k, state_->surfaces);
   }
 }
 
@@ -381,11 +334,7 @@ void RayScene::panesOn(std::span<const RaySegment> rays, std::vector<PaneHit>& h
       if (!(packet.tfar[k] < 0.0f)) continue;
       const RaySegment& ray = rays[first + k];
       faces.clear();
-      RTCRayHit one{};
-      one.ray.org_x = ray.origin.x, one.ray.org_y = ray.origin.y, one.ray.org_z = ray.origin.z;
-      one.ray.dir_x = ray.direction.x, one.ray.dir_y = ray.direction.y, one.ray.dir_z = ray.direction.z;
-      one.ray.tfar = ray.length, one.ray.mask = ~0u;
-      one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      RTCRayHit one = rayOf(ray.origin, ray.direction, ray.length);
       every.intersect(state_->panes.get(), one);
       std::ranges::sort(faces, {}, [](const MetFace& face) {
         return std::tuple(face.distance, face.surface, face.triangle);
@@ -424,16 +373,12 @@ float RayScene::meet(const SampleRays& rays, std::span<MetShares> shares) const 
       if (!packet.lanes.valid[k]) continue;
       const std::size_t origin = packet.lanes.origin[k];
       ++counts[origin];
-      const RTCHit16& hit = packet.rays.hit;
       ++traced;
-      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      const FirstHit hit = faceOf(packet.rays, k, state_->surfaces);
+      if (!hit.any()) continue;
       ++met;
-      const RTCRay16& ray = packet.rays.ray;
-      const float along =
-          ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
-      const bool back = along > 0.0f && !state_->surfaces[hit.geomID[k]].double_sided;
-      backs[origin] += back;
-      near[origin] += back || ray.tfar[k] < origins[origin].reach;
+      backs[origin] += hit.back;
+      near[origin] += hit.back || hit.distance < origins[origin].reach;
     }
   }
   for (std::size_t o = 0; o < origins.size(); ++o) {

@@ -1,7 +1,6 @@
 #include "runtime/command_line/help.hpp"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -37,61 +36,7 @@ std::size_t letters(const std::string& utf8) {
       std::ranges::count_if(utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
 }
 
-CommandEntry commandEntry(const CLI::App& app, const std::string& program) {
-  CommandEntry entry{.name = app.get_name(),
-                     .program = program,
-                     .help = oneParagraph(app.get_description()),
-                     .footer = app.get_footer(),
-                     .options = {},
-                     .commands = {}};
-  for (const CLI::Option* option :
-       app.get_options([](const CLI::Option* o) { return !o->get_group().empty(); }))
-    entry.options.push_back(entryOf(*option));
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    entry.commands.push_back(commandEntry(*command, program + " " + command->get_name()));
-  return entry;
-}
-
 }  // namespace
-
-std::vector<std::string> OptionEntry::words() const {
-  std::vector<std::string> words;
-  std::istringstream in(type);
-  for (std::string word; std::getline(in, word, '|');)
-    if (!word.empty() && std::ranges::all_of(word, [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; }))
-      words.push_back(word);
-  return words;
-}
-
-OptionEntry entryOf(const CLI::Option& option) {
-  OptionEntry entry{.group = option.get_group(),
-                    .names = {},
-                    .argument = {},
-                    .type = {},
-                    .standard = option.get_default_str(),
-                    .help = oneParagraph(option.get_description()),
-                    .required = option.get_required()};
-  if (option.get_positional()) {
-    entry.argument = option.get_name(/*positional=*/true, /*all_options=*/false);
-    if (option.get_items_expected_max() >= CLI::detail::expected_max_vector_size) entry.argument += "...";
-    return entry;
-  }
-  for (const std::string& name : option.get_snames()) entry.names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) entry.names.push_back("--" + name);
-  if (option.get_type_size() != 0) {
-    const std::string type = option.get_type_name();
-    entry.type = type.substr(0, type.find(':'));
-    if (const std::string range = rangeOf(type); !range.empty()) entry.help += "; " + range;
-  }
-  return entry;
-}
-
-CommandEntry tableOf(const CLI::App& app) {
-  std::string program = app.get_name();
-  for (const CLI::App* parent = app.get_parent(); parent; parent = parent->get_parent())
-    program = parent->get_name() + " " + program;
-  return commandEntry(app, program);
-}
 
 std::string wrapped(const std::string& words, std::size_t width) {
   std::istringstream in(words);
@@ -115,12 +60,18 @@ constexpr std::size_t kColumn = 30, kWidth = 100;
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_option(const CLI::Option* option, bool positional) const override {
-    const OptionEntry entry = entryOf(*option);
-    std::string name = positional ? entry.argument : fmt::format("{}", fmt::join(entry.names, ","));
-    if (!positional && entry.takesValue()) name += " " + entry.type;
-    if (!entry.standard.empty()) name += "=" + entry.standard;
-    if (entry.required) name += " (required)";
-    return row(name, entry.help);
+    std::string name = option->get_name(positional, /*all_options=*/!positional);
+    std::string help = oneParagraph(option->get_description());
+    if (positional) {
+      if (option->get_items_expected_max() >= CLI::detail::expected_max_vector_size) name += "...";
+    } else if (option->get_type_size() != 0) {
+      const std::string type = option->get_type_name();
+      name += " " + type.substr(0, type.find(':'));
+      if (const std::string range = rangeOf(type); !range.empty()) help += "; " + range;
+    }
+    if (!option->get_default_str().empty()) name += "=" + option->get_default_str();
+    if (option->get_required()) name += " (required)";
+    return row(name, help);
   }
   std::string make_subcommand(const CLI::App* command) const override {
     return row(command->get_name(), command->get_description());
@@ -139,23 +90,6 @@ class HelpFormatter : public CLI::Formatter {
     return out.str();
   }
 };
-
-std::string commandList(const CommandEntry& table) {
-  std::string names;
-  for (const CommandEntry& command : table.commands) names += (names.empty() ? "" : "\n") + command.name;
-  return names;
-}
-
-using Form = std::string (*)(const CommandEntry&, const std::string& version);
-const std::map<std::string, Form>& forms() {
-  static const std::map<std::string, Form> kForms = {
-      {"man", [](const CommandEntry& t, const std::string& version) { return manualPage(t, version); }},
-      {"bash", [](const CommandEntry& t, const std::string&) { return bashCompletion(t); }},
-      {"zsh", [](const CommandEntry& t, const std::string&) { return zshCompletion(t); }},
-      {"fish", [](const CommandEntry& t, const std::string&) { return fishCompletion(t); }},
-      {"commands", [](const CommandEntry& t, const std::string&) { return commandList(t); }}};
-  return kForms;
-}
 
 }  // namespace
 
@@ -176,17 +110,6 @@ void finish(CLI::App& app, const std::string& version) {
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", version, "Print the version and exit");
   app.set_help_flag("-h,--help", "Print this and exit");
-  app.add_option_function<std::string>("--help-as",
-                                       [&app, version](const std::string& form) {
-                                         const auto found = forms().find(form);
-                                         if (found == forms().end())
-                                           throw CLI::ValidationError(
-                                               "--help-as", "takes man, bash, zsh, fish or commands");
-                                         // The library prints what this carries, and the program ends with
-                                         // exit code 0.
-                                         throw CLI::CallForVersion(found->second(tableOf(app), version), 0);
-                                       })
-      ->group("");  // hidden
   for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     finish(*command, version);
 }

@@ -8,7 +8,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 
 namespace lambent::demo {
 

@@ -21,7 +21,7 @@
 #include "runtime/gpu/program.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/streaming/brdf_texture.hpp"
+#include "runtime/streaming/textures.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {

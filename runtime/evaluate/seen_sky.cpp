@@ -121,7 +121,7 @@ double cosineAt(double axis) {
 SeenKernel makeSeenKernel() {
   const std::vector<Node> nodes = quadrature();
   const Matrix factor = factorOf(normalMatrix(nodes));
-  const sh::ZonalFactors factors = sh::ZonalFactors::isotropic(kSeenKernelBands);
+  const sh::ZonalFactors factors(kSeenKernelBands, /*isotropic=*/true);
   SeenKernel kernel;
   kernel.texels.assign(std::size_t{kSeenLayers} * kSeenRoughnesses * kSeenCosines, glm::vec4(0.0f));
   for (std::uint32_t r = 0; r < kSeenRoughnesses; ++r) {

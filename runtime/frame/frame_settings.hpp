@@ -15,7 +15,7 @@
 #include "runtime/debug/overlay_options.hpp"
 #include "runtime/evaluate/samples.hpp"
 #include "runtime/lighting/capture_scene.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 #include "runtime/sh/window.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/surface/views.hpp"

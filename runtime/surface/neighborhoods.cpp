@@ -12,7 +12,7 @@
 #include "runtime/base/finite.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/surface_shared.h"
-#include "runtime/world/boxes.hpp"
+#include "runtime/scene/bounds.hpp"
 
 namespace lambent::frame {
 

@@ -122,8 +122,8 @@ Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
   if (isNormalMapped(receiver)) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
   if (kind.layered) {
     defines.push_back({"LAMBENT_LAYERED", "1"});
-    defines.push_back(
-        {"LAMBENT_SEEN_AXES", axesText(sh::ZonalFactors::isotropic(static_cast<int>(transfer::kSeenBands)))});
+    defines.push_back({"LAMBENT_SEEN_AXES", axesText(sh::ZonalFactors(static_cast<int>(transfer::kSeenBands),
+                                                                      /*isotropic=*/true))});
   }
   return gpu::Program::create("surface",
                               {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}},

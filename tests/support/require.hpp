@@ -30,7 +30,7 @@ inline bool isRequired(std::string_view thing) {
 
 }  // namespace lambent::testing
 
-// Ends the calling TEST or SetUp(): it fails if the thing ("gl", "data", "display", "schema", "python", "groff", "validator") is
+// Ends the calling TEST or SetUp(): it fails if the thing ("gl", "data", "display", "schema", "python", "validator") is
 // required here, else it skips. The message says what is missing and may be streamed: "no " << path.
 #define LAMBENT_LACKS(thing, message)                                                               \
   do {                                                                                              \

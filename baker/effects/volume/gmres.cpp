@@ -1,5 +1,3 @@
-#include "baker/effects/volume/gmres.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -76,35 +74,32 @@ struct LeastSquares {
   std::vector<double> cosine, sine, g;
 
   explicit LeastSquares(double length = 0.0) : g(1, length) {}
-  void add(std::vector<double> column);
-  std::vector<double> solve() const;
+  void add(std::vector<double> column) {
+    const std::size_t j = h.size();
+    for (std::size_t i = 0; i < j; ++i) {
+      const double a = column[i], b = column[i + 1];
+      column[i] = cosine[i] * a + sine[i] * b;
+      column[i + 1] = cosine[i] * b - sine[i] * a;
+    }
+    const double r = std::hypot(column[j], column[j + 1]);
+    cosine.push_back(r > 0.0 ? column[j] / r : 1.0);
+    sine.push_back(r > 0.0 ? column[j + 1] / r : 0.0);
+    column[j] = r;
+    g.push_back(-sine[j] * g[j]);
+    g[j] *= cosine[j];
+    h.push_back(std::move(column));
+  }
+
+  std::vector<double> solve() const {
+    std::vector<double> y(h.size(), 0.0);
+    for (std::size_t i = h.size(); i-- > 0;) {
+      double sum = g[i];
+      for (std::size_t j = i + 1; j < h.size(); ++j) sum -= h[j][i] * y[j];
+      y[i] = h[i][i] > 1e-30 ? sum / h[i][i] : 0.0;
+    }
+    return y;
+  }
 };
-
-void LeastSquares::add(std::vector<double> column) {
-  const std::size_t j = h.size();
-  for (std::size_t i = 0; i < j; ++i) {
-    const double a = column[i], b = column[i + 1];
-    column[i] = cosine[i] * a + sine[i] * b;
-    column[i + 1] = cosine[i] * b - sine[i] * a;
-  }
-  const double r = std::hypot(column[j], column[j + 1]);
-  cosine.push_back(r > 0.0 ? column[j] / r : 1.0);
-  sine.push_back(r > 0.0 ? column[j + 1] / r : 0.0);
-  column[j] = r;
-  g.push_back(-sine[j] * g[j]);
-  g[j] *= cosine[j];
-  h.push_back(std::move(column));
-}
-
-std::vector<double> LeastSquares::solve() const {
-  std::vector<double> y(h.size(), 0.0);
-  for (std::size_t i = h.size(); i-- > 0;) {
-    double sum = g[i];
-    for (std::size_t j = i + 1; j < h.size(); ++j) sum -= h[j][i] * y[j];
-    y[i] = h[i][i] > 1e-30 ? sum / h[i][i] : 0.0;
-  }
-  return y;
-}
 
 }  // namespace
 

@@ -10,7 +10,7 @@
 
 #include "lambent_effects_volume_embedded.hpp"
 #include "runtime/base/finite.hpp"
-#include "runtime/streaming/load_request.hpp"
+#include "runtime/streaming/loader.hpp"
 #include "runtime/transfer/codebook.hpp"
 
 namespace lambent::effects::volume {

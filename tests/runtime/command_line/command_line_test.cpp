@@ -1,6 +1,5 @@
-// Tests what is made from the tables of options: help in groups, manual pages, and completion in shells.
+// Tests what --help says of options.
 #include <algorithm>
-#include <cstdlib>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
@@ -73,27 +72,13 @@ TEST_F(CommandLine, HelpHasGroupsThenExamplesThenExitCodes) {
   EXPECT_TRUE(has(help, "How fine it is, which says it all.")) << "breaks of the source are none of the help";
   EXPECT_TRUE(has(help, "-s,--seconds S")) << help;
   EXPECT_TRUE(has(help, "Don't take [longer]; 0.5..60")) << help;
-  EXPECT_FALSE(has(help, "--former") || has(help, "--help-as")) << help;
+  EXPECT_FALSE(has(help, "--former")) << help;
 }
 
 TEST_F(CommandLine, WrappedCountsLettersAndNotBytes) {
   EXPECT_EQ(wrapped("order² is\nmore", 9), "order² is\nmore");
   EXPECT_EQ(wrapped("  a   b ", 80), "a b");
   EXPECT_EQ(wrapped("unbreakable word", 3), "unbreakable\nword");
-}
-
-TEST_F(CommandLine, ManualPageBearsADateAndEscapesWhatRoffTakesForCommands) {
-  const CommandEntry table{.name = "tool",
-                           .program = "tool",
-                           .help = "Reads C:\\a",
-                           .footer = "",
-                           .options = {{.names = {"--a"}, .help = ".gltf or 'words'"}},
-                           .commands = {}};
-  ::setenv("SOURCE_DATE_EPOCH", "86400", /*overwrite=*/1);
-  const std::string page = manualPage(table, "tool 1.2");
-  EXPECT_TRUE(has(page, ".TH \"TOOL\" \"1\" \"1970-01-02\" \"tool 1.2\"")) << page;
-  EXPECT_TRUE(has(page, "\n\\&.gltf or 'words'\n")) << page;
-  EXPECT_TRUE(has(page, "C:\\ea")) << page;
 }
 
 }  // namespace lambent::command_line

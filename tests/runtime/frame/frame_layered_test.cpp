@@ -94,7 +94,7 @@ std::vector<float> seenWeights(const evaluate::SeenKernel& kernel, float cosine,
 
 float seenAbout(Vector seen, const glm::vec3& normal, const glm::vec3& mirrored, float roughness) {
   static const evaluate::SeenKernel kernel = evaluate::makeSeenKernel();
-  const sh::ZonalFactors factors = sh::ZonalFactors::isotropic(static_cast<int>(transfer::kSeenBands));
+  const sh::ZonalFactors factors(static_cast<int>(transfer::kSeenBands), /*isotropic=*/true);
   std::vector<glm::vec3> axes(factors.axes().begin(), factors.axes().end());
   const auto view = glossy::glsl::Isotropic().localView(normal, {}, mirrored);
   return transfer::glsl::SeenSky().seenShare(

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "runtime/sh/zonal.hpp"
-#include "runtime/streaming/brdf_texture.hpp"
+#include "runtime/streaming/textures.hpp"
 #include "tests/support/glsl/transfer.hpp"
 
 namespace lambent::glossy::glsl {
@@ -32,8 +32,7 @@ struct Sampled {
 };
 
 inline vec3 zonalAxis(int bands, Lobes lobes, std::size_t i) {
-  const auto factors =
-      lobes == Lobes::Anisotropic ? sh::ZonalFactors::anisotropic(bands) : sh::ZonalFactors::isotropic(bands);
+  const sh::ZonalFactors factors(bands, lobes != Lobes::Anisotropic);
   return factors.axes()[std::min(i, factors.axes().size() - 1)];
 }
 // There are 11 axes at most; kernels read as many as they have.

@@ -111,16 +111,7 @@ TEST(Bounces, InACavityMatchTheClosedFormForEveryHarmonicAndBounce) {
 TEST(Bounces, InAWhiteFurnaceAddUpToOne) {
   // A ball is in an open cup, with albedo 1 and uniform light. No light is lost, so every point sees radiance
   // 1.
-  auto cup = flipped(box({0, 0, 0}, {2, 1, 2}, 6));
-  std::vector<std::uint32_t> kept;
-  for (std::size_t i = 0; i < cup.indices.size(); i += 3) {
-    const bool lid = cup.normals[cup.indices[i]].y < -0.5f;
-    if (!lid)
-      kept.insert(kept.end(), cup.indices.begin() + static_cast<std::ptrdiff_t>(i),
-                  cup.indices.begin() + static_cast<std::ptrdiff_t>(i) + 3);
-  }
-  cup.indices = kept;
-  const Transport t(sceneOf({cup, icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 3)}));
+  const Transport t(sceneOf({testing::cup({2, 1, 2}, 6), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 3)}));
   const auto baked = t.bake(3, 256, kMostBounces);
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
     if (t.samples.originsOf(s).empty()) continue;
@@ -199,12 +190,7 @@ TEST(Bounces, AreTheSameForAnyMemoryAndNumberOfThreads) {
 
 TEST(Bounces, LoseNoLightByHitsThatAreNotKept) {
   Scene lit = sceneOf({flipped(icosphere({0, 0, 0}, 1.0f, 3))});  // a white room of radius 1
-  lit.lights.emplace_back();                                      // a point light
-  gltf::Node lamp;
-  lamp.parent_from_node = glm::translate(glm::mat4(1.0f), glm::vec3(0.4f, 0.1f, 0.0f));
-  lamp.light = 0;
-  lit.roots.push_back(static_cast<std::int32_t>(lit.nodes.size()));
-  lit.nodes.push_back(lamp);
+  testing::addPointLight(lit, {0.4f, 0.1f, 0.0f});
   const auto bouncesWith = [&](std::uint32_t hits_of_every) {
     const Transport room(lit);
     const DirectPass pass(room.diffuse(), {.order = 3,

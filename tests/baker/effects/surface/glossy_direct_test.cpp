@@ -170,12 +170,7 @@ TEST(GlossyDirect, LeavesMatteSamplesAsTheyAre) {
 }
 
 Scene withPointLight(Scene scene, glm::vec3 position) {
-  scene.lights = {gltf::Light{}};
-  gltf::Node node;
-  node.light = 0;
-  node.parent_from_node[3] = glm::vec4(position, 1.0f);
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
+  testing::addPointLight(scene, position);
   return scene;
 }
 

@@ -1,5 +1,5 @@
 // Tests what the plan says about glossy surfaces.
-#include "baker/effects/surface/surface_plan.hpp"
+#include "baker/effects/effect_list.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
@@ -11,7 +11,7 @@ using testing::grid;
 using testing::sceneOf;
 
 EffectChoice choiceOf(const Scene& scene) {
-  return chooseGlossy(scene, findRigidGroups(scene));
+  return effectsNamed("glossy")->front().choose(scene, findRigidGroups(scene));
 }
 
 TEST(ChooseGlossy, LeavesMatteScenesAlone) {
