@@ -29,14 +29,6 @@ TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMes
   return {.texture_from_coordinates = transformOf(texture), .set = there ? set : kAbsent, .pad = 0};
 }
 
-const gltf::Material& materialOf(const World& world, std::size_t draw) {
-  return world.material(draw);
-}
-
-glm::vec3 emissionOf(const World& world, std::size_t draw) {
-  return world.emission(draw);
-}
-
 bool normalMapped(const World& world, std::size_t draw) {
   return world.residency().draws()[draw].form() == transfer::Form::NormalMapped;
 }
@@ -50,12 +42,12 @@ bool hasTexels(const World& world, std::size_t draw) {
 SurfaceDraw describe(const World& world, std::size_t draw) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
   const streaming::ResidentMesh& mesh = world.residency().meshes()[resident.mesh];
-  const gltf::Material& material = materialOf(world, draw);
+  const gltf::Material& material = world.material(draw);
   const float facing = resident.back ? -1.0f : 1.0f;
   const glm::quat turn = world.rotationOf(resident.group);
   const float transmission = material.transmits() ? (1.0f - material.metallic) * material.transmission : 0.0f;
   // Unlit surfaces emit nothing but their base colour (KHR_materials_unlit).
-  const glm::vec3 emission = material.unlit ? glm::vec3(0.0f) : emissionOf(world, draw);
+  const glm::vec3 emission = material.unlit ? glm::vec3(0.0f) : world.emission(draw);
   return {.world_from_mesh = world.worldFromMesh(draw),
           .group_from_mesh = glm::mat3x4(resident.group_from_mesh),
           .group_from_mesh_normal = glm::mat3x4(facing * resident.group_from_mesh_normal),
@@ -84,7 +76,7 @@ SurfaceDraw describe(const World& world, std::size_t draw) {
 }
 
 SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDraw& record) {
-  const gltf::Material& material = materialOf(world, draw);
+  const gltf::Material& material = world.material(draw);
   SurfaceTextures textures;
   if (record.base_color_texture.set != kAbsent) textures.base_color = material.base_color_texture.texture;
   // Textures that are never read must not split batches: surfaces without emission, and those that receive
@@ -262,7 +254,7 @@ GlossyPart describeGlossy(const World& world, std::size_t draw) {
   const streaming::BrdfTexture& table = world.residency()
                                             .bundles()[resident.bundle]
                                             .brdf_tables[static_cast<std::size_t>(brdfTableOf(world, draw))];
-  const gltf::Material& material = materialOf(world, draw);
+  const gltf::Material& material = world.material(draw);
   // A diffuse material is Lambert, whatever its roughness says (docs/conventions.md).
   const glm::vec3 dielectric = material.reflectance() * material.specular_color;
   const float specular = material.isDiffuse() ? 0.0f : material.specular;

@@ -62,12 +62,6 @@ struct SurfaceTextures {
 // Returns how a mesh looks up a texture. The slot is absent if the mesh lacks the coordinates.
 TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMesh& mesh);
 
-// Returns the current material; valid as long as the draw's bundle is.
-const gltf::Material& materialOf(const World& world, std::size_t draw);
-
-// Returns the radiance that the surface emits, before its texture.
-glm::vec3 emissionOf(const World& world, std::size_t draw);
-
 // Returns whether the draw has light in bands 0..2 at its vertices, for shading with the pixel's own normal.
 bool normalMapped(const World& world, std::size_t draw);
 

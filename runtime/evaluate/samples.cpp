@@ -153,10 +153,7 @@ Samples::Samples()
       places_table_("transfer places"),
       products_("transfer products"),
       fills_table_("sample fills"),
-      fill_work_("fill work"),
-      project_work_("project work"),
-      samples_work_{gpu::WorkList("samples work"), gpu::WorkList("samples adding work"),
-                    gpu::WorkList("samples adding more work")} {}
+      works_{Work("work on vectors"), Work("work on matrices")} {}
 
 Result<void> Samples::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
                             TransferMode mode, gpu::Counters& counters, const ShadedKinds& kinds) {
@@ -167,8 +164,14 @@ Result<void> Samples::shade(streaming::Residency& residency, const lighting::Gro
   collect(residency, lights, kinds);
   if (cells_shaded_ == 0) return {};
   lights.bindStorage(transfer::kBindLights);
+  for (Work& work : works_)
+    if (Result<void> done = runWork(work, residency, counters); !done) return done;
+  return {};
+}
+
+Result<void> Samples::runWork(Work& work, streaming::Residency& residency, gpu::Counters& counters) {
   fills_table_.bindStorage(transfer::kBindFills);
-  Result<void> done = run(fill_work_, counters, [&](const gpu::BatchKey& key) {
+  Result<void> done = run(work.fill, counters, [&](const gpu::BatchKey& key) {
     residency.samples().page(key[0]).bindStorage(transfer::kBindSamples);
     return kernels_.use("fill_samples.comp");
   });
@@ -176,9 +179,9 @@ Result<void> Samples::shade(streaming::Residency& residency, const lighting::Gro
   transfers_table_.bindStorage(transfer::kBindTransfers);
   places_table_.bindStorage(transfer::kBindPlaces);
   products_.bindStorage(transfer::kBindProducts);
-  done = project(residency, counters);
-  for (std::size_t i = 0; i < samples_work_.size() && done; ++i)
-    done = run(samples_work_[i], counters, [&](const gpu::BatchKey& key) {
+  done = project(work.project, residency, counters);
+  for (std::size_t i = 0; i < work.samples.size() && done; ++i)
+    done = run(work.samples[i], counters, [&](const gpu::BatchKey& key) {
       residency.transfer().page(key[2]).bindStorage(transfer::kBindTransfer);
       residency.samples().page(key[3]).bindStorage(transfer::kBindSamples);
       if (key[1] == kMatrices)
@@ -211,9 +214,11 @@ void Samples::rebuildTables(const streaming::Residency& residency, const lightin
 void Samples::collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
                       const ShadedKinds& kinds) {
   cells_shaded_ = 0;
-  fill_work_.clear();
-  project_work_.clear();
-  for (gpu::WorkList& work : samples_work_) work.clear();
+  for (Work& work : works_) {
+    work.fill.clear();
+    work.project.clear();
+    for (gpu::WorkList& list : work.samples) list.clear();
+  }
   for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
     const streaming::ResidentCell& cell = residency.cells()[i];
     const TransferTable::Cell range = tables_.cells[i];
@@ -223,28 +228,29 @@ void Samples::collect(const streaming::Residency& residency, const lighting::Gro
     if (!cells_changed_[i].renew(cell.version, light)) continue;
     ++(matrices ? versions_[cell.group].matrices : versions_[cell.group].vectors);
     ++cells_shaded_;
+    Work& work = works_[matrices ? 1 : 0];
     const std::uint32_t samples_page = residency.groups()[cell.group].samples.page;
     if (open) {
-      fill_work_.add({samples_page}, i, fills_[i].output_count, transfer::kWorkGroupSize);
+      work.fill.add({samples_page}, i, fills_[i].output_count, transfer::kWorkGroupSize);
       continue;
     }
     for (std::uint32_t t = range.first; t < range.first + range.count; ++t) {
       const transfer::TransferRecord& record = tables_.transfers[t];
       const bool visibility = record.visibility != 0;
-      project_work_.add({visibility ? 1u : 0u, visibility ? record.order : compiledOrder(record.order),
-                         record.outputs, cell.block.page},
-                        t, record.light_count * record.clusters * record.outputs, transfer::kUnitsPerGroup);
+      work.project.add({visibility ? 1u : 0u, visibility ? record.order : compiledOrder(record.order),
+                        record.outputs, cell.block.page},
+                       t, record.light_count * record.clusters * record.outputs, transfer::kUnitsPerGroup);
       const std::uint32_t kernel = matrices ? kMatrices : record.light_count > 1 ? kSeveralLights : kOneLight;
       const std::uint32_t invocations = matrices ? transfer::bandsOf(record.outputs) : 1;
-      samples_work_[std::min<std::size_t>(t - range.first, kMaxTransfers - 1)].add(
+      work.samples[std::min<std::size_t>(t - range.first, kMaxTransfers - 1)].add(
           {record.outputs, kernel, cell.block.page, samples_page}, t, invocations * record.sample_count,
           transfer::kWorkGroupSize);
     }
   }
 }
 
-Result<void> Samples::project(streaming::Residency& residency, gpu::Counters& counters) {
-  return run(project_work_, counters, [&](const gpu::BatchKey& key) {
+Result<void> Samples::project(gpu::WorkList& work, streaming::Residency& residency, gpu::Counters& counters) {
+  return run(work, counters, [&](const gpu::BatchKey& key) {
     residency.transfer().page(key[3]).bindStorage(transfer::kBindTransfer);
     if (key[0] != 0) {
       const std::uint32_t bands = transfer::bandsOf(key[2]);

@@ -190,7 +190,7 @@ Result<void> ReflectionProbes::capture(
 Result<void> ReflectionProbes::store(std::size_t probe, int face, const glm::mat4& clip_from_view,
                                      gpu::Counters& counters) {
   const auto layer = static_cast<GLint>(6 * probe) + face;
-  if (Result<void> done = kernels_.use("reflection_probe_store.comp"); !done) return done;
+  if (Result<void> done = kernels_.use("reflection_probe.comp", {{"LAMBENT_STORE", "1"}}); !done) return done;
   drawn_.bind(0);
   depth_.bind(1);
   glBindSampler(0, 0);
@@ -215,7 +215,7 @@ Result<void> ReflectionProbes::filter(std::size_t probe, gpu::Counters& counters
   glGenerateTextureMipmap(weighted_.id());
   glGenerateTextureMipmap(weights_.id());
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-  if (Result<void> done = kernels_.use("reflection_probe_filter.comp"); !done) return done;
+  if (Result<void> done = kernels_.use("reflection_probe.comp"); !done) return done;
   weighted_.bind(0);
   weights_.bind(1);
   glBindSampler(0, 0);
