@@ -15,8 +15,8 @@
 
 #include "baker/embree/embree.hpp"
 #include "baker/jobs/parallel.hpp"
-#include "baker/transport/direction_table.hpp"
 #include "baker/transport/ray_scene.hpp"
+#include "baker/transport/samples.hpp"
 #include "bench/group_workload.hpp"
 
 namespace {

@@ -186,8 +186,8 @@ Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, 
 
 // Returns the meshes as they ship: edges are split where the options and shadows ask for it, then meshes are
 // coded.
-Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_maps, DecodedImages& images,
-                               const BakeContext& context, RefineReport& refinement) {
+Result<ShippedMeshes> meshesOf(const SceneBake& bake, DecodedImages& images, const BakeContext& context,
+                               RefineReport& refinement) {
   const auto& [scene, options, plan, tables] = bake;
   auto split = splitMeshes(scene, plan.groups, options.max_edge_m);
   if (!split) return failAgain(split.error());
@@ -201,8 +201,8 @@ Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_map
                          .most_growth = options.refineGrowth(),
                          .most_added = options.refineAdded()};
     if (with_glossy) refine.most_vertices = mostGlossySamples(options.glossy_order);
-    auto refined = refineMeshes({scene, plan.groups, plan.transport, alpha_maps, with_glossy, images}, refine,
-                                *split, context);
+    auto refined =
+        refineMeshes({scene, plan.groups, plan.transport, with_glossy, images}, refine, *split, context);
     if (!refined) return failAgain(refined.error());
     refinement = *refined;
   }
@@ -215,8 +215,6 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   const auto plan = planFor(scene, options);
   if (!plan) return failAgain(plan.error());
   DecodedImages images(scene);
-  const auto alpha_maps = loadAlphaMaps(scene, images);
-  if (!alpha_maps) return failAgain(alpha_maps.error());
   Result<BrdfTables> tables;
   if (plan->bakes("glossy")) tables = brdfTablesOf(scene, options, context);
   if (!tables) return failAgain(tables.error());
@@ -224,14 +222,13 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   const SceneBake whole{scene, options, *plan, *tables};
   BakeReport report;
   context.progress.beginPart();
-  auto meshes = meshesOf(whole, *alpha_maps, images, context, report.refinement);
+  auto meshes = meshesOf(whole, images, context, report.refinement);
   if (!meshes) return failAgain(meshes.error());
   std::vector<BakedGroup> groups;
   for (std::size_t g = 0; g < plan->groups.size(); ++g) {
     context.progress.beginPart();
-    auto group = plan->groups[g].volume >= 0
-                     ? bakeVolume(whole, *alpha_maps, g, groups, context, report)
-                     : bakeGroup(whole, {*meshes, *alpha_maps, images}, g, context, report);
+    auto group = plan->groups[g].volume >= 0 ? bakeVolume(whole, images, g, groups, context, report)
+                                             : bakeGroup(whole, {*meshes, images}, g, context, report);
     if (!group) return failAgain(group.error());
     groups.push_back(std::move(*group));
   }

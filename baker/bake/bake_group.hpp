@@ -134,7 +134,7 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
 
 // Bakes group `index` of the plan, which is a volume. `baked` holds the groups before it, among them all
 // those of surfaces. Errors: no memory for the ray hierarchy, "stopped".
-Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
+Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std::size_t index,
                               const std::vector<BakedGroup>& baked, const BakeContext& context,
                               BakeReport& report);
 

@@ -218,7 +218,7 @@ Key transferKey(const Scene& scene, const BakedVolume& placed, const VolumeSetti
 // A PlacedVolume is a volume in its group, and how its transfer is baked.
 struct PlacedVolume {
   const SceneBake& bake;
-  const AlphaMaps& alpha_maps;
+  DecodedImages& images;
   const SceneVolume& volume;
   const QuantizedDensity& density;
   const glm::mat4& group_from_grid;
@@ -232,7 +232,7 @@ Result<VolumeTransfer> transferOf(const PlacedVolume& placed, const BakeContext&
   std::optional<RayScene> rays;
   Occluders occluders;
   if (placed.within.geometry) {
-    auto built = RayScene::build(*placed.within.geometry, placed.bake.scene, placed.alpha_maps);
+    auto built = RayScene::build(*placed.within.geometry, placed.bake.scene, placed.images);
     if (!built) return failAgain(built.error());
     rays = std::move(*built);
     occluders = Occluders(*rays, placed.within.from_group);
@@ -315,7 +315,7 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
   return {};
 }
 
-Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
+Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std::size_t index,
                               const std::vector<BakedGroup>& baked, const BakeContext& context,
                               BakeReport& report) {
   const auto& [scene, options, plan, tables] = bake;
@@ -329,7 +329,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   out.transfer_size = options.volume_grid;
   result.light_probes.points = {out.light_probe};
   const PlacedVolume placed{bake,
-                            alpha_maps,
+                            images,
                             volume,
                             density,
                             out.group_from_grid,

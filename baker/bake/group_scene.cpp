@@ -331,7 +331,7 @@ Result<void> GroupScene::loadColors() {
 Result<void> GroupScene::findImportance(const BakeContext& context) {
   if (rays_) return {};
   context.progress.begin("hierarchy");
-  auto rays = RayScene::build(geometry, bake.scene, inputs_.alpha_maps);
+  auto rays = RayScene::build(geometry, bake.scene, inputs_.images);
   if (!rays) return failAgain(rays.error());
   rays_ = std::move(*rays);
   context.progress.begin("importance");

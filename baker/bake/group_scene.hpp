@@ -66,7 +66,6 @@ struct SceneBake {
 // SurfaceInputs are the decoded meshes and images that surfaces are made of.
 struct SurfaceInputs {
   const ShippedMeshes& meshes;
-  const AlphaMaps& alpha_maps;
   DecodedImages& images;
 };
 
@@ -98,7 +97,8 @@ class GroupScene {
 
   // Loads the colours once, since images take long to decode. Errors: images that cannot be decoded.
   Result<void> loadColors();
-  // Builds the ray hierarchy, once, and finds out what eyes see. Errors: no memory for the hierarchy.
+  // Builds the ray hierarchy, once, and finds out what eyes see. Errors: images of cut-outs that cannot be
+  // decoded, no memory for the hierarchy.
   Result<void> findImportance(const BakeContext& context);
   // Does both, and loads the BRDFs. Errors: those of
   // loadColors(), no memory for the hierarchy.

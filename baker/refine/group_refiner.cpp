@@ -180,7 +180,7 @@ GroupRefiner::~GroupRefiner() = default;
 
 Result<void> GroupRefiner::prepare(const RefineScene& from, std::size_t group,
                                    const GroupGeometry& geometry) {
-  auto rays = RayScene::build(geometry, from.scene, from.alpha_maps);
+  auto rays = RayScene::build(geometry, from.scene, from.images);
   if (!rays) return failAgain(rays.error());
   const std::vector<Eye> cameras = cameraEyes(from.scene, from.groups[group], geometry);
   whole_ = std::make_unique<Whole>(from, geometry, findGroupLights(from.scene, from.groups[group]),
@@ -230,7 +230,7 @@ Result<void> GroupRefiner::placeInner(const GroupGeometry& geometry) {
   // group with as many as before any split is the same.
   std::optional<RayScene> split;
   if (geometry.triangles.size() != whole.geometry.triangles.size()) {
-    auto built = RayScene::build(geometry, whole.refined.scene, whole.refined.alpha_maps);
+    auto built = RayScene::build(geometry, whole.refined.scene, whole.refined.images);
     if (!built) return failAgain(built.error());
     split = std::move(*built);
   }

@@ -15,7 +15,6 @@
 #include "baker/trace/hits.hpp"
 #include "baker/trace/patches.hpp"
 #include "baker/trace/transfer_field.hpp"
-#include "baker/transport/direction_table.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/texel_samples.hpp"

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/trace/hits.hpp"
-#include "baker/transport/direction_table.hpp"
+#include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
 

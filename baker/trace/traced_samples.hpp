@@ -12,12 +12,10 @@
 #include "baker/importance/importance.hpp"
 #include "baker/trace/hits.hpp"
 #include "baker/trace/mirror_paths.hpp"
-#include "baker/transport/direction_table.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/panes.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
-#include "baker/transport/seen_origins.hpp"
 #include "baker/transport/surface_colors.hpp"
 
 namespace lambent::baker {

@@ -19,7 +19,6 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
-#include "baker/transport/direction_table.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/surface_colors.hpp"
@@ -176,8 +175,8 @@ void blockBelowHorizons(const SampleRays& rays, std::span<std::uint16_t> masks);
 
 class RayScene {
  public:
-  // `alpha_maps` as loadAlphaMaps gives them. Errors: Embree cannot be set up or runs out of memory.
-  static Result<RayScene> build(const GroupGeometry& geometry, const Scene& scene, AlphaMaps alpha_maps);
+  // Errors: those of decodeImage, of cut-outs; Embree cannot be set up or runs out of memory.
+  static Result<RayScene> build(const GroupGeometry& geometry, const Scene& scene, DecodedImages& images);
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();
@@ -213,5 +212,27 @@ class RayScene {
   explicit RayScene(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
+
+// Finds which of a sample's origins stand where they could be seen: not inside a body, and not where
+// something lies on the face. Transfer from such places would leak, as darkness, over the visible parts of
+// the faces. If a vertex stands inside or under something while parts of its faces can be seen, its origins
+// move towards these parts: what is interpolated over the face then begins with light that is there.
+
+// Holds a few directions that tell whether an origin lies inside something or much is in the way.
+struct InsideTestTables {
+  DirectionTable glance, look;
+  InsideTestTables();
+};
+
+struct SeenOrigins {
+  std::vector<SampleOrigin> origins;  // weights sum to 1
+  bool valid = false;                 // false if no origin is seen; then `origins` holds all of them
+  float blocked = 0.0f;               // share of a few rays that hit anything
+  bool double_rays = false;           // much is in the way, so that twice the rays should be traced
+};
+
+// `frame` is group_from_local of the sample. `seen` is an argument so that its memory can be reused.
+void findSeenOrigins(std::span<const SampleOrigin> all, const glm::mat3& frame, const RayScene& rays,
+                     const InsideTestTables& glances, SeenOrigins& seen);
 
 }  // namespace lambent::baker

@@ -125,6 +125,14 @@ inline bundle::MeshData soup(unsigned seed, float size, float tilt) {
   return mesh;
 }
 
+// Adds a node without parent, and returns it.
+inline gltf::Node& addNode(baker::Scene& scene, const glm::mat4& parent_from_node = glm::mat4(1.0f)) {
+  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+  scene.nodes.push_back({});
+  scene.nodes.back().parent_from_node = parent_from_node;
+  return scene.nodes.back();
+}
+
 // Makes a scene with one static node per mesh, all with one white material.
 inline baker::Scene sceneOf(const std::vector<bundle::MeshData>& meshes) {
   baker::Scene scene;
@@ -134,21 +142,17 @@ inline baker::Scene sceneOf(const std::vector<bundle::MeshData>& meshes) {
   white.metallic = 0.0f;
   scene.materials = {white};
   for (const bundle::MeshData& mesh : meshes) {
-    gltf::Node node;
-    node.mesh = static_cast<std::int32_t>(scene.meshes.size());
-    scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-    scene.nodes.push_back(node);
+    addNode(scene).mesh = static_cast<std::int32_t>(scene.meshes.size());
     scene.meshes.push_back({"", {{mesh, 0}}});
   }
   return scene;
 }
 
-// Adds a node without parent, and returns it.
-inline gltf::Node& addNode(baker::Scene& scene, const glm::mat4& parent_from_node = glm::mat4(1.0f)) {
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back({});
-  scene.nodes.back().parent_from_node = parent_from_node;
-  return scene.nodes.back();
+// Gives a mesh a material of its own, the last of the scene: a copy of the first, which may be changed.
+inline gltf::Material& ownMaterial(baker::Scene& scene, std::size_t mesh) {
+  scene.meshes[mesh].primitives[0].material = static_cast<std::int32_t>(scene.materials.size());
+  scene.materials.push_back(scene.materials[0]);
+  return scene.materials.back();
 }
 
 // Adds a light with a node of its own.
@@ -169,6 +173,32 @@ inline bundle::MeshData cup(glm::vec3 size, int n) {
       for (std::size_t c = 0; c < 3; ++c) kept.push_back(mesh.indices[i + c]);
   mesh.indices = kept;
   return mesh;
+}
+
+// A Cavity is the inside of a unit sphere with a round opening of half angle `alpha` about `axis`. Its
+// `opening` is the fraction of the mesh's sphere area that is open.
+struct Cavity {
+  bundle::MeshData mesh;
+  float opening = 0.0f;
+};
+inline Cavity cavity(glm::vec3 axis, float alpha_deg) {
+  Cavity cavity{flipped(icosphere({0, 0, 0}, 1.0f, 4)), 0.0f};
+  std::vector<std::uint32_t> kept;
+  float removed = 0.0f, all = 0.0f;
+  for (std::size_t i = 0; i < cavity.mesh.indices.size(); i += 3) {
+    const std::uint32_t* corners = &cavity.mesh.indices[i];
+    const glm::vec3 a = cavity.mesh.positions[corners[0]], b = cavity.mesh.positions[corners[1]],
+                    c = cavity.mesh.positions[corners[2]];
+    const float area = glm::length(glm::cross(b - a, c - a));
+    all += area;
+    if (glm::dot(glm::normalize(a + b + c), axis) > std::cos(glm::radians(alpha_deg)))
+      removed += area;
+    else
+      kept.insert(kept.end(), corners, corners + 3);
+  }
+  cavity.mesh.indices = kept;
+  cavity.opening = removed / all;
+  return cavity;
 }
 
 // Makes a ring about the z axis, of radius 1, from z = 0 to z = height. Its material must have two sides.

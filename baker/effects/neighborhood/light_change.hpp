@@ -21,7 +21,7 @@
 #include "baker/compress/light_weights.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/jobs/bake_context.hpp"
-#include "baker/transport/direction_table.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/sh/gaunt.hpp"
 
 namespace lambent::baker {

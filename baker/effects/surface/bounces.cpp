@@ -15,7 +15,6 @@
 #include "baker/jobs/stage.hpp"
 #include "baker/trace/patches.hpp"
 #include "baker/trace/transfer_field.hpp"
-#include "baker/transport/direction_table.hpp"
 #include "baker/transport/samples.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"

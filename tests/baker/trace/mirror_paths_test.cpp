@@ -34,10 +34,9 @@ struct Lacquered {
   static Scene sceneWith(const std::vector<bundle::MeshData>& meshes, float base, float roughness,
                          bool lamp) {
     Scene scene = sceneOf(meshes);
-    scene.materials.push_back(scene.materials[0]);
-    scene.materials[1].roughness = roughness;
-    scene.materials[1].base_color = glm::vec4(glm::vec3(base), 1.0f);
-    scene.meshes[0].primitives[0].material = 1;
+    gltf::Material& lacquer = testing::ownMaterial(scene, 0);
+    lacquer.roughness = roughness;
+    lacquer.base_color = glm::vec4(glm::vec3(base), 1.0f);
     if (lamp) testing::addPointLight(scene, {0, 0, 1});
     return scene;
   }

@@ -72,9 +72,7 @@ TEST(Samples, OfLargeGroupsAreCutIntoCompactCells) {
 
 TEST(Samples, OfNormalMappedDrawsComeLastInCellsOfTheirOwn) {
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 2), grid({0, 0, 0}, 1.0f, 2)});
-  scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].normal_texture.texture = 0;
-  scene.meshes[0].primitives[0].material = 1;
+  testing::ownMaterial(scene, 0).normal_texture.texture = 0;
   const Transport t(scene);
   // The grids coincide, but what they store differs.
   EXPECT_EQ(t.samples.size(), 18u);

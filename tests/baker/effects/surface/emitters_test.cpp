@@ -19,9 +19,7 @@ using testing::Transport;
 Scene panelScene(float height, float width, float floor_width = 4.0f) {
   Scene scene = sceneOf({grid({0, 0, 0}, floor_width, 8), flipped(grid({0, height, 0}, width, 2))});
   scene.materials[0].base_color = {0.0f, 0.0f, 0.0f, 1.0f};
-  scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].emissive = {2.0f, 3.0f, 4.0f};
-  scene.meshes[1].primitives[0].material = 1;
+  testing::ownMaterial(scene, 1).emissive = {2.0f, 3.0f, 4.0f};
   return scene;
 }
 

@@ -26,12 +26,10 @@ Scene corner(bool glossy_floor, bool glossy_wall, glm::vec3 floor_color = glm::v
   Scene scene =
       sceneOf({grid({0, 0, 0}, 1.0f, 12), transformed(turned(grid({0, 0, 0}, 1.0f, 12), -90.0f, {0, 0, 1}),
                                                       glm::translate(glm::mat4(1.0f), {-0.5f, 0.5f, 0}))});
-  scene.materials.push_back(scene.materials[0]);
+  testing::ownMaterial(scene, 1).base_color = {0.6f, 0.6f, 0.6f, 1.0f};
   scene.materials[0].base_color = glm::vec4(floor_color, 1.0f);
-  scene.materials[1].base_color = {0.6f, 0.6f, 0.6f, 1.0f};
   scene.materials[0].metallic = glossy_floor ? 1.0f : 0.0f;
   scene.materials[1].metallic = glossy_wall ? 1.0f : 0.0f;
-  scene.meshes[1].primitives[0].material = 1;
   return scene;
 }
 
@@ -112,9 +110,8 @@ TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
   const auto plate =
       transformed(flipped(grid({0, 0, 0}, 0.02f, 2)), glm::translate(glm::mat4(1.0f), {0, 1, 0}));
   Scene scene = sceneOf({grid({0, 0, 0}, 200.0f, 100), plate});
-  scene.materials.push_back(scene.materials[0]);
+  testing::ownMaterial(scene, 1);
   scene.materials[0].metallic = 1.0f;
-  scene.meshes[1].primitives[0].material = 1;
   const Transport t(scene, true);
   const ExitKernels kernels{true, [](std::uint32_t, float, float, const glm::vec3& to, std::span<float> out) {
                               std::fill(out.begin(), out.end(), 0.0f);

@@ -83,9 +83,7 @@ TEST(GlossyInsideFaces, OfAWhiteFurnaceLeaveUniformLightAsItIs) {
 
 TEST(GlossyInsideFaces, GiveTheSameLightForAnyMemoryAndNumberOfThreads) {
   Scene scene = slot(8);
-  scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].metallic = 0.0f;
-  scene.meshes[1].primitives[0].material = 1;  // the ceiling is matte
+  testing::ownMaterial(scene, 1).metallic = 0.0f;  // the ceiling is matte
   testing::addPointLight(scene, {0.1f, 0.2f, 0.1f});
   const Transport t(scene, true);
   const auto baked = [&](std::size_t memory) {

@@ -25,7 +25,6 @@ using testing::gridOf;
 using testing::kCenter;
 using testing::kRoot4Pi;
 using testing::transferOf;
-using testing::uniformAt;
 
 VolumeTransfer phased(const Fog& fog, const VolumeSettings& settings, float g, float albedo = 1.0f) {
   return transferOf(fog, settings, glm::vec3(albedo), {}, g);
