@@ -25,7 +25,9 @@ struct ShadingBench {
            .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 25, .radiance = {3.0f, 2.0f, 1.0f}},
        spec::ConstantLight{.radiance = {0.2f, 0.3f, 0.5f}}});
 
-  ShadingBench(BundleMaker& maker, const RandomBundleOptions& options) : made(maker.make(options)) {
+  ShadingBench(BundleMaker& maker, const RandomBundleOptions& options,
+               std::uint64_t page_bytes = gpu::Arena::kMaxPageBytes)
+      : residency(page_bytes), made(maker.make(options)) {
     EXPECT_TRUE(residency.add(made.description));
     for (std::uint32_t k = 0; k < options.light_probes; ++k)
       incident.push_back(sh::discLight(static_cast<int>(options.order), maker.direction(), 0.7,

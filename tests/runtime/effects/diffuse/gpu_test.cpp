@@ -287,6 +287,16 @@ TEST_F(DiffuseGpu, ALampThatDimsIsShadedAgainAndUnshadowedIsDark) {
   EXPECT_EQ(DiffuseBench::pagesOf(bench.residency.radiance()), unshadowed);
 }
 
+TEST_F(DiffuseGpu, MatchesItsTwinOverSeveralPages) {
+  testing::BundleMaker maker(16);
+  DiffuseBench bench(maker, {.groups = 4}, /*page_bytes=*/6000);
+  bench.uploadAll(7);
+  EXPECT_GT(bench.residency.transfer().pageCount(), 1u);
+  EXPECT_GT(bench.residency.radiance().pageCount(), 1u);
+  bench.shade();
+  EXPECT_LT(bench.differenceToTwin(), 1e-3);
+}
+
 TEST_F(DiffuseGpu, ShadesUnshadowedUntilTransferIsThere) {
   testing::BundleMaker maker(13);
   DiffuseBench bench(maker, {});
