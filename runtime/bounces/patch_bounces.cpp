@@ -160,7 +160,7 @@ PatchBounces::Points PatchBounces::pointsOf(World& world, std::size_t index) {
 
 bool PatchBounces::lit(const World& world, std::size_t draw) const {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
-  return !rooms_[resident.group].room.givenOff().empty() && !materialOf(world, draw).unlit;
+  return !rooms_[resident.group].room.givenOff().empty() && !world.material(draw).unlit;
 }
 
 // Requests everything that the group needs and lacks, as one task.
@@ -171,7 +171,7 @@ void PatchBounces::ask(World& world, std::size_t group, bool links) {
   std::vector<Points> points;
   for (std::size_t i = 0; links && i < draws.size(); ++i) {
     if (draws[i].group != group || draws_[i].asked) continue;
-    if (!world.residency().meshes()[draws[i].mesh].block || materialOf(world, i).unlit) continue;
+    if (!world.residency().meshes()[draws[i].mesh].block || world.material(i).unlit) continue;
     draws_[i].asked = true;
     points.push_back(pointsOf(world, i));
   }

@@ -9,7 +9,7 @@
 
 #include "runtime/bundle/description.hpp"
 #include "runtime/debug/overlays.hpp"
-#include "runtime/draws/view.hpp"
+#include "runtime/draws/surface_record.hpp"
 
 namespace lambent::frame {
 

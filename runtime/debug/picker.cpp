@@ -91,7 +91,7 @@ std::optional<Picker::Seen> Picker::drawPixel(World& world, const Surfaces& surf
     if (!surfaces.shows(i)) continue;
     const streaming::ResidentMesh& mesh = residency.meshes()[residency.draws()[i].mesh];
     SurfaceTextures textures;
-    const std::int32_t texture = materialOf(world, i).base_color_texture.texture;
+    const std::int32_t texture = world.material(i).base_color_texture.texture;
     if (records[i].base_color_texture.set != kAbsent)
       textures = {.bundle = static_cast<std::int32_t>(residency.draws()[i].bundle), .base_color = texture};
     items.push_back({i, static_cast<std::uint32_t>(commands.size()), textures});

@@ -1,7 +1,7 @@
 // Defines modules, which add light to surfaces in the raster pass. For some points of the surfaces' programs
 // a module has a GLSL function, in a file of kSurfaceShaders. Surfaces asks each module which
 // draws it reaches, and puts a program together for every set of modules that some draw has
-// (surface_program.hpp). The functions have these forms:
+// (makeSurfaceProgram). The functions have these forms:
 //   Vertex       void f(uint vertex, inout vec3 radiance), for normal-mapped draws
 //                void f(uint vertex, inout vec3 light[kLightCoefficients])
 //   Gathered     void f(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients])
@@ -28,6 +28,9 @@ enum class SurfaceHook : std::uint8_t { Vertex, Gathered, Received, MirroredSky 
 enum class SurfaceReceiver : std::uint8_t { Diffuse, NormalMapped, Layered, LayeredMapped, Ggx, Measured };
 constexpr bool isGlossy(SurfaceReceiver receiver) {
   return receiver == SurfaceReceiver::Ggx || receiver == SurfaceReceiver::Measured;
+}
+constexpr bool isNormalMapped(SurfaceReceiver receiver) {
+  return receiver == SurfaceReceiver::NormalMapped || receiver == SurfaceReceiver::LayeredMapped;
 }
 // Returns whether a specular layer lies over its diffuse transfer.
 constexpr bool isLayered(SurfaceReceiver receiver) {

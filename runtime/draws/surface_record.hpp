@@ -7,16 +7,49 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
+#include <string>
 #include <tuple>
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "runtime/bundle/gltf_types.hpp"
 #include "runtime/draws/surface_shared.h"
 #include "runtime/gpu/objects.hpp"
+#include "runtime/gpu/program.hpp"
+#include "runtime/scene/bounds.hpp"
+#include "runtime/sh/zonal.hpp"
+#include "runtime/streaming/textures.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
+
+// The uniform block of the camera, as surface.vert and the shaders that draw over its picture read it.
+struct ViewBlock {
+  glm::mat4 view_from_world, clip_from_view;
+  glm::vec4 eye;  // see glossy_receiver.glsl
+};
+
+// Returns whether all of the box lies on the far side of one plane of the frustum. A box that surrounds a
+// corner of the frustum may be outside and still count as in view.
+inline bool outOfView(const glm::mat4& clip_from_box, const scene::Box& box) {
+  constexpr float kMargin = 1.0001f;  // for rounding
+  int beyond[6] = {};                 // corners beyond each plane
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec4 clip =
+        clip_from_box * glm::vec4(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                  corner & 4 ? box.max.z : box.min.z, 1.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+      beyond[2 * axis] += clip[axis] > kMargin * clip.w;
+      beyond[2 * axis + 1] += -clip[axis] > kMargin * clip.w;
+    }
+  }
+  for (const int corners : beyond)
+    if (corners == 8) return true;
+  return false;
+}
 
 // Holds indices into the bundle's tables; -1 means none.
 struct SurfaceTextures {
@@ -28,12 +61,6 @@ struct SurfaceTextures {
 
 // Returns how a mesh looks up a texture. The slot is absent if the mesh lacks the coordinates.
 TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMesh& mesh);
-
-// Returns the current material; valid as long as the draw's bundle is.
-const gltf::Material& materialOf(const World& world, std::size_t draw);
-
-// Returns the radiance that the surface emits, before its texture.
-glm::vec3 emissionOf(const World& world, std::size_t draw);
 
 // Returns whether the draw has light in bands 0..2 at its vertices, for shading with the pixel's own normal.
 bool normalMapped(const World& world, std::size_t draw);
@@ -90,5 +117,45 @@ class DrawIndices {
   gpu::VertexArray vertices_;
   gpu::Buffer indices_;
 };
+
+// Makes the part of the record of a glossy or layered draw that other draws lack: its reflection parameters,
+// where its rows and samples lie, and its table of b(v). Reads the residency's tables and the placement of
+// the world's groups. Render thread.
+
+// Names the table of b(v) that a glossy draw uses: that for its current material if the bundle has such a
+// table, else for the baked material. A GGX table with anisotropy also serves materials without; if there is
+// only one without, anisotropy does not show.
+struct BrdfChoice {
+  std::int32_t table = -1;  // index in its bundle; -1: there is none
+  bundle::BrdfFamily family = bundle::BrdfFamily::Ggx;
+};
+BrdfChoice brdfChoiceOf(std::span<const bundle::BrdfFamily> tables, const gltf::Material& now,
+                        const gltf::Material& baked);
+
+// Returns the index of a draw's table in its bundle, or -1 if no table fits.
+std::int32_t brdfTableOf(const World& world, std::size_t draw);
+
+// Returns whether the draw's mesh, rows and table are resident. Its samples always have light.
+bool glossyReady(const World& world, std::size_t draw);
+
+// Returns whether a draw with a specular layer has its table and its place for what its vertices see.
+bool layerReady(const World& world, std::size_t draw);
+
+// Requires a draw that is ready.
+GlossyPart describeGlossy(const World& world, std::size_t draw);
+
+// Names the variant of the surface program that a glossy or layered draw needs.
+struct GlossyKind {
+  std::uint32_t bands = 0;       // of the table; 0: a draw that reflects diffusely only
+  std::uint32_t used_bands = 0;  // how many of these bands count; 0: all
+  bundle::BrdfFamily family = bundle::BrdfFamily::Ggx;
+  auto operator<=>(const GlossyKind&) const = default;
+};
+GlossyKind glossyKindOf(const World& world, std::size_t draw, std::uint32_t max_bands);
+// Requires a draw whose layer is ready.
+GlossyKind layerKindOf(const World& world, std::size_t draw);
+// Returns the axes of the factors as an array in GLSL.
+std::string axesText(const sh::ZonalFactors& factors);
+std::vector<gpu::Define> definesOf(const GlossyKind& kind);
 
 }  // namespace lambent::frame

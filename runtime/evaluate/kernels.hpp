@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/result.hpp"
@@ -22,17 +24,20 @@ constexpr std::uint32_t compiledOrder(std::uint32_t order) {
   return order >= 2 && order <= 6 ? order : 0;
 }
 
-// Compiles kernels when they are first needed, and keeps them.
+// Compiles kernels and other programs when they are first needed, and keeps them.
 class Kernels {
  public:
   explicit Kernels(std::span<const gpu::FindText> texts) : texts_(texts) {}
 
   // Makes the kernel of this entry file the current program. Fails if it does not compile on this device.
-  Result<void> use(std::string_view file, std::vector<gpu::Define> defines = {});
+  Result<void> use(std::string_view file, std::vector<gpu::Define> defines = {}) {
+    return use({{GL_COMPUTE_SHADER, file}}, std::move(defines));
+  }
+  Result<void> use(std::initializer_list<gpu::Stage> stages, std::vector<gpu::Define> defines = {});
 
  private:
   std::span<const gpu::FindText> texts_;
-  std::map<std::string, gpu::Program, std::less<>> programs_;  // keyed by file and defines
+  std::map<std::string, gpu::Program, std::less<>> programs_;  // keyed by files and defines
 };
 
 // Runs all batches of the list, and makes what they wrote visible to what `barriers` names. For each batch

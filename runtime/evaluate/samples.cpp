@@ -18,12 +18,13 @@ const gpu::FindText kEvaluateShaders[2] = {&embedded::lambent_evaluate::find,
 static_assert(transfer::kLightStride == lighting::GroupLights::kStride &&
               transfer::kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
 
-Result<void> Kernels::use(std::string_view file, std::vector<gpu::Define> defines) {
-  std::string label(file);
+Result<void> Kernels::use(std::initializer_list<gpu::Stage> stages, std::vector<gpu::Define> defines) {
+  std::string label;
+  for (const gpu::Stage& stage : stages) label += fmt::format("{}{}", label.empty() ? "" : " ", stage.file);
   for (const gpu::Define& define : defines) label += fmt::format(" {} {}", define.name, define.value);
   auto found = programs_.find(label);
   if (found == programs_.end()) {
-    Result<gpu::Program> made = gpu::Program::create(label, {{GL_COMPUTE_SHADER, file}}, texts_, defines);
+    Result<gpu::Program> made = gpu::Program::create(label, stages, texts_, defines);
     if (!made) return failAgain(made.error());
     found = programs_.emplace(label, std::move(*made)).first;
   }
@@ -152,10 +153,7 @@ Samples::Samples()
       places_table_("transfer places"),
       products_("transfer products"),
       fills_table_("sample fills"),
-      fill_work_("fill work"),
-      project_work_("project work"),
-      samples_work_{gpu::WorkList("samples work"), gpu::WorkList("samples adding work"),
-                    gpu::WorkList("samples adding more work")} {}
+      works_{Work("work on vectors"), Work("work on matrices")} {}
 
 Result<void> Samples::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
                             TransferMode mode, gpu::Counters& counters, const ShadedKinds& kinds) {
@@ -166,8 +164,14 @@ Result<void> Samples::shade(streaming::Residency& residency, const lighting::Gro
   collect(residency, lights, kinds);
   if (cells_shaded_ == 0) return {};
   lights.bindStorage(transfer::kBindLights);
+  for (Work& work : works_)
+    if (Result<void> done = runWork(work, residency, counters); !done) return done;
+  return {};
+}
+
+Result<void> Samples::runWork(Work& work, streaming::Residency& residency, gpu::Counters& counters) {
   fills_table_.bindStorage(transfer::kBindFills);
-  Result<void> done = run(fill_work_, counters, [&](const gpu::BatchKey& key) {
+  Result<void> done = run(work.fill, counters, [&](const gpu::BatchKey& key) {
     residency.samples().page(key[0]).bindStorage(transfer::kBindSamples);
     return kernels_.use("fill_samples.comp");
   });
@@ -175,17 +179,18 @@ Result<void> Samples::shade(streaming::Residency& residency, const lighting::Gro
   transfers_table_.bindStorage(transfer::kBindTransfers);
   places_table_.bindStorage(transfer::kBindPlaces);
   products_.bindStorage(transfer::kBindProducts);
-  done = project(residency, counters);
-  for (std::size_t i = 0; i < samples_work_.size() && done; ++i)
-    done = run(samples_work_[i], counters, [&](const gpu::BatchKey& key) {
+  done = project(work.project, residency, counters);
+  for (std::size_t i = 0; i < work.samples.size() && done; ++i)
+    done = run(work.samples[i], counters, [&](const gpu::BatchKey& key) {
       residency.transfer().page(key[2]).bindStorage(transfer::kBindTransfer);
       residency.samples().page(key[3]).bindStorage(transfer::kBindSamples);
       if (key[1] == kMatrices)
-        return kernels_.use("shade_matrices.comp",
-                            {{"LAMBENT_BANDS", fmt::format("{}u", transfer::bandsOf(key[0]))}});
+        return kernels_.use(
+            "shade_samples.comp",
+            {{"LAMBENT_MATRICES", "1"}, {"LAMBENT_BANDS", fmt::format("{}u", transfer::bandsOf(key[0]))}});
       std::vector<gpu::Define> defines = {{"LAMBENT_OUTPUTS", std::to_string(key[0])}};
       if (key[1] == kSeveralLights) defines.push_back({"LAMBENT_MANY_LIGHTS", "1"});
-      return kernels_.use("shade_vectors.comp", std::move(defines));
+      return kernels_.use("shade_samples.comp", std::move(defines));
     });
   return done;
 }
@@ -209,9 +214,11 @@ void Samples::rebuildTables(const streaming::Residency& residency, const lightin
 void Samples::collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
                       const ShadedKinds& kinds) {
   cells_shaded_ = 0;
-  fill_work_.clear();
-  project_work_.clear();
-  for (gpu::WorkList& work : samples_work_) work.clear();
+  for (Work& work : works_) {
+    work.fill.clear();
+    work.project.clear();
+    for (gpu::WorkList& list : work.samples) list.clear();
+  }
   for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
     const streaming::ResidentCell& cell = residency.cells()[i];
     const TransferTable::Cell range = tables_.cells[i];
@@ -221,39 +228,40 @@ void Samples::collect(const streaming::Residency& residency, const lighting::Gro
     if (!cells_changed_[i].renew(cell.version, light)) continue;
     ++(matrices ? versions_[cell.group].matrices : versions_[cell.group].vectors);
     ++cells_shaded_;
+    Work& work = works_[matrices ? 1 : 0];
     const std::uint32_t samples_page = residency.groups()[cell.group].samples.page;
     if (open) {
-      fill_work_.add({samples_page}, i, fills_[i].output_count, transfer::kWorkGroupSize);
+      work.fill.add({samples_page}, i, fills_[i].output_count, transfer::kWorkGroupSize);
       continue;
     }
     for (std::uint32_t t = range.first; t < range.first + range.count; ++t) {
       const transfer::TransferRecord& record = tables_.transfers[t];
       const bool visibility = record.visibility != 0;
-      project_work_.add({visibility ? 1u : 0u, visibility ? record.order : compiledOrder(record.order),
-                         record.outputs, cell.block.page},
-                        t, record.light_count * record.clusters * record.outputs, transfer::kUnitsPerGroup);
+      work.project.add({visibility ? 1u : 0u, visibility ? record.order : compiledOrder(record.order),
+                        record.outputs, cell.block.page},
+                       t, record.light_count * record.clusters * record.outputs, transfer::kUnitsPerGroup);
       const std::uint32_t kernel = matrices ? kMatrices : record.light_count > 1 ? kSeveralLights : kOneLight;
       const std::uint32_t invocations = matrices ? transfer::bandsOf(record.outputs) : 1;
-      samples_work_[std::min<std::size_t>(t - range.first, kMaxTransfers - 1)].add(
+      work.samples[std::min<std::size_t>(t - range.first, kMaxTransfers - 1)].add(
           {record.outputs, kernel, cell.block.page, samples_page}, t, invocations * record.sample_count,
           transfer::kWorkGroupSize);
     }
   }
 }
 
-Result<void> Samples::project(streaming::Residency& residency, gpu::Counters& counters) {
-  return run(project_work_, counters, [&](const gpu::BatchKey& key) {
+Result<void> Samples::project(gpu::WorkList& work, streaming::Residency& residency, gpu::Counters& counters) {
+  return run(work, counters, [&](const gpu::BatchKey& key) {
     residency.transfer().page(key[3]).bindStorage(transfer::kBindTransfer);
     if (key[0] != 0) {
       const std::uint32_t bands = transfer::bandsOf(key[2]);
       gpu::Table& gaunt = gaunts_.try_emplace({key[1], bands}, "products of harmonics").first->second;
       if (!gaunt.buffer()) gaunt.assign(std::span<const std::uint32_t>(gauntWords(key[1], bands)));
       gaunt.bindStorage(transfer::kBindGaunt);
-      return kernels_.use("project_visibility.comp");
+      return kernels_.use("project_clusters.comp", {{"LAMBENT_VISIBILITY", "1"}});
     }
     std::vector<gpu::Define> defines;
     if (key[1] != 0) defines.push_back({"LAMBENT_ORDER", fmt::format("{}u", key[1])});
-    return kernels_.use("project_vectors.comp", std::move(defines));
+    return kernels_.use("project_clusters.comp", std::move(defines));
   });
 }
 

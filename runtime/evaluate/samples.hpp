@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
@@ -80,6 +81,15 @@ class Samples {
 
  private:
   static constexpr std::size_t kMaxTransfers = 3;  // visibility, bounced light, the group's lights
+  // The work on vectors or on matrices. A cell's first transfer writes its samples, further ones add to them.
+  struct Work {
+    explicit Work(std::string_view label)
+        : fill(label),
+          project(label),
+          samples{gpu::WorkList(label), gpu::WorkList(label), gpu::WorkList(label)} {}
+    gpu::WorkList fill, project;
+    std::array<gpu::WorkList, kMaxTransfers> samples;
+  };
   struct Versions {
     std::uint64_t vectors = 0, matrices = 0;
   };
@@ -91,16 +101,15 @@ class Samples {
                      TransferMode mode);
   void collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
                const ShadedKinds& kinds);
-  Result<void> project(streaming::Residency& residency, gpu::Counters& counters);
+  Result<void> runWork(Work& work, streaming::Residency& residency, gpu::Counters& counters);
+  Result<void> project(gpu::WorkList& work, streaming::Residency& residency, gpu::Counters& counters);
 
   Kernels kernels_;
   std::map<std::array<std::uint32_t, 2>, gpu::Table> gaunts_;  // keyed by bands in and out
   TransferTable tables_;
   std::vector<transfer::FillRecord> fills_;
   gpu::Table transfers_table_, places_table_, products_, fills_table_;
-  // A cell's first transfer writes its samples, further ones add to them.
-  gpu::WorkList fill_work_, project_work_;
-  std::array<gpu::WorkList, kMaxTransfers> samples_work_;
+  std::array<Work, 2> works_;
   KeyedState<ChangeGate<std::uint64_t, std::uint64_t>> cells_changed_;  // versions: cell, light
   KeyedState<Versions> versions_;                                       // per group
   // Holds the mode, and whether key lights and lamps stand apart.

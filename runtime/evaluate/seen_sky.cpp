@@ -285,15 +285,13 @@ SeenSky::Tables SeenSky::describe(const streaming::Residency& residency,
 }
 
 Result<void> SeenSky::run(streaming::Residency& residency, gpu::Counters& counters) {
-  const auto use = [&](const char* file, std::uint32_t outputs) {
-    return kernels_.use(file, {{"LAMBENT_OUTPUTS", std::to_string(outputs)}});
-  };
   cells_.bindStorage(kBindSeenCells);
   transfers_.bindStorage(transfer::kBindTransfers);
   places_.bindStorage(transfer::kBindPlaces);
   Result<void> done = evaluate::run(samples_work_, counters, [&](const gpu::BatchKey& key) {
     residency.transfer().page(key[1]).bindStorage(transfer::kBindTransfer);
-    return use("seen_sky_samples.comp", key[0]);
+    return kernels_.use("seen_sky.comp",
+                        {{"LAMBENT_SAMPLES", "1"}, {"LAMBENT_OUTPUTS", std::to_string(key[0])}});
   });
   if (!done) return done;
   draws_.bindStorage(kBindSeenDraws);
@@ -301,7 +299,7 @@ Result<void> SeenSky::run(streaming::Residency& residency, gpu::Counters& counte
     residency.rows().page(key[1]).bindStorage(kBindSeenRows);
     residency.geometry().page(key[2]).bindStorage(kBindSeenGeometry);
     residency.radiance().page(key[3]).bindStorage(kBindSeenVertices);
-    return use("seen_sky_vertices.comp", key[0]);
+    return kernels_.use("seen_sky.comp", {{"LAMBENT_OUTPUTS", std::to_string(key[0])}});
   });
 }
 

@@ -1,6 +1,6 @@
-// Owns a frame: it runs the list of passes (pass_list.hpp), from what has arrived to the picture. A pass runs
-// only if something that it reads is newer than its last output; each is timed, counts what it issued and
-// says why it ran. The world, the environment (also for another object) and the settings may be changed
+// Owns a frame: it runs the list of passes (frame_pass.hpp), from what has arrived to the picture. A pass
+// runs only if something that it reads is newer than its last output; each is timed, counts what it issued
+// and says why it ran. The world, the environment (also for another object) and the settings may be changed
 // between frames. The picture goes to the frame's own target, which can be read back, or to the window's
 // framebuffer. Render thread only. Fails if a shader does not compile, or if a bundle turns out damaged while
 // it loads.
@@ -14,10 +14,8 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/debug/picker.hpp"
-#include "runtime/frame/frame_options.hpp"
 #include "runtime/frame/frame_pass.hpp"
-#include "runtime/frame/invalidation_log.hpp"
-#include "runtime/frame/pass_list.hpp"
+#include "runtime/frame/frame_settings.hpp"
 #include "runtime/frame/picture_targets.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/lighting/environment.hpp"

@@ -1,5 +1,5 @@
 // Defines a pass of the frame: an effect, or a stage that effects need. A pass declares what it reads and
-// writes, says whether it is due, and updates what it keeps. The frame runs a list of passes (pass_list.hpp),
+// writes, says whether it is due, and updates what it keeps. The frame runs a list of passes (PassList),
 // times each, and knows nothing else of them. The passes of a step come first; those of a picture have a
 // view.
 //
@@ -11,15 +11,18 @@
 #include <cassert>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <typeindex>
 #include <utility>
 #include <vector>
 
 #include "runtime/base/result.hpp"
-#include "runtime/frame/frame_options.hpp"
-#include "runtime/frame/invalidation_log.hpp"
+#include "runtime/draws/surface_module.hpp"
+#include "runtime/frame/frame_settings.hpp"
 #include "runtime/frame/picture_targets.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/lighting/environment.hpp"
@@ -27,6 +30,67 @@
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
+
+// Explains why passes run: it says in words what changed since the last step. It compares versions and values
+// of the world, the environment, the settings and the view once per step. For a pass that did something it
+// returns the causes that concern the pass in one line, such as "light turned, 2 groups moved". It only
+// reports; no pass runs because of it.
+enum class Cause : std::uint32_t {
+  Arrived = 1u << 0,      // parts of bundles arrived
+  Moved = 1u << 1,        // nodes and groups
+  Environment = 1u << 2,  // loaded, turned, faded or dimmed
+  Lights = 1u << 3,       // lights in the scene, and emissive materials
+  Captured = 1u << 4,     // light between bodies arrived from captures
+  Materials = 1u << 5,
+  Settings = 1u << 6,  // each by its name
+  View = 1u << 7,      // camera and size
+  Exposure = 1u << 8,  // only affects the tone mapper
+  Asked = 1u << 9      // Frame::forget() was called
+};
+constexpr std::uint32_t operator|(Cause a, Cause b) {
+  return static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b);
+}
+constexpr std::uint32_t operator|(std::uint32_t a, Cause b) {
+  return a | static_cast<std::uint32_t>(b);
+}
+
+// These causes change light on surfaces, whatever the camera.
+inline constexpr std::uint32_t kLightCauses = Cause::Arrived | Cause::Moved | Cause::Environment |
+                                              Cause::Lights | Cause::Captured | Cause::Settings |
+                                              Cause::Asked;
+
+// These causes change what a camera sees of it.
+inline constexpr std::uint32_t kPictureCauses = kLightCauses | Cause::Materials | Cause::View;
+
+class InvalidationLog {
+ public:
+  // Clears the log at the start of a step.
+  void begin() { notes_.clear(); }
+  // Each of these notes what changed since its last call.
+  void noticeArrivals(const World& world, std::uint64_t bytes);
+  void noticeWorld(const World& world);
+  void noticeEnvironment(const lighting::Environment& environment);
+  void noticeSettings(const FrameSettings& settings);
+  void noticeView(const spec::View& view, const spec::Size& size);
+  void note(Cause cause, std::string words);
+
+  // Returns those of the given causes that were noted in this step, joined; if there are none, `otherwise`.
+  std::string of(std::uint32_t causes, std::string_view otherwise = {}) const;
+
+ private:
+  struct Note {
+    Cause cause;
+    std::string words;
+  };
+  std::vector<Note> notes_;
+  std::optional<FrameSettings> settings_;
+  std::optional<spec::View> view_;
+  spec::Size size_;
+  std::uint64_t environment_ = 0, lights_ = 0;
+  bool world_known_ = false;
+  float turn_ = 0.0f, fade_ = 0.0f, intensity_ = 0.0f;
+  std::uint64_t transforms_ = 0, groups_ = 0, lamps_ = 0, local_lights_ = 0, materials_ = 0;
+};
 
 // Lists the types that a pass reads or writes.
 using Resources = std::vector<std::type_index>;
@@ -156,5 +220,46 @@ class FramePass {
  private:
   PassInfo info_;
 };
+
+// Holds what passes are made from.
+struct PassSetup {
+  const FrameOptions& options;
+  const lighting::Environment& environment;
+  Blackboard& board;
+};
+
+using MadePass = Result<std::unique_ptr<FramePass>>;
+
+// Each makes a pass; a file under passes/ has those of one kind of work. They fail if a shader does not
+// compile.
+MadePass makeUploadPass(const PassSetup& setup);
+MadePass makeTransformsPass(const PassSetup& setup);
+MadePass makeLightPass(const PassSetup& setup);
+MadePass makePatchBouncesPass(const PassSetup& setup);
+MadePass makeDiffusePass(const PassSetup& setup);
+MadePass makeSeenSkyPass(const PassSetup& setup);
+MadePass makeGlossyPass(const PassSetup& setup);
+MadePass makeVolumePass(const PassSetup& setup);
+MadePass makeNeighborhoodPass(const PassSetup& setup);
+MadePass makeCapturePass(const PassSetup& setup);
+
+MadePass makeSkyPass(const PassSetup& setup);
+MadePass makeLocalShadowsPass(const PassSetup& setup);
+MadePass makeKeyShadowsPass(const PassSetup& setup);
+MadePass makePrefilteredEnvironmentPass(const PassSetup& setup);
+MadePass makeReflectionProbesPass(const PassSetup& setup);
+MadePass makeRasterPass(const PassSetup& setup);
+MadePass makeMarchPass(const PassSetup& setup);
+MadePass makeToneMapPass(const PassSetup& setup);
+MadePass makeOverlayPass(const PassSetup& setup);
+
+struct PassList {
+  std::unique_ptr<SurfaceModules> surface_modules;  // modules that passes add, in the order of the passes
+  std::vector<std::unique_ptr<FramePass>> step, picture;
+};
+
+// Makes all passes, which offer what they keep on the board. Fails if a shader does not compile.
+Result<PassList> makePassList(const FrameOptions& options, const lighting::Environment& environment,
+                              Blackboard& board);
 
 }  // namespace lambent::frame

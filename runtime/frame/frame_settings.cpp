@@ -310,19 +310,12 @@ std::span<const std::string_view> qualitySettings() {
 Result<void> putQuality(FrameSettings& settings, std::string_view name) {
   if (std::ranges::find(kNames, name) == kNames.end())
     return fail("quality", fmt::format("\"{}\" is not known", name), "give low, default or high");
-  const FrameSettings defaults;
-  settings.keys = defaults.keys;
-  settings.key_size = defaults.key_size;
-  settings.key_samples = defaults.key_samples;
-  if (name == "low") {
-    settings.keys = 4;
-    settings.key_size = 2048;
-    settings.key_samples = 12;
-  } else if (name == "high") {
-    settings.keys = 32;
-    settings.key_size = 8192;
-    settings.key_samples = 64;
-  }
+  FrameSettings chosen;
+  if (name == "low") chosen = {.keys = 4, .key_size = 2048, .key_samples = 12};
+  if (name == "high") chosen = {.keys = 32, .key_size = 8192, .key_samples = 64};
+  settings.keys = chosen.keys;
+  settings.key_size = chosen.key_size;
+  settings.key_samples = chosen.key_samples;
   return {};
 }
 

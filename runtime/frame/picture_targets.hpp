@@ -8,7 +8,7 @@
 
 #include <glm/mat4x4.hpp>
 
-#include "runtime/frame/frame_options.hpp"
+#include "runtime/frame/frame_settings.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"

@@ -85,7 +85,7 @@ void LocalShadows::updateMasks(const World& world, std::span<const std::uint32_t
       const std::uint32_t group = residency.draws()[i].group;
       const glm::quat turn = world.rotationOf(group);
       // Unlit surfaces show their colour whatever the light.
-      const bool lit = group < mask_of_group.size() && !materialOf(world, i).unlit;
+      const bool lit = group < mask_of_group.size() && !world.material(i).unlit;
       std::uint32_t own = 0;
       for (std::size_t k = 0; k < own_lamps_.size(); ++k)
         if (own_lamps_[k] && own_lamps_[k] == world.lampOfDraw(i)) own |= 1u << k;

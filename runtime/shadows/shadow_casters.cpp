@@ -46,7 +46,7 @@ bool ShadowCasters::follow(const World& world) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
     if (draw.back) continue;  // the front's triangles serve both sides (docs/design/vertices.md)
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
-    const gltf::Material& material = materialOf(world, i);
+    const gltf::Material& material = world.material(i);
     // A pane that passes half of the light or more would be wronger as a whole shadow than without one.
     const bool clear = material.transmits() && material.transmission >= kClear;
     if (!mesh.block || material.alpha_mode == gltf::AlphaMode::Blend || clear) continue;
@@ -77,7 +77,7 @@ bool ShadowCasters::follow(const World& world) {
 ShadowCasters::State ShadowCasters::stateOf(const World& world, const ShadowCaster& caster) {
   State state{.geometry_page = caster.block.page, .masked = caster.masked, .textures = {}};
   if (!caster.masked) return state;
-  const std::int32_t texture = materialOf(world, caster.draw).base_color_texture.texture;
+  const std::int32_t texture = world.material(caster.draw).base_color_texture.texture;
   const std::uint32_t bundle = world.residency().draws()[caster.draw].bundle;
   if (texture >= 0) state.textures = {.bundle = static_cast<std::int32_t>(bundle), .base_color = texture};
   return state;

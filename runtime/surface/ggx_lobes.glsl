@@ -50,15 +50,6 @@ Lobes lobesAt(vec3 base_color, TangentFrame frame, vec3 normal) {
 // These hold values of the pixel that is being shaded, for modules.
 Lobes pixel_lobes = Lobes(0.0, 1.0, 0.0, vec3(0.0), Fresnel(vec3(0.0), 0.0));
 vec3 pixel_normal = vec3(0.0), pixel_to_eye = vec3(0.0);
-LocalView pixel_view = LocalView(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, vec2(0.0));
-vec4 pixel_weights[kTexels];
-
-// Sets the view of this pixel and its weights of the table. It stands above everything that reads them, because
-// compilers warn of variables that are read in a function above the one that sets them.
-void lookFrom(vec3 normal, vec3 tangent, vec3 to_eye, float roughness, float anisotropy, uvec2 nodes) {
-  pixel_view = localView(normal, tangent, to_eye);
-  lookUpWeights(pixel_view, roughness, anisotropy, nodes, pixel_weights);
-}
 
 // Returns pi f, with f as in docs/conventions.md, "Materials". The extent of a light widens the lobe; the half vector
 // takes half of it.

@@ -1,6 +1,10 @@
 // Adds the specular layer of a smooth dielectric, which lies over diffuse transfer. The mirror shows the prefiltered
 // environment, as far as the transfer knows that it can be seen, and something like the light around the surface where
 // it is hidden. Highlights of key lights and of lights among the surfaces are those of glossy surfaces.
+// Without LAMBENT_LAYERED there is no layer, and a surface has no highlights.
+#include "shadowed_light.glsl"
+
+#ifdef LAMBENT_LAYERED
 const bool kHighlights = true;
 
 #include "reflection_inputs.glsl"
@@ -53,8 +57,14 @@ float seenAbout(vec3 direction, vec3 normal, float seen[kSeenCoefficients]) {
   }
   return seenShare(seen, weights, kAxes, mat3(view.tangent, view.bitangent, view.normal));
 }
+#else
+const bool kHighlights = false;
+vec3 lightReflectance(vec3 to_light, float spread) { return vec3(0.0); }
+#endif
 
 #include "received_light.glsl"
+
+#ifdef LAMBENT_LAYERED
 #include "mirrored_sky.glsl"
 
 // Returns what the base and the layer reflect: `transferred` is E/pi without lights that are shaded per pixel.
@@ -69,3 +79,4 @@ vec3 throughLayer(vec3 base_color, Mirror mirror, vec3 transferred, SurfaceLight
   return diffuseAlbedo(base_color, pixel_lobes.metallic, fresnel, albedo) * received + mirror.albedo * mirrored +
          highlights + light.local_highlights;
 }
+#endif

@@ -24,7 +24,7 @@ namespace {
 
 constexpr SurfaceFunction kPixelChange[] = {
     {SurfaceHook::Received, CalledBy::Diffuse, "neighborhood_surface.glsl", "addNeighborhoods"},
-    {SurfaceHook::Received, CalledBy::Glossy, "neighborhood_glossy.glsl", "addReflectedNeighborhoods"}};
+    {SurfaceHook::Received, CalledBy::Glossy, "neighborhood_surface.glsl", "addReflectedNeighborhoods"}};
 constexpr SurfaceFunction kVertexChange[] = {
     {SurfaceHook::Vertex, CalledBy::Diffuse, "neighborhood_vertex.glsl", "addVertexChange"}};
 

@@ -16,7 +16,6 @@
 #include "runtime/base/result.hpp"
 #include "runtime/draws/surface_module.hpp"
 #include "runtime/effects/neighborhood/neighborhood.hpp"
-#include "runtime/effects/neighborhood/vertex_receivers.hpp"
 #include "runtime/light_plan/light_plan.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/world/world.hpp"

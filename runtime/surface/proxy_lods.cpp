@@ -7,7 +7,7 @@
 
 #include "runtime/light_plan/light_plan.hpp"
 #include "runtime/streaming/resident_tables.hpp"
-#include "runtime/surface/surface_program.hpp"
+#include "runtime/surface/surfaces.hpp"
 
 namespace lambent::frame {
 

@@ -1,6 +1,6 @@
 // Declares what a surface that reflects reads at a pixel: its textures, its table, the corners of the triangle and the
 // direction to the eye; and includes the kernel of the table (glossy_kernel.glsl). The receiver declares
-// looks_at_reflection and looks_at_lobes, the coordinates in these textures (glossy_vertex.glsl).
+// looks_at_reflection and looks_at_lobes, the coordinates in these textures (surface_vertex.glsl).
 
 layout(std140, binding = kBindView) uniform ViewBlock {
   mat4 view_from_world;
@@ -44,4 +44,15 @@ vec3 weightsOf(uvec3 corners, vec3 position) {
 vec3 towardsEye(vec3 position) {
   vec3 position_ws = (draws[draw_of].world_from_mesh * vec4(position, 1.0)).xyz;
   return unit(mat3(draws[draw_of].glossy.group_from_world) * (eye.xyz - eye.w * position_ws));
+}
+
+// These hold values of the pixel that is being shaded, for modules.
+LocalView pixel_view = LocalView(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, vec2(0.0));
+vec4 pixel_weights[kTexels];
+
+// Sets the view of this pixel and its weights of the table. It stands above everything that reads them, because
+// compilers warn of variables that are read in a function above the one that sets them.
+void lookFrom(vec3 normal, vec3 tangent, vec3 to_eye, float roughness, float anisotropy, uvec2 nodes) {
+  pixel_view = localView(normal, tangent, to_eye);
+  lookUpWeights(pixel_view, roughness, anisotropy, nodes, pixel_weights);
 }

@@ -15,7 +15,7 @@
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/lighting/prefiltered_shared.h"
 #include "runtime/surface/reflection_probes_shared.h"
-#include "runtime/surface/surface_program.hpp"
+#include "runtime/surface/surfaces.hpp"
 
 namespace lambent::frame {
 
@@ -23,32 +23,25 @@ namespace {
 
 constexpr SurfaceFunction kSpecular[] = {
     {SurfaceHook::MirroredSky, CalledBy::Ggx, "specular_environment.glsl", "addSpecularEnvironment"},
-    {SurfaceHook::MirroredSky, CalledBy::Layered, "layered_environment.glsl", "addLayeredEnvironment"}};
+    {SurfaceHook::MirroredSky, CalledBy::Layered, "specular_environment.glsl", "addLayeredEnvironment"}};
 constexpr SurfaceFunction kProbes[] = {
-    {SurfaceHook::MirroredSky, CalledBy::Ggx, "glossy_probes.glsl", "addGlossyProbes"},
-    {SurfaceHook::MirroredSky, CalledBy::Layered, "layered_probes.glsl", "addLayeredProbes"}};
+    {SurfaceHook::MirroredSky, CalledBy::Ggx, "reflection_probes.glsl", "addGlossyProbes"},
+    {SurfaceHook::MirroredSky, CalledBy::Layered, "reflection_probes.glsl", "addLayeredProbes"}};
 
 constexpr GLint kFromMesh = 0, kCount = 1, kMesh = 2;  // uniform locations
 
 }  // namespace
 
-Result<SurfaceVoxelizer> SurfaceVoxelizer::create() {
-  Result<gpu::Program> program =
-      gpu::Program::create("surface voxels", {{GL_COMPUTE_SHADER, "surface_voxels.comp"}}, kSurfaceShaders);
-  if (!program) return failAgain(program.error());
-  SurfaceVoxelizer made;
-  made.program_ = std::move(*program);
-  return made;
-}
+SurfaceVoxelizer::SurfaceVoxelizer() : kernels_(kSurfaceShaders) {}
 
-lighting::SurfaceVoxels SurfaceVoxelizer::voxelsOf(World& world, std::size_t group,
-                                                   gpu::Counters& counters) const {
+Result<lighting::SurfaceVoxels> SurfaceVoxelizer::voxelsOf(World& world, std::size_t group,
+                                                           gpu::Counters& counters) {
+  if (Result<void> done = kernels_.use("surface_voxels.comp"); !done) return failAgain(done.error());
   const scene::Box& box = world.groupBounds(group);
   lighting::SurfaceVoxels voxels = lighting::SurfaceVoxels::over(box.min, box.max);
   gpu::Table words("surface voxels");
   words.assign(std::span<const std::uint32_t>(voxels.words));
   words.bindStorage(kBindVoxelWords);
-  program_.use();
   glUniform3i(kCount, voxels.count.x, voxels.count.y, voxels.count.z);
   const glm::mat4 voxels_from_world = glm::scale(glm::mat4(1.0f), glm::vec3(1.0f / voxels.edge_m)) *
                                       glm::translate(glm::mat4(1.0f), -voxels.origin) *
@@ -108,19 +101,10 @@ spec::View probeFaceView(const glm::vec3& place_ws, int face, float near_m, floa
           .eye_ws = place_ws};
 }
 
-Result<ReflectionProbes> ReflectionProbes::create() {
-  ReflectionProbes probes;
-  Result<gpu::Program> store = gpu::Program::create(
-      "probe store", {{GL_COMPUTE_SHADER, "reflection_probe_store.comp"}}, kSurfaceShaders);
-  if (!store) return failAgain(store.error());
-  Result<gpu::Program> filter = gpu::Program::create(
-      "probe filter", {{GL_COMPUTE_SHADER, "reflection_probe_filter.comp"}}, kSurfaceShaders);
-  if (!filter) return failAgain(filter.error());
-  probes.store_ = std::move(*store);
-  probes.filter_ = std::move(*filter);
+ReflectionProbes::ReflectionProbes()
+    : kernels_(kSurfaceShaders), block_("reflection probes"), angles_("probe lobe") {
   for (std::uint32_t level = 0; level < kProbeLevels; ++level)
-    probes.lobes_.push_back(lighting::makeReflectedLobe(lighting::roughnessOfLevel(level, kProbeLevels)));
-  return probes;
+    lobes_.push_back(lighting::makeReflectedLobe(lighting::roughnessOfLevel(level, kProbeLevels)));
 }
 
 void ReflectionProbes::place(std::vector<glm::vec3> places_ws) {
@@ -202,18 +186,18 @@ Result<void> ReflectionProbes::capture(
     glClearNamedFramebufferfv(target_.id(), GL_COLOR, 0, kNothing);
     glClearNamedFramebufferfv(target_.id(), GL_DEPTH, 0, &kFar);
     if (Result<void> done = draw(view, size); !done) return done;
-    store(probe, face, view.clip_from_view, counters);
+    if (Result<void> done = store(probe, face, view.clip_from_view, counters); !done) return done;
   }
-  filter(probe, counters);
+  if (Result<void> done = filter(probe, counters); !done) return done;
   captured_[probe] = 1;
   uploadBlock(/*looked_up=*/true);
   return {};
 }
 
-void ReflectionProbes::store(std::size_t probe, int face, const glm::mat4& clip_from_view,
-                             gpu::Counters& counters) const {
+Result<void> ReflectionProbes::store(std::size_t probe, int face, const glm::mat4& clip_from_view,
+                                     gpu::Counters& counters) {
   const auto layer = static_cast<GLint>(6 * probe) + face;
-  store_.use();
+  if (Result<void> done = kernels_.use("reflection_probe.comp", {{"LAMBENT_STORE", "1"}}); !done) return done;
   drawn_.bind(0);
   depth_.bind(1);
   glBindSampler(0, 0);
@@ -229,15 +213,16 @@ void ReflectionProbes::store(std::size_t probe, int face, const glm::mat4& clip_
   glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   glDispatchCompute(groupsOf(kProbeFaceTexels), groupsOf(kProbeFaceTexels), 1);
   ++counters.dispatches;
+  return {};
 }
 
-void ReflectionProbes::filter(std::size_t probe, gpu::Counters& counters) {
+Result<void> ReflectionProbes::filter(std::size_t probe, gpu::Counters& counters) {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                   GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   glGenerateTextureMipmap(weighted_.id());
   glGenerateTextureMipmap(weights_.id());
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-  filter_.use();
+  if (Result<void> done = kernels_.use("reflection_probe.comp"); !done) return done;
   weighted_.bind(0);
   weights_.bind(1);
   glBindSampler(0, 0);
@@ -255,6 +240,7 @@ void ReflectionProbes::filter(std::size_t probe, gpu::Counters& counters) {
     ++counters.dispatches;
   }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  return {};
 }
 
 void ReflectionProbes::bindFor(SurfaceReceiver receiver) const {

@@ -2,7 +2,7 @@
 // parallax wherever the surface is: the ray is followed over the probe's sphere of directions, along which its own
 // distance is known in closed form, until it goes behind what the probe sees.
 #include "reflection_probes_shared.h"
-#include "reflected_sky.glsl"
+#include "specular_environment.glsl"
 
 layout(std140, binding = kBindProbes) uniform ProbeBlock { ProbeValues probes; };
 #ifdef LAMBENT_LAYERED
@@ -190,3 +190,29 @@ vec4 probeMirror(vec3 place_ws, vec3 normal, mat3 group_from_world) {
   }
   return sum / max(count, 1.0);
 }
+
+#ifdef LAMBENT_LAYERED
+// Shows the room in the mirror of a layered surface, where a reflection probe knows what the mirrored ray meets, in place
+// of the sky where it is seen and a mean elsewhere. Highlights of key lights stay what they are: probes see what key
+// lights shine on, but not key lights.
+void addLayeredProbes(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights) {
+  if (probes.counts.y == 0.0) return;
+  vec3 place_ws = (draws[draw_of].world_from_mesh * vec4(mirror.position_mesh, 1.0)).xyz;
+  vec4 room = probeMirror(place_ws, mirror.smooth_normal, mat3(draws[draw_of].glossy.group_from_world));
+  mirrored = room.rgb + (1.0 - room.a) * mirrored;
+}
+#else
+// Shows the room in a sharp metal, where a reflection probe knows what the mirrored ray meets, in place of the few bands
+// of transferred light and of what they leave out of the sky. Rough metals keep their bands, which know the room better.
+void addGlossyProbes(Reflected reflected, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights) {
+  const float kSharp = 0.35, kRough = 0.6;  // roughness
+  float share = 1.0 - smoothstep(kSharp, kRough, pixel_lobes.roughness);
+  if (probes.counts.y == 0.0 || share == 0.0 || pixel_lobes.anisotropy != 0.0) return;
+  vec3 place_ws = (draws[draw_of].world_from_mesh * vec4(position_mesh, 1.0)).xyz;
+  vec3 normal = draws[draw_of].facing * unit(normal_group.xyz);
+  vec4 room = probeMirror(place_ws, normal, mat3(draws[draw_of].glossy.group_from_world));
+  Fresnel fresnel = pixel_lobes.fresnel;
+  vec3 rho = fresnel.f0 * reflected.albedo.x + fresnel.f90 * reflected.albedo.y;
+  mirrored = mix(mirrored, rho * room.rgb + (1.0 - room.a) * mirrored, share);
+}
+#endif

@@ -3,7 +3,7 @@
 // prefiltered environment alone would show the sky. A probe's picture has the room's radiance and coverage;
 // the sky is not in it, because surfaces know it better. Roughness lies along its mip levels, as in the
 // prefiltered environment. The owner chooses the places, draws the faces and says which draws look probes up.
-// Render thread only. create() fails if a kernel does not compile on this device.
+// Render thread only. Fails if a kernel does not compile on this device.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/draws/surface_module.hpp"
+#include "runtime/evaluate/kernels.hpp"
 #include "runtime/gpu/objects.hpp"
-#include "runtime/gpu/program.hpp"
 #include "runtime/lighting/probe_places.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/spec/camera.hpp"
@@ -27,16 +27,16 @@
 namespace lambent::frame {
 
 // Finds the voxels that the surfaces of a rigid group pass through, from the meshes that are resident. It is
-// done once when a room arrives, and waits for the GPU. Render thread only. create() fails if the kernel does
-// not compile on this device.
+// done once when a room arrives, and waits for the GPU. Render thread only. Fails if the kernel does not
+// compile on this device.
 class SurfaceVoxelizer {
  public:
-  static Result<SurfaceVoxelizer> create();
+  SurfaceVoxelizer();
   // Returns the voxels in the group's frame.
-  lighting::SurfaceVoxels voxelsOf(World& world, std::size_t group, gpu::Counters& counters) const;
+  Result<lighting::SurfaceVoxels> voxelsOf(World& world, std::size_t group, gpu::Counters& counters);
 
  private:
-  gpu::Program program_;
+  evaluate::Kernels kernels_;
 };
 
 inline constexpr std::uint32_t kProbeFaceTexels = 128;  // along an edge of a face
@@ -64,7 +64,7 @@ class SpecularEnvironmentModule final : public SurfaceModule {
 // is called before.
 class ReflectionProbes final : public SurfaceModule {
  public:
-  static Result<ReflectionProbes> create();
+  ReflectionProbes();
 
   // Sets where probes are, at most kMostProbes. Those that stay where they were, in the same order, stay
   // captured.
@@ -87,14 +87,13 @@ class ReflectionProbes final : public SurfaceModule {
                        gpu::Counters& counters);
 
  private:
-  ReflectionProbes();
   void uploadBlock(bool looked_up);
   void makeTargets();
-  void store(std::size_t probe, int face, const glm::mat4& clip_from_view, gpu::Counters& counters) const;
-  void filter(std::size_t probe, gpu::Counters& counters);
+  Result<void> store(std::size_t probe, int face, const glm::mat4& clip_from_view, gpu::Counters& counters);
+  Result<void> filter(std::size_t probe, gpu::Counters& counters);
 
   const SpecularEnvironmentModule* environment_ = nullptr;  // set before draws ask
-  gpu::Program store_, filter_;
+  evaluate::Kernels kernels_;
   std::vector<lighting::ReflectedLobe> lobes_;  // one per level
   std::vector<glm::vec3> places_;
   std::vector<std::uint8_t> captured_;  // one per place

@@ -1,6 +1,66 @@
-// Adds the prefiltered environment as mirrors show it: what the few bands of light leave out of the sky.
-#include "reflected_sky.glsl"
+// Adds the prefiltered environment (lighting/sky.hpp) as rough mirrors show it: on glossy surfaces what the
+// few bands of light leave out of the sky, in the mirror of layered surfaces the sky as far as it is seen.
+#include "prefiltered_shared.h"
+layout(std140, binding = kBindReflection) uniform ReflectionBlock { ReflectionValues reflection; };
+layout(binding = kUnitFirstReflection) uniform samplerCube first_reflection;
+layout(binding = kUnitSecondReflection) uniform samplerCube second_reflection;
+layout(binding = kUnitFirstWhole) uniform samplerCube first_whole;
+layout(binding = kUnitSecondWhole) uniform samplerCube second_whole;
 
+// Returns the mip level of a roughness, the inverse of roughnessOfLevel.
+float levelOf(float roughness) { return reflection.shares.z * pow(roughness, 2.0 / 3.0); }
+
+// Returns what a rough mirror shows of key lights in their true shape.
+vec3 keyPicture(vec3 direction_ws, float roughness) {
+  float level = levelOf(roughness);
+  vec3 direction = mat3(reflection.light_from_world) * direction_ws;
+  vec3 first = textureLod(first_whole, direction, level).rgb - textureLod(first_reflection, direction, level).rgb;
+  vec3 second = textureLod(second_whole, direction, level).rgb - textureLod(second_reflection, direction, level).rgb;
+  return max(reflection.shares.x * first + reflection.shares.y * second, vec3(0.0));
+}
+
+// Returns the highlights of key lights. They are those of discs, but a mirror that is sharp enough to show the true
+// shape of the lights shows that.
+vec3 keyHighlights(Lobes lobes, SurfaceLight light, vec3 mirrored_ws, vec3 rho) {
+  const float kSharp = 0.05, kRough = 0.12;  // alpha
+  float alpha = lobes.roughness * lobes.roughness;
+  float pictured = lobes.anisotropy != 0.0 ? 0.0 : reflection.shares.w * (1.0 - smoothstep(kSharp, kRough, alpha));
+  if (pictured == 0.0) return light.key_highlights;
+  float open = dot(light.open_key_highlights, vec3(1.0)), seen = dot(light.key_highlights, vec3(1.0));
+  float visible = open > 0.0 ? clamp(seen / open, 0.0, 1.0) : 1.0;
+  return mix(light.key_highlights, visible * rho * keyPicture(mirrored_ws, lobes.roughness), pictured);
+}
+
+// Returns what a rough mirror shows of the sky without key lights.
+vec3 reflectedSky(vec3 direction_ws, float roughness) {
+  vec3 direction = mat3(reflection.light_from_world) * direction_ws;
+  return reflection.shares.x * textureLod(first_reflection, direction, levelOf(roughness)).rgb +
+         reflection.shares.y * textureLod(second_reflection, direction, levelOf(roughness)).rgb;
+}
+
+#ifdef LAMBENT_LAYERED
+vec3 towardsWorld(vec3 direction) { return direction * mat3(draws[draw_of].glossy.group_from_world); }
+
+// Returns the mean radiance of what hides the sky: E/pi without what the sky sends, over the share that is hidden. The
+// sky is taken to be as it is about the mean direction in which it is seen, so at least a tenth is kept.
+vec3 hiddenRadiance(vec3 received, float seen[kSeenCoefficients]) {
+  const float kLeastKept = 0.1, kLeastHidden = 0.05;
+  float open = seenShareOfAll(seen);
+  vec3 sky = reflectedSky(towardsWorld(unit(vec3(seen[3], seen[1], seen[2]))), 1.0);
+  return max(received - open * sky, kLeastKept * received) / max(1.0 - open, kLeastHidden);
+}
+
+// Shows the environment as far as it is seen about the mirrored direction, and elsewhere what hides it. Key lights are
+// shown in their true shape.
+void addLayeredEnvironment(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights) {
+  float seen[kSeenCoefficients];
+  gatherSeen(mirror.position_mesh, seen);
+  vec3 direction = reflect(-pixel_to_eye, pixel_normal), direction_ws = towardsWorld(direction);
+  mirrored = mix(hiddenRadiance(mirrored, seen), reflectedSky(direction_ws, pixel_lobes.roughness),
+                 seenAbout(direction, mirror.smooth_normal, seen));
+  if (light.keys_apart) highlights = keyHighlights(pixel_lobes, light, direction_ws, mirror.albedo);
+}
+#else
 // Returns what a rough mirror shows of the sky beyond the bands that the surface has of it: P(L) - P(L_n), which may
 // be negative. The factors of the bands are interpolated like the mip levels, so that light of few bands leaves
 // nothing.
@@ -64,3 +124,4 @@ void addSpecularEnvironment(Reflected reflected, SurfaceLight light, inout vec3 
   vec3 mirrored_ws = reflect(-pixel_to_eye, pixel_normal) * mat3(draws[draw_of].glossy.group_from_world);
   highlights = keyHighlights(pixel_lobes, light, mirrored_ws, rho);
 }
+#endif

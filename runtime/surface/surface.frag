@@ -1,8 +1,7 @@
 // Computes what a surface sends towards the eye: the light that it reflects and the light that it emits. The result
 // is linear and not clamped; alpha is coverage. The program is put together from a receiver, which handles the light
-// that transfer brings (diffuse_receiver.glsl, normal_mapped_receiver.glsl, ggx_receiver.glsl,
-// measured_receiver.glsl), and from modules that add other light. Surfaces writes the files that join them:
-// surface_kind.glsl, receiver.glsl, received_light.glsl.
+// that transfer brings (diffuse_receiver.glsl, normal_mapped_receiver.glsl, glossy_receiver.glsl), and from modules that
+// add other light. Surfaces writes the files that join them: surface_kind.glsl, receiver.glsl, received_light.glsl.
 #include "surface_shared.h"
 #include "surface_kind.glsl"
 

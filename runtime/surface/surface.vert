@@ -1,6 +1,5 @@
 // Draws surfaces that compute shaders have shaded; vertices are pulled from the arenas. The receiver's part of the
-// vertex stage (diffuse_vertex.glsl, normal_mapped_vertex.glsl, glossy_vertex.glsl) writes what its fragment stage
-// reads. Outputs that are never read cost nothing, because the two stages are linked together.
+// vertex stage (surface_vertex.glsl) writes what its fragment stage reads. Outputs that are never read cost nothing, because the two stages are linked together.
 #include "surface_shared.h"
 #include "surface_kind.glsl"
 #include "surface_normal.glsl"
@@ -39,7 +38,7 @@ vec2 lookedAt(uint set, mat3x2 texture_from_coordinates, uint vertex) {
        ? vec2(0.0) \
        : lookedAt(draws[draw_index].slot.set, draws[draw_index].slot.texture_from_coordinates, vertex))
 
-#include "vertex_receiver.glsl"
+#include "surface_vertex.glsl"
 
 void main() {
   uint vertex = uint(gl_VertexID);

@@ -17,7 +17,6 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/draws/glossy_record.hpp"
 #include "runtime/draws/surface_module.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/surface_shared.h"
@@ -26,11 +25,38 @@
 #include "runtime/gpu/program.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/surface/surface_program.hpp"
 #include "runtime/surface/views.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
+
+// The tables of GLSL text that programs of this room include files from.
+extern const gpu::FindText kSurfaceShaders[7];
+
+// Names a kind of surface. Its program consists of a receiver (surface.frag) and the modules that add light
+// to it.
+struct SurfaceKind {
+  bool normal_mapped = false;
+  bool dark = false;          // reflects nothing
+  std::uint32_t modules = 0;  // a bit for each module, see bitOf()
+  bool texels = false;        // takes E/pi from a texture
+  bool layered = false;       // a specular layer over diffuse or normal-mapped transfer
+  GlossyKind glossy = {};
+  SurfaceView view = SurfaceView::Final;  // Final, Irradiance or Normals
+  auto operator<=>(const SurfaceKind&) const = default;
+
+  SurfaceReceiver receiver() const;
+};
+
+// Returns the bit of the module at this place of the list.
+constexpr std::uint32_t bitOf(std::size_t module) {
+  return 0x80000000u >> module;
+}
+
+// Compiles and links the program. If finest_texels is set, textures are read at their full resolution, for
+// pictures with one ray per pixel. Fails if a shader does not compile on this device.
+Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
+                                        std::span<const SurfaceModule* const> modules, bool finest_texels);
 
 struct SurfaceOptions {
   bool diffuse = true, glossy = true;  // false: such surfaces reflect nothing
@@ -47,7 +73,7 @@ struct SurfaceInputs {
 class Surfaces {
  public:
   // If finest_texels is set, textures are read at their full resolution, for pictures with one ray per pixel.
-  static Result<Surfaces> create(bool finest_texels);
+  explicit Surfaces(bool finest_texels);
 
   // Updates draw records and commands. The modules must live until surfaces are drawn, and be the same ones
   // in the same order in each frame.
@@ -87,7 +113,6 @@ class Surfaces {
   };
   using Items = std::vector<Item>;
 
-  Surfaces();
   bool dark(const World& world, std::size_t draw) const;
   bool ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const;
   bool layered(const World& world, std::size_t draw) const;
@@ -106,7 +131,7 @@ class Surfaces {
   Result<void> compile(const SurfaceKind& kind);
   void drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters);
 
-  bool finest_texels_ = false;
+  bool finest_texels_;
   std::map<SurfaceKind, gpu::Program> programs_;  // compiled when they are first needed
   TextureUnits units_;
   DrawIndices indices_;

@@ -92,7 +92,7 @@ struct TransferRecord {
   uint accumulate;  // 1: adds to what another transfer of the cell has written
   uint order;       // bands of the environment's light; 0: the group's own lights
   uint
-      visibility;  // 1: the vectors are visibility, to be multiplied with the light (project_visibility.comp)
+      visibility;  // 1: the vectors are visibility, to be multiplied with the light (project_clusters.comp)
   // These count only if lights are shaded per pixel: key lights, or some of the group's own lights. Their
   // coefficients lie `apart` vec4s after those of the other light. `bounced` is 1 if the block that counts
   // contains bounced light, so that it takes these lights too. straight_channels is the number of channels at

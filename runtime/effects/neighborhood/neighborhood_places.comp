@@ -1,6 +1,6 @@
 // Inverts a cell's list of positions, so that each sample of the group finds its code. One invocation serves one
 // position.
-#include "vertex_shared.h"
+#include "neighborhood_shared.h"
 
 layout(local_size_x = kVertexGroupSize) in;
 layout(std140, binding = kBindVertexBlock) uniform Block { PlacesCell cells[kRecordsPerDispatch]; };

@@ -1,7 +1,7 @@
 // Shades receivers with transfer of their own, with one invocation per vertex. It computes t_p . dl'(x_p): the change
 // of the light at the vertex, in all its bands and turned into the receiver's frame, times the vertex's transfer
 // vector, decoded from its codes. The result is E/pi.
-#include "vertex_shared.h"
+#include "neighborhood_shared.h"
 #include "neighborhood_eval.glsl"
 #include "coded_transfer.glsl"
 #include "vertex_rows.glsl"

@@ -10,7 +10,7 @@
 #include "runtime/bounces/patch_bounces.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/evaluate/samples.hpp"
-#include "runtime/frame/pass_list.hpp"
+#include "runtime/frame/frame_pass.hpp"
 #include "runtime/light_plan/light_plan.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/lighting/incident_light.hpp"

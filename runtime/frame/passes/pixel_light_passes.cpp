@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "runtime/base/change_gate.hpp"
-#include "runtime/frame/pass_list.hpp"
+#include "runtime/frame/frame_pass.hpp"
 #include "runtime/light_plan/light_plan.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/shadows/key_shadows.hpp"

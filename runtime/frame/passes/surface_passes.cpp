@@ -16,7 +16,6 @@
 #include "runtime/evaluate/samples.hpp"
 #include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/frame/frame_pass.hpp"
-#include "runtime/frame/pass_list.hpp"
 #include "runtime/light_plan/light_plan.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/scene/bounds.hpp"
@@ -77,15 +76,13 @@ bool mirrors(const World& world, const streaming::ResidentDraw& draw, std::size_
 
 class ReflectionProbesPass final : public FramePass {
  public:
-  ReflectionProbesPass(SurfaceVoxelizer voxelizer, ReflectionProbes probes, Blackboard& board)
+  explicit ReflectionProbesPass(Blackboard& board)
       : FramePass({.name = "reflection probes",
                    .reads = resources<World, Diffuse, evaluate::Samples, PatchBounces, Neighborhoods,
                                       evaluate::SeenSky, Prefiltered, LocalShadows>(),
                    .writes = resources<ReflectionProbes, Surfaces, Prefiltered>(),
                    .causes = kLightCauses | Cause::Materials,
                    .counts = {"reflection_probes", "reflection_probes_captured"}}),
-        voxelizer_(std::move(voxelizer)),
-        probes_(std::move(probes)),
         modules_(board.get<SurfaceModules>()) {
     probes_.setEnvironment(board.get<SpecularEnvironmentModule>());
     board.offer(probes_);
@@ -97,7 +94,7 @@ class ReflectionProbesPass final : public FramePass {
   }
 
   Result<void> update(FrameContext& frame) override {
-    findRooms(frame);
+    if (Result<void> done = findRooms(frame); !done) return done;
     frame.count("reflection_probes", probes_.places().size());
     if (probes_.places().empty()) return {};
     if (seen_.renew(versionsOf(frame), frame.settings())) std::ranges::fill(stale_, std::uint8_t{1});
@@ -143,11 +140,11 @@ class ReflectionProbesPass final : public FramePass {
   }
 
   // Chooses the places in each group that has mirrors in it, once its meshes have arrived.
-  void choosePlaces(const FrameContext& frame) {
+  Result<void> choosePlaces(const FrameContext& frame) {
     World& world = frame.world;
     const streaming::Residency& residency = world.residency();
     places_.assign(residency.groups().size(), {});
-    if (wanted(frame) == 0) return;
+    if (wanted(frame) == 0) return {};
     for (std::size_t group = 0; group < places_.size(); ++group) {
       if (world.groupBounds(group).empty() || residency.groups()[group].volume >= 0) continue;
       bool arrived = true, any = false;
@@ -156,20 +153,22 @@ class ReflectionProbesPass final : public FramePass {
         if (draw.group == group) arrived &= bool(residency.meshes()[draw.mesh].block);
         any |= mirrors(world, draw, i) && isIn(world, group, draw.group);
       }
-      if (arrived && any)
-        places_[group] =
-            lighting::chooseProbePlaces(voxelizer_.voxelsOf(world, group, frame.counters()), wanted(frame));
+      if (!arrived || !any) continue;
+      const Result<lighting::SurfaceVoxels> voxels = voxelizer_.voxelsOf(world, group, frame.counters());
+      if (!voxels) return failAgain(voxels.error());
+      places_[group] = lighting::chooseProbePlaces(*voxels, wanted(frame));
     }
+    return {};
   }
 
-  void findRooms(const FrameContext& frame) {
+  Result<void> findRooms(const FrameContext& frame) {
     const World& world = frame.world;
     const streaming::Residency& residency = world.residency();
     if (!rooms_from_.renew(residency.version(), world.transformsVersion(), world.materialsVersion(),
                            wanted(frame)))
-      return;
+      return {};
     if (meshes_from_.renew(residency.structureVersion(), meshesOf(residency), wanted(frame)))
-      choosePlaces(frame);
+      if (Result<void> done = choosePlaces(frame); !done) return done;
     std::vector<glm::vec3> places_ws;
     std::vector<std::uint8_t> shown(residency.draws().size(), 0);
     for (std::size_t room = 0; room < places_.size(); ++room) {
@@ -188,6 +187,7 @@ class ReflectionProbesPass final : public FramePass {
     probes_.place(std::move(places_ws));
     probes_.showBy(std::move(shown));
     stale_.assign(probes_.places().size(), 1);
+    return {};
   }
 
   // Returns the versions of all that a capture shows.
@@ -260,7 +260,7 @@ using lighting::Sky;
 
 class RasterPass final : public FramePass {
  public:
-  RasterPass(Surfaces surfaces, Blackboard& board)
+  RasterPass(bool finest_texels, Blackboard& board)
       : FramePass(
             {.name = "raster",
              .reads = resources<World, LightPlan, GroupLights, Diffuse, Neighborhoods, PatchBounces, Sky,
@@ -268,7 +268,7 @@ class RasterPass final : public FramePass {
              .writes = resources<PictureTargets, Surfaces, std::optional<DataView>, Prefiltered>(),
              .causes = kPictureCauses,
              .counts = {"draws_out_of_view"}}),
-        surfaces_(std::move(surfaces)),
+        surfaces_(finest_texels),
         modules_(board.get<SurfaceModules>()) {
     board.offer(surfaces_);
     board.offer(data_view_);
@@ -339,17 +339,11 @@ class RasterPass final : public FramePass {
 }  // namespace
 
 MadePass makeReflectionProbesPass(const PassSetup& setup) {
-  Result<ReflectionProbes> probes = ReflectionProbes::create();
-  if (!probes) return failAgain(probes.error());
-  Result<SurfaceVoxelizer> voxelizer = SurfaceVoxelizer::create();
-  if (!voxelizer) return failAgain(voxelizer.error());
-  return std::make_unique<ReflectionProbesPass>(std::move(*voxelizer), std::move(*probes), setup.board);
+  return std::make_unique<ReflectionProbesPass>(setup.board);
 }
 
 MadePass makeRasterPass(const PassSetup& setup) {
-  Result<Surfaces> surfaces = Surfaces::create(/*finest_texels=*/setup.options.linear());
-  if (!surfaces) return failAgain(surfaces.error());
-  return std::make_unique<RasterPass>(std::move(*surfaces), setup.board);
+  return std::make_unique<RasterPass>(/*finest_texels=*/setup.options.linear(), setup.board);
 }
 
 }  // namespace lambent::frame

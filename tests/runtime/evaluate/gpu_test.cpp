@@ -129,13 +129,6 @@ TEST_F(GlossyGpu, RunsOnlyWhenLightOrTransferChanged) {
   EXPECT_EQ(bench.samples.cellsShadedLast(), 1u) << "of the group that turned";
 }
 
-TEST_F(GlossyGpu, DispatchesNothingWithoutGlossyCells) {
-  lambent::testing::BundleMaker maker(36);
-  Bench bench(maker, {.cells = 2, .mapped_cells = 1});
-  bench.uploadAll();
-  EXPECT_EQ(bench.shade(), 0u);
-}
-
 TEST_F(GlossyGpu, GlossyDrawsHaveNoRadianceAtTheirVertices) {
   lambent::testing::BundleMaker maker(37);
   Bench bench(maker, {.groups = 1, .cells = 0, .glossy_cells = 1});

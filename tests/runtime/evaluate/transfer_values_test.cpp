@@ -33,7 +33,7 @@ static_assert(LAMBENT_VISIBILITY == kOrder);
 #undef LAMBENT_VISIBILITY
 #undef LAMBENT_VALUE
 
-struct ValuesBench : testing::ShadingBench {
+struct ValuesBench : lambent::testing::ShadingBench {
   using ShadingBench::ShadingBench;
   TransferValues values;
 
@@ -97,7 +97,7 @@ struct ValuesBench : testing::ShadingBench {
   }
 };
 
-testing::RandomBundleOptions everyKind() {
+lambent::testing::RandomBundleOptions everyKind() {
   return {.order = kOrder,
           .shadowed_channels = 1,
           .full_channels = 3,
@@ -117,10 +117,10 @@ float valueOf(const SampleValue& value) {
 
 }  // namespace
 
-using TransferValuesTest = testing::GpuTest;
+using TransferValuesTest = lambent::testing::GpuTest;
 
 TEST_F(TransferValuesTest, AreThoseOfTheKernelAsCppForEveryKindOfSample) {
-  testing::BundleMaker maker(11);
+  lambent::testing::BundleMaker maker(11);
   ValuesBench bench(maker, everyKind());
   bench.uploadTransfer();
   for (const TransferMode mode : {TransferMode::Full, TransferMode::Shadowed})
@@ -132,8 +132,8 @@ TEST_F(TransferValuesTest, AreThoseOfTheKernelAsCppForEveryKindOfSample) {
       double worst = 0.0, largest = 0.0;
       for (std::size_t i = 0; i < wanted.size(); ++i) {
         ASSERT_EQ(got[i].cluster, wanted[i].cluster);
-        worst = testing::larger(worst, double{std::abs(valueOf(got[i]) - valueOf(wanted[i]))});
-        largest = testing::larger(largest, double{std::abs(valueOf(wanted[i]))});
+        worst = lambent::testing::larger(worst, double{std::abs(valueOf(got[i]) - valueOf(wanted[i]))});
+        largest = lambent::testing::larger(largest, double{std::abs(valueOf(wanted[i]))});
       }
       EXPECT_GT(largest, 0.01) << band;
       EXPECT_LT(worst, 1e-5 * largest)
@@ -142,7 +142,7 @@ TEST_F(TransferValuesTest, AreThoseOfTheKernelAsCppForEveryKindOfSample) {
 }
 
 TEST_F(TransferValuesTest, ClustersAndWhatCellsSayAreExact) {
-  testing::BundleMaker maker(12);
+  lambent::testing::BundleMaker maker(12);
   ValuesBench bench(maker, everyKind());
   bench.uploadTransfer();
   const auto values = bench.ask({.value = TransferValue::OfCell});
@@ -160,7 +160,7 @@ TEST_F(TransferValuesTest, ClustersAndWhatCellsSayAreExact) {
 }
 
 TEST_F(TransferValuesTest, ASampleWhoseCodesAreNotHereHasNone) {
-  testing::BundleMaker maker(13);
+  lambent::testing::BundleMaker maker(13);
   ValuesBench bench(maker, {.clusters = 2, .groups = 1, .cells = 2});
   bench.uploadCell(1);
   auto values = bench.ask({.value = TransferValue::Dc});
@@ -174,7 +174,7 @@ TEST_F(TransferValuesTest, ASampleWhoseCodesAreNotHereHasNone) {
 }
 
 TEST_F(TransferValuesTest, TheSameQuestionTwiceDispatchesNothing) {
-  testing::BundleMaker maker(14);
+  lambent::testing::BundleMaker maker(14);
   ValuesBench bench(maker, {.clusters = 2});
   bench.uploadTransfer();
   const TransferQuestion question{.value = TransferValue::BandEnergy, .band = 1};

@@ -31,7 +31,7 @@ struct OneVector {
     kernel.lights = lights;
     kernel.page = page;
     kernel.gaunt = gaunt;
-    return kernel.projectVisibility(record, 0, i, 0);
+    return kernel.projected(record, 0, i, 0);
   }
 };
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/draws/glossy_record.hpp"
+#include "runtime/draws/surface_record.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/world/material_rebake.hpp"
 #include "tests/support/material_values.hpp"

@@ -153,31 +153,6 @@ TEST_F(FrameVolume, AStillFrameOnlyMarches) {
   EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
 }
 
-TEST_F(FrameVolume, ForwardScatteringShowsTheSunBehindIt) {
-  BuiltVolume volume = mist(1e4f);
-  volume.g = 0.7f;
-  volume.shape = {.order = 4, .outputs = 16, .visibility_bands = 7};
-  for (const float azimuth : {0.0f, 180.0f}) {  // 180: behind the volume, the camera looks into it
-    VolumeStage stage(
-        BundleBuilder().volume(volume),
-        {spec::SunLight{
-            .azimuth_deg = azimuth, .elevation_deg = 0, .angle_deg = 20, .radiance = glm::vec3(1)}},
-        linearOptions([](FrameOptions& options) { options.settings.window = sh::Window::Off; }));
-    const sh::LightVector& light = stage.environment.light();
-    const glm::vec3 along(0, 0, -1);
-    std::array<float, 16> y{};
-    sh::evaluate(4, along, y);
-    float expected = 0.0f;
-    for (int i = 0; i < 16; ++i)
-      expected += std::pow(0.7f, static_cast<float>(sh::bandOf(i))) * y[static_cast<std::size_t>(i)] *
-                  light.c[static_cast<std::size_t>(i)].g;
-    EXPECT_NEAR(middle(stage.picture()).g, expected, 1e-3f * std::abs(expected) + 1e-4f);
-    if (azimuth == 180.0f) {
-      EXPECT_GT(expected, 3.0f * 0.282094792f * light.c[0].g) << "brighter than by isotropic scattering";
-    }
-  }
-}
-
 TEST_F(FrameVolume, ALightInsideShinesByHarmonics) {
   // Local lights are for surfaces: rays through the mist look up no shadow cube.
   const spec::Light lamp = spec::SphereLight{

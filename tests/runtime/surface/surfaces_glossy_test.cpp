@@ -7,11 +7,10 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/draws/glossy_record.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/surface_shared.h"
 #include "runtime/gpu/program.hpp"
-#include "runtime/surface/surface_program.hpp"
+#include "runtime/surface/surfaces.hpp"
 #include "tests/runtime/evaluate/random_table.hpp"
 #include "tests/runtime/surface/surface_normal.hpp"
 #include "tests/support/differences.hpp"
@@ -277,26 +276,6 @@ TEST_F(GlossySurface, MatchesTheTwinFromTheBackAndInParallelViews) {
   expectTwin(scene, "back");
   scene.eye = {glm::normalize(glm::vec3(0.9f, 0.1f, 0.2f)), 0.0f};
   expectTwin(scene, "parallel and grazing");
-}
-
-TEST_F(GlossySurface, UniformLightShowsTheSameAlbedoAllOver) {
-  lambent::testing::BundleMaker maker(63);
-  Scene scene = makeScene(maker, {.bands = 5, .family = bundle::BrdfFamily::Ggx}, false);
-  scene.table = glossy::testing::evenTable(5, true, 0.7f, 0.1f);
-  scene.record.glossy.roughnesses = scene.table.roughnesses;
-  for (std::size_t i = 0; i < scene.samples.size(); ++i)
-    scene.samples[i] = glm::vec4(i % 25 == 0 ? 3.5449077f : 0.0f);
-  scene.record.surface.emission = glm::vec4(0.0f);
-  // A metal: its albedo is F0 A + B.
-  scene.record.glossy.metallic = 1.0f;
-  for (const glm::vec4& pixel : draw(scene))
-    EXPECT_LT(glm::distance(glm::vec3(pixel), 0.7f * glm::vec3(0.8f, 0.5f, 0.3f) + 0.1f), 1e-5f);
-  // White plastic without losses reflects everything.
-  scene.record.glossy.metallic = 0.0f;
-  scene.record.surface.base_color = glm::vec4(1.0f);
-  scene.record.glossy.dielectric = glm::vec4(0.04f, 0.04f, 0.04f, 1.0f);
-  for (const glm::vec4& pixel : draw(scene))
-    EXPECT_LT(glm::distance(glm::vec3(pixel), glm::vec3(1.0f)), 1e-5f);
 }
 
 }  // namespace lambent::frame

@@ -2,7 +2,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/draws/view.hpp"
+#include "runtime/draws/surface_record.hpp"
 #include "runtime/streaming/residency.hpp"
 #include "tests/support/gpu_context.hpp"
 

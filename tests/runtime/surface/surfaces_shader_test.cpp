@@ -12,7 +12,7 @@
 #include "runtime/bundle/gltf_types.hpp"
 #include "runtime/draws/surface_shared.h"
 #include "runtime/gpu/program.hpp"
-#include "runtime/surface/surface_program.hpp"
+#include "runtime/surface/surfaces.hpp"
 #include "tests/runtime/surface/surface_normal.hpp"
 #include "tests/support/gpu_context.hpp"
 

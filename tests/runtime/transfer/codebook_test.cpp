@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -28,6 +29,35 @@ Codebook smallCodebook() {
   codebook.axes = {{-1.0f, 0.5f}, {0.0f, 0.25f}, {2.0f, 1.0f}};
   for (int i = 0; i < 6 * 4; ++i) codebook.vectors.push_back(static_cast<float>(i) * 0.125f - 1.0f);
   return codebook;
+}
+
+// Expects that a codebook that is cut short or goes on is refused.
+void expectRefusedAtOtherLengths(std::vector<std::byte> bytes, std::uint32_t clusters) {
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_FALSE(decodeCodebook(prefix(bytes, length), smallShape(), clusters, "cell 0")) << length;
+  bytes.push_back(std::byte{0});
+  EXPECT_FALSE(decodeCodebook(bytes, smallShape(), clusters, "cell 0"));
+}
+
+// Returns how many flipped bits of a codebook are refused. Others must decode to finite vectors.
+std::size_t refusedFlips(const std::vector<std::byte>& bytes, std::uint32_t clusters) {
+  std::vector<std::uint32_t> cluster_of(clusters);
+  std::iota(cluster_of.begin(), cluster_of.end(), 0u);
+  std::size_t refused = 0;
+  for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
+    auto flipped = bytes;
+    flipped[bit / 8] ^= static_cast<std::byte>(1u << bit % 8);
+    const auto back = decodeCodebook(flipped, smallShape(), clusters, "cell 0");
+    if (!back) {
+      ++refused;
+      continue;
+    }
+    std::vector<std::vector<std::uint32_t>> planes;
+    for (const std::uint32_t count : planeCounts(*back, cluster_of)) planes.emplace_back(count, 65535u);
+    for (const float value : decodeTransfer(smallShape(), *back, cluster_of, planes))
+      EXPECT_TRUE(std::isfinite(value)) << bit;
+  }
+  return refused;
 }
 
 TEST(TransferShape, CountsBlocksChannelsOutputsAndColumns) {
@@ -69,11 +99,7 @@ TEST(Codebook, RoundsToElevenBits) {
 
 TEST(Codebook, CutShortOrOfAnotherShapeIsRefused) {
   const auto bytes = encodeCodebook(smallCodebook());
-  for (std::size_t length = 0; length < bytes.size(); ++length)
-    EXPECT_FALSE(decodeCodebook(prefix(bytes, length), smallShape(), 3, "cell 0")) << length;
-  auto longer = bytes;
-  longer.push_back(std::byte{0});
-  EXPECT_FALSE(decodeCodebook(longer, smallShape(), 3, "cell 0"));
+  expectRefusedAtOtherLengths(bytes, 3);
   for (const std::uint32_t clusters : {0u, 1u, 2u, 4u, 1000u, 0xffffffffu})
     EXPECT_FALSE(decodeCodebook(bytes, smallShape(), clusters, "cell 0")) << clusters;
   TransferShape wider = smallShape();
@@ -82,14 +108,10 @@ TEST(Codebook, CutShortOrOfAnotherShapeIsRefused) {
   wider.order = 0;
   wider.light_columns = 0;  // vectors of no values
   EXPECT_FALSE(decodeCodebook(bytes, wider, 3, "cell 0"));
-  EXPECT_FALSE(decodeCodebook({}, smallShape(), 3, "cell 0"));
-}
-
-TEST(Codebook, ErrorsNameTheSubject) {
-  const auto back = decodeCodebook({}, smallShape(), 3, "cell 7 of group lamp");
-  ASSERT_FALSE(back);
-  EXPECT_EQ(back.error().subject, "cell 7 of group lamp");
-  EXPECT_FALSE(back.error().hint.empty());
+  const auto nothing = decodeCodebook({}, smallShape(), 3, "cell 7 of group lamp");
+  ASSERT_FALSE(nothing);
+  EXPECT_EQ(nothing.error().subject, "cell 7 of group lamp");
+  EXPECT_FALSE(nothing.error().hint.empty());
 }
 
 TEST(Codebook, NumbersOfAxesThatRiseAreRefused) {
@@ -113,26 +135,8 @@ TEST(Codebook, WeightsAndValuesThatAreNotFiniteAreRefused) {
   }
 }
 
-// Arbitrary bytes must give an error, or a codebook that decodes to finite vectors.
 TEST(Codebook, WithFlippedBitsIsRefusedOrDecodesToFiniteVectors) {
-  const auto bytes = encodeCodebook(smallCodebook());
-  const std::vector<std::uint32_t> cluster_of = {0, 1, 2};
-  std::size_t refused = 0;
-  for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
-    auto flipped = bytes;
-    flipped[bit / 8] ^= static_cast<std::byte>(1u << bit % 8);
-    const auto back = decodeCodebook(flipped, smallShape(), 3, "cell 0");
-    if (!back) {
-      ++refused;
-      continue;
-    }
-    const auto counts = planeCounts(*back, cluster_of);
-    std::vector<std::vector<std::uint32_t>> planes;
-    for (const std::uint32_t count : counts) planes.emplace_back(count, 65535u);
-    for (const float value : decodeTransfer(smallShape(), *back, cluster_of, planes))
-      ASSERT_TRUE(std::isfinite(value)) << bit;
-  }
-  EXPECT_GT(refused, 3u * 16 / 2);  // most flips of a count
+  EXPECT_GT(refusedFlips(encodeCodebook(smallCodebook()), 3), 3u * 16 / 2);  // most flips of a count
 }
 
 // Makes two basis vectors, and clusters of 1 and 0 axes over vectors of 4 values.
@@ -167,32 +171,12 @@ TEST(SharedCodebook, ComesBackExactly) {
   ASSERT_EQ(back->axes.size(), 1u);
   EXPECT_EQ(back->axes[0].offset, -1.0f);
   EXPECT_EQ(back->axes[0].scale, 0.5f);
-  for (std::size_t length = 0; length < bytes.size(); ++length)
-    EXPECT_FALSE(decodeCodebook(prefix(bytes, length), smallShape(), 2, "cell 0")) << length;
-  auto longer = bytes;
-  longer.push_back(std::byte{0});
-  EXPECT_FALSE(decodeCodebook(longer, smallShape(), 2, "cell 0"));
+  expectRefusedAtOtherLengths(bytes, 2);
   EXPECT_FALSE(decodeCodebook(bytes, smallShape(), 3, "cell 0"));
 }
 
 TEST(SharedCodebook, WithFlippedBitsIsRefusedOrDecodesToFiniteVectors) {
-  const auto bytes = encodeCodebook(sharedCodebook());
-  const std::vector<std::uint32_t> cluster_of = {0, 1};
-  std::size_t refused = 0;
-  for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
-    auto flipped = bytes;
-    flipped[bit / 8] ^= static_cast<std::byte>(1u << bit % 8);
-    const auto back = decodeCodebook(flipped, smallShape(), 2, "cell 0");
-    if (!back) {
-      ++refused;
-      continue;
-    }
-    std::vector<std::vector<std::uint32_t>> planes;
-    for (const std::uint32_t count : planeCounts(*back, cluster_of)) planes.emplace_back(count, 65535u);
-    for (const float value : decodeTransfer(smallShape(), *back, cluster_of, planes))
-      ASSERT_TRUE(std::isfinite(value)) << bit;
-  }
-  EXPECT_GT(refused, 100u);
+  EXPECT_GT(refusedFlips(encodeCodebook(sharedCodebook()), 2), 100u);
 }
 
 TEST(SharedCodebook, OfTooManyVectorsIsRefusedBeforeTheyAreMade) {

@@ -73,7 +73,7 @@ struct Stage {
   effects::diffuse::Diffuse diffuse;
   lighting::GroupLights group_lights;
   LocalShadows shadowed_lights;
-  std::optional<Surfaces> surfaces;
+  Surfaces surfaces{/*finest_texels=*/true};
   gpu::Counters raster, shadows;
   std::vector<std::uint32_t> masks = {0xfu};
 
@@ -89,9 +89,6 @@ struct Stage {
     gpu::Counters counters;
     const Result<void> loaded = world.uploadAll(counters);
     EXPECT_TRUE(loaded) << loaded.error().line();
-    Result<Surfaces> made = Surfaces::create(/*finest_texels=*/true);
-    EXPECT_TRUE(made) << made.error().line();
-    if (made) surfaces.emplace(std::move(*made));
   }
   ~Stage() { std::filesystem::remove(path); }
 
@@ -118,7 +115,7 @@ struct Stage {
     EXPECT_TRUE(samples.shade(world.residency(), group_lights, kFull, counters));
     EXPECT_TRUE(diffuse.shade(world.residency(), group_lights, kFull, samples, counters));
     const SurfaceModule* const modules[] = {&shadowed_lights};
-    const Result<void> done = surfaces->prepare(
+    const Result<void> done = surfaces.prepare(
         world, diffuse, view,
         {.options = {}, .modules = plain ? std::span<const SurfaceModule* const>() : modules}, raster);
     EXPECT_TRUE(done) << done.error().line();
@@ -134,8 +131,8 @@ struct Stage {
     glClearNamedFramebufferfv(target.id(), GL_COLOR, 0, kNone);
     glClearNamedFramebufferfv(target.id(), GL_DEPTH, 0, &kFar);
     if (!plain) shadowed_lights.bind(view, {kSize, kSize});
-    surfaces->drawOpaque(world, raster);
-    surfaces->drawBlended(world, raster);
+    surfaces.drawOpaque(world, raster);
+    surfaces.drawBlended(world, raster);
     std::vector<glm::vec4> texels(kSize * kSize), result;
     glGetTextureImage(color.id(), 0, GL_RGBA, GL_FLOAT,
                       static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)), texels.data());

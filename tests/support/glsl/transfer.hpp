@@ -11,28 +11,32 @@ namespace lambent::transfer::glsl {
 using namespace lambent::glsl;
 
 struct ProjectVectors : Invocation {
-#include "as_cpp/project_vectors.comp"
+#include "as_cpp/project_clusters.comp"
 };
 
 struct ProjectVisibility : Invocation {
-#include "as_cpp/project_visibility.comp"
+#define LAMBENT_VISIBILITY
+#include "as_cpp/project_clusters.comp"
+#undef LAMBENT_VISIBILITY
 };
 
 template <uint LAMBENT_OUTPUTS>
 struct ShadeVectors : Invocation {
-#include "as_cpp/shade_vectors.comp"
+#include "as_cpp/shade_samples.comp"
 };
 
 template <uint LAMBENT_OUTPUTS>
 struct BlendVectors : Invocation {
 #define LAMBENT_MANY_LIGHTS
-#include "as_cpp/shade_vectors.comp"
+#include "as_cpp/shade_samples.comp"
 #undef LAMBENT_MANY_LIGHTS
 };
 
 template <uint LAMBENT_BANDS>
 struct ShadeMatrices : Invocation {
-#include "as_cpp/shade_matrices.comp"
+#define LAMBENT_MATRICES
+#include "as_cpp/shade_samples.comp"
+#undef LAMBENT_MATRICES
 };
 
 struct FillSamples : Invocation {

@@ -311,17 +311,6 @@ TEST_F(DiffuseGpu, ShadesUnshadowedUntilTransferIsThere) {
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
 }
 
-TEST_F(DiffuseGpu, UnshadowedModeLeavesTransferAside) {
-  testing::BundleMaker maker(14);
-  DiffuseBench bench(maker, {});
-  bench.uploadAll(7);
-  bench.shade();
-  EXPECT_EQ(bench.shade(evaluate::TransferMode::Unshadowed), 1u);
-  EXPECT_LT(bench.differenceToTwin(), 1e-3);
-  EXPECT_EQ(bench.shade(evaluate::TransferMode::Full), 3u);
-  EXPECT_LT(bench.differenceToTwin(), 1e-3);
-}
-
 TEST_F(DiffuseGpu, WhatComesInPiecesIsShadedAsWhatComesWhole) {
   testing::BundleMaker maker(16);
   DiffuseBench bench(maker, {.order = 8,

@@ -259,7 +259,7 @@ TEST(DiffuseKernels, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfThe
   kernel.lights = light;
   kernel.page = words;
   const auto project = [&](const transfer::TransferRecord& record) {
-    return kernel.projectOnLight(record, 0, 0, record.columns, 0);
+    return kernel.projected(record, 0, 0, 0);
   };
   transfer::TransferRecord record{};
   record.columns = record.outputs = record.order = 1;

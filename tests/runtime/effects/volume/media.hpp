@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runtime/effects/volume/march.hpp"
+#include "runtime/effects/volume/volume.hpp"
 #include "runtime/streaming/loader.hpp"
 #include "tests/support/built_volume.hpp"
 #include "tests/support/glsl/glsl.hpp"

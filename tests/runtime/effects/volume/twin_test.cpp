@@ -134,28 +134,6 @@ TEST(VolumeMarch, AStepIsExactWhereDensityIsConstantAndLightLinear) {
   }
 }
 
-TEST(VolumeMarch, ABallTransmitsTheExponentialOfItsChord) {
-  BuiltVolume built;
-  built.size = glm::uvec3(96);
-  built.group_from_grid =
-      glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.2f)), glm::vec3(2.4f / 96.0f));
-  constexpr float kExtinction = 1.5f;
-  built.density_max = kExtinction;
-  // The density is averaged over each voxel, so the edge falls off within a voxel.
-  built.density = [&](const glm::vec3& grid) {
-    const glm::vec3 place(built.group_from_grid * glm::vec4(grid, 1.0f));
-    return kExtinction * std::clamp(0.5f + (1.0f - glm::length(place)) * 40.0f, 0.0f, 1.0f);
-  };
-  const Medium medium = mediumOf(built, whiteLight);
-  for (const float offset : {0.0f, 0.3f, 0.6f, 0.8f}) {
-    const glm::vec3 direction = glm::normalize(glm::vec3(0.3f, -0.2f, -1.0f));
-    const glm::vec3 across = glm::normalize(glm::cross(direction, glm::vec3(0, 1, 0)));
-    const glm::vec4 found = march(medium, {offset * across - 4.0f * direction, direction});
-    const float expected = std::exp(-2.0f * kExtinction * std::sqrt(1.0f - offset * offset));
-    EXPECT_NEAR(std::exp(-found.a), expected, 0.01f * expected) << offset;
-  }
-}
-
 TEST(VolumeMarch, HalfTheStepChangesThePictureByLessThanHalfAPercent) {
   for (const float density_max : {2.0f, 20.0f, 200.0f}) {
     BuiltVolume built = clumped(5, glm::uvec3(48), density_max);
