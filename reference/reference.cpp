@@ -22,7 +22,7 @@
 #include "runtime/base/process.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/container.hpp"
-#include "runtime/bundle/keyframes.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::baker::reference {

@@ -27,18 +27,10 @@ struct AccuracyArguments {
   SayOptions say;
 };
 
-// Lists the names in lines as long as those of the help.
 std::string knobNames() {
-  constexpr std::size_t kLine = 66;
-  std::string all, line;
-  for (const Knob& knob : knobs()) {
-    if (line.size() + knob.name.size() > kLine) {
-      all += line + "\n";
-      line.clear();
-    }
-    line += fmt::format("{}{}", knob.name, &knob == &knobs().back() ? "" : ", ");
-  }
-  return all + line;
+  std::vector<std::string_view> names;
+  for (const Knob& knob : knobs()) names.push_back(knob.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 Result<void> checkWords(const SweepRequest& request) {
@@ -92,12 +84,8 @@ class Lines {
 };
 
 int runAccuracy(AccuracyArguments a) {
-  constexpr int kWrongUsage = 2;
   a.request.quality = a.quality.quality;
-  if (const auto checked = checkWords(a.request); !checked) {
-    reportError(checked.error());
-    return kWrongUsage;
-  }
+  if (const auto checked = checkWords(a.request); !checked) return wrongUsage(checked.error());
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
   Lines lines;
@@ -134,42 +122,29 @@ void addAccuracyCommand(CLI::App& app, Command& run) {
       "accuracy",
       "Measure what each knob costs and how exact it makes the picture, and write a page about it");
   command->add_option("SCENE", request.scene, "The scene, .gltf or .glb; default: a sample scene");
-  command
-      ->add_option("-o,--output", request.output,
-                   "Folder for sweep.json and index.html, which draws it. What it\nholds of an earlier run "
-                   "is not measured again")
-      ->required()
-      ->type_name("DIR");
+  command_line::addValue(*command, "-o,--output", request.output, "DIR",
+                         "Folder for sweep.json and index.html, which draws it. What it holds of an earlier "
+                         "run is not measured again")
+      ->required();
   // This is an option of its own, since it also says how thoroughly to measure.
-  command
-      ->add_option_function<std::string>(
-          "--quality",
-          [a](const std::string& word) {
-            if (auto put = putOption(a->quality, "quality", word); !put)
-              throw CLI::ValidationError("--quality", put.error().problem);
-          },
-          "The base from which knobs are turned, the number of their values, and the\nsize and paths of "
-          "references; "
-          "default draft")
-      ->type_name("draft|standard|high");
-  command
-      ->add_option(
-          "--knob", request.knobs,
-          "Turn only this knob; =V1,V2 turns it to these values. Several are\ngiven one by one. Knobs: " +
-              ("\n" + knobNames()))
-      ->type_name("KNOB[=VALUES]")
-      ->take_all()
-      ->expected(1);
-  command->add_option("--light", request.lights, "Light, as lambent reference takes it; several add up")
-      ->type_name("LIGHT")
-      ->take_all()
-      ->expected(1);
-  command->add_option("--camera", request.camera, "Camera, as lambent reference takes it")->type_name("CAM");
-  command->add_option("--size", request.size, "Pictures in pixels; default by --quality, 320x180 for draft")
-      ->type_name("WxH");
-  command->add_option("--spp", request.spp, "Samples a pixel of each of two references; default by --quality")
-      ->check(CLI::Range(2u, 1u << 20).description(""))
-      ->type_name("N");
+  command_line::addWord(
+      *command, "--quality", "draft|standard|high",
+      "The base from which knobs are turned, the number of their values, and the size and paths of "
+      "references; default draft",
+      [a](const std::string& word) { return putOption(a->quality, "quality", word); });
+  command_line::addWords(*command, "--knob", request.knobs, "KNOB[=VALUES]",
+                         "Turn only this knob; =V1,V2 turns it to these values. Several are given one by "
+                         "one. Knobs: " +
+                             knobNames());
+  command_line::addWords(*command, "--light", request.lights, "LIGHT",
+                         "Light, as lambent reference takes it; several add up");
+  command_line::addValue(*command, "--camera", request.camera, "CAM",
+                         "Camera, as lambent reference takes it");
+  command_line::addValue(*command, "--size", request.size, "WxH",
+                         "Pictures in pixels; default by --quality, 320x180 for draft");
+  command_line::addValue(*command, "--spp", request.spp, "N",
+                         "Samples a pixel of each of two references; default by --quality")
+      ->check(CLI::Range(2u, 1u << 20).description(""));
   command->add_flag("--allow-outside", request.allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--force", request.force, "Measure all anew");

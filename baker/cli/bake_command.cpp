@@ -28,30 +28,18 @@ namespace lambent::baker {
 namespace {
 
 CLI::Option* add(CLI::App& command, std::string_view name, const OptionRow& row, BakeOptions& options) {
-  CLI::Option* option = command.add_option_function<std::string>(
-      "--" + std::string(name), [&options, &row](const std::string& word) { row.put(options, word); },
-      row.help);
-  option->type_name(std::string(row.kind))->group(std::string(row.group));
-  option->check(CLI::Validator(
-      [&row](const std::string& word) {
-        BakeOptions tried;
-        const auto put = row.put(tried, word);
-        return put ? std::string() : put.error().problem + "; " + put.error().hint;
-      },
-      ""));
-  return option;
-}
-
-void add(CLI::App& command, const OptionRow& row, BakeOptions& options) {
-  CLI::Option* option = add(command, row.name, row, options);
-  if (row.shows_default) option->default_str(row.word(BakeOptions{}));
-  if (!row.former.empty()) add(command, row.former, row, options)->group("");  // hidden in the help
+  return command_line::addWord(command, "--" + std::string(name), std::string(row.kind), row.help,
+                               [&options, &row](const std::string& word) { return row.put(options, word); });
 }
 
 }  // namespace
 
 void addBakeOptions(CLI::App& command, BakeOptions& options) {
-  for (const OptionRow& row : optionRows()) add(command, row, options);
+  for (const OptionRow& row : optionRows()) {
+    CLI::Option* option = add(command, row.name, row, options)->group(std::string(row.group));
+    if (row.shows_default) option->default_str(row.word(BakeOptions{}));
+    if (!row.former.empty()) add(command, row.former, row, options)->group("");  // hidden in the help
+  }
 }
 
 namespace {
@@ -155,12 +143,6 @@ int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
   return failsStrictly(a, *outcome) ? 1 : 0;
 }
 
-// Reports an error in the command line and returns the exit code 2.
-int wrongUsage(const Error& error) {
-  reportError(error);
-  return 2;
-}
-
 // Bakes everything that was cut short, with the options that it had.
 int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
   if (!cache) return reportError({"--resume", "there is no cache that would tell", "leave out --cache off"});
@@ -216,37 +198,27 @@ void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
   CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene, or a folder of them, into bundles");
   command->add_option("SCENE", a->scene, "The scene, .gltf or .glb, or a folder: all scenes in it and below");
-  command
-      ->add_option("-o,--output", a->output,
-                   "The bundle to write, OUT.lmb.glb, or of a folder of scenes one for bundles; default: "
-                   "beside the scene, with its name")
-      ->type_name("PATH");
-  command
-      ->add_option("--watch", a->watch,
-                   "Bake all scenes in DIR and below, then again what changes, until interrupted")
-      ->type_name("DIR");
+  command_line::addValue(*command, "-o,--output", a->output, "PATH",
+                         "The bundle to write, OUT.lmb.glb, or of a folder of scenes one for bundles; "
+                         "default: beside the scene, with its name");
+  command_line::addValue(*command, "--watch", a->watch, "DIR",
+                         "Bake all scenes in DIR and below, then again what changes, until interrupted");
   command->add_flag("--resume", a->resume,
                     "Without SCENE: finish all bakes that were cut short. With it there is no need: a bake "
                     "always goes on from what the cache holds of it");
   addBakeOptions(*command, a->options);
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
-  command
-      ->add_option(
-          "--cache", a->cache,
-          "Folder where results are kept, so that the next bake does only what changed; off: none; default "
-          "$LAMBENT_CACHE, else $XDG_CACHE_HOME/lambent, else ~/.cache/lambent")
-      ->type_name("DIR|off");
-  command
-      ->add_option("--cache-size", a->cache_bytes,
-                   "Bytes that the cache may hold, like 8GB (default); what was not used longest goes first")
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false))
-      ->type_name("BYTES");
-  command
-      ->add_option("--checkpoint", a->checkpoint_s,
-                   "How many seconds of work a bake that is killed may lose, about; default 8")
-      ->check(CLI::Range(0.05, 600.0))
-      ->type_name("S");
+  command_line::addValue(*command, "--cache", a->cache, "DIR|off",
+                         "Folder where results are kept, so that the next bake does only what changed; off: "
+                         "none; default $LAMBENT_CACHE, else $XDG_CACHE_HOME/lambent, else "
+                         "~/.cache/lambent");
+  command_line::addBytes(
+      *command, "--cache-size", a->cache_bytes,
+      "Bytes that the cache may hold, like 8GB (default); what was not used longest goes first");
+  command_line::addValue(*command, "--checkpoint", a->checkpoint_s, "S",
+                         "How many seconds of work a bake that is killed may lose, about; default 8")
+      ->check(CLI::Range(0.05, 600.0));
   command->add_flag(
       "--strict", a->strict,
       "Fail, with exit code 1, where the error of pictures misses its bound; the bundle is written");

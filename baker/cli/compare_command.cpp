@@ -82,12 +82,8 @@ Result<spec::RgbaImage> readShrunk(const std::filesystem::path& file, std::uint3
 }
 
 int runCompare(const CompareArguments& a) {
-  constexpr int kWrongUsage = 2;
   const auto map = parseHeatMap(a.heat_map);
-  if (!map) {
-    reportError(map.error());
-    return kWrongUsage;
-  }
+  if (!map) return wrongUsage(map.error());
   const auto picture = readShrunk(a.picture, a.shrink);
   if (!picture) return reportError(picture.error());
   const auto reference = readShrunk(a.reference, a.shrink);
@@ -115,32 +111,23 @@ void addCompareCommand(CLI::App& app, Command& run) {
   CLI::App* command = app.add_subcommand("compare", "Error figures of a linear picture against a reference");
   command->add_option("PICTURE", a->picture, "The picture, .exr")->required();
   command->add_option("REFERENCE", a->reference, "What it should be, .exr of the same size")->required();
-  command
-      ->add_option("--reference2", a->reference2,
-                   "A second, independent reference: cancels the noise of both")
-      ->type_name("EXR");
-  command
-      ->add_option("--shrink", a->shrink,
-                   "Compare means of N x N pixels, as a screen shows a picture of\nso many samples a pixel")
+  command_line::addValue(*command, "--reference2", a->reference2, "EXR",
+                         "A second, independent reference: cancels the noise of both");
+  command_line::addValue(*command, "--shrink", a->shrink, "N",
+                         "Compare means of N x N pixels, as a screen shows a picture of so many samples a "
+                         "pixel")
       ->capture_default_str()
-      ->check(CLI::Range(1, 64))
-      ->type_name("N");
-  command
-      ->add_option("--heat", a->heat,
-                   "Write where they differ as colors. Gray: neither shows the\nscene, violet: one of them")
-      ->type_name("PNG");
-  command
-      ->add_option(
-          "--heat-map", a->heat_map,
-          "signed: luminance relative to the reference's, blue too dark,\nred too bright. magnitude: of "
-          "the difference, relative to the\nreference's RMS over the picture")
-      ->capture_default_str()
-      ->type_name("MAP");
-  command
-      ->add_option("--heat-range", a->heat_range,
-                   "Where the colors end, as a share (0.1: 10 %; default: by the\npicture)")
-      ->check(CLI::PositiveNumber)
-      ->type_name("SHARE");
+      ->check(CLI::Range(1, 64));
+  command_line::addValue(*command, "--heat", a->heat, "PNG",
+                         "Write where they differ as colors. Gray: neither shows the scene, violet: one of "
+                         "them");
+  command_line::addValue(*command, "--heat-map", a->heat_map, "MAP",
+                         "signed: luminance relative to the reference's, blue too dark, red too bright. "
+                         "magnitude: of the difference, relative to the reference's RMS over the picture")
+      ->capture_default_str();
+  command_line::addValue(*command, "--heat-range", a->heat_range, "SHARE",
+                         "Where the colors end, as a share (0.1: 10 %; default: by the picture)")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--json", a->json, "Print figures as JSON");
   command_line::group(*command, "Heat map", {"--heat", "--heat-map", "--heat-range"});
   command_line::addExamples(*command,

@@ -67,6 +67,11 @@ int reportError(const Error& error) {
   return 1;
 }
 
+int wrongUsage(const Error& error) {
+  reportError(error);
+  return 2;
+}
+
 void reportNotice(const std::filesystem::path& subject, const std::string& sentence) {
   fmt::print(stderr, "lambent: {}\n", Error{subject.string(), sentence, {}}.line());
 }

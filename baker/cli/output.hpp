@@ -24,8 +24,9 @@ std::string countText(double count);
 std::string bytesText(double bytes);
 std::string durationText(double seconds);
 
-// Prints "lambent: SUBJECT: PROBLEM; MEND" to stderr and returns the exit code 1.
+// Print "lambent: SUBJECT: PROBLEM; MEND" to stderr and return the exit code: 1, or 2 for wrong usage.
 int reportError(const Error& error);
+int wrongUsage(const Error& error);
 
 // Prints "lambent: SUBJECT: SENTENCE" to stderr, for what a user should know though it is no error.
 void reportNotice(const std::filesystem::path& subject, const std::string& sentence);

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/bundle/keyframes.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 
 namespace lambent::baker {
 

@@ -16,7 +16,6 @@
 #include "runtime/lighting/light_pieces.hpp"
 #include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
-#include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "runtime/scene/lights.hpp"
-#include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {

@@ -4,13 +4,15 @@
 #include <array>
 #include <optional>
 
-#include "runtime/bundle/gltf_parts.hpp"
+#include "runtime/bundle/description_json.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::bundle {
 
 namespace {
 
+constexpr const char* kTextureTransform = "KHR_texture_transform";
+constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
 constexpr std::array kAlphaModes = {"OPAQUE", "MASK", "BLEND"};
 
 Json textureJson(const gltf::TextureRef& ref, std::set<std::string>& used) {
@@ -61,9 +63,7 @@ void readValue(const Field& field, std::size_t texture_count, gltf::TextureRef& 
   value = readTexture(field, texture_count);
 }
 void readValue(const Field& field, std::size_t, gltf::AlphaMode& value) {
-  const auto found = std::find(kAlphaModes.begin(), kAlphaModes.end(), field.text());
-  if (found == kAlphaModes.end()) field.fault("is not OPAQUE, MASK or BLEND");
-  value = static_cast<gltf::AlphaMode>(found - kAlphaModes.begin());
+  value = field.word<gltf::AlphaMode>(kAlphaModes);
 }
 void readValue(const Field& field, std::size_t, std::int32_t& value) {
   constexpr std::uint64_t kMostBrdfs = 1u << 16;  // transfer_json.cpp checks that the table exists

@@ -15,7 +15,7 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/sh/image_layout.hpp"
-#include "runtime/spec/environment_map.hpp"
+#include "runtime/spec/distant_lights.hpp"
 
 namespace lambent::lighting {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "runtime/bundle/keyframes.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 #include "runtime/scene/components.hpp"
 
 namespace lambent::scene {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "runtime/bundle/volume_grid.hpp"
+#include "runtime/bundle/description.hpp"
 #include "runtime/streaming/images.hpp"
 #include "runtime/streaming/sizes.hpp"
 

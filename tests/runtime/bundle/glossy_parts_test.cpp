@@ -17,13 +17,7 @@ Sample glossySample() {
   d.roots = {0};
   d.nodes[0].light = 0;
   d.lights.resize(1);
-  const auto transfer = [&](const transfer::TransferShape& shape) {
-    CellTransfer made;
-    made.shape = shape;
-    const transfer::Codebook book{{0}, {}, std::vector<float>(shape.size(), 0.25f)};
-    made.codebook = s.add(PayloadType::Codebook, transfer::encodeCodebook(book));
-    return made;
-  };
+  const auto transfer = [&](const transfer::TransferShape& shape) { return s.transfer(shape); };
   Group group;
   group.sample_count = 5;
   group.lights = {{GroupLight::Kind::Node, 0, glm::vec3(1.0f)}};
@@ -46,8 +40,7 @@ using GlossyParts = BundleFile;
 
 TEST_F(GlossyParts, ComeBackAsTheyWereWritten) {
   const Sample sample = glossySample();
-  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-  const auto reader = Reader::open(path_);
+  const auto reader = through(sample);
   ASSERT_TRUE(reader) << reader.error().line();
   EXPECT_TRUE(reader->checkAll());
   const Description& d = reader->description();
@@ -72,10 +65,7 @@ TEST_F(GlossyParts, ThatContradictThemselvesAreRefusedByName) {
   const auto refused = [&](auto spoil, const char* place) {
     Sample sample = glossySample();
     spoil(sample.description);
-    ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-    const auto reader = Reader::open(path_);
-    ASSERT_FALSE(reader) << place;
-    EXPECT_NE(reader.error().problem.find(place), std::string::npos) << reader.error().line();
+    BundleFile::refused(sample, place);
   };
   const auto glossy = [](Description& d) -> std::vector<CellTransfer>& {
     return d.groups[0].cells[1].transfers;
@@ -105,8 +95,7 @@ TEST_F(GlossyParts, TablesOfOtherBandsThanTheTransferAreRefused) {
   const Blob bytes = encodeBrdfTable(table);
   sample.blobs[sample.description.payloads[payload].view] = bytes;
   sample.description.payloads[payload].raw_length = bytes.size();
-  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-  const auto reader = Reader::open(path_);
+  const auto reader = through(sample);
   ASSERT_TRUE(reader) << reader.error().line();
   EXPECT_TRUE(reader->readBrdfTable(0));
   const auto found = reader->readBrdfTable(1);

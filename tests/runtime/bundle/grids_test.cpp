@@ -2,7 +2,7 @@
 // contradictions are refused by name.
 #include <gtest/gtest.h>
 
-#include "runtime/bundle/volume_grid.hpp"
+#include "runtime/bundle/description.hpp"
 #include "tests/runtime/bundle/bundle_file.hpp"
 
 namespace lambent::bundle {
@@ -18,13 +18,7 @@ Sample gridSample() {
   d.generator = {"lambent", "0.5.0", "x86-64-v3", {}};
   d.nodes.resize(2);
   d.roots = {0, 1};
-  const auto transfer = [&](const transfer::TransferShape& shape) {
-    CellTransfer made;
-    made.shape = shape;
-    const transfer::Codebook book{{0}, {}, std::vector<float>(shape.size(), 0.25f)};
-    made.codebook = s.add(PayloadType::Codebook, transfer::encodeCodebook(book));
-    return made;
-  };
+  const auto transfer = [&](const transfer::TransferShape& shape) { return s.transfer(shape); };
   Group body;
   body.name = "body";
   body.sample_count = 10;
@@ -65,8 +59,7 @@ using Grids = BundleFile;
 
 TEST_F(Grids, ComeBackAsTheyWereWritten) {
   const Sample sample = gridSample();
-  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-  const auto reader = Reader::open(path_);
+  const auto reader = through(sample);
   ASSERT_TRUE(reader) << reader.error().line();
   EXPECT_TRUE(reader->checkAll());
   const Group& body = reader->description().groups[0];
@@ -97,10 +90,7 @@ TEST_F(Grids, ThatContradictThemselvesAreRefusedByName) {
   const auto refused = [&](auto spoil, const char* place) {
     Sample sample = gridSample();
     spoil(sample.description.groups[0], sample.description.groups[1], *sample.description.groups[1].volume);
-    ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-    const auto reader = Reader::open(path_);
-    ASSERT_FALSE(reader) << place;
-    EXPECT_NE(reader.error().problem.find(place), std::string::npos) << reader.error().line();
+    BundleFile::refused(sample, place);
   };
   refused([](Group&, Group&, VolumeGrid& v) { v.size.x = 5; }, "volume.density");
   refused([](Group&, Group&, VolumeGrid& v) { v.size.x = 0; }, "volume.size");

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/bundle/gltf_parts.hpp"
+#include "runtime/bundle/description_json.hpp"
 #include "tests/support/material_values.hpp"
 
 namespace lambent::bundle {

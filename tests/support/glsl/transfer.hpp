@@ -26,7 +26,6 @@ struct ShadeVectors : Invocation {
 template <uint LAMBENT_OUTPUTS>
 struct BlendVectors : Invocation {
 #define LAMBENT_MANY_LIGHTS
-#include "as_cpp/shade_vectors.comp"
 #undef LAMBENT_MANY_LIGHTS
 };
 
