@@ -9,7 +9,6 @@
 
 #include "baker/bake/option_rows.hpp"
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
 #include "baker/sweep/report.hpp"
 #include "runtime/command_line/help.hpp"

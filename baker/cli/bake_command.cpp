@@ -1,23 +1,33 @@
-// Implements lambent bake SCENE [-o OUT.lmb.glb], --watch DIR, --resume. SCENE may be a folder.
+// Implements lambent bake SCENE [-o OUT.lmb.glb], --resume. SCENE may be a folder.
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "baker/bake/bake.hpp"
 #include "baker/bake/option_rows.hpp"
+#include "baker/cache/cache.hpp"
 #include "baker/cli/bake_report.hpp"
-#include "baker/cli/bake_scene.hpp"
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
+#include "baker/import/gltf.hpp"
+#include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/source_watch.hpp"
+#include "baker/pipeline/whole_progress.hpp"
 #include "baker/plan/counted.hpp"
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/base/result.hpp"
 #include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
@@ -45,6 +55,132 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct BakeArguments {
+  std::filesystem::path scene, output;
+  bool resume = false;
+  double checkpoint_s = 0.0;  // 0 keeps the cache's own interval
+  BakeOptions options;
+  bool force = false, json = false, allow_outside = false;
+  bool strict = false;  // a bake that misses a bound fails
+  std::string cache;    // a folder, "off", or empty for the default one
+  std::uint64_t cache_bytes = kCacheBytes;
+  SayOptions say;
+};
+
+using BakeOutcome = std::optional<BakeReport>;
+
+// Opens the cache that the arguments name, if any. A bake without a cache is only slower, so a problem with
+// the folder is reported and no error.
+std::optional<Cache> bakeCache(const BakeArguments& a) {
+  if (a.cache == "off") return std::nullopt;
+  const std::filesystem::path folder =
+      a.cache.empty() ? Cache::defaultFolder() : std::filesystem::path(a.cache);
+  if (folder.empty()) return std::nullopt;
+  auto cache = Cache::open(folder, a.cache_bytes);
+  if (!cache) {
+    fmt::print(stderr, "lambent: {}; going on without it\n", cache.error().line());
+    return std::nullopt;
+  }
+  if (a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
+  return std::move(*cache);
+}
+
+// The journal of this program lies in the cache's folder.
+Journal bakeJournal(const std::optional<Cache>& cache) {
+  return Journal(cache ? cache->folder() / "journal" : std::filesystem::path());
+}
+
+// Returns the report, or nothing if the bundle was up to date. Bakes are recorded in the journal, progress is
+// shown, and a bundle that is up to date is left alone.
+Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cache,
+                              const std::stop_token& stop) {
+  if (const auto readable = checkRegularFile(a.scene, "a scene, .gltf or .glb"); !readable)
+    return failAgain(readable.error());
+  if (const auto checked = checkRequest(a.options, a.output); !checked) return failAgain(checked.error());
+  Journal::Entry record = bakeJournal(cache).begin({.scene = a.scene,
+                                                    .output = a.output,
+                                                    .options = a.options,
+                                                    .import = {.allow_outside = a.allow_outside}});
+  if (record.error())
+    fmt::print(stderr, "lambent: {}; --resume will not know of this bake\n", record.error()->line());
+  Progress progress;
+  progress.begin("import");
+  auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
+  if (!scene) {
+    record.done();
+    return failAgain(scene.error());
+  }
+  for (const std::string& warning : scene->warnings) reportNotice(a.scene, warning);
+  if (!a.force && isUpToDate(*scene, a.options, a.output)) {
+    record.done();
+    return BakeOutcome{};
+  }
+  PartSeconds expected;
+  if (const auto plan = planFor(*scene, a.options)) {
+    BakeGuess guess = guessBake(*scene, *plan, a.options);
+    if (const auto notice = longBakeNotice(guess.processor_seconds); notice && !a.say.quiet)
+      reportNotice(a.scene, *notice);
+    expected = std::move(guess.seconds);
+  }
+  if (cache) cache->setReading(!a.force);
+  const Key progress_key = progressKey(*scene, a.options);
+  Result<BakeReport> report = [&] {
+    const WholeProgress whole(std::move(expected), cache ? findProgress(progress_key, *cache) : 0.0);
+    std::optional<ProgressWatch> keeper;
+    if (cache) keeper.emplace(keepProgress(progress, whole, *cache, progress_key));
+    const ProgressLine line(progress, whole, a.say, a.scene);
+    return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
+  }();
+  if (report && cache) cache->drop(progress_key);
+  if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
+  if (!report) {
+    if (stop.stop_requested())
+      report.error().hint = cache ? "bake it again, or give --resume, and it goes on from where it was"
+                                  : "with a cache, the next bake would go on from where it was";
+    return failAgain(report.error());
+  }
+  for (const std::string& notice : report->notices) reportNotice(a.scene, notice);
+  return std::move(*report);
+}
+
+// Returns whether the bake missed a bound and is to fail for it.
+bool failsStrictly(const BakeArguments& a, const BakeOutcome& outcome) {
+  return a.strict && outcome && missesBound({a.output, a.options, *outcome});
+}
+
+nlohmann::json outcomeJson(const BakeArguments& a, const BakeOutcome& outcome) {
+  if (!outcome) return {{"output", a.output.string()}, {"upToDate", true}};
+  return reportJson({a.output, a.options, *outcome});
+}
+
+// Says where each scene of a folder is baked to: beside the scene, or under a folder for bundles that mirrors
+// the scenes' own.
+class FolderOutputs {
+ public:
+  // If `output` is empty, bundles lie beside their scenes.
+  FolderOutputs(fs::path folder, fs::path output) : folder_(std::move(folder)), output_(std::move(output)) {}
+
+  // Returns the bundle, whose folder it makes. Fails if another scene, as a.gltf beside a.glb, has it.
+  Result<fs::path> outputOf(const fs::path& scene) {
+    fs::path output = bundleBeside(scene);
+    if (!output_.empty())
+      output =
+          (output_ / scene.parent_path().lexically_relative(folder_)).lexically_normal() / output.filename();
+    const auto [entry, added] = scene_of_.try_emplace(output, scene);
+    if (!added && entry->second != scene)
+      return fail(scene.string(),
+                  fmt::format("would be baked to {}, where {} is", output.string(), entry->second.string()),
+                  "rename one of them");
+    std::error_code ignored;  // the bake reports that it cannot write
+    fs::create_directories(output.parent_path(), ignored);
+    return output;
+  }
+
+ private:
+  fs::path folder_, output_;
+  std::map<fs::path, fs::path> scene_of_;  // by output
+};
 
 double secondsSince(std::chrono::steady_clock::time_point begun) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -101,8 +237,8 @@ class FolderReport {
   nlohmann::json json_ = nlohmann::json::array();
 };
 
-}  // namespace
-
+// Bakes every scene of the folder `a.scene` once. `a.output` is a folder for bundles, or empty: beside the
+// scenes. Returns the exit code: 1 if a scene has no bundle that shows it as it is.
 int bakeFolder(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
   const std::vector<fs::path> scenes = scenesIn(a.scene);
   if (scenes.empty())
@@ -127,8 +263,6 @@ int bakeFolder(const BakeArguments& a, std::optional<Cache>& cache, const std::s
   }
   return report.end(scenes.size());
 }
-
-namespace {
 
 int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
   if (!outcome) return reportError(outcome.error());
@@ -170,12 +304,6 @@ int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::
 }
 
 int runBake(BakeArguments a) {
-  if (!a.watch.empty()) {
-    if (!a.scene.empty() || a.resume || a.force)
-      return wrongUsage({"--watch", "is given with a scene, --resume or --force", "give it a folder alone"});
-    std::optional<Cache> cache = bakeCache(a);
-    return watchFolder(a, cache ? &*cache : nullptr);
-  }
   if (a.scene.empty() && !a.resume)
     return wrongUsage({"SCENE", "is missing", "name a scene or a folder of scenes"});
   if (a.scene.empty() && !a.output.empty())
@@ -201,8 +329,6 @@ void addBakeCommand(CLI::App& app, Command& run) {
   command_line::addValue(*command, "-o,--output", a->output, "PATH",
                          "The bundle to write, OUT.lmb.glb, or of a folder of scenes one for bundles; "
                          "default: beside the scene, with its name");
-  command_line::addValue(*command, "--watch", a->watch, "DIR",
-                         "Bake all scenes in DIR and below, then again what changes, until interrupted");
   command->add_flag("--resume", a->resume,
                     "Without SCENE: finish all bakes that were cut short. With it there is no need: a bake "
                     "always goes on from what the cache holds of it");
@@ -227,8 +353,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
   command->add_flag("--json", a->json, "Print figures as JSON; of a folder an array of them");
   addQuiet(*command, a->say);
   addProgress(*command, a->say);
-  command_line::group(*command, "Files and runs",
-                      {"--output", "--watch", "--resume", "--force", "--allow-outside"});
+  command_line::group(*command, "Files and runs", {"--output", "--resume", "--force", "--allow-outside"});
   command_line::group(*command, "Accuracy", {"--strict"});
   command_line::group(*command, "Machine", {"--cache", "--cache-size", "--checkpoint"});
   command_line::group(*command, "Output", {"--json", "--quiet", "--progress"});
@@ -236,8 +361,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
       *command, {{"lambent bake scene.gltf", "bakes the scene to scene.lmb.glb beside it"},
                  {"lambent bake scene.gltf -o out.lmb.glb --quality draft", "takes the fewest rays"},
                  {"lambent bake scene.gltf --error 2%", "takes as many rays as 2 % of error need"},
-                 {"lambent bake scenes -o bundles", "bakes all scenes of a folder, and fails if one fails"},
-                 {"lambent bake --watch scenes -o bundles", "goes on with what changes there"}});
+                 {"lambent bake scenes -o bundles", "bakes all scenes of a folder, and fails if one fails"}});
   command->callback([a, &run] { run = [a] { return runBake(*a); }; });
 }
 

@@ -10,7 +10,6 @@
 #include "baker/accuracy/compare.hpp"
 #include "baker/accuracy/difference.hpp"
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
 #include "runtime/command_line/help.hpp"
 

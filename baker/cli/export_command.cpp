@@ -14,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "lambent/bundle.hpp"
 #include "lambent/sh.hpp"
 #include "runtime/base/atomic_file.hpp"

@@ -11,7 +11,6 @@
 
 #include "baker/cli/bake_report.hpp"
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/command_line/help.hpp"

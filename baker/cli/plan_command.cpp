@@ -14,7 +14,6 @@
 #include "baker/bake/bake.hpp"
 #include "baker/bake/option_rows.hpp"
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/decisions/decisions.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/import/scene.hpp"

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/plan/counted.hpp"
 #include "reference/reference.hpp"

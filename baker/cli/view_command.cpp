@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/web_view/file_server.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/lower_case.hpp"

@@ -1,4 +1,4 @@
-#include "baker/cli/output.hpp"
+#include "baker/cli/commands.hpp"
 
 #include <array>
 #include <chrono>
