@@ -117,12 +117,10 @@ class Field {
       fault("is not 16 hexadecimal digits");
     return std::stoull(digits, nullptr, 16);
   }
-  std::map<std::string, std::string> settings(const char* key) const {
-    const Field table = (*this)[key];
-    if (!table.value_->is_object()) table.fault("is not an object");
+  std::map<std::string, std::string> settings() const {
+    if (!value_->is_object()) fault("is not an object");
     std::map<std::string, std::string> out;
-    for (const auto& [name, value] : table.value_->items())
-      out[name] = Field(value, table.under(name.c_str())).text();
+    for (const auto& [name, value] : value_->items()) out[name] = Field(value, under(name.c_str())).text();
     return out;
   }
   template <typename Vec>
@@ -154,6 +152,51 @@ inline Json hexJson(std::uint64_t value) {
   return fmt::format("{:016x}", value);
 }
 
+// Values of each type as JSON, in both directions.
+template <class T>
+Json valueJson(const T& value) {
+  return value;
+}
+template <glm::length_t N, class T>
+Json valueJson(const glm::vec<N, T>& value) {
+  return vectorJson(value);
+}
+inline Json valueJson(const std::vector<glm::vec3>& values) {
+  Json list = Json::array();
+  for (const glm::vec3& value : values) list.push_back(vectorJson(value));
+  return list;
+}
+inline Json valueJson(const glm::mat4& value) {
+  Json list = Json::array();
+  for (int i = 0; i < 16; ++i) list.push_back(glm::value_ptr(value)[i]);
+  return list;
+}
+inline void readValue(const Field& field, std::string& value) {
+  value = field.text();
+}
+inline void readValue(const Field& field, float& value) {
+  value = field.number();
+}
+inline void readValue(const Field& field, bool& value) {
+  value = field.flag();
+}
+template <glm::length_t N, class T>
+void readValue(const Field& field, glm::vec<N, T>& value) {
+  value = field.vector<glm::vec<N, T>>();
+}
+inline void readValue(const Field& field, std::vector<glm::vec3>& values) {
+  values.clear();
+  for (const Field& entry : field.items()) values.push_back(entry.vector<glm::vec3>());
+}
+inline void readValue(const Field& field, glm::mat4& value) {
+  const auto entries = field.items();
+  if (entries.size() != 16) field.fault("is not 16 numbers");
+  for (std::size_t i = 0; i < 16; ++i) glm::value_ptr(value)[i] = entries[i].number();
+}
+inline void readValue(const Field& field, std::map<std::string, std::string>& values) {
+  values = field.settings();
+}
+
 // Fills members from the fields of an object, and checks them.
 class FieldReader {
  public:
@@ -168,23 +211,9 @@ class FieldReader {
     if (!holds) field_[key].fault(why);
   }
 
-  void operator()(const char* key, std::string& value) const { value = field_[key].text(); }
-  void operator()(const char* key, float& value) const { value = field_[key].number(); }
-  void operator()(const char* key, std::map<std::string, std::string>& value) const {
-    value = field_.settings(key);
-  }
-  template <glm::length_t N, class T>
-  void operator()(const char* key, glm::vec<N, T>& value) const {
-    value = field_[key].vector<glm::vec<N, T>>();
-  }
-  void operator()(const char* key, std::vector<glm::vec3>& values) const {
-    values.clear();
-    for (const Field& entry : field_[key].items()) values.push_back(entry.vector<glm::vec3>());
-  }
-  void operator()(const char* key, glm::mat4& value) const {
-    const auto entries = field_[key].items();
-    if (entries.size() != 16) field_[key].fault("is not 16 numbers");
-    for (std::size_t i = 0; i < 16; ++i) glm::value_ptr(value)[i] = entries[i].number();
+  template <class T>
+  void operator()(const char* key, T& value) const {
+    readValue(field_[key], value);
   }
   template <class T>
   void count(const char* key, T& value, std::uint64_t most) const {
@@ -239,19 +268,7 @@ class FieldWriter {
 
   template <class T>
   void operator()(const char* key, const T& value) const {
-    json_[key] = value;
-  }
-  template <glm::length_t N, class T>
-  void operator()(const char* key, const glm::vec<N, T>& value) const {
-    json_[key] = vectorJson(value);
-  }
-  void operator()(const char* key, const std::vector<glm::vec3>& values) const {
-    Json& list = json_[key] = Json::array();
-    for (const glm::vec3& value : values) list.push_back(vectorJson(value));
-  }
-  void operator()(const char* key, const glm::mat4& value) const {
-    Json& list = json_[key] = Json::array();
-    for (int i = 0; i < 16; ++i) list.push_back(glm::value_ptr(value)[i]);
+    json_[key] = valueJson(value);
   }
   template <class T>
   void count(const char* key, T value, std::uint64_t /*most*/) const {

@@ -30,7 +30,7 @@ struct Sample {
     return static_cast<std::uint32_t>(payloads.size() - 1);
   }
   // Adds a transfer of this shape whose codebook has one cluster without axes.
-  CellTransfer transfer(const transfer::TransferShape& shape) {
+  CellTransfer meanTransfer(const transfer::TransferShape& shape) {
     CellTransfer made;
     made.shape = shape;
     const transfer::Codebook book{{0}, {}, std::vector<float>(shape.size(), 0.25f)};

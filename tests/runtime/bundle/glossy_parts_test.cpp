@@ -17,7 +17,7 @@ Sample glossySample() {
   d.roots = {0};
   d.nodes[0].light = 0;
   d.lights.resize(1);
-  const auto transfer = [&](const transfer::TransferShape& shape) { return s.transfer(shape); };
+  const auto transfer = [&](const transfer::TransferShape& shape) { return s.meanTransfer(shape); };
   Group group;
   group.sample_count = 5;
   group.lights = {{GroupLight::Kind::Node, 0, glm::vec3(1.0f)}};

@@ -18,7 +18,7 @@ Sample gridSample() {
   d.generator = {"lambent", "0.5.0", "x86-64-v3", {}};
   d.nodes.resize(2);
   d.roots = {0, 1};
-  const auto transfer = [&](const transfer::TransferShape& shape) { return s.transfer(shape); };
+  const auto transfer = [&](const transfer::TransferShape& shape) { return s.meanTransfer(shape); };
   Group body;
   body.name = "body";
   body.sample_count = 10;
