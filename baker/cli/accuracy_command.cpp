@@ -45,52 +45,35 @@ Result<void> checkWords(const SweepRequest& request) {
 }
 
 // Prints one line that changes on a terminal, and a line for each setting elsewhere.
-class Lines {
- public:
-  SweepListener listener() {
-    return {
-        .begin = [this](std::size_t done, std::size_t all,
-                        const std::string& what) { begin(done, all, what); },
-        .measured = [this](std::size_t done, std::size_t all, const Measured& m) { measured(done, all, m); }};
-  }
-  void end() const {
-    if (terminal_) fmt::print(stderr, "\r\033[K");
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  void begin(std::size_t done, std::size_t all, const std::string& what) const {
-    if (!terminal_) return;
-    fmt::print(stderr, "\r\033[Klambent: {} of {}  {}{}", done + 1, all, what, left(done, all));
+SweepListener progressLines(bool terminal) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto begin = [=](std::size_t done, std::size_t all, const std::string& what) {
+    if (!terminal) return;
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    const double left = done == 0 ? 0.0 : spent.count() / double(done) * double(all - done);
+    fmt::print(stderr, "\r\033[Klambent: {} of {}  {}{}", done + 1, all, what,
+               done == 0 ? "" : fmt::format(", about {} left", durationText(left)));
     std::fflush(stderr);
-  }
-  void measured(std::size_t done, std::size_t all, const Measured& m) const {
+  };
+  const auto measured = [=](std::size_t done, std::size_t all, const Measured& m) {
     const Figures& f = m.picture.as_light_is;
     fmt::print(stderr, "{}lambent: {} of {}  {}: {} wrong, bake {}, frame {:.1f} ms, {}\n",
-               terminal_ ? "\r\033[K" : "", done, all, m.setting.name(), percentText(f.rms, 2),
+               terminal ? "\r\033[K" : "", done, all, m.setting.name(), percentText(f.rms, 2),
                durationText(m.bake.seconds), m.picture.frame_ms,
                bytesText(static_cast<double>(m.bake.bytes)));
-  }
-  std::string left(std::size_t done, std::size_t all) const {
-    if (done == 0) return {};
-    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
-    return fmt::format(", about {} left", durationText(spent / double(done) * double(all - done)));
-  }
-
-  bool terminal_ = ::isatty(STDERR_FILENO) != 0;
-  Clock::time_point start_ = Clock::now();
-};
+  };
+  return {.begin = begin, .measured = measured};
+}
 
 int runAccuracy(AccuracyArguments a) {
   a.request.quality = a.quality.quality;
   if (const auto checked = checkWords(a.request); !checked) return wrongUsage(checked.error());
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
-  Lines lines;
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
   const auto results =
-      runSweep(a.request, a.say.quiet ? SweepListener{} : lines.listener(), stop.get_token());
-  if (!a.say.quiet) lines.end();
+      runSweep(a.request, a.say.quiet ? SweepListener{} : progressLines(terminal), stop.get_token());
+  if (!a.say.quiet && terminal) fmt::print(stderr, "\r\033[K");
   if (!results) return reportError(results.error());
   const auto page = writeReport(*results, a.request.output);
   if (!page) return reportError(page.error());
