@@ -1,18 +1,18 @@
 // Measures what glossy transfer costs in storage: bytes per vertex of visibility and bounced light together,
 // after entropy coding, against the error of reflected light.
-//   bench_glossy_codes SCENE [--rays=N] [--bounces=N] [--bounds=3,1.5,1,0.5] [--grid] [--csv]
-// Rows are error bounds, for which clusters and axes are chosen as in a bake, or with --grid, every pair of 1
-// to 512 clusters and 0 (vector quantization) to 16 axes. The goal is under 40 bytes per vertex at 1.5 %.
+//   bench_glossy_codes SCENE [--rays=N] [--bounces=N] [--bounds=3,1.5,1,0.5]
+// Rows are error bounds, for which clusters and axes are chosen as in a bake. The goal is under 40 bytes per
+// vertex at 1.5 %.
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "baker/brdf/kernel_power.hpp"
+#include <CLI/CLI.hpp>
+
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/surface/cell_vectors.hpp"
 #include "baker/effects/surface/direct.hpp"
@@ -27,39 +27,11 @@ using namespace lambent::baker;
 constexpr int kOrder = 5;
 
 struct Options {
-  const char* scene = nullptr;
-  std::vector<double> bounds = {0.03, 0.015, 0.01, 0.005};
+  std::string scene;
+  std::vector<float> bounds_percent = {3.0f, 1.5f, 1.0f, 0.5f};
   std::size_t rays = 1024;
   int bounces = 3;
-  bool grid = false, csv = false;
 };
-
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view argument = argv[i];
-    const auto value = [&] { return argv[i] + argument.find('=') + 1; };
-    if (argument.starts_with("--rays=")) {
-      options.rays = static_cast<std::size_t>(std::atoll(value()));
-    } else if (argument.starts_with("--bounces=")) {
-      options.bounces = std::atoi(value());
-    } else if (argument.starts_with("--bounds=")) {
-      options.bounds.clear();
-      for (const char* at = value(); *at != 0;) {
-        char* end = nullptr;
-        options.bounds.push_back(std::strtod(at, &end) / 100.0);
-        at = *end == ',' ? end + 1 : "";
-      }
-    } else if (argument == "--grid") {
-      options.grid = true;
-    } else if (argument == "--csv") {
-      options.csv = true;
-    } else {
-      options.scene = argv[i];
-    }
-  }
-  return options;
-}
 
 DirectResult transport(const GroupWorkload& work, const SurfaceBrdfs& brdfs, const Options& options) {
   Progress progress;
@@ -106,14 +78,16 @@ Measured measure(const std::vector<std::vector<CellVectors>>& cells, CodingSetti
 }  // namespace
 
 int main(int argc, char** argv) {
-  const Options options = parse(argc, argv);
-  if (options.scene == nullptr) {
-    std::fprintf(stderr, "bench_glossy_codes: give a .gltf or .glb file with a glossy material\n");
-    return 2;
-  }
+  Options options;
+  CLI::App app("Measures what glossy transfer costs in storage.");
+  app.add_option("SCENE", options.scene)->required();
+  app.add_option("--rays", options.rays);
+  app.add_option("--bounces", options.bounces);
+  app.add_option("--bounds", options.bounds_percent)->delimiter(',');
+  CLI11_PARSE(app, argc, argv);
   const auto work = loadGroup(options.scene, {}, {}, /*with_glossy=*/true);
   if (work->samples.glossy.empty()) {
-    std::fprintf(stderr, "%s: has no glossy material; see bench/with_material.py\n", options.scene);
+    std::fprintf(stderr, "%s: has no glossy material; see bench/with_material.py\n", options.scene.c_str());
     return 1;
   }
   const BrdfTables tables = orExit(BrdfTables::make(work->scene, kOrder, kOrder));
@@ -129,43 +103,22 @@ int main(int argc, char** argv) {
   }
 
   const auto vertices = static_cast<double>(work->geometry.positions.size());
-  if (options.csv)
-    std::printf(
-        "scene,clusters_asked,axes_asked,bound,bytes_per_vertex,error,part,clusters,axes,bytes,"
-        "codebook,ids,weights,part_error,seconds\n");
-  else
-    std::printf(
-        "%s: %.0f vertices, %zu glossy samples; zstd %d; visibility | bounced light\n"
-        "bytes/vertex    error | clusters  axes   bytes = book +  ids + weights   error  seconds\n",
-        options.scene, vertices, direct.glossy.size(), kZstdLevel);
-  const auto row = [&](CodingSettings settings) {
-    settings.kernel_power = kernelPower(work->geometry, brdfs, kOrder);
-    const Measured m = measure(cells, settings);
+  std::printf(
+      "%s: %.0f vertices, %zu glossy samples; zstd %d; visibility | bounced light\n"
+      "bytes/vertex    error | clusters  axes   bytes = book +  ids + weights   error  seconds\n",
+      options.scene.c_str(), vertices, direct.glossy.size(), kZstdLevel);
+  for (const float percent : options.bounds_percent) {
+    const Measured m = measure(
+        cells, {.bound = percent / 100.0f, .kernel_power = kernelPower(work->geometry, brdfs, kOrder)});
     const auto each = [&](std::size_t bytes) { return static_cast<double>(bytes) / vertices; };
-    const double all = each(m.parts[0].bytes() + m.parts[1].bytes());
-    if (!options.csv) std::printf("%12.2f  %6.3f %%", all, 100.0 * m.error);
-    for (std::size_t p = 0; p < 2; ++p) {
-      const CodedBytes& part = m.parts[p];
-      const double axes = static_cast<double>(part.codes) / static_cast<double>(direct.glossy.size());
-      if (options.csv)
-        std::printf("%s,%u,%d,%g,%.3f,%.6f,%s,%zu,%.2f,%.3f,%.3f,%.3f,%.3f,%.6f,%.2f\n", options.scene,
-                    settings.clusters, settings.axes, double{settings.bound}, all, m.error,
-                    p == 0 ? "visibility" : "bounced", part.clusters, axes, each(part.bytes()),
-                    each(part.codebook), each(part.ids), each(part.weights), part.error, part.seconds);
-      else
-        std::printf(" | %8zu %5.1f  %6.2f = %5.2f + %4.2f + %6.2f  %6.3f %% %5.1f", part.clusters, axes,
-                    each(part.bytes()), each(part.codebook), each(part.ids), each(part.weights),
-                    100.0 * part.error, part.seconds);
-    }
-    if (!options.csv) std::printf("\n");
+    std::printf("%12.2f  %6.3f %%", each(m.parts[0].bytes() + m.parts[1].bytes()), 100.0 * m.error);
+    for (const CodedBytes& part : m.parts)
+      std::printf(" | %8zu %5.1f  %6.2f = %5.2f + %4.2f + %6.2f  %6.3f %% %5.1f", part.clusters,
+                  static_cast<double>(part.codes) / static_cast<double>(direct.glossy.size()),
+                  each(part.bytes()), each(part.codebook), each(part.ids), each(part.weights),
+                  100.0 * part.error, part.seconds);
+    std::printf("\n");
     std::fflush(stdout);
-  };
-  if (options.grid) {
-    // The bound is small, so that the remaining error is that of the axes left out.
-    for (const std::uint32_t clusters : {1u, 4u, 16u, 64u, 256u, 512u})
-      for (const int axes : {0, 1, 2, 4, 8, 16}) row({.bound = 0.005f, .clusters = clusters, .axes = axes});
-  } else {
-    for (const double bound : options.bounds) row({.bound = static_cast<float>(bound)});
   }
   return 0;
 }

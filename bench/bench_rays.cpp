@@ -1,5 +1,5 @@
-// Measures pass 0 against its limit: rays per second of the baker's direct pass beside bare Embree loops over
-// the same rays, in one run, on one thread. The bare loops time only the calls: their packets are filled
+// Measures pass 0 against its limit: rays per second of the baker's direct pass beside a bare Embree loop
+// over the same rays, in one run, on one thread. The bare loop times only the calls: its packets are filled
 // beforehand, a few samples at a time so that they stay in cache.
 //   bench_rays [--scene=FILE.glb] [--benchmark_...]; the default scene is the shipped gallery.
 #include <algorithm>
@@ -15,10 +15,9 @@
 
 #include "baker/embree/embree.hpp"
 #include "baker/jobs/parallel.hpp"
-#include "baker/transport/direction_table.hpp"
-#include "baker/transport/ray_packets.hpp"
+#include "baker/transport/ray_scene.hpp"
+#include "baker/transport/samples.hpp"
 #include "bench/group_workload.hpp"
-#include "bench/scene_argument.hpp"
 
 namespace {
 
@@ -64,41 +63,11 @@ struct FilledPacket {
   PacketLanes lanes;
 };
 
-enum class Call { Incoherent16, Coherent16, Incoherent8, Single };
-
-std::uint64_t traceBare(const Workload& work, std::vector<FilledPacket>& packets, Call call) {
-  RayQuery query(call == Call::Coherent16 ? RayOrder::Coherent : RayOrder::Incoherent);
+std::uint64_t traceBare(const Workload& work, std::vector<FilledPacket>& packets) {
+  RayQuery query(RayOrder::Incoherent);
   std::uint64_t rays = 0;
   for (FilledPacket& packet : packets) {
-    if (call == Call::Incoherent16 || call == Call::Coherent16) {
-      query.occluded(work.scene, packet.lanes.valid.data(), packet.ray);
-    } else {
-      if (call == Call::Single) {
-        for (unsigned k = 0; k < kPacketWidth; ++k) {
-          if (!packet.lanes.valid[k]) continue;
-          RTCRay ray = rtcGetRayFromRayN(reinterpret_cast<RTCRayN*>(&packet.ray), kPacketWidth, k);
-          query.occluded(work.scene, ray);
-          benchmark::DoNotOptimize(ray.tfar);
-        }
-      } else {
-        for (unsigned half = 0; half < 2; ++half) {
-          alignas(32) RTCRay8 ray;
-          alignas(32) int valid[8];
-          for (unsigned k = 0; k < 8; ++k) {
-            const unsigned from = half * 8 + k;
-            valid[k] = packet.lanes.valid[from];
-            ray.org_x[k] = packet.ray.org_x[from], ray.org_y[k] = packet.ray.org_y[from],
-            ray.org_z[k] = packet.ray.org_z[from];
-            ray.dir_x[k] = packet.ray.dir_x[from], ray.dir_y[k] = packet.ray.dir_y[from],
-            ray.dir_z[k] = packet.ray.dir_z[from];
-            ray.tnear[k] = 0.0f, ray.tfar[k] = packet.ray.tfar[from], ray.time[k] = 0.0f, ray.mask[k] = ~0u,
-            ray.flags[k] = 0;
-          }
-          query.occluded(work.scene, valid, ray);
-          benchmark::DoNotOptimize(ray.tfar[0]);
-        }
-      }
-    }
+    query.occluded(work.scene, packet.lanes.valid.data(), packet.ray);
     for (const int valid : packet.lanes.valid) rays += valid != 0;
   }
   return rays;
@@ -111,7 +80,7 @@ struct Timed {
 };
 
 // Times every eighth run of samples over the whole scene, which is enough rays to be representative.
-Timed runBare(const Workload& work, const DirectionTable& table, Call call) {
+Timed runBare(const Workload& work, const DirectionTable& table) {
   Timed timed;
   std::vector<FilledPacket> packets;
   const SampleSet& samples = work.group->samples;
@@ -128,7 +97,7 @@ Timed runBare(const Workload& work, const DirectionTable& table, Call call) {
       }
     }
     const auto start = Clock::now();
-    timed.rays += traceBare(work, packets, call);
+    timed.rays += traceBare(work, packets);
     timed.seconds += secondsSince(start);
   }
   return timed;
@@ -159,6 +128,18 @@ double bounceRatio(const Workload& work) {
   return secondsSince(bounce_start) / direct_seconds;
 }
 
+// Takes `--scene=FILE` out of the arguments before Google Benchmark sees them.
+std::string takeSceneArgument(int& argc, char** argv) {
+  std::string file = LAMBENT_BINARY_DIR "/assets/gallery.glb";
+  for (int i = 1; i < argc; ++i)
+    if (std::strncmp(argv[i], "--scene=", 8) == 0) {
+      file = argv[i] + 8;
+      std::rotate(argv + i, argv + i + 1, argv + argc);
+      --argc;
+    }
+  return file;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -167,26 +148,19 @@ int main(int argc, char** argv) {
   static Workload work{loadGroup(file)};
   buildBareScene(work);
   static const DirectionTable table = cosineTable(kRays);
-  const auto bare = [](const char* name, Call call) {
-    benchmark::RegisterBenchmark(name,
-                                 [call](benchmark::State& state) {
-                                   for (auto _ : state) report(state, runBare(work, table, call));
-                                 })
-        ->UseManualTime()
-        ->Unit(benchmark::kMillisecond);
-  };
-  bare("bare/occluded16_incoherent", Call::Incoherent16);
-  bare("bare/occluded16_coherent", Call::Coherent16);
-  bare("bare/occluded8_incoherent", Call::Incoherent8);
-  bare("bare/occluded1", Call::Single);
+  benchmark::RegisterBenchmark("bare/occluded16_incoherent",
+                               [](benchmark::State& state) {
+                                 for (auto _ : state) report(state, runBare(work, table));
+                               })
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond);
   // The ratio is taken pass by pass in turn, so that a machine whose speed drifts does not spoil it.
   benchmark::RegisterBenchmark("pass0/against_occluded16_incoherent",
                                [](benchmark::State& state) {
                                  double ratios = 0.0;
                                  for (auto _ : state) {
                                    withThreads(1, [&] {
-                                     const double limit =
-                                         runBare(work, table, Call::Incoherent16).perSecond();
+                                     const double limit = runBare(work, table).perSecond();
                                      const Timed pass = runPass(work);
                                      report(state, pass);
                                      ratios += pass.perSecond() / limit;

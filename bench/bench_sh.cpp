@@ -9,7 +9,7 @@
 #include <benchmark/benchmark.h>
 #include <glm/gtc/quaternion.hpp>
 
-#include "runtime/sh/projection.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/window.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -19,7 +19,6 @@ namespace {
 using namespace lambent::sh;
 
 constexpr std::size_t kDirections = 1024;
-constexpr int kCubeSize = 16;
 
 struct Directions {
   std::vector<float> x, y, z;
@@ -147,65 +146,6 @@ void rotationApplyRgb(benchmark::State& state) {
   perItem(state, 1);
 }
 BENCHMARK(rotationApplyRgb)->Arg(5)->Arg(6);
-
-std::vector<glm::vec3> someCube() {
-  std::vector<glm::vec3> texels;
-  for (int k = 0; k < 6 * kCubeSize * kCubeSize; ++k)
-    texels.emplace_back(static_cast<float>(k % 7), static_cast<float>(k % 11), static_cast<float>(k % 13));
-  return texels;
-}
-
-void projectCube(benchmark::State& state) {
-  const CubeProjector projector(static_cast<int>(state.range(0)), kCubeSize);
-  const auto texels = someCube();
-  for (auto _ : state) {
-    LightVector light = projector.project(texels);
-    benchmark::DoNotOptimize(light);
-  }
-  perItem(state, 1);
-}
-BENCHMARK(projectCube)->Arg(5)->Arg(6);
-
-// The limit of a projection without mirror symmetry is the plain table's multiply-adds at the full vector
-// rate, from registers, without loading anything. 12 sums in flight cover the units' latency.
-void projectCube_plainTableLimit(benchmark::State& state) {
-#ifdef __AVX__
-  constexpr int kLanes = 8;
-#else
-  constexpr int kLanes = 4;
-#endif
-  using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
-  const int steps =
-      coefficientCount(static_cast<int>(state.range(0))) * 3 * 6 * kCubeSize * kCubeSize / kLanes / 12;
-  Lanes a = Lanes{} + 1.5f, b = a;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(a);
-    benchmark::DoNotOptimize(b);
-    Lanes s0 = a, s1 = a, s2 = a, s3 = a, s4 = a, s5 = a, s6 = a, s7 = a, s8 = a, s9 = a, s10 = a, s11 = a;
-    for (int k = 0; k < steps; ++k) {
-      s0 += a * b, s1 += a * b, s2 += a * b, s3 += a * b, s4 += a * b, s5 += a * b;
-      s6 += a * b, s7 += a * b, s8 += a * b, s9 += a * b, s10 += a * b, s11 += a * b;
-      asm volatile("" : "+x"(a), "+x"(b));  // keeps the products from being hoisted
-    }
-    Lanes sum = s0 + s1 + s2 + s3 + s4 + s5 + s6 + s7 + s8 + s9 + s10 + s11;
-    benchmark::DoNotOptimize(sum);
-  }
-  perItem(state, 1);
-}
-BENCHMARK(projectCube_plainTableLimit)->Arg(5)->Arg(6);
-
-// The limit of any projection is reading the picture once.
-void projectCube_readLimit(benchmark::State& state) {
-  auto texels = someCube();
-  auto copy = texels;
-  for (auto _ : state) {
-    std::memcpy(copy.data(), texels.data(), texels.size() * sizeof(glm::vec3));
-    benchmark::DoNotOptimize(copy.data());
-    benchmark::ClobberMemory();
-  }
-  perItem(state, 1);
-}
-BENCHMARK(projectCube_readLimit);
 
 // Every light change pays for this once; the goal is 1 ms.
 void autoWindow(benchmark::State& state) {

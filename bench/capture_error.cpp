@@ -3,25 +3,20 @@
 // resolved and projected like any other body; the truth is the disc's closed form. Environment maps go
 // through the sky's texels, at random rotations; the truth is the picture projected texel by texel and
 // rotated. The error is |c - c_exact|² / |c_exact|².
-//   capture_error [--directions N] [--probes DIR] [-o DIR] [--time]
-// DIR of --probes is a folder of environment maps. Prints the table as markdown; with -o also writes
-// capture_error.csv. With --time it measures instead how long a capture of 200 points among 200 balls takes,
-// each of which sees about 20.
+//   capture_error [--directions N] [--probes DIR]
+// DIR of --probes is a folder of environment maps. Prints the table as markdown.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <random>
 #include <span>
 #include <string>
 #include <vector>
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include "runtime/gpu/context.hpp"
@@ -172,94 +167,11 @@ void printTable(const std::vector<Row>& rows, int order) {
   std::printf("\n");
 }
 
-// Makes a ball whose levels are given by the (columns, rows) of its latitudes.
-bundle::CaptureProxy ballProxy(std::initializer_list<std::pair<std::uint32_t, std::uint32_t>> levels) {
-  bundle::CaptureProxy proxy;
-  for (const auto& [columns, rows] : levels) {
-    const auto base = static_cast<std::uint32_t>(proxy.positions.size());
-    const auto first = static_cast<std::uint32_t>(proxy.triangles.size());
-    for (std::uint32_t r = 0; r <= rows; ++r)
-      for (std::uint32_t c = 0; c < columns; ++c) {
-        const double down = std::numbers::pi * r / rows, turn = 2 * std::numbers::pi * c / columns;
-        proxy.positions.emplace_back(std::sin(down) * std::cos(turn), std::cos(down),
-                                     std::sin(down) * std::sin(turn));
-      }
-    const auto at = [&](std::uint32_t r, std::uint32_t c) {
-      return base + (r == 0 || r == rows ? r * columns : r * columns + c % columns);
-    };
-    for (std::uint32_t r = 0; r < rows; ++r)
-      for (std::uint32_t c = 0; c < columns; ++c) {
-        if (r + 1 < rows) proxy.triangles.push_back({.vertices = {at(r, c), at(r + 1, c + 1), at(r + 1, c)}});
-        if (r > 0) proxy.triangles.push_back({.vertices = {at(r, c), at(r, c + 1), at(r + 1, c + 1)}});
-      }
-    proxy.levels.push_back({first, static_cast<std::uint32_t>(proxy.triangles.size()) - first,
-                            static_cast<float>(1 - std::cos(std::numbers::pi / columns))});
-  }
-  return proxy;
-}
-
-void printTimes() {
-  const Environment sky = must(Environment::create({spec::ConstantLight{glm::vec3(1.0f)}}));
-  const bundle::CaptureProxy ball = ballProxy({{16, 8}, {12, 6}, {8, 5}, {6, 4}});
-  const std::vector<const bundle::CaptureProxy*> proxies(200, &ball);
-  std::printf(
-      "| balls | size | subsamples | bodies a point | pixels, million | triangles | pages | ms | ms of CPU "
-      "|\n"
-      "|---|---|---|---|---|---|---|---|---|\n");
-  for (const bool near : {false, true})
-    for (const std::uint32_t size : {8u, 16u})
-      for (const std::uint32_t subsamples : {4u, 8u, 16u}) {
-        Capture capture = must(Capture::create({.size = size, .subsamples = subsamples}, sky));
-        gpu::Counters counters;
-        capture.setProxies(proxies, counters);
-        const std::vector<glm::vec4> shining(capture.triangleCount(), glm::vec4(1.0f));
-        gpu::Buffer radiance("radiance", shining.size() * sizeof(glm::vec4));
-        radiance.write(0, std::span<const glm::vec4>(shining));
-        // Balls have a radius of 0.5; within 19.6 m a point sees them at 16 texels.
-        const float spacing = near ? 2.5f : 6.5f;
-        std::vector<CaptureBody> bodies;
-        std::vector<CapturePoint> points;
-        for (std::uint32_t i = 0; i < 200; ++i) {
-          const glm::vec3 at = near ? spacing * glm::vec3(i % 6, i / 6 % 6, i / 36)
-                                    : spacing * glm::vec3(i % 20, 0.2f * static_cast<float>(i % 3), i / 20);
-          bodies.push_back(
-              {.proxy = i,
-               .world_from_proxy = glm::scale(glm::translate(glm::mat4(1.0f), at), glm::vec3(0.5f))});
-          points.push_back(
-              {.position_ws = at,
-               .own_body = i,
-               .queries = {{.direction = glm::normalize(glm::vec3(1, 1, 0)), .angular_radius_rad = 0.05f}}});
-        }
-        double best = 1e30, best_cpu = 1e30, seen = 0;
-        for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-          const lighting::capture::BodySphere sphere = capture.sphereOf(bodies[b]);
-          for (const CapturePoint& p : points)
-            seen += b != p.own_body && lighting::capture::sees(capture.options(), p.position_ws, sphere)
-                        ? 1.0 / 200
-                        : 0;
-        }
-        for (int i = 0; i < 5; ++i) {
-          const auto start = Clock::now();
-          const std::clock_t cpu_start = std::clock();
-          if (!capture.run(sky, bodies, points, radiance, counters)) std::exit(1);
-          capture.take(true);
-          best = std::min(best, millisecondsSince(start));
-          best_cpu = std::min(best_cpu, 1e3 * static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
-        }
-        const Capture::Load& load = capture.load();
-        std::printf("| %s | %u | %u | %.1f | %.1f | %llu | %u | %.1f | %.1f |\n",
-                    near ? "a block" : "a field", size, subsamples, seen,
-                    static_cast<double>(load.pixels) * 1e-6, static_cast<unsigned long long>(load.triangles),
-                    load.pages, best, best_cpu);
-      }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   int directions = 500;
-  std::filesystem::path environment_maps, out;
-  bool time = false;
+  std::filesystem::path environment_maps;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const bool has_value = i + 1 < argc;
@@ -267,21 +179,13 @@ int main(int argc, char** argv) {
       directions = std::max(1, std::atoi(argv[++i]));
     } else if (word == "--probes" && has_value) {
       environment_maps = argv[++i];
-    } else if (word == "-o" && has_value) {
-      out = argv[++i];
-    } else if (word == "--time") {
-      time = true;
     } else {
-      std::fprintf(stderr, "capture_error [--directions N] [--environment maps DIR] [-o DIR] [--time]\n");
+      std::fprintf(stderr, "capture_error [--directions N] [--probes DIR]\n");
       return 2;
     }
   }
   const gpu::Context context = must(gpu::Context::createHeadless());
   std::printf("%s\n", context.info().renderer.c_str());
-  if (time) {
-    printTimes();
-    return 0;
-  }
   std::vector<Row> rows;
   for (const double radius : kRadiiDeg)
     for (const std::uint32_t size : kSizes) discErrors(size, radius, directions, rows);
@@ -295,13 +199,5 @@ int main(int argc, char** argv) {
   }
   for (int order = kMostOrder; order >= kLeastOrder; --order) printTable(rows, order);
   std::printf("\nSloan 2002, 6x16x16: average 0.2 %%, worst 0.5 %%.\n");
-  if (!out.empty()) {
-    std::filesystem::create_directories(out);
-    std::ofstream csv(out / "capture_error.csv");
-    csv << "light,size,order,directions,average,worst,milliseconds\n";
-    for (const Row& row : rows)
-      csv << row.light << ',' << row.size << ',' << row.order << ',' << row.count << ',' << row.average << ','
-          << row.worst << ',' << row.milliseconds << '\n';
-  }
   return 0;
 }

@@ -53,8 +53,7 @@ inline std::unique_ptr<GroupWorkload> loadGroup(
   work->samples = buildSamples(work->geometry);
   work->lights = findGroupLights(work->scene, groups.at(0));
   DecodedImages images(work->scene);
-  work->rays = std::make_unique<RayScene>(
-      orExit(RayScene::build(work->geometry, work->scene, orExit(loadAlphaMaps(work->scene, images)))));
+  work->rays = std::make_unique<RayScene>(orExit(RayScene::build(work->geometry, work->scene, images)));
   work->colors = std::make_unique<SurfaceColors>(
       orExit(SurfaceColors::load(work->scene, work->geometry, work->lights, images)));
   return work;

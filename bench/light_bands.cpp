@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/projection.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/distant_lights.hpp"
 

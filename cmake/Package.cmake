@@ -18,7 +18,7 @@ set_target_properties(${LAMBENT_HEADLESS_PROGRAMS} PROPERTIES INSTALL_RPATH "$OR
 
 # Debian's names of what leaves no library behind, only code in the programs.
 set(LAMBENT_COMPILED_INTO_runtime libcli11-dev libexpected-dev libglm-dev libstb-dev nlohmann-json3-dev)
-set(LAMBENT_COMPILED_INTO_tools ${LAMBENT_COMPILED_INTO_runtime} libeigen3-dev libimgui-dev libtinygltf-dev)
+set(LAMBENT_COMPILED_INTO_tools ${LAMBENT_COMPILED_INTO_runtime} libeigen3-dev libimgui-dev)
 
 # lambent_package(COMPONENT target...): programs to bin/, what they link to lib/.
 function(lambent_package component)

@@ -77,7 +77,7 @@ glm::vec3 liftedView(const glm::vec3& v) {
 
 glm::vec3 Reflector::specular(const glm::vec3& s) const {
   if (s.z <= 0.0f) return glm::vec3(0.0f);
-  if (whole) return whole->value(view, s) * s.z;
+  if (measured) return measured->value(view, s) * s.z;
   const glm::vec2 parts = ggxValue(alpha, view, s);
   return f0 * parts.x + f90 * parts.y;
 }
@@ -173,26 +173,6 @@ glm::vec2 AlbedoTable::at(const glm::vec3& view, float roughness, float strength
 
 namespace {
 
-// Interpolates a measured BRDF for the reference (docs/conventions.md, "Materials") by a weighted mean over
-// the half-vector and difference angles, tabulated once. It is scaled down where it would reflect more energy
-// than it receives.
-
-class MeasuredReflection final : public WholeBrdf {
- public:
-  explicit MeasuredReflection(const MeasuredBrdf& measured);
-
-  glm::vec3 value(const glm::vec3& v, const glm::vec3& s) const override;
-  float alpha() const override { return alpha_; }
-
- private:
-  glm::vec3 unscaled(const glm::vec3& v, const glm::vec3& s) const;
-  float scale(float cosine) const;
-
-  std::vector<glm::vec3> values_;  // [theta_d][sqrt of theta_h]
-  std::vector<float> scales_;      // by the square root of the cosine
-  float alpha_ = 0.2f;
-};
-
 constexpr std::size_t kHalves = 257, kDifferences = 129;  // nodes of the table
 constexpr std::size_t kAngles = 65;                       // nodes of the scale
 constexpr std::uint32_t kIntegralPoints = 2048;           // sample points of each integral
@@ -249,6 +229,8 @@ float largestChannel(const glm::vec3& v) {
   return std::max({v.r, v.g, v.b});
 }
 
+}  // namespace
+
 MeasuredReflection::MeasuredReflection(const MeasuredBrdf& measured) {
   std::vector<Weighed> all;
   for (const BrdfMeasurement& m : measured.measurements)
@@ -303,45 +285,6 @@ float MeasuredReflection::scale(float cosine) const {
 
 glm::vec3 MeasuredReflection::value(const glm::vec3& v, const glm::vec3& s) const {
   return unscaled(v, s) * std::min(scale(v.z), scale(s.z));
-}
-
-using gltf::Material;
-
-struct Kind {
-  bool (*serves)(const Material&);                     // not called for diffuse materials
-  bool (*same)(const Material& a, const Material& b);  // whether two such materials reflect alike
-  std::shared_ptr<const WholeBrdf> (*make)(const Scene&, const Material&);
-};
-
-// Earlier rows have priority.
-constexpr std::array kKinds = {
-    Kind{[](const Material& m) { return m.brdf >= 0; },
-         [](const Material& a, const Material& b) { return a.brdf == b.brdf; },
-         [](const Scene& scene, const Material& m) -> std::shared_ptr<const WholeBrdf> {
-           return std::make_shared<MeasuredReflection>(scene.brdfs[static_cast<std::size_t>(m.brdf)]);
-         }},
-};
-
-}  // namespace
-
-std::vector<std::shared_ptr<const WholeBrdf>> wholeBrdfs(const Scene& scene) {
-  struct Made {
-    const Kind* kind;
-    const Material* material;
-    std::shared_ptr<const WholeBrdf> brdf;
-  };
-  std::vector<Made> all;
-  std::vector<std::shared_ptr<const WholeBrdf>> of_material;
-  for (const Material& material : scene.materials) {
-    auto& own = of_material.emplace_back();
-    const auto kind = std::ranges::find_if(kKinds, [&](const Kind& k) { return k.serves(material); });
-    if (material.isDiffuse() || kind == kKinds.end()) continue;
-    auto known = std::ranges::find_if(
-        all, [&](const Made& made) { return made.kind == &*kind && kind->same(*made.material, material); });
-    if (known == all.end()) known = all.insert(all.end(), {&*kind, &material, kind->make(scene, material)});
-    own = known->brdf;
-  }
-  return of_material;
 }
 
 }  // namespace lambent::baker::reference

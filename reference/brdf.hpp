@@ -1,12 +1,12 @@
 // Evaluates and samples the reflection of a surface point towards one view direction (docs/conventions.md,
-// "Materials"): GGX with Fresnel over a diffuse part, isotropic or anisotropic, or a WholeBrdf. Directions
-// are in local space: z is the shading normal, x the tangent; v and s point away from the surface. It shares
-// only the loader of measured files with baker/brdf, so that it can reveal mistakes there.
+// "Materials"): GGX with Fresnel over a diffuse part, isotropic or anisotropic, or a measured BRDF.
+// Directions are in local space: z is the shading normal, x the tangent; v and s point away from the surface.
+// It shares only the loader of measured files with baker/brdf, so that it can reveal mistakes there.
 #pragma once
 
-#include <memory>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -15,7 +15,7 @@
 
 namespace lambent::baker::reference {
 
-class WholeBrdf;
+class MeasuredReflection;
 
 inline constexpr float kLeastAlpha = 0.001f;
 // The cosine of a view direction is raised to this minimum.
@@ -42,8 +42,8 @@ struct Reflector {
   glm::vec3 f0{0.0f};
   float f90 = 0.0f;
   glm::vec2 alpha{1.0f};
-  const WholeBrdf* whole = nullptr;  // if set, replaces everything but the frame and the view
-  float specular_share = 1.0f;       // probability with which sample() draws from the specular part
+  const MeasuredReflection* measured = nullptr;  // if set, replaces everything but the frame and the view
+  float specular_share = 1.0f;  // probability with which sample() draws from the specular part
 
   // Returns the BRDF times the cosine, or 0 if s is below the surface.
   glm::vec3 value(const glm::vec3& s) const;
@@ -75,18 +75,54 @@ class AlbedoTable {
   std::vector<glm::vec2> values_;  // [strength][roughness][azimuth][angle]
 };
 
-// Declares BRDFs that describe a whole material, instead of GGX over a diffuse part. To add one, derive a
-// class in a file of its own and add a row in wholeBrdfs().
-class WholeBrdf {
+// Interpolates a measured BRDF for the reference (docs/conventions.md, "Materials") by a weighted mean over
+// the half-vector and difference angles, tabulated once. It is scaled down where it would reflect more energy
+// than it receives.
+class MeasuredReflection {
  public:
-  virtual ~WholeBrdf() = default;
+  explicit MeasuredReflection(const MeasuredBrdf& measured);
+
   // Returns the BRDF; v and s are in local space, above the surface.
-  virtual glm::vec3 value(const glm::vec3& v, const glm::vec3& s) const = 0;
+  glm::vec3 value(const glm::vec3& v, const glm::vec3& s) const;
   // Returns the alpha of a GGX lobe that is about as wide as the highlight, for sampling.
-  virtual float alpha() const = 0;
+  float alpha() const { return alpha_; }
+
+ private:
+  glm::vec3 unscaled(const glm::vec3& v, const glm::vec3& s) const;
+  float scale(float cosine) const;
+
+  std::vector<glm::vec3> values_;  // [theta_d][sqrt of theta_h]
+  std::vector<float> scales_;      // by the square root of the cosine
+  float alpha_ = 0.2f;
 };
 
-// Returns one BRDF per material, or null for GGX and diffuse materials.
-std::vector<std::shared_ptr<const WholeBrdf>> wholeBrdfs(const Scene& scene);
+// Decides which light a glossy surface gets from directions below its own plane (docs/conventions.md,
+// "Materials"). Lobes follow the smooth normal and normal maps, so parts of them can lie below the triangle.
+// Such a direction gets the light of its mirror image.
+
+// Holds two planes by their unit normals. A direction below the plane of the smooth normal (before normal
+// maps) is mirrored at it; if the result is below the triangle, it is mirrored at the triangle. Rays start
+// above the triangle, and each stands for all directions that are mirrored to it.
+struct Horizons {
+  glm::vec3 smooth{0.0f, 0.0f, 1.0f}, triangle{0.0f, 0.0f, 1.0f};
+
+  static glm::vec3 mirrored(const glm::vec3& dir, const glm::vec3& normal) {
+    return dir - 2.0f * glm::dot(dir, normal) * normal;
+  }
+  static glm::vec3 above(const glm::vec3& dir, const glm::vec3& normal) {
+    return glm::dot(dir, normal) < 0.0f ? mirrored(dir, normal) : dir;
+  }
+
+  // Returns the ray direction for a direction, with the same length.
+  glm::vec3 rayFor(const glm::vec3& dir) const { return above(above(dir, smooth), triangle); }
+
+  // Calls visit(dir) for the directions above the smooth plane that a ray stands for. The ray also stands for
+  // their mirror images in that plane.
+  template <typename Visit>
+  void forAbove(const glm::vec3& ray, const Visit& visit) const {
+    if (glm::dot(ray, smooth) > 0.0f) visit(ray);
+    if (const glm::vec3 hidden = mirrored(ray, triangle); glm::dot(hidden, smooth) > 0.0f) visit(hidden);
+  }
+};
 
 }  // namespace lambent::baker::reference

@@ -33,12 +33,12 @@ void addSpecular(const Reflector& reflector, std::uint32_t seed, std::uint32_t p
                  sh::LightVector& kernel) {
   const Sampler sampler(/*seed=*/3, seed, 0);
   Reflector lobe = reflector;
-  lobe.specular_share = reflector.whole ? 0.5f : 1.0f;
+  lobe.specular_share = reflector.measured ? 0.5f : 1.0f;
   std::array<glm::dvec3, sh::kMaxCoefficients> sums{};
   std::array<float, sh::kMaxCoefficients> y{};
   for (std::uint32_t i = 0; i < points; ++i) {
-    const bool cosine = reflector.whole && i % 2 == 1;
-    const glm::vec2 u = reflector.whole ? sampler.pair(i % 2, i / 2) : sampler.pair(0, i);
+    const bool cosine = reflector.measured && i % 2 == 1;
+    const glm::vec2 u = reflector.measured ? sampler.pair(i % 2, i / 2) : sampler.pair(0, i);
     const glm::vec3 s = lobe.sample(cosine ? 1.0f : 0.0f, u);
     const float pdf = lobe.pdf(s);
     if (!(s.z > 0.0f && pdf > 0.0f)) continue;

@@ -12,9 +12,9 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
-#include "reference/horizons.hpp"
+#include "reference/brdf.hpp"
 #include "reference/surfaces.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::baker::reference {
 
@@ -24,7 +24,7 @@ sh::LightVector exitKernel(const SurfacePoint& point, int order, std::uint32_t s
                            std::uint32_t points = 1024);
 
 // Combines the exit kernel with the light at one surface point. Rays start above the triangle, and each
-// stands for all directions that are mirrored to it (horizons.hpp).
+// stands for all directions that are mirrored to it (Horizons).
 class FirstHit {
  public:
   // `light` is all distant light as seen from the point.

@@ -183,12 +183,12 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
     for (const Path& path : walk.paths) out.replicas[path.replica] += weight * glm::dvec3(path.sum);
   };
   const auto materialOf = [&](const Hit& hit) -> const gltf::Material& {
-    return world_.surfaces.surfaces()[hit.surface].material;
+    return world_.scene.surfaces.surfaces()[hit.surface].material;
   };
   const auto blended = [&](const Hit& hit) { return materialOf(hit).alpha_mode == gltf::AlphaMode::Blend; };
   const Ray ray = world_.eye.through(x, y);
   std::vector<Hit> layers;
-  world_.rays.visible(ray, layers);
+  world_.scene.rays->visible(ray, layers);
   out.rays = 1;
   // Depth ignores blended surfaces, panes and volumes, as the runtime's depth buffer does.
   if (!layers.empty() && !blended(layers.back()) && !materialOf(layers.back()).transmits())
@@ -197,7 +197,7 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
   const auto any = [&] { return through.r > 0.0 || through.g > 0.0 || through.b > 0.0; };
   // Each step adds the volumes in front of layer i, from the previous layer on.
   std::optional<EyeDepth> eye;
-  if (!world_.volumes.empty()) eye.emplace(world_.volumes, ray, 0.0, double{kInfinity});
+  if (!world_.scene.volumes.empty()) eye.emplace(world_.scene.volumes, ray, 0.0, double{kInfinity});
   double depth = 0.0;
   const auto passVolumes = [&](std::uint32_t i) {
     if (!eye) return;
@@ -210,10 +210,10 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
     through *= std::exp(begin - depth);
   };
   std::uint32_t layer = 0;
-  PaneWay panes(world_.surfaces, ray);
+  PaneWay panes(world_.scene.surfaces, ray);
   for (; layer < layers.size() && any(); ++layer) {
     passVolumes(layer);
-    const SurfacePoint point = world_.surfaces.pointAt(layers[layer], ray.dir);
+    const SurfacePoint point = world_.scene.surfaces.pointAt(layers[layer], ray.dir);
     glm::dvec3 weight = through;
     if (materialOf(layers[layer]).transmits()) {
       through *= glm::dvec3(panes.pass(layers[layer]));
@@ -257,6 +257,21 @@ bool addSamples(const Integrator& integrator, Film& film, const Rows& rows, std:
       progress.add(std::uint64_t{film.size().width} * (samples - done));
     }
   });
+}
+
+TracedScene::TracedScene(const Scene& scene, Surfaces built)
+    : surfaces(std::move(built)),
+      emissive(surfaces),
+      punctual(punctualLights(scene)),
+      volumes(Volumes::build(scene, notices)),
+      rays(RayTracer::build(surfaces)) {}
+
+Result<std::unique_ptr<const TracedScene>> TracedScene::build(const Scene& scene) {
+  auto surfaces = Surfaces::build(scene);
+  if (!surfaces) return failAgain(std::move(surfaces.error()));
+  auto traced = std::make_unique<TracedScene>(scene, std::move(*surfaces));
+  if (!traced->rays) return failAgain(std::move(traced->rays.error()));
+  return traced;
 }
 
 }  // namespace lambent::baker::reference

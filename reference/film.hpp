@@ -9,18 +9,50 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "baker/jobs/progress.hpp"
+#include "reference/camera.hpp"
+#include "reference/lights.hpp"
 #include "reference/options.hpp"
-#include "reference/traced_scene.hpp"
+#include "reference/ray_tracer.hpp"
+#include "reference/volumes.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::baker::reference {
+
+// A TracedScene is a scene prepared for path tracing, independent of distant light and view: surfaces, their
+// ray-tracing hierarchy, the lights of the file, and volumes. The importer's Scene comes in, with all nodes
+// in place. It is slow to build, but any number of threads may trace pictures of it at the same time. The
+// Scene must outlive it.
+struct TracedScene {
+  // Errors: a texture cannot be decoded, or Embree has no memory.
+  static Result<std::unique_ptr<const TracedScene>> build(const Scene& scene);
+  TracedScene(const Scene& scene, Surfaces built);  // for build()
+  TracedScene(const TracedScene&) = delete;         // parts refer to the surfaces
+  TracedScene& operator=(const TracedScene&) = delete;
+
+  Surfaces surfaces;
+  EmissiveTriangles emissive;
+  std::vector<PunctualLight> punctual;
+  std::vector<std::string> notices;  // what was left out, one sentence each
+  Volumes volumes;
+  Result<RayTracer> rays;  // always there after build()
+};
+
+// A World is a scene in a light, as seen by a camera: everything that paths of one picture need.
+struct World {
+  const TracedScene& scene;
+  const Environment& environment;
+  const std::vector<spec::LocalLight>& shapes;
+  EyeRays eye;
+};
 
 struct PixelSum {
   std::array<glm::dvec3, 2> replicas{};  // sum of the samples of each replica

@@ -14,41 +14,28 @@
 
 #include "baker/jobs/parallel.hpp"
 #include "reference/film.hpp"
-#include "reference/light_cache.hpp"
-#include "reference/traced_scene.hpp"
+#include "reference/lights.hpp"
 
 namespace lambent::baker::reference {
 
-namespace {
-
-// A TexelPlace lies between texels `low` and `high`; `share` is the weight of `high`.
-struct TexelPlace {
-  std::size_t low, high;
-  float share;
-};
-
-std::vector<TexelPlace> places(std::uint32_t from, std::uint32_t to) {
-  std::vector<TexelPlace> out;
-  out.reserve(to);
-  for (std::uint32_t i = 0; i < to; ++i) {
+spec::RgbaImage enlarged(const spec::RgbaImage& image, const spec::Size& size) {
+  // Lies between texels `low` and `high`; `share` is the weight of `high`.
+  struct Place {
+    std::size_t low, high;
+    float share;
+  };
+  const auto placeOf = [](std::uint32_t i, std::uint32_t from, std::uint32_t to) {
     const double at = std::clamp((i + 0.5) * from / to - 0.5, 0.0, from - 1.0);
     const auto low = static_cast<std::size_t>(at);
-    out.push_back({low, std::min<std::size_t>(low + 1, from - 1), static_cast<float>(at - std::floor(at))});
-  }
-  return out;
-}
-
-}  // namespace
-
-spec::RgbaImage enlarged(const spec::RgbaImage& image, const spec::Size& size) {
-  const std::vector<TexelPlace> columns = places(image.width, size.width),
-                                rows = places(image.height, size.height);
+    return Place{low, std::min<std::size_t>(low + 1, from - 1), static_cast<float>(at - std::floor(at))};
+  };
   spec::RgbaImage out{.width = size.width, .height = size.height, .texels = {}};
   out.texels.reserve(std::size_t{size.width} * size.height);
-  for (const TexelPlace& y : rows)
-    for (const TexelPlace& x : columns) {
-      const auto between = [&](std::size_t row) {
-        return glm::mix(image.texels[row * image.width + x.low], image.texels[row * image.width + x.high],
+  for (std::uint32_t row = 0; row < size.height; ++row)
+    for (std::uint32_t column = 0; column < size.width; ++column) {
+      const Place y = placeOf(row, image.height, size.height), x = placeOf(column, image.width, size.width);
+      const auto between = [&](std::size_t at) {
+        return glm::mix(image.texels[at * image.width + x.low], image.texels[at * image.width + x.high],
                         x.share);
       };
       out.texels.push_back(glm::mix(between(y.low), between(y.high), y.share));
@@ -162,7 +149,7 @@ class ProgressiveReference::Worker {
         lights_.environment(request.lights, request.light_factors, options, request.more_light);
     if (!environment) return failAgain(std::move(environment.error()));
     if (auto built = build(job.scene); !built) return failAgain(std::move(built.error()));
-    const auto view = viewOf(*traced_scene_, traced_->surfaces(), request);
+    const auto view = viewOf(*traced_scene_, traced_->surfaces, request);
     if (!view) return failAgain(view.error());
     const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights, traced_scene_->origin);
     enter(job, ProgressivePhase::Tracing);
@@ -171,7 +158,7 @@ class ProgressiveReference::Worker {
     for (const auto& [by, samples] : kCoarse) {
       Options coarse = options;
       coarse.size = coarser(options.size, by);
-      const World world = traced_->under(**environment, shapes, EyeRays(*view, coarse.size));
+      const World world{*traced_, **environment, shapes, EyeRays(*view, coarse.size)};
       Film film(coarse.size, 0);
       if (!fill(job, Integrator(world, coarse), film, std::min(samples, options.spp))) return {};
       shown = enlarged(film.image(), options.size);
@@ -181,10 +168,10 @@ class ProgressiveReference::Worker {
       publish(job, std::move(out));
     }
 
-    const World world = traced_->under(**environment, shapes, EyeRays(*view, options.size));
+    const World world{*traced_, **environment, shapes, EyeRays(*view, options.size)};
     const Integrator integrator(world, options);
     Film film(options.size, 0);
-    const std::uint32_t together = samplesInPass(options, world.volumes);
+    const std::uint32_t together = samplesInPass(options, traced_->volumes);
     Clock::time_point shown_at = Clock::now();
     const auto showRows = [&](std::uint32_t first, std::uint32_t last) {
       for (std::uint32_t y = first; y < last; ++y) film.putRow(y, shown);
@@ -235,7 +222,7 @@ class ProgressiveReference::Worker {
     snapshot.generation = job.generation;
     snapshot.seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
     snapshot.notices = lights_.notices();
-    snapshot.notices.insert(snapshot.notices.end(), traced_->notices().begin(), traced_->notices().end());
+    snapshot.notices.insert(snapshot.notices.end(), traced_->notices.begin(), traced_->notices.end());
     auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
     const std::lock_guard hold(lock_);
     if (job.generation == status_.generation) std::swap(snapshot_, shared);

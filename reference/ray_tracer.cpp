@@ -2,13 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <type_traits>
-
-#if defined(__SSE2__)
-#include <pmmintrin.h>
-#include <xmmintrin.h>
-#endif
+#include <utility>
 
 #include "baker/embree/embree.hpp"
 
@@ -17,31 +11,6 @@ namespace lambent::baker::reference {
 namespace {
 
 constexpr std::size_t kWidth = 16;
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release>;
-using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>;
-
-// Flushes denormals while Embree runs, as Embree asks for.
-class FlushDenormals {
- public:
-#if defined(__SSE2__)
-  FlushDenormals() : saved_(_mm_getcsr()) {
-    _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
-  }
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-  ~FlushDenormals() {
-    _mm_setcsr(saved_);
-  }
-
- private:
-  unsigned saved_;
-#endif
-};
 
 // A Record is the user data of an Embree geometry.
 struct Record {
@@ -117,38 +86,28 @@ void sortLayers(const Surfaces& surfaces, const glm::vec3& dir, std::vector<Hit>
 }
 
 RTCRayHit traceOne(RTCScene scene, const Ray& ray, float far, RayQuery& query) {
-  RTCRayHit hit{};
-  hit.ray.org_x = ray.origin.x, hit.ray.org_y = ray.origin.y, hit.ray.org_z = ray.origin.z;
-  hit.ray.dir_x = ray.dir.x, hit.ray.dir_y = ray.dir.y, hit.ray.dir_z = ray.dir.z;
-  hit.ray.tfar = far, hit.ray.mask = ~0u;
-  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCRayHit hit = rayOf(ray.origin, ray.dir, far);
   query.intersect(scene, hit);
   return hit;
 }
 
 bool addGeometry(RTCDevice device, RTCScene scene, const Record& record) {
   const Surface& surface = surfaceOf(record);
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(glm::vec3), surface.vertex_count);
-  auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), surface.triangle_count));
-  const bool room = vertices && indices;
-  if (room) {
-    std::memcpy(vertices, &record.surfaces->positions()[surface.first_vertex],
-                surface.vertex_count * sizeof(glm::vec3));
-    for (std::uint32_t t = 0; t < surface.triangle_count; ++t)
-      indices[t] = record.surfaces->triangles()[surface.first_triangle + t] - surface.first_vertex;
-    rtcSetGeometryUserData(geometry, const_cast<Record*>(&record));
-    if (surface.material.alpha_mode == gltf::AlphaMode::Mask) {
-      rtcSetGeometryIntersectFilterFunction(geometry, filterCutOut);
-      rtcSetGeometryOccludedFilterFunction(geometry, filterCutOut);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, record.surface);  // geomID becomes the index of the surface
+  RTCGeometry geometry = newTriangles(
+      device, std::span(record.surfaces->positions()).subspan(surface.first_vertex, surface.vertex_count),
+      surface.triangle_count, [&](std::uint32_t t) {
+        return record.surfaces->triangles()[surface.first_triangle + t] - surface.first_vertex;
+      });
+  if (!geometry) return false;
+  rtcSetGeometryUserData(geometry, const_cast<Record*>(&record));
+  if (surface.material.alpha_mode == gltf::AlphaMode::Mask) {
+    rtcSetGeometryIntersectFilterFunction(geometry, filterCutOut);
+    rtcSetGeometryOccludedFilterFunction(geometry, filterCutOut);
   }
-  rtcReleaseGeometry(geometry);  // the scene holds its own reference
-  return room;
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, record.surface);  // geomID becomes the index of the surface
+  rtcReleaseGeometry(geometry);                            // the scene holds its own reference
+  return true;
 }
 
 // Returns whether Embree takes the ray. It asserts that numbers are finite and small enough for products of
@@ -175,7 +134,7 @@ void fill(RTCRay16& packet, std::span<const Ray> rays, int* valid) {
 }  // namespace
 
 struct RayTracer::State {
-  Device device;
+  EmbreeDevice device;
   EmbreeScene solid, layers;  // layers is null if no surface is blended or a pane
   bool any_pane = false;
   std::vector<Record> records;
@@ -190,10 +149,9 @@ RayTracer::~RayTracer() = default;
 Result<RayTracer> RayTracer::build(const Surfaces& surfaces) {
   auto state = std::make_unique<State>();
   state->surfaces = &surfaces;
-  state->device.reset(rtcNewDevice(nullptr));
-  if (!state->device)
-    return fail("Embree", "cannot be set up",
-                "give it more memory, or check that Embree runs on this processor");
+  auto device = newEmbreeDevice();
+  if (!device) return failAgain(std::move(device.error()));
+  state->device = std::move(*device);
   const auto newScene = [&](RTCBuildQuality quality) {
     EmbreeScene scene(rtcNewScene(state->device.get()));
     rtcSetSceneBuildQuality(scene.get(), quality);

@@ -3,27 +3,25 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <cstring>
-#include <span>
-#include <string_view>
-#include <type_traits>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "baker/bake/bake.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "reference/camera.hpp"
 #include "reference/film.hpp"
-#include "reference/light_cache.hpp"
+#include "reference/lights.hpp"
 #include "reference/options.hpp"
-#include "reference/traced_scene.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/process.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/bundle/container.hpp"
 #include "runtime/bundle/gltf_types.hpp"
-#include "runtime/bundle/material_fields.hpp"
+#include "runtime/sh/basis.hpp"
+#include "runtime/spec/numbers.hpp"
 
 namespace lambent::baker::reference {
 
@@ -157,16 +155,15 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   progress.begin("scene");
   const auto loaded = loadEach(request.lights);
   if (!loaded) return failAgain(loaded.error());
-  spec::DistantLights lights = together(*loaded, request.light_factors);
-  addLights(lights, request.more_light.get());
+  spec::DistantLights lights = together(*loaded, request.light_factors, request.more_light.get());
   report.notices = lights.notices;
   const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights, scene.origin);
   const auto traced = TracedScene::build(scene);
   if (!traced) return failAgain(traced.error());
-  report.notices.insert(report.notices.end(), (*traced)->notices().begin(), (*traced)->notices().end());
+  report.notices.insert(report.notices.end(), (*traced)->notices.begin(), (*traced)->notices.end());
   if (auto fits = checkMemory(options, of_picture, picture); !fits)  // textures and light are there now
     return failAgain(std::move(fits.error()));
-  const auto view = viewOf(scene, (*traced)->surfaces(), request);
+  const auto view = viewOf(scene, (*traced)->surfaces, request);
   if (!view) return failAgain(view.error());
   Film film(options.size, digestOf(scene, lights, shapes, *view, options));
   const Environment environment(std::move(lights), options.rotate_light_deg,
@@ -179,9 +176,10 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
     left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
   // Trace the paths.
   progress.begin("paths", left, "samples");
-  const World world = (*traced)->under(environment, shapes, EyeRays(*view, options.size));
-  auto done = renderAll(Integrator(world, options), film,
-                        {options.spp, samplesInPass(options, world.volumes)}, checkpoint, progress, stop);
+  const World world{**traced, environment, shapes, EyeRays(*view, options.size)};
+  auto done =
+      renderAll(Integrator(world, options), film, {options.spp, samplesInPass(options, (*traced)->volumes)},
+                checkpoint, progress, stop);
   if (!done) return failAgain(std::move(done.error()));
   report.image = film.image();
   report.rays = film.rays();
@@ -225,118 +223,61 @@ Result<Report> render(const Scene& scene, const Request& request, const fs::path
   return report;
 }
 
-namespace {
-
-// The length of a list is hashed, too, so that different inputs differ. Only types without padding are
-// allowed.
-class Digest {
- public:
-  template <typename... T>
-  void add(const T&... values) {
-    (addOne(values), ...);
-  }
-  template <typename T>
-  void addList(const std::vector<T>& list) {
-    addOne(list.size());
-    addOne(bundle::checksum(std::as_bytes(std::span(list))));
-  }
-  std::uint64_t value() const { return bundle::checksum(bytes_); }
-
- private:
-  template <typename T>
-  requires std::is_trivially_copyable_v<T>
-  void addOne(const T& value) {
-    const auto raw = std::as_bytes(std::span(&value, 1));
-    bytes_.insert(bytes_.end(), raw.begin(), raw.end());
-  }
-  std::vector<std::byte> bytes_;
-};
-
-void add(const gltf::TextureRef& ref, Digest& digest) {
-  digest.add(ref.texture, ref.texcoord, ref.offset, ref.scale, ref.rotation_rad);
-}
-
-// The fields for reflection are hashed between the other values and the other textures.
-void add(const gltf::Material& material, Digest& digest) {
-  const auto addValues = [&](bool reflection) {
-    gltf::forEachMaterialValue([&](const auto& field) {
-      if ((field.part == gltf::MaterialPart::Reflection) == reflection) digest.add(material.*field.member);
-    });
-  };
-  const auto addTextures = [&](bool reflection) {
-    gltf::forEachMaterialTexture([&](const auto& field) {
-      if ((field.part == gltf::MaterialPart::Reflection) == reflection) add(material.*field.member, digest);
-    });
-  };
-  addValues(false), addValues(true);
-  addTextures(true), addTextures(false);
-}
-
-void add(const Scene& scene, Digest& digest) {
-  const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n)
-    digest.add(world[n], scene.nodes[n].mesh, scene.nodes[n].light);
-  for (const SceneMesh& mesh : scene.meshes) {
-    digest.add(mesh.primitives.size());
-    for (const ScenePrimitive& primitive : mesh.primitives) {
-      const bundle::MeshData& data = primitive.mesh;
-      digest.add(primitive.material);
-      digest.addList(data.positions), digest.addList(data.normals), digest.addList(data.normal_weights);
-      digest.addList(data.texcoords0);
-      digest.addList(data.texcoords1), digest.addList(data.colors), digest.addList(data.tangents);
-      digest.addList(data.indices);
-    }
-  }
-  for (const gltf::Material& material : scene.materials) add(material, digest);
-  for (const MeasuredBrdf& brdf : scene.brdfs) digest.addList(brdf.measurements);
-  for (const gltf::Texture& texture : scene.textures)
-    digest.add(texture.image, texture.sampler.wrap_s, texture.sampler.wrap_t, texture.sampler.mag_filter);
-  for (const SceneImage& image : scene.images) digest.addList(image.file_bytes);
-  digest.add(scene.volumes.size());
-  for (const SceneVolume& volume : scene.volumes) {
-    digest.add(volume.node, volume.size, volume.node_from_grid, volume.albedo, volume.g);
-    digest.addList(volume.density);
-  }
-  for (const gltf::Light& l : scene.lights)
-    digest.add(l.type, l.color, l.intensity, l.range_m, l.inner_cone_rad, l.outer_cone_rad);
-}
-
-void add(const spec::DistantLights& lights, Digest& digest) {
-  digest.add(lights.constant, lights.discs.size());
-  for (const spec::Disc& disc : lights.discs) digest.add(disc.direction, disc.radius_rad, disc.radiance);
-  for (const spec::EnvironmentMap& environment_map : lights.environment_maps) {
-    digest.add(environment_map.layout, environment_map.image.width, environment_map.image.height);
-    digest.addList(environment_map.image.texels);
-  }
-}
-
-void add(const std::vector<spec::LocalLight>& shapes, Digest& digest) {
-  digest.add(shapes.size());
-  for (const spec::LocalLight& shape : shapes) {
-    digest.add(shape.index());
-    if (const auto* sphere = std::get_if<spec::SphereLight>(&shape))
-      digest.add(sphere->position_ws, sphere->radius_m, sphere->radiance);
-    else if (const auto* disc = std::get_if<spec::DiscLight>(&shape))
-      digest.add(disc->position_ws, disc->normal_ws, disc->radius_m, disc->radiance);
-  }
-}
-
-}  // namespace
-
 std::uint64_t digestOf(const Scene& scene, const spec::DistantLights& lights,
                        const std::vector<spec::LocalLight>& shapes, const spec::View& view,
                        const Options& options) {
-  Digest digest;
-  for (const char c : std::string_view(LAMBENT_VERSION " " LAMBENT_ISA)) digest.add(c);
-  add(scene, digest);
-  add(lights, digest);
-  add(shapes, digest);
-  digest.add(view.view_from_world, view.clip_from_view);
+  KeyMaker key;
+  key.addText(LAMBENT_VERSION " " LAMBENT_ISA).add(sceneDigest(scene));
+  key.add(lights.constant).add(std::uint64_t{lights.discs.size()});
+  for (const spec::Disc& disc : lights.discs) key.add(disc.direction).add(disc.radius_rad).add(disc.radiance);
+  for (const spec::EnvironmentMap& map : lights.environment_maps)
+    key.add(map.layout).add(map.image.width).add(map.image.height).addList(map.image.texels);
+  for (const spec::LocalLight& shape : shapes) {
+    key.add(std::uint64_t{shape.index()});
+    if (const auto* sphere = std::get_if<spec::SphereLight>(&shape))
+      key.add(sphere->position_ws).add(sphere->radius_m).add(sphere->radiance);
+    else if (const auto* disc = std::get_if<spec::DiscLight>(&shape))
+      key.add(disc->position_ws).add(disc->normal_ws).add(disc->radius_m).add(disc->radiance);
+  }
+  key.add(view.view_from_world).add(view.clip_from_view);
   const BandLimit limit = options.band_limit.value_or(BandLimit{.in = 0, .out = {}});
-  digest.add(options.size.width, options.size.height, options.spp, options.seed, limit.in,
-             limit.out.value_or(0), options.bounces.has_value(), options.bounces.value_or(0),
-             options.rotate_light_deg);
-  return digest.value();
+  key.add(options.size.width).add(options.size.height).add(options.spp).add(options.seed);
+  key.add(limit.in).add(limit.out.value_or(0)).add(options.rotate_light_deg);
+  key.add(options.bounces.has_value()).add(options.bounces.value_or(0));
+  return key.key().low;
+}
+
+Result<BandLimit> parseBandLimit(std::string_view word) {
+  const auto wrong = [&] {
+    return fail("--band-limit", fmt::format("\"{}\" is not IN or IN,OUT", word),
+                fmt::format("give orders 1 to {}, as 5 or 5,5", sh::kMaxOrder));
+  };
+  const auto numbers = spec::parseNumbers(word);
+  if (!numbers || numbers->size() > 2) return wrong();
+  for (const float number : *numbers)
+    if (number != static_cast<float>(static_cast<int>(number)) || number < 1.0f ||
+        number > static_cast<float>(sh::kMaxOrder))
+      return wrong();
+  BandLimit limit{.in = static_cast<int>((*numbers)[0]), .out = {}};
+  if (numbers->size() == 2) limit.out = static_cast<int>((*numbers)[1]);
+  return limit;
+}
+
+Result<void> checkOptions(const Options& options) {
+  if (options.spp < 1 || options.spp > kMaxSpp)
+    return fail("--spp", fmt::format("{} samples a pixel are outside 1..{}", options.spp, kMaxSpp),
+                "give 64 for a look, 1024 and more for a reference");
+  if (options.size.width < 1 || options.size.height < 1 || options.size.width > spec::kMaxPictureSide ||
+      options.size.height > spec::kMaxPictureSide)
+    return fail("--size", fmt::format("is outside 1..{}", spec::kMaxPictureSide),
+                "give WIDTHxHEIGHT in pixels");
+  if (options.band_limit) {
+    const auto good = [](int order) { return order >= 1 && order <= sh::kMaxOrder; };
+    if (!good(options.band_limit->in) || !good(options.band_limit->out.value_or(1)))
+      return fail("--band-limit", fmt::format("is outside 1..{}", sh::kMaxOrder),
+                  "give IN or IN,OUT, as 5 or 5,5");
+  }
+  return {};
 }
 
 }  // namespace lambent::baker::reference

@@ -45,17 +45,16 @@ std::size_t wrapped(double at, std::uint32_t size, std::uint32_t mode) {
 Result<Textures> Textures::load(const Scene& scene) {
   Textures out;
   out.textures_ = scene.textures;
-  out.images_.resize(scene.images.size());
+  out.images_.resize(scene.textures.size());
+  DecodedImages images(scene);
   std::optional<Error> error;
   const auto load = [&](const gltf::TextureRef& ref) {
     if (ref.texture < 0 || error) return;
-    const std::int32_t image = scene.textures[static_cast<std::size_t>(ref.texture)].image;
-    if (image < 0 || out.images_[static_cast<std::size_t>(image)]) return;
-    auto decoded = decodeImage(scene.images[static_cast<std::size_t>(image)]);
-    if (decoded)
-      out.images_[static_cast<std::size_t>(image)] = std::move(*decoded);
+    auto image = images.ofTexture(ref.texture);
+    if (image)
+      out.images_[static_cast<std::size_t>(ref.texture)] = std::move(*image);
     else
-      error = std::move(decoded.error());
+      error = std::move(image.error());
   };
   for (const gltf::Material& material : scene.materials)
     gltf::forEachMaterialTexture([&](const auto& field) { load(material.*field.member); });
@@ -66,9 +65,10 @@ Result<Textures> Textures::load(const Scene& scene) {
 template <typename Decode>
 glm::vec4 Textures::lookUp(const gltf::TextureRef& ref, const glm::vec2& uv, const Decode& decode) const {
   if (ref.texture < 0) return glm::vec4(1.0f);
-  const gltf::Texture& texture = textures_[static_cast<std::size_t>(ref.texture)];
-  if (texture.image < 0 || !images_[static_cast<std::size_t>(texture.image)]) return glm::vec4(1.0f);
-  const DecodedImage& image = *images_[static_cast<std::size_t>(texture.image)];
+  const auto index = static_cast<std::size_t>(ref.texture);
+  if (!images_[index]) return glm::vec4(1.0f);
+  const gltf::Texture& texture = textures_[index];
+  const DecodedImage& image = *images_[index];
   const glm::vec2 turned = ref.apply(uv);
   const bool nearest = texture.sampler.mag_filter == kNearest;
   const double x = std::clamp(double{turned.x} * image.width, -1e12, 1e12) - (nearest ? 0.0 : 0.5);
@@ -122,7 +122,7 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
   auto textures = Textures::load(scene);
   if (!textures) return failAgain(std::move(textures.error()));
   out.textures_ = std::move(*textures);
-  const std::vector<std::shared_ptr<const WholeBrdf>> whole = wholeBrdfs(scene);
+  std::vector<std::shared_ptr<const MeasuredReflection>> measured(scene.brdfs.size());
   const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     if (scene.nodes[n].mesh < 0) continue;
@@ -136,7 +136,11 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
       Surface surface;
       if (primitive.material >= 0) {
         surface.material = scene.materials[static_cast<std::size_t>(primitive.material)];
-        surface.whole = whole[static_cast<std::size_t>(primitive.material)];
+        if (const std::int32_t brdf = surface.material.brdf; brdf >= 0 && !surface.material.isDiffuse()) {
+          const auto index = static_cast<std::size_t>(brdf);
+          if (!measured[index]) measured[index] = std::make_shared<MeasuredReflection>(scene.brdfs[index]);
+          surface.measured = measured[index];
+        }
       } else {
         surface.material.metallic = 0.0f;  // diffuse white
       }
@@ -174,7 +178,7 @@ void Surfaces::buildTables() {
   for (const Surface& surface : surfaces_) {
     const gltf::Material& material = surface.material;
     const bool bare = material.metallic >= 1.0f && material.metallic_roughness_texture.texture < 0;
-    if (material.isDiffuse() || surface.whole || bare) continue;
+    if (material.isDiffuse() || surface.measured || bare) continue;
     if (round_.empty()) round_ = AlbedoTable::build(/*anisotropic=*/false);
     if (material.anisotropy > 0.0f && anisotropic_.empty())
       anisotropic_ = AlbedoTable::build(/*anisotropic=*/true);
@@ -293,8 +297,8 @@ Reflector Surfaces::reflectorAt(const Hit& hit, const SurfacePoint& point, const
   const auto [t, strength] = anisotropy(hit, normal, point.shading);
   out.world_from_local = {t, glm::cross(point.shading, t), point.shading};
   out.view = liftedView(out.toLocal(glm::normalize(to_eye)));
-  if ((out.whole = surfaces_[hit.surface].whole.get())) {
-    out.alpha = glm::vec2(out.whole->alpha());
+  if ((out.measured = surfaces_[hit.surface].measured.get())) {
+    out.alpha = glm::vec2(out.measured->alpha());
     out.specular_share = 0.5f;
     return out;
   }

@@ -18,7 +18,6 @@
 #include "baker/import/image.hpp"
 #include "baker/import/scene.hpp"
 #include "reference/brdf.hpp"
-#include "reference/horizons.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker::reference {
@@ -42,7 +41,7 @@ class Textures {
   glm::vec4 lookUp(const gltf::TextureRef& ref, const glm::vec2& uv, const Decode& decode) const;
 
   std::vector<gltf::Texture> textures_;
-  std::vector<std::optional<DecodedImage>> images_;
+  std::vector<std::shared_ptr<const DecodedImage>> images_;  // by texture; null: none
 };
 
 inline float largest(const glm::vec3& v) {
@@ -51,7 +50,7 @@ inline float largest(const glm::vec3& v) {
 
 struct Surface {
   gltf::Material material;
-  std::shared_ptr<const WholeBrdf> whole;  // null: GGX or diffuse
+  std::shared_ptr<const MeasuredReflection> measured;  // null: GGX or diffuse
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
   float handedness = 1.0f;  // -1 in mirrored nodes; the bitangent is cross(n, t) * w * handedness

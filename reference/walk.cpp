@@ -7,8 +7,8 @@
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 
-#include "reference/phase.hpp"
 #include "reference/sampler.hpp"
+#include "reference/volumes.hpp"
 
 namespace lambent::baker::reference {
 
@@ -116,7 +116,7 @@ void Walk::scatterToEye(const EyeDepth& eye, const Ray& ray, std::uint32_t layer
     const glm::dvec2 u(draw(path, kPlaceInVolume));
     const double t = eye.place(std::min(begin - std::log1p(-u.x * share), end));
     standInMedium(path, glm::vec3(glm::dvec3(ray.origin) + t * glm::dvec3(ray.dir)),
-                  world.volumes.medium(eye.pick(t, u.y)));
+                  world.scene.volumes.medium(eye.pick(t, u.y)));
     path.dir = glm::vec3(glm::normalize(glm::dvec3(ray.dir)));
   }
   walk(/*in_volume=*/true, layer);
@@ -130,7 +130,7 @@ void Walk::walk(bool in_volume, std::uint32_t layer) {
     if (vertex > kFirstRoulette) playRoulette();
     gatherLights(vertex == 0);
     scatter(vertex == 0);
-    if (world.volumes.empty() && vertex == mostReflections() && !findsLights()) {
+    if (world.scene.volumes.empty() && vertex == mostReflections() && !findsLights()) {
       if (!world.environment.dark() || shapesAreSky()) lookAtSky(vertex == 0);
       return;
     }
@@ -188,7 +188,7 @@ void Walk::scatterInMedium(Path& path, const glm::vec2& u, bool first) const {
 void Walk::advance(bool first) {
   collide();
   hits.resize(rays.size());
-  if (!rays.empty()) world.rays.intersect(rays, hits);
+  if (!rays.empty()) world.scene.rays->intersect(rays, hits);
   traced += rays.size();
   for (std::size_t i = 0; i < rays.size(); ++i) {
     Path& path = paths[ray_path[i]];
@@ -212,10 +212,10 @@ glm::vec3 Walk::meetPanes(Path& path, const Ray& ray, Hit& hit) {
   const float far = hit.any() ? hit.t : ray.far * kShadowReach;
   glm::vec3 all(1.0f);
   float near = 0.0f;
-  if (world.rays.hasPanes()) {
+  if (world.scene.rays->hasPanes()) {
     Stream random = stream(path, kAtPanes);
-    world.rays.panesOn({ray.origin, ray.dir, far}, faces);
-    PaneWay way(world.surfaces, ray);
+    world.scene.rays->panesOn({ray.origin, ray.dir, far}, faces);
+    PaneWay way(world.scene.surfaces, ray);
     const auto pass = [&](const glm::vec3& share) {
       path.throughput *= share;
       all *= share;
@@ -224,7 +224,7 @@ glm::vec3 Walk::meetPanes(Path& path, const Ray& ray, Hit& hit) {
       addShapes(path, near, face.t);
       near = face.t;
       const glm::vec3 passed = way.pass(face);
-      const bool back = world.surfaces.pointAt(face, path.dir).blocked;
+      const bool back = world.scene.surfaces.pointAt(face, path.dir).blocked;
       const float reflected = back ? 0.0f : std::max(1.0f - largest(passed), kLeastReflected);
       if (random.next() < double{reflected}) {
         hit = face;
@@ -241,22 +241,22 @@ glm::vec3 Walk::meetPanes(Path& path, const Ray& ray, Hit& hit) {
 
 void Walk::collide() {
   collisions.assign(rays.size(), std::nullopt);
-  if (world.volumes.empty()) return;
+  if (world.scene.volumes.empty()) return;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     Stream random = stream(paths[ray_path[i]], kOnward);
-    collisions[i] = world.volumes.collide(rays[i], double{kInfinity}, random);
+    collisions[i] = world.scene.volumes.collide(rays[i], double{kInfinity}, random);
     if (collisions[i]) rays[i].far = static_cast<float>(collisions[i]->t);
   }
 }
 
 void Walk::arrive(Path& path, const Hit& hit) const {
-  const SurfacePoint there = world.surfaces.pointAt(hit, path.dir);
+  const SurfacePoint there = world.scene.surfaces.pointAt(hit, path.dir);
   path.alive = !there.blocked && !there.unlit;
   if (!path.alive) return;
   addEmitted(path, hit, there);
   path.at = there;
   // Panes reflect as much less than all as they pass, which is that of a right angle at all angles.
-  if (world.surfaces.surfaces()[hit.surface].material.transmits())
+  if (world.scene.surfaces.surfaces()[hit.surface].material.transmits())
     path.at.reflector.f90 = largest(there.reflector.f0);
   path.in_medium = false;
   path.alive = ++path.reflections <= mostReflections();
@@ -264,7 +264,7 @@ void Walk::arrive(Path& path, const Hit& hit) const {
 
 void Walk::enterMedium(Path& path, const Ray& ray, const Volumes::Collision& collision) const {
   standInMedium(path, glm::vec3(glm::dvec3(ray.origin) + collision.t * glm::dvec3(ray.dir)),
-                world.volumes.medium(collision.volume));
+                world.scene.volumes.medium(collision.volume));
   path.alive = options.bounces.value_or(1) > 0;
 }
 
@@ -314,7 +314,7 @@ void Walk::lightFromSky(std::size_t p, bool first) {
 
 void Walk::lightFromEmissive(std::size_t p, bool first) {
   const Path& path = paths[p];
-  const auto sample = world.emissive.sample(draw(path, kChoices).y, draw(path, kEmissivePlace));
+  const auto sample = world.scene.emissive.sample(draw(path, kChoices).y, draw(path, kEmissivePlace));
   const glm::vec3 origin = path.at.origin(), to = sample.position - origin;
   const float distance2 = glm::dot(to, to);
   if (!(distance2 > 0.0f)) return;
@@ -323,10 +323,10 @@ void Walk::lightFromEmissive(std::size_t p, bool first) {
   if (facing == 0.0f || (facing < 0.0f && !sample.double_sided)) return;
   const float pdf = sample.per_area * distance2 / std::abs(facing);
   const Scattering s = ofRay(path, dir, first);
-  addShadow(
-      p, to, kShadowReach,
-      path.throughput * world.surfaces.emittedAt(sample.hit) * (s.value / pdf * powerHeuristic(pdf, s.pdf)),
-      kToEmissive);
+  addShadow(p, to, kShadowReach,
+            path.throughput * world.scene.surfaces.emittedAt(sample.hit) *
+                (s.value / pdf * powerHeuristic(pdf, s.pdf)),
+            kToEmissive);
 }
 
 void Walk::lightFromShapes(std::size_t p, bool first) {
@@ -355,18 +355,18 @@ void Walk::lightFromPunctual(std::size_t p, bool first) {
   };
   float sum = 0.0f;
   glm::vec3 radiance(0.0f);
-  for (const PunctualLight& light : world.punctual)
+  for (const PunctualLight& light : world.scene.punctual)
     if (given(light, radiance)) sum += largest(radiance);
   if (!(sum > 0.0f)) return;
   float left = draw(path, kRouletteAndLamp).y * sum;
-  for (std::size_t i = 0; i < world.punctual.size(); ++i) {
-    const auto beam = given(world.punctual[i], radiance);
+  for (std::size_t i = 0; i < world.scene.punctual.size(); ++i) {
+    const auto beam = given(world.scene.punctual[i], radiance);
     if (!beam) continue;
     const float share = largest(radiance);
     left -= share;
     if (left >= 0.0f || !(share > 0.0f)) continue;
     const bool near = std::isfinite(beam->distance);
-    glm::vec3 to = near ? world.punctual[i].position - path.at.origin() : beam->to_light;
+    glm::vec3 to = near ? world.scene.punctual[i].position - path.at.origin() : beam->to_light;
     addShadow(p, rayFor(path, to, first), near ? kShadowReach : kInfinity, radiance * (sum / share),
               kToPunctual);
     return;
@@ -378,9 +378,9 @@ void Walk::gatherLights(bool first) {
   for (std::size_t p = 0; p < paths.size(); ++p) {
     if (!paths[p].alive) continue;
     if (world.environment.sampled()) lightFromSky(p, first);
-    if (!world.emissive.empty()) lightFromEmissive(p, first);
+    if (!world.scene.emissive.empty()) lightFromEmissive(p, first);
     lightFromShapes(p, first);
-    if (!world.punctual.empty()) lightFromPunctual(p, first);
+    if (!world.scene.punctual.empty()) lightFromPunctual(p, first);
   }
   rays.clear();
   for (const Shadow& shadow : shadows) rays.push_back(shadow.ray);
@@ -390,23 +390,23 @@ void Walk::gatherLights(bool first) {
 }
 
 glm::vec3 Walk::throughVolumes(const Shadow& shadow) const {
-  if (world.volumes.empty()) return shadow.radiance;
+  if (world.scene.volumes.empty()) return shadow.radiance;
   Stream random = stream(paths[shadow.path], shadow.light);
-  return shadow.radiance * static_cast<float>(world.volumes.transmittance(
+  return shadow.radiance * static_cast<float>(world.scene.volumes.transmittance(
                                shadow.ray, double{shadow.ray.far} / double{kShadowReach}, random));
 }
 
 void Walk::traceOccluded() {
   blocked.resize(rays.size());
-  if (!rays.empty()) world.rays.occluded(rays, blocked);
+  if (!rays.empty()) world.scene.rays->occluded(rays, blocked);
   traced += rays.size();
 }
 
 glm::vec3 Walk::passedOn(const Ray& ray) {
   glm::vec3 passed(1.0f);
-  if (!world.rays.hasPanes()) return passed;
-  world.rays.panesOn(ray, faces);
-  PaneWay way(world.surfaces, ray);
+  if (!world.scene.rays->hasPanes()) return passed;
+  world.scene.rays->panesOn(ray, faces);
+  PaneWay way(world.scene.surfaces, ray);
   for (const Hit& face : faces) passed *= way.pass(face);
   return passed * way.end();
 }
@@ -443,7 +443,7 @@ void Walk::addEmitted(Path& path, const Hit& hit, const SurfacePoint& there) con
   if (there.emitted == glm::vec3(0.0f)) return;
   const glm::vec3 to = there.position - path.at.origin();
   const float facing = std::abs(glm::dot(there.geometric, path.dir));
-  const float per_area = world.emissive.perArea(hit);
+  const float per_area = world.scene.emissive.perArea(hit);
   const float weight =
       per_area > 0.0f ? powerHeuristic(path.ray_pdf, per_area * glm::dot(to, to) / std::max(facing, 1e-12f))
                       : 1.0f;

@@ -11,10 +11,10 @@
 
 #include "reference/camera.hpp"
 #include "reference/exit_kernel.hpp"
+#include "reference/film.hpp"
 #include "reference/options.hpp"
 #include "reference/ray_tracer.hpp"
 #include "reference/sampler.hpp"
-#include "reference/traced_scene.hpp"
 
 namespace lambent::baker::reference {
 
@@ -76,7 +76,7 @@ struct Path {
   std::uint32_t index = 0, replica = 0;  // index of the sample within its replica, and the replica
   // In a medium, this is first the direction that led here; after sampling, it is the next one.
   glm::vec3 dir{0.0f};
-  // The BRDF is evaluated for this direction: dir, or a direction that is mirrored to dir (horizons.hpp).
+  // The BRDF is evaluated for this direction: dir, or a direction that is mirrored to dir (Horizons).
   glm::vec3 towards{0.0f};
   float pdf = 0.0f;  // density of `towards` by the BRDF sampling
   // The density of `dir`, summed over all directions that it stands for. It is set only if findsLights().
@@ -147,10 +147,12 @@ struct Walk {
   // Sums the BRDF over all directions that a ray stands for. At the first vertex the BRDF may be
   // band-limited.
   Scattering ofRay(const Path& path, const glm::vec3& ray, bool first) const;
-  // Returns the ray direction for a direction (horizons.hpp), with the same length.
+  // Returns the ray direction for a direction (Horizons), with the same length.
   glm::vec3 rayFor(const Path& path, const glm::vec3& dir, bool first) const;
   // Returns whether paths can hit lights at a finite distance.
-  bool findsLights() const { return !world.emissive.empty() || !(world.shapes.empty() || shapesAreSky()); }
+  bool findsLights() const {
+    return !world.scene.emissive.empty() || !(world.shapes.empty() || shapesAreSky());
+  }
   // Returns whether the first OUT bands replace the phase function at this vertex, as they replace the BRDF.
   // Directions are then drawn half from the phase function and half uniformly.
   bool phaseIsLimited(bool first) const { return first && options.band_limit && options.band_limit->out; }
@@ -159,7 +161,7 @@ struct Walk {
   // is.
   bool shapesAreSky() const { return options.band_limit.has_value() && !world.shapes.empty(); }
   std::uint32_t mostReflections() const {
-    return options.bounces.value_or(world.volumes.empty() ? kMostVertices : kMostReflections);
+    return options.bounces.value_or(world.scene.volumes.empty() ? kMostVertices : kMostReflections);
   }
   bool anyAlive() const {
     return std::any_of(paths.begin(), paths.end(), [](const Path& path) { return path.alive; });

@@ -9,7 +9,6 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$out"
 cp assets/hello.glb "$work/room.glb"
 head -c 2000 assets/hello.glb > "$work/broken.glb"
-cp assets/gallery.glb "$work/gallery.glb"
 
 edit() {  # SCRIPT QUALITY
   exec bin/lambent-editor --fresh --size "$size" --scale "$scale" --cache "$work/cache" --quality "$2" --json --script "$1" > "$work/answers"
@@ -64,36 +63,9 @@ panel Log
 wait seconds 1
 screenshot $work/10-error.png
 END
-cat > "$work/third" << END
-open $work/gallery.glb
-wait loaded 60
-panel Bakes
-wait seconds 20
-screenshot $work/baking.png
-wait baked 900
-END
-cat > "$work/fourth" << END
-panel Bakes
-wait seconds 1
-screenshot $work/11-cut-short.png
-click bakes.gallery.glb.open
-wait loaded 60
-wait seconds 2
-where bakes.gallery.cancel
-screenshot $work/12-goes-on.png
-END
 # At standard quality the bake still goes on when its first picture is there.
 (edit "$work/first" standard)
 (edit "$work/second" standard)
-(edit "$work/third" draft) &
-while [ ! -e "$work/baking.png" ]; do
-  kill -0 $!
-  sleep 1
-done
-sleep 1  # the picture may not be whole yet
-kill -9 $!
-wait $! || true
-(edit "$work/fourth" draft)
 for picture in "$work"/[01][0-9]-*.png; do
   convert "$picture" -resize '960x>' -quality 82 "$out/tour-$(basename "$picture" .png).jpg"
 done

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <span>
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "runtime/base/finite.hpp"
+#include "runtime/spec/rec709.hpp"
 
 namespace lambent::baker {
 
@@ -122,6 +125,124 @@ Result<spec::RgbaImage> shrunk(const spec::RgbaImage& picture, std::uint32_t n, 
           sum += glm::dvec4(picture.texels[std::size_t{row} * picture.width + column]);
       out.texels.emplace_back(share * sum);
     }
+  return out;
+}
+
+namespace {
+
+using Color = std::array<std::uint8_t, 3>;
+
+// ColorBrewer's RdBu in 11 steps, reversed.
+constexpr std::array<Color, 11> kColors = {{{5, 48, 97},
+                                            {33, 102, 172},
+                                            {67, 147, 195},
+                                            {146, 197, 222},
+                                            {209, 229, 240},
+                                            {247, 247, 247},
+                                            {253, 219, 199},
+                                            {244, 165, 130},
+                                            {214, 96, 77},
+                                            {178, 24, 43},
+                                            {103, 0, 31}}};
+constexpr Color kUncovered = {48, 48, 48}, kApart = {150, 60, 220};
+constexpr float kFloor = 0.05f;  // relative to the picture's RMS luminance
+
+struct Pixels {
+  std::vector<float> values;  // values of the map in pixels that all pictures cover
+  std::vector<std::uint32_t> at, apart;
+};
+
+// Counts pixels as comparePictures() does.
+Pixels pixelsOf(const spec::RgbaImage& picture, const spec::RgbaImage& a, const spec::RgbaImage& b) {
+  Pixels out;
+  for (std::uint32_t i = 0; i < picture.texels.size(); ++i) {
+    const auto [least, most] = std::minmax({picture.texels[i].w, a.texels[i].w, b.texels[i].w});
+    if (least >= spec::kLeastCoverage)
+      out.at.push_back(i);
+    else if (most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage)
+      out.apart.push_back(i);
+  }
+  return out;
+}
+
+void measure(Pixels& pixels, const spec::RgbaImage& picture, const spec::RgbaImage& a,
+             const spec::RgbaImage& b) {
+  const auto mean = [&](std::uint32_t i) { return 0.5f * (a.texels[i] + b.texels[i]); };
+  double squares = 0.0;
+  for (const std::uint32_t i : pixels.at) {
+    const double y = double{spec::luminanceOf(mean(i))};
+    squares += y * y;
+  }
+  const auto scale =
+      std::max(static_cast<float>(std::sqrt(squares / static_cast<double>(pixels.at.size()))), 1e-30f);
+  pixels.values.reserve(pixels.at.size());
+  for (const std::uint32_t i : pixels.at)
+    pixels.values.push_back(spec::luminanceOf(picture.texels[i] - mean(i)) /
+                            std::max(spec::luminanceOf(mean(i)), kFloor * scale));
+}
+
+// Rounds up to 1, 2 or 5 times a power of ten; equal pictures get a thousandth.
+double rounded(double range) {
+  if (!(range > 1e-3)) return 1e-3;
+  const double power = std::pow(10.0, std::floor(std::log10(range)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (range <= step * power * (1.0 + 1e-9)) return step * power;
+  return 10.0 * power;
+}
+
+double rangeOf(std::span<const float> values) {
+  std::vector<float> sizes(values.size());
+  std::transform(values.begin(), values.end(), sizes.begin(), [](float v) { return std::abs(v); });
+  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), at, sizes.end());
+  return rounded(double{*at});
+}
+
+void put(spec::Rgba8Image& image, std::uint32_t i, const Color& color) {
+  std::copy(color.begin(), color.end(), image.texels.begin() + 4 * static_cast<std::ptrdiff_t>(i));
+}
+
+}  // namespace
+
+std::array<std::uint8_t, 3> heatColor(double share) {
+  const double at = std::clamp(0.5 * (share + 1.0), 0.0, 1.0) * static_cast<double>(kColors.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(at), kColors.size() - 2);
+  Color out;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const double from = kColors[low][k], to = kColors[low + 1][k];
+    out[k] = static_cast<std::uint8_t>(std::lround(glm::mix(from, to, at - static_cast<double>(low))));
+  }
+  return out;
+}
+
+Result<Difference> differenceOf(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
+                                const spec::RgbaImage* reference2, std::optional<double> range,
+                                const std::string& subject) {
+  if (range && !(*range > 0.0 && std::isfinite(*range)))
+    return fail("--heat-range", fmt::format("{} is not a range", *range), "give a share above 0, as 0.1");
+  auto figures = comparePictures(picture, reference, reference2, subject);
+  if (!figures) return failAgain(std::move(figures.error()));
+  const spec::RgbaImage& second = reference2 ? *reference2 : reference;
+  Pixels pixels = pixelsOf(picture, reference, second);
+  measure(pixels, picture, reference, second);
+  Difference out{.figures = *figures,
+                 .heat = {.width = picture.width,
+                          .height = picture.height,
+                          .texels = std::vector<std::uint8_t>(4 * picture.texels.size(), 255)},
+                 .range = range ? *range : rangeOf(pixels.values)};
+  // All pixels share one table, so that colours are interpolated once.
+  constexpr int kSteps = 512;
+  std::array<Color, kSteps + 1> table;
+  constexpr double kLeast = -1.0;
+  for (int k = 0; k <= kSteps; ++k)
+    table[static_cast<std::size_t>(k)] = heatColor(glm::mix(kLeast, 1.0, k / double{kSteps}));
+  for (std::uint32_t i = 0; i < picture.texels.size(); ++i) put(out.heat, i, kUncovered);
+  for (const std::uint32_t i : pixels.apart) put(out.heat, i, kApart);
+  for (std::size_t p = 0; p < pixels.at.size(); ++p) {
+    const double share = std::clamp(double{pixels.values[p]} / out.range, kLeast, 1.0);
+    put(out.heat, pixels.at[p],
+        table[static_cast<std::size_t>(std::lround((share - kLeast) / (1.0 - kLeast) * kSteps))]);
+  }
   return out;
 }
 

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "runtime/base/result.hpp"
 #include "runtime/spec/image.hpp"
@@ -59,5 +60,40 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
 // returns the picture as it is, with depths. Errors name `subject`: n is less than 1, or the size is no
 // multiple of n.
 Result<spec::RgbaImage> shrunk(const spec::RgbaImage& picture, std::uint32_t n, const std::string& subject);
+
+// Shows where and by how much a picture differs from a reference, as colours and in the figures of
+// comparePictures(). Two linear pictures of one size come in, with an optional second independent reference,
+// whose noise then cancels in the figures (though not in single pixels). An 8-bit picture and the range of
+// its colours go out. Calls are safe from any thread; 1280 x 720 takes less than 0.2 s.
+
+struct Difference {
+  PictureError figures;
+  // The luminance (Y - Y_ref) / max(Y_ref, 5 % of the picture's RMS luminance): red where the picture is too
+  // bright, white where it is right, blue where it is too dark. The floor keeps near-black pixels from
+  // filling the map. Pixels that no picture covers are dark grey; those that only some cover are violet.
+  spec::Rgba8Image heat;
+  double range = 0.0;  // the end of the colours, as a share (0.1 is 10 %)
+};
+
+// Returns the sRGB colour for a share of the range, -1..1; clamped.
+std::array<std::uint8_t, 3> heatColor(double share);
+
+// `reference2` is null if there is none. Without a range, it is the value that 99 of 100 pixels are below,
+// rounded up to 1, 2 or 5 times a power of ten. Errors: those of comparePictures(), or a range that is not
+// above 0.
+Result<Difference> differenceOf(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
+                                const spec::RgbaImage* reference2, std::optional<double> range,
+                                const std::string& subject);
+
+// Measures how much of a picture an eye sees as wrong, by the metric of Yee and Newman (2004): an error is
+// visible if it exceeds what the eye can tell at the luminance that it is adapted to, raised where fine
+// contrasts are hard to see or mask it. Pictures for a screen come in, as spec::displayed() makes them; the
+// share of their pixels that differ visibly goes out. Pure. OpenImageIO has this metric too, but its
+// compare_Yee() of version 2.4 sees colours alone: a picture twice as bright passes.
+
+// White is taken as 100 cd/m², and the picture as 45 degrees wide, as on a desktop screen that it fills.
+// Errors name `subject`: sizes differ.
+Result<double> visibleShare(const spec::Rgba8Image& picture, const spec::Rgba8Image& reference,
+                            const std::string& subject);
 
 }  // namespace lambent::baker

@@ -1,5 +1,3 @@
-#include "baker/accuracy/perceptual.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
+#include "baker/accuracy/compare.hpp"
 #include "runtime/spec/rec709.hpp"
 
 namespace lambent::baker {

@@ -1,10 +1,9 @@
-#include "baker/bake/assemble.hpp"
-
 #include <algorithm>
 #include <tuple>
 
 #include <glm/geometric.hpp>
 
+#include "baker/bake/bake_group.hpp"
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
@@ -24,8 +23,8 @@ std::uint32_t outputsOf(SampleKind kind, int glossy_order) {
 
 class Assembler {
  public:
-  explicit Assembler(const SceneBake& bake)
-      : scene_(bake.scene), plan_(bake.plan), options_(bake.options), tables_(bake.tables) {}
+  Assembler(const SceneBake& bake, BakeReport& report)
+      : scene_(bake.scene), plan_(bake.plan), options_(bake.options), tables_(bake.tables), report_(report) {}
 
   void copyScene() {
     description_.generator = generatorOf(scene_, options_);
@@ -96,7 +95,7 @@ class Assembler {
                                .transfers = {},
                                .light_probes = baked[g].light_probes.cells[c].points});
       }
-      group.picture_error = baked[g].picture_error;
+      group.picture_error = baked[g].surfaces.figures.picture_error;
       if (baked[g].volume) addVolume(*baked[g].volume, planned, group);
       if (baked[g].neighborhood) addNeighborhood(*baked[g].neighborhood, group);
       description_.groups.push_back(std::move(group));
@@ -123,7 +122,7 @@ class Assembler {
           for (std::size_t t = 0; t < coded.size(); ++t) visit(coded[t], stored->transfers, t);
           ++stored;
         };
-        for (const auto& coded : baked[g].cells) visitCell(coded);
+        for (const auto& coded : baked[g].surfaces.cells) visitCell(coded);
         if (baked[g].volume)
           for (const CodedCell& cell : baked[g].volume->cells) visitCell(cell.transfers);
         if (baked[g].neighborhood)
@@ -135,10 +134,10 @@ class Assembler {
       most_planes = std::max(most_planes, coded.planes.size());
     });
     for (std::size_t g = 0; g < baked.size(); ++g)
-      for (std::size_t c = 0; c < baked[g].cells.size(); ++c)
+      for (std::size_t c = 0; c < baked[g].surfaces.cells.size(); ++c)
         for (bundle::CellTransfer& stored : description_.groups[g].cells[c].transfers)
-          if (const float bound =
-                  stored.shape.beyondDiffuse() ? baked[g].glossy_codes_bound : baked[g].codes_bound;
+          if (const float bound = stored.shape.beyondDiffuse() ? baked[g].surfaces.figures.glossy_codes_bound
+                                                               : baked[g].surfaces.figures.codes_bound;
               bound > 0.0f)
             stored.error_bound = bound;
     addBrdfTables();
@@ -151,7 +150,7 @@ class Assembler {
     addImportance(baked, kFirstPlanePriority + static_cast<std::uint32_t>(most_planes));
   }
 
-  AssembledBundle take() { return {std::move(description_), std::move(blobs_), std::move(report_)}; }
+  AssembledBundle take() { return {std::move(description_), std::move(blobs_)}; }
 
  private:
   std::uint32_t addView(bundle::Blob bytes) {
@@ -271,9 +270,9 @@ class Assembler {
   void addImportance(const std::vector<BakedGroup>& baked, std::uint32_t priority) {
     for (std::size_t g = 0; g < baked.size(); ++g)
       for (bundle::Cell& cell : description_.groups[g].cells) {
-        if (baked[g].importance.empty() || cell.domain != transfer::Domain::Vertex) continue;
-        const auto codes =
-            std::as_bytes(std::span(baked[g].importance)).subspan(cell.first_sample, cell.sample_count);
+        if (baked[g].surfaces.importance.empty() || cell.domain != transfer::Domain::Vertex) continue;
+        const auto codes = std::as_bytes(std::span(baked[g].surfaces.importance))
+                               .subspan(cell.first_sample, cell.sample_count);
         cell.importance = static_cast<std::int32_t>(
             addTransferPayload(bundle::PayloadType::Importance, {codes.begin(), codes.end()}, priority));
       }
@@ -305,7 +304,7 @@ class Assembler {
     transfer::VertexWeights rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < geometry.vertex_count; ++v) {
-      // Rows without a sample show the light that falls on them, unshadowed (bake_unshadowed.cpp).
+      // Rows without a sample show the light that falls on them, unshadowed (bakeUnshadowed).
       if (const std::uint32_t sample = samples.vertex_sample[geometry.first_vertex + v];
           sample != kNoSample) {
         rows.samples.push_back(sample);
@@ -341,15 +340,16 @@ class Assembler {
   const EffectPlan& plan_;
   const BakeOptions& options_;
   const BrdfTables& tables_;
-  BakeReport report_;
+  BakeReport& report_;
   bundle::Description description_;
   std::vector<bundle::Blob> blobs_;
 };
 
 }  // namespace
 
-AssembledBundle assemble(const SceneBake& bake, ShippedMeshes meshes, const std::vector<BakedGroup>& baked) {
-  Assembler assembler(bake);
+AssembledBundle assemble(const SceneBake& bake, ShippedMeshes meshes, const std::vector<BakedGroup>& baked,
+                         BakeReport& report) {
+  Assembler assembler(bake, report);
   assembler.copyScene();
   assembler.addMeshes(meshes);
   assembler.addGroups(baked);

@@ -81,9 +81,6 @@ struct BakeReport {
   std::vector<Progress::Stage> stages;
   CacheFigures cache;                // what was read and written; zeros without a cache
   std::vector<std::string> notices;  // sentences about results that differ from the plan
-
-  // Adds what a part of the bake has to report.
-  void add(BakeReport part);
 };
 
 // Bakes the scene into a bundle at `output`. Results are looked up in the cache of the context and kept
@@ -108,5 +105,16 @@ bundle::Generator generatorOf(const Scene& scene, const BakeOptions& options);
 
 // Returns whether `output` is what bake() would write: it has the same scene, options and program.
 bool isUpToDate(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output);
+
+// Makes the first preview of a scene: a bundle without transfer, made without tracing rays, in about the time
+// that it takes to encode the meshes. The runtime shows it lit without shadows and bounces: vertices without
+// a sample show A_l y(n), and volumes have one sample that sees everything. Glossy surfaces are shown as
+// diffuse, since their BRDF tables take seconds to make, and lamps of the scene shine as lights from outside.
+// The bundle has the ordinary format; only its settings say "transfer": "none", so that no bake takes it for
+// up to date.
+
+// Uses only the order, the effects and the longest edge of the options. Errors: those of bake().
+Result<BakeReport> bakeUnshadowed(const Scene& scene, const BakeOptions& options,
+                                  const std::filesystem::path& output, const BakeContext& context);
 
 }  // namespace lambent::baker

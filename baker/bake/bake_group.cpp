@@ -2,37 +2,157 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "baker/bake/bake_around.hpp"
+#include <fmt/format.h>
+
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/options.hpp"
-#include "baker/bake/result_bytes.hpp"
-#include "baker/bake/surface_transport.hpp"
-#include "baker/brdf/kernel_power.hpp"
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/cache/bytes.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
+#include "baker/effects/neighborhood/neighborhood.hpp"
 #include "baker/effects/surface/cell_vectors.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/proxy/capture_proxy.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-// Codes the transfer of a group's surfaces: all that the group hands to the bundle of it.
+// Neighborhoods get this share of the bound on coded transfer, since they are seen against nearly open sky,
+// where errors show.
+constexpr double kShareOfBound = 1.0 / 3.0;
+// The bound on the change at the faces of grids around bodies that are moved by hand. These grids have no
+// more points than others, and lie close around the body, where its contact with what it stands on shows.
+constexpr double kBoundByHand = 0.03;
 
-struct SurfaceCells {
-  // Transfers of each sample cell: that of the environment (for a glossy cell visibility, then bounced
-  // light), followed by that of the group's lights if it has any.
-  std::vector<std::vector<CodedTransfer>> cells;
-  std::vector<std::uint8_t> importance;  // of each sample (description.hpp)
-  SurfaceFigures figures;
-};
+void take(const Around& around, BakedAround baked, BakedGroup& out) {
+  BakeReport& report = around.report;
+  const std::string& name = around.bake.plan.groups[around.group].name;
+  if (!baked.grid) {
+    report.notices.push_back(fmt::format(
+        "rigid group \"{}\": nothing comes within reach of its neighborhood, and none was baked", name));
+    return;
+  }
+  out.neighborhood = std::move(baked.grid);
+  const NeighborhoodFigures& figures = baked.figures;
+  report.rays += figures.rays;
+  report.rays_kept += figures.rays_kept;
+  report.neighborhoods.push_back({.name = name,
+                                  .size = figures.size,
+                                  .bounds_min = figures.bounds_min,
+                                  .bounds_max = figures.bounds_max,
+                                  .inside_points = figures.inside_points,
+                                  .error = figures.error,
+                                  .change_error = figures.change_error});
+}
+
+// Returns the bounds of the surfaces that come within reach, relative to the origin.
+std::optional<Box3> receiversOf(const Around& around) {
+  const PlannedNeighborhood& plan = around.plan();
+  if (plan.receivers.empty() || plan.by_hand) return std::nullopt;
+  return Box3{plan.receivers_min - around.origin, plan.receivers_max - around.origin};
+}
+
+}  // namespace
+
+BakeContext contextOf(const Around& around, const BakeContext& body) {
+  if (!body.keeps()) return body;
+  const PlannedNeighborhood& plan = around.plan();
+  const BakeOptions& options = around.bake.options;
+  const std::optional<Box3> receivers = receiversOf(around);
+  KeyMaker key = KeyMaker::ofStage("neighborhood");
+  key.add(body.key).add(around.origin).add(std::uint64_t{around.rays});
+  key.add(plan.asked).add(plan.by_hand).add(plan.matrices).add(plan.size).add(plan.extent);
+  key.add(receivers.has_value());
+  if (receivers) key.add(receivers->low).add(receivers->high);
+  key.add(plan.receivers_face);
+  key.add(options.neighborhood_grid).add(options.effectiveErrorBound());
+  return body.keyed(key.key());
+}
+
+bool findAround(const Around& around, const BakeContext& context, BakedGroup& out) {
+  BakedAround found;
+  if (!findKept(context, found)) return false;
+  take(around, std::move(found), out);
+  return true;
+}
+
+bool bakeAround(const Around& around, const Body& body, const Box3& bounds, const BakeContext& context,
+                BakedGroup& out) {
+  const PlannedNeighborhood& plan = around.plan();
+  const BakeOptions& options = around.bake.options;
+  NeighborhoodSettings settings;
+  settings.origin = around.origin;
+  settings.matrices = plan.matrices;
+  settings.rays = around.rays;
+  settings.placement.body = bounds;
+  if (const auto receivers = receiversOf(around)) settings.placement.receivers = *receivers;
+  settings.facing = plan.receivers_face;
+  settings.placement.size = plan.size;
+  settings.placement.extent = plan.extent;
+  settings.placement.by_length = options.neighborhood_grid;
+  if (plan.by_hand) settings.placement.bound = kBoundByHand;
+  settings.placement.few_points = !plan.asked && !plan.matrices;
+  settings.fit_between_points = true;
+  settings.coding.bound = kShareOfBound * double{options.effectiveErrorBound()};
+  auto baked = bakeNeighborhood(body, settings, context);
+  if (!baked) return false;
+  take(around, std::move(*baked), out);
+  return true;
+}
+
+template <>
+inline constexpr auto kKeptMembers<LightProbes::Cell> = std::tuple(&LightProbes::Cell::points,
+                                                                   &LightProbes::Cell::weights);
+template <>
+inline constexpr auto kKeptMembers<LightProbes> = std::tuple(&LightProbes::points, &LightProbes::cells);
+
+template <>
+inline constexpr auto kKeptMembers<bundle::ProxyTriangle> = std::tuple(
+    &bundle::ProxyTriangle::vertices, &bundle::ProxyTriangle::front_only, &bundle::ProxyTriangle::emission,
+    &bundle::ProxyTriangle::light, &bundle::ProxyTriangle::first_entry, &bundle::ProxyTriangle::entry_count);
+template <>
+inline constexpr auto kKeptMembers<bundle::ProxyEntry> = std::tuple(&bundle::ProxyEntry::sample,
+                                                                    &bundle::ProxyEntry::reflectance);
+template <>
+inline constexpr auto kKeptMembers<bundle::ProxyLevel> = std::tuple(&bundle::ProxyLevel::first_triangle,
+                                                                    &bundle::ProxyLevel::triangle_count,
+                                                                    &bundle::ProxyLevel::error_m);
+template <>
+inline constexpr auto kKeptMembers<bundle::PatchTriangle> = std::tuple(&bundle::PatchTriangle::vertices,
+                                                                       &bundle::PatchTriangle::front_only,
+                                                                       &bundle::PatchTriangle::albedo,
+                                                                       &bundle::PatchTriangle::detail);
+template <>
+inline constexpr auto kKeptMembers<bundle::PatchSurface> = std::tuple(&bundle::PatchSurface::positions,
+                                                                      &bundle::PatchSurface::triangles,
+                                                                      &bundle::PatchSurface::error_m);
+template <>
+inline constexpr auto kKeptMembers<bundle::CaptureProxy> = std::tuple(&bundle::CaptureProxy::positions,
+                                                                      &bundle::CaptureProxy::triangles,
+                                                                      &bundle::CaptureProxy::entries,
+                                                                      &bundle::CaptureProxy::levels,
+                                                                      &bundle::CaptureProxy::patches);
+
+template <>
+inline constexpr auto kKeptMembers<SurfaceFigures> = std::tuple(
+    &SurfaceFigures::filled_samples, &SurfaceFigures::glossy_samples, &SurfaceFigures::hit_bytes,
+    &SurfaceFigures::worst_error, &SurfaceFigures::worst_glossy_error, &SurfaceFigures::left_out,
+    &SurfaceFigures::pass_energy, &SurfaceFigures::diffuse, &SurfaceFigures::glossy,
+    &SurfaceFigures::picture_error, &SurfaceFigures::codes_bound, &SurfaceFigures::glossy_codes_bound);
+template <>
+inline constexpr auto kKeptMembers<SurfaceCells> = std::tuple(&SurfaceCells::cells, &SurfaceCells::importance,
+                                                              &SurfaceCells::figures);
+
+namespace {
 
 // The share of visibility in the bound on glossy light, where light bounces: halving the error costs
 // visibility a dozen bytes a vertex, and bounced light of sharp metals a hundred
@@ -41,75 +161,40 @@ constexpr float kOfVisibility = 0.35f;
 // Eyes may see other errors of codes than those of all samples, so codes are made again with a better bound.
 constexpr int kMostCodings = 3;
 
-class CellCoder {
- public:
-  CellCoder(const GroupScene& group, const SurfaceTransport& light, CachedCoding& coding)
-      : group_(group),
-        light_(light),
-        options_(group.bake.options),
-        coding_(coding),
-        grey_{.sky = group.colors().greyPanes(), .lights = group.colors().greyEmission()},
-        weights_(weightsOf(*group.view().importance)),
-        kernel_power_(group.brdfs()
-                          ? kernelPower(group.geometry, *group.brdfs(), group.bake.options.glossy_order)
-                          : BandPower(kLobePower)) {}
-
-  std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, SurfaceFigures& figures);
-  std::vector<CodedTransfer> codeDiffuse(const SampleCell& cell, SurfaceFigures& figures);
-
- private:
-  // Returns how much samples matter to pictures. Eyes may come to see any of them one day, so that none
-  // counts for nothing, and none for all.
-  static std::vector<float> weightsOf(const SampleImportance& importance) {
-    constexpr float kLeast = 0.05f, kMost = 4.0f;
-    const auto count = static_cast<float>(importance.shares.size());
-    std::vector<float> weights;
-    for (const float share : importance.shares) weights.push_back(std::clamp(count * share, kLeast, kMost));
-    return weights;
-  }
-  std::vector<CellVectors> vectorsOf(const SampleCell& cell) const {
-    const BounceResult* const bounced = light_.bounced ? &*light_.bounced : nullptr;
-    return cellVectors(cell, group_.samples, light_.direct, bounced, grey_);
-  }
-  std::span<const float> weightsOf(const SampleCell& cell) const {
-    return std::span(weights_).subspan(cell.first, cell.count);
-  }
-
-  const GroupScene& group_;
-  const SurfaceTransport& light_;
-  const BakeOptions& options_;
-  CachedCoding& coding_;
-  GreyColumns grey_;
-  std::vector<float> weights_;
-  BandPower kernel_power_;
-};
+// Returns how much samples matter to pictures. Eyes may come to see any of them one day, so that none counts
+// for nothing, and none for all.
+std::vector<float> codingWeights(const SampleImportance& importance) {
+  constexpr float kLeast = 0.05f, kMost = 4.0f;
+  const auto count = static_cast<float>(importance.shares.size());
+  std::vector<float> weights;
+  for (const float share : importance.shares) weights.push_back(std::clamp(count * share, kLeast, kMost));
+  return weights;
+}
 
 // Visibility and bounced light are shown together: errors of both are relative to both, and their squares add
 // up to the square of the bound. A bound that was asked for is kept at any price.
-std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, SurfaceFigures& figures) {
+std::vector<CodedTransfer> codeGlossy(const std::vector<CellVectors>& parts, std::size_t count,
+                                      const BakeOptions& options, CodingSettings settings,
+                                      CachedCoding& coding, SurfaceFigures& figures) {
   std::vector<CodedTransfer> coded;
-  const std::vector<CellVectors> parts = vectorsOf(cell);
   double shown = 0.0;
   bool any_bounced = false;
   for (const CellVectors& part : parts) {
     if (part.shape.order == 0) continue;  // transfer of the group's lights
-    shown += transferEnergy(part.vectors, part.shape, kernel_power_);
+    shown += transferEnergy(part.vectors, part.shape, settings.kernel_power);
     any_bounced |= !part.shape.isVisibility();
   }
+  settings.most_components = options.error_bound > 0.0f ? kAllComponents : kUsualComponents;
   double square = 0.0;
   for (const CellVectors& part : parts) {
     const bool environment = part.shape.order > 0;
-    float bound = figures.glossy_codes_bound;
+    settings.bound = figures.glossy_codes_bound;
     if (environment && any_bounced)
-      bound *= part.shape.isVisibility() ? kOfVisibility : std::sqrt(1.0f - kOfVisibility * kOfVisibility);
-    coded.push_back(
-        coding_.code(part.vectors, cell.count, part.shape,
-                     {.bound = bound,
-                      .most_components = options_.error_bound > 0.0f ? kAllComponents : kUsualComponents,
-                      .loose_bound = options_.glossyLooseness() * bound,
-                      .shown_energy = environment ? shown : 0.0,
-                      .kernel_power = kernel_power_,
-                      .weights = weightsOf(cell)}));
+      settings.bound *=
+          part.shape.isVisibility() ? kOfVisibility : std::sqrt(1.0f - kOfVisibility * kOfVisibility);
+    settings.loose_bound = options.glossyLooseness() * settings.bound;
+    settings.shown_energy = environment ? shown : 0.0;
+    coded.push_back(coding.code(part.vectors, count, part.shape, settings));
     const double error = coded.back().error;
     if (environment)
       square += error * error;
@@ -120,11 +205,12 @@ std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, Surface
   return coded;
 }
 
-std::vector<CodedTransfer> CellCoder::codeDiffuse(const SampleCell& cell, SurfaceFigures& figures) {
+std::vector<CodedTransfer> codeDiffuse(const std::vector<CellVectors>& parts, std::size_t count,
+                                       const CodingSettings& settings, CachedCoding& coding,
+                                       SurfaceFigures& figures) {
   std::vector<CodedTransfer> coded;
-  for (const CellVectors& vectors : vectorsOf(cell)) {
-    coded.push_back(coding_.code(vectors.vectors, cell.count, vectors.shape,
-                                 {.bound = figures.codes_bound, .weights = weightsOf(cell)}));
+  for (const CellVectors& vectors : parts) {
+    coded.push_back(coding.code(vectors.vectors, count, vectors.shape, settings));
     figures.worst_error = std::max(figures.worst_error, double{coded.back().error});
   }
   return coded;
@@ -146,46 +232,30 @@ std::vector<std::uint8_t> importanceCodes(const GroupScene& group) {
   return codes;
 }
 
-void write(const SurfaceCells& cells, ByteWriter& out) {
-  const SurfaceFigures& figures = cells.figures;
-  write(cells.cells, out);
-  out.addList(cells.importance);
-  out.add(figures.filled_samples), out.add(figures.glossy_samples), out.add(figures.hit_bytes);
-  out.add(figures.worst_error), out.add(figures.worst_glossy_error), out.add(figures.left_out);
-  out.addList(figures.pass_energy);
-  out.add(figures.diffuse.traced + figures.diffuse.kept);
-  out.add(figures.glossy.traced + figures.glossy.kept);
-  out.add(figures.picture_error.value_or(bundle::PictureError{}));
-  out.add(figures.codes_bound), out.add(figures.glossy_codes_bound);
-}
-
-bool read(ByteReader& in, SurfaceCells& cells) {
-  SurfaceFigures& figures = cells.figures;
-  bundle::PictureError error;
-  const bool whole =
-      read(in, cells.cells) && in.readList(cells.importance) && in.read(figures.filled_samples) &&
-      in.read(figures.glossy_samples) && in.read(figures.hit_bytes) && in.read(figures.worst_error) &&
-      in.read(figures.worst_glossy_error) && in.read(figures.left_out) && in.readList(figures.pass_energy) &&
-      in.read(figures.diffuse.kept) && in.read(figures.glossy.kept) && in.read(error) &&
-      in.read(figures.codes_bound) && in.read(figures.glossy_codes_bound);
-  if (whole && error.points > 0) figures.picture_error = error;
-  return whole;
-}
-
 // Returns nothing if stopped.
 std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceTransport& light,
                                          CachedCoding& coding, Progress& progress) {
   const BakeOptions& options = group.bake.options;
   SurfaceCells out{{}, importanceCodes(group), light.figures};
   out.cells.resize(group.samples.cells.size());
-  CellCoder coder(group, light, coding);
+  const GreyColumns grey{.sky = group.colors().greyPanes(), .lights = group.colors().greyEmission()};
+  const std::vector<float> weights = codingWeights(*group.view().importance);
+  const BandPower kernel_power =
+      group.brdfs() ? kernelPower(group.geometry, *group.brdfs(), options.glossy_order) : kLobePower;
   // Returns false if stopped.
   const auto code = [&](bool glossy) {
     progress.begin("coding", glossy ? group.samples.glossy.size() : group.samples.glossy.begin, "samples");
     for (std::size_t c = 0; c < out.cells.size(); ++c) {
       const SampleCell& cell = group.samples.cells[c];
       if ((cell.kind == SampleKind::Glossy) != glossy) continue;
-      out.cells[c] = glossy ? coder.codeGlossy(cell, out.figures) : coder.codeDiffuse(cell, out.figures);
+      const auto parts =
+          cellVectors(cell, group.samples, light.direct, light.bounced ? &*light.bounced : nullptr, grey);
+      const auto own = std::span(weights).subspan(cell.first, cell.count);
+      out.cells[c] = glossy
+                         ? codeGlossy(parts, cell.count, options,
+                                      {.kernel_power = kernel_power, .weights = own}, coding, out.figures)
+                         : codeDiffuse(parts, cell.count, {.bound = out.figures.codes_bound, .weights = own},
+                                       coding, out.figures);
       if (coding.stopped()) return false;
       progress.add(cell.count);
     }
@@ -237,44 +307,53 @@ Result<bundle::CaptureProxy> proxyOf(GroupScene& group, const BakeContext& conte
   return proxy;
 }
 
-// Returns what there is to report of a group and its samples.
-BakeReport reportOf(const GroupScene& group, const BakedGroup& baked) {
-  BakeReport report;
-  report.vertices = group.geometry.positions.size();
-  report.triangles = group.geometry.triangles.size();
-  report.samples = group.samples.size();
-  report.lights = group.lights.size();
-  report.notices = group.notices;
-  BakeReport::Group& told = report.groups.emplace_back();
-  told.name = group.group.name;
-  told.light_probes = baked.light_probes.points.size();
+// Adds to the report what there is to say of a group and its samples.
+void reportGroup(const GroupScene& group, const BakedGroup& baked, BakeReport& report) {
+  report.vertices += group.geometry.positions.size();
+  report.triangles += group.geometry.triangles.size();
+  report.samples += group.samples.size();
+  report.lights += group.lights.size();
+  std::ranges::copy(group.notices, std::back_inserter(report.notices));
+  BakeReport::Group& own = report.groups.emplace_back();
+  own.name = group.group.name;
+  own.light_probes = baked.light_probes.points.size();
   for (const bundle::ProxyLevel& level : baked.proxy.levels)
-    told.proxy_triangles.push_back(level.triangle_count);
-  return report;
+    own.proxy_triangles.push_back(level.triangle_count);
 }
 
-// Adds to the report what it says of the light of surfaces, and of what each effect cost.
-void tell(const GroupScene& group, const SurfaceFigures& figures, bool found, BakeReport& report) {
-  BakeReport::Group& told = report.groups.back();
-  report.filled_samples = figures.filled_samples;
-  report.glossy_samples = figures.glossy_samples;
-  report.hit_bytes = figures.hit_bytes;
-  report.worst_error = figures.worst_error;
-  report.worst_glossy_error = figures.worst_glossy_error;
-  report.left_out = figures.left_out;
-  told.picture_error = figures.picture_error;
-  told.codes_bound = figures.codes_bound, told.glossy_codes_bound = figures.glossy_codes_bound;
-  report.pass_energy = figures.pass_energy;
-  report.ray_seconds = figures.ray_seconds;
+// Adds to the report what it says of the light of the last group's surfaces, and of what each effect cost.
+void reportSurfaces(const GroupScene& group, const SurfaceFigures& figures, bool found, BakeReport& report) {
+  report.filled_samples += figures.filled_samples;
+  report.glossy_samples += figures.glossy_samples;
+  report.hit_bytes = std::max(report.hit_bytes, figures.hit_bytes);
+  report.worst_error = std::max(report.worst_error, figures.worst_error);
+  report.worst_glossy_error = std::max(report.worst_glossy_error, figures.worst_glossy_error);
+  report.left_out = std::max(report.left_out, figures.left_out);
+  report.ray_seconds += figures.ray_seconds;
+  if (figures.pass_energy.size() > report.pass_energy.size()) report.pass_energy = figures.pass_energy;
+  BakeReport::Group& own = report.groups.back();
+  own.picture_error = figures.picture_error;
+  own.codes_bound = figures.codes_bound, own.glossy_codes_bound = figures.glossy_codes_bound;
   const auto add = [&](const char* name, const SurfaceFigures::Rays& rays) {
     const Reuse reuse = found                               ? Reuse::Found
                         : rays.traced > 0 || rays.kept == 0 ? Reuse::Baked
                                                             : Reuse::Regathered;
-    told.effects.push_back({name, reuse, rays.traced, rays.kept});
+    own.effects.push_back({name, reuse, rays.traced, rays.kept});
     report.rays += rays.traced, report.rays_kept += rays.kept;
   };
   if (group.anyDiffuse()) add("diffuse", figures.diffuse);
   if (group.anyGlossy()) add("glossy", figures.glossy);
+}
+
+// Finds the cells in the cache. Returns false if there are none.
+bool findSurfaces(const BakeContext& context, SurfaceCells& cells) {
+  if (!findKept(context, cells)) {
+    cells = {};
+    return false;
+  }
+  for (SurfaceFigures::Rays* rays : {&cells.figures.diffuse, &cells.figures.glossy})
+    rays->kept += std::exchange(rays->traced, 0);
+  return true;
 }
 
 // Bakes the neighborhood of surfaces whose light is baked. Returns false if stopped.
@@ -291,57 +370,47 @@ bool bakeAroundSurfaces(const Around& around, const GroupScene& group, const Sur
 }  // namespace
 
 Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs, std::size_t index,
-                             const BakeContext& context) {
+                             const BakeContext& context, BakeReport& report) {
   GroupScene group(bake, inputs, index, context);
   BakedGroup baked;
   baked.light_probes = lightProbesOf(group, context);
   auto proxy = proxyOf(group, context);
   if (!proxy) return failAgain(proxy.error());
   baked.proxy = std::move(*proxy);
-  baked.report = reportOf(group, baked);
-  const auto finished = [&] {
-    baked.geometry = std::move(group.geometry);
-    baked.samples = std::move(group.samples);
-    baked.lights = std::move(group.lights);
-    return std::move(baked);
-  };
+  reportGroup(group, baked, report);
 
   // A result that is found needs neither colours nor rays. The body sends the light that the cells were coded
   // from, so their key serves the neighborhood too.
   const BakeContext cells_context = context.keyed(group.keys.cells);
-  const Around around{bake, index, group.geometry.origin, raysAroundSurfaces(bake.options)};
+  const Around around{bake, index, group.geometry.origin, raysAroundSurfaces(bake.options), report};
   const BakeContext around_context = contextOf(around, cells_context);
-  SurfaceCells cells;
-  const bool found = findKept(cells_context, cells);
-  if (found) tell(group, cells.figures, found, baked.report);
-  const bool any_around = bake.plan.neighborhoods[index].baked && !group.geometry.triangles.empty();
-  const bool around_found = any_around && findAround(around, around_context, baked);
-  const auto take = [&](SurfaceCells& from) {
-    baked.cells = std::move(from.cells);
-    baked.importance = std::move(from.importance);
-    baked.picture_error = from.figures.picture_error;
-    baked.codes_bound = from.figures.codes_bound, baked.glossy_codes_bound = from.figures.glossy_codes_bound;
-  };
-  if (found) take(cells);
-  if (found && (!any_around || around_found)) return finished();
-  if (auto prepared = group.prepareRays(context); !prepared) return failAgain(prepared.error());
-  const auto light = transportLight(group, context);
-  if (!light) return bake.stopped();
-  if (!found) {
-    CachedCoding coding(context);
-    auto coded = codeSurfaces(group, *light, coding, context.progress);
-    if (!coded) return bake.stopped();
-    tell(group, coded->figures, found, baked.report);
-    keepValue(cells_context, *coded);
-    coding.drop();
-    take(*coded);
-  } else {
-    baked.report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
+  const bool found = findSurfaces(cells_context, baked.surfaces);
+  if (found) reportSurfaces(group, baked.surfaces.figures, found, report);
+  const bool bakes_around =
+      around.plan().baked && !group.geometry.triangles.empty() && !findAround(around, around_context, baked);
+  if (!found || bakes_around) {
+    if (auto prepared = group.prepareRays(context); !prepared) return failAgain(prepared.error());
+    const auto light = transportLight(group, context);
+    if (!light) return bake.stopped();
+    if (found) {
+      report.rays += light->figures.diffuse.traced + light->figures.glossy.traced;
+    } else {
+      CachedCoding coding(context);
+      auto coded = codeSurfaces(group, *light, coding, context.progress);
+      if (!coded) return bake.stopped();
+      baked.surfaces = std::move(*coded);
+      reportSurfaces(group, baked.surfaces.figures, found, report);
+      keepValue(cells_context, baked.surfaces);
+      coding.drop();
+    }
+    if (bakes_around && !bakeAroundSurfaces(around, group, *light, around_context, baked))
+      return bake.stopped();
+    dropTransport(group, *light, context);
   }
-  if (any_around && !around_found && !bakeAroundSurfaces(around, group, *light, around_context, baked))
-    return bake.stopped();
-  dropTransport(group, *light, context);
-  return finished();
+  baked.geometry = std::move(group.geometry);
+  baked.samples = std::move(group.samples);
+  baked.lights = std::move(group.lights);
+  return baked;
 }
 
 }  // namespace lambent::baker

@@ -1,17 +1,15 @@
-#include "baker/bake/bake_volume.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "baker/bake/bake_around.hpp"
+#include "baker/bake/bake_group.hpp"
 #include "baker/bake/group_scene.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
-#include "baker/effects/volume/marched_volume.hpp"
 #include "baker/effects/volume/volume.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/transport/geometry_key.hpp"
@@ -19,6 +17,22 @@
 #include "runtime/base/process.hpp"
 
 namespace lambent::baker {
+
+// A CodedVolume is what of a volume goes into the bundle, and what the report says of it.
+struct CodedVolume {
+  std::vector<std::uint32_t> voxels;
+  std::vector<CodedCell> cells;
+  double worst_error = 0.0, worst_glossy_error = 0.0, residual = 0.0;
+  std::uint64_t rays = 0, rays_kept = 0, row_bytes = 0;
+  int iterations = 0;
+};
+template <>
+inline constexpr auto kKeptMembers<CodedVolume> = std::tuple(&CodedVolume::voxels, &CodedVolume::cells,
+                                                             &CodedVolume::worst_error,
+                                                             &CodedVolume::worst_glossy_error,
+                                                             &CodedVolume::residual, &CodedVolume::rays,
+                                                             &CodedVolume::rays_kept, &CodedVolume::row_bytes,
+                                                             &CodedVolume::iterations);
 
 namespace {
 
@@ -100,101 +114,72 @@ transfer::TransferShape shapeOf(const VolumeTransfer& transfer) {
   return shape;
 }
 
-// A CodedVolume is what of a volume goes into the bundle, and what the report says of it.
-struct CodedVolume {
-  std::vector<std::uint32_t> voxels;
-  std::vector<CodedCell> cells;
-  double worst_error = 0.0, worst_glossy_error = 0.0, residual = 0.0;
-  std::uint64_t rays = 0, rays_kept = 0, row_bytes = 0;
-  int iterations = 0;
-};
-
-void write(const CodedVolume& coded, ByteWriter& out) {
-  out.addList(coded.voxels);
-  write(coded.cells, out);
-  out.add(coded.worst_error), out.add(coded.worst_glossy_error), out.add(coded.residual);
-  out.add(coded.rays + coded.rays_kept), out.add(coded.row_bytes), out.add(coded.iterations);
+CodedTransfer codeDense(const Part& part, const BakeOptions& options, CachedCoding& coding,
+                        CodedVolume& out) {
+  CodedTransfer coded = coding.code(part.vectors(), part.count(), shapeOf(part.transfer),
+                                    {.bound = options.effectiveErrorBound()});
+  out.worst_error = std::max(out.worst_error, double{coded.error});
+  return coded;
 }
 
-bool read(ByteReader& in, CodedVolume& coded) {
-  return in.readList(coded.voxels) && read(in, coded.cells) && in.read(coded.worst_error) &&
-         in.read(coded.worst_glossy_error) && in.read(coded.residual) && in.read(coded.rays_kept) &&
-         in.read(coded.row_bytes) && in.read(coded.iterations);
+// Codes transmitted light as visibility and scattered light as matrices. They are shown together, and errors
+// count by how much of each band the phase function keeps, g^2l.
+std::vector<CodedTransfer> codeMatrices(const Part& part, const BakeOptions& options, CachedCoding& coding,
+                                        CodedVolume& out) {
+  const VolumeTransfer& transfer = part.transfer;
+  transfer::TransferShape visible = shapeOf(transfer), scattered = visible;
+  visible.full_channels = 0;
+  visible.visibility_bands = static_cast<std::uint32_t>(transfer.order + transfer.bands - 1);
+  scattered.shadowed_channels = 0;
+  BandPower power;
+  for (std::size_t l = 0; l < power.size(); ++l)
+    power[l] = std::pow(double{transfer.g}, 2.0 * static_cast<double>(l));
+  std::vector<float> matrices;
+  if (transfer.full_channels > 0) matrices = part.scattered();
+  CodingSettings settings{.bound = options.effectiveGlossyErrorBound(),
+                          .shown_energy = transferEnergy(part.visibility(), visible, power),
+                          .kernel_power = power};
+  if (!matrices.empty()) {
+    settings.shown_energy += transferEnergy(matrices, scattered, power);
+    settings.bound *= std::sqrt(0.5f);
+  }
+  std::vector<CodedTransfer> coded;
+  coded.push_back(coding.code(part.visibility(), part.count(), visible, settings));
+  if (!matrices.empty() && !coding.stopped())
+    coded.push_back(coding.code(matrices, part.count(), scattered, settings));
+  double square = 0.0;
+  for (const CodedTransfer& each : coded) square += double{each.error} * double{each.error};
+  out.worst_glossy_error = std::max(out.worst_glossy_error, std::sqrt(square));
+  return coded;
 }
 
-class VolumeCoder {
- public:
-  VolumeCoder(const VolumeTransfer& transfer, const BakeOptions& options, CachedCoding& coding)
-      : transfer_(transfer), options_(options), coding_(coding) {}
-
-  // Cuts the samples into cells of nearly the same size and codes one after the other. Returns false if
-  // stopped.
-  bool codeCells(Progress& progress, CodedVolume& out) {
-    const std::size_t samples = transfer_.grid.samples();
-    const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
-    out.voxels = transfer_.grid.voxels();
-    out.rays = transfer_.rays, out.rays_kept = transfer_.rays_kept, out.row_bytes = transfer_.row_bytes;
-    out.iterations = transfer_.iterations, out.residual = transfer_.residual;
-    progress.begin("coding", samples, "samples");
-    for (std::size_t c = 0; c < cells && !coding_.stopped(); ++c) {
-      const Part part{transfer_, samples * c / cells, samples * (c + 1) / cells};
-      CodedCell& cell = out.cells.emplace_back();
-      cell.count = static_cast<std::uint32_t>(part.count());
-      cell.bounds_min = cell.bounds_max = transfer_.grid.place(part.begin);
-      for (std::size_t p = part.begin; p < part.end; ++p) {
-        cell.bounds_min = glm::min(cell.bounds_min, transfer_.grid.place(p));
-        cell.bounds_max = glm::max(cell.bounds_max, transfer_.grid.place(p));
-      }
-      if (transfer_.bands > 3)
-        cell.transfers = codeMatrices(part, out);
-      else
-        cell.transfers.push_back(codeDense(part, out));
-      progress.add(part.count());
+// Cuts the samples into cells of nearly the same size and codes one after the other. Returns false if
+// stopped.
+bool codeCells(const VolumeTransfer& transfer, const BakeOptions& options, CachedCoding& coding,
+               Progress& progress, CodedVolume& out) {
+  const std::size_t samples = transfer.grid.samples();
+  const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
+  out.voxels = transfer.grid.voxels();
+  out.rays = transfer.rays, out.rays_kept = transfer.rays_kept, out.row_bytes = transfer.row_bytes;
+  out.iterations = transfer.iterations, out.residual = transfer.residual;
+  progress.begin("coding", samples, "samples");
+  for (std::size_t c = 0; c < cells && !coding.stopped(); ++c) {
+    const Part part{transfer, samples * c / cells, samples * (c + 1) / cells};
+    CodedCell& cell = out.cells.emplace_back();
+    cell.count = static_cast<std::uint32_t>(part.count());
+    cell.bounds_min = cell.bounds_max = transfer.grid.place(part.begin);
+    for (std::size_t p = part.begin; p < part.end; ++p) {
+      cell.bounds_min = glm::min(cell.bounds_min, transfer.grid.place(p));
+      cell.bounds_max = glm::max(cell.bounds_max, transfer.grid.place(p));
     }
-    return !coding_.stopped();
+    if (transfer.bands > 3)
+      cell.transfers = codeMatrices(part, options, coding, out);
+    else
+      cell.transfers.push_back(codeDense(part, options, coding, out));
+    progress.add(part.count());
   }
-
- private:
-  CodedTransfer codeDense(const Part& part, CodedVolume& out) {
-    CodedTransfer coded = coding_.code(part.vectors(), part.count(), shapeOf(transfer_),
-                                       {.bound = options_.effectiveErrorBound()});
-    out.worst_error = std::max(out.worst_error, double{coded.error});
-    return coded;
-  }
-
-  // Codes transmitted light as visibility and scattered light as matrices. They are shown together, and
-  // errors count by how much of each band the phase function keeps, g^2l.
-  std::vector<CodedTransfer> codeMatrices(const Part& part, CodedVolume& out) {
-    transfer::TransferShape visible = shapeOf(transfer_), scattered = visible;
-    visible.full_channels = 0;
-    visible.visibility_bands = static_cast<std::uint32_t>(transfer_.order + transfer_.bands - 1);
-    scattered.shadowed_channels = 0;
-    BandPower power;
-    for (std::size_t l = 0; l < power.size(); ++l)
-      power[l] = std::pow(double{transfer_.g}, 2.0 * static_cast<double>(l));
-    std::vector<float> matrices;
-    if (transfer_.full_channels > 0) matrices = part.scattered();
-    CodingSettings settings{.bound = options_.effectiveGlossyErrorBound(),
-                            .shown_energy = transferEnergy(part.visibility(), visible, power),
-                            .kernel_power = power};
-    if (!matrices.empty()) {
-      settings.shown_energy += transferEnergy(matrices, scattered, power);
-      settings.bound *= std::sqrt(0.5f);
-    }
-    std::vector<CodedTransfer> coded;
-    coded.push_back(coding_.code(part.visibility(), part.count(), visible, settings));
-    if (!matrices.empty() && !coding_.stopped())
-      coded.push_back(coding_.code(matrices, part.count(), scattered, settings));
-    double square = 0.0;
-    for (const CodedTransfer& each : coded) square += double{each.error} * double{each.error};
-    out.worst_glossy_error = std::max(out.worst_glossy_error, std::sqrt(square));
-    return coded;
-  }
-
-  const VolumeTransfer& transfer_;
-  const BakeOptions& options_;
-  CachedCoding& coding_;
-};
+  return !coding.stopped();
+}
 
 // Within holds the surfaces that a volume never moves against.
 struct Within {
@@ -233,7 +218,7 @@ Key transferKey(const Scene& scene, const BakedVolume& placed, const VolumeSetti
 // A PlacedVolume is a volume in its group, and how its transfer is baked.
 struct PlacedVolume {
   const SceneBake& bake;
-  const AlphaMaps& alpha_maps;
+  DecodedImages& images;
   const SceneVolume& volume;
   const QuantizedDensity& density;
   const glm::mat4& group_from_grid;
@@ -247,7 +232,7 @@ Result<VolumeTransfer> transferOf(const PlacedVolume& placed, const BakeContext&
   std::optional<RayScene> rays;
   Occluders occluders;
   if (placed.within.geometry) {
-    auto built = RayScene::build(*placed.within.geometry, placed.bake.scene, placed.alpha_maps);
+    auto built = RayScene::build(*placed.within.geometry, placed.bake.scene, placed.images);
     if (!built) return failAgain(built.error());
     rays = std::move(*built);
     occluders = Occluders(*rays, placed.within.from_group);
@@ -265,13 +250,13 @@ Result<VolumeTransfer> transferOf(const PlacedVolume& placed, const BakeContext&
   return std::move(*transfer);
 }
 
-void tellVolume(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDensity& density,
-                const std::string& name, BakeReport& report) {
-  report.worst_error = coded.worst_error;
-  report.worst_glossy_error = coded.worst_glossy_error;
-  report.samples = coded.voxels.size();
-  report.rays = coded.rays;
-  report.rays_kept = coded.rays_kept;
+void reportVolume(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDensity& density,
+                  const std::string& name, BakeReport& report) {
+  report.worst_error = std::max(report.worst_error, coded.worst_error);
+  report.worst_glossy_error = std::max(report.worst_glossy_error, coded.worst_glossy_error);
+  report.samples += coded.voxels.size();
+  report.rays += coded.rays;
+  report.rays_kept += coded.rays_kept;
   report.volumes.push_back({.name = volume.name,
                             .voxels = volume.density.size(),
                             .samples = coded.voxels.size(),
@@ -330,8 +315,9 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
   return {};
 }
 
-Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
-                              const std::vector<BakedGroup>& baked, const BakeContext& context) {
+Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std::size_t index,
+                              const std::vector<BakedGroup>& baked, const BakeContext& context,
+                              BakeReport& report) {
   const auto& [scene, options, plan, tables] = bake;
   const RigidGroup& group = plan.groups[index];
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
@@ -343,7 +329,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   out.transfer_size = options.volume_grid;
   result.light_probes.points = {out.light_probe};
   const PlacedVolume placed{bake,
-                            alpha_maps,
+                            images,
                             volume,
                             density,
                             out.group_from_grid,
@@ -357,15 +343,15 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
                              .fit_within_voxels = true}};
   const BakeContext own =
       context.keyed(context.cache ? transferKey(scene, out, placed.settings, placed.within) : Key{});
-  const Around around{bake, index, glm::vec3(0.0f), raysAroundVolumes(options)};
+  const Around around{bake, index, glm::vec3(0.0f), raysAroundVolumes(options), report};
   const BakeContext around_context = contextOf(around, own);
 
   CodedVolume coded;
   CachedCoding coding(context);
   // The transfer is baked only if a result that follows from it is not in the cache.
-  std::optional<MarchedVolume> light;
+  std::optional<VolumeTransfer> light;
   const auto bakeLight = [&](const auto& use) -> Result<void> {
-    auto transfer = transferOf(placed, own, result.report.ray_seconds);
+    auto transfer = transferOf(placed, own, report.ray_seconds);
     if (!transfer) return failAgain(transfer.error());
     if (!use(*transfer)) return bake.stopped();
     light.emplace(std::move(*transfer));
@@ -377,13 +363,14 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   const auto found = findOrMake(cells_context, coded, [&] {
     coded = {};
     made = bakeLight([&](const VolumeTransfer& transfer) {
-      return VolumeCoder(transfer, options, coding).codeCells(context.progress, coded);
+      return codeCells(transfer, options, coding, context.progress, coded);
     });
     return made.has_value();
   });
   if (!found) return failAgain(made.error());
+  if (*found) coded.rays_kept += std::exchange(coded.rays, 0);
   coding.drop();
-  tellVolume(coded, volume, density, group.name, result.report);
+  reportVolume(coded, volume, density, group.name, report);
   out.voxels = std::move(coded.voxels);
   out.cells = std::move(coded.cells);
 
@@ -391,7 +378,11 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps
   if (!light)
     if (made = bakeLight([](const VolumeTransfer&) { return true; }); !made) return failAgain(made.error());
   const auto [low, high] = out.bounds();
-  const VolumeBody body(*light, low, high, /*scatters=*/true);
+  const auto march = [&](const glm::vec3& origin, const glm::vec3& direction, float t_max,
+                         std::span<float> scattered) {
+    return marchVolume(*light, origin, direction, t_max, scattered);
+  };
+  const VolumeBody body(march, light->order, low, high, /*scatters=*/true);
   if (!bakeAround(around, body, Box3{low, high}, around_context, result)) return bake.stopped();
   return result;
 }

@@ -4,7 +4,264 @@
 
 #include <fmt/format.h>
 
+#include "baker/bake/bake.hpp"
+#include "baker/brdf/brdf.hpp"
+#include "baker/cache/key.hpp"
+#include "baker/plan/smooth_dielectrics.hpp"
+#include "baker/trace/emitters.hpp"
+#include "baker/transport/geometry_key.hpp"
+#include "runtime/bundle/container.hpp"
+#include "runtime/bundle/material_fields.hpp"
+
 namespace lambent::baker {
+
+namespace {
+
+const gltf::Material* materialOf(const Scene& scene, const DrawGeometry& draw) {
+  return draw.material < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(draw.material)];
+}
+
+// The numbers, colours and flags of one part of a material. A measured BRDF counts by its measurements, which
+// addReflection() adds, and not by its place in the list.
+void addValues(const gltf::Material& material, gltf::MaterialPart part, KeyMaker& key) {
+  gltf::forEachMaterialValue([&](const auto& field) {
+    if (field.part == part && field.name != "brdf") key.add(material.*field.member);
+  });
+}
+
+void addColors(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key) {
+  key.addText("colors").addList(geometry.texcoords).addList(geometry.colors);
+  for (const DrawGeometry& draw : geometry.draws) {
+    const gltf::Material* material = materialOf(scene, draw);
+    key.add(material != nullptr);
+    if (!material) continue;
+    addValues(*material, gltf::MaterialPart::Color, key);
+    key.add(draw.layered);
+    if (draw.layered) key.add(meanSpecularAlbedo(*material)).add(material->roughness);
+    gltf::forEachMaterialTexture([&](const auto& field) {  // texture coordinates are among the geometry's
+      if (field.part == gltf::MaterialPart::Color) addTexture(scene, (material->*field.member).texture, key);
+    });
+  }
+}
+
+// Adds how glossy surfaces reflect (SurfaceBrdfs), beside their base colours.
+void addReflection(const Scene& scene, const GroupGeometry& geometry, int order, KeyMaker& key) {
+  bool any = false;
+  for (const DrawGeometry& draw : geometry.draws) any |= draw.kind == SampleKind::Glossy;
+  key.addText("reflection").add(any);
+  if (!any) return;
+  key.add(order).addList(geometry.texcoord_sets[0]).addList(geometry.texcoord_sets[1]);
+  key.addList(geometry.tangents);
+  for (const DrawGeometry& draw : geometry.draws) {
+    const gltf::Material* m = materialOf(scene, draw);
+    if (!m || draw.kind != SampleKind::Glossy) continue;
+    addValues(*m, gltf::MaterialPart::Reflection, key);
+    gltf::forEachMaterialTexture([&](const auto& field) {
+      if (field.part == gltf::MaterialPart::Reflection) addTextureRef(scene, m->*field.member, key);
+    });
+    // Only the coordinates of the normal map count: they define the tangent.
+    const gltf::TextureRef& normal = m->normal_texture;
+    key.add(normal.texture >= 0).add(normal.texcoord).add(normal.offset).add(normal.scale);
+    key.add(normal.rotation_rad).add(m->brdf >= 0);
+    if (m->brdf >= 0) key.addList(scene.brdfs[static_cast<std::size_t>(m->brdf)].measurements);
+  }
+}
+
+}  // namespace
+
+GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
+                    const PlannedGroup& planned, const BakeOptions& options) {
+  GroupKeys keys;
+  {
+    KeyMaker key = KeyMaker::ofStage("light samples");
+    addShape(geometry, key);
+    keys.light_probes = key.add(planned.light_probes.count).add(planned.light_probes.of_group).key();
+  }
+  KeyMaker surfaces = KeyMaker::ofStage("surfaces");
+  addShape(geometry, surfaces);
+  addOpacity(scene, geometry, surfaces);
+  addLights(scene, geometry, lights, surfaces);
+  const Key seen = surfaces.key();
+  addColors(scene, geometry, surfaces);
+  const Key colored = surfaces.key();
+  addReflection(scene, geometry, options.exitOrder(), surfaces);
+  const Key reflecting = surfaces.key();
+
+  KeyMaker proxy = KeyMaker::ofStage("proxy");
+  addEyes(planned.cameras, proxy);
+  keys.proxy = proxy.add(reflecting).key();
+  KeyMaker rays = KeyMaker::ofStage("rays");
+  addEyes(planned.cameras, rays);
+  keys.rays = rays.add(seen)
+                  .add(options.order)
+                  .add(std::uint64_t{options.effectiveRays()})
+                  .add(planned.shadows)
+                  .add(planned.bounces)
+                  .key();
+  keys.glossy_rays = KeyMaker::ofStage("glossy rays").add(keys.rays).add(options.exitOrder()).key();
+  keys.bounces = KeyMaker::ofStage("bounces")
+                     .add(keys.glossy_rays)
+                     .add(colored)
+                     .add(reflecting)
+                     .add(options.glossy_order)
+                     .add(options.fitsDiffuse())
+                     .add(options.fitsGlossy())
+                     .key();
+  KeyMaker cells = KeyMaker::ofStage("cells");
+  for (const PlannedLight& light : lights) cells.add(light.color);  // errors are those of lamps as they are
+  keys.cells = cells.add(keys.bounces)
+                   .add(options.bounces)
+                   .add(options.leavesNothingOut())
+                   .add(options.effectiveErrorBound())
+                   .add(options.picture_bound)
+                   .add(options.error_bound > 0.0f)
+                   .add(options.effectiveGlossyErrorBound())
+                   .key();
+  return keys;
+}
+
+Key brdfTablesKey(const Scene& scene, int order, int shipped) {
+  KeyMaker key = KeyMaker::ofStage("BRDF tables");
+  key.add(order).add(shipped);
+  for (const gltf::Material& material : scene.materials) {
+    key.add(material.isDiffuse());
+    if (material.isDiffuse()) continue;
+    const bundle::BrdfFamily family = brdfKindOf(material).family;
+    key.add(family);
+    if (family != bundle::BrdfFamily::Measured) continue;
+    // A measured BRDF's table may depend on all reflection values of its material.
+    addValues(material, gltf::MaterialPart::Color, key);
+    addValues(material, gltf::MaterialPart::Reflection, key);
+    key.add(material.brdf);
+    if (material.brdf < 0) continue;
+    const MeasuredBrdf& brdf = scene.brdfs[static_cast<std::size_t>(material.brdf)];
+    key.addText(brdf.name).addList(brdf.measurements);
+  }
+  return key.key();
+}
+
+// Computes the digest of a scene. With the settings recorded in the file it decides whether a bundle is up to
+// date.
+
+namespace {
+
+void addField(const gltf::TextureRef& ref, KeyMaker& digest) {
+  digest.add(ref.texture), digest.add(ref.texcoord);
+  digest.add(ref.offset), digest.add(ref.scale), digest.add(ref.rotation_rad);
+}
+void addField(const std::string& text, KeyMaker& digest) {
+  digest.addText(text);
+}
+template <PlainBytes T>
+void addField(const T& value, KeyMaker& digest) {
+  digest.add(value);
+}
+
+// Fields are added one by one, since the padding between them is undefined.
+void addMaterial(const gltf::Material& material, KeyMaker& digest) {
+  gltf::forEachMaterialField([&](const auto& field) { addField(material.*field.member, digest); });
+}
+
+void addCamera(const gltf::Camera& c, KeyMaker& digest) {
+  digest.addText(c.name);
+  digest.add(c.perspective);
+  for (const float value : {c.yfov_rad, c.aspect, c.xmag, c.ymag, c.znear, c.zfar}) digest.add(value);
+}
+
+void addLight(const gltf::Light& light, KeyMaker& digest) {
+  digest.addText(light.name);
+  digest.add(light.type), digest.add(light.color), digest.add(light.intensity), digest.add(light.range_m);
+  digest.add(light.inner_cone_rad), digest.add(light.outer_cone_rad);
+}
+
+void addAnimation(const gltf::Animation& animation, KeyMaker& digest) {
+  digest.addText(animation.name);
+  digest.add(animation.channels.size());
+  for (const gltf::AnimationChannel& channel : animation.channels) {
+    digest.add(channel.node), digest.add(channel.path), digest.add(channel.interpolation);
+    digest.addList(channel.times_s);
+    digest.addList(channel.values);
+  }
+}
+
+void addNode(const gltf::Node& node, KeyMaker& digest) {
+  digest.addText(node.name);
+  digest.add(node.parent), digest.addList(node.children), digest.add(node.parent_from_node);
+  digest.add(node.mesh), digest.add(node.camera), digest.add(node.light);
+  digest.add(node.animated), digest.add(node.movable), digest.add(node.trs.has_value());
+  if (!node.trs) return;
+  const glm::quat& q = node.trs->rotation;
+  digest.add(node.trs->translation), digest.add(glm::vec4(q.x, q.y, q.z, q.w)), digest.add(node.trs->scale);
+}
+
+void addVolume(const SceneVolume& volume, KeyMaker& digest) {
+  digest.addText(volume.name);
+  digest.add(volume.node), digest.add(volume.size);
+  digest.addList(volume.density);
+  digest.add(volume.node_from_grid), digest.add(volume.albedo), digest.add(volume.g);
+}
+
+}  // namespace
+
+std::uint64_t sceneDigest(const Scene& scene) {
+  KeyMaker digest;
+  digest.addText(scene.source.filename().string());
+  if (scene.origin != glm::dvec3(0.0)) digest.add(scene.origin);
+  digest.add(scene.nodes.size());
+  for (const gltf::Node& node : scene.nodes) addNode(node, digest);
+  digest.addList(scene.roots);
+  for (const SceneMesh& mesh : scene.meshes) {
+    digest.addText(mesh.name);
+    digest.add(mesh.primitives.size());
+    for (const ScenePrimitive& primitive : mesh.primitives) {
+      addMesh(primitive.mesh, digest);
+      digest.add(primitive.material);
+      if (primitive.texels > 0) digest.add(primitive.texels), digest.add(primitive.texel_set);
+    }
+  }
+  for (const gltf::Material& material : scene.materials) addMaterial(material, digest);
+  digest.add(scene.brdfs.size());
+  for (const MeasuredBrdf& brdf : scene.brdfs) {
+    digest.addText(brdf.name);
+    digest.addList(brdf.measurements);
+  }
+  for (const gltf::Texture& texture : scene.textures) {
+    digest.add(texture.image);
+    digest.add(texture.sampler);
+  }
+  for (const SceneImage& image : scene.images) {
+    digest.addText(image.name);
+    digest.addText(image.mime_type);
+    digest.addList(image.file_bytes);
+  }
+  for (const gltf::Camera& camera : scene.cameras) addCamera(camera, digest);
+  digest.add(scene.lights.size());
+  for (const gltf::Light& light : scene.lights) addLight(light, digest);
+  digest.add(scene.animations.size());
+  for (const gltf::Animation& animation : scene.animations) addAnimation(animation, digest);
+  digest.add(scene.volumes.size());
+  for (const SceneVolume& volume : scene.volumes) addVolume(volume, digest);
+  digest.add(scene.neighborhoods.size());
+  for (const NeighborhoodRequest& request : scene.neighborhoods)
+    digest.add(request.node), digest.add(request.size), digest.add(request.extent);
+  return digest.key().low;
+}
+
+bundle::Generator generatorOf(const Scene& scene, const BakeOptions& options) {
+  bundle::Generator generator{"lambent", LAMBENT_VERSION, LAMBENT_ISA, options.settings()};
+  generator.settings["source"] = scene.source.filename().string();
+  generator.settings["sourceDigest"] = fmt::format("{:016x}", sceneDigest(scene));
+  return generator;
+}
+
+bool isUpToDate(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output) {
+  const auto reader = bundle::Reader::open(output);
+  if (!reader || !reader->checkAll()) return false;
+  const bundle::Generator& generator = reader->description().generator;
+  const bundle::Generator wanted = generatorOf(scene, options);
+  return generator.version == wanted.version && generator.isa == wanted.isa &&
+         generator.settings == wanted.settings && reader->description().version == bundle::kVersionCurrent;
+}
 
 namespace {
 
@@ -74,7 +331,7 @@ Result<void> GroupScene::loadColors() {
 Result<void> GroupScene::findImportance(const BakeContext& context) {
   if (rays_) return {};
   context.progress.begin("hierarchy");
-  auto rays = RayScene::build(geometry, bake.scene, inputs_.alpha_maps);
+  auto rays = RayScene::build(geometry, bake.scene, inputs_.images);
   if (!rays) return failAgain(rays.error());
   rays_ = std::move(*rays);
   context.progress.begin("importance");

@@ -4,19 +4,52 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/group_keys.hpp"
+#include "baker/bake/options.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/effects/surface/direct.hpp"
 #include "baker/import/image.hpp"
+#include "baker/import/scene.hpp"
+#include "baker/importance/importance.hpp"
 #include "baker/jobs/bake_context.hpp"
+#include "baker/plan/group_lights.hpp"
+#include "baker/plan/local_light.hpp"
+#include "baker/transport/group_geometry.hpp"
 #include "baker/transport/surface_colors.hpp"
 
 namespace lambent::baker {
+
+// Makes the keys under which the results of a group are kept. Each key covers only what its result depends
+// on: the keys of rays leave out colours, and no key has the strengths of lamps, names, or where a movable
+// group stands.
+
+struct GroupKeys {
+  Key light_probes;
+  Key rays;         // of pass 0: direct transfer and the hits of its rays
+  Key glossy_rays;  // the same for glossy samples
+  Key proxy;
+  Key bounces;  // covers also what surfaces reflect
+  Key cells;    // covers also how transfer is coded; the result is all that a group hands to the bundle
+};
+
+// PlannedGroup is the part of the plan, for one group, on which its results depend.
+struct PlannedGroup {
+  LightProbeCount light_probes{};
+  bool shadows = true, bounces = true;
+  std::span<const Eye> cameras{};
+};
+
+GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
+                    const PlannedGroup& planned, const BakeOptions& options);
+
+// Returns the key of the tables of b(v) of a scene's glossy materials.
+Key brdfTablesKey(const Scene& scene, int order, int shipped);
 
 // A SceneBake is the bake of one scene: what is asked for, and what is planned.
 struct SceneBake {
@@ -33,7 +66,6 @@ struct SceneBake {
 // SurfaceInputs are the decoded meshes and images that surfaces are made of.
 struct SurfaceInputs {
   const ShippedMeshes& meshes;
-  const AlphaMaps& alpha_maps;
   DecodedImages& images;
 };
 
@@ -65,7 +97,8 @@ class GroupScene {
 
   // Loads the colours once, since images take long to decode. Errors: images that cannot be decoded.
   Result<void> loadColors();
-  // Builds the ray hierarchy, once, and finds out what eyes see. Errors: no memory for the hierarchy.
+  // Builds the ray hierarchy, once, and finds out what eyes see. Errors: images of cut-outs that cannot be
+  // decoded, no memory for the hierarchy.
   Result<void> findImportance(const BakeContext& context);
   // Does both, and loads the BRDFs. Errors: those of
   // loadColors(), no memory for the hierarchy.

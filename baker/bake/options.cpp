@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "baker/bake/option_rows.hpp"
 #include "runtime/base/process.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal.hpp"

@@ -7,11 +7,15 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
@@ -115,5 +119,54 @@ const char* qualityName(Quality quality);
 // Reads the number of points or voxels along each axis, as "48" or "64x32x64". Returns nothing if the text is
 // neither.
 std::optional<glm::uvec3> gridSizeFrom(std::string_view text);
+
+// The table of a bake's options: a row for each has its name, its help and the form of its words. The command
+// line, the editor's panel and its command, the checks before a bake, the settings that a bundle records and
+// the journal of unfinished bakes all walk this table. A new option is a member of BakeOptions and a row in
+// option_rows.cpp. Errors name the option: a word is not of its kind, or a value lies outside its range.
+
+struct OptionRow {
+  std::string_view name;     // as in --name, in scripts and journals
+  std::string_view group;    // its heading in the help
+  std::string_view setting;  // in the settings that a bundle records; empty: it does not change the bytes
+  std::string_view kind;     // what a word looks like, for help: "N|auto"
+  std::variant<Quality BakeOptions::*, int BakeOptions::*, std::uint32_t BakeOptions::*,
+               std::uint64_t BakeOptions::*, float BakeOptions::*, std::optional<bool> BakeOptions::*,
+               glm::uvec3 BakeOptions::*, std::string BakeOptions::*>
+      member;
+  std::string help;
+  struct Word {
+    std::string_view word;
+    double value;  // that it stands for; of a switch 1, 0 and -1 (unset)
+  };
+  std::vector<Word> words{};
+  double least = 0.0, greatest = 0.0;  // limits of a number, or of a grid's points along each axis
+  bool share = false;  // a number between 0 and 1, both excluded, that may be given in per cent too, as "2%"
+  bool only_words = false;            // it takes no other words
+  bool shows_default = false;         // the default is a value like others, not "auto" or "none"
+  std::string_view limits{}, hint{};  // instead of "between", as "a length"; what to do
+  std::string (*recorded)(const BakeOptions&) = nullptr;  // null: the word is recorded
+  std::string_view former{};  // the name before 0.11, which is still understood but not shown; may be empty
+
+  bool grid() const { return std::holds_alternative<glm::uvec3 BakeOptions::*>(member); }
+  std::string word(const BakeOptions& options) const;
+  // Returns what the bundle records, which most often is the word.
+  std::string record(const BakeOptions& options) const;
+  // Takes a word over, if it is of the option's kind and within its range.
+  Result<void> put(BakeOptions& options, std::string_view word) const;
+  // Takes over what word() or record() wrote. Returns false if it is not of the option's kind.
+  bool read(BakeOptions& options, std::string_view word) const;
+  // Checks the value itself, which may not come from a word.
+  Result<void> check(const BakeOptions& options) const;
+};
+
+// Returns the rows in the order of the help.
+std::span<const OptionRow> optionRows();
+const OptionRow* findOption(std::string_view name);  // null if there is none
+
+// Sets an option by its name and a word, as scripts do.
+Result<void> putOption(BakeOptions& options, std::string_view name, std::string_view word);
+// Checks that every option lies in its range.
+Result<void> checkOptions(const BakeOptions& options);
 
 }  // namespace lambent::baker

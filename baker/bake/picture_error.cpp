@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <unordered_map>
+#include <utility>
 
-#include "baker/bake/picture_sums.hpp"
+#include <glm/geometric.hpp>
+
+#include "baker/compress/light_weights.hpp"
 #include "baker/effects/surface/hemisphere.hpp"
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/sh/basis.hpp"
@@ -14,6 +18,113 @@
 namespace lambent::baker {
 
 namespace {
+
+constexpr std::size_t kLeastPoints = 64;  // that a figure can be told from
+// Eyes that get less than this share of the light of the mean eye, in squares, stand in the dark between
+// walls.
+constexpr double kLeastLight = 1.0 / 400.0;
+constexpr double kWhite = 4.0;  // times the RMS of the light that an eye sees
+// Band powers are relative to band 0, whose square is 4 pi under a sky with a mean radiance of 1.
+constexpr double kLampPower = 1.0 / (4.0 * std::numbers::pi);
+
+// Sums up how wrong the light is that leaves points towards eyes, relative RMS over real skies with lamps as
+// in the file, and divides the error among its causes. A few points that are very bright, or very wrong,
+// count no more than a screen would show of them.
+class PictureSums {
+ public:
+  // `eye_weights` are shares of all pictures.
+  PictureSums(int order, std::vector<float> eye_weights)
+      : coefficients_(static_cast<std::size_t>(sh::coefficientCount(order))),
+        eye_weights_(std::move(eye_weights)),
+        of_eye_(eye_weights_.size()) {}
+
+  // The number of coefficients of a channel: those of the environment, then one for all lamps together.
+  std::size_t coefficients() const { return coefficients_ + 1; }
+
+  // The radiance that leaves a point as a function of the environment: coefficients of red, then of green,
+  // then of blue. `exact` comes from many rays from the point, `noisy` from as many as a vertex has; `fields`
+  // is interpolated between vertices, and `codes` from what codes hold of these.
+  struct Shown {
+    std::span<const float> exact, noisy, fields, codes;
+  };
+  struct Point {
+    std::uint32_t eye = 0;
+    double weight = 1.0;          // the number of points for which it stands
+    double squared_shares = 1.0;  // the sum of the squares of the vertices' shares
+    // The share of the squared difference between few and many rays that the many make.
+    double noise_of_exact = 0.0;
+  };
+  void add(const Point& point, const Shown& shown) {
+    const double noise = squareOf(shown.noisy, shown.exact);
+    of_eye_[point.eye].push_back({.weight = point.weight,
+                                  .light = squareOf(shown.exact, {}),
+                                  .all = squareOf(shown.codes, shown.exact) - point.noise_of_exact * noise,
+                                  .codes = squareOf(shown.codes, shown.fields),
+                                  .samples = point.squared_shares * (1.0 - point.noise_of_exact) * noise});
+  }
+
+  // Every eye counts by its weight alone, as it gets used to the light. Returns nothing if too few points
+  // were added.
+  std::optional<bundle::PictureError> result() const {
+    std::vector<double> light(of_eye_.size(), 0.0);  // mean square of each eye
+    double mean = 0.0, weights = 0.0;
+    for (std::size_t e = 0; e < of_eye_.size(); ++e) {
+      double sum = 0.0, count = 0.0;
+      for (const Squares& at : of_eye_[e]) sum += at.weight * at.light, count += at.weight;
+      if (count > 0.0) light[e] = sum / count;
+      mean += double{eye_weights_[e]} * light[e], weights += double{eye_weights_[e]};
+    }
+    if (weights > 0.0) mean /= weights;
+    double all = 0.0, codes = 0.0, samples = 0.0;
+    weights = 0.0;
+    std::size_t points = 0;
+    for (std::size_t e = 0; e < of_eye_.size(); ++e) {
+      if (!(light[e] > kLeastLight * mean)) continue;
+      // Where a screen shows the mean as middle grey, it clips what is so many times as bright.
+      const double white = kWhite * kWhite * light[e];
+      double of_light = 0.0, of_all = 0.0, of_codes = 0.0, of_samples = 0.0;
+      for (const Squares& at : of_eye_[e]) {
+        const double shown = at.all > white ? white / at.all : 1.0;
+        of_light += at.weight * std::min(at.light, white);
+        of_all += at.weight * shown * at.all;
+        of_codes += at.weight * shown * at.codes, of_samples += at.weight * shown * at.samples;
+      }
+      const double weight = double{eye_weights_[e]};
+      all += weight * of_all / of_light, codes += weight * of_codes / of_light;
+      samples += weight * of_samples / of_light;
+      weights += weight;
+      points += of_eye_[e].size();
+    }
+    if (points < kLeastPoints) return std::nullopt;
+    const auto root = [&](double sum) { return static_cast<float>(std::sqrt(std::max(0.0, sum / weights))); };
+    return bundle::PictureError{.all = root(all),
+                                .samples = root(samples),
+                                .codes = root(codes),
+                                .interpolation = root(all - codes - samples),
+                                .points = static_cast<std::uint32_t>(points)};
+  }
+
+ private:
+  double squareOf(std::span<const float> a, std::span<const float> b) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double difference = double{a[i]} - (b.empty() ? 0.0 : double{b[i]});
+      const std::size_t at = i % (coefficients_ + 1);
+      const double power = at == coefficients_
+                               ? kLampPower
+                               : kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(at)))];
+      sum += power * difference * difference;
+    }
+    return sum;
+  }
+
+  struct Squares {  // at one point
+    double weight, light, all, codes, samples;
+  };
+  std::size_t coefficients_;  // of the environment
+  std::vector<float> eye_weights_;
+  std::vector<std::vector<Squares>> of_eye_;
+};
 
 // Points are looked at by so many times the rays of vertices, within these limits, but always by more. Glossy
 // ones have only kLeastTimes as many, since light between glossy surfaces is dear to gather; the noise of
@@ -310,20 +421,59 @@ class GlossyPoints {
   Decoded decoded_;  // visibility, and then bounced light
 };
 
+constexpr std::size_t kViewRays = 1536, kMostGlossyPoints = 400;  // of all eyes together
+
+void add(const SeenPoint& seen, const FacePoint& point, ViewPoints& out) {
+  SampleSet& set = out.points.samples;
+  out.points.triangles.push_back(seen.hit.triangle);
+  set.positions.push_back(point.position);
+  set.normals.push_back(point.normal);
+  set.origins.push_back(point.origin);
+  set.origin_offsets.push_back(static_cast<std::uint32_t>(set.origins.size()));
+  out.weights.emplace_back(1.0f - seen.hit.u - seen.hit.v, seen.hit.u, seen.hit.v);
+  out.to_eyes.push_back(seen.to_eye);
+  out.eyes.push_back(seen.eye);
+}
+
+View viewPoints(const TracedScene& scene, const Importance& importance) {
+  View view;
+  SampleSet &diffuse = view.diffuse.points.samples, &glossy = view.glossy.points.samples;
+  diffuse.origin_offsets.push_back(0), glossy.origin_offsets.push_back(0);
+  std::vector<std::pair<SeenPoint, FacePoint>> seen_glossy;
+  for (const SeenPoint& seen : importance.look(kViewRays, scene.geometry, scene.rays)) {
+    const glm::uvec3 corners = scene.geometry.triangles[seen.hit.triangle];
+    const FacePoint point =
+        facePoint(scene.geometry, corners, {1.0f - seen.hit.u - seen.hit.v, seen.hit.u, seen.hit.v});
+    if (!(glm::dot(point.normal, point.origin.geometric_normal) > 0.0f)) continue;
+    const std::uint32_t sample = scene.samples.vertex_sample[corners.x];
+    if (sample >= scene.samples.glossy.begin && sample < scene.samples.glossy.end)
+      seen_glossy.emplace_back(seen, point);
+    else
+      add(seen, point, view.diffuse);
+  }
+  const std::size_t step = (seen_glossy.size() + kMostGlossyPoints - 1) / kMostGlossyPoints;
+  for (std::size_t i = 0; i < seen_glossy.size(); i += step)
+    add(seen_glossy[i].first, seen_glossy[i].second, view.glossy);
+  view.glossy.stands_for = static_cast<std::uint32_t>(step);
+  diffuse.diffuse = {0, diffuse.size()};
+  diffuse.normal_mapped = diffuse.glossy = {diffuse.size(), diffuse.size()};
+  glossy.glossy = {0, glossy.size()};
+  for (const Eye& eye : importance.eyes()) view.eye_weights.push_back(eye.weight);
+  return view;
+}
+
 }  // namespace
 
 std::optional<TracedView> traceView(const DirectPass& vertices, int glossy_order, const TracedScene& scene,
                                     const Importance& importance, const BakeContext& context) {
   TracedView traced{viewPoints(scene, importance), nullptr, nullptr, nullptr, nullptr};
-  const BakeContext unkept = context.keyed(Key{});
-  const char* const stage = "error of pictures";
   const std::size_t few = vertices.settings().rays, twice = kLeastTimes * few;
   const auto trace = [&](const ViewPoints& of, std::size_t rays) {
     DirectSettings settings = vertices.settings();
     settings.rays = rays;
     settings.order_out = glossy_order;
     auto points = std::make_unique<TracedPoints>(scene, of.points, settings);
-    return points->look(unkept, stage) ? std::move(points) : nullptr;
+    return points->look(context.keyed(Key{}), "error of pictures") ? std::move(points) : nullptr;
   };
   if (scene.samples.glossy.begin > 0) {
     traced.noisy = trace(traced.view.diffuse, few);

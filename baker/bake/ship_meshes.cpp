@@ -13,14 +13,18 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "baker/bake/result_bytes.hpp"
 #include "baker/compress/draco_encode.hpp"
 #include "baker/import/details.hpp"
 #include "baker/import/mesh_edits.hpp"
 #include "baker/jobs/stage.hpp"
+#include "baker/plan/local_light.hpp"
 #include "baker/transport/geometry_key.hpp"
 
 namespace lambent::baker {
+
+template <>
+inline constexpr auto kKeptMembers<EncodedMesh> = std::tuple(&EncodedMesh::bytes, &EncodedMesh::attributes,
+                                                             &EncodedMesh::decoded);
 
 namespace {
 
@@ -28,15 +32,15 @@ namespace {
 // hundredth of a pixel.
 constexpr int kLatticeBits = 18;
 
-struct Box {
-  glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
-  void add(glm::vec3 p) { low = glm::min(low, p), high = glm::max(high, p); }
-  float longest() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z, 0.0f}); }
-  float furthest() const {
-    const glm::vec3 far = glm::max(glm::abs(low), glm::abs(high));
-    return std::max({far.x, far.y, far.z});
-  }
-};
+float longestSide(const Box& box) {
+  const glm::vec3 size = box.high - box.low;
+  return std::max({size.x, size.y, size.z, 0.0f});
+}
+
+float farthestFromOrigin(const Box& box) {
+  const glm::vec3 far = glm::max(glm::abs(box.low), glm::abs(box.high));
+  return std::max({far.x, far.y, far.z});
+}
 
 void grow(const bundle::MeshData& mesh, const glm::mat4& transform, Box& box) {
   for (const glm::vec3& p : mesh.positions) box.add(glm::vec3(transform * glm::vec4(p, 1.0f)));
@@ -53,7 +57,7 @@ std::vector<float> stepsOfGroups(const Scene& scene, const std::vector<RigidGrou
     Box box;
     for (const PlannedDraw& draw : group.draws)
       grow(scene.meshes[draw.mesh].primitives[draw.primitive].mesh, draw.group_from_mesh, box);
-    const float longest = box.longest();
+    const float longest = longestSide(box);
     if (!(longest > 0.0f)) continue;
     const float group_step = latticeStep(longest, kLatticeBits);
     for (const PlannedDraw& draw : group.draws) {
@@ -93,11 +97,12 @@ LatticeSteps latticeSteps(const Scene& scene, const std::vector<RigidGroup>& gro
       grow(primitives[p].mesh, glm::mat4(1.0f), all);
     }
     const bool drawn = of_group[m] != std::numeric_limits<float>::max();
-    const float wanted = drawn ? of_group[m] : stepFor(all.longest(), kLatticeBits);
+    const float wanted = drawn ? of_group[m] : stepFor(longestSide(all), kLatticeBits);
     // Floats of a mesh far from its own origin cannot represent a lattice that fine.
-    const float shared = std::max(wanted, stepFor(all.furthest(), kMaxPositionBits - 1));
+    const float shared = std::max(wanted, stepFor(farthestFromOrigin(all), kMaxPositionBits - 1));
     for (std::size_t p = 0; p < primitives.size(); ++p) {
-      const float finest = stepFor(std::max(boxes[p].furthest(), boxes[p].longest()), kMaxPositionBits - 1);
+      const float finest =
+          stepFor(std::max(farthestFromOrigin(boxes[p]), longestSide(boxes[p])), kMaxPositionBits - 1);
       const float detail = detailOf(primitives[p].mesh);
       steps[m].push_back(detail > 0.0f && bends(shared, detail)
                              ? std::max(std::min(shared, stepThatKeeps(detail)), finest)

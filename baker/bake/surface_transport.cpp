@@ -1,9 +1,8 @@
-#include "baker/bake/surface_transport.hpp"
-
 #include <algorithm>
 #include <memory>
 #include <vector>
 
+#include "baker/bake/bake_group.hpp"
 #include "baker/effects/surface/inside_faces.hpp"
 #include "baker/trace/patches.hpp"
 #include "runtime/base/process.hpp"

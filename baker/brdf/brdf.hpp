@@ -1,16 +1,20 @@
 // Defines the interface of all BRDFs: values of f for given directions in the local frame (z the normal, x
 // the tangent), split into lobes as runtime/bundle/brdf_table.hpp has them. It knows no scene, textures or
-// rays. brdf_kinds.hpp lists the BRDFs.
+// rays. brdfKinds() lists the BRDFs.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
 
 #include <glm/vec3.hpp>
 
+#include "baker/import/scene.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/brdf_table.hpp"
+#include "runtime/bundle/description.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 
 namespace lambent::baker {
 
@@ -65,5 +69,43 @@ BrdfGrid gridFor(const Brdf& brdf, int order);
 // Runs on all threads, and the result does not depend on their number.
 bundle::BrdfTable integrateTable(const Brdf& brdf, int order);
 bundle::BrdfTable integrateTable(const Brdf& brdf, int order, const BrdfGrid& grid);
+
+// Lists the BRDFs: which materials use which, and which materials share a table of b(v). A GGX table serves
+// every material of its family, with closed forms on the GPU beside it. Any other BRDF is one function of the
+// whole material in red, green and blue: it gets a table of family Measured, with which the runtime shades
+// without knowing what it holds. To add one, derive a class from Brdf in a file of its own and add a row to
+// the list.
+
+struct BrdfKind {
+  const char* name;  // an adjective, shown in plans
+  bundle::BrdfFamily family;
+  bool (*serves)(const gltf::Material&);  // is asked only of materials that are not matte
+  // Returns whether two materials that it serves have one table.
+  bool (*share)(const gltf::Material& a, const gltf::Material& b);
+  Result<std::unique_ptr<Brdf>> (*make)(const Scene&, const gltf::Material&);
+};
+
+std::span<const BrdfKind> brdfKinds();
+
+// Returns the first entry of the list that serves the material, which must not be matte.
+const BrdfKind& brdfKindOf(const gltf::Material& material);
+
+// Holds how much of uniform light the specular layer of a smooth dielectric reflects towards a view: its
+// directional albedo, 0..1, in the channel where that is largest. The layer is as rough as the material's
+// factor says, without textures. Allocates nothing.
+
+class LayerAlbedo {
+ public:
+  LayerAlbedo() = default;  // reflects nothing
+  // `table` is that of isotropic GGX.
+  LayerAlbedo(const bundle::BrdfTable& table, const gltf::Material& material);
+
+  // Returns the albedo towards a view at an angle to the normal with this cosine.
+  float towards(float cosine) const;
+
+ private:
+  static constexpr std::size_t kCosines = 65;  // evenly from 0 to 1
+  std::array<float, kCosines> albedos_{};
+};
 
 }  // namespace lambent::baker

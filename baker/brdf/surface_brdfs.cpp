@@ -9,7 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "baker/brdf/layer_albedo.hpp"
+#include "baker/brdf/brdf.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -60,10 +60,8 @@ struct Factored {
 };
 
 Factored factored(const BrdfTables::Entry& entry) {
-  const int order = static_cast<int>(entry.table.order);
-  Factored out{
-      entry.family, entry.table,
-      entry.table.isotropic() ? sh::ZonalFactors::isotropic(order) : sh::ZonalFactors::anisotropic(order)};
+  Factored out{entry.family, entry.table,
+               sh::ZonalFactors(static_cast<int>(entry.table.order), entry.table.isotropic())};
   const std::size_t count = entry.table.coefficients();
   for (std::size_t first = 0; first < out.table.values.size(); first += count)
     out.factors.factor(std::span(entry.table.values).subspan(first, count),
@@ -193,190 +191,166 @@ struct SurfaceBrdfs::State {
     return nearestData(*texture.image, texture.sampler, texcoord(texture.ref, triangle, u, v));
   }
 
-  glm::vec3 geometricNormal(std::uint32_t triangle) const;
-  glm::vec3 baseColor(const Surface& surface, std::uint32_t triangle, float u, float v) const;
-  glm::vec3 normalAt(std::uint32_t triangle, float u, float v) const;
-  Parameters parametersAt(const Surface& surface, std::uint32_t triangle, float u, float v) const;
-  // Returns what anisotropy() does, or for isotropic surfaces any tangent and strength 0.
+  glm::vec3 geometricNormal(std::uint32_t triangle) const {
+    const glm::uvec3 t = geometry->triangles[triangle];
+    const glm::vec3 a = geometry->positions[t.x];
+    return glm::cross(geometry->positions[t.y] - a, geometry->positions[t.z] - a);
+  }
+
+  glm::vec3 baseColor(const Surface& surface, std::uint32_t triangle, float u, float v) const {
+    glm::vec3 color(surface.material.base_color);
+    if (surface.base.image)
+      color *= glm::vec3(nearestTexel(*surface.base.image, surface.base.sampler,
+                                      interpolated(geometry->texcoords, triangle, u, v)));
+    if (surface.colored_vertices) color *= glm::vec3(interpolated(geometry->colors, triangle, u, v));
+    return glm::clamp(color, 0.0f, 1.0f);
+  }
+
+  glm::vec3 normalAt(std::uint32_t triangle, float u, float v) const {
+    return unitOr(interpolatedNormal(*geometry, geometry->triangles[triangle], {1.0f - u - v, u, v}),
+                  unitOr(geometricNormal(triangle), {0.0f, 1.0f, 0.0f}));
+  }
+
+  Parameters parametersAt(const Surface& surface, std::uint32_t triangle, float u, float v) const {
+    const gltf::Material& material = surface.material;
+    const glm::vec4 rough_metal = data(surface.metallic_roughness, triangle, u, v);
+    Parameters p{.roughness = std::clamp(material.roughness * rough_metal.g, 0.0f, 1.0f),
+                 .metal = std::clamp(material.metallic * rough_metal.b, 0.0f, 1.0f),
+                 .transmission = material.transmits() ? material.transmission : 0.0f,
+                 .base = baseColor(surface, triangle, u, v)};
+    const float specular = material.specular * data(surface.specular, triangle, u, v).a;
+    glm::vec3 tint = material.specular_color;
+    if (surface.specular_color.image)
+      tint *= glm::vec3(nearestTexel(*surface.specular_color.image, surface.specular_color.sampler,
+                                     texcoord(surface.specular_color.ref, triangle, u, v)));
+    p.f0 = glm::mix(specular * glm::min(material.reflectance() * tint, glm::vec3(1.0f)), p.base, p.metal);
+    p.f90 = glm::mix(specular, 1.0f, p.metal);
+    return p;
+  }
+
+  // Returns the direction of the longer lobe, unit and orthogonal to `normal`, and the strength; for
+  // isotropic surfaces any such direction and strength 0.
   std::pair<glm::vec3, float> leanOf(const Surface& surface, std::uint32_t triangle, float u, float v,
-                                     const glm::vec3& normal) const;
-  PointReflection reflectionAt(const Surface& surface, std::uint32_t triangle, float u, float v,
-                               const glm::vec3& to) const;
-  // Returns the direction of the longer lobe, unit and orthogonal to `normal`, and the strength.
-  std::pair<glm::vec3, float> anisotropy(const Surface& surface, std::uint32_t triangle, float u, float v,
-                                         const glm::vec3& normal) const;
-  void expand(const Factored& factored, int order, std::span<const float> weights, const ViewFrame& frame,
-              std::span<Kernel> lobes) const;
-  void diffuseKernel(const glm::vec3& color, int order, const glm::vec3& normal, std::span<float> out) const;
-  void glossyKernel(const Surface& surface, int order, const SurfacePoint& at, const glm::vec3& to,
-                    std::span<float> out) const;
-};
-
-glm::vec3 SurfaceBrdfs::State::geometricNormal(std::uint32_t triangle) const {
-  const glm::uvec3 t = geometry->triangles[triangle];
-  const glm::vec3 a = geometry->positions[t.x];
-  return glm::cross(geometry->positions[t.y] - a, geometry->positions[t.z] - a);
-}
-
-glm::vec3 SurfaceBrdfs::State::normalAt(std::uint32_t triangle, float u, float v) const {
-  return unitOr(interpolatedNormal(*geometry, geometry->triangles[triangle], {1.0f - u - v, u, v}),
-                unitOr(geometricNormal(triangle), {0.0f, 1.0f, 0.0f}));
-}
-
-Parameters SurfaceBrdfs::State::parametersAt(const Surface& surface, std::uint32_t triangle, float u,
-                                             float v) const {
-  const gltf::Material& material = surface.material;
-  const glm::vec4 rough_metal = data(surface.metallic_roughness, triangle, u, v);
-  Parameters p{.roughness = std::clamp(material.roughness * rough_metal.g, 0.0f, 1.0f),
-               .metal = std::clamp(material.metallic * rough_metal.b, 0.0f, 1.0f),
-               .transmission = material.transmits() ? material.transmission : 0.0f,
-               .base = baseColor(surface, triangle, u, v)};
-  const float specular = material.specular * data(surface.specular, triangle, u, v).a;
-  glm::vec3 tint = material.specular_color;
-  if (surface.specular_color.image)
-    tint *= glm::vec3(nearestTexel(*surface.specular_color.image, surface.specular_color.sampler,
-                                   texcoord(surface.specular_color.ref, triangle, u, v)));
-  p.f0 = glm::mix(specular * glm::min(material.reflectance() * tint, glm::vec3(1.0f)), p.base, p.metal);
-  p.f90 = glm::mix(specular, 1.0f, p.metal);
-  return p;
-}
-
-std::pair<glm::vec3, float> SurfaceBrdfs::State::leanOf(const Surface& surface, std::uint32_t triangle,
-                                                        float u, float v, const glm::vec3& normal) const {
-  return tables[surface.table].family == BrdfFamily::AnisotropicGgx
-             ? anisotropy(surface, triangle, u, v, normal)
-             : std::pair(anyAcross(normal), 0.0f);
-}
-
-PointReflection SurfaceBrdfs::State::reflectionAt(const Surface& surface, std::uint32_t triangle, float u,
-                                                  float v, const glm::vec3& to) const {
-  const Factored& from = tables[surface.table];
-  const glm::vec3 normal = normalAt(triangle, u, v);
-  const Parameters p = parametersAt(surface, triangle, u, v);
-  const auto [tangent, strength] = leanOf(surface, triangle, u, v, normal);
-  std::array<float, kMaxBrdfLobes * kMaxBrdfCoefficients> weights;
-  lookUpStored(from.table, frameOf(normal, tangent, to).view, p.roughness, strength, weights);
-  const BrdfFocus focus = ggx->focus({p.roughness, strength});
-  return {.normal = normal,
-          .tangent = tangent,
-          .geometric = unitOr(geometricNormal(triangle), normal),
-          .alpha_t = static_cast<float>(focus.alpha_t),
-          .alpha_b = static_cast<float>(focus.alpha_b),
-          .f0 = p.f0,
-          .f90 = p.f90,
-          .diffuse = diffuseRest(p, weights, from.table.coefficients())};
-}
-
-glm::vec3 SurfaceBrdfs::State::baseColor(const Surface& surface, std::uint32_t triangle, float u,
-                                         float v) const {
-  glm::vec3 color(surface.material.base_color);
-  if (surface.base.image)
-    color *= glm::vec3(nearestTexel(*surface.base.image, surface.base.sampler,
-                                    interpolated(geometry->texcoords, triangle, u, v)));
-  if (surface.colored_vertices) color *= glm::vec3(interpolated(geometry->colors, triangle, u, v));
-  return glm::clamp(color, 0.0f, 1.0f);
-}
-
-std::pair<glm::vec3, float> SurfaceBrdfs::State::anisotropy(const Surface& surface, std::uint32_t triangle,
-                                                            float u, float v, const glm::vec3& normal) const {
-  const gltf::Material& material = surface.material;
-  float strength = material.anisotropy;
-  glm::vec2 lean(1.0f, 0.0f);
-  if (surface.anisotropy.image) {
-    const glm::vec4 texel = data(surface.anisotropy, triangle, u, v);
-    lean = 2.0f * glm::vec2(texel) - 1.0f;
-    strength *= texel.b;
-  }
-  const float c = std::cos(material.anisotropy_rotation_rad), s = std::sin(material.anisotropy_rotation_rad);
-  lean = {c * lean.x - s * lean.y, s * lean.x + c * lean.y};
-
-  const glm::uvec3 corners = geometry->triangles[triangle];
-  glm::vec3 along;
-  float handedness = geometry->tangents[corners.x].w;
-  if (handedness != 0.0f) {
-    along = glm::vec3(interpolated(geometry->tangents, triangle, u, v));
-    handedness = handedness < 0.0f ? -1.0f : 1.0f;
-  } else {
-    // The tangent points to where the texture's u rises; v falls along the bitangent.
-    const gltf::TextureRef& ref = material.normal_texture;
-    const auto& set = geometry->texcoord_sets[std::min(ref.texcoord, 1u)];
-    const glm::vec2 a = ref.apply(set[corners.x]), ab = ref.apply(set[corners.y]) - a,
-                    ac = ref.apply(set[corners.z]) - a;
-    const glm::vec3 p = geometry->positions[corners.x], pb = geometry->positions[corners.y] - p,
-                    pc = geometry->positions[corners.z] - p;
-    const float sign = ab.x * ac.y - ac.x * ab.y < 0.0f ? -1.0f : 1.0f;
-    along = sign * (ac.y * pb - ab.y * pc);
-    handedness = glm::dot(glm::cross(normal, along), sign * (ab.x * pc - ac.x * pb)) < 0.0f ? 1.0f : -1.0f;
-  }
-  const glm::vec3 any = anyAcross(normal);
-  const glm::vec3 tangent = unitOr(along - glm::dot(along, normal) * normal, any);
-  return {unitOr(lean.x * tangent + lean.y * handedness * glm::cross(normal, tangent), any), strength};
-}
-
-// Does what ZonalFactors::expand does, for all lobes at once, with every axis in a lane of its own.
-void SurfaceBrdfs::State::expand(const Factored& from, int order, std::span<const float> weights,
-                                 const ViewFrame& frame, std::span<Kernel> lobes) const {
-  const std::size_t count = from.table.coefficients();
-  const auto axes = from.factors.axes();
-  alignas(32) std::array<float, kAxisLanes> x{}, y{}, z{};
-  alignas(32) std::array<float, kAxisLanes * kMaxBrdfCoefficients> harmonics;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const glm::vec3 axis = axes[i].x * frame.x + axes[i].y * frame.y + axes[i].z * frame.z;
-    x[i] = axis.x, y[i] = axis.y, z[i] = axis.z;
-  }
-  const std::size_t lanes = inWholeVectors(axes.size());
-  sh::evaluateBatch<float>(order, x.data(), y.data(), z.data(), lanes, harmonics.data(), kAxisLanes);
-  for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
-    const float* own = weights.data() + lobe * count;
-    if (!from.table.isotropic()) {
-      std::size_t at = 0;
-      for (std::size_t l = 0; l < static_cast<std::size_t>(order); at += 2 * l + 1, ++l)
-        sumAxes(own + at, 2 * l + 1, l, harmonics.data(), lobes[lobe].data());
-      continue;
+                                     const glm::vec3& normal) const {
+    const glm::vec3 any = anyAcross(normal);
+    if (tables[surface.table].family != BrdfFamily::AnisotropicGgx) return {any, 0.0f};
+    const gltf::Material& material = surface.material;
+    float strength = material.anisotropy;
+    glm::vec2 lean(1.0f, 0.0f);
+    if (surface.anisotropy.image) {
+      const glm::vec4 texel = data(surface.anisotropy, triangle, u, v);
+      lean = 2.0f * glm::vec2(texel) - 1.0f;
+      strength *= texel.b;
     }
-    sh::withOrder<sh::kMaxFactoredOrder>(
-        order, [&](auto bands) { sumIsotropic<bands>(own, harmonics.data(), lobes[lobe].data()); });
-  }
-}
+    const float c = std::cos(material.anisotropy_rotation_rad),
+                s = std::sin(material.anisotropy_rotation_rad);
+    lean = {c * lean.x - s * lean.y, s * lean.x + c * lean.y};
 
-void SurfaceBrdfs::State::diffuseKernel(const glm::vec3& color, int order, const glm::vec3& normal,
-                                        std::span<float> out) const {
-  const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
-  Kernel y;
-  sh::evaluate(order, normal, y);
-  for (int c = 0; c < 3; ++c)
-    for (std::size_t k = 0; k < count; ++k)
-      out[static_cast<std::size_t>(c) * count + k] += color[c] * cosine[k] * y[k];
-}
-
-void SurfaceBrdfs::State::glossyKernel(const Surface& surface, int order, const SurfacePoint& at,
-                                       const glm::vec3& to, std::span<float> out) const {
-  const Factored& from = tables[surface.table];
-  const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
-  const std::size_t stored = from.table.coefficients();
-  std::array<float, kMaxBrdfLobes * kMaxBrdfCoefficients> weights;
-  std::array<Kernel, kMaxBrdfLobes> lobes;
-
-  if (from.family == BrdfFamily::Measured) {
-    const ViewFrame frame = frameOf(at.normal, anyAcross(at.normal), to);
-    lookUpStored(from.table, frame.view, 0.0f, 0.0f, weights);
-    expand(from, order, weights, frame, lobes);
-    for (std::size_t c = 0; c < 3; ++c)
-      std::copy_n(lobes[c].begin(), count, out.begin() + static_cast<std::ptrdiff_t>(c * count));
-    return;
+    const glm::uvec3 corners = geometry->triangles[triangle];
+    glm::vec3 along;
+    float handedness = geometry->tangents[corners.x].w;
+    if (handedness != 0.0f) {
+      along = glm::vec3(interpolated(geometry->tangents, triangle, u, v));
+      handedness = handedness < 0.0f ? -1.0f : 1.0f;
+    } else {
+      // The tangent points to where the texture's u rises; v falls along the bitangent.
+      const gltf::TextureRef& ref = material.normal_texture;
+      const auto& set = geometry->texcoord_sets[std::min(ref.texcoord, 1u)];
+      const glm::vec2 a = ref.apply(set[corners.x]), ab = ref.apply(set[corners.y]) - a,
+                      ac = ref.apply(set[corners.z]) - a;
+      const glm::vec3 p = geometry->positions[corners.x], pb = geometry->positions[corners.y] - p,
+                      pc = geometry->positions[corners.z] - p;
+      const float sign = ab.x * ac.y - ac.x * ab.y < 0.0f ? -1.0f : 1.0f;
+      along = sign * (ac.y * pb - ab.y * pc);
+      handedness = glm::dot(glm::cross(normal, along), sign * (ab.x * pc - ac.x * pb)) < 0.0f ? 1.0f : -1.0f;
+    }
+    const glm::vec3 tangent = unitOr(along - glm::dot(along, normal) * normal, any);
+    return {unitOr(lean.x * tangent + lean.y * handedness * glm::cross(normal, tangent), any), strength};
   }
 
-  const Parameters p = parametersAt(surface, at.triangle, at.u, at.v);
-  const auto [tangent, strength] = leanOf(surface, at.triangle, at.u, at.v, at.normal);
-  const ViewFrame frame = frameOf(at.normal, tangent, to);
-  lookUpStored(from.table, frame.view, p.roughness, strength, weights);
-  expand(from, order, weights, frame, std::span(lobes).first(2));
-  for (int c = 0; c < 3; ++c)
-    for (std::size_t k = 0; k < count; ++k)
-      out[static_cast<std::size_t>(c) * count + k] = p.f0[c] * lobes[0][k] + p.f90 * lobes[1][k];
-  if (const glm::vec3 rest = diffuseRest(p, weights, stored); rest != glm::vec3(0.0f))
-    diffuseKernel(rest, order, at.normal, out);
-}
+  PointReflection reflectionAt(const Surface& surface, std::uint32_t triangle, float u, float v,
+                               const glm::vec3& to) const {
+    const Factored& from = tables[surface.table];
+    const glm::vec3 normal = normalAt(triangle, u, v);
+    const Parameters p = parametersAt(surface, triangle, u, v);
+    const auto [tangent, strength] = leanOf(surface, triangle, u, v, normal);
+    std::array<float, kMaxBrdfLobes * kMaxBrdfCoefficients> weights;
+    lookUpStored(from.table, frameOf(normal, tangent, to).view, p.roughness, strength, weights);
+    const BrdfFocus focus = ggx->focus({p.roughness, strength});
+    return {.normal = normal,
+            .tangent = tangent,
+            .geometric = unitOr(geometricNormal(triangle), normal),
+            .alpha_t = static_cast<float>(focus.alpha_t),
+            .alpha_b = static_cast<float>(focus.alpha_b),
+            .f0 = p.f0,
+            .f90 = p.f90,
+            .diffuse = diffuseRest(p, weights, from.table.coefficients())};
+  }
+
+  // Does what ZonalFactors::expand does, for all lobes at once, with every axis in a lane of its own.
+  void expand(const Factored& from, int order, std::span<const float> weights, const ViewFrame& frame,
+              std::span<Kernel> lobes) const {
+    const std::size_t count = from.table.coefficients();
+    const auto axes = from.factors.axes();
+    alignas(32) std::array<float, kAxisLanes> x{}, y{}, z{};
+    alignas(32) std::array<float, kAxisLanes * kMaxBrdfCoefficients> harmonics;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      const glm::vec3 axis = axes[i].x * frame.x + axes[i].y * frame.y + axes[i].z * frame.z;
+      x[i] = axis.x, y[i] = axis.y, z[i] = axis.z;
+    }
+    const std::size_t lanes = inWholeVectors(axes.size());
+    sh::evaluateBatch<float>(order, x.data(), y.data(), z.data(), lanes, harmonics.data(), kAxisLanes);
+    for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
+      const float* own = weights.data() + lobe * count;
+      if (!from.table.isotropic()) {
+        std::size_t at = 0;
+        for (std::size_t l = 0; l < static_cast<std::size_t>(order); at += 2 * l + 1, ++l)
+          sumAxes(own + at, 2 * l + 1, l, harmonics.data(), lobes[lobe].data());
+        continue;
+      }
+      sh::withOrder<sh::kMaxFactoredOrder>(
+          order, [&](auto bands) { sumIsotropic<bands>(own, harmonics.data(), lobes[lobe].data()); });
+    }
+  }
+
+  void diffuseKernel(const glm::vec3& color, int order, const glm::vec3& normal, std::span<float> out) const {
+    const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
+    Kernel y;
+    sh::evaluate(order, normal, y);
+    for (int c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < count; ++k)
+        out[static_cast<std::size_t>(c) * count + k] += color[c] * cosine[k] * y[k];
+  }
+
+  void glossyKernel(const Surface& surface, int order, const SurfacePoint& at, const glm::vec3& to,
+                    std::span<float> out) const {
+    const Factored& from = tables[surface.table];
+    const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
+    const std::size_t stored = from.table.coefficients();
+    std::array<float, kMaxBrdfLobes * kMaxBrdfCoefficients> weights;
+    std::array<Kernel, kMaxBrdfLobes> lobes;
+
+    if (from.family == BrdfFamily::Measured) {
+      const ViewFrame frame = frameOf(at.normal, anyAcross(at.normal), to);
+      lookUpStored(from.table, frame.view, 0.0f, 0.0f, weights);
+      expand(from, order, weights, frame, lobes);
+      for (std::size_t c = 0; c < 3; ++c)
+        std::copy_n(lobes[c].begin(), count, out.begin() + static_cast<std::ptrdiff_t>(c * count));
+      return;
+    }
+
+    const Parameters p = parametersAt(surface, at.triangle, at.u, at.v);
+    const auto [tangent, strength] = leanOf(surface, at.triangle, at.u, at.v, at.normal);
+    const ViewFrame frame = frameOf(at.normal, tangent, to);
+    lookUpStored(from.table, frame.view, p.roughness, strength, weights);
+    expand(from, order, weights, frame, std::span(lobes).first(2));
+    for (int c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < count; ++k)
+        out[static_cast<std::size_t>(c) * count + k] = p.f0[c] * lobes[0][k] + p.f90 * lobes[1][k];
+    if (const glm::vec3 rest = diffuseRest(p, weights, stored); rest != glm::vec3(0.0f))
+      diffuseKernel(rest, order, at.normal, out);
+  }
+};
 
 Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry& geometry,
                                         const BrdfTables& tables, DecodedImages& images, int order) {

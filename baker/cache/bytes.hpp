@@ -6,9 +6,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -98,5 +101,72 @@ class ByteReader {
   std::span<const std::byte> left_;
   bool ok_ = true;
 };
+
+// The members of a struct that are kept, as a tuple of pointers in the order of their bytes. write() and
+// read() take these structs, plain bytes, and texts, lists and optionals of what they take. read() returns
+// false if the bytes are no such value, and may have changed a part of it by then.
+template <typename T>
+inline constexpr auto kKeptMembers = std::tuple();
+template <typename T>
+concept HasKeptMembers = std::tuple_size_v<std::remove_const_t<decltype(kKeptMembers<T>)>> >
+0;
+
+template <PlainBytes T>
+void write(const T& value, ByteWriter& out) {
+  out.add(value);
+}
+template <PlainBytes T>
+bool read(ByteReader& in, T& value) {
+  return in.read(value);
+}
+
+inline void write(const std::string& text, ByteWriter& out) {
+  out.addText(text);
+}
+inline bool read(ByteReader& in, std::string& text) {
+  return in.readText(text);
+}
+
+template <typename T>
+void write(const std::vector<T>& list, ByteWriter& out) {
+  if constexpr (PlainBytes<T>) {
+    out.addList(list);
+  } else {
+    out.add(std::uint64_t{list.size()});
+    for (const T& value : list) write(value, out);
+  }
+}
+template <typename T>
+bool read(ByteReader& in, std::vector<T>& list) {
+  if constexpr (PlainBytes<T>) return in.readList(list);
+  std::uint64_t count = 0;
+  if (!in.read(count)) return false;
+  list.clear();
+  for (std::uint64_t i = 0; i < count; ++i)
+    if (!read(in, list.emplace_back())) return false;
+  return true;
+}
+
+template <typename T>
+void write(const std::optional<T>& value, ByteWriter& out) {
+  out.add(value.has_value());
+  if (value) write(*value, out);
+}
+template <typename T>
+bool read(ByteReader& in, std::optional<T>& value) {
+  bool any = false;
+  if (!in.read(any)) return false;
+  value.reset();
+  return !any || read(in, value.emplace());
+}
+
+template <HasKeptMembers T>
+void write(const T& value, ByteWriter& out) {
+  std::apply([&](auto... member) { (write(value.*member, out), ...); }, kKeptMembers<T>);
+}
+template <HasKeptMembers T>
+bool read(ByteReader& in, T& value) {
+  return std::apply([&](auto... member) { return (read(in, value.*member) && ...); }, kKeptMembers<T>);
+}
 
 }  // namespace lambent::baker

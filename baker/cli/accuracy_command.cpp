@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/plan/counted.hpp"
 #include "baker/sweep/report.hpp"

@@ -16,7 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "baker/cache/cache.hpp"
 #include "baker/cli/bake_report.hpp"
 #include "baker/cli/commands.hpp"

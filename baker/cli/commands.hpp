@@ -37,7 +37,7 @@ void addAccuracyCommand(CLI::App& app, Command& run);
 void addExportCommand(CLI::App& app, Command& run);
 void addViewCommand(CLI::App& app, Command& run);
 
-// Adds the options of a bake from their table (baker/bake/option_rows.hpp).
+// Adds the options of a bake from their table (baker/bake/options.hpp).
 void addBakeOptions(CLI::App& command, BakeOptions& options);
 
 // These return texts such as "1.2 M", "3.4 MiB" and "1:02".

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/accuracy/compare.hpp"
-#include "baker/accuracy/difference.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/plan/counted.hpp"
 #include "runtime/command_line/help.hpp"
@@ -19,20 +18,12 @@ namespace {
 
 struct CompareArguments {
   std::filesystem::path picture, reference, reference2, heat;
-  std::string heat_map = "signed";
   std::optional<double> heat_range;
   std::uint32_t shrink = 1;
   bool json = false;
 };
 
-std::string heatLine(const CompareArguments& a, HeatMap map, double range) {
-  return map == HeatMap::Signed
-             ? fmt::format("{0}: luminance off by -{1} (blue) to +{1} (red)", a.heat.string(),
-                           percentText(range))
-             : fmt::format("{}: off by 0 (black) to {} (light yellow)", a.heat.string(), percentText(range));
-}
-
-void printDifference(const CompareArguments& a, HeatMap map, const Difference& difference) {
+void printDifference(const CompareArguments& a, const Difference& difference) {
   const PictureError& e = difference.figures;
   if (a.json) {
     nlohmann::json json = {{"picture", a.picture.string()},
@@ -52,8 +43,7 @@ void printDifference(const CompareArguments& a, HeatMap map, const Difference& d
       json["sameSurface"] = {
           {"relativeRms", e.same_surface_rms ? nlohmann::json(*e.same_surface_rms) : nlohmann::json()},
           {"pixelsLeftOut", *e.pixels_of_other_surfaces}};
-    if (!a.heat.empty())
-      json["heat"] = {{"file", a.heat.string()}, {"map", a.heat_map}, {"range", difference.range}};
+    if (!a.heat.empty()) json["heat"] = {{"file", a.heat.string()}, {"range", difference.range}};
     fmt::print("{}\n", json.dump(2));
     return;
   }
@@ -72,7 +62,9 @@ void printDifference(const CompareArguments& a, HeatMap map, const Difference& d
              100.0 * e.bias[2]);
   fmt::print("  pixels        median {}, 95th {}, 99th {}, max {}\n", percentText(e.median, 3),
              percentText(e.percentile_95, 3), percentText(e.percentile_99, 3), percentText(e.largest, 3));
-  if (!a.heat.empty()) fmt::print("  {}\n", heatLine(a, map, difference.range));
+  if (!a.heat.empty())
+    fmt::print("  {0}: luminance off by -{1} (blue) to +{1} (red)\n", a.heat.string(),
+               percentText(difference.range));
 }
 
 Result<spec::RgbaImage> readShrunk(const std::filesystem::path& file, std::uint32_t by) {
@@ -81,8 +73,6 @@ Result<spec::RgbaImage> readShrunk(const std::filesystem::path& file, std::uint3
 }
 
 int runCompare(const CompareArguments& a) {
-  const auto map = parseHeatMap(a.heat_map);
-  if (!map) return wrongUsage(map.error());
   const auto picture = readShrunk(a.picture, a.shrink);
   if (!picture) return reportError(picture.error());
   const auto reference = readShrunk(a.reference, a.shrink);
@@ -94,12 +84,12 @@ int runCompare(const CompareArguments& a) {
     reference2 = std::move(*second);
   }
   const auto difference = differenceOf(*picture, *reference, reference2 ? &*reference2 : nullptr,
-                                       {.map = *map, .range = a.heat_range}, a.picture.string());
+                                       a.heat_range, a.picture.string());
   if (!difference) return reportError(difference.error());
   if (!a.heat.empty())
     if (auto written = spec::writePng(a.heat, difference->heat); !written)
       return reportError(written.error());
-  printDifference(a, *map, *difference);
+  printDifference(a, *difference);
   return 0;
 }
 
@@ -118,17 +108,13 @@ void addCompareCommand(CLI::App& app, Command& run) {
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   command_line::addValue(*command, "--heat", a->heat, "PNG",
-                         "Write where they differ as colors. Gray: neither shows the scene, violet: one of "
-                         "them");
-  command_line::addValue(*command, "--heat-map", a->heat_map, "MAP",
-                         "signed: luminance relative to the reference's, blue too dark, red too bright. "
-                         "magnitude: of the difference, relative to the reference's RMS over the picture")
-      ->capture_default_str();
+                         "Write where they differ as colors: luminance relative to the reference's, blue too "
+                         "dark, red too bright. Gray: neither shows the scene, violet: one of them");
   command_line::addValue(*command, "--heat-range", a->heat_range, "SHARE",
                          "Where the colors end, as a share (0.1: 10 %; default: by the picture)")
       ->check(CLI::PositiveNumber);
   command->add_flag("--json", a->json, "Print figures as JSON");
-  command_line::group(*command, "Heat map", {"--heat", "--heat-map", "--heat-range"});
+  command_line::group(*command, "Heat map", {"--heat", "--heat-range"});
   command_line::addExamples(*command,
                             {{"lambent compare shown.exr ref.exr", "prints how far one is from the other"},
                              {"lambent compare shown.exr ref.exr --reference2 ref2.exr --heat where.png",

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/decisions/decisions.hpp"
 #include "baker/import/gltf.hpp"

@@ -4,20 +4,190 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
 #include "baker/compress/cpca_clusters.hpp"
-#include "baker/compress/cpca_quantize.hpp"
-#include "baker/compress/cpca_space.hpp"
-#include "baker/compress/cpca_spectrum.hpp"
 #include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 
 namespace {
+
+// Clusters become integers. The basis and the clusters' means and axes are rounded to grids as coarse as the
+// error allows; then the weights of every sample are fitted by least squares to the rounded axes, all with
+// the same step.
+
+constexpr double kLargestCoordinate = transfer::kMaxCoordinate - 1;
+constexpr double kMaxCode = 65535.0;
+
+std::int32_t rounded(double value) {
+  return static_cast<std::int32_t>(std::lround(std::clamp(value, -kLargestCoordinate, kLargestCoordinate)));
+}
+
+// Rounds to quarter octaves, since few different values code to few bytes.
+double coarse(double value) {
+  return std::exp2(std::round(4.0 * std::log2(value)) / 4.0);
+}
+
+// An axis of a cluster whose weights span more steps than a code of 16 bits has values. The weights were
+// coded with longer steps there, so the bound may be missed however small the step is.
+struct WideAxis {
+  std::uint32_t cluster = 0;  // index into the clusters given
+  Eigen::Index axis = 0;
+};
+
+struct Quantized {
+  CodedTransfer transfer;      // all but `error`
+  std::vector<WideAxis> wide;  // at most one of each cluster, its widest
+};
+
+struct CodedCluster {
+  std::vector<std::int32_t> mean, directions;  // [coordinate], [axis][coordinate]
+  std::vector<transfer::AxisCode> axes;
+  std::vector<std::vector<std::uint32_t>> codes;  // [axis][member]
+  std::optional<Eigen::Index> wide;               // WideAxis::axis
+};
+
+CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> members, const Cluster& cluster,
+                         double mean_grid, double common_step) {
+  const double step = stepOf(cluster, common_step);
+  const Eigen::Index rank = points.rows();
+  CodedCluster coded;
+  Eigen::VectorXd mean(rank);
+  for (Eigen::Index r = 0; r < rank; ++r) {
+    coded.mean.push_back(rounded(double{cluster.mean(r)} / mean_grid));
+    mean(r) = mean_grid * coded.mean.back();
+  }
+  // The errors of these grids, times the weights, suit the quantization of the weights.
+  Eigen::MatrixXd axes(rank, cluster.kept);
+  Eigen::VectorXd scales(cluster.kept);
+  for (Eigen::Index j = 0; j < cluster.kept; ++j) {
+    const double grid =
+        coarse(std::max(axisGrid(rank, cluster.variances(j), step, cluster.count), 2.0 / kLargestCoordinate));
+    scales(j) = step * grid;
+    for (Eigen::Index r = 0; r < rank; ++r) {
+      coded.directions.push_back(rounded(double{cluster.axes(r, j)} / grid));
+      axes(r, j) = coded.directions.back();
+    }
+  }
+  Eigen::MatrixXd weights(cluster.kept, static_cast<Eigen::Index>(members.size()));
+  if (cluster.kept > 0) {
+    const Eigen::LDLT<Eigen::MatrixXd> gram(axes.transpose() * axes);
+    const Eigen::MatrixXd solve = gram.solve(axes.transpose());
+    for (std::size_t m = 0; m < members.size(); ++m)
+      weights.col(static_cast<Eigen::Index>(m)).noalias() =
+          solve * (points.col(members[m]).cast<double>() - mean);
+  }
+  double widest = 1.0;
+  for (Eigen::Index j = 0; j < cluster.kept; ++j) {
+    const double low = weights.row(j).minCoeff(), high = weights.row(j).maxCoeff();
+    if (const double spans = (high - low) / (kMaxCode * scales(j)); spans > widest) {
+      widest = spans;
+      coded.wide = j;
+    }
+    const auto scale = static_cast<float>(std::max(scales(j), (high - low) / kMaxCode));
+    const double first = std::floor(low / double{scale} + 0.5);
+    const auto offset = static_cast<float>(first * double{scale});
+    std::vector<std::uint32_t> codes;
+    for (std::size_t m = 0; m < members.size(); ++m)
+      codes.push_back(static_cast<std::uint32_t>(
+          std::clamp(std::round((weights(j, static_cast<Eigen::Index>(m)) - double{offset}) / double{scale}),
+                     0.0, kMaxCode)));
+    coded.axes.push_back({offset, scale});
+    coded.codes.push_back(std::move(codes));
+  }
+  return coded;
+}
+
+// Rounds the basis of the cell and returns the codebook's basis, basis_scales and value_scales. `axes` are
+// columns in the weighted space, `energies` their mean square coordinates, and `roots` those of
+// WeightedSpace.
+transfer::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::VectorXd& energies,
+                                      const std::vector<double>& roots, double step) {
+  transfer::SharedCodebook basis;
+  for (const double root : roots)
+    basis.value_scales.push_back(root > 0.0 ? static_cast<float>(1.0 / root) : 0.0f);
+  for (Eigen::Index r = 0; r < axes.cols(); ++r) {
+    // Errors of the basis add, for each vector, a tenth of the quantization error of one axis' weights. The
+    // grid is kept fine enough that even an unimportant axis keeps its direction.
+    const double coarsest = axes.col(r).cwiseAbs().maxCoeff() / 4.0;
+    const double grid =
+        std::clamp(step * std::sqrt(0.1 / (static_cast<double>(axes.rows()) * std::max(energies(r), 1e-300))),
+                   1.0 / kLargestCoordinate, std::max(coarsest, 1.0 / kLargestCoordinate));
+    basis.basis_scales.push_back(static_cast<float>(grid));
+    for (Eigen::Index i = 0; i < axes.rows(); ++i) basis.basis.push_back(rounded(axes(i, r) / grid));
+  }
+  return basis;
+}
+
+// `points` are coordinates over the rounded basis.
+Quantized quantize(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters,
+                   const transfer::SharedCodebook& basis, const transfer::TransferShape& shape, double step) {
+  // Clusters are ordered by falling number of axes.
+  std::vector<std::uint32_t> order(clusters.size()), place(clusters.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return clusters[a].kept > clusters[b].kept; });
+  for (std::uint32_t c = 0; c < order.size(); ++c) place[order[c]] = c;
+  Quantized quantized;
+  CodedTransfer& coded = quantized.transfer;
+  coded.shape = shape;
+  coded.codebook = basis;
+  std::vector<std::vector<std::uint32_t>> members(clusters.size());
+  for (std::uint32_t s = 0; s < ids.size(); ++s) {
+    coded.cluster_of.push_back(place[ids[s]]);
+    members[place[ids[s]]].push_back(s);
+  }
+  double mean_axes = 1.0, most = 1e-300;
+  for (const Cluster& cluster : clusters) most = std::max(most, cluster.importance);
+  for (const Cluster& cluster : clusters)
+    mean_axes += cluster.count / static_cast<double>(ids.size()) * static_cast<double>(cluster.kept);
+  const auto rank = static_cast<std::size_t>(points.rows());
+  // Errors of the means add a fiftieth, since no weight corrects them along axes that are left out.
+  double mean_grid =
+      step * std::sqrt(0.02 * mean_axes / (most * static_cast<double>(std::max<std::size_t>(rank, 1))));
+  for (const Cluster& cluster : clusters)
+    mean_grid = std::max(mean_grid, double{cluster.mean.cwiseAbs().maxCoeff()} / kLargestCoordinate);
+  mean_grid = double{static_cast<float>(mean_grid)};
+
+  std::vector<CodedCluster> parts(clusters.size());
+  parallelRanges(parts.size(), 1, {}, [&](std::size_t c, std::size_t) {
+    parts[c] = codeCluster(points, members[c], clusters[order[c]], mean_grid, step);
+  });
+  for (std::size_t c = 0; c < parts.size(); ++c)
+    if (parts[c].wide) quantized.wide.push_back({order[c], *parts[c].wide});
+  transfer::SharedCodebook& book = coded.codebook;
+  book.mean_scale = static_cast<float>(mean_grid);
+  for (const CodedCluster& part : parts) {
+    book.axis_counts.push_back(static_cast<std::uint32_t>(part.axes.size()));
+    book.axes.insert(book.axes.end(), part.axes.begin(), part.axes.end());
+  }
+  for (std::size_t r = 0; r < rank; ++r)
+    for (const CodedCluster& part : parts) book.means.push_back(part.mean[r]);
+  for (std::size_t j = 0; j < parts.front().axes.size(); ++j)  // the first cluster has the most axes
+    for (std::size_t r = 0; r < rank; ++r)
+      for (const CodedCluster& part : parts)
+        if (j < part.axes.size()) book.directions.push_back(part.directions[j * rank + r]);
+
+  double variance = 1e-300;
+  for (const Cluster& cluster : clusters) variance += cluster.count * cluster.variances.sum();
+  coded.planes.resize(book.axis_counts.empty() ? 0 : book.axis_counts.front());
+  for (std::size_t j = 0; j < coded.planes.size(); ++j) {
+    CodedPlane& plane = coded.planes[j];
+    double own = 0.0;
+    for (std::size_t c = 0; c < parts.size() && j < parts[c].codes.size(); ++c) {
+      plane.codes.insert(plane.codes.end(), parts[c].codes[j].begin(), parts[c].codes[j].end());
+      own += clusters[order[c]].count * clusters[order[c]].variances(static_cast<Eigen::Index>(j));
+    }
+    plane.bits = *std::max_element(plane.codes.begin(), plane.codes.end()) < 256 ? 8 : 16;
+    plane.variance = static_cast<float>(own / variance);
+  }
+  return quantized;
+}
 
 constexpr std::size_t kVectorsPerRange = 512;
 constexpr std::size_t kBasisSamples = 8192;  // samples that the covariance uses at least
@@ -90,13 +260,6 @@ Points coordinates(std::span<const float> vectors, const std::vector<double>& ro
   return points;
 }
 
-Points columnsOf(const Points& points, std::span<const std::uint32_t> samples) {
-  Points out(points.rows(), static_cast<Eigen::Index>(samples.size()));
-  for (std::size_t s = 0; s < samples.size(); ++s)
-    out.col(static_cast<Eigen::Index>(s)) = points.col(samples[s]);
-  return out;
-}
-
 struct Clustering {
   ClusterIds ids;
   std::vector<Cluster> clusters;
@@ -133,11 +296,10 @@ class Coder {
     if (stopped()) return {};
     points_ = coordinates(vectors_, space_.roots, basis_);
     for (;;) {
-      auto few = settings_.clusters > 0 ? fromSome(settings_.clusters, settings_.axes) : search();
+      auto few = settings_.clusters > 0 ? fromSome(settings_.clusters) : search();
       if (!few) return {};
       ClusterIds ids = assignClusters(points_, few->clusters, few->step, {}, importance_);
-      auto found =
-          refine(points_, std::move(ids), settings_.axes, kFinalRounds, /*held_out=*/false, importance_);
+      auto found = refine(points_, std::move(ids), kFinalRounds, /*held_out=*/false, importance_);
       if (!found) return {};
       const bool fewer = settings_.clusters == 0 && found->clusters.size() > 1;
       if (!fewer || fits(*found)) {
@@ -164,19 +326,9 @@ class Coder {
   void findBasis();
   CodedTransfer dark() const;
   // Runs rounds of iterative PCA, which fits and moves samples in turn. Returns nothing if stopped.
-  std::optional<Clustering> refine(const Points& points, ClusterIds ids, int axes, int rounds, bool held_out,
+  std::optional<Clustering> refine(const Points& points, ClusterIds ids, int rounds, bool held_out,
                                    Importance importance) const;
-  Clustering fitted(const Points& points, ClusterIds ids, int axes, bool held_out,
-                    Importance importance) const;
-  std::optional<Clustering> fromSome(std::uint32_t clusters, int axes) const;
-  std::vector<std::uint32_t> searchedSamples(std::uint32_t clusters) const {
-    return someSamples(count_, std::max(kLeastSearched, kSearchedPerCluster * clusters));
-  }
-  std::vector<float> importanceOf(std::span<const std::uint32_t> samples) const {
-    std::vector<float> out;
-    for (const std::uint32_t s : samples) out.push_back(importance_[s]);
-    return out;
-  }
+  std::optional<Clustering> fromSome(std::uint32_t clusters) const;
   std::optional<Clustering> search() const;
   // Quantizes with this step.
   CodedTransfer coded(const Clustering& found, double step) const;
@@ -233,30 +385,24 @@ CodedTransfer Coder::dark() const {
   return coded;
 }
 
-Clustering Coder::fitted(const Points& points, ClusterIds ids, int axes, bool held_out,
-                         Importance importance) const {
-  Clustering found{std::move(ids), {}, 0.0};
-  found.clusters = fitClusters(points, found.ids, held_out, importance, least_bits_);
-  found.step = stepFor(found.clusters, budget_);
-  if (axes >= 0) keepSoMany(found.clusters, axes);
-  return found;
-}
-
-std::optional<Clustering> Coder::refine(const Points& points, ClusterIds ids, int axes, int rounds,
-                                        bool held_out, Importance importance) const {
+std::optional<Clustering> Coder::refine(const Points& points, ClusterIds ids, int rounds, bool held_out,
+                                        Importance importance) const {
   for (int round = 0;; ++round) {
-    Clustering found = fitted(points, std::move(ids), axes, held_out, importance);
+    Clustering found{std::move(ids), {}, 0.0};
+    found.clusters = fitClusters(points, found.ids, held_out, importance, least_bits_);
+    found.step = stepFor(found.clusters, budget_);
     if (round >= rounds || found.clusters.size() == 1) return found;
     ids = assignClusters(points, found.clusters, found.step, found.ids, importance);
     if (stopped()) return std::nullopt;
   }
 }
 
-std::optional<Clustering> Coder::fromSome(std::uint32_t clusters, int axes) const {
-  const auto some = searchedSamples(clusters);
-  const Points searched = columnsOf(points_, some);
-  const std::vector<float> counts = importanceOf(some);
-  return refine(searched, seedClusters(searched, clusters, counts), axes, kSearchRounds, some.size() < count_,
+std::optional<Clustering> Coder::fromSome(std::uint32_t clusters) const {
+  const auto some = someSamples(count_, std::max(kLeastSearched, kSearchedPerCluster * clusters));
+  const Points searched = points_(Eigen::all, some);
+  std::vector<float> counts;
+  for (const std::uint32_t s : some) counts.push_back(importance_[s]);
+  return refine(searched, seedClusters(searched, clusters, counts), kSearchRounds, some.size() < count_,
                 counts);
 }
 
@@ -266,7 +412,7 @@ std::optional<Clustering> Coder::search() const {
   double fewest_bytes = std::numeric_limits<double>::infinity();
   for (const std::uint32_t clusters : kClusterCounts) {
     if (clusters > most_clusters_) break;
-    auto tried = fromSome(clusters, -1);
+    auto tried = fromSome(clusters);
     if (!tried) return std::nullopt;
     if (clusters > 1 && !fits(*tried)) break;
     const double bytes = expectedBytes(tried->clusters, tried->step, static_cast<double>(count_));
@@ -285,8 +431,7 @@ CodedTransfer Coder::coded(const Clustering& found, double step) const {
     return quantize(points_, ids, clusters, basis_, shape_, step);
   };
   Quantized all = quantized(found.ids, found.clusters);
-  const bool fixed = settings_.clusters > 0 || settings_.axes >= 0;
-  if (fixed || all.wide.empty()) return std::move(all.transfer);
+  if (settings_.clusters > 0 || all.wide.empty()) return std::move(all.transfer);
   Clustering cut = found;
   for (int i = 0; i < kMostCuts && !all.wide.empty(); ++i) {
     for (const WideAxis& wide : all.wide) splitAlong(points_, cut.ids, cut.clusters, wide.cluster, wide.axis);
@@ -305,7 +450,7 @@ std::optional<bool> Coder::fitToBound(Clustering& found) {
   CodedTransfer& best = coded_ = {};
   double step = found.step;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-    if (settings_.axes < 0) keepAxes(found.clusters, step);
+    keepAxes(found.clusters, step);
     if (attempt > 0 && !fits(found)) return double{best.error} <= bound;
     CodedTransfer tried = coded(found, step);
     tried.error = static_cast<float>(errorOf(tried));
@@ -314,7 +459,6 @@ std::optional<bool> Coder::fitToBound(Clustering& found) {
     // Among codes that keep the bound, the larger error is the smaller code.
     if (attempt == 0 || (met ? !met_before || error > best.error : error < best.error))
       best = std::move(tried);
-    if (settings_.axes >= 0) break;  // no step makes up for axes that were left out
     if (met && double{best.error} > 0.98 * bound) break;
     if (best.planes.empty() && met) break;  // nothing left to save
     // Part of the error does not depend on the step (rounded means and axes, the weaker of the two blocks).

@@ -3,7 +3,7 @@
 // with quantized weights, and keeps the relative RMS error of shaded radiance over real lights under a bound:
 //   sqrt( sum_s G_s sum_i W_i (t_s,i - t'_s,i)² / sum_s sum_i W_i t_s,i² ) <= bound
 // G_s makes errors in dark samples count more, since eyes adapt, and those in samples that matter to pictures
-// (sampleImportance in cpca_space.hpp); each cluster has steps of its own by it. The bound holds for each
+// (sampleImportance in cpca_clusters.hpp); each cluster has steps of its own by it. The bound holds for each
 // block (shadowed light, and full light, which is shown) by itself. W_i is the band power of light
 // (light_weights.hpp) for columns of the environment; columns of the group's lights are weighted so that each
 // light counts as much as the whole environment. W_i is multiplied by (A_l/pi)² of the output's band for
@@ -47,9 +47,8 @@ struct CodedTransfer {
 inline constexpr std::uint32_t kUsualComponents = 128, kAllComponents = 1u << 16;
 
 struct CodingSettings {
-  float bound = 0.005f;        // > 0
-  std::uint32_t clusters = 0;  // 0 means whatever codes to the fewest bytes
-  int axes = -1;               // of every cluster, whatever the bound; -1 means as many as the bound needs
+  float bound = 0.005f;                              // > 0
+  std::uint32_t clusters = 0;                        // 0 means whatever codes to the fewest bytes
   std::uint32_t most_components = kUsualComponents;  // for long vectors (matrices)
   // If this is above `bound`, and most_components leave out more than this, all components are used and this
   // bound is kept instead.

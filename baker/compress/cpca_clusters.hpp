@@ -5,16 +5,80 @@
 // margin a bit is worth 2 ln 2 step²/12.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <stop_token>
 #include <vector>
 
-#include "baker/compress/cpca_spectrum.hpp"
+#include <Eigen/Core>
+
+#include "baker/compress/light_weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::baker {
 
-// How much an error in each sample counts (sampleImportance in cpca_space.hpp).
+// The space in which coding errors are measured. If a transfer vector is scaled value by value with roots[i],
+// the squares of its errors add up to the relative square error of shaded radiance. The energy of each block
+// of the cell (shadowed light, full light) is 1 in this space, so that one number bounds both. The measure of
+// coded vectors, radianceError, is implemented here too.
+
+// Returns how much the square error of each sample counts: 1 / (ε + x), x being the sample's brightness
+// relative to the RMS of all, scaled so that the energy of all samples together stays what it is. An eye that
+// has adapted to a room sees errors relative to what is there, and not to what stands in the window. It is 1
+// for parts that are shown together with others (CodingSettings::shown_energy, visibility), since the
+// brightness of one part says too little. `weights` multiply it, unless they are empty
+// (CodingSettings::weights).
+std::vector<float> sampleImportance(std::span<const float> vectors, const transfer::TransferShape& shape,
+                                    double shown_energy, const BandPower& kernel_power,
+                                    std::span<const float> weights);
+
+struct WeightedSpace {
+  std::vector<double> roots;  // one per value of a vector; 0 where the cell has no energy
+  double blocks = 1.0;        // sum of the energies of all blocks, weighted as in `roots`
+};
+
+// `shown_energy` and `kernel_power` are as in CodingSettings.
+WeightedSpace weightedSpace(std::span<const float> vectors, const transfer::TransferShape& shape,
+                            double shown_energy, const BandPower& kernel_power);
+
+// This is the weight of errors in the shadowed block beside a full one. Noise that spreads evenly over the
+// space would give the shadowed block a smaller relative error, because the full block has more values; with
+// this weight both come out alike (measured: 0.8 and 0.9 cost 1 % and 0.5 % more bytes).
+inline constexpr double kShadowedRoot = 0.85;
+
+// Computes principal components: of a whole cell about zero, which gives the few coordinates in which
+// clusters are made, and of one cluster about its mean. Sums are made range by range in order, and the sign
+// of each eigenvector is fixed, so results are the same for any number of threads.
+
+// Holds one column per sample.
+using Points = Eigen::MatrixXf;
+
+struct Spectrum {
+  Eigen::MatrixXd axes;       // columns, orthonormal, by falling variance
+  Eigen::VectorXd variances;  // >= 0
+};
+
+// Decomposes a symmetric matrix with eigenvalues >= 0.
+Spectrum spectrumOf(const Eigen::MatrixXd& covariance);
+
+// Returns the leading components of E[x xᵀ] about zero: as many as it takes to leave out a mean square of at
+// most `tail`, or some more. Short points get all components. Long ones (matrices) get at most `most`, by a
+// randomised range finder (Halko, Martinsson, Tropp 2011, algorithm 4.4) with hashed instead of random
+// numbers. `left_out` receives the mean square that lies in none of the components returned.
+Spectrum leadingSpectrum(const Points& points, double tail, Eigen::Index most, double& left_out);
+
+// Analyses `members` (at least one) about their mean, `centre`. If there are fewer members than coordinates,
+// only the axes that they span are returned, and none whose variance is only rounding.
+Spectrum spectrumAbout(const Points& points, std::span<const std::uint32_t> members,
+                       const Eigen::VectorXf& centre);
+
+// Returns the mean over `members` (all samples if empty) of x xᵀ, with x relative to `centre` if that is not
+// empty.
+Eigen::MatrixXd secondMoment(const Points& points, std::span<const std::uint32_t> members,
+                             const Eigen::VectorXf& centre);
+
+// How much an error in each sample counts (sampleImportance).
 using Importance = std::span<const float>;
 
 struct Cluster {
@@ -49,9 +113,6 @@ double axisGrid(Eigen::Index rank, double variance, double step, double count);
 
 // Decides which axes are worth their bits.
 void keepAxes(std::vector<Cluster>& clusters, double step);
-
-// Keeps the first `axes` axes of each cluster, as far as they have any variance.
-void keepSoMany(std::vector<Cluster>& clusters, int axes);
 
 // Returns the largest step for which the expected mean square error stays under `budget`, and keeps axes for
 // it.

@@ -1,11 +1,10 @@
-#include "baker/compress/cpca_space.hpp"
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 
 #include "baker/compress/cpca.hpp"
+#include "baker/compress/cpca_clusters.hpp"
 #include "baker/compress/light_weights.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"

@@ -60,29 +60,25 @@ struct BakedNeighborhood {
   std::vector<CodedCell> cells;
 };
 
-void write(const transfer::SharedCodebook& book, ByteWriter& out);
-bool read(ByteReader& in, transfer::SharedCodebook& book);
-void write(const CodedTransfer& coded, ByteWriter& out);
-// Returns false, with `coded` partly changed, if the bytes are no such result.
-bool read(ByteReader& in, CodedTransfer& coded);
-void write(const CodedCell& cell, ByteWriter& out);
-bool read(ByteReader& in, CodedCell& cell);
-
-// Lists of any values that are kept.
-template <typename T>
-void write(const std::vector<T>& list, ByteWriter& out) {
-  out.add(std::uint64_t{list.size()});
-  for (const T& value : list) write(value, out);
-}
-template <typename T>
-bool read(ByteReader& in, std::vector<T>& list) {
-  std::uint64_t count = 0;
-  if (!in.read(count)) return false;
-  list.clear();
-  for (std::uint64_t i = 0; i < count; ++i)
-    if (!read(in, list.emplace_back())) return false;
-  return true;
-}
+template <>
+inline constexpr bool kPlainBytes<transfer::AxisCode> = sizeof(transfer::AxisCode) == 2 * sizeof(float);
+template <>
+inline constexpr auto kKeptMembers<transfer::SharedCodebook> =
+    std::tuple(&transfer::SharedCodebook::axis_counts, &transfer::SharedCodebook::axes,
+               &transfer::SharedCodebook::value_scales, &transfer::SharedCodebook::basis_scales,
+               &transfer::SharedCodebook::mean_scale, &transfer::SharedCodebook::basis,
+               &transfer::SharedCodebook::means, &transfer::SharedCodebook::directions);
+template <>
+inline constexpr auto kKeptMembers<CodedPlane> = std::tuple(&CodedPlane::bits, &CodedPlane::variance,
+                                                            &CodedPlane::codes);
+template <>
+inline constexpr auto kKeptMembers<CodedTransfer> = std::tuple(&CodedTransfer::shape, &CodedTransfer::error,
+                                                               &CodedTransfer::codebook,
+                                                               &CodedTransfer::cluster_of,
+                                                               &CodedTransfer::planes);
+template <>
+inline constexpr auto kKeptMembers<CodedCell> = std::tuple(&CodedCell::count, &CodedCell::bounds_min,
+                                                           &CodedCell::bounds_max, &CodedCell::transfers);
 
 // Codes transfers that belong together, one after the other, on one thread.
 class CachedCoding {

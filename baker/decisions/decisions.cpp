@@ -1,18 +1,24 @@
 #include "baker/decisions/decisions.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "baker/plan/counted.hpp"
 #include "baker/plan/group_lights.hpp"
+#include "baker/plan/smooth_dielectrics.hpp"
+#include "baker/trace/mirror_paths.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
+Choice bakedIf(bool baked, Choice otherwise = Choice::LeftOut) {
+  return baked ? Choice::Baked : otherwise;
+}
+
 Decision groupShadows(const PlannedTransport& planned) {
-  Decision d{.effect = "shadows",
-             .choice = planned.shadows ? Choice::Baked : Choice::LeftOut,
-             .reason = planned.shadows_reason};
+  Decision d{"shadows", bakedIf(planned.shadows), planned.shadows_reason};
   if (planned.height >= 0.0) d.figures = {{"heightAboveFaces", 100.0 * planned.height, "% of the diagonal"}};
   return d;
 }
@@ -21,13 +27,12 @@ Decision groupInterreflection(const BakeOptions& options, const PlannedTransport
   const std::size_t most =
       options.bounces < 0 ? BakeOptions::kMostBounces : static_cast<std::size_t>(options.bounces);
   const bool baked = planned.bounces && most > 0;
-  Decision d{.effect = "interreflection",
-             .choice = baked ? Choice::Baked : Choice::LeftOut,
-             .reason = !baked
-                           ? planned.bounces ? "--bounces 0" : planned.bounces_reason
-                           : fmt::format("{}: at most {}", planned.bounces_reason, counted(most, "bounce"))};
+  Decision d{"interreflection", bakedIf(baked), planned.bounces ? "--bounces 0" : planned.bounces_reason};
   d.figures = {{"mostReflected", 100.0 * planned.most_reflected, "%"}};
-  if (baked) d.figures.push_back({"mostBounces", static_cast<double>(most), "bounces"});
+  if (baked) {
+    d.reason = fmt::format("{}: at most {}", planned.bounces_reason, counted(most, "bounce"));
+    d.figures.push_back({"mostBounces", static_cast<double>(most), "bounces"});
+  }
   return d;
 }
 
@@ -38,70 +43,154 @@ Decision lamps(const Scene& scene, const RigidGroup& group) {
     punctual += light.kind == PlannedLight::Kind::Node;
     spheres += !light.spheres.empty();
   }
-  Decision d{.effect = "lamps",
-             .choice = lights.empty() ? Choice::Absent : Choice::Baked,
-             .reason = lights.empty()
-                           ? "0 materials and nodes of the group give off light"
-                           : fmt::format(
-                                 "{} in a column of transfer each: {} of nodes, {} of which shine as spheres",
-                                 counted(lights.size(), "light"), punctual, spheres)};
-  d.figures = {{"lights", static_cast<double>(lights.size()), "columns"}};
-  return d;
+  const std::vector<Figure> figures = {{"lights", static_cast<double>(lights.size()), "columns"}};
+  if (lights.empty())
+    return {"lamps", Choice::Absent, "0 materials and nodes of the group give off light", figures};
+  return {"lamps", Choice::Baked,
+          fmt::format("{} in a column of transfer each: {} of nodes, {} of which shine as spheres",
+                      counted(lights.size(), "light"), punctual, spheres),
+          figures};
 }
 
-Decision refinement(const Decided& decided, std::size_t group) {
-  const double bound = double{decided.options.effectiveRefineBound()};
-  const bool shadows = decided.plan.transport[group].shadows;
-  Decision d{.effect = "refinement", .choice = Choice::Baked};
-  if (bound > 0.0 && shadows) {
-    d.reason = fmt::format("edges are split until interpolation errs by {} where shadows change",
-                           percentText(bound));
-  } else {
-    d.choice = Choice::LeftOut;
-    d.reason = shadows ? "--refine off: 0 edges are split" : "0 shadows change between its vertices";
-  }
-  d.figures = {{"bound", 100.0 * bound, "%"}};
-  return d;
+Decision refinement(const BakeOptions& options, bool shadows) {
+  const double bound = double{options.effectiveRefineBound()};
+  const bool baked = bound > 0.0 && shadows;
+  return {"refinement",
+          bakedIf(baked),
+          baked     ? fmt::format("edges are split until interpolation errs by {} where shadows change",
+                                  percentText(bound))
+          : shadows ? "--refine off: 0 edges are split"
+                    : "0 shadows change between its vertices",
+          {{"bound", 100.0 * bound, "%"}}};
 }
 
 Decision lightProbes(const PlannedLightProbes& planned) {
-  Decision d{.effect = "lightProbes",
-             .choice = Choice::Baked,
-             .reason = fmt::format("{}{}: {}", counted(planned.count.count, "light probe"),
-                                   planned.count.of_group ? "" : " in each cell", planned.reason)};
-  d.figures = {{"lightProbes", static_cast<double>(planned.count.count),
-                planned.count.of_group ? "of the group" : "of each cell"}};
-  return d;
+  const auto [count, of_group] = planned.count;
+  return {
+      "lightProbes",
+      Choice::Baked,
+      fmt::format("{}{}: {}", counted(count, "light probe"), of_group ? "" : " in each cell", planned.reason),
+      {{"lightProbes", static_cast<double>(count), of_group ? "of the group" : "of each cell"}}};
 }
 
 Decision neighborhood(const PlannedNeighborhood& planned) {
-  Decision d{.effect = "neighborhood",
-             .choice = planned.baked            ? Choice::Baked
-                       : planned.reason.empty() ? Choice::Absent
-                                                : Choice::LeftOut,
-             .reason = planned.baked
-                           ? fmt::format("{} within reach: {}", counted(planned.receivers.size(), "receiver"),
-                                         planned.reason)
-                       : planned.reason.empty() ? "0 larger groups have it within their bounds"
-                                                : planned.reason};
+  Decision d{"neighborhood", bakedIf(planned.baked), planned.reason};
   d.figures = {{"receivers", static_cast<double>(planned.receivers.size()), "groups"}};
+  if (planned.baked)
+    d.reason =
+        fmt::format("{} within reach: {}", counted(planned.receivers.size(), "receiver"), planned.reason);
+  else if (planned.reason.empty())
+    d.choice = Choice::Absent, d.reason = "0 larger groups have it within their bounds";
   return d;
 }
 
 std::vector<Decision> groupDecisions(const Decided& decided, std::size_t g) {
   const EffectPlan& plan = decided.plan;
   const RigidGroup& group = plan.groups[g];
+  const bool surfaces = group.volume < 0;
   std::vector<Decision> all;
-  Decision volume{.effect = "volume",
-                  .choice = group.volume < 0 ? Choice::Absent : Choice::Baked,
-                  .reason = group.volume < 0 ? "0 media: it is a group of surfaces" : "1 medium"};
-  if (group.volume < 0) {
+  if (surfaces)
     all = {groupShadows(plan.transport[g]), groupInterreflection(decided.options, plan.transport[g]),
-           lamps(decided.scene, group), refinement(decided, g)};
-  }
+           lamps(decided.scene, group), refinement(decided.options, plan.transport[g].shadows)};
   all.push_back(lightProbes(plan.light_probes[g]));
   all.push_back(neighborhood(plan.neighborhoods[g]));
-  all.push_back(std::move(volume));
+  all.push_back({"volume", bakedIf(!surfaces, Choice::Absent),
+                 surfaces ? "0 media: it is a group of surfaces" : "1 medium"});
+  return all;
+}
+
+// The share of a highlight that the bands of matrices carry, and the roughness.
+std::vector<Figure> highlightOf(const gltf::Material& material, int bands) {
+  const double roughness = double{material.roughness};
+  return {{"carriedHighlight", 100.0 * lobeEnergyShare(roughness, bands), "%"}, {"roughness", roughness, ""}};
+}
+
+Decision matrices(const gltf::Material& material, const BakeOptions& options, bool glossy) {
+  if (material.isDiffuse())
+    return {"matrices", Choice::Absent, "roughness 1 or no specular reflection: 0 % of a highlight"};
+  const auto figures = highlightOf(material, options.glossy_order);
+  const std::string carried = percentText(figures[0].value / 100.0);
+  if (!hasMatrices(material))
+    return {"matrices", Choice::LeftOut, "the specular layer shows this highlight instead", figures};
+  return {"matrices", bakedIf(glossy),
+          glossy ? fmt::format("order {} carries {} of this highlight", options.glossy_order, carried)
+                 : fmt::format("--effects {} leaves them out, with {} of this highlight", options.effects,
+                               carried),
+          figures};
+}
+
+Decision specularLayer(const gltf::Material& material, const BakeOptions& options, bool glossy) {
+  if (!isSmoothDielectric(material) || !glossy)
+    return {"specularLayer", Choice::Absent,
+            hasMatrices(material) && glossy ? "matrices carry its highlight"
+                                            : "0 % of its light is a highlight of a layer"};
+  const auto figures = highlightOf(material, options.glossy_order);
+  return {"specularLayer", Choice::Baked,
+          fmt::format("order {} of matrices would carry {} of this highlight", options.glossy_order,
+                      percentText(figures[0].value / 100.0)),
+          figures};
+}
+
+Decision mirrorPaths(const gltf::Material& material, const PlannedTransport& planned, bool glossy) {
+  const double roughness = double{material.roughness}, most = double{kMirrorRoughness};
+  if (!hasMatrices(material) || !glossy || material.roughness >= kMirrorRoughness)
+    return {"mirrorPaths", Choice::Absent,
+            fmt::format("only light that metals of roughness under {:.2f} send on is followed", most)};
+  return {"mirrorPaths",
+          bakedIf(planned.bounces),
+          planned.bounces
+              ? fmt::format("its roughness of {:.2g} is under {:.2f}: rays that meet it are followed",
+                            roughness, most)
+              : planned.bounces_reason,
+          {{"roughness", roughness, ""}}};
+}
+
+Decision normalMap(const gltf::Material& material, bool glossy) {
+  if (material.unlit || material.normal_texture.texture < 0)
+    return {"normalMap", Choice::Absent, "0 normal maps: a vector for one normal"};
+  if (hasMatrices(material) && glossy) return {"normalMap", Choice::Absent, "matrices serve any normal"};
+  return {"normalMap",
+          Choice::Baked,
+          "3 bands of light for any normal in place of a vector",
+          {{"bands", 3.0, "bands"}}};
+}
+
+Decision texels(const ScenePrimitive& primitive) {
+  if (primitive.texels == 0)
+    return {"texels", Choice::Absent, "the author asks for 0 texels: transfer at vertices"};
+  return {"texels",
+          Choice::Baked,
+          fmt::format("the author asks for {0} x {0} texels", primitive.texels),
+          {{"side", static_cast<double>(primitive.texels), "texels"}}};
+}
+
+// About a front. A back that is baked follows it.
+Decision backs(const RigidGroup& group, std::size_t draw, const gltf::Material& material) {
+  if (!material.double_sided)
+    return {"backs", Choice::Absent, "0 double-sided materials: it is seen from its front"};
+  const bool baked = draw + 1 < group.draws.size() && group.draws[draw + 1].back;
+  return {"backs", bakedIf(baked),
+          baked ? "both sides may be seen" : "its parts are closed and have nothing within"};
+}
+
+std::vector<Decision> primitiveDecisions(const Decided& decided, std::size_t group, std::size_t draw) {
+  const PlannedDraw& planned = decided.plan.groups[group].draws[draw];
+  const ScenePrimitive& primitive = decided.scene.meshes[planned.mesh].primitives[planned.primitive];
+  const gltf::Material material = primitive.material < 0
+                                      ? gltf::Material{}
+                                      : decided.scene.materials[static_cast<std::size_t>(primitive.material)];
+  const bool glossy = decided.plan.bakes("glossy") && primitive.material >= 0;
+  std::vector<Decision> all;
+  if (!planned.back) all.push_back(backs(decided.plan.groups[group], draw, material));
+  if (primitive.material < 0) {
+    all.push_back({"matrices", Choice::Absent, "0 materials: it is white and diffuse"});
+  } else {
+    all.push_back(matrices(material, decided.options, glossy));
+    all.push_back(specularLayer(material, decided.options, glossy));
+    all.push_back(mirrorPaths(material, decided.plan.transport[group], glossy));
+    all.push_back(normalMap(material, glossy));
+  }
+  all.push_back(texels(primitive));
   return all;
 }
 

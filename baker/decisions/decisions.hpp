@@ -52,7 +52,4 @@ struct Decided {
 // Returns one entry per group of the plan.
 std::vector<GroupDecisions> decisionsOf(const Decided& decided);
 
-// Returns the part of the above that is about one draw.
-std::vector<Decision> primitiveDecisions(const Decided& decided, std::size_t group, std::size_t draw);
-
 }  // namespace lambent::baker

@@ -1,5 +1,6 @@
-// Lists the effects that the baker knows. A new effect adds its room beside diffuse/ and its line here; on
-// the runtime's side it adds its room and its calls in runtime/frame/frame.cpp.
+// Lists the effects that the baker knows, and decides which of them a scene needs. A new effect adds its room
+// beside surface/ and its line in effect_list.cpp; on the runtime's side it adds its room and its calls in
+// runtime/frame/frame.cpp.
 #pragma once
 
 #include <span>

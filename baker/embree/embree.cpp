@@ -60,4 +60,22 @@ void RayQuery::occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
 
 #endif
 
+Result<EmbreeDevice> newEmbreeDevice() {
+  // Embree's thread count follows TBB's, which withThreads() limits; its result does not depend on it.
+  EmbreeDevice device(rtcNewDevice(nullptr));
+  if (!device)
+    return fail("Embree", "cannot be set up",
+                "give it more memory, or check that Embree runs on this processor");
+  return device;
+}
+
+RTCRayHit rayOf(const glm::vec3& origin, const glm::vec3& direction, float far) {
+  RTCRayHit ray{};
+  ray.ray.org_x = origin.x, ray.ray.org_y = origin.y, ray.ray.org_z = origin.z;
+  ray.ray.dir_x = direction.x, ray.ray.dir_y = direction.y, ray.ray.dir_z = direction.z;
+  ray.ray.tfar = far, ray.ray.mask = ~0u;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  return ray;
+}
+
 }  // namespace lambent::baker

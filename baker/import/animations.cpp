@@ -65,10 +65,10 @@ Result<AnimationChannel> readChannel(const Document& document, const json& sampl
                                      const std::string& name) {
   const std::string& file = document.file();
   const std::size_t components = channel.path == AnimationChannel::Path::Rotation ? 4 : 3;
-  auto times = readFloats(document, sampler["input"].get<int>(), name + ": input", {1}, 1);
+  auto times = readFloats(document, sampler["input"].get<std::size_t>(), name + ": input", {"SCALAR"});
   if (!times) return failAgain(std::move(times.error()));
-  auto values = readFloats(document, sampler["output"].get<int>(), name + ": output",
-                           {static_cast<int>(components)}, components);
+  auto values = readFloats(document, sampler["output"].get<std::size_t>(), name + ": output",
+                           {components == 4 ? "VEC4" : "VEC3"});
   if (!values) return failAgain(std::move(values.error()));
   channel.interpolation = interpolationOf(sampler.value("interpolation", "LINEAR"));
   const std::size_t each = channel.interpolation == AnimationChannel::Interpolation::Cubic ? 3 : 1;
@@ -90,7 +90,7 @@ Result<AnimationChannel> readChannel(const Document& document, const json& sampl
 // Channels replace parts of a transform, so an animated node needs such parts. glTF forbids it a matrix, but
 // one without shear does no harm.
 Result<gltf::Trs> partsOf(const Document& document, std::size_t n) {
-  const json& node = document.json()["nodes"][n];
+  const json& node = document.at("nodes", n);
   gltf::Trs trs;
   if (!node.contains("matrix")) {
     const auto vector = [&](const char* key, glm::vec3 fallback) {
@@ -107,7 +107,7 @@ Result<gltf::Trs> partsOf(const Document& document, std::size_t n) {
     }
     return trs;
   }
-  const glm::mat4 matrix(localMatrix(document, n));
+  const glm::mat4 matrix(localMatrix(node));
   glm::mat3 linear(matrix);
   trs.translation = glm::vec3(matrix[3]);
   trs.scale = {glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])};
@@ -189,8 +189,7 @@ Result<void> convertAnimation(const Document& document, const json& source, cons
 }  // namespace
 
 Result<void> convertAnimations(const Document& document, const NodeMap& map, Scene& scene) {
-  if (!document.json().contains("animations")) return {};
-  const json& animations = document.json()["animations"];
+  const json& animations = document.list("animations");
   std::size_t total = 0;
   for (std::size_t i = 0; i < animations.size(); ++i) {
     const std::string name = fmt::format("animation {}", i);

@@ -16,7 +16,6 @@
 #include "baker/import/convert.hpp"
 #include "baker/import/details.hpp"
 #include "baker/import/error_text.hpp"
-#include "baker/import/mend.hpp"
 #include "baker/import/texture_transfer.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
@@ -73,9 +72,7 @@ void checkMaterial(const Object& material, const Root& root) {
     for (const char* key : {"diffuseTexture", "specularGlossinessTexture"})
       checkTexture(*glossiness, key, root);
   // `extras` may be anything; only what stands under our own name is ours.
-  const nlohmann::json* extras = material.find("extras");
-  if (extras == nullptr || !extras->is_object() || !extras->contains("lambent")) return;
-  if (const nlohmann::json& ours = (*extras)["lambent"]; ours.is_object())
+  if (const nlohmann::json& ours = memberOf(material.json, {"extras", "lambent"}); ours.is_object())
     Object{ours, material.name + ": extras: lambent"}.text("brdf");
 }
 
@@ -106,15 +103,12 @@ void checkAsset(const Root& root) {
         "export the scene as glTF 2.0"};
 }
 
-// Returns whether an object has an extension.
-bool has(const nlohmann::json& object, const std::string& name) {
-  return object.is_object() && object.contains("extensions") && object["extensions"].contains(name);
-}
-
 // Returns whether bytes of vertices or indices lie where only the extension finds or decodes them: it is used
 // by a buffer, view or accessor, or by a primitive that has no such bytes.
 bool holdsGeometry(const std::string& name, const Root& root) {
-  const auto uses = [&](const nlohmann::json& object) { return has(object, name); };
+  const auto uses = [&](const nlohmann::json& object) {
+    return !memberOf(object, {"extensions", name.c_str()}).is_null();
+  };
   for (const char* key : {"buffers", "bufferViews", "accessors"})
     if (std::ranges::any_of(root.object.list(key), uses)) return true;
   const nlohmann::json& accessors = root.object.list("accessors");

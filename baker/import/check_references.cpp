@@ -1,18 +1,13 @@
+#include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "baker/import/check.hpp"
 
 namespace lambent::baker {
 
-namespace {
-
-// This limits accessors without a bufferView (all zeros), since such a claim costs a file nothing.
-constexpr std::uint64_t kMaxImplicitCount = 1u << 24;
-// tinygltf keeps counts and offsets of sparse parts as int.
-constexpr std::uint64_t kMaxSparse = 0x7fffffff;
-
-std::uint64_t componentBytes(std::uint64_t component_type) {
+std::size_t componentBytes(std::uint64_t component_type) {
   switch (component_type) {
     case 5120:
     case 5121:
@@ -28,16 +23,24 @@ std::uint64_t componentBytes(std::uint64_t component_type) {
   }
 }
 
+std::size_t componentsOf(std::string_view type) {
+  constexpr std::array<std::pair<std::string_view, std::size_t>, 7> kTypes{
+      {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
+  for (const auto& [known, components] : kTypes)
+    if (known == type) return components;
+  return 0;
+}
+
+namespace {
+
+// This limits accessors without a bufferView (all zeros), since such a claim costs a file nothing.
+constexpr std::uint64_t kMaxImplicitCount = 1u << 24;
 // Returns the bytes of one element; columns of matrices start at multiples of four.
 std::uint64_t elementBytes(const std::string& type, std::uint64_t component) {
-  if (type == "SCALAR") return component;
-  if (type == "VEC2") return 2 * component;
-  if (type == "VEC3") return 3 * component;
-  if (type == "VEC4") return 4 * component;
-  if (type == "MAT2") return component == 1 ? 8 : 4 * component;
-  if (type == "MAT3") return component == 1 ? 12 : component == 2 ? 24 : 9 * component;
-  if (type == "MAT4") return 16 * component;
-  return 0;
+  const std::uint64_t components = componentsOf(type);
+  if (components == 0 || !type.starts_with("MAT")) return components * component;
+  const auto columns = static_cast<std::uint64_t>(type.back() - '0');
+  return columns * ((columns * component + 3) / 4 * 4);
 }
 
 // Checks that `count` elements of `element` bytes fit at byteOffset of the object's bufferView.
@@ -52,8 +55,6 @@ void checkExtent(const Object& object, const Root& root, std::uint64_t count, st
   if (stride < element)
     throw BrokenField{
         fmt::format("{}: byteStride {} is less than an element of {} bytes", object.name, stride, element)};
-  if (!strided && (offset > kMaxSparse || count > kMaxSparse))
-    throw BrokenField{fmt::format("{} reaches past 2 GiB", object.name)};
   // This divides because count * stride may exceed 2^64.
   const bool fits = offset <= available && element <= available - offset &&
                     (count - 1) <= (available - offset - element) / stride;
@@ -309,9 +310,7 @@ void checkNeighborhood(const Object& request) {
 
 void checkNodeGrids(const Object& node) {
   // `extras` may be anything; only the object under our own name is checked.
-  const nlohmann::json* extras = node.find("extras");
-  if (extras == nullptr || !extras->is_object() || !extras->contains("lambent")) return;
-  const nlohmann::json& ours = (*extras)["lambent"];
+  const nlohmann::json& ours = memberOf(node.json, {"extras", "lambent"});
   if (!ours.is_object()) return;
   const Object lambent{ours, node.name + ": extras: lambent"};
   if (const auto volume = lambent.object("volume")) checkVolume(*volume);

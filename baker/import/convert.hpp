@@ -34,11 +34,23 @@ struct NodeMap {
 // now.
 Result<NodeMap> convertNodes(const Document& document, Scene& scene);
 // Returns the node's own transform, from its matrix or its translation, rotation and scale.
-glm::dmat4 localMatrix(const Document& document, std::size_t file_node);
+glm::dmat4 localMatrix(const nlohmann::json& node);
 // Returns world_from_node of every node of the file, including nodes outside all scenes (joints may be).
 std::vector<glm::dmat4> fileWorldTransforms(const Document& document);
 // Returns world_from_node of every node of the scene, with the file's origin.
 std::vector<glm::dmat4> sceneWorldTransforms(const NodeMap& map, const Scene& scene);
+
+// Says how a mesh stays posed: by the file's own weights of morph targets and joints, which a renderer would
+// apply per frame (glTF 2.0, sections 3.7.2.2 and 3.7.3).
+struct MeshPose {
+  std::vector<float> weights;      // weights of the morph targets; missing ones are 0
+  std::vector<glm::dmat4> joints;  // posed mesh from stored mesh, by joint; empty if there is no skin
+};
+// Reads one primitive of a checked document as posed triangles, from plain or Draco data, and lists, strips
+// or fans. Returns an empty mesh, and adds a warning, if it has no triangles. The mesh is not cleaned yet.
+Result<bundle::MeshData> readPrimitive(const Document& document, const nlohmann::json& primitive,
+                                       const MeshPose& pose, bool tangents, const std::string& name,
+                                       std::vector<std::string>& warnings);
 
 // Converts the meshes that nodes of the scene draw, at rest. A mesh with a skin, or with other weights of its
 // morph targets, becomes a mesh of its own. Nodes get the scene's mesh numbers.

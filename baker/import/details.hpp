@@ -1,5 +1,5 @@
 // Divides triangles into connected parts, and tells which of them are closed. Triangles are given by the
-// numbers of their corners (corner_numbers.hpp).
+// numbers of their corners (plan/group_lights.hpp).
 #pragma once
 
 #include <algorithm>

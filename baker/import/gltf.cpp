@@ -15,21 +15,20 @@
 #include "baker/import/document.hpp"
 #include "baker/import/error_text.hpp"
 #include "baker/import/openimageio/module.hpp"
-#include "baker/import/tinygltf.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
 namespace {
 
-bool isBundle(const Document& document) {
-  const auto& used = document.model().extensionsUsed;
-  return std::ranges::find(used, bundle::kExtensionName) != used.end();
+std::set<std::string> extensionsOf(const Document& document) {
+  std::set<std::string> names;
+  for (const char* list : {"extensionsUsed", "extensionsRequired"})
+    for (const nlohmann::json& name : document.list(list))
+      if (name.is_string()) names.insert(name.get<std::string>());
+  return names;
 }
 
-void warnAboutExtensions(const Document& document, Scene& scene) {
-  const tinygltf::Model& model = document.model();
-  std::set<std::string> names(model.extensionsUsed.begin(), model.extensionsUsed.end());
-  names.insert(model.extensionsRequired.begin(), model.extensionsRequired.end());
+void warnAboutExtensions(const std::set<std::string>& names, Scene& scene) {
   std::string looks;
   for (const std::string& name : names) {
     if (readsExtension(name)) continue;
@@ -62,29 +61,24 @@ void foldWarnings(std::vector<std::string>& warnings) {
 
 Result<Scene> convert(const Document& document) {
   Scene scene;
-  scene.source = document.path();
-  if (isBundle(document))
+  scene.source = document.path;
+  const std::set<std::string> extensions = extensionsOf(document);
+  if (extensions.contains(std::string(bundle::kExtensionName)))
     return fail(document.file(), "is a bundle, which was baked already",
                 "name the scene that it was made of");
-  scene.warnings = document.warnings();
-  warnAboutExtensions(document, scene);
-  // Convert materials, with the textures and images that they use.
+  scene.warnings = document.warnings;
+  warnAboutExtensions(extensions, scene);
   if (auto materials = convertMaterials(document, scene); !materials)
     return failAgain(std::move(materials.error()));
   convertLights(document, scene);
-  // Convert the tree of the default scene.
   auto map = convertNodes(document, scene);
   if (!map) return failAgain(std::move(map.error()));
-  // Convert its geometry at rest to clean triangles.
   if (auto meshes = convertMeshes(document, *map, scene); !meshes)
     return failAgain(std::move(meshes.error()));
-  // Convert animations.
   if (auto animations = convertAnimations(document, *map, scene); !animations)
     return failAgain(std::move(animations.error()));
-  // Convert instances.
   if (auto instances = convertInstances(document, *map, scene); !instances)
     return failAgain(std::move(instances.error()));
-  // Convert volumes and requests for neighborhoods.
   if (auto grids = convertGrids(document, *map, scene); !grids) return failAgain(std::move(grids.error()));
   if (auto sizes = checkSizes(document, *map, scene); !sizes) return failAgain(std::move(sizes.error()));
   placeNearOrigin(std::move(*map), scene);

@@ -1,15 +1,19 @@
+// Converts materials: numbers and colours by the table of a material's fields, textures and images when the
+// first material uses them, and measured BRDFs when one names them. Mends have seen to all values.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "baker/import/check.hpp"
 #include "baker/import/convert.hpp"
-#include "baker/import/material_textures.hpp"
+#include "baker/import/image.hpp"
 #include "baker/import/measured_brdf.hpp"
 #include "baker/import/scene_files.hpp"
 #include "runtime/bundle/material_fields.hpp"
@@ -18,118 +22,260 @@ namespace lambent::baker {
 
 namespace {
 
-// Converts what the surfaces of a material reflect besides their base colour: numbers and colours by the
-// table of a material's fields, their textures, and measured BRDFs, which are read when the first material
-// names them. Only this room includes this header.
+using nlohmann::json;
 
-// Reads the measured BRDFs of a scene; materials that name one file share one entry of Scene::brdfs.
-class MeasuredBrdfs {
- public:
-  MeasuredBrdfs(const Document& document, Scene& scene) : document_(document), scene_(scene) {}
-
-  // Sets Material::brdf if the material's `extras.lambent.brdf` names a file. Errors: those of resolveUri and
-  // readMeasuredBrdf, with the material's number.
-  Result<void> bind(const tinygltf::Material& source, std::size_t number, gltf::Material& material);
-
- private:
-  const Document& document_;
-  Scene& scene_;
-  std::map<std::filesystem::path, std::int32_t> number_of_;
-};
-
-constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
-
-const tinygltf::Value* extensionOf(const tinygltf::Material& source, const char* name) {
-  const auto found = source.extensions.find(name);
-  return found != source.extensions.end() && found->second.IsObject() ? &found->second : nullptr;
+// Reads a member, if it is there: a number, or a list of numbers as a vector.
+template <typename T>
+void readMember(const json& object, const char* key, T& field) {
+  const json& value = memberOf(object, {key});
+  if (value.is_null()) return;
+  if constexpr (requires { T::length(); })
+    for (glm::length_t c = 0; c < T::length(); ++c)
+      field[c] = value.at(static_cast<std::size_t>(c)).template get<float>();
+  else
+    value.get_to(field);
 }
 
-void readField(const nlohmann::json& value, float& factor) {
-  factor = value.get<float>();
+const json& extensionOf(const json& source, const char* name) {
+  return memberOf(source, {"extensions", name});
 }
-void readField(const nlohmann::json& value, glm::vec3& color) {
-  for (int c = 0; c < 3; ++c) color[c] = value[static_cast<std::size_t>(c)].get<float>();
+
+// Returns a textureInfo without its texture: the coordinate set and KHR_texture_transform.
+gltf::TextureRef placementOf(const json& info) {
+  gltf::TextureRef ref;
+  readMember(info, "texCoord", ref.texcoord);
+  const json& transform = extensionOf(info, "KHR_texture_transform");
+  readMember(transform, "offset", ref.offset);
+  readMember(transform, "scale", ref.scale);
+  readMember(transform, "rotation", ref.rotation_rad);
+  readMember(transform, "texCoord", ref.texcoord);
+  return ref;
+}
+
+// Returns the images that a texture names, its own one first, then those for readers of an extension.
+std::vector<std::size_t> imagesOf(const json& texture, std::size_t count) {
+  std::vector<std::size_t> images;
+  const auto add = [&](const json& owner) {
+    if (!owner.is_object() || !owner.contains("source")) return;
+    const json& source = owner["source"];
+    if (source.is_number_unsigned() && source.get<std::size_t>() < count)
+      images.push_back(source.get<std::size_t>());
+  };
+  add(texture);
+  if (texture.contains("extensions"))
+    for (const json& extension : texture["extensions"]) add(extension);
+  return images;
 }
 
 // Reads the numbers and colours of reflection and of panes, by the table of a material's fields. Of those in
 // extensions, unlit and measured materials keep only the index of refraction.
-void readFactors(const nlohmann::json& source, gltf::Material& material) {
+void readFactors(const json& source, gltf::Material& material) {
   const bool has_lobes = !material.unlit && material.brdf < 0;
   gltf::forEachMaterialField([&]<class Row>(const Row& row) {
     using Value = typename Row::Value;
     if constexpr (std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3>) {
-      const auto& objects = row.json.objects;
-      const bool in_extension = objects[1] != nullptr;
+      const auto [outer, inner] = row.json.objects;
+      const bool in_extension = inner != nullptr;
       const bool wanted = has_lobes || !in_extension || std::string_view(row.json.key) == "ior";
       const bool of_pane = in_extension && row.part == gltf::MaterialPart::Opacity;
       if (!wanted || !(of_pane || row.part == gltf::MaterialPart::Reflection)) return;
-      const nlohmann::json* place = &source;
-      for (const char* object : objects) {
-        if (!object) continue;
-        const auto found = place->find(object);
-        if (found == place->end()) return;
-        place = &*found;
-      }
-      if (const auto value = place->find(row.json.key); value != place->end())
-        readField(*value, material.*row.member);
+      const json& place = outer ? memberOf(source, {outer}) : source;
+      readMember(inner ? memberOf(place, {inner}) : place, row.json.key, material.*row.member);
     }
   });
 }
 
-// Adds the textures of KHR_materials_specular that could change anything.
-void referSpecular(const tinygltf::Value& extension, std::size_t number, MaterialTextures& textures,
-                   gltf::Material& material) {
-  if (material.specular <= 0.0f) return;
-  material.specular_texture = textures.refer(extension, "specularTexture", number, "specular texture");
-  if (material.specular_color != glm::vec3(0.0f))
-    material.specular_color_texture =
-        textures.refer(extension, "specularColorTexture", number, "specular color texture");
+gltf::Material convertMaterial(const json& source) {
+  gltf::Material material;
+  material.name = source.value("name", "");
+  readMember(memberOf(source, {"pbrMetallicRoughness"}), "baseColorFactor", material.base_color);
+  readMember(source, "emissiveFactor", material.emissive);
+  float strength = 1.0f;
+  readMember(extensionOf(source, "KHR_materials_emissive_strength"), "emissiveStrength", strength);
+  material.emissive *= strength;
+  material.unlit = !extensionOf(source, "KHR_materials_unlit").is_null();
+  material.double_sided = source.value("doubleSided", false);
+  const std::string mode = source.value("alphaMode", "OPAQUE");
+  if (mode == "MASK") material.alpha_mode = gltf::AlphaMode::Mask;
+  if (mode == "BLEND") material.alpha_mode = gltf::AlphaMode::Blend;
+  readMember(source, "alphaCutoff", material.alpha_cutoff);
+  return material;
 }
 
-// Converts KHR_materials_pbrSpecularGlossiness, which replaces the rest. Both models have the same lobes: the
-// dielectric's reflectance at normal incidence times its colour is the extension's specular colour. One whose
-// diffuse colour is black is a metal.
-void convertSpecularGlossiness(const nlohmann::json& source, const tinygltf::Value& extension,
-                               std::size_t number, MaterialTextures& textures, gltf::Material& material) {
-  glm::vec3 specular(1.0f);
-  float glossiness = 1.0f;
-  material.base_color = glm::vec4(1.0f);
-  if (const auto color = source.find("diffuseFactor"); color != source.end())
-    for (int c = 0; c < 4; ++c) material.base_color[c] = (*color)[static_cast<std::size_t>(c)].get<float>();
-  if (const auto color = source.find("specularFactor"); color != source.end()) readField(*color, specular);
-  if (const auto value = source.find("glossinessFactor"); value != source.end())
-    readField(*value, glossiness);
-  const gltf::TextureRef both =
-      textures.refer(extension, "specularGlossinessTexture", number, "specular-glossiness texture");
-  material.roughness = both.texture < 0 ? 1.0f - glossiness : 1.0f;
-  material.metallic_roughness_texture = textures.roughnessOf(both, glossiness);
-  material.specular = 1.0f;
-  // The alpha of its texture is glossiness, which would cut holes into a metal that is not opaque.
-  if (glm::vec3(material.base_color) == glm::vec3(0.0f) && material.alpha_mode == gltf::AlphaMode::Opaque) {
-    material.metallic = 1.0f;
-    material.base_color = glm::vec4(specular, material.base_color.a);
-    material.base_color_texture = both;
-    return;
+class MaterialConverter {
+ public:
+  MaterialConverter(const Document& document, Scene& scene)
+      : document_(document),
+        scene_(scene),
+        texture_of_(document.list("textures").size(), kUnknown),
+        image_of_(document.list("images").size(), kUnknown) {}
+
+  Result<void> convert(const json& source) {
+    number_ = scene_.materials.size();
+    gltf::Material material = convertMaterial(source);
+    addTextures(source, material);
+    if (auto done = bindMeasured(source, material); !done) return done;
+    convertReflection(source, material);
+    scene_.materials.push_back(std::move(material));
+    return {};
   }
-  material.metallic = 0.0f;
-  material.base_color_texture = textures.refer(extension, "diffuseTexture", number, "diffuse texture");
-  const float most = std::max({specular.r, specular.g, specular.b});
-  const float amplitude = std::sqrt(most);  // (ior - 1) / (ior + 1); 0 stands for an infinite index
-  material.ior = amplitude < 1.0f ? (1.0f + amplitude) / (1.0f - amplitude) : 0.0f;
-  material.specular_color = most > 0.0f ? specular / most : glm::vec3(1.0f);
-  material.specular_color_texture = both;
+
+  // Returns whether an image could not be read.
+  bool lacksImages() const { return lacks_images_; }
+
+ private:
+  static constexpr std::int32_t kUnknown = -2;
+
+  // Returns the texture reference `key` of a material, without a texture if none is usable, which is a
+  // warning. `use` names it there.
+  gltf::TextureRef refer(const json& place, const char* key, const char* use);
+  // Returns the reference with the texture of roughness in place of that of glossiness, which is in its
+  // alpha.
+  gltf::TextureRef roughnessOf(gltf::TextureRef glossiness, float factor);
+  // Returns the scene's texture for the file's, or -1 if it has no usable image.
+  std::int32_t take(std::size_t index);
+  std::int32_t takeImage(std::size_t index);
+  Result<SceneImage> readImage(std::size_t index);
+  Result<std::vector<std::byte>> imageBytes(const json& source, const std::string& object);
+
+  void addTextures(const json& source, gltf::Material& material);
+  Result<void> bindMeasured(const json& source, gltf::Material& material);
+  void convertReflection(const json& source, gltf::Material& material);
+  void convertSpecularGlossiness(const json& extension, gltf::Material& material);
+
+  const Document& document_;
+  Scene& scene_;
+  std::size_t number_ = 0;  // of the material at hand
+  std::vector<std::int32_t> texture_of_, image_of_;
+  bool lacks_images_ = false;
+  std::map<std::pair<std::int32_t, float>, std::int32_t> roughness_of_;  // by texture and factor
+  std::map<std::filesystem::path, std::int32_t> brdf_of_;  // materials that name one file share its BRDF
+};
+
+gltf::TextureRef MaterialConverter::refer(const json& place, const char* key, const char* use) {
+  const json& info = memberOf(place, {key});
+  if (info.is_null()) return {};
+  gltf::TextureRef ref = placementOf(info);
+  if (ref.texcoord > 1) {
+    scene_.warnings.push_back(
+        fmt::format("material {}: its {} uses TEXCOORD_{}: only 0 and 1 are read, it is left out", number_,
+                    use, ref.texcoord));
+    return {};
+  }
+  ref.texture = take(info.at("index").get<std::size_t>());
+  return ref.texture < 0 ? gltf::TextureRef{} : ref;
 }
 
-Result<void> MeasuredBrdfs::bind(const tinygltf::Material& source, std::size_t number,
-                                 gltf::Material& material) {
-  if (!source.extras.IsObject() || !source.extras.Has("lambent")) return {};
-  const tinygltf::Value& lambent = source.extras.Get("lambent");
-  if (!lambent.IsObject() || !lambent.Has("brdf") || !lambent.Get("brdf").IsString()) return {};
-  const std::string object = fmt::format("the BRDF of material {}", number);
-  auto file = resolveUri(document_.path(), lambent.Get("brdf").Get<std::string>(), document_.options(),
-                         object, scene_.warnings);
+gltf::TextureRef MaterialConverter::roughnessOf(gltf::TextureRef ref, float factor) {
+  if (ref.texture < 0) return ref;
+  const auto [known, added] = roughness_of_.try_emplace({ref.texture, factor}, -1);
+  if (added) {
+    gltf::Texture texture = scene_.textures[static_cast<std::size_t>(ref.texture)];
+    auto roughness = roughnessImage(scene_.images[static_cast<std::size_t>(texture.image)], factor);
+    if (roughness) {
+      texture.image = static_cast<std::int32_t>(scene_.images.size());
+      scene_.images.push_back(std::move(*roughness));
+      known->second = static_cast<std::int32_t>(scene_.textures.size());
+      scene_.textures.push_back(texture);
+    } else {
+      scene_.warnings.push_back(roughness.error().line());
+    }
+  }
+  ref.texture = known->second;
+  return ref;
+}
+
+std::int32_t MaterialConverter::take(std::size_t index) {
+  std::int32_t& texture = texture_of_[index];
+  if (texture != kUnknown) return texture;
+  texture = -1;
+  const json& source = document_.at("textures", index);
+  const auto images = imagesOf(source, image_of_.size());
+  if (images.empty())
+    scene_.warnings.push_back(fmt::format("texture {} names no image and is left out", index));
+  gltf::Texture out;
+  for (const std::size_t image : images)
+    if (out.image < 0) out.image = takeImage(image);
+  if (out.image < 0) return texture;
+  if (source.contains("sampler")) {
+    const json& sampler = document_.at("samplers", source["sampler"].get<std::size_t>());
+    readMember(sampler, "wrapS", out.sampler.wrap_s);
+    readMember(sampler, "wrapT", out.sampler.wrap_t);
+    readMember(sampler, "magFilter", out.sampler.mag_filter);
+    readMember(sampler, "minFilter", out.sampler.min_filter);
+  }
+  texture = static_cast<std::int32_t>(scene_.textures.size());
+  scene_.textures.push_back(out);
+  return texture;
+}
+
+std::int32_t MaterialConverter::takeImage(std::size_t index) {
+  std::int32_t& image = image_of_[index];
+  if (image != kUnknown) return image;
+  image = -1;
+  auto read = readImage(index);
+  if (read) {
+    image = static_cast<std::int32_t>(scene_.images.size());
+    scene_.images.push_back(std::move(*read));
+  } else {
+    lacks_images_ = true;
+    const Error& error = read.error();
+    const std::string uri = document_.at("images", index).value("uri", "");
+    scene_.warnings.push_back(fmt::format(
+        "image {}{}: {}, so surfaces look as without it ({})", index,
+        uri.empty() || uri.starts_with("data:") ? "" : fmt::format(" (\"{}\")", uri.substr(0, 80)),
+        error.problem, error.hint));
+  }
+  return image;
+}
+
+Result<SceneImage> MaterialConverter::readImage(std::size_t index) {
+  const std::string object = fmt::format("image {}", index);
+  const json& source = document_.at("images", index);
+  auto bytes = imageBytes(source, object);
+  if (!bytes) return failAgain(std::move(bytes.error()));
+  std::string name = source.value("name", "");
+  const std::string uri = source.value("uri", "");
+  if (name.empty() && source.contains("uri") && !uri.starts_with("data:")) name = decodePercent(uri);
+  return storableImage(std::move(name), std::move(*bytes));
+}
+
+Result<std::vector<std::byte>> MaterialConverter::imageBytes(const json& source, const std::string& object) {
+  if (source.contains("uri"))
+    return readUri(document_.path, source["uri"].get<std::string>(), document_.options, object,
+                   scene_.warnings);
+  if (!source.contains("bufferView"))
+    return fail(object, "names neither a file nor a bufferView", "name a file");
+  const auto bytes = document_.view(source["bufferView"].get<std::size_t>());
+  return std::vector<std::byte>(bytes.begin(), bytes.end());
+}
+
+// Adds the textures of a material, and adapts it if they cannot be used.
+void MaterialConverter::addTextures(const json& source, gltf::Material& material) {
+  material.base_color_texture =
+      refer(memberOf(source, {"pbrMetallicRoughness"}), "baseColorTexture", "base color texture");
+  material.normal_texture = refer(source, "normalTexture", "normal texture");
+  if (material.normal_texture.texture >= 0)
+    readMember(source["normalTexture"], "scale", material.normal_scale);
+  if (material.emissive == glm::vec3(0.0f) || !source.contains("emissiveTexture")) return;
+  material.emissive_texture = refer(source, "emissiveTexture", "emissive texture");
+  if (material.emissive_texture.texture < 0) {
+    // Without the texture, all of the surface would shine instead of the part that the texture selects.
+    scene_.warnings.push_back(
+        fmt::format("material {}: without its emissive texture it does not shine", number_));
+    material.emissive = glm::vec3(0.0f);
+  }
+}
+
+// Sets Material::brdf if the material's `extras.lambent.brdf` names a file. Errors: those of resolveUri and
+// readMeasuredBrdf, with the material's number.
+Result<void> MaterialConverter::bindMeasured(const json& source, gltf::Material& material) {
+  const json& name = memberOf(source, {"extras", "lambent", "brdf"});
+  if (!name.is_string()) return {};
+  const std::string object = fmt::format("the BRDF of material {}", number_);
+  auto file = resolveUri(document_.path, name.get<std::string>(), document_.options, object, scene_.warnings);
   if (!file) return failAgain(std::move(file.error()));
-  const auto [known, added] = number_of_.try_emplace(*file, static_cast<std::int32_t>(scene_.brdfs.size()));
+  const auto [known, added] = brdf_of_.try_emplace(*file, static_cast<std::int32_t>(scene_.brdfs.size()));
   material.brdf = known->second;
   if (!added) return {};
   auto measured = readMeasuredBrdf(*file);
@@ -142,92 +288,67 @@ Result<void> MeasuredBrdfs::bind(const tinygltf::Material& source, std::size_t n
   return {};
 }
 
-// Reads what material `number` of the file reflects. Unlit, base colour and brdf must be set before; textures
-// that could change nothing are left out of the scene.
-void convertReflection(const Document& document, std::size_t number, MaterialTextures& textures,
-                       gltf::Material& material) {
-  const nlohmann::json& fields = document.json()["materials"][number];
-  const tinygltf::Material& source = document.model().materials[number];
-  readFactors(fields, material);
-  if (const auto* glossiness = extensionOf(source, kSpecularGlossiness)) {
-    convertSpecularGlossiness(fields["extensions"][kSpecularGlossiness], *glossiness, number, textures,
-                              material);
+// Converts KHR_materials_pbrSpecularGlossiness, which replaces the rest. Both models have the same lobes: the
+// dielectric's reflectance at normal incidence times its colour is the extension's specular colour. One whose
+// diffuse colour is black is a metal.
+void MaterialConverter::convertSpecularGlossiness(const json& extension, gltf::Material& material) {
+  glm::vec3 specular(1.0f);
+  float glossiness = 1.0f;
+  material.base_color = glm::vec4(1.0f);
+  readMember(extension, "diffuseFactor", material.base_color);
+  readMember(extension, "specularFactor", specular);
+  readMember(extension, "glossinessFactor", glossiness);
+  const gltf::TextureRef both = refer(extension, "specularGlossinessTexture", "specular-glossiness texture");
+  material.roughness = both.texture < 0 ? 1.0f - glossiness : 1.0f;
+  material.metallic_roughness_texture = roughnessOf(both, glossiness);
+  material.specular = 1.0f;
+  // The alpha of its texture is glossiness, which would cut holes into a metal that is not opaque.
+  if (glm::vec3(material.base_color) == glm::vec3(0.0f) && material.alpha_mode == gltf::AlphaMode::Opaque) {
+    material.metallic = 1.0f;
+    material.base_color = glm::vec4(specular, material.base_color.a);
+    material.base_color_texture = both;
     return;
   }
+  material.metallic = 0.0f;
+  material.base_color_texture = refer(extension, "diffuseTexture", "diffuse texture");
+  const float most = std::max({specular.r, specular.g, specular.b});
+  const float amplitude = std::sqrt(most);  // (ior - 1) / (ior + 1); 0 stands for an infinite index
+  material.ior = amplitude < 1.0f ? (1.0f + amplitude) / (1.0f - amplitude) : 0.0f;
+  material.specular_color = most > 0.0f ? specular / most : glm::vec3(1.0f);
+  material.specular_color_texture = both;
+}
+
+// Reads what a material reflects. Unlit, base colour and brdf must be set before; textures that could change
+// nothing are left out of the scene.
+void MaterialConverter::convertReflection(const json& source, gltf::Material& material) {
+  readFactors(source, material);
+  if (const json& glossiness = extensionOf(source, "KHR_materials_pbrSpecularGlossiness");
+      !glossiness.is_null())
+    return convertSpecularGlossiness(glossiness, material);
   if (material.unlit || material.brdf >= 0) return;
-  const auto* transmission = extensionOf(source, "KHR_materials_transmission");
-  if (transmission && material.transmits())
-    material.transmission_texture =
-        textures.refer(*transmission, "transmissionTexture", number, "transmission texture");
-  if (const auto* specular = extensionOf(source, "KHR_materials_specular"))
-    referSpecular(*specular, number, textures, material);
-  const auto* anisotropy = extensionOf(source, "KHR_materials_anisotropy");
-  if (anisotropy && material.anisotropy > 0.0f)
+  if (material.transmits())
+    material.transmission_texture = refer(extensionOf(source, "KHR_materials_transmission"),
+                                          "transmissionTexture", "transmission texture");
+  const json& specular = extensionOf(source, "KHR_materials_specular");
+  if (material.specular > 0.0f)
+    material.specular_texture = refer(specular, "specularTexture", "specular texture");
+  if (material.specular > 0.0f && material.specular_color != glm::vec3(0.0f))
+    material.specular_color_texture = refer(specular, "specularColorTexture", "specular color texture");
+  if (material.anisotropy > 0.0f)
     material.anisotropy_texture =
-        textures.refer(*anisotropy, "anisotropyTexture", number, "anisotropy texture");
-  const auto& texture = source.pbrMetallicRoughness.metallicRoughnessTexture;
+        refer(extensionOf(source, "KHR_materials_anisotropy"), "anisotropyTexture", "anisotropy texture");
   if (material.metallic > 0.0f || (material.specular > 0.0f && material.roughness > 0.0f))
-    material.metallic_roughness_texture = textures.refer(texture.index, texture.extensions, texture.texCoord,
-                                                         number, "metallic-roughness texture");
-}
-
-// Copies a colour, which tinygltf has as a list of doubles; a missing one is empty.
-template <typename Vector>
-void assignVector(Vector& target, const std::vector<double>& values) {
-  for (int i = 0; i < static_cast<int>(values.size()); ++i)
-    target[i] = static_cast<float>(values[static_cast<std::size_t>(i)]);
-}
-
-gltf::Material convertMaterial(const tinygltf::Material& source) {
-  gltf::Material material;
-  material.name = source.name;
-  assignVector(material.base_color, source.pbrMetallicRoughness.baseColorFactor);
-  assignVector(material.emissive, source.emissiveFactor);
-  if (const auto strength = source.extensions.find("KHR_materials_emissive_strength");
-      strength != source.extensions.end())
-    material.emissive *= numberOr(strength->second, "emissiveStrength", 1.0f);
-  material.unlit = source.extensions.contains("KHR_materials_unlit");
-  material.double_sided = source.doubleSided;
-  if (source.alphaMode == "MASK") material.alpha_mode = gltf::AlphaMode::Mask;
-  if (source.alphaMode == "BLEND") material.alpha_mode = gltf::AlphaMode::Blend;
-  material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
-  return material;
-}
-
-// Adds the textures of a material, and adapts it if they cannot be used.
-void addTextures(const tinygltf::Material& source, std::size_t number, MaterialTextures& textures,
-                 std::vector<std::string>& warnings, gltf::Material& material) {
-  const auto& base = source.pbrMetallicRoughness.baseColorTexture;
-  material.base_color_texture =
-      textures.refer(base.index, base.extensions, base.texCoord, number, "base color texture");
-  const auto& normal = source.normalTexture;
-  material.normal_texture =
-      textures.refer(normal.index, normal.extensions, normal.texCoord, number, "normal texture");
-  if (material.normal_texture.texture >= 0) material.normal_scale = static_cast<float>(normal.scale);
-  const auto& emissive = source.emissiveTexture;
-  if (material.emissive == glm::vec3(0.0f) || emissive.index < 0) return;
-  material.emissive_texture =
-      textures.refer(emissive.index, emissive.extensions, emissive.texCoord, number, "emissive texture");
-  if (material.emissive_texture.texture < 0) {
-    // Without the texture, all of the surface would shine instead of the part that the texture selects.
-    warnings.push_back(fmt::format("material {}: without its emissive texture it does not shine", number));
-    material.emissive = glm::vec3(0.0f);
-  }
+    material.metallic_roughness_texture = refer(memberOf(source, {"pbrMetallicRoughness"}),
+                                                "metallicRoughnessTexture", "metallic-roughness texture");
 }
 
 }  // namespace
 
 Result<void> convertMaterials(const Document& document, Scene& scene) {
-  MaterialTextures textures(document, scene);
-  MeasuredBrdfs measured(document, scene);
-  for (const tinygltf::Material& source : document.model().materials) {
-    gltf::Material material = convertMaterial(source);
-    addTextures(source, scene.materials.size(), textures, scene.warnings, material);
-    if (auto done = measured.bind(source, scene.materials.size(), material); !done) return done;
-    convertReflection(document, scene.materials.size(), textures, material);
-    scene.materials.push_back(std::move(material));
-  }
-  if (document.options().whole_images && textures.lacksImages())
+  MaterialConverter converter(document, scene);
+  for (const json& source : document.list("materials"))
+    if (auto done = converter.convert(source); !done) return done;
+  if (document.options.whole_images && converter.lacksImages())
     return fail(document.file(), "has an image that cannot be read", "write it again");
   return {};
 }

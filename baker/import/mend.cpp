@@ -1,5 +1,3 @@
-#include "baker/import/mend.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,17 @@
 #include "baker/import/check.hpp"
 
 namespace lambent::baker {
+
+const nlohmann::json& memberOf(const nlohmann::json& owner, std::initializer_list<const char*> keys) {
+  static const nlohmann::json kNone;
+  const nlohmann::json* place = &owner;
+  for (const char* key : keys) {
+    const auto found = place->is_object() ? place->find(key) : place->end();
+    if (found == place->end()) return kNone;
+    place = &*found;
+  }
+  return *place;
+}
 
 namespace {
 
@@ -156,18 +165,6 @@ constexpr std::array kOptional = {Optional{"NORMAL", {"VEC3", "VEC3"}}, Optional
 bool isRead(std::string_view semantic) {
   return semantic == "POSITION" || semantic.starts_with("JOINTS_") || semantic.starts_with("WEIGHTS_") ||
          std::ranges::any_of(kOptional, [&](const Optional& row) { return row.semantic == semantic; });
-}
-
-// Returns the member of a member ..., or null.
-const json& memberOf(const json& owner, std::initializer_list<const char*> keys) {
-  static const json kNone;
-  const json* place = &owner;
-  for (const char* key : keys) {
-    const auto found = place->is_object() ? place->find(key) : place->end();
-    if (found == place->end()) return kNone;
-    place = &*found;
-  }
-  return *place;
 }
 
 // Returns the accessor that a member names, if there is one.

@@ -9,7 +9,7 @@
 #include <set>
 #include <type_traits>
 
-#include "baker/import/mend.hpp"
+#include "baker/import/check.hpp"
 #include "runtime/bundle/material_fields.hpp"
 #include "runtime/spec/light.hpp"
 
@@ -237,8 +237,6 @@ void mendCamera(const Entry& camera) {
   }
   const double near = numberOf(lens, "znear", 0.0);
   drop("zfar", [&](double v) { return float(v) > float(near) && v < kAnyNumber; });
-  // tinygltf refuses orthographic cameras without it; 0 stands for no end.
-  if (!perspective && lens.find("zfar") == nullptr) lens.json["zfar"] = 0;
 }
 
 }  // namespace

@@ -10,14 +10,13 @@
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
+#include "baker/import/check.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/details.hpp"
 #include "baker/import/document.hpp"
 #include "baker/import/error_text.hpp"
 #include "baker/import/mesh_edits.hpp"
-#include "baker/import/primitives.hpp"
 #include "baker/import/texture_transfer.hpp"
-#include "baker/import/tinygltf.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -26,9 +25,9 @@ namespace {
 // amount.
 constexpr std::size_t kMaxVertices = 1u << 26;
 
-std::vector<float> weightsOf(const tinygltf::Node& node, const tinygltf::Mesh& mesh) {
-  const std::vector<double>& weights = node.weights.empty() ? mesh.weights : node.weights;
-  return {weights.begin(), weights.end()};
+std::vector<float> weightsOf(const nlohmann::json& node, const nlohmann::json& mesh) {
+  const auto weights = node.value("weights", std::vector<float>());
+  return weights.empty() ? mesh.value("weights", std::vector<float>()) : weights;
 }
 
 // Returns whether tangents change the picture. Otherwise they would only cost bytes in the bundle.
@@ -40,12 +39,12 @@ bool turnsWithTangents(const gltf::Material& material) {
 // Returns the joint matrices of a skin: world at rest from mesh as stored.
 Result<std::vector<glm::dmat4>> jointMatrices(const Document& document, std::size_t number,
                                               const std::vector<glm::dmat4>& world) {
-  const nlohmann::json& skin = document.json()["skins"][number];
+  const nlohmann::json& skin = document.at("skins", number);
   const nlohmann::json& joints = skin["joints"];
   std::vector<glm::dmat4> matrices(joints.size(), glm::dmat4(1.0));
   if (skin.contains("inverseBindMatrices")) {
     const auto floats =
-        readFloats(document, skin["inverseBindMatrices"].get<int>(), "inverseBindMatrices", {16}, 16);
+        readFloats(document, skin["inverseBindMatrices"].get<std::size_t>(), "inverseBindMatrices", {"MAT4"});
     if (!floats) return failAgain(floats.error());
     if (floats->count() < joints.size())
       return fail(document.file(),
@@ -82,12 +81,12 @@ class MeshConverter {
  private:
   Result<void> convertNode(std::size_t n) {
     const auto file_node = static_cast<std::size_t>(map_.file_node[n]);
-    const tinygltf::Node& source = document_.model().nodes[file_node];
-    const auto file_mesh = static_cast<std::size_t>(source.mesh);
-    MeshPose pose{weightsOf(source, document_.model().meshes[file_mesh]), {}};
-    const bool skinned = source.skin >= 0;
+    const nlohmann::json& source = document_.at("nodes", file_node);
+    const auto file_mesh = source.at("mesh").get<std::size_t>();
+    MeshPose pose{weightsOf(source, document_.at("meshes", file_mesh)), {}};
+    const bool skinned = source.contains("skin");
     if (skinned) {
-      auto joints = jointMatrices(document_, static_cast<std::size_t>(source.skin), world_);
+      auto joints = jointMatrices(document_, source["skin"].get<std::size_t>(), world_);
       if (!joints) return failAgain(std::move(joints.error()));
       pose.joints = std::move(*joints);
       scene_.warnings.push_back(
@@ -139,31 +138,32 @@ class MeshConverter {
   }
 
   Result<SceneMesh> readMesh(std::size_t m, const MeshPose& pose) {
-    const tinygltf::Mesh& source = document_.model().meshes[m];
-    SceneMesh mesh{.name = source.name, .primitives = {}};
-    for (std::size_t p = 0; p < source.primitives.size(); ++p) {
-      const tinygltf::Primitive& primitive = source.primitives[p];
+    const nlohmann::json& source = document_.at("meshes", m);
+    const nlohmann::json& primitives = memberOf(source, {"primitives"});
+    SceneMesh mesh{.name = source.value("name", ""), .primitives = {}};
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      const nlohmann::json& primitive = primitives[p];
       const std::string name = fmt::format("mesh {}, primitive {}", m, p);
-      const bool tangents = primitive.material >= 0 &&
-                            turnsWithTangents(scene_.materials[static_cast<std::size_t>(primitive.material)]);
+      const std::int32_t material = primitive.value("material", -1);
+      const bool tangents =
+          material >= 0 && turnsWithTangents(scene_.materials[static_cast<std::size_t>(material)]);
       auto data = readPrimitive(document_, primitive, pose, tangents, name, scene_.warnings);
       if (!data) return failAgain(std::move(data.error()));
       if (data->indices.empty()) continue;
-      if (!primitive.targets.empty())
+      if (!memberOf(primitive, {"targets"}).empty())
         scene_.warnings.push_back(
             fmt::format("{}: its morph targets stand as the file's weights say and do not move", name));
       cleanMesh(*data, name, scene_.warnings);
       if (tangents && data->tangents.empty() && !data->indices.empty())
-        makeTangents(*data, scene_.materials[static_cast<std::size_t>(primitive.material)].normal_texture);
+        makeTangents(*data, scene_.materials[static_cast<std::size_t>(material)].normal_texture);
       vertices_ += data->positions.size();
       if (vertices_ > kMaxVertices)
         return fail(document_.file(),
                     fmt::format("{} brings the scene to more than {} vertices", name, kMaxVertices),
                     "import it in parts");
       if (data->indices.empty()) continue;
-      mesh.primitives.push_back({.mesh = std::move(*data), .material = primitive.material});
-      const nlohmann::json& described = document_.json()["meshes"][m];
-      if (const std::uint32_t texels = textureTransferOf(described, described["primitives"][p]); texels > 0)
+      mesh.primitives.push_back({.mesh = std::move(*data), .material = material});
+      if (const std::uint32_t texels = textureTransferOf(source, primitive); texels > 0)
         giveTexels(texels, name, mesh.primitives.back(), scene_.warnings);
     }
     separateDetails(mesh);

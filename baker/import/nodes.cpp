@@ -7,92 +7,85 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
 
+#include "baker/import/check.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/document.hpp"
 #include "baker/import/error_text.hpp"
-#include "baker/import/tinygltf.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-glm::dmat4 localMatrix(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
-  glm::dmat4 matrix(1.0);
-  if (node.translation.size() == 3) matrix = glm::translate(matrix, glm::make_vec3(node.translation.data()));
-  if (node.rotation.size() == 4) {
-    const auto& r = node.rotation;
-    const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-    // A quaternion of length zero rotates nothing.
-    if (glm::length(rotation) > 0.0) matrix *= glm::mat4_cast(glm::normalize(rotation));
-  }
-  if (node.scale.size() == 3) matrix = glm::scale(matrix, glm::make_vec3(node.scale.data()));
-  return matrix;
+using nlohmann::json;
+
+std::vector<std::size_t> childrenOf(const json& node) {
+  return node.value("children", std::vector<std::size_t>());
 }
 
-bool isMovable(const tinygltf::Node& node) {
-  if (!node.extras.IsObject() || !node.extras.Has("lambent")) return false;
-  const tinygltf::Value& lambent = node.extras.Get("lambent");
-  return lambent.IsObject() && lambent.Has("movable") && lambent.Get("movable").IsBool() &&
-         lambent.Get("movable").Get<bool>();
-}
-
-std::int32_t lightOf(const nlohmann::json& node) {
-  if (!node.contains("extensions") || !node["extensions"].contains("KHR_lights_punctual")) return -1;
-  return node["extensions"]["KHR_lights_punctual"]["light"].get<std::int32_t>();
-}
-
-std::vector<int> parentless(const tinygltf::Model& model) {
-  std::vector<bool> has_parent(model.nodes.size(), false);
-  for (const tinygltf::Node& node : model.nodes)
-    for (int child : node.children) has_parent[static_cast<std::size_t>(child)] = true;
-  std::vector<int> found;
+std::vector<std::size_t> parentless(const Document& document) {
+  const json& nodes = document.list("nodes");
+  std::vector<bool> has_parent(nodes.size(), false);
+  for (const json& node : nodes)
+    for (const std::size_t child : childrenOf(node)) has_parent[child] = true;
+  std::vector<std::size_t> found;
   for (std::size_t i = 0; i < has_parent.size(); ++i)
-    if (!has_parent[i]) found.push_back(static_cast<int>(i));
+    if (!has_parent[i]) found.push_back(i);
   return found;
 }
 
 // Returns the roots of the default scene, or of the first one; in a file without scenes, all nodes without a
 // parent.
-std::vector<int> rootsOf(const tinygltf::Model& model) {
-  if (model.scenes.empty()) return parentless(model);
-  return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))].nodes;
+std::vector<std::size_t> rootsOf(const Document& document) {
+  const json& scenes = document.list("scenes");
+  if (scenes.empty()) return parentless(document);
+  return scenes.at(document.json.value("scene", std::size_t{0})).value("nodes", std::vector<std::size_t>());
 }
 
-gltf::Camera convertCamera(const tinygltf::Camera& camera) {
+// Mends have seen to the values.
+gltf::Camera convertCamera(const json& camera) {
   gltf::Camera out;
-  out.name = camera.name;
-  out.perspective = camera.type == "perspective";
+  out.name = camera.value("name", "");
+  out.perspective = camera.at("type") == "perspective";
+  const json& lens = camera.at(out.perspective ? "perspective" : "orthographic");
   if (out.perspective) {
-    out.yfov_rad = static_cast<float>(camera.perspective.yfov);
-    out.aspect = static_cast<float>(camera.perspective.aspectRatio);
-    out.znear = static_cast<float>(camera.perspective.znear);
-    out.zfar = static_cast<float>(camera.perspective.zfar);
+    out.yfov_rad = lens.at("yfov").get<float>();
+    out.aspect = lens.value("aspectRatio", 0.0f);
   } else {
-    out.xmag = static_cast<float>(camera.orthographic.xmag);
-    out.ymag = static_cast<float>(camera.orthographic.ymag);
-    out.znear = static_cast<float>(camera.orthographic.znear);
-    out.zfar = static_cast<float>(camera.orthographic.zfar);
+    out.xmag = lens.at("xmag").get<float>();
+    out.ymag = lens.at("ymag").get<float>();
   }
+  out.znear = lens.at("znear").get<float>();
+  out.zfar = lens.value("zfar", 0.0f);
   return out;
 }
 
 }  // namespace
 
-glm::dmat4 localMatrix(const Document& document, std::size_t file_node) {
-  return localMatrix(document.model().nodes[file_node]);
+glm::dmat4 localMatrix(const json& node) {
+  const auto numbers = [&](const char* key) { return node.value(key, std::vector<double>()); };
+  if (const auto m = numbers("matrix"); !m.empty()) return glm::make_mat4(m.data());
+  glm::dmat4 matrix(1.0);
+  if (const auto t = numbers("translation"); !t.empty())
+    matrix = glm::translate(matrix, glm::make_vec3(t.data()));
+  if (const auto r = numbers("rotation"); !r.empty()) {
+    const glm::dquat rotation(r[3], r[0], r[1], r[2]);
+    // A quaternion of length zero rotates nothing.
+    if (glm::length(rotation) > 0.0) matrix *= glm::mat4_cast(glm::normalize(rotation));
+  }
+  if (const auto s = numbers("scale"); !s.empty()) matrix = glm::scale(matrix, glm::make_vec3(s.data()));
+  return matrix;
 }
 
 std::vector<glm::dmat4> fileWorldTransforms(const Document& document) {
-  const auto& sources = document.model().nodes;
-  std::vector<glm::dmat4> world(sources.size());
-  for (std::size_t i = 0; i < sources.size(); ++i) world[i] = localMatrix(sources[i]);
-  std::vector<int> open = parentless(document.model());  // nodes whose matrices are those of the world
+  const json& nodes = document.list("nodes");
+  std::vector<glm::dmat4> world;
+  for (const json& node : nodes) world.push_back(localMatrix(node));
+  std::vector<std::size_t> open = parentless(document);  // nodes whose matrices are those of the world
   while (!open.empty()) {
-    const auto parent = static_cast<std::size_t>(open.back());
+    const std::size_t parent = open.back();
     open.pop_back();
-    for (const int child : sources[parent].children) {
-      world[static_cast<std::size_t>(child)] = world[parent] * world[static_cast<std::size_t>(child)];
+    for (const std::size_t child : childrenOf(nodes[parent])) {
+      world[child] = world[parent] * world[child];
       open.push_back(child);
     }
   }
@@ -108,25 +101,24 @@ std::vector<glm::dmat4> sceneWorldTransforms(const NodeMap& map, const Scene& sc
 }
 
 Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
-  const tinygltf::Model& model = document.model();
-  for (const tinygltf::Camera& camera : model.cameras) scene.cameras.push_back(convertCamera(camera));
+  for (const json& camera : document.list("cameras")) scene.cameras.push_back(convertCamera(camera));
 
   // Parents come first, in the order of the file; nodes of other scenes are left out.
   NodeMap map;
-  map.scene_node.assign(model.nodes.size(), -1);
-  std::vector<std::pair<int, std::int32_t>> pending;  // node of the file, new parent
-  const std::vector<int> roots = rootsOf(model);
+  map.scene_node.assign(document.list("nodes").size(), -1);
+  std::vector<std::pair<std::size_t, std::int32_t>> pending;  // node of the file, new parent
+  const std::vector<std::size_t> roots = rootsOf(document);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it) pending.emplace_back(*it, -1);
   while (!pending.empty()) {
     const auto [index, parent] = pending.back();
     pending.pop_back();
-    if (map.scene_node[static_cast<std::size_t>(index)] >= 0)
+    if (map.scene_node[index] >= 0)
       return fail(document.file(), fmt::format("node {} stands twice in the scene", index),
                   "list each root node once");
 
-    const tinygltf::Node& source = model.nodes[static_cast<std::size_t>(index)];
+    const json& source = document.at("nodes", index);
     gltf::Node node;
-    node.name = source.name;
+    node.name = source.value("name", "");
     node.parent = parent;
     map.parent_from_node.push_back(localMatrix(source));
     node.parent_from_node = glm::mat4(map.parent_from_node.back());
@@ -135,21 +127,24 @@ Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
         if (!std::isfinite(node.parent_from_node[c][r]))
           return fail(document.file(), fmt::format("node {} has a transform that is not finite", index),
                       "reset its transform");
-    node.mesh = source.mesh;
-    node.camera = source.camera;
-    node.light = lightOf(document.json()["nodes"][static_cast<std::size_t>(index)]);
-    node.movable = isMovable(source);
+    node.mesh = source.value("mesh", -1);
+    node.camera = source.value("camera", -1);
+    if (const json& light = memberOf(source, {"extensions", "KHR_lights_punctual", "light"});
+        !light.is_null())
+      node.light = light.get<std::int32_t>();
+    node.movable = memberOf(source, {"extras", "lambent", "movable"}) == true;
 
     const auto added = static_cast<std::int32_t>(scene.nodes.size());
-    map.scene_node[static_cast<std::size_t>(index)] = added;
-    map.file_node.push_back(index);
+    map.scene_node[index] = added;
+    map.file_node.push_back(static_cast<std::int32_t>(index));
     if (parent < 0) {
       scene.roots.push_back(added);
     } else {
       scene.nodes[static_cast<std::size_t>(parent)].children.push_back(added);
     }
     scene.nodes.push_back(std::move(node));
-    for (auto child = source.children.rbegin(); child != source.children.rend(); ++child)
+    const std::vector<std::size_t> children = childrenOf(source);
+    for (auto child = children.rbegin(); child != children.rend(); ++child)
       pending.emplace_back(*child, added);
   }
   return map;
@@ -160,13 +155,10 @@ Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
 
 namespace {
 
-using nlohmann::json;
-
 constexpr std::size_t kMaxInstances = 1u << 20;  // each costs a name, draws and transfer of its own
 
 struct Attribute {
-  const char* name;
-  int components;
+  const char *name, *type;
   Floats values;
 };
 
@@ -174,8 +166,7 @@ Result<void> readAttribute(const Document& document, const json& attributes, con
                            Attribute& attribute) {
   if (!attributes.contains(attribute.name)) return {};
   const std::string name = fmt::format("{} of the instances of {}", attribute.name, node);
-  auto floats = readFloats(document, attributes[attribute.name].get<int>(), name, {attribute.components},
-                           static_cast<std::size_t>(attribute.components));
+  auto floats = readFloats(document, attributes[attribute.name].get<std::size_t>(), name, {attribute.type});
   if (!floats) return failAgain(std::move(floats.error()));
   for (std::size_t i = 0; i < floats->values.size(); ++i)
     if (!std::isfinite(floats->values[i]))
@@ -214,7 +205,8 @@ glm::mat4 instanceMatrix(const Attribute& translation, const Attribute& rotation
 Result<void> expand(const Document& document, const json& attributes, std::size_t file_node,
                     std::int32_t scene_node, std::size_t& total, NodeMap& map, Scene& scene) {
   const std::string name = fmt::format("node {}", file_node);
-  Attribute translation{"TRANSLATION", 3, {}}, rotation{"ROTATION", 4, {}}, scale{"SCALE", 3, {}};
+  Attribute translation{"TRANSLATION", "VEC3", {}}, rotation{"ROTATION", "VEC4", {}},
+      scale{"SCALE", "VEC3", {}};
   std::size_t count = 0;
   for (Attribute* attribute : {&translation, &rotation, &scale}) {
     if (auto read = readAttribute(document, attributes, name, *attribute); !read) return read;
@@ -257,17 +249,14 @@ Result<void> expand(const Document& document, const json& attributes, std::size_
 
 Result<void> convertInstances(const Document& document, NodeMap& map, Scene& scene) {
   constexpr const char* kExtension = "EXT_mesh_gpu_instancing";
-  if (map.scene_node.empty()) return {};
-  const json& nodes = document.json()["nodes"];
   std::size_t total = 0;
   for (std::size_t n = 0; n < map.scene_node.size(); ++n) {
-    if (map.scene_node[n] < 0 || !nodes[n].contains("extensions") ||
-        !nodes[n]["extensions"].contains(kExtension))
-      continue;
+    const json& instances = memberOf(document.at("nodes", n), {"extensions", kExtension});
+    if (map.scene_node[n] < 0 || instances.is_null()) continue;
     const auto scene_node = map.scene_node[n];
     if (scene.nodes[static_cast<std::size_t>(scene_node)].mesh < 0) continue;
-    const json& attributes = nodes[n]["extensions"][kExtension]["attributes"];
-    if (auto done = expand(document, attributes, n, scene_node, total, map, scene); !done) return done;
+    if (auto done = expand(document, instances.at("attributes"), n, scene_node, total, map, scene); !done)
+      return done;
   }
   return {};
 }
@@ -275,8 +264,6 @@ Result<void> convertInstances(const Document& document, NodeMap& map, Scene& sce
 // Converts KHR_lights_punctual. mend_looks.cpp has seen to types and ranges.
 
 namespace {
-
-using nlohmann::json;
 
 gltf::Light convertLight(const json& source) {
   gltf::Light light;
@@ -309,11 +296,8 @@ gltf::Light convertLight(const json& source) {
 }  // namespace
 
 void convertLights(const Document& document, Scene& scene) {
-  const json& root = document.json();
-  if (!root.contains("extensions") || !root["extensions"].contains("KHR_lights_punctual")) return;
-  const json& extension = root["extensions"]["KHR_lights_punctual"];
-  if (!extension.contains("lights")) return;
-  for (const json& light : extension["lights"]) scene.lights.push_back(convertLight(light));
+  for (const json& light : memberOf(document.json, {"extensions", "KHR_lights_punctual", "lights"}))
+    scene.lights.push_back(convertLight(light));
 }
 
 }  // namespace lambent::baker

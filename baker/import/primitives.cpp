@@ -1,5 +1,4 @@
-#include "baker/import/primitives.hpp"
-
+// Reads primitives, and applies morph targets and skins on the CPU, once at import.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -12,20 +11,30 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "baker/import/check.hpp"
+#include "baker/import/convert.hpp"
 #include "baker/import/document.hpp"
 #include "baker/import/error_text.hpp"
-#include "baker/import/tinygltf.hpp"
 #include "runtime/base/normal_matrix.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
+using nlohmann::json;
+
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+
+// Holds four joints of each vertex and their weights; a vertex may have several sets of them.
+struct Influences {
+  std::vector<glm::vec4> joints, weights;
+};
+
 template <typename Vector>
-Result<void> addDisplacements(const Document& document, int accessor, float weight, const char* semantic,
-                              const std::string& name, std::vector<Vector>& values) {
+Result<void> addDisplacements(const Document& document, std::size_t accessor, float weight,
+                              const char* semantic, const std::string& name, std::vector<Vector>& values) {
   if (values.empty()) return {};
-  const auto floats = readFloats(document, accessor, name + ": " + semantic, {3}, 3);
+  const auto floats = readFloats(document, accessor, name + ": " + semantic, {"VEC3"});
   if (!floats) return failAgain(floats.error());
   if (floats->count() != values.size())
     return fail(
@@ -37,15 +46,15 @@ Result<void> addDisplacements(const Document& document, int accessor, float weig
   return {};
 }
 
-}  // namespace
-
-Result<void> applyMorphTargets(const Document& document, const tinygltf::Primitive& primitive,
+// Adds weight times displacement of every target to positions, normals and tangents.
+Result<void> applyMorphTargets(const Document& document, const json& targets,
                                const std::vector<float>& weights, const std::string& name,
                                bundle::MeshData& mesh) {
-  for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
+  for (std::size_t t = 0; t < std::min(targets.size(), weights.size()); ++t) {
     if (weights[t] == 0.0f) continue;
     const std::string target = fmt::format("{}, morph target {}", name, t);
-    for (const auto& [semantic, accessor] : primitive.targets[t]) {
+    for (const auto& [semantic, value] : targets[t].items()) {
+      const auto accessor = value.template get<std::size_t>();
       Result<void> done;
       if (semantic == "POSITION")
         done = addDisplacements(document, accessor, weights[t], "POSITION", target, mesh.positions);
@@ -59,6 +68,8 @@ Result<void> applyMorphTargets(const Document& document, const tinygltf::Primiti
   return {};
 }
 
+// Moves every vertex by the weighted mean of its joints' matrices. Errors: the skin does not have such a
+// joint.
 Result<void> applySkin(const std::vector<Influences>& sets, const std::vector<glm::dmat4>& joints,
                        const std::string& file, const std::string& name, bundle::MeshData& mesh) {
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -94,17 +105,14 @@ Result<void> applySkin(const std::vector<Influences>& sets, const std::vector<gl
   return {};
 }
 
-namespace {
-
-constexpr const char* kDraco = "KHR_draco_mesh_compression";
-
 template <typename Vector>
-Result<std::vector<Vector>> readVectors(const Document& document, const tinygltf::Primitive& primitive,
-                                        const std::string& semantic, const std::vector<int>& allowed) {
-  const auto attribute = primitive.attributes.find(semantic);
-  if (attribute == primitive.attributes.end()) return std::vector<Vector>();
-  auto floats =
-      readFloats(document, attribute->second, semantic, allowed, static_cast<std::size_t>(Vector::length()));
+Result<std::vector<Vector>> readVectors(const Document& document, const json& primitive,
+                                        const std::string& semantic,
+                                        std::initializer_list<std::string_view> types) {
+  const json& attribute = memberOf(primitive, {"attributes", semantic.c_str()});
+  if (attribute.is_null()) return std::vector<Vector>();
+  auto floats = readFloats(document, attribute.get<std::size_t>(), semantic, types,
+                           static_cast<std::size_t>(Vector::length()));
   if (!floats) return failAgain(std::move(floats.error()));
   std::vector<Vector> vectors(floats->count());
   for (std::size_t i = 0; i < vectors.size(); ++i)
@@ -124,29 +132,25 @@ bool moveResult(T& target, Result<T> result, Error& error) {
   return true;
 }
 
-// Returns the number of the accessor that holds the indices, or -1 if there are none.
-int indexAccessor(const tinygltf::Primitive& primitive) {
-  const auto aside = primitive.extensions.find(kIndicesAside);
-  return aside == primitive.extensions.end() ? primitive.indices
-                                             : aside->second.Get("accessor").GetNumberAsInt();
-}
-
-Result<bundle::MeshData> readPlain(const Document& document, const tinygltf::Primitive& primitive,
-                                   bool tangents) {
-  const int indices = indexAccessor(primitive);
+Result<bundle::MeshData> readPlain(const Document& document, const json& primitive, bool tangents) {
+  const bool indexed = primitive.contains("indices");
   bundle::MeshData mesh;
   Error error;
   const bool read =
-      moveResult(mesh.positions, readVectors<glm::vec3>(document, primitive, "POSITION", {3}), error) &&
-      moveResult(mesh.normals, readVectors<glm::vec3>(document, primitive, "NORMAL", {3}), error) &&
-      moveResult(mesh.texcoords0, readVectors<glm::vec2>(document, primitive, "TEXCOORD_0", {2}), error) &&
-      moveResult(mesh.texcoords1, readVectors<glm::vec2>(document, primitive, "TEXCOORD_1", {2}), error) &&
-      moveResult(mesh.colors, readVectors<glm::vec4>(document, primitive, "COLOR_0", {3, 4}), error) &&
+      moveResult(mesh.positions, readVectors<glm::vec3>(document, primitive, "POSITION", {"VEC3"}), error) &&
+      moveResult(mesh.normals, readVectors<glm::vec3>(document, primitive, "NORMAL", {"VEC3"}), error) &&
+      moveResult(mesh.texcoords0, readVectors<glm::vec2>(document, primitive, "TEXCOORD_0", {"VEC2"}),
+                 error) &&
+      moveResult(mesh.texcoords1, readVectors<glm::vec2>(document, primitive, "TEXCOORD_1", {"VEC2"}),
+                 error) &&
+      moveResult(mesh.colors, readVectors<glm::vec4>(document, primitive, "COLOR_0", {"VEC3", "VEC4"}),
+                 error) &&
       (!tangents ||
-       moveResult(mesh.tangents, readVectors<glm::vec4>(document, primitive, "TANGENT", {4}), error)) &&
-      (indices < 0 || moveResult(mesh.indices, readIndices(document, indices), error));
+       moveResult(mesh.tangents, readVectors<glm::vec4>(document, primitive, "TANGENT", {"VEC4"}), error)) &&
+      (!indexed ||
+       moveResult(mesh.indices, readIndices(document, primitive["indices"].get<std::size_t>()), error));
   if (!read) return failAgain(std::move(error));
-  if (indices < 0) {
+  if (!indexed) {
     mesh.indices.resize(mesh.positions.size());
     std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
   }
@@ -157,19 +161,16 @@ Result<bundle::MeshData> readPlain(const Document& document, const tinygltf::Pri
 struct DracoSource {
   std::span<const std::byte> bytes;
   bundle::Primitive announced;
-  const tinygltf::Value* ids = nullptr;
+  const json* ids = nullptr;
 
-  std::int32_t id(const std::string& semantic) const {
-    return ids->Has(semantic) ? ids->Get(semantic).GetNumberAsInt() : -1;
-  }
+  std::int32_t id(const std::string& semantic) const { return ids->value(semantic, -1); }
 };
 
-Result<DracoSource> dracoSource(const Document& document, const tinygltf::Primitive& primitive, bool tangents,
+Result<DracoSource> dracoSource(const Document& document, const json& primitive, bool tangents,
                                 const std::string& name) {
-  const tinygltf::Model& model = document.model();
-  const tinygltf::Value& extension = primitive.extensions.at(kDraco);
+  const json& extension = primitive.at("extensions").at(kDraco);
   DracoSource source;
-  source.ids = &extension.Get("attributes");
+  source.ids = &extension.at("attributes");
   source.announced.attributes = {.position = source.id("POSITION"),
                                  .normal = source.id("NORMAL"),
                                  .texcoord0 = source.id("TEXCOORD_0"),
@@ -177,33 +178,29 @@ Result<DracoSource> dracoSource(const Document& document, const tinygltf::Primit
                                  .color0 = source.id("COLOR_0"),
                                  .tangent = tangents ? source.id("TANGENT") : -1,
                                  .normal_weight = source.id("_NORMAL_WEIGHT")};  // in bundles only
-  const auto position = primitive.attributes.find("POSITION");
-  const int indices = indexAccessor(primitive);
-  if (position == primitive.attributes.end() || source.announced.attributes.position < 0 || indices < 0)
+  if (source.announced.attributes.position < 0 || !primitive.contains("indices"))
     return fail(document.file(), fmt::format("{}: compressed without POSITION or indices", name),
                 kExportAgain);
-  source.announced.vertex_count =
-      static_cast<std::uint32_t>(model.accessors[static_cast<std::size_t>(position->second)].count);
-  source.announced.index_count =
-      static_cast<std::uint32_t>(model.accessors[static_cast<std::size_t>(indices)].count);
-  const auto& view =
-      model.bufferViews[static_cast<std::size_t>(extension.Get("bufferView").GetNumberAsInt())];
-  source.bytes = std::as_bytes(std::span(model.buffers[static_cast<std::size_t>(view.buffer)].data))
-                     .subspan(view.byteOffset, view.byteLength);
+  const auto countOf = [&](const json& accessor) {
+    return document.at("accessors", accessor.get<std::size_t>()).at("count").get<std::uint32_t>();
+  };
+  source.announced.vertex_count = countOf(primitive.at("attributes").at("POSITION"));
+  source.announced.index_count = countOf(primitive["indices"]);
+  source.bytes = document.view(extension.at("bufferView").get<std::size_t>());
   return source;
 }
 
 // Reads JOINTS_n and WEIGHTS_n for n = 0, 1, ..., from the Draco buffer if they are there.
-Result<std::vector<Influences>> readInfluences(const Document& document, const tinygltf::Primitive& primitive,
+Result<std::vector<Influences>> readInfluences(const Document& document, const json& primitive,
                                                const DracoSource* draco, const std::string& name) {
   const auto read = [&](const std::string& semantic) {
     const std::int32_t id = draco == nullptr ? -1 : draco->id(semantic);
-    if (id < 0) return readVectors<glm::vec4>(document, primitive, semantic, {4});
+    if (id < 0) return readVectors<glm::vec4>(document, primitive, semantic, {"VEC4"});
     return bundle::decodeDracoAttribute(draco->bytes, draco->announced, id, semantic,
                                         fmt::format("{}: {}", document.file(), name));
   };
   std::vector<Influences> sets;
-  for (int n = 0; primitive.attributes.contains(fmt::format("JOINTS_{}", n)); ++n) {
+  for (int n = 0; primitive.at("attributes").contains(fmt::format("JOINTS_{}", n)); ++n) {
     auto joints = read(fmt::format("JOINTS_{}", n));
     if (!joints) return failAgain(std::move(joints.error()));
     auto weights = read(fmt::format("WEIGHTS_{}", n));
@@ -240,15 +237,17 @@ Result<void> checkCounts(const bundle::MeshData& mesh, const std::vector<Influen
   return {};
 }
 
+constexpr int kTriangles = 4, kTriangleStrip = 5;  // the modes below are of points and lines, 6 is a fan
+
 // Converts lists, strips and fans to lists; corners keep the winding (glTF 2.0, section 3.7.2.1).
 std::vector<std::uint32_t> toTriangles(const std::vector<std::uint32_t>& in, int mode) {
   std::vector<std::uint32_t> out;
-  if (mode == TINYGLTF_MODE_TRIANGLES) {
+  if (mode == kTriangles) {
     out.assign(in.begin(), in.begin() + static_cast<std::ptrdiff_t>(in.size() / 3 * 3));
     return out;
   }
   for (std::size_t i = 0; i + 2 < in.size(); ++i) {
-    if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+    if (mode == kTriangleStrip) {
       const std::size_t odd = i % 2;
       out.insert(out.end(), {in[i], in[i + 1 + odd], in[i + 2 - odd]});
     } else {
@@ -260,21 +259,23 @@ std::vector<std::uint32_t> toTriangles(const std::vector<std::uint32_t>& in, int
 
 }  // namespace
 
-Result<bundle::MeshData> readPrimitive(const Document& document, const tinygltf::Primitive& primitive,
-                                       const MeshPose& pose, bool tangents, const std::string& name,
+Result<bundle::MeshData> readPrimitive(const Document& document, const json& primitive, const MeshPose& pose,
+                                       bool tangents, const std::string& name,
                                        std::vector<std::string>& warnings) {
-  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+  const int mode = primitive.value("mode", kTriangles);
+  if (mode < kTriangles) {
     warnings.push_back(fmt::format("{}: points and lines are left out", name));
     return bundle::MeshData{};
   }
-  if (!primitive.attributes.contains("POSITION")) {
+  const json& attributes = primitive.at("attributes");
+  if (!attributes.contains("POSITION")) {
     warnings.push_back(fmt::format("{}: has no geometry and is left out", name));
     return bundle::MeshData{};
   }
   // glTF gives no meaning to tangents without normals.
-  tangents = tangents && primitive.attributes.contains("NORMAL");
+  tangents = tangents && attributes.contains("NORMAL");
   DracoSource draco;
-  const bool compressed = primitive.extensions.contains(kDraco);
+  const bool compressed = !memberOf(primitive, {"extensions", kDraco}).is_null();
   if (compressed) {
     auto source = dracoSource(document, primitive, tangents, name);
     if (!source) return failAgain(std::move(source.error()));
@@ -293,10 +294,11 @@ Result<bundle::MeshData> readPrimitive(const Document& document, const tinygltf:
   if (auto counts = checkCounts(*mesh, influences, document.file(), name); !counts)
     return failAgain(std::move(counts.error()));
   // Draco holds lists whatever the mode says.
-  if (!compressed) mesh->indices = toTriangles(mesh->indices, primitive.mode);
+  if (!compressed) mesh->indices = toTriangles(mesh->indices, mode);
   for (glm::vec4& color : mesh->colors) color = glm::clamp(color, glm::vec4(0.0f), glm::vec4(1.0f));
   // glTF applies targets first, then the skin.
-  if (auto done = applyMorphTargets(document, primitive, pose.weights, name, *mesh); !done)
+  if (auto done = applyMorphTargets(document, memberOf(primitive, {"targets"}), pose.weights, name, *mesh);
+      !done)
     return failAgain(std::move(done.error()));
   if (auto done = applySkin(influences, pose.joints, document.file(), name, *mesh); !done)
     return failAgain(std::move(done.error()));

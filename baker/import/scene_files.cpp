@@ -59,12 +59,12 @@ Result<Container> takeApart(std::span<const std::byte> glb, const std::string& f
   glb = glb.first(length);
 
   std::size_t at = kGlbHeaderBytes;
-  auto json = readChunk(glb, at, file);
-  if (!json) return failAgain(std::move(json.error()));
-  if (json->type != bundle::kGlbJsonChunk)
+  auto text = readChunk(glb, at, file);
+  if (!text) return failAgain(std::move(text.error()));
+  if (text->type != bundle::kGlbJsonChunk)
     return fail(file, "GLB does not start with a JSON chunk", kExportAgain);
   Container container;
-  container.json.assign(reinterpret_cast<const char*>(json->bytes.data()), json->bytes.size());
+  container.json.assign(reinterpret_cast<const char*>(text->bytes.data()), text->bytes.size());
   if (at < glb.size()) {
     auto binary = readChunk(glb, at, file);
     if (!binary) return failAgain(std::move(binary.error()));

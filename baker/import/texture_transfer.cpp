@@ -17,11 +17,8 @@ namespace {
 constexpr const char* kKey = "texture_transfer";
 
 // `extras` may be anything; only the object under our own name is ours.
-const nlohmann::json* oursIn(const nlohmann::json& owner) {
-  const auto extras = owner.find("extras");
-  if (extras == owner.end() || !extras->is_object()) return nullptr;
-  const auto ours = extras->find("lambent");
-  return ours == extras->end() || !ours->is_object() ? nullptr : &*ours;
+const nlohmann::json& texelsIn(const nlohmann::json& owner) {
+  return memberOf(owner, {"extras", "lambent", kKey});
 }
 
 // Coordinates may leave the unit square by as much as coding moves them.
@@ -70,9 +67,9 @@ class Raster {
 }  // namespace
 
 void checkTextureTransfer(const Object& owner) {
-  const nlohmann::json* ours = oursIn(owner.json);
-  if (ours == nullptr || !ours->contains(kKey)) return;
-  const nlohmann::json& value = (*ours)[kKey];
+  const nlohmann::json& ours = memberOf(owner.json, {"extras", "lambent"});
+  if (!ours.contains(kKey)) return;
+  const nlohmann::json& value = ours[kKey];
   const std::uint64_t texels = value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
   if (texels < kLeastTexels || texels > kMostTexels || !std::has_single_bit(texels))
     throw BrokenField{fmt::format("{}: extras: lambent: {} is {}, not a power of two from {} to {}",
@@ -82,8 +79,8 @@ void checkTextureTransfer(const Object& owner) {
 
 std::uint32_t textureTransferOf(const nlohmann::json& mesh, const nlohmann::json& primitive) {
   for (const nlohmann::json* owner : {&primitive, &mesh})
-    if (const nlohmann::json* ours = oursIn(*owner); ours != nullptr && ours->contains(kKey))
-      return (*ours)[kKey].get<std::uint32_t>();
+    if (const nlohmann::json& texels = texelsIn(*owner); !texels.is_null())
+      return texels.get<std::uint32_t>();
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
+#include "baker/import/check.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/density_file.hpp"
 #include "baker/import/scene_files.hpp"
@@ -43,7 +44,7 @@ Result<DensityGrid> readGrid(const Document& document, const std::string& uri, c
                              const std::string& object, std::vector<std::string>& warnings) {
   const std::string subject = fmt::format("{}: {}", document.file(), object);
   if (uri.starts_with("procedural:")) return procedural(uri, subject);
-  const auto file = resolveUri(document.path(), uri, document.options(), object, warnings);
+  const auto file = resolveUri(document.path, uri, document.options, object, warnings);
   if (!file) return failAgain(file.error());
   const std::string kind = file->extension().string();
   if (kind != ".vdb" && kind != ".nrrd")
@@ -107,18 +108,17 @@ Result<void> convertGrids(const Document& document, const NodeMap& map, Scene& s
   const auto world = gltf::worldTransforms(scene.nodes);
   for (std::size_t node = 0; node < map.file_node.size(); ++node) {
     if (map.file_node[node] < 0) continue;
-    const json& source = document.json()["nodes"][static_cast<std::size_t>(map.file_node[node])];
-    if (!source.contains("extras") || !source["extras"].is_object()) continue;
-    const auto ours = source["extras"].find("lambent");
-    if (ours == source["extras"].end() || !ours->is_object()) continue;
+    const json& ours =
+        memberOf(document.at("nodes", static_cast<std::size_t>(map.file_node[node])), {"extras", "lambent"});
+    if (!ours.is_object()) continue;
     const auto number = static_cast<std::uint32_t>(node);
-    if (const auto request = ours->find("neighborhood"); request != ours->end())
+    if (const auto request = ours.find("neighborhood"); request != ours.end())
       scene.neighborhoods.push_back(
           {.node = number,
            .size = vectorField<glm::uvec3>(*request, "size").value_or(glm::uvec3(0)),
            .extent = vectorField<glm::vec3>(*request, "extent").value_or(glm::vec3(0.0f))});
-    const auto volume = ours->find("volume");
-    if (volume == ours->end()) continue;
+    const auto volume = ours.find("volume");
+    if (volume == ours.end()) continue;
     const std::string object = fmt::format("node {}: its volume", map.file_node[node]);
     if (auto added = addVolume(document, *volume, number, object, scene); !added) return added;
     // A flat box holds no medium.

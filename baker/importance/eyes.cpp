@@ -1,5 +1,3 @@
-#include "baker/importance/eyes.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,7 +10,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "baker/transport/face_points.hpp"
+#include "baker/importance/importance.hpp"
+#include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
 

@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/jobs/parallel.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "baker/transport/texel_samples.hpp"
 
 namespace lambent::baker {

@@ -1,21 +1,58 @@
 // The room baker/importance says how much each part of a rigid group's surfaces matters to pictures: how much
-// of them it takes up, seen directly by eyes (eyes.hpp), and how much light it sends to what they see (the
+// of them it takes up, seen directly by eyes, and how much light it sends to what they see (the
 // adjoint of one bounce; Smits, Arvo and Salesin 1992). Whatever chooses what is worth work weighs by it. The
 // group as rays see it comes in; a field over its surfaces and the points that eyes see go out. It takes a
 // second at most, runs on all threads, does not depend on how many, and has no errors.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-#include "baker/importance/eyes.hpp"
+#include "baker/cache/key.hpp"
+#include "baker/import/scene.hpp"
+#include "baker/plan/rigid_groups.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
+
+// Places eyes: points from which pictures of a rigid group are likely to be taken. Half of all pictures are
+// those of the file's cameras; the other half is taken from the connected free space in which these stand.
+// Without cameras, eyes stand in the rooms of the group, around the whole of it, and around its parts, so
+// that small bodies are seen from near by, too.
+
+struct Eye {
+  enum class View : std::uint8_t { AllAround, Cone, Frustum };
+
+  glm::vec3 position{0.0f};  // as GroupGeometry::positions
+  float weight = 0.0f;       // the share of all pictures that are taken from here
+  View view = View::AllAround;
+  glm::mat3 axes{1.0f};                      // right, up and backward
+  float tangent_x = 0.0f, tangent_y = 0.0f;  // of half the angle of a frustum
+  float cone_cosine = -1.0f;                 // of half the angle of a cone
+
+  // Returns the unit direction of ray i of a low-discrepancy sequence that covers the view.
+  glm::vec3 direction(std::size_t i) const;
+  // Returns the rays per steradian around a unit direction, for one ray in all; 0 outside the view.
+  float density(const glm::vec3& direction) const;
+};
+
+// Returns the file's cameras as eyes of the group at rest.
+std::vector<Eye> cameraEyes(const Scene& scene, const RigidGroup& group, const GroupGeometry& geometry);
+
+// Adds the cameras' eyes to the key of a result that depends on them.
+void addEyes(std::span<const Eye> eyes, KeyMaker& key);
+
+// Returns all eyes that see anything; their weights sum to 1. `cameras` are those of cameraEyes().
+std::vector<Eye> placeEyes(const GroupGeometry& geometry, const RayScene& rays, std::vector<Eye> cameras);
+
+// Returns the i-th number of van der Corput in this base, 0..1.
+float radicalInverse(std::size_t i, std::size_t base);
 
 // Divides what eyes see into regions that take up about as much of all pictures, so that errors are bounded
 // in each part of what is seen and not only on average.

@@ -22,9 +22,7 @@
 
 namespace lambent::baker {
 
-// Keeps whole results in the cache, under the key of a context. A type is kept by two functions beside it:
-// `void write(const T&, ByteWriter&)`, and `bool read(ByteReader&, T&)`, which returns false if the bytes are
-// no such value, and may have changed a part of it by then. T may be a view of where the value lies.
+// Keeps whole results in the cache, under the key of a context, by write() and read() (cache/bytes.hpp).
 
 // Returns whether the value was found.
 template <typename T>

@@ -11,7 +11,7 @@
 #include <glm/gtc/matrix_inverse.hpp>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/guess_seconds.hpp"

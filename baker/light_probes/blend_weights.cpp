@@ -1,5 +1,3 @@
-#include "baker/light_probes/blend_weights.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -7,6 +5,8 @@
 #include <numeric>
 
 #include <glm/geometric.hpp>
+
+#include "baker/light_probes/light_probes.hpp"
 
 namespace lambent::baker {
 

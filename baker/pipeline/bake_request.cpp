@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/bake/bake_unshadowed.hpp"
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/bake.hpp"
+#include "baker/bake/options.hpp"
 #include "runtime/bundle/container.hpp"
 
 namespace lambent::baker {

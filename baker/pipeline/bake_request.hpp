@@ -19,7 +19,7 @@ namespace lambent::baker {
 // Each is a complete bundle. Only this file decides with which options a level is baked.
 
 enum class PreviewLevel : std::uint8_t {
-  Unshadowed,  // traces no rays (bake_unshadowed.hpp)
+  Unshadowed,  // traces no rays (bakeUnshadowed)
   Coarse,      // few rays, one bounce, no refinement; takes seconds
   Final        // the options that were asked for
 };

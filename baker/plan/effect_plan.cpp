@@ -18,8 +18,8 @@
 #include <glm/vector_relational.hpp>
 
 #include "baker/import/details.hpp"
-#include "baker/plan/corner_numbers.hpp"
 #include "baker/plan/counted.hpp"
+#include "baker/plan/group_lights.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 
 namespace lambent::baker {
@@ -275,20 +275,15 @@ double signedVolume(const Part& part, const std::vector<glm::vec3>& positions) {
 }
 
 std::vector<Part> partsOfMesh(const bundle::MeshData& mesh) {
-  BodyBox box;
-  for (const glm::vec3& p : mesh.positions) box.add(glm::dvec3(p));
-  const double tolerance = kSameCorner * glm::distance(box.low, box.high);
-  if (!(tolerance > 0.0) || !std::isfinite(tolerance)) return {};
-  CornerNumbers numbers(tolerance);
-  std::vector<std::uint32_t> corner_of;
-  for (const glm::vec3& p : mesh.positions) corner_of.push_back(numbers.numberOf(p));
+  const CornerNumbers numbers = cornerNumbers(mesh.positions);
+  if (numbers.of.empty()) return {};
   std::vector<CornerTriangle> triangles;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
     triangles.push_back(
-        {corner_of[mesh.indices[i]], corner_of[mesh.indices[i + 1]], corner_of[mesh.indices[i + 2]]});
+        {numbers.of[mesh.indices[i]], numbers.of[mesh.indices[i + 1]], numbers.of[mesh.indices[i + 2]]});
 
   std::vector<Part> all;
-  for (const std::vector<std::size_t>& indices : connectedParts(triangles, numbers.places().size())) {
+  for (const std::vector<std::size_t>& indices : connectedParts(triangles, numbers.places.size())) {
     Part& part = all.emplace_back();
     for (const std::size_t t : indices)
       part.triangles.push_back({mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]});

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <unordered_map>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "baker/import/details.hpp"
-#include "baker/plan/corner_numbers.hpp"
 
 namespace lambent::baker {
 
@@ -46,26 +47,16 @@ std::vector<glm::vec3> cornersOf(const Scene& scene, const RigidGroup& group, st
 }
 
 Emitter emitterOf(const Scene& scene, const RigidGroup& group, std::uint32_t material) {
-  const std::vector<glm::vec3> corners = cornersOf(scene, group, material);
-  if (corners.empty()) return {};
-  glm::vec3 low = corners[0], high = corners[0];
-  for (const glm::vec3& corner : corners) {
-    low = glm::min(low, corner);
-    high = glm::max(high, corner);
-  }
+  CornerNumbers numbers = cornerNumbers(cornersOf(scene, group, material));
   Emitter emitter;
   emitter.both_sides = scene.materials[material].double_sided;
-  const double tolerance = kSameCorner * double{glm::distance(low, high)};
-  if (!(tolerance > 0.0) || !std::isfinite(tolerance)) return {};
-  CornerNumbers numbers(tolerance);
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-    const CornerTriangle triangle = {numbers.numberOf(corners[i]), numbers.numberOf(corners[i + 1]),
-                                     numbers.numberOf(corners[i + 2])};
+  for (std::size_t i = 0; i + 2 < numbers.of.size(); i += 3) {
+    const CornerTriangle triangle = {numbers.of[i], numbers.of[i + 1], numbers.of[i + 2]};
     // Triangles without area, as at the poles of spheres, neither emit nor connect anything.
     if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
       emitter.triangles.push_back(triangle);
   }
-  emitter.corners = numbers.places();
+  emitter.corners = std::move(numbers.places);
   return emitter;
 }
 
@@ -104,7 +95,43 @@ bundle::LampSphere sphereOf(const Emitter& emitter, const std::vector<std::size_
           .body_radius_m = static_cast<float>(std::max(radius, farthest))};
 }
 
+using Cell = glm::vec<3, std::int64_t>;
+struct CellHash {
+  std::size_t operator()(const Cell& cell) const {
+    std::uint64_t hash = 0;
+    for (const std::int64_t part : {cell.x, cell.y, cell.z})
+      hash = (hash ^ static_cast<std::uint64_t>(part)) * 0x9e3779b97f4a7c15ull, hash ^= hash >> 29;
+    return static_cast<std::size_t>(hash);
+  }
+};
+
 }  // namespace
+
+CornerNumbers cornerNumbers(std::span<const glm::vec3> positions) {
+  constexpr double kSameCorner = 1e-5;  // of the diagonal
+  CornerNumbers numbers;
+  if (positions.empty()) return numbers;
+  glm::vec3 low = positions[0], high = low;
+  for (const glm::vec3& p : positions) low = glm::min(low, p), high = glm::max(high, p);
+  const double tolerance = kSameCorner * glm::distance(glm::dvec3(low), glm::dvec3(high));
+  if (!(tolerance > 0.0) || !std::isfinite(tolerance)) return numbers;
+  std::unordered_map<Cell, std::uint32_t, CellHash> cells;
+  // Returns the number of an earlier place that is as near as the tolerance, else a new one.
+  const auto numberOf = [&](const glm::vec3& place) {
+    const Cell at(glm::floor(glm::dvec3(place) / tolerance));
+    for (std::int64_t x = -1; x <= 1; ++x)
+      for (std::int64_t y = -1; y <= 1; ++y)
+        for (std::int64_t z = -1; z <= 1; ++z)
+          if (const auto found = cells.find(at + Cell(x, y, z));
+              found != cells.end() &&
+              glm::distance(glm::dvec3(numbers.places[found->second]), glm::dvec3(place)) <= tolerance)
+            return found->second;
+    numbers.places.push_back(place);
+    return cells[at] = static_cast<std::uint32_t>(numbers.places.size() - 1);
+  };
+  for (const glm::vec3& p : positions) numbers.of.push_back(numberOf(p));
+  return numbers;
+}
 
 std::vector<bundle::LampSphere> findLampSpheres(const Scene& scene, const RigidGroup& group,
                                                 std::uint32_t material) {

@@ -16,6 +16,15 @@
 
 namespace lambent::baker {
 
+// Numbers the corners of triangles by place, so that triangles tell which of them meet. Vertices at seams of
+// texture coordinates and normals, and at the poles of spheres, stand at one place but for rounding: those
+// nearer to each other than a share of the diagonal of all positions are one corner.
+struct CornerNumbers {
+  std::vector<std::uint32_t> of;  // of each position; empty if all are at one place
+  std::vector<glm::vec3> places;  // by their numbers
+};
+CornerNumbers cornerNumbers(std::span<const glm::vec3> positions);
+
 // Returns the spheres, at most bundle::kMaxLampSpheres, or nothing if the material has an emissive texture or
 // if any part of its surfaces in the group is not about a sphere that is closed and emits outwards.
 std::vector<bundle::LampSphere> findLampSpheres(const Scene& scene, const RigidGroup& group,
@@ -31,7 +40,7 @@ struct PlannedLight {
   std::uint32_t index = 0;  // into the scene's materials or nodes
   glm::vec3 color{1.0f};    // strength as in the file: radiance, or colour x intensity of a punctual light
   glm::mat4 group_from_node{1.0f};  // used for punctual lights only
-  // Used for materials only: the spheres as which it emits, if it does (group_lights.hpp).
+  // Used for materials only: the spheres as which it emits, if it does.
   std::vector<bundle::LampSphere> spheres{};
 };
 

@@ -9,9 +9,103 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "baker/plan/motion.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 
 namespace lambent::baker {
+
+namespace {
+
+constexpr int kTimes = 64;
+constexpr float kTouch = 1e-3f;  // share of the larger body's half-size
+// A body can move about on another only if the ratio of their half-sizes is below this.
+constexpr float kMuchSmaller = 0.5f;
+
+// Returns the points of a mesh that lie farthest in 26 directions. However they are turned, their box is
+// close to that of the mesh.
+std::vector<glm::vec3> outerPoints(const bundle::MeshData& mesh) {
+  std::vector<glm::vec3> out;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z) {
+        if ((x == 0 && y == 0 && z == 0) || mesh.positions.empty()) continue;
+        const glm::vec3 direction(x, y, z);
+        out.push_back(*std::max_element(
+            mesh.positions.begin(), mesh.positions.end(),
+            [&](glm::vec3 a, glm::vec3 b) { return glm::dot(a, direction) < glm::dot(b, direction); }));
+      }
+  return out;
+}
+
+}  // namespace
+
+bool muchSmaller(const Box& body, const Box& other) {
+  return body.halfSize() < kMuchSmaller * other.halfSize();
+}
+
+bool movesAboutOn(const Box& body, const Box& other) {
+  return muchSmaller(body, other) && body.meets(other, kTouch * other.halfSize());
+}
+
+Motion::Motion(const Scene& scene, const std::vector<RigidGroup>& groups) : scene_(scene), groups_(groups) {
+  for (const SceneMesh& mesh : scene.meshes) {
+    auto& points = points_.emplace_back();
+    for (const ScenePrimitive& primitive : mesh.primitives) points.push_back(outerPoints(primitive.mesh));
+  }
+  for (const RigidGroup& group : groups) {
+    auto& shining = shining_.emplace_back();
+    for (const PlannedLight& light : findGroupLights(scene, group))
+      if (light.kind == PlannedLight::Kind::Material) shining.insert(static_cast<std::int32_t>(light.index));
+  }
+  for (const gltf::Animation& animation : scene.animations)
+    duration_s_ = std::max(duration_s_, gltf::durationOf(animation));
+}
+
+int Motion::times() const {
+  return scene_.animations.empty() ? 1 : 1 + kTimes;
+}
+
+Moment Motion::at(int time) const {
+  std::vector<gltf::Node> nodes = scene_.nodes;
+  if (time > 0)
+    gltf::applyAnimations(scene_.animations, duration_s_ * static_cast<float>(time - 1) / float{kTimes - 1},
+                          nodes);
+  const std::vector<glm::mat4> world = gltf::worldTransforms(nodes);
+  Moment moment;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    PlacedBody& body = moment.bodies.emplace_back();
+    if (groups_[g].volume >= 0) {
+      const SceneVolume& volume = scene_.volumes[static_cast<std::size_t>(groups_[g].volume)];
+      const glm::mat4 placed = world[volume.node] * volume.node_from_grid;
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 at = glm::vec3(volume.size) * glm::vec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        body.medium.add(glm::vec3(placed * glm::vec4(at, 1.0f)));
+      }
+    }
+    for (const PlannedDraw& draw : groups_[g].draws) {
+      const std::int32_t material = scene_.meshes[draw.mesh].primitives[draw.primitive].material;
+      const bool shines = shining_[g].contains(material);
+      for (const glm::vec3& p : points_[draw.mesh][draw.primitive]) {
+        const glm::vec3 placed(world[draw.node] * glm::vec4(p, 1.0f));
+        body.all.add(placed);
+        if (shines) body.shining.add(placed);
+      }
+    }
+  }
+  moment.world = world;
+  for (std::uint32_t n = 0; n < nodes.size(); ++n) {
+    if (nodes[n].light < 0) continue;
+    const gltf::Light& light = scene_.lights[static_cast<std::size_t>(nodes[n].light)];
+    const glm::vec3 power = light.intensity * light.color;
+    if (light.type == gltf::Light::Type::Directional || !(glm::dot(power, power) > 0.0f)) continue;
+    moment.lamps.push_back({n, groupRootOf(scene_, n), light.range_m, glm::vec3(world[n][3])});
+  }
+  return moment;
+}
+
+std::string Motion::lampName(const Lamp& lamp) const {
+  const std::string& name = scene_.nodes[lamp.node].name;
+  return name.empty() ? fmt::format("the light of node {}", lamp.node) : "the light of " + name;
+}
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
-#include "baker/plan/motion.hpp"
+#include "baker/plan/local_light.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "runtime/sh/basis.hpp"
 

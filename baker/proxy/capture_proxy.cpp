@@ -9,7 +9,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/proxy/parts.hpp"
 #include "baker/proxy/shine.hpp"
 #include "baker/proxy/simplify.hpp"
 

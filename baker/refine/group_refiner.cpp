@@ -11,8 +11,8 @@
 #include <glm/geometric.hpp>
 
 #include "baker/jobs/parallel.hpp"
-#include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
+#include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
 
@@ -51,20 +51,15 @@ constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.35;
 // Nor do they where the square error is so many times what noise adds to it: few rays are enough then.
 constexpr double kOverlooked = 0.1, kBeyondDoubt = 2.0;
 
-// An InnerPoint is a point inside a triangle, by the weights of its corners.
-struct InnerPoint {
-  glm::vec3 weights;
-};
-
-// Returns the centres of n² equal parts of a triangle.
-std::vector<InnerPoint> innerPoints(int n) {
-  std::vector<InnerPoint> points;
+// Returns the centres of n² equal parts of a triangle, by the weights of its corners.
+std::vector<glm::vec3> innerPoints(int n) {
+  std::vector<glm::vec3> points;
   const float part = 1.0f / (3.0f * static_cast<float>(n));
   for (int i = 0; i < n; ++i)
     for (int j = 0; i + j < n; ++j) {
       const auto add = [&](int a, int b) {
         const float u = static_cast<float>(a) * part, v = static_cast<float>(b) * part;
-        points.push_back({{1.0f - u - v, u, v}});
+        points.emplace_back(1.0f - u - v, u, v);
       };
       add(3 * i + 1, 3 * j + 1);
       if (i + j + 1 < n) add(3 * i + 2, 3 * j + 2);
@@ -161,15 +156,17 @@ struct GroupRefiner::Whole {
         geometry(of),
         lights(std::move(planned)),
         rays(std::move(traced)),
-        importance(geometry, rays, std::move(cameras)),
-        cuts(geometry, rays, importance.extent()) {}
+        importance(geometry, rays, std::move(cameras)) {}
 
   const RefineScene& refined;
   GroupGeometry geometry;
   std::vector<PlannedLight> lights;
   RayScene rays;
   Importance importance;
-  FaceCuts cuts;
+  // Shares at which other surfaces cut edges of the geometry as it is now.
+  std::vector<float> cutsOf(const GroupGeometry& now, std::span<const FaceEdge> edges, float longest) const {
+    return cutShares(geometry, rays, importance.extent(), now, edges, longest);
+  }
   Result<SurfaceColors> colors;
   std::optional<SurfaceLight> light;
   std::vector<SeenPlace> seen;
@@ -183,7 +180,7 @@ GroupRefiner::~GroupRefiner() = default;
 
 Result<void> GroupRefiner::prepare(const RefineScene& from, std::size_t group,
                                    const GroupGeometry& geometry) {
-  auto rays = RayScene::build(geometry, from.scene, from.alpha_maps);
+  auto rays = RayScene::build(geometry, from.scene, from.images);
   if (!rays) return failAgain(rays.error());
   const std::vector<Eye> cameras = cameraEyes(from.scene, from.groups[group], geometry);
   whole_ = std::make_unique<Whole>(from, geometry, findGroupLights(from.scene, from.groups[group]),
@@ -212,12 +209,12 @@ float GroupRefiner::seenAt(const FacePoint& point) {
 
 void GroupRefiner::addEvenly(const GroupGeometry& geometry, std::uint32_t t, int along) {
   const glm::uvec3 corners = geometry.triangles[t];
-  const std::vector<InnerPoint> points = innerPoints(along);
+  const std::vector<glm::vec3> points = innerPoints(along);
   const auto area = static_cast<float>(triangleArea(geometry, corners) / static_cast<double>(points.size()));
   const std::size_t first = inner_.size();
   float share = 0.0f;
-  for (const InnerPoint& at : points) {
-    Inner inner{.triangle = t, .weights = at.weights, .point = facePoint(geometry, corners, at.weights)};
+  for (const glm::vec3& weights : points) {
+    Inner inner{.triangle = t, .weights = weights, .point = facePoint(geometry, corners, weights)};
     inner.share = area * seenAt(inner.point);
     inner.region = static_cast<std::uint32_t>(whole_->importance.regions().at(inner.point.position));
     share += inner.share;
@@ -233,7 +230,7 @@ Result<void> GroupRefiner::placeInner(const GroupGeometry& geometry) {
   // group with as many as before any split is the same.
   std::optional<RayScene> split;
   if (geometry.triangles.size() != whole.geometry.triangles.size()) {
-    auto built = RayScene::build(geometry, whole.refined.scene, whole.refined.alpha_maps);
+    auto built = RayScene::build(geometry, whole.refined.scene, whole.refined.images);
     if (!built) return failAgain(built.error());
     split = std::move(*built);
   }
@@ -438,8 +435,7 @@ std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geom
     }
   }
   // Longer edges are halved: light changes on both sides of a cut, too.
-  const std::vector<float> cuts =
-      whole_->cuts.sharesOf(geometry, marked, kLongestCut * whole_->importance.extent());
+  const std::vector<float> cuts = whole_->cutsOf(geometry, marked, kLongestCut * whole_->importance.extent());
   for (std::size_t i = 0; i < marked.size(); ++i)
     if (cuts[i] > 0.0f) edges.splitAt(group, marked[i].a, marked[i].b, cuts[i]);
   return marked.size();
@@ -479,7 +475,7 @@ std::optional<std::size_t> GroupRefiner::markLeaks(std::size_t group, const Grou
           met.emplace(std::minmax(dark, lit)).second)
         between.push_back({dark, lit, t});
     }
-  const std::vector<float> cuts = whole_->cuts.sharesOf(geometry, between, std::numeric_limits<float>::max());
+  const std::vector<float> cuts = whole_->cutsOf(geometry, between, std::numeric_limits<float>::max());
   std::size_t marked = 0;
   for (std::size_t i = 0; i < between.size() && room > 0; ++i) {
     if (cuts[i] == 0.0f) continue;

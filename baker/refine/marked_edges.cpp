@@ -1,5 +1,3 @@
-#include "baker/refine/marked_edges.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/import/mesh_edits.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/refine/group_refiner.hpp"
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
@@ -49,13 +47,9 @@ glm::vec3 unitNormal(const GroupGeometry& geometry, std::uint32_t triangle) {
 
 }  // namespace
 
-FaceCuts::FaceCuts(const GroupGeometry& scene, const RayScene& rays, float extent)
-    : rays_(rays), before_(kBeforeCut * extent) {
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) normals_.push_back(unitNormal(scene, t));
-}
-
-std::vector<float> FaceCuts::sharesOf(const GroupGeometry& geometry, std::span<const FaceEdge> edges,
-                                      float longest) const {
+std::vector<float> cutShares(const GroupGeometry& scene, const RayScene& rays, float extent,
+                             const GroupGeometry& geometry, std::span<const FaceEdge> edges, float longest) {
+  const float before = kBeforeCut * extent;  // the distance of a vertex from a cut
   std::vector<RaySegment> ways;
   for (const FaceEdge& edge : edges) {
     const glm::vec3 a = geometry.positions[edge.a], b = geometry.positions[edge.b];
@@ -67,16 +61,16 @@ std::vector<float> FaceCuts::sharesOf(const GroupGeometry& geometry, std::span<c
     ways.push_back({b + off, -along, length});
   }
   std::vector<FirstHit> hits(ways.size());
-  rays_.firstHits(ways, hits);
+  rays.firstHits(ways, hits);
   // Returns the share of a way that lies before the surface that cuts it, less what its vertex keeps away, or
   // 0 if none does: surfaces that touch an end, as walls do the rim of a floor, cut nothing.
   const auto shareBefore = [&](std::size_t way) {
     if (!hits[way].any() || ways[way].length > longest) return 0.0f;
-    const float steep = std::abs(glm::dot(normals_[hits[way].triangle], ways[way].direction));
+    const float steep = std::abs(glm::dot(unitNormal(scene, hits[way].triangle), ways[way].direction));
     const float distance = hits[way].distance;
     const bool cuts =
-        distance * steep > kLeastCut * before_ && (ways[way].length - distance) * steep > 0.5f * before_;
-    return cuts ? (distance - before_ / steep) / ways[way].length : 0.0f;
+        distance * steep > kLeastCut * before && (ways[way].length - distance) * steep > 0.5f * before;
+    return cuts ? (distance - before / steep) / ways[way].length : 0.0f;
   };
   std::vector<float> shares(edges.size(), 0.0f);
   for (std::size_t i = 0; i < edges.size(); ++i) {

@@ -11,8 +11,8 @@
 
 #include "baker/compress/light_weights.hpp"
 #include "baker/jobs/stage.hpp"
-#include "baker/transport/direction_table.hpp"
 #include "baker/transport/geometry_key.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal.hpp"

@@ -18,7 +18,6 @@
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
-#include "baker/transport/seen_origins.hpp"
 
 namespace lambent::baker {
 

@@ -7,11 +7,24 @@
 
 #include "baker/jobs/stage.hpp"
 #include "baker/refine/group_refiner.hpp"
-#include "baker/refine/marked_edges.hpp"
 #include "baker/refine/probed_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 
 namespace lambent::baker {
+
+// What is kept of refinement.
+struct RefineOutcome {
+  RefineReport report;
+  std::vector<std::vector<bundle::MeshData>> meshes;
+};
+
+template <>
+inline constexpr auto kKeptMembers<RefineReport> = std::tuple(
+    &RefineReport::vertices_before, &RefineReport::vertices_after, &RefineReport::error_before,
+    &RefineReport::error_after, &RefineReport::at_limit, &RefineReport::rays, &RefineReport::rays_kept);
+template <>
+inline constexpr auto kKeptMembers<RefineOutcome> = std::tuple(&RefineOutcome::report,
+                                                               &RefineOutcome::meshes);
 
 namespace {
 
@@ -67,39 +80,6 @@ Key outcomeKey(const RefineScene& from, const std::vector<GroupGeometry>& geomet
     addEyes(cameraEyes(from.scene, groups[g], geometries[g]), key);
   }
   return key.key();
-}
-
-struct Outcome {
-  RefineReport& report;
-  std::vector<std::vector<bundle::MeshData>>& meshes;
-};
-
-void write(const Outcome& outcome, ByteWriter& out) {
-  const RefineReport& report = outcome.report;
-  out.add(std::uint64_t{report.vertices_before}), out.add(std::uint64_t{report.vertices_after});
-  out.add(report.error_before), out.add(report.error_after), out.add(report.at_limit);
-  out.add(report.rays + report.rays_kept);
-  for (const auto& primitives : outcome.meshes)
-    for (const bundle::MeshData& mesh : primitives) writeMesh(mesh, out);
-}
-
-// Changes nothing if the bytes are no such outcome.
-bool read(ByteReader& in, Outcome& outcome) {
-  RefineReport report;
-  std::uint64_t before = 0, after = 0;
-  in.read(before), in.read(after), in.read(report.error_before), in.read(report.error_after);
-  in.read(report.at_limit), in.read(report.rays_kept);
-  std::vector<std::vector<bundle::MeshData>> found;
-  for (const auto& primitives : outcome.meshes) {
-    found.emplace_back(primitives.size());
-    for (bundle::MeshData& mesh : found.back())
-      if (!readMesh(in, mesh)) return false;
-  }
-  if (!in.atEnd()) return false;
-  report.vertices_before = before, report.vertices_after = after;
-  outcome.report = report;
-  outcome.meshes = std::move(found);
-  return true;
 }
 
 // Splits edges round after round: first those over which light leaks, since no number of other splits mends
@@ -234,9 +214,14 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
   std::vector<GroupGeometry> geometries = geometriesOf(from, meshes);
   const BakeContext outcome_context =
       context.keyed(context.cache ? outcomeKey(from, geometries, options, meshes) : Key{});
-  RefineReport report;
-  Outcome outcome{report, meshes};
-  if (findKept(outcome_context, outcome)) return report;
+  RefineOutcome outcome;
+  RefineReport& report = outcome.report;
+  if (findKept(outcome_context, outcome)) {
+    meshes = std::move(outcome.meshes);
+    report.rays_kept += std::exchange(report.rays, 0);
+    return report;
+  }
+  report = {};
   report.vertices_before = countVertices(meshes);
   const std::size_t drawn = countDrawn(copiesOf(from.groups, meshes), meshes);
   const auto grown =
@@ -252,7 +237,10 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
   report.vertices_after = countVertices(meshes);
   for (const GroupRefiner& refiner : rounds.refiners())
     report.rays += refiner.raysTraced(), report.rays_kept += refiner.raysKept();
-  keepValue(outcome_context, outcome);
+  if (outcome_context.keeps()) {
+    outcome.meshes = meshes;
+    keepValue(outcome_context, outcome);
+  }
   return report;
 }
 

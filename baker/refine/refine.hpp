@@ -48,8 +48,7 @@ struct RefineScene {
   const Scene& scene;
   const std::vector<RigidGroup>& groups;
   const std::vector<PlannedTransport>& transport;  // groups without shadows are left as they are
-  const AlphaMaps& alpha_maps;
-  bool with_glossy;  // materials that are not diffuse have glossy samples
+  bool with_glossy;                                // materials that are not diffuse have glossy samples
   DecodedImages& images;
 };
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 
 namespace lambent::baker {
 

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/accuracy/compare.hpp"
-#include "baker/accuracy/perceptual.hpp"
 #include "baker/cache/key.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/spec/image.hpp"

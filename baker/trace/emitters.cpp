@@ -7,7 +7,7 @@
 
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/panes.hpp"
-#include "baker/transport/ray_packets.hpp"
+#include "baker/transport/ray_scene.hpp"
 
 namespace lambent::baker {
 

@@ -31,6 +31,8 @@ struct GatherHit {
   static std::uint16_t unorm(float value) {
     return static_cast<std::uint16_t>(std::clamp(value, 0.0f, 1.0f) * 65535.0f + 0.5f);
   }
+  float uAt() const { return static_cast<float>(u) * (1.0f / 65535.0f); }
+  float vAt() const { return static_cast<float>(v) * (1.0f / 65535.0f); }
   void setAlbedo(const glm::vec3& value) {
     for (int c = 0; c < 3; ++c) albedo[c] = unorm(value[c]);
   }
@@ -97,24 +99,6 @@ struct RangeHits {
 
   // Starts the next sample: hits that are appended from here on are its own. The last call ends the range.
   void next() { offsets.push_back(static_cast<std::uint32_t>(hits.size())); }
-  // Replaces these hits by those of samples [begin, end), traced by a walk with functions look(), looked()
-  // and keepHits(). Returns how many rays each sample took, as a RayCount.
-  template <typename Walk>
-  auto traceAgain(Walk&& walk, std::size_t begin, std::size_t end) {
-    std::vector<decltype(walk.looked().rayCount())> ray_counts;
-    offsets.clear();
-    hits.clear();
-    scales.clear();
-    for (std::size_t s = begin; s < end; ++s) {
-      next();
-      walk.look(s);
-      walk.keepHits(*this);
-      ray_counts.push_back(walk.looked().rayCount());
-    }
-    next();
-    return ray_counts;
-  }
-
   std::size_t bytes() const {
     return hits.size() * sizeof(GatherHit) + mirrored.size() * sizeof(MirroredLight);
   }

@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/brdf/follow_highlight.hpp"
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/transport/panes.hpp"
 #include "baker/transport/samples.hpp"
@@ -19,10 +19,6 @@ namespace {
 
 // Where light is reflected this often, what is left leaves the last mirror by its exit kernel.
 constexpr std::uint32_t kMostReflections = 16;
-
-float shareOf(std::uint16_t unorm) {
-  return static_cast<float>(unorm) * (1.0f / 65535.0f);
-}
 
 bool isBlack(const GatherHit& hit) {
   return std::all_of(std::begin(hit.albedo), std::end(hit.albedo), [](std::uint16_t a) { return a == 0; });
@@ -48,11 +44,11 @@ std::uint32_t scattered(std::size_t sample) {
 
 bool MirrorPaths::isSharp(const GatherHit& hit) const {
   return brdfs_.glossy(hit.triangle) &&
-         brdfs_.roughness(hit.triangle, shareOf(hit.u), shareOf(hit.v)) < kMirrorRoughness;
+         brdfs_.roughness(hit.triangle, hit.uAt(), hit.vAt()) < kMirrorRoughness;
 }
 
 float MirrorPaths::leaveBase(const glm::vec3& along, GatherHit& hit) const {
-  const float u = shareOf(hit.u), v = shareOf(hit.v);
+  const float u = hit.uAt(), v = hit.vAt();
   const glm::vec3 normal =
       interpolatedNormal(geometry_, geometry_.triangles[hit.triangle], {1.0f - u - v, u, v});
   const float length = glm::length(normal);
@@ -173,7 +169,7 @@ class MirrorPaths::Walk {
     // The hit is left to diffuse surfaces that the path may meet.
     if (reflection == 0 && !in_layer) hits_.hits[path.index].triangle = kNowhere;
     const GatherHit hit = path.hit;
-    const float u = shareOf(hit.u), v = shareOf(hit.v);
+    const float u = hit.uAt(), v = hit.vAt();
     const glm::uvec3 t = mirrors_.geometry_.triangles[hit.triangle];
     const auto& positions = mirrors_.geometry_.positions;
     const glm::vec3 a = positions[t.x], b = positions[t.y], c = positions[t.z];
@@ -218,7 +214,7 @@ class MirrorPaths::Walk {
       return false;
     }
     const glm::vec3 passed =
-        path.throughput * mirrors_.colors_.albedo(met.triangle, shareOf(path.hit.u), shareOf(path.hit.v));
+        path.throughput * mirrors_.colors_.albedo(met.triangle, path.hit.uAt(), path.hit.vAt());
     if (path.from_layer) {
       add(MirroredLight::From::Diffuse, path, -path.along, passed);
       return false;

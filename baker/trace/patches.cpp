@@ -153,9 +153,7 @@ namespace {
 constexpr std::size_t kPatchesPerRange = 8;
 
 std::array<float, 3> cornerWeights(const GatherHit& hit) {
-  const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
-              v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
-  return {1.0f - u - v, u, v};
+  return {1.0f - hit.uAt() - hit.vAt(), hit.uAt(), hit.vAt()};
 }
 
 }  // namespace

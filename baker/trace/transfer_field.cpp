@@ -74,15 +74,22 @@ Output directRows(TransferField& field, GreyColumns grey, std::ptrdiff_t first_r
           }};
 }
 
-std::uint32_t fillFromNeighbours(const SampleEdges& edges, std::vector<std::uint8_t> valid, std::size_t size,
-                                 std::span<float> values) {
+std::uint32_t fillFromNeighbours(const SampleEdges& edges, std::span<const std::uint8_t> valid,
+                                 std::size_t first, std::size_t size, std::span<float> values) {
+  if (values.empty()) return 0;
+  const auto shift = static_cast<std::uint32_t>(first),
+             end = static_cast<std::uint32_t>(first + values.size() / size);
+  SampleEdges own;
+  for (const auto& [a, b] : edges)
+    if (a >= shift && b >= shift && a < end && b < end) own.emplace_back(a - shift, b - shift);
+  std::vector<std::uint8_t> known(valid.begin() + shift, valid.begin() + end);
   std::uint32_t filled = 0;
   const auto at = [&](std::uint32_t sample) { return values.subspan(sample * size, size); };
   // Each layer sees only the layers before it, so the order of samples does not matter.
-  while (std::find(valid.begin(), valid.end(), 0) != valid.end()) {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> border;  // invalid sample, valid neighbour
-    for (const auto& [a, b] : edges)
-      if (valid[a] != valid[b]) border.emplace_back(valid[a] ? b : a, valid[a] ? a : b);
+  while (std::find(known.begin(), known.end(), 0) != known.end()) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> border;  // sample to fill, known neighbour
+    for (const auto& [a, b] : own)
+      if (known[a] != known[b]) border.emplace_back(known[a] ? b : a, known[a] ? a : b);
     if (border.empty()) break;
     std::sort(border.begin(), border.end());
     for (std::size_t i = 0; i < border.size();) {
@@ -94,25 +101,9 @@ std::uint32_t fillFromNeighbours(const SampleEdges& edges, std::vector<std::uint
       for (std::size_t k = 0; k < size; ++k) at(sample)[k] = static_cast<float>(sum[k] / count);
       ++filled;
     }
-    for (const auto& entry : border) valid[entry.first] = 1;
+    for (const auto& entry : border) known[entry.first] = 1;
   }
   return filled;
-}
-
-std::uint32_t fillFromNeighbours(const SampleEdges& edges, std::vector<std::uint8_t> valid,
-                                 TransferField& field) {
-  return fillFromNeighbours(edges, std::move(valid), field.vectorSize(), field.vectors);
-}
-
-std::uint32_t fillStretchFromNeighbours(const SampleEdges& edges, const std::vector<std::uint8_t>& valid,
-                                        std::size_t first, std::size_t size, std::span<float> values) {
-  if (values.empty()) return 0;
-  const auto shift = static_cast<std::uint32_t>(first),
-             end = static_cast<std::uint32_t>(first + values.size() / size);
-  SampleEdges own;
-  for (const auto& [a, b] : edges)
-    if (a >= shift && b >= shift && a < end && b < end) own.emplace_back(a - shift, b - shift);
-  return fillFromNeighbours(own, {valid.begin() + shift, valid.begin() + end}, size, values);
 }
 
 }  // namespace lambent::baker

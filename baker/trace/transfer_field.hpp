@@ -51,15 +51,10 @@ Output directRows(TransferField& field, GreyColumns grey, std::ptrdiff_t first_r
 
 // Fills in samples that lie inside or under something. They are dark, and interpolated, that darkness would
 // leak out along the contact. They take the mean of their valid neighbours instead, layer by layer.
-
-// `edges` are those of sampleEdges(). Returns how many samples were filled. Samples that no valid sample is
-// connected to keep their value.
-std::uint32_t fillFromNeighbours(const SampleEdges& edges, std::vector<std::uint8_t> valid,
-                                 TransferField& field);
-
-// Does the same for the samples from `first` on alone, with `size` values each; edges to other samples do not
-// count. `valid` has one entry for each sample of the whole set.
-std::uint32_t fillStretchFromNeighbours(const SampleEdges& edges, const std::vector<std::uint8_t>& valid,
-                                        std::size_t first, std::size_t size, std::span<float> values);
+// `values` are those of the samples from `first` on, `size` for each. `valid` has one entry for each sample
+// of the whole set. `edges` are those of sampleEdges(); edges to other samples do not count. Returns how many
+// samples were filled. Samples that no valid sample is connected to keep their value.
+std::uint32_t fillFromNeighbours(const SampleEdges& edges, std::span<const std::uint8_t> valid,
+                                 std::size_t first, std::size_t size, std::span<float> values);
 
 }  // namespace lambent::baker

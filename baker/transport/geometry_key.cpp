@@ -67,17 +67,4 @@ void addMesh(const bundle::MeshData& mesh, KeyMaker& key) {
   key.addList(mesh.colors).addList(mesh.tangents).addList(mesh.indices);
 }
 
-void writeMesh(const bundle::MeshData& mesh, ByteWriter& out) {
-  out.addList(mesh.positions), out.addList(mesh.normals), out.addList(mesh.normal_weights);
-  out.addList(mesh.texcoords0), out.addList(mesh.texcoords1);
-  out.addList(mesh.colors), out.addList(mesh.tangents), out.addList(mesh.indices);
-}
-
-bool readMesh(ByteReader& in, bundle::MeshData& mesh) {
-  in.readList(mesh.positions), in.readList(mesh.normals), in.readList(mesh.normal_weights);
-  in.readList(mesh.texcoords0), in.readList(mesh.texcoords1);
-  in.readList(mesh.colors), in.readList(mesh.tangents);
-  return in.readList(mesh.indices);
-}
-
 }  // namespace lambent::baker

@@ -35,9 +35,11 @@ void addTextureRef(const Scene& scene, const gltf::TextureRef& ref, KeyMaker& ke
 
 void addMesh(const bundle::MeshData& mesh, KeyMaker& key);
 
-// Writes a mesh as bytes for the cache, and reads it back; readMesh returns false if the bytes end early.
-void writeMesh(const bundle::MeshData& mesh, ByteWriter& out);
-bool readMesh(ByteReader& in, bundle::MeshData& mesh);
+template <>
+inline constexpr auto kKeptMembers<bundle::MeshData> =
+    std::tuple(&bundle::MeshData::positions, &bundle::MeshData::normals, &bundle::MeshData::normal_weights,
+               &bundle::MeshData::texcoords0, &bundle::MeshData::texcoords1, &bundle::MeshData::colors,
+               &bundle::MeshData::tangents, &bundle::MeshData::indices);
 
 // A VertexKey identifies a surface point by the bits of its position and normal and by what is stored there;
 // points with the same key have the same transfer.

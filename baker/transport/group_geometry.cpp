@@ -9,7 +9,6 @@
 #include <glm/matrix.hpp>
 
 #include "baker/plan/smooth_dielectrics.hpp"
-#include "baker/transport/face_points.hpp"
 #include "runtime/base/normal_matrix.hpp"
 
 namespace lambent::baker {
@@ -133,6 +132,21 @@ glm::vec3 originOf(const RigidGroup& group, const std::vector<std::vector<bundle
 }
 
 }  // namespace
+
+glm::vec3 areaNormal(const GroupGeometry& geometry, const glm::uvec3& corners) {
+  const glm::vec3 a = geometry.positions[corners.x];
+  return glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a);
+}
+
+double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners) {
+  return 0.5 * double{glm::length(areaNormal(geometry, corners))};
+}
+
+float longestEdge(const GroupGeometry& geometry, const glm::uvec3& corners) {
+  const glm::vec3 &a = geometry.positions[corners.x], &b = geometry.positions[corners.y],
+                  &c = geometry.positions[corners.z];
+  return std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+}
 
 glm::vec3 interpolatedNormal(const GroupGeometry& geometry, const glm::uvec3& corners,
                              const glm::vec3& shares) {

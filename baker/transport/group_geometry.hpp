@@ -63,6 +63,13 @@ struct GroupGeometry {
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // relative to `origin`
 };
 
+// Returns a normal that is twice the triangle's area long, in square metres.
+glm::vec3 areaNormal(const GroupGeometry& geometry, const glm::uvec3& corners);
+// Returns square metres.
+double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners);
+// Returns metres.
+float longestEdge(const GroupGeometry& geometry, const glm::uvec3& corners);
+
 // Interpolates the normals of a triangle's corners by their shares; returns a unit vector, or 0 where they
 // cancel.
 glm::vec3 interpolatedNormal(const GroupGeometry& geometry, const glm::uvec3& corners,

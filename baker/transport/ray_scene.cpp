@@ -4,53 +4,25 @@
 #include <array>
 #include <bit>
 #include <cassert>
-#include <cstring>
 #include <limits>
 #include <tuple>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include "baker/embree/embree.hpp"
 #include "baker/transport/group_geometry.hpp"
-#include "baker/transport/ray_packets.hpp"
-
-#if defined(__SSE2__)
-#include <pmmintrin.h>
-#include <xmmintrin.h>
-#endif
 
 namespace lambent::baker {
 
 namespace {
 
-struct ReleaseDevice {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct ReleaseScene {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
-using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
-
-// Flushes denormals while Embree runs, as Embree asks for. The mode is restored afterwards, so that other
-// code on the thread is not affected.
-class FlushDenormals {
- public:
-#if defined(__SSE2__)
-  FlushDenormals() : saved_(_mm_getcsr()) {
-    _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
-  }
-  ~FlushDenormals() {
-    _mm_setcsr(saved_);
-  }
-
- private:
-  unsigned saved_;
-#endif
-};
-
-// MaskedDraw is what the filter of a cut-out geometry needs.
+// A MaskedDraw says where a cut-out surface (alphaMode MASK) lets rays through: texture, factor and vertex
+// colour are compared with the cutoff.
 struct MaskedDraw {
-  std::shared_ptr<const AlphaMap> alpha;
+  std::shared_ptr<const DecodedImage> image;  // null: only factor and vertex alpha count
+  gltf::Sampler sampler;
+  float factor = 1.0f, cutoff = 0.5f;
   std::vector<glm::uvec3> triangles;
   std::vector<glm::vec2> texcoords;
   std::vector<glm::vec4> colors;
@@ -58,8 +30,10 @@ struct MaskedDraw {
   bool blocks(std::uint32_t triangle, float u, float v) const {
     const glm::uvec3 t = triangles[triangle];
     const float w = 1.0f - u - v;
-    return alpha->blocks(w * texcoords[t.x] + u * texcoords[t.y] + v * texcoords[t.z],
-                         w * colors[t.x].w + u * colors[t.y].w + v * colors[t.z].w);
+    const glm::vec2 uv = w * texcoords[t.x] + u * texcoords[t.y] + v * texcoords[t.z];
+    const float vertex_alpha = w * colors[t.x].w + u * colors[t.y].w + v * colors[t.z].w;
+    const float texture_alpha = image ? sampleImage(*image, sampler, uv).w : 1.0f;
+    return texture_alpha * factor * vertex_alpha >= cutoff;
   }
 };
 
@@ -144,8 +118,29 @@ struct SurfaceSides {
   bool double_sided = false;
 };
 
+namespace {
+
+// Returns the face that lane k of a traced packet hits.
+FirstHit faceOf(const RTCRayHit16& rays, std::size_t k, const std::vector<SurfaceSides>& surfaces) {
+  const RTCRay16& ray = rays.ray;
+  const RTCHit16& hit = rays.hit;
+  if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) return {};
+  const SurfaceSides& sides = surfaces[hit.geomID[k]];
+  const float along = ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
+  const bool behind = along > 0.0f, other_side = behind && sides.double_sided;
+  FirstHit out{.triangle = (other_side ? sides.back : sides.front) + hit.primID[k],
+               .u = hit.u[k],
+               .v = hit.v[k],
+               .distance = ray.tfar[k],
+               .back = behind && !sides.double_sided};
+  if (other_side) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
+  return out;
+}
+
+}  // namespace
+
 struct RayScene::State {
-  Device device;
+  EmbreeDevice device;
   EmbreeScene scene, panes;                         // panes is null if there are none
   std::vector<std::unique_ptr<MaskedDraw>> masked;  // user data of geometries, which must stay in place
   std::vector<SurfaceSides> surfaces;               // by geometry id, which both scenes share
@@ -158,30 +153,17 @@ RayScene::~RayScene() = default;
 
 namespace {
 
-// Makes an Embree geometry with its own buffers for a draw, or null if Embree has no memory for it.
-RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const DrawGeometry& draw,
-                         std::span<const std::uint8_t> flipped_faces) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(glm::vec3), draw.vertex_count);
-  auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), draw.triangle_count));
-  if (!vertices || !indices) {
-    rtcReleaseGeometry(geometry);
-    return nullptr;
-  }
-  std::memcpy(vertices, &group.positions[draw.first_vertex], draw.vertex_count * sizeof(glm::vec3));
-  for (std::uint32_t t = 0; t < draw.triangle_count; ++t)
-    indices[t] = !flipped_faces.empty() && flipped_faces[draw.first_triangle + t] != 0
-                     ? glm::uvec3(0)  // a degenerate triangle, which no ray hits
-                     : group.triangles[draw.first_triangle + t] - draw.first_vertex;
-  return geometry;
-}
-
-std::unique_ptr<MaskedDraw> maskedDraw(const GroupGeometry& group, const DrawGeometry& draw,
-                                       std::shared_ptr<const AlphaMap> alpha) {
+Result<std::unique_ptr<MaskedDraw>> maskedDraw(const GroupGeometry& group, const DrawGeometry& draw,
+                                               const Scene& scene, DecodedImages& images) {
+  const gltf::Material& material = scene.materials[static_cast<std::size_t>(draw.material)];
+  const std::int32_t texture = material.base_color_texture.texture;
   auto masked = std::make_unique<MaskedDraw>();
-  masked->alpha = std::move(alpha);
+  masked->factor = material.base_color.w;
+  masked->cutoff = material.alpha_cutoff;
+  auto image = images.ofTexture(texture);
+  if (!image) return failAgain(image.error());
+  masked->image = std::move(*image);
+  if (masked->image) masked->sampler = scene.textures[static_cast<std::size_t>(texture)].sampler;
   for (std::uint32_t t = 0; t < draw.triangle_count; ++t)
     masked->triangles.push_back(group.triangles[draw.first_triangle + t] - draw.first_vertex);
   const auto first = static_cast<std::ptrdiff_t>(draw.first_vertex),
@@ -193,13 +175,11 @@ std::unique_ptr<MaskedDraw> maskedDraw(const GroupGeometry& group, const DrawGeo
 
 }  // namespace
 
-Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene, AlphaMaps alpha_maps) {
+Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene, DecodedImages& images) {
   auto state = std::make_unique<State>();
-  // Embree's thread count follows TBB's, which withThreads() limits; its result does not depend on it.
-  state->device.reset(rtcNewDevice(nullptr));
-  if (!state->device)
-    return fail("Embree", "cannot be set up",
-                "give it more memory, or check that Embree runs on this processor");
+  auto device = newEmbreeDevice();
+  if (!device) return failAgain(std::move(device.error()));
+  state->device = std::move(*device);
   state->scene.reset(rtcNewScene(state->device.get()));
   rtcSetSceneBuildQuality(state->scene.get(), RTC_BUILD_QUALITY_HIGH);
 
@@ -216,11 +196,22 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
       state->panes.reset(rtcNewScene(state->device.get()));
       rtcSetSceneFlags(state->panes.get(), kSceneFlagQueryFilter);
     }
-    RTCGeometry geometry = makeGeometry(state->device.get(), group, draw,
-                                        pane ? std::span<const std::uint8_t>() : flipped_faces);
+    const auto corners = [&](std::uint32_t t) {
+      return !pane && flipped_faces[draw.first_triangle + t] != 0
+                 ? glm::uvec3(0)  // a degenerate triangle, which no ray hits
+                 : group.triangles[draw.first_triangle + t] - draw.first_vertex;
+    };
+    RTCGeometry geometry = newTriangles(
+        state->device.get(), std::span(group.positions).subspan(draw.first_vertex, draw.vertex_count),
+        draw.triangle_count, corners);
     if (!geometry) return fail("Embree", "has not enough memory for the scene", "bake it in parts");
     if (material && material->alpha_mode == gltf::AlphaMode::Mask) {
-      state->masked.push_back(maskedDraw(group, draw, alpha_maps[static_cast<std::size_t>(draw.material)]));
+      auto masked = maskedDraw(group, draw, scene, images);
+      if (!masked) {
+        rtcReleaseGeometry(geometry);
+        return failAgain(masked.error());
+      }
+      state->masked.push_back(std::move(*masked));
       rtcSetGeometryUserData(geometry, state->masked.back().get());
       rtcSetGeometryOccludedFilterFunction(geometry, filterMasked);
       rtcSetGeometryIntersectFilterFunction(geometry, filterMasked);
@@ -299,23 +290,17 @@ std::uint32_t RayScene::traceHits(const SampleRays& rays, bool mostly_blocked, s
     }
     forgetHits(packet.rays);
     closest.intersect(state_->scene.get(), packet.lanes.valid.data(), packet.rays);
-    const RTCRay16& ray = packet.rays.ray;
-    const RTCHit16& hit = packet.rays.hit;
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      if (!packet.lanes.valid[k] || hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      if (!packet.lanes.valid[k]) continue;
+      const FirstHit met = faceOf(packet.rays, k, state_->surfaces);
+      if (!met.any()) continue;
       masks[p] = static_cast<std::uint16_t>(masks[p] | 1u << k);
-      const SurfaceSides& sides = state_->surfaces[hit.geomID[k]];
-      const float along =
-          ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
-      const bool back = along > 0.0f;
-      if (back && !sides.double_sided) continue;
-      RayHit out{.ray = static_cast<std::uint32_t>(p * kPacketWidth + k),
-                 .triangle = (back ? sides.back : sides.front) + hit.primID[k],
-                 .u = hit.u[k],
-                 .v = hit.v[k],
-                 .distance = ray.tfar[k]};
-      if (back) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
-      hits.push_back(out);
+      if (!met.back)
+        hits.push_back({.ray = static_cast<std::uint32_t>(p * kPacketWidth + k),
+                        .triangle = met.triangle,
+                        .u = met.u,
+                        .v = met.v,
+                        .distance = met.distance});
     }
   }
   return traced;
@@ -340,25 +325,12 @@ void RayScene::firstHits(std::span<const RaySegment> rays, std::span<FirstHit> h
   const FlushDenormals flush;
   Packet packet;
   RayQuery query(RayOrder::Coherent);
-  RTCRay16& ray = packet.rays.ray;
   for (std::size_t first = 0; first < rays.size(); first += kPacketWidth) {
     forgetHits(packet.rays);
-    fillSegments(rays.subspan(first), ray, packet.lanes.valid);
+    fillSegments(rays.subspan(first), packet.rays.ray, packet.lanes.valid);
     query.intersect(state_->scene.get(), packet.lanes.valid.data(), packet.rays);
-    const RTCHit16& hit = packet.rays.hit;
-    for (std::size_t k = 0; k < kPacketWidth && first + k < rays.size(); ++k) {
-      FirstHit& out = hits[first + k] = {};
-      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
-      const SurfaceSides& sides = state_->surfaces[hit.geomID[k]];
-      const bool behind =
-          ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k] > 0.0f;
-      out = {.triangle = (behind && sides.double_sided ? sides.back : sides.front) + hit.primID[k],
-             .u = hit.u[k],
-             .v = hit.v[k],
-             .distance = ray.tfar[k],
-             .back = behind && !sides.double_sided};
-      if (behind && sides.double_sided) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
-    }
+    for (std::size_t k = 0; k < kPacketWidth && first + k < rays.size(); ++k)
+      hits[first + k] = faceOf(packet.rays, k, state_->surfaces);
   }
 }
 
@@ -381,11 +353,7 @@ void RayScene::panesOn(std::span<const RaySegment> rays, std::vector<PaneHit>& h
       if (!(packet.tfar[k] < 0.0f)) continue;
       const RaySegment& ray = rays[first + k];
       faces.clear();
-      RTCRayHit one{};
-      one.ray.org_x = ray.origin.x, one.ray.org_y = ray.origin.y, one.ray.org_z = ray.origin.z;
-      one.ray.dir_x = ray.direction.x, one.ray.dir_y = ray.direction.y, one.ray.dir_z = ray.direction.z;
-      one.ray.tfar = ray.length, one.ray.mask = ~0u;
-      one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      RTCRayHit one = rayOf(ray.origin, ray.direction, ray.length);
       every.intersect(state_->panes.get(), one);
       std::ranges::sort(faces, {}, [](const MetFace& face) {
         return std::tuple(face.distance, face.surface, face.triangle);
@@ -424,16 +392,12 @@ float RayScene::meet(const SampleRays& rays, std::span<MetShares> shares) const 
       if (!packet.lanes.valid[k]) continue;
       const std::size_t origin = packet.lanes.origin[k];
       ++counts[origin];
-      const RTCHit16& hit = packet.rays.hit;
       ++traced;
-      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      const FirstHit hit = faceOf(packet.rays, k, state_->surfaces);
+      if (!hit.any()) continue;
       ++met;
-      const RTCRay16& ray = packet.rays.ray;
-      const float along =
-          ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
-      const bool back = along > 0.0f && !state_->surfaces[hit.geomID[k]].double_sided;
-      backs[origin] += back;
-      near[origin] += back || ray.tfar[k] < origins[origin].reach;
+      backs[origin] += hit.back;
+      near[origin] += hit.back || hit.distance < origins[origin].reach;
     }
   }
   for (std::size_t o = 0; o < origins.size(); ++o) {
@@ -441,6 +405,91 @@ float RayScene::meet(const SampleRays& rays, std::span<MetShares> shares) const 
     shares[o] = {share * static_cast<float>(backs[o]), share * static_cast<float>(near[o])};
   }
   return traced == 0 ? 0.0f : static_cast<float>(met) / static_cast<float>(traced);
+}
+
+namespace {
+
+// If more first hits of an origin than this share are back faces, it lies inside a body or under something.
+constexpr float kInsideShare = 0.5f;
+// If more first hits than this share are nearer than the origin's reach, or back faces, something lies on its
+// face: a slab, or a hollow body without a bottom, whose rooms show some fronts from inside.
+constexpr float kCoveredShare = 0.9f;
+// If this share of a few rays is blocked, the sample deserves more rays. If all of them are, it most likely
+// stands in a closed room, where more rays show nothing more.
+constexpr float kBlockedShare = 0.5f;
+constexpr std::size_t kInsideTestRays = 16, kLookRays = 64;
+// If no origin is seen, all of them move into their faces by these shares of the way to the middle, until
+// one is.
+constexpr std::array kMovedInto = {0.0f, 0.1f, 0.3f, 1.0f};
+// Whether an origin and its vertex see each other is asked from this share of the origin's reach away from
+// the vertex, which may itself lie in another surface.
+constexpr float kBeginOfWay = 0.001f;
+
+// Drops origins that something hides from their vertex, unless all are: they stand behind a wall that cuts
+// their face, and the light there is not the vertex's.
+void dropHiddenFromVertex(const RayScene& rays, std::vector<SampleOrigin>& origins) {
+  if (origins.size() < 2) return;
+  std::vector<RaySegment> ways;
+  for (const SampleOrigin& origin : origins) {
+    const glm::vec3 pull = kPullIntoFace / (1.0f - kPullIntoFace) * origin.inward;
+    const float whole = glm::length(pull), length = std::max(0.0f, whole - kBeginOfWay * origin.reach);
+    const glm::vec3 along = whole > 0.0f ? pull / whole : origin.geometric_normal;
+    ways.push_back({origin.position - length * along, along, length});
+  }
+  std::vector<std::uint8_t> hidden(ways.size(), 0);
+  rays.occluded(ways, hidden);
+  const auto seen = static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), 0));
+  if (seen == 0 || seen == origins.size()) return;
+  float weight = 0.0f;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    if (hidden[i] != 0) continue;
+    weight += origins[i].weight;
+    origins[kept++] = origins[i];
+  }
+  origins.resize(kept);
+  for (SampleOrigin& origin : origins) origin.weight /= weight;
+}
+
+}  // namespace
+
+InsideTestTables::InsideTestTables() : glance(cosineTable(kInsideTestRays)), look(cosineTable(kLookRays)) {}
+
+void findSeenOrigins(std::span<const SampleOrigin> all, const glm::mat3& frame, const RayScene& rays,
+                     const InsideTestTables& glances, SeenOrigins& seen) {
+  seen.origins.assign(all.begin(), all.end());
+  seen.valid = seen.double_rays = false;
+  seen.blocked = 0.0f;
+  if (all.empty()) return;
+  std::vector<MetShares> shares(all.size());
+  // Sixteen rays are enough to see that nothing is odd, which is nearly always so.
+  seen.blocked = rays.meet({all, frame, glances.glance}, shares);
+  seen.double_rays = seen.blocked >= kBlockedShare && seen.blocked < 1.0f;
+  seen.valid = std::all_of(shares.begin(), shares.end(), [](const MetShares& met) {
+    return met.back == 0.0f && met.near <= kCoveredShare;
+  });
+  if (seen.valid) return dropHiddenFromVertex(rays, seen.origins);
+  for (const float share : kMovedInto) {
+    seen.origins.clear();
+    float weight = 0.0f;
+    for (const SampleOrigin& origin : all) {
+      // Each gets all of the rays. Dealt out by weight, faces that are slivers at the vertex would get none.
+      SampleOrigin moved = origin;
+      moved.position += share * origin.inward;
+      moved.weight = 1.0f;
+      MetShares met;
+      rays.meet({std::span(&moved, 1), frame, glances.look}, std::span(&met, 1));
+      if (met.back > kInsideShare || met.near > kCoveredShare) continue;
+      moved.weight = origin.weight;
+      weight += origin.weight;
+      seen.origins.push_back(moved);
+    }
+    seen.valid = !seen.origins.empty();
+    for (SampleOrigin& origin : seen.origins) origin.weight /= weight;
+    if (seen.valid && share == 0.0f) dropHiddenFromVertex(rays, seen.origins);
+    if (seen.valid) return;
+  }
+  seen.origins.assign(all.begin(), all.end());
 }
 
 }  // namespace lambent::baker

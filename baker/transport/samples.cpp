@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
-#include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/texel_samples.hpp"
 
@@ -273,6 +275,152 @@ SampleEdges sampleEdges(const GroupGeometry& geometry, const SampleSet& samples)
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
+}
+
+std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples) {
+  std::vector<float> areas(samples.size(), 0.0f);
+  std::vector<std::uint32_t> texels_of(samples.texels.empty() ? 0 : geometry.triangles.size(), 0);
+  for (const TexelMap& map : samples.texels)
+    for (std::size_t i = 0; i < map.sample_of.size(); ++i)
+      if (map.sample_of[i] != kNoSample) ++texels_of[map.triangle_of[i]];
+  for (const TexelMap& map : samples.texels)
+    for (std::size_t i = 0; i < map.sample_of.size(); ++i)
+      if (const std::uint32_t t = map.triangle_of[i]; map.sample_of[i] != kNoSample)
+        areas[map.sample_of[i]] +=
+            static_cast<float>(triangleArea(geometry, geometry.triangles[t]) / texels_of[t]);
+  for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+    if (!texels_of.empty() && texels_of[t] > 0) continue;  // it is that of its texels
+    const glm::uvec3& triangle = geometry.triangles[t];
+    const glm::vec3 a = geometry.positions[triangle.x], b = geometry.positions[triangle.y],
+                    c = geometry.positions[triangle.z];
+    const float third = glm::length(glm::cross(b - a, c - a)) / 6.0f;
+    for (int corner = 0; corner < 3; ++corner) areas[samples.vertex_sample[triangle[corner]]] += third;
+  }
+  return areas;
+}
+
+FacePoint facePoint(const GroupGeometry& geometry, const glm::uvec3& corners, const glm::vec3& weights) {
+  const glm::vec3 a = geometry.positions[corners.x], b = geometry.positions[corners.y],
+                  c = geometry.positions[corners.z];
+  const glm::vec3 across = glm::cross(b - a, c - a);
+  const float twice_area = glm::length(across);
+  const glm::vec3 face = across / twice_area;
+  const glm::vec3 at = weights.x * a + weights.y * b + weights.z * c;
+  const glm::vec3 normal = interpolatedNormal(geometry, corners, weights);
+  return {.position = at,
+          .normal = normal == glm::vec3(0.0f) ? face : normal,
+          .origin = {.position = at + standOff(at, std::sqrt(0.5f * twice_area)) * face,
+                     .geometric_normal = face,
+                     .weight = 1.0f,
+                     .reach = reachOf(corners, geometry)}};
+}
+
+FacePoints facePoints(const GroupGeometry& geometry, const SampleSet& samples,
+                      std::span<const std::uint32_t> triangles) {
+  FacePoints points;
+  SampleSet& set = points.samples;
+  set.origin_offsets.push_back(0);
+  const auto append = [&](const SampleStretch& stretch) {
+    const std::size_t begin = set.size();
+    for (const std::uint32_t t : triangles) {
+      const glm::uvec3 corners = geometry.triangles[t];
+      const std::uint32_t sample = samples.vertex_sample[corners.x];
+      if (sample < stretch.begin || sample >= stretch.end) continue;
+      if (!(triangleArea(geometry, corners) > 0.0)) continue;
+      const FacePoint point = facePoint(geometry, corners, glm::vec3(1.0f / 3.0f));
+      points.triangles.push_back(t);
+      set.positions.push_back(point.position);
+      set.normals.push_back(point.normal);
+      if (glm::dot(point.normal, point.origin.geometric_normal) > 0.0f) set.origins.push_back(point.origin);
+      set.origin_offsets.push_back(static_cast<std::uint32_t>(set.origins.size()));
+    }
+    return SampleStretch{begin, set.size()};
+  };
+  set.diffuse = append(samples.diffuse);
+  set.normal_mapped = append(samples.normal_mapped);
+  set.glossy = append(samples.glossy);
+  return points;
+}
+
+namespace {
+
+// Returns the distance along a Hilbert curve over a 256 x 256 grid.
+std::uint32_t hilbertIndex(double u, double v) {
+  constexpr std::uint32_t kSide = 256;
+  auto x = std::min(static_cast<std::uint32_t>(u * kSide), kSide - 1);
+  auto y = std::min(static_cast<std::uint32_t>(v * kSide), kSide - 1);
+  std::uint32_t distance = 0;
+  for (std::uint32_t s = kSide / 2; s > 0; s /= 2) {
+    const std::uint32_t rx = (x & s) ? 1 : 0, ry = (y & s) ? 1 : 0;
+    distance += s * s * ((3 * rx) ^ ry);
+    if (ry == 0) {
+      if (rx == 1) x = kSide - 1 - x, y = kSide - 1 - y;
+      std::swap(x, y);
+    }
+  }
+  return distance;
+}
+
+// Maps the unit square to the unit disc; it keeps areas, and neighbours stay neighbours.
+std::pair<double, double> concentricDisc(double u, double v) {
+  const double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0;
+  if (a == 0.0 && b == 0.0) return {0.0, 0.0};
+  const bool wide = std::abs(a) > std::abs(b);
+  const double radius = wide ? a : b;
+  const double angle =
+      wide ? std::numbers::pi / 4.0 * (b / a) : std::numbers::pi / 2.0 - std::numbers::pi / 4.0 * (a / b);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+// Calls add(x, y) with points of the disc that stand for equal areas, along a Hilbert curve.
+template <typename Add>
+void forDiscPoints(std::size_t rays, const Add& add) {
+  const std::size_t count = std::max<std::size_t>(1, (rays + kPacketWidth - 1) / kPacketWidth) * kPacketWidth;
+  struct Point {
+    std::uint32_t along;
+    double u, v;
+  };
+  std::vector<Point> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double u = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    // The sequence starts at 0.5, because at v = 0 the first ray would lie in the horizon and a flat face
+    // would block it.
+    const double v = std::fmod(0.5 + static_cast<double>(i) * (std::numbers::phi - 1.0), 1.0);
+    points[i] = {hilbertIndex(u, v), u, v};
+  }
+  std::stable_sort(points.begin(), points.end(),
+                   [](const Point& a, const Point& b) { return a.along < b.along; });
+
+  for (const Point& point : points) {
+    const auto [x, y] = concentricDisc(point.u, point.v);
+    add(x, y);
+  }
+}
+
+void appendDirection(DirectionTable& table, double x, double y, double z) {
+  table.x.push_back(static_cast<float>(x));
+  table.y.push_back(static_cast<float>(y));
+  table.z.push_back(static_cast<float>(z));
+}
+
+}  // namespace
+
+DirectionTable cosineTable(std::size_t rays) {
+  DirectionTable table;
+  forDiscPoints(rays, [&](double x, double y) {
+    appendDirection(table, x, y, std::sqrt(std::max(0.0, 1.0 - x * x - y * y)));
+  });
+  return table;
+}
+
+DirectionTable uniformTable(std::size_t rays) {
+  DirectionTable table;
+  // This is Lambert's equal-area map from the disc: z = 1 - r².
+  forDiscPoints(rays, [&](double x, double y) {
+    const double r2 = x * x + y * y, stretch = std::sqrt(std::max(0.0, 2.0 - r2));
+    appendDirection(table, stretch * x, stretch * y, std::max(0.0, 1.0 - r2));
+  });
+  return table;
 }
 
 }  // namespace lambent::baker

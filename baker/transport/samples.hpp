@@ -8,14 +8,17 @@
 // face and offset along its geometric normal; at concave edges anything else sees through walls. Faces that
 // turn away from the vertex normal, such as flipped faces of a scan, have no origin unless all faces do,
 // since nobody sees what they see. A vertex that stands inside or under something has its origins moved
-// further into the faces (seen_origins.hpp).
+// further into the faces (findSeenOrigins).
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "baker/transport/group_geometry.hpp"
@@ -91,5 +94,66 @@ using SampleEdges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 // Returns the pairs of samples that share an edge of a face, or of neighbouring texels, each once as
 // (smaller, larger), sorted. The list is empty if samples do not belong to vertices.
 SampleEdges sampleEdges(const GroupGeometry& geometry, const SampleSet& samples);
+
+// Returns square metres per sample; a third of each triangle goes to each of its corners, or all of it in
+// equal parts to its texels. Both sides of a double-sided surface count.
+std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples);
+
+// Makes samples inside faces, beside those at vertices. Transfer at them is what interpolation over the faces
+// is fitted to (effects/surface/inside_faces.hpp).
+
+struct FacePoints {
+  SampleSet samples;                     // without vertices and cells
+  std::vector<std::uint32_t> triangles;  // of each sample, into GroupGeometry::triangles
+};
+
+// A FacePoint is a point of a triangle as a sample.
+struct FacePoint {
+  glm::vec3 position, normal;  // interpolated; the normal is unit
+  SampleOrigin origin;         // a little off the face
+};
+// `weights` are those of the corners and sum to 1. The triangle must have an area.
+FacePoint facePoint(const GroupGeometry& geometry, const glm::uvec3& corners, const glm::vec3& weights);
+
+// Returns the centroids of the triangles listed: first those of diffuse draws, then of normal-mapped and of
+// glossy ones, as in SampleSet. Faces that turn away from their normal have no origins, since nobody sees
+// their front. Triangles without area give no point.
+FacePoints facePoints(const GroupGeometry& geometry, const SampleSet& samples,
+                      std::span<const std::uint32_t> triangles);
+
+// A DirectionTable holds the directions of every sample's rays over the local hemisphere (z up). They are
+// low-discrepancy and sorted along a Hilbert curve, so that sixteen neighbours make a coherent ray packet.
+// All samples share one table, so its spherical harmonics are evaluated once.
+
+inline constexpr std::size_t kPacketWidth = 16;
+
+struct DirectionTable {
+  // These are unit vectors, with one array per axis; the size is a multiple of kPacketWidth.
+  std::vector<float> x, y, z;
+
+  std::size_t size() const { return x.size(); }
+  std::size_t packets() const { return x.size() / kPacketWidth; }
+};
+
+// Makes directions with pdf = cos/pi: a Fibonacci lattice on the unit square goes through the concentric map
+// to the disc (Shirley and Chiu 1997) and is lifted to the hemisphere (Malley). `rays` is rounded up to whole
+// packets.
+DirectionTable cosineTable(std::size_t rays);
+
+// Spreads the same points evenly over the hemisphere: pdf = 1/(2 pi). This serves light that is evaluated at
+// any normal, for which light near the horizon counts.
+DirectionTable uniformTable(std::size_t rays);
+
+// Builds the local frame of a sample, with z along its normal, without a singularity at the poles (Duff et
+// al., JCGT 6(1), 2017).
+
+// Returns group_from_local, whose columns are tangent, bitangent and normal. `n` is a unit vector.
+inline glm::dmat3 localFrame(const glm::dvec3& n) {
+  const double sign = std::copysign(1.0, n.z);
+  const double a = -1.0 / (sign + n.z);
+  const double b = n.x * n.y * a;
+  return {glm::dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+          glm::dvec3(b, sign + n.y * n.y * a, -n.y), n};
+}
 
 }  // namespace lambent::baker

@@ -1,5 +1,6 @@
-// Says where cut-out surfaces (alphaMode MASK) let rays through: texture, factor and vertex colour are
-// compared with the cutoff.
+// Says what the surfaces of a group reflect and emit where a ray hits them (textured albedo and emission, as
+// in the pictures), and which of the group's lights a triangle belongs to. The scene, the group's geometry
+// and its planned lights come in. Colours are linear Rec.709.
 #pragma once
 
 #include <cstdint>
@@ -16,27 +17,6 @@
 #include "baker/transport/group_geometry.hpp"
 
 namespace lambent::baker {
-
-struct AlphaMap {
-  std::shared_ptr<const DecodedImage> image;  // null if there is none: only factor and vertex alpha count
-  gltf::Sampler sampler;
-  float factor = 1.0f;
-  float cutoff = 0.5f;
-
-  // Returns whether a surface point with this texture coordinate and vertex alpha stops a ray.
-  bool blocks(glm::vec2 uv, float vertex_alpha) const {
-    const float texture_alpha = image ? sampleImage(*image, sampler, uv).w : 1.0f;
-    return texture_alpha * factor * vertex_alpha >= cutoff;
-  }
-};
-
-// There is one entry per material, null if its alpha mode is not MASK.
-using AlphaMaps = std::vector<std::shared_ptr<const AlphaMap>>;
-Result<AlphaMaps> loadAlphaMaps(const Scene& scene, DecodedImages& images);
-
-// Says what the surfaces of a group reflect and emit where a ray hits them (textured albedo and emission, as
-// in the pictures), and which of the group's lights a triangle belongs to. The scene, the group's geometry
-// and its planned lights come in. Colours are linear Rec.709.
 
 inline constexpr std::uint32_t kNoLight = 0xffffffffu;
 

@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
 

@@ -25,7 +25,7 @@
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/gpu/context.hpp"
-#include "runtime/gpu/out_of_memory.hpp"
+#include "runtime/gpu/objects.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"
 
@@ -180,8 +180,6 @@ Result<void> run(const Options& options) {
   Session& s = **session;
   auto renderer = Renderer::create(s);
   if (!renderer) return failAgain(renderer.error());
-  if (options.script.empty())
-    s.window.desktop_program = desktopDialogProgram();  // no script answers another program
   Ui ui(*window, s.preferences.scale);
   s.clipboard.put_system = [](const std::string& text) { ImGui::SetClipboardText(text.c_str()); };
   s.clipboard.get_system = [] {
@@ -233,7 +231,6 @@ Result<void> run(const Options& options) {
   std::uint32_t width = 0, height = 0;
   window->framebufferSize(width, height);
   s.preferences.width = static_cast<int>(width), s.preferences.height = static_cast<int>(height);
-  s.preferences.handles = s.handles.gizmo.options;
   savePreferences(remembered, s.preferences);
   if (*script && (*script)->error()) return failAgain(*(*script)->error());
   return {};

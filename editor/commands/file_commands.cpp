@@ -143,22 +143,6 @@ Result<void> option(Session& session, Words words) {
   });
 }
 
-// Finds an unfinished bake by its scene's file name, or by its number.
-Result<std::size_t> findUnfinished(const Session& session, const std::string& word) {
-  const auto& unfinished = session.scenes.unfinished();
-  for (std::size_t i = 0; i < unfinished.size(); ++i)
-    if (unfinished[i].scene == word || unfinished[i].scene.filename() == word || std::to_string(i) == word)
-      return i;
-  return fail(word, "is no unfinished bake", "\"state\" lists them");
-}
-
-Result<void> goOn(Session& session, Words words) {
-  if (!words.empty())
-    return findUnfinished(session, words[0]).map([&](std::size_t found) { session.scenes.goOn(found); });
-  while (!session.scenes.unfinished().empty()) session.scenes.goOn(0);
-  return {};
-}
-
 }  // namespace
 
 std::vector<Command> bakeCommands() {
@@ -174,17 +158,6 @@ std::vector<Command> bakeCommands() {
             "Stop baking; what was done is kept, and the next bake goes on from there", cancel)
            .taking("[SCENE]", 0, 1)
            .onlyIf([](const Session& session) { return session.scenes.busy(); }),
-       item("go-on", "Go on with unfinished bakes", "",
-            "Finish bakes that an earlier session left unfinished, without opening their scenes", goOn)
-           .taking("[SCENE]", 0, 1)
-           .onlyIf([](const Session& session) { return !session.scenes.unfinished().empty(); }),
-       scripted("forget", "Give an unfinished bake of an earlier session up; what it kept stays in the cache",
-                "SCENE", 1, 1,
-                [](Session& session, Words words) {
-                  return findUnfinished(session, words[0]).map([&](std::size_t found) {
-                    session.scenes.forget(found);
-                  });
-                }),
        scripted("bake-option", "An option of `lambent bake` for a scene, by its name without the dashes",
                 "NAME VALUE [SCENE]", 2, 3, option)});
 }

@@ -184,18 +184,6 @@ Result<void> setQuality(Session& session, Words words) {
   return {};
 }
 
-Answer qualityCosts(Session& session) {
-  json rows = json::array();
-  for (const QualityStudy::Row& row : session.qualities.rows())
-    rows.push_back({{"quality", row.quality},
-                    {"error", row.error},
-                    {"ms", row.cost.milliseconds()},
-                    {"keyShadowsMs", row.cost.milliseconds("key shadows")},
-                    {"rasterMs", row.cost.milliseconds("raster")}});
-  const spec::Size size = session.qualities.size();
-  return json{{"qualities", rows}, {"width", size.width}, {"height", size.height}};
-}
-
 }  // namespace
 
 std::vector<Command> lightCommands() {
@@ -218,10 +206,7 @@ std::vector<Command> lightCommands() {
           scripted("reset-key", "A key light of an environment map, or all of them, as found", "[NUMBER]", 0,
                    1, resetKey),
           scripted("quality", "How many key lights there are and how finely they shadow", "low|default|high",
-                   1, 1, setQuality),
-          scripted("measure-quality", "What each quality costs and loses in this view", "", 0, 0,
-                   [](Session& session) { session.qualities.measure(); }),
-          scripted("quality-costs", "What was measured of them", "", 0, 0, qualityCosts)};
+                   1, 1, setQuality)};
 }
 
 }  // namespace lambent::editor

@@ -26,8 +26,7 @@ std::vector<Command> stateCommands();  // commands by which scripts ask about th
 
 using Answer = Result<nlohmann::json>;
 
-inline constexpr std::array kModes = {"move", "turn", "scale"};       // in the order of GizmoMode
-inline constexpr std::array kPivots = {"primary", "center", "each"};  // in the order of GizmoPivot
+inline constexpr std::array kModes = {"move", "turn", "scale"};  // in the order of GizmoMode
 
 // Makes a command of a function of the session and, if it takes any, words. The function returns a JSON
 // value, whether it failed, or nothing.

@@ -131,7 +131,6 @@ json handlesJson(const Session& session) {
   return {{"shown", session.handles.shown},
           {"mode", kModes[static_cast<std::size_t>(options.mode)]},
           {"local", options.space == GizmoSpace::Local},
-          {"pivot", kPivots[static_cast<std::size_t>(options.pivot)]},
           {"snap", options.snap},
           {"steps", {options.snap_m, options.snap_deg, options.snap_scale}}};
 }
@@ -154,18 +153,11 @@ Answer state(Session& session) {
   json selected = json::array();
   for (const ecs::Entity entity : session.selection.entities(session.document))
     selected.push_back(session.document.nameOf(entity));
-  json unfinished = json::array();
-  for (const baker::BakeRequest& request : session.scenes.unfinished())
-    unfinished.push_back(request.scene.string());
-  json unseen = json::array();
-  for (const baker::JobState& job : session.scenes.unseen()) unseen.push_back(jobJson(job));
   const frame::StepCounts& counts = session.picture.counts;
   json settings = json::object();
   for (const frame::SettingRow& row : frame::settingRows())
     settings[std::string(row.name)] = frame::settingWord(row, session.stage.settings());
   return json{{"scenes", scenes},
-              {"unfinished", unfinished},
-              {"unseen", unseen},
               {"selected", selected},
               {"lights", session.document.world().lights},
               {"view", frame::wordOf(session.viewing.surfaces)},

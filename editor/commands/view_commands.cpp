@@ -93,21 +93,6 @@ Result<void> setTime(Session& session, Words words) {
 bool cameraSelected(const Session& session) {
   return session.document.registry().alive(selectedCamera(session));
 }
-bool keepsCamera(const Session& session) {
-  return session.document.registry().alive(session.viewing.kept_camera);
-}
-// Returns the selected camera, or else the one whose picture is kept.
-ecs::Entity cameraAtHand(const Session& session) {
-  return cameraSelected(session) ? selectedCamera(session) : shownCamera(session);
-}
-
-// Keeps the picture of the selected camera, or gives up the one that is kept.
-void keepCamera(Session& session) {
-  ecs::Entity& kept = session.viewing.kept_camera;
-  const ecs::Entity selected = selectedCamera(session);
-  kept = kept == selected ? ecs::Entity{} : selected;
-}
-
 Command modeOf(GizmoMode mode, const char* title, const char* shortcut, const char* help) {
   return item(kModes[static_cast<std::size_t>(mode)], title, shortcut, help,
               [mode](Session& session) {
@@ -122,20 +107,6 @@ Command modeOf(GizmoMode mode, const char* title, const char* shortcut, const ch
 void switchAxes(Session& session) {
   GizmoSpace& now = session.handles.gizmo.options.space;
   now = now == GizmoSpace::World ? GizmoSpace::Local : GizmoSpace::World;
-}
-
-// Takes a pivot by its name, or the next one.
-Answer setPivot(Session& session, Words words) {
-  GizmoPivot& now = session.handles.gizmo.options.pivot;
-  std::size_t to = (static_cast<std::size_t>(now) + 1) % kPivots.size();
-  if (!words.empty()) {
-    const auto found = std::find(kPivots.begin(), kPivots.end(), words[0]);
-    if (found == kPivots.end())
-      return fail("pivot", "\"" + words[0] + "\" is not known", "give primary, center or each");
-    to = static_cast<std::size_t>(found - kPivots.begin());
-  }
-  now = static_cast<GizmoPivot>(to);
-  return kPivots[to];
 }
 
 // Switches snapping, or switches it on with these steps; 0 metres switch it off.
@@ -232,9 +203,6 @@ std::vector<Command> viewCommands() {
            .checkedIf([](const Session& session) {
              return session.handles.gizmo.options.space == GizmoSpace::Local;
            }),
-       item("pivot", "Next pivot", "Z",
-            "Turn and scale about the last selected, the middle of all, or each about itself", setPivot)
-           .taking("[primary|center|each]", 0, 1),
        item("snap", "Snap", "Y", "Drags go in steps; Ctrl does so for one drag, or frees it", setSnap)
            .taking("[METRES [DEGREES [FACTOR]]]", 0, 3)
            .checkedIf([](const Session& session) { return session.handles.gizmo.options.snap; }),
@@ -242,22 +210,15 @@ std::vector<Command> viewCommands() {
            "gizmos", "Handles", "G", "Show handles at all",
            [](auto& session) -> auto& { return session.handles.shown; }),
        separator(),
-       item("look-through", "Look through this camera", "C",
-            "The view goes where the selected camera stands, or the one whose picture is kept",
-            [](Session& session) { lookThrough(session, cameraAtHand(session)); })
-           .onlyIf([](const Session& session) {
-             return session.document.registry().alive(cameraAtHand(session));
-           }),
+       item("look-through", "Look through this camera", "C", "The view goes where the selected camera stands",
+            [](Session& session) { lookThrough(session, selectedCamera(session)); })
+           .onlyIf(cameraSelected),
        item("camera-to-view", "Camera to view", "Shift+C", "The selected camera goes where the view is",
             [](Session& session) { return placeAtView(session, selectedCamera(session)); })
            .onlyIf(cameraSelected),
        toggle(
            "camera-preview", "Camera preview", "", "An inset in the view shows what a selected camera sees",
-           [](auto& session) -> auto& { return session.preferences.camera_preview; }),
-       item("keep-camera", "Keep this camera's picture", "",
-            "The inset stays while other things are selected and edited: a second view", keepCamera)
-           .checkedIf(keepsCamera)
-           .onlyIf([](const Session& session) { return cameraSelected(session) || keepsCamera(session); })});
+           [](auto& session) -> auto& { return session.preferences.camera_preview; })});
 }
 
 }  // namespace lambent::editor

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/reflection.hpp"
+#include "runtime/scene/transforms.hpp"
 
 namespace lambent::editor {
 

@@ -18,7 +18,7 @@
 
 #include "runtime/ecs/registry.hpp"
 #include "runtime/scene/reflection.hpp"
-#include "runtime/scene/stable_id.hpp"
+#include "runtime/scene/components.hpp"
 
 namespace lambent::editor {
 

@@ -6,8 +6,8 @@
 #include <glm/matrix.hpp>
 
 #include "editor/document/history.hpp"
-#include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/transforms.hpp"
 
 namespace lambent::editor {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "editor/document/value_json.hpp"
 #include "runtime/base/atomic_file.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "runtime/scene/reflection.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"

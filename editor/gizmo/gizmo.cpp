@@ -65,10 +65,7 @@ void Gizmo::setView(const spec::View& view, const Viewport& viewport) {
 
 glm::dvec3 Gizmo::pivot() const {
   if (dragging()) return start_.pivot + moved_;
-  if (options.pivot != GizmoPivot::Center) return originOf(targets_.back());
-  glm::dvec3 sum(0.0);
-  for (const GizmoTarget& target : targets_) sum += originOf(target);
-  return sum / static_cast<double>(targets_.size());
+  return originOf(targets_.back());
 }
 
 glm::dmat3 Gizmo::axes() const {
@@ -329,24 +326,18 @@ std::vector<scene::Transform> Gizmo::drag(glm::vec2 pixel, bool other_snap) {
   if (options.mode == GizmoMode::Scale) dragScale(at, snap);
   std::vector<scene::Transform> result;
   for (const GizmoTarget& target : targets_) {
-    const bool each = options.pivot == GizmoPivot::Each;
-    const glm::dvec3 about = each ? originOf(target) : start_.pivot;
-    const bool own_axes = each && options.space == GizmoSpace::Local;
-    const glm::dmat3 axes_ws = own_axes ? axesOf(target) : start_.axes;
     switch (options.mode) {
       case GizmoMode::Move:
         result.push_back(movedBy(target, moved_));
         break;
       case GizmoMode::Rotate:
-        result.push_back(turnedBy(
-            target, about, own_axes && isAxis(active_) ? axes_ws[axisIndex(active_)] : start_.turn_axis,
-            turned_rad_));
+        result.push_back(turnedBy(target, start_.pivot, start_.turn_axis, turned_rad_));
         break;
       case GizmoMode::Scale:
         // Uniform scaling is the same along all axes and needs no shear.
         result.push_back(options.space == GizmoSpace::Local || active_ == Handle::Screen
-                             ? scaledLocally(target, about, axes_ws, factors_)
-                             : scaledInWorld(target, about, factors_));
+                             ? scaledLocally(target, start_.pivot, start_.axes, factors_)
+                             : scaledInWorld(target, start_.pivot, factors_));
         break;
     }
   }

@@ -22,12 +22,6 @@ namespace lambent::editor {
 
 enum class GizmoMode : std::uint8_t { Move, Rotate, Scale };
 enum class GizmoSpace : std::uint8_t { Local, World };  // the axes of the primary target, or of the world
-enum class GizmoPivot : std::uint8_t {
-  Primary,  // the primary target's origin
-  Center,   // the mean of all origins
-  Each      // each target's own origin; the handles are at the primary target
-};
-
 enum class Handle : std::uint8_t {
   None,
   X,
@@ -45,7 +39,6 @@ std::string_view handleWord(Handle handle);  // "x", "yz", "screen"
 struct GizmoOptions {
   GizmoMode mode = GizmoMode::Move;
   GizmoSpace space = GizmoSpace::World;
-  GizmoPivot pivot = GizmoPivot::Primary;
   bool snap = false;                                          // drags go in steps
   float snap_m = 0.25f, snap_deg = 15.0f, snap_scale = 0.1f;  // their sizes, > 0
   float size_px = 90.0f;  // length of an axis that is perpendicular to the view
@@ -62,7 +55,7 @@ class Gizmo {
   GizmoOptions options;
 
   // Call both every frame. During a drag new targets are ignored, but a new view is used. The last target is
-  // the primary one. Without targets there are no handles.
+  // the primary one, about whose origin all turn and scale. Without targets there are no handles.
   void setTargets(std::vector<GizmoTarget> targets);
   void setView(const spec::View& view, const Viewport& viewport);
 

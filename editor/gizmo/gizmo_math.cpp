@@ -6,7 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include "editor/gizmo/gizmo.hpp"
-#include "runtime/scene/affine.hpp"
+#include "runtime/scene/transforms.hpp"
 
 namespace lambent::editor {
 namespace {

@@ -7,7 +7,7 @@
 #include <imgui_stdlib.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
 #include "editor/panels/widgets.hpp"
@@ -38,7 +38,7 @@ bool editOptionWord(Marks& marks, const baker::OptionRow& row, const std::string
   tellHelp(row);
   if (!open) return false;
   bool changed = false;
-  for (const std::string_view choice : row.words) {
+  for (const auto& [choice, value] : row.words) {
     const std::string text(choice);
     if (ImGui::Selectable(text.c_str(), text == word)) word = text, changed = true;
     marks.put(mark + "." + text);
@@ -175,55 +175,12 @@ bool drawScene(Session& session, Marks& marks, std::size_t i) {
   return drawButtons(session, marks, i, working);
 }
 
-// Draws a bake of a scene that is not open.
-void drawUnseen(Session& session, Marks& marks, const baker::JobState& job) {
-  const std::string name = job.request.scene.filename().string(), mark = fmt::format("bakes.{}.", name);
-  ImGui::TableNextRow();
-  ImGui::TableNextColumn();
-  fittedText(name, job.request.scene.string() + "\nnot open: it is baked unseen");
-  ImGui::TableNextColumn();
-  ImGui::TextDisabled("%s", baker::phaseName(job.phase));
-  ImGui::TableNextColumn();
-  if (works(job)) drawProgress(job);
-  fittedText(job.error ? job.error->line() : newsOf(job));
-  ImGui::TableNextColumn();
-  if (works(job) && smallButton(marks, "Cancel", mark + "cancel", "", /*first=*/true))
-    session.scenes.cancelUnseen(job.id);
-  if (smallButton(marks, "Open", mark + "open", "", /*first=*/!works(job)))
-    runOrLog(session, "open", std::array{job.request.scene.string()});
-}
-
-// Draws a bake that an earlier session left unfinished. Returns false if it is on the list no more.
-bool drawUnfinished(Session& session, Marks& marks, std::size_t i) {
-  const std::filesystem::path scene = session.scenes.unfinished()[i].scene;
-  const std::string name = scene.filename().string(), mark = fmt::format("bakes.{}.", name);
-  ImGui::TableNextRow();
-  ImGui::TableNextColumn();
-  fittedText(name, scene.string());
-  ImGui::TableNextColumn();
-  drawState({Standing::Wanting, "cut short", "An earlier session ended before this bake was done."});
-  ImGui::TableNextColumn();
-  fittedText("its bake can go on from where it was");
-  ImGui::TableNextColumn();
-  const bool go_on =
-      smallButton(marks, "Go on", mark + "go-on", "Bake it without opening it", /*first=*/true);
-  const bool open =
-      smallButton(marks, "Open", mark + "open", "Show it, and bake it with the options of this session");
-  const bool forget =
-      smallButton(marks, "Forget", mark + "forget", "Offer it no more; what it kept stays in the cache");
-  const std::string number = std::to_string(i);
-  if (go_on) runOrLog(session, "go-on", std::array{number});
-  if (open) runOrLog(session, "open", std::array{scene.string()});
-  if (forget) runOrLog(session, "forget", std::array{number});
-  return !go_on && !open && !forget;
-}
-
 // Returns the width of the column of buttons: of the widest row, or in a narrow table of the widest button,
 // because buttons beyond the border would have to be looked for.
 float buttonsWidth(bool narrow) {
   const ImGuiStyle& style = ImGui::GetStyle();
   float row = 2.0f * style.ItemSpacing.x, widest = 0.0f;
-  for (const char* text : {"Cancel", "Options", "Forget"}) {
+  for (const char* text : {"Cancel", "Options", "Close"}) {
     const float width = ImGui::CalcTextSize(text).x + 2.0f * style.FramePadding.x;
     row += width;
     widest = std::max(widest, width);
@@ -234,8 +191,7 @@ float buttonsWidth(bool narrow) {
 }  // namespace
 
 void drawBakes(Session& session, Marks& marks) {
-  if (session.scenes.entries().empty() && session.scenes.unfinished().empty() &&
-      session.scenes.unseen().empty()) {
+  if (session.scenes.entries().empty()) {
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextDisabled(
         "Nothing is open. Drop a .gltf, .glb or .lmb.glb file onto the window, or File > Open.");
@@ -257,22 +213,12 @@ void drawBakes(Session& session, Marks& marks) {
   ImGui::TableSetupColumn("##buttons", ImGuiTableColumnFlags_WidthFixed, buttonsWidth(narrow));
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableHeadersRow();
-  int id = 0;
-  const auto rows = [&](std::size_t count, auto draw) {
-    for (std::size_t i = 0; i < count; ++i) {
-      ImGui::PushID(id++);
-      const bool stays = draw(i);
-      ImGui::PopID();
-      if (!stays) return;
-    }
-  };
-  rows(session.scenes.entries().size(), [&](std::size_t i) { return drawScene(session, marks, i); });
-  const std::vector<baker::JobState> unseen = session.scenes.unseen();
-  rows(unseen.size(), [&](std::size_t i) {
-    drawUnseen(session, marks, unseen[i]);
-    return true;
-  });
-  rows(session.scenes.unfinished().size(), [&](std::size_t i) { return drawUnfinished(session, marks, i); });
+  for (std::size_t i = 0; i < session.scenes.entries().size(); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    const bool stays = drawScene(session, marks, i);
+    ImGui::PopID();
+    if (!stays) break;
+  }
   ImGui::EndTable();
 }
 

@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cstdlib>
+#include <string_view>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,10 +11,65 @@
 #include "editor/panels/panel.hpp"
 #include "editor/panels/widgets.hpp"
 #include "editor/ui/dear_imgui.hpp"
+#include "runtime/base/process.hpp"
 
 namespace lambent::editor {
 
 namespace {
+
+constexpr std::size_t kMostPlaces = 8;
+
+std::vector<DialogPlace> dialogPlacesOf(const Session& session) {
+  std::vector<DialogPlace> places;
+  const auto add = [&](std::string name, const std::filesystem::path& folder) {
+    std::error_code ignored;
+    const bool known = std::ranges::find(places, folder, &DialogPlace::folder) != places.end();
+    if (!known && !folder.empty() && std::filesystem::is_directory(folder, ignored))
+      places.push_back({std::move(name), folder});
+  };
+  if (const char* home = std::getenv("HOME")) add("Home", home);
+  for (const SceneEntry& entry : session.scenes.entries()) add("Scene", entry.source.parent_path());
+  if (const auto samples = sampleFolders(); !samples.empty()) add("Samples", samples.front());
+  for (const std::string& recent : session.preferences.recent) {
+    const std::filesystem::path folder = std::filesystem::path(recent).parent_path();
+    add(folder.filename().string(), folder);
+  }
+  places.resize(std::min(places.size(), kMostPlaces));
+  return places;
+}
+
+bool shown(const Dialog& dialog, const DialogFile& file) {
+  if (file.name.starts_with('.')) return false;
+  if (file.is_folder) return true;
+  if (dialog.kind == Dialog::Kind::Folder) return false;
+  if (dialog.kinds.empty() || dialog.filter > dialog.kinds.size()) return true;
+  const auto isOf = [&](const FileKind& kind) {
+    return std::ranges::any_of(kind.endings,
+                               [&](const std::string& end) { return file.name.ends_with(end); });
+  };
+  return dialog.filter == 0 ? std::ranges::any_of(dialog.kinds, isOf) : isOf(dialog.kinds[dialog.filter - 1]);
+}
+
+std::vector<DialogFile> filesOf(const Dialog& dialog) {
+  std::vector<DialogFile> files;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(dialog.folder, ignored)) {
+    DialogFile file{entry.path().filename().string(), entry.is_directory(ignored)};
+    if (shown(dialog, file)) files.push_back(std::move(file));
+  }
+  std::ranges::sort(files, {}, [](const DialogFile& file) {
+    return std::tuple(!file.is_folder, std::string_view(file.name));
+  });
+  return files;
+}
+
+// Brings what the dialog lists up to date. Folders that cannot be read are empty.
+void list(const Session& session, Dialog& dialog) {
+  if (!dialog.listed.known()) dialog.places = dialogPlacesOf(session);
+  std::error_code ignored;
+  const auto written = std::filesystem::last_write_time(dialog.folder, ignored);
+  if (dialog.listed.renew(dialog.folder, written, dialog.filter)) dialog.files = filesOf(dialog);
+}
 
 std::string answerOf(const Dialog& dialog) {
   if (dialog.kind == Dialog::Kind::Text) return dialog.name;
@@ -21,7 +79,7 @@ std::string answerOf(const Dialog& dialog) {
 }
 
 void drawPlaces(Dialog& dialog, Marks& marks) {
-  const std::vector<DialogPlace>& places = dialog.found.places();
+  const std::vector<DialogPlace>& places = dialog.places;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (i > 0) sameLineIfFits(places[i].name);
     ImGui::PushID(static_cast<int>(i));
@@ -34,8 +92,8 @@ void drawPlaces(Dialog& dialog, Marks& marks) {
 
 // Returns "Scenes (.gltf .glb)" for a kind, and words for what is before the first and past the last.
 std::string filterText(const Dialog& dialog, std::size_t filter) {
-  if (filter == 0 && dialog.kinds.size() > 1) return kAllKinds;
-  if (filter > dialog.kinds.size()) return kAllFiles;
+  if (filter == 0 && dialog.kinds.size() > 1) return "All that can be opened";
+  if (filter > dialog.kinds.size()) return "All files";
   const FileKind& kind = dialog.kinds[filter == 0 ? 0 : filter - 1];
   return fmt::format("{} ({})", kind.name, fmt::join(kind.endings, " "));
 }
@@ -57,7 +115,7 @@ void drawFilter(Dialog& dialog, Marks& marks) {
 // Returns whether a file was chosen, by a double click or by the Enter key.
 bool drawFiles(const Session& session, Dialog& dialog, Marks& marks) {
   bool chosen = false;
-  dialog.found.update(session, dialog);
+  list(session, dialog);
   drawPlaces(dialog, marks);
   std::string folder = dialog.folder.string();
   ImGui::SetNextItemWidth(-em(4.0f));
@@ -68,7 +126,7 @@ bool drawFiles(const Session& session, Dialog& dialog, Marks& marks) {
   marks.put("dialog.up");
   ImGui::BeginChild("files", ImVec2(0.0f, std::min(em(17.3f), 0.5f * ImGui::GetIO().DisplaySize.y)), true);
   std::filesystem::path enter;
-  for (const auto& [name, is_folder] : dialog.found.files()) {
+  for (const auto& [name, is_folder] : dialog.files) {
     if (ImGui::Selectable((is_folder ? name + "/" : name).c_str(), dialog.name == name,
                           ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_DontClosePopups)) {
       const bool twice = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);

@@ -32,12 +32,6 @@ constexpr std::array kPanels = {
     Panel{"Log", Dock::Bottom, "Notices and errors", &drawLog},
 };
 
-// Returns where the panel is in this layout.
-Dock dockOf(const WindowLayout& layout, const Panel& panel) {
-  const auto moved = layout.moved.find(panel.name);
-  return moved == layout.moved.end() ? panel.dock : moved->second;
-}
-
 struct Area {
   ImVec2 at, size;
 };
@@ -47,47 +41,14 @@ constexpr ImGuiWindowFlags kFixedWindow =
     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
 
-constexpr const char* kDragged = "panel";  // the type of what a dragged tab carries
-
-void movePanel(Session& session, const std::string& panel, Dock dock) {
-  runOrLog(session, "move-panel", std::array{panel, std::string(dockWord(dock))});
-}
-
-// Draws the menu of a tab and lets it be dragged.
-void handleTab(Session& session, Marks& marks, const Panel& panel, Dock dock) {
-  if (ImGui::BeginDragDropSource()) {
-    ImGui::SetDragDropPayload(kDragged, panel.name, std::string_view(panel.name).size() + 1);
-    ImGui::TextUnformatted(panel.name);
-    ImGui::EndDragDropSource();
-  }
-  if (!ImGui::BeginPopupContextItem(panel.name)) return;
-  for (const Dock to : kDocks) {
-    if (ImGui::MenuItem(fmt::format("Move {}{}", to == Dock::Bottom ? "" : "to the ", dockWord(to)).c_str(),
-                        nullptr, false, to != dock))
-      movePanel(session, panel.name, to);
-    marks.put(fmt::format("tab.{}.{}", panel.name, dockWord(to)));
-  }
-  ImGui::EndPopup();
-}
-
-// Takes a tab that is dropped anywhere onto the dock.
-void takeTab(Session& session, Dock dock) {
-  const ImGuiWindow* window = ImGui::GetCurrentWindow();
-  if (!ImGui::BeginDragDropTargetCustom(window->Rect(), window->ID)) return;
-  if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload(kDragged))
-    movePanel(session, static_cast<const char*>(payload->Data), dock);
-  ImGui::EndDragDropTarget();
-}
-
 // Returns whether the dock is shown: it is switched on and has panels.
 bool hasRoom(const WindowLayout& layout, Dock dock) {
   return layout.of(dock).shown && !layout.view_only &&
-         std::ranges::any_of(panelList(), [&](const Panel& panel) { return dockOf(layout, panel) == dock; });
+         std::ranges::any_of(panelList(), [&](const Panel& panel) { return panel.dock == dock; });
 }
 
 void drawDock(Session& session, Marks& marks, Dock dock, const Area& area) {
-  // A panel that is moved while they are drawn counts from the next frame on.
-  const WindowLayout layout = session.preferences.layout;
+  WindowLayout& layout = session.preferences.layout;
   const std::string word(dockWord(dock));
   ImGui::SetNextWindowPos(area.at);
   ImGui::SetNextWindowSize(area.size);
@@ -95,14 +56,13 @@ void drawDock(Session& session, Marks& marks, Dock dock, const Area& area) {
   marks.put("dock." + word, {{area.at.x, area.at.y}, {area.at.x + area.size.x, area.at.y + area.size.y}});
   if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown)) {
     for (const Panel& panel : panelList()) {
-      if (dockOf(layout, panel) != dock) continue;
+      if (panel.dock != dock) continue;
       const bool raise = session.window.raise_tabs && layout.of(dock).tab == panel.name;
       const bool open = ImGui::BeginTabItem(panel.name, nullptr, raise ? ImGuiTabItemFlags_SetSelected : 0);
       marks.put(std::string("tab.") + panel.name);
       tooltip(std::string(panel.name) + ": " + panel.help);
-      handleTab(session, marks, panel, dock);
       if (!open) continue;
-      if (!session.window.raise_tabs) session.preferences.layout.of(dock).tab = panel.name;
+      if (!session.window.raise_tabs) layout.of(dock).tab = panel.name;
       ImGui::BeginChild("panel");
       panel.draw(session, marks);
       ImGui::EndChild();
@@ -110,7 +70,6 @@ void drawDock(Session& session, Marks& marks, Dock dock, const Area& area) {
     }
     ImGui::EndTabBar();
   }
-  takeTab(session, dock);
   ImGui::End();
 }
 
@@ -146,14 +105,13 @@ void raisePanel(Session& session, const std::string& name) {
   WindowLayout& layout = session.preferences.layout;
   for (const Panel& panel : panelList()) {
     if (name != panel.name) continue;
-    DockLayout& dock = layout.of(dockOf(layout, panel));
+    DockLayout& dock = layout.of(panel.dock);
     dock.tab = name;
     dock.shown = true;
     layout.view_only = false;
     session.window.raise_tabs = true;
     return;
   }
-  layout.moved.erase(name);
   session.log.warn("there is no panel \"" + name + "\"");
 }
 

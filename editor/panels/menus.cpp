@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -80,23 +79,6 @@ void drawRecentMenu(Session& session, Marks& marks) {
   ImGui::EndMenu();
 }
 
-// Lists the layouts that the user saved, and a menu to delete them.
-void drawSavedLayouts(Session& session, Marks& marks) {
-  const std::map<std::string, WindowLayout> saved = session.preferences.layouts;
-  const auto draw = [&](const char* command, const char* mark) {
-    for (const auto& [name, layout] : saved) {
-      if (ImGui::MenuItem(name.c_str())) runOrLog(session, command, std::array{name});
-      marks.put(mark + name);
-    }
-  };
-  draw("layout", "menu.layout.");
-  const bool open = ImGui::BeginMenu("Delete layout", !saved.empty());
-  marks.put("menu.delete-layout");
-  if (!open) return;
-  draw("delete-layout", "menu.delete-layout.");
-  ImGui::EndMenu();
-}
-
 // Lists the panels in a menu of their own, because with them the Window menu would be longer than a small
 // window.
 void drawPanelItems(Session& session, Marks& marks) {
@@ -151,7 +133,6 @@ void drawMenus(Session& session, Marks& marks) {
       else if (*command.title != '\0' && drawCommandItem(session, marks, command, "menu."))
         runAfterFields(session, command);
       if (std::strcmp(command.id, "open") == 0) drawRecentMenu(session, marks);
-      if (std::strcmp(command.id, "save-layout") == 0) drawSavedLayouts(session, marks);
     }
     if (std::strcmp(menu, "Window") == 0) drawPanelItems(session, marks);
     ImGui::EndMenu();
@@ -236,9 +217,6 @@ void drawToolBar(Session& session, Marks& marks) {
     ImGui::SameLine(0.0f, em(1.0f));
     drawCommand(session, marks, "local-axes", axes);
   }
-  constexpr std::array kPivots = {"About last", "About middle", "About each"};
-  const char* pivot = kPivots[static_cast<std::size_t>(options.pivot)];
-  if (sameLineIfFits(pivot)) drawCommand(session, marks, "pivot", pivot);
   if (sameLineIfFits(em(1.0f) + buttonWidth("Snap"))) {
     ImGui::SameLine(0.0f, em(1.0f));
     drawCommand(session, marks, "snap", "Snap");

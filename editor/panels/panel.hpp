@@ -17,7 +17,7 @@ class Renderer;
 
 struct Panel {
   const char* name;
-  Dock dock;  // at first
+  Dock dock;
   const char* help;
   void (*draw)(Session& session, Marks& marks);
 };
@@ -41,8 +41,7 @@ void drawHistory(Session& session, Marks& marks);
 void drawLog(Session& session, Marks& marks);
 
 // Draws the window's contents: panels in docks on each side and below, the view in the middle, and edges
-// between them that can be dragged. A tab's menu moves its panel to another dock, as dragging the tab there
-// does.
+// between them that can be dragged.
 void drawLayout(Session& session, Renderer& renderer, Marks& marks);
 
 // These are not in a dock: the menu bar, the view in the middle, and what is drawn above everything.

@@ -69,8 +69,7 @@ void editSetting(Session& session, Marks& marks, const frame::SettingRow& row, c
 
 namespace {
 
-// Draws the choice of quality, which sets the number of key lights and their shadow resolution, and its
-// costs.
+// Draws the choice of quality, which sets the number of key lights and their shadow resolution.
 void drawQuality(Session& session, Marks& marks) {
   const std::string now(frame::qualityOf(session.stage.settings()));
   ImGui::AlignTextToFramePadding();
@@ -89,40 +88,6 @@ void drawQuality(Session& session, Marks& marks) {
     }
     ImGui::EndCombo();
   }
-  ImGui::SameLine();
-  if (ImGui::Button(session.qualities.busy() ? "Measuring..." : "Measure")) session.qualities.measure();
-  marks.put("quality.measure");
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "Draws this view at each quality: times of a frame that draws everything anew, and how\n"
-        "far its light lies from that at high quality. The reference beside (F8) tells the error\n"
-        "of the picture itself.");
-  const auto& rows = session.qualities.rows();
-  if (rows.empty()) return;
-  constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV;
-  if (ImGui::BeginTable("qualities", 5, kTable)) {
-    for (const char* title : {"", "shadows", "raster", "all", "off high"}) ImGui::TableSetupColumn(title);
-    ImGui::TableHeadersRow();
-    for (const QualityStudy::Row& row : rows) {
-      ImGui::TableNextRow();
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(row.quality.c_str());
-      for (const double ms :
-           {row.cost.milliseconds("key shadows"), row.cost.milliseconds("raster"), row.cost.milliseconds()}) {
-        ImGui::TableNextColumn();
-        ImGui::Text("%.1f", ms);
-      }
-      ImGui::TableNextColumn();
-      if (&row == &rows.back())
-        ImGui::TextUnformatted("-");
-      else
-        ImGui::Text("%.2g %%", 100.0 * row.error);
-    }
-    ImGui::EndTable();
-  }
-  const spec::Size size = session.qualities.size();
-  const bool here = session.qualities.view().view_from_world == session.viewing.shown_view.view_from_world;
-  ImGui::TextDisabled("milliseconds at %u x %u%s", size.width, size.height, here ? "" : ", in another view");
 }
 
 // Draws the axis and position of the slice through neighborhoods.
@@ -166,12 +131,6 @@ void drawSettings(Session& session, Marks& marks) {
   if (beginFieldTable("settings", 0.56f)) {
     drawRows(session, marks);
     ImGui::EndTable();
-  }
-  if (!session.window.desktop_program.empty()) {
-    ImGui::Checkbox("Desktop's file dialogs", &session.preferences.desktop_dialogs);
-    marks.put("setting.desktop-dialogs");
-    tooltip("Choose files in the dialogs of " + session.window.desktop_program.filename().string() +
-            " in place of the editor's own");
   }
   if (ImGui::Button("All to their defaults"))
     session.history.editWorld("settings to default", [](WorldState& world) { world.settings.clear(); });

@@ -90,8 +90,7 @@ void textOver(const ImVec2& at, const std::string& text, ImU32 color = IM_COL32(
   canvas->AddText(at, color, text.c_str());
 }
 
-// Draws what the selected camera, or one that is kept, sees into a corner. Returns whether the pointer is
-// over it.
+// Draws what the selected camera sees into a corner. Returns whether the pointer is over it.
 bool drawPreview(Session& session, const Renderer& renderer, Marks& marks, const ImVec2& low,
                  const ImVec2& high) {
   const gpu::Texture& preview = renderer.picture.preview();
@@ -108,7 +107,7 @@ bool drawPreview(Session& session, const Renderer& renderer, Marks& marks, const
   canvas->AddImage(handleOf(preview), at, end, ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
   canvas->AddRect(ImVec2(at.x - 1.0f, at.y - 1.0f), ImVec2(end.x + 1.0f, end.y + 1.0f),
                   IM_COL32(235, 235, 235, 255));
-  const std::string name = session.document.nameOf(shownCamera(session));
+  const std::string name = session.document.nameOf(selectedCamera(session));
   textOver(ImVec2(at.x + 8.0f, at.y + 5.0f), ellipsized(name, size.x - 16.0f));
   ImGui::SetCursorScreenPos(at);
   if (ImGui::InvisibleButton("camera preview", size)) runOrLog(session, "look-through", {});

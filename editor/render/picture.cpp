@@ -66,7 +66,7 @@ spec::Size sizeOf(const Session& session, float aspect) {
 }  // namespace
 
 bool CameraPreview::due(Session& session, std::uint64_t edits, bool stale) {
-  const ecs::Entity camera = shownCamera(session);
+  const ecs::Entity camera = session.preferences.camera_preview ? selectedCamera(session) : ecs::Entity{};
   if (!session.document.registry().alive(camera)) {
     texture_ = {};
     camera_ = {};

@@ -56,8 +56,7 @@ Result<void> ReferencePicture::compare(Session& session, const baker::reference:
   if (!picture) return failAgain(picture.error());
   const bool halves = snapshot.halves[0].width > 0 && snapshot.halves[1].width > 0;
   auto difference = baker::differenceOf(*picture, halves ? snapshot.halves[0] : snapshot.image,
-                                        halves ? &snapshot.halves[1] : nullptr,
-                                        {.map = baker::HeatMap::Signed}, "reference");
+                                        halves ? &snapshot.halves[1] : nullptr, {}, "reference");
   if (difference) {
     heat_ = textureOf("heat map", {snapshot.image.width, snapshot.image.height}, GL_RGBA8);
     write(heat_, GL_UNSIGNED_BYTE, difference->heat.texels.data());
@@ -89,8 +88,7 @@ void Renderer::update(Session& session, spec::Size size) {
   picture.update(session, size);
   reference.update(session);
   session.settings.update(session);
-  session.qualities.update(session);
-  thumbnails.update(session, picture.texture());
+  thumbnails.update(session);
   materials.update(session);
 }
 

@@ -12,39 +12,22 @@
 
 #include "editor/session/assets.hpp"
 #include "editor/session/session.hpp"
-#include "runtime/base/change_gate.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/tone_map/tone_mapper.hpp"
 
 namespace lambent::editor {
 
-// Owns the textures of small pictures: those of assets, which the session finds on the CPU or which are
-// taken from the view, and those of materials. Main thread, with a current OpenGL context.
+// Owns the textures of small pictures: those of assets, which the session finds on the CPU, and those of
+// materials. Main thread, with a current OpenGL context.
 
 class Thumbnails {
  public:
-  // Uploads new pictures, and tells the session their textures. When a scene or a world that is shown has
-  // come to rest, a small copy of `view` (row 0 at the bottom) becomes its picture; so again when a better
-  // bake is shown. A scene beside others that has no picture gets the part of the view around it. Call it
-  // once a frame.
-  void update(Session& session, const gpu::Texture& view);
+  // Uploads new pictures, and tells the session their textures. Call it once a frame.
+  void update(Session& session);
 
  private:
-  // Holds a file, and the part of the view that shows its contents.
-  struct Shown {
-    Asset asset;
-    PicturePart part;
-    bool operator==(const Shown&) const = default;
-  };
-  // size: of the view in pixels.
-  static std::vector<Shown> shownIn(Session& session, const spec::Size& size);
-  void takeFromView(Session& session, const gpu::Texture& view);
-
   std::map<std::filesystem::path, gpu::Texture> textures_;
-  // Tells when the view's picture must be taken: it compares the files that it shows and the version of the
-  // scenes.
-  ChangeGate<std::vector<Shown>, std::uint64_t> taken_;
 };
 
 // Makes the pictures of the materials that panels ask for: a sphere of each, drawn anew when the material
@@ -102,7 +85,7 @@ class PictureClock {
   std::chrono::steady_clock::time_point begun_;
 };
 
-// Draws what the selected camera, or one that is kept, sees into a small picture of its own, by the frame of
+// Draws what the selected camera sees into a small picture of its own, by the frame of
 // the main picture: a second frame would keep light probes, captures and shading of its own. The main
 // picture must be drawn anew afterwards. It draws only when something in it changed: while the world comes
 // to rest, and while main pictures are slow and move, it waits.

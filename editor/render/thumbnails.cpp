@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <utility>
 
 #include <epoxy/gl.h>
@@ -6,92 +5,11 @@
 #include "editor/render/renderer.hpp"
 #include "editor/session/assets.hpp"
 #include "editor/session/materials.hpp"
-#include "runtime/scene/bounds.hpp"
 #include "runtime/scene/materials.hpp"
 
 namespace lambent::editor {
 
-namespace {
-
-// Returns whether the view shows the world as it is, and nothing is drawn over it.
-bool isPlain(const Session& session) {
-  const Viewing& viewing = session.viewing;
-  return viewing.surfaces.view == frame::SurfaceView::Final && !viewing.overlays.any() &&
-         session.selection.ids().empty() && session.atRest() && !viewing.scale.coarse();
-}
-
-// Returns the files of a scene whose contents are shown.
-std::vector<Asset> filesOf(const SceneEntry& entry) {
-  std::vector<Asset> files;
-  if (auto source = assetAt(entry.source)) files.push_back(std::move(*source));
-  if (entry.shown == entry.bundle)
-    if (auto bundle = assetAt(entry.bundle)) files.push_back(std::move(*bundle));
-  return files;
-}
-
-scene::Box boundsOf(const Session& session, std::uint32_t slot) {
-  scene::Box box;
-  for (const ecs::Entity draw : session.stage.world().instance(slot).draws)
-    box.add(scene::drawBounds(session.document.registry(), draw));
-  return box;
-}
-
-spec::Rgba8Image readBack(const gpu::Texture& view) {
-  const gpu::TextureDesc& desc = view.desc();
-  const std::size_t row = std::size_t{4} * desc.width;
-  spec::Rgba8Image image{desc.width, desc.height, std::vector<std::uint8_t>(row * desc.height)};
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glGetTextureImage(view.id(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(image.texels.size()),
-                    image.texels.data());
-  const auto at = [&](std::size_t y) { return image.texels.begin() + static_cast<std::ptrdiff_t>(y * row); };
-  for (std::size_t y = 0; y < desc.height / 2; ++y)
-    std::swap_ranges(at(y), at(y + 1), at(desc.height - 1 - y));
-  return image;
-}
-
-spec::Rgba8Image cut(const spec::Rgba8Image& image, const PicturePart& part) {
-  spec::Rgba8Image made{part.width, part.height, {}};
-  for (std::size_t y = 0; y < part.height; ++y) {
-    const std::size_t first = 4 * ((part.top + y) * image.width + part.left);
-    const auto row = image.texels.begin() + static_cast<std::ptrdiff_t>(first);
-    made.texels.insert(made.texels.end(), row,
-                       row + static_cast<std::ptrdiff_t>(4 * std::size_t{part.width}));
-  }
-  return made;
-}
-
-}  // namespace
-
-// The world and a scene that is open alone have all of the view. Of scenes beside others, those without a
-// picture have the part around them.
-std::vector<Thumbnails::Shown> Thumbnails::shownIn(Session& session, const spec::Size& size) {
-  if (!isPlain(session)) return {};
-  std::vector<Shown> shown;
-  const PicturePart all{0, 0, size.width, size.height};
-  if (!session.files.world().empty() && !session.files.modified())
-    if (auto world = assetAt(session.files.world())) shown.push_back({std::move(*world), all});
-  const auto& entries = session.scenes.entries();
-  const bool alone = entries.size() == 1 && session.files.world().empty();
-  for (const SceneEntry& entry : entries)
-    for (Asset& file : filesOf(entry)) {
-      if (alone)
-        shown.push_back({std::move(file), all});
-      else if (entry.slot && session.asset_pictures.lacks(file))
-        if (const auto part = partWithBox(session.viewing.shown_view, size, boundsOf(session, *entry.slot)))
-          shown.push_back({std::move(file), *part});
-    }
-  return shown;
-}
-
-void Thumbnails::takeFromView(Session& session, const gpu::Texture& view) {
-  const std::vector<Shown> shown = shownIn(session, {view.desc().width, view.desc().height});
-  if (shown.empty() || !taken_.renew(shown, session.scenes.version())) return;
-  const spec::Rgba8Image image = readBack(view);
-  for (const Shown& one : shown) session.asset_pictures.keep(one.asset, smallPictureOf(cut(image, one.part)));
-}
-
-void Thumbnails::update(Session& session, const gpu::Texture& view) {
-  takeFromView(session, view);
+void Thumbnails::update(Session& session) {
   auto& pictures = session.asset_pictures.pictures();
   std::erase_if(textures_, [&](const auto& texture) { return !pictures.contains(texture.first); });
   for (auto& [file, picture] : pictures) {

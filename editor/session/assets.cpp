@@ -12,13 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "baker/cache/bytes.hpp"
 #include "baker/pipeline/source_watch.hpp"
 #include "editor/document/world_file.hpp"
-#include "editor/gizmo/projection.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/base/lower_case.hpp"
 #include "runtime/spec/light.hpp"
@@ -173,7 +170,6 @@ namespace {
 
 constexpr std::uint32_t kMapWidth = 128, kMapHeight = 64;
 constexpr std::uint32_t kViewWidth = 192, kViewHeight = 108;
-static_assert(kViewWidth == kSmallPictureShape * kViewHeight);
 
 std::uint8_t coded(float value) {
   const float clamped = std::clamp(value, 0.0f, 1.0f);
@@ -230,107 +226,24 @@ spec::Rgba8Image smallPictureOf(const spec::Rgba8Image& view) {
 
 namespace {
 
-constexpr double kMargin = 0.1;        // on each side, as a share of the box's extent there
-constexpr double kLeastPixels = 48.0;  // the longer side of what is shown
-
-}  // namespace
-
-std::optional<PicturePart> partWithBox(const spec::View& view, const spec::Size& size,
-                                       const scene::Box& box) {
-  if (box.empty()) return std::nullopt;
-  const glm::dvec2 whole(size.width, size.height);
-  const Projection projection(view, {0.0f, 0.0f, static_cast<float>(whole.x), static_cast<float>(whole.y)});
-  glm::dvec2 low = whole, high(0.0);
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 place((corner & 1) != 0 ? box.max.x : box.min.x,
-                           (corner & 2) != 0 ? box.max.y : box.min.y,
-                           (corner & 4) != 0 ? box.max.z : box.min.z);
-    const auto pixel = projection.toScreen(place);
-    if (!pixel || pixel->x < 0.0 || pixel->y < 0.0 || pixel->x > whole.x || pixel->y > whole.y)
-      return std::nullopt;
-    low = glm::min(low, *pixel), high = glm::max(high, *pixel);
-  }
-  const glm::dvec2 extent = high - low;
-  if (std::max(extent.x, extent.y) < kLeastPixels) return std::nullopt;
-  // The shape is that of small pictures, which would cut the box otherwise, as far as the picture reaches.
-  glm::dvec2 wanted = (1.0 + 2.0 * kMargin) * extent;
-  wanted = glm::min(
-      glm::max(wanted, glm::dvec2(wanted.y * kSmallPictureShape, wanted.x / kSmallPictureShape)), whole);
-  const glm::dvec2 begin = glm::clamp(0.5 * (low + high - wanted), glm::dvec2(0.0), whole - wanted);
-  return PicturePart{static_cast<std::uint32_t>(begin.x), static_cast<std::uint32_t>(begin.y),
-                     static_cast<std::uint32_t>(wanted.x), static_cast<std::uint32_t>(wanted.y)};
-}
-
-namespace {
-
-// Rises when pictures are made or written in another way.
-constexpr std::uint32_t kPictureVersion = 1;
-
-baker::Key keyOf(const Asset& asset) {
-  return baker::KeyMaker()
-      .addText("picture of an asset")
-      .add(kPictureVersion)
-      .addText(asset.file.string())
-      .add(asset.bytes)
-      .add(std::int64_t{asset.written.time_since_epoch().count()})
-      .key();
-}
-
-}  // namespace
-
-PictureCache::PictureCache(const std::filesystem::path& folder, std::uint64_t most_bytes) {
-  if (folder.empty()) return;
-  if (auto cache = baker::Cache::open(folder, most_bytes)) cache_ = std::move(*cache);
-}
-
-std::optional<spec::Rgba8Image> PictureCache::find(const Asset& asset) const {
-  if (!cache_) return std::nullopt;
-  const auto bytes = cache_->find(keyOf(asset));
-  if (!bytes) return std::nullopt;
-  baker::ByteReader reader(*bytes);
-  spec::Rgba8Image picture;
-  const bool read =
-      reader.read(picture.width) && reader.read(picture.height) && reader.readList(picture.texels);
-  if (!read || picture.texels.size() != std::size_t{4} * picture.width * picture.height) return std::nullopt;
-  return picture;
-}
-
-void PictureCache::put(const Asset& asset, const spec::Rgba8Image& picture) {
-  if (!cache_) return;
-  baker::ByteWriter writer;
-  writer.add(picture.width);
-  writer.add(picture.height);
-  writer.addList(picture.texels);
-  // Pictures that were used a moment ago may go, too, since they can be made again.
-  cache_->beginBake();
-  cache_->put(keyOf(asset), writer.bytes());
-}
-
-namespace {
-
 // How many pictures are held in memory; a window shows far fewer at a time.
 constexpr std::size_t kMostPictures = 512;
 
 }  // namespace
 
-// Finds, makes and keeps pictures on a thread of its own.
+// Makes pictures on a thread of its own.
 struct AssetPictures::Worker {
-  struct Request {
-    Asset asset;
-    spec::Rgba8Image keep{};  // empty: the picture is wanted
-  };
   struct Made {
     Asset asset;
     spec::Rgba8Image image{};
     std::string error{};
   };
 
-  explicit Worker(std::filesystem::path folder)
-      : thread([this, folder = std::move(folder)](std::stop_token stop) { run(stop, folder); }) {}
+  Worker() : thread([this](std::stop_token stop) { run(stop); }) {}
 
-  void add(Request request) {
+  void add(Asset asset) {
     const std::lock_guard hold(lock);
-    requests.push_back(std::move(request));
+    requests.push_back(std::move(asset));
     wake.notify_one();
   }
   std::vector<Made> take() {
@@ -338,20 +251,14 @@ struct AssetPictures::Worker {
     return std::exchange(made, {});
   }
 
-  void run(std::stop_token stop, const std::filesystem::path& folder) {
-    PictureCache cache(folder);
+  void run(std::stop_token stop) {
     while (true) {
       std::unique_lock hold(lock);
-      if (!wake.wait(hold, stop, [this] { return !requests.empty(); })) return;
-      const Request request = std::move(requests.front());
+      if (!wake.wait(hold, stop, [this] { return !requests.empty(); }) || stop.stop_requested()) return;
+      const Asset asset = std::move(requests.front());
       requests.pop_front();
       hold.unlock();
-      if (!request.keep.texels.empty()) {
-        cache.put(request.asset, request.keep);
-        continue;
-      }
-      if (stop.stop_requested()) continue;  // only what is to be kept still matters
-      Made one = make(request.asset, cache);
+      Made one = make(asset);
       hold.lock();
       made.push_back(std::move(one));
     }
@@ -366,15 +273,12 @@ struct AssetPictures::Worker {
     if (!picture || std::uint64_t{9} * picture->width != std::uint64_t{16} * picture->height) return {};
     return smallPictureOf(*picture);
   }
-  static Made make(const Asset& asset, PictureCache& cache) {
+  static Made make(const Asset& asset) {
     try {
-      if (auto found = cache.find(asset)) return {.asset = asset, .image = std::move(*found)};
       if (asset.kind != AssetKind::EnvironmentMap) return {.asset = asset, .image = pictureBeside(asset)};
       const auto map = spec::readLightImage(asset.file);
       if (!map) return {.asset = asset, .error = map.error().line()};
-      Made one{.asset = asset, .image = smallPictureOf(*map)};
-      cache.put(asset, one.image);
-      return one;
+      return {.asset = asset, .image = smallPictureOf(*map)};
     } catch (const std::exception& failure) {  // out of memory, mostly
       return {.asset = asset, .error = failure.what()};
     }
@@ -382,13 +286,12 @@ struct AssetPictures::Worker {
 
   std::mutex lock;  // protects the members below
   std::condition_variable_any wake;
-  std::deque<Request> requests;
+  std::deque<Asset> requests;
   std::vector<Made> made;
   std::jthread thread;  // it is joined before the others go
 };
 
-AssetPictures::AssetPictures(const std::filesystem::path& folder)
-    : worker_(std::make_unique<Worker>(folder)) {}
+AssetPictures::AssetPictures() : worker_(std::make_unique<Worker>()) {}
 AssetPictures::~AssetPictures() = default;
 
 const AssetPictures::Picture& AssetPictures::of(const Asset& asset) {
@@ -396,38 +299,23 @@ const AssetPictures::Picture& AssetPictures::of(const Asset& asset) {
   Picture& picture = pictures_[asset.file];
   if (!first && asked->second == asset) return picture;
   asked->second = asset;
-  picture = {.coming = true};
+  picture = {};
   ++coming_;
-  worker_->add({.asset = asset});
+  worker_->add(asset);
   return picture;
-}
-
-bool AssetPictures::lacks(const Asset& asset) {
-  const Picture& picture = of(asset);
-  return !picture.coming && picture.texture == 0 && picture.image.texels.empty();
-}
-
-void AssetPictures::keep(const Asset& asset, spec::Rgba8Image image) {
-  asked_[asset.file] = asset;
-  worker_->add({.asset = asset, .keep = image});
-  Picture& picture = pictures_[asset.file];
-  picture.image = std::move(image);
-  picture.error.clear();
-  picture.coming = false;
 }
 
 void AssetPictures::update() {
   for (Worker::Made& made : worker_->take()) {
     --coming_;
-    // The file may have changed, or its picture may have come from the view, in the meantime.
+    // The file may have changed in the meantime.
     const auto asked = asked_.find(made.asset.file);
     if (asked == asked_.end() || asked->second != made.asset) continue;
     Picture& picture = pictures_[made.asset.file];
-    if (!std::exchange(picture.coming, false)) continue;
     picture.image = std::move(made.image);
     picture.error = std::move(made.error);
   }
-  // What is still shown is found on disk again.
+  // What is still shown is made again.
   if (pictures_.size() <= kMostPictures || busy()) return;
   pictures_.clear();
   asked_.clear();

@@ -13,12 +13,9 @@
 #include <string_view>
 #include <vector>
 
-#include "baker/cache/cache.hpp"
 #include "editor/session/scenes.hpp"
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/process.hpp"
-#include "runtime/scene/bounds.hpp"
-#include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::editor {
@@ -87,42 +84,14 @@ class AssetBrowser {
 };
 
 // Brings the pictures of assets: those of environment maps are made of their files, those of scenes, bundles
-// and worlds are what the view showed of them last, or else a PNG of their name that lies beside them.
-// Panels ask for them; a thread finds them on disk or makes them, in the order in which they were asked for.
-// The renderer turns them into textures (editor/render/thumbnails). AssetPictures belongs to the main
-// thread.
+// and worlds are PNGs of their names that lie beside them. Panels ask for them; a thread makes them, in the
+// order in which they were asked for. The renderer turns them into textures. AssetPictures belongs to the
+// main thread.
 
 // Exposes the environment map so that its median becomes middle grey.
 spec::Rgba8Image smallPictureOf(const spec::RgbImage& environment_map);
-// Averages the middle of a picture, which is cut to the shape of the small one. Alpha becomes 1.
+// Averages the middle of a picture, which is cut to 16:9. Alpha becomes 1.
 spec::Rgba8Image smallPictureOf(const spec::Rgba8Image& view);
-inline constexpr double kSmallPictureShape = 16.0 / 9.0;  // width / height of pictures of views
-
-struct PicturePart {
-  std::uint32_t left = 0, top = 0, width = 0, height = 0;  // in pixels
-  bool operator==(const PicturePart&) const = default;
-};
-
-// Returns the part around the box, with a margin and in the shape of small pictures, or nothing if a corner
-// of the box is not in the picture or the part would be too small to recognise.
-std::optional<PicturePart> partWithBox(const spec::View& view, const spec::Size& size, const scene::Box& box);
-
-inline constexpr std::uint64_t kPictureCacheBytes = std::uint64_t{32} << 20;  // about 400 views
-
-// Keeps small pictures on disk, within a number of bytes: those that were not used for longest go first. A
-// picture belongs to a file as it was, by path, size and time, so a file that changed has none. Nothing
-// fails: what cannot be kept is not found again.
-class PictureCache {
- public:
-  // Without a folder, or if it cannot be made, nothing is kept.
-  explicit PictureCache(const std::filesystem::path& folder, std::uint64_t most_bytes = kPictureCacheBytes);
-
-  std::optional<spec::Rgba8Image> find(const Asset& asset) const;
-  void put(const Asset& asset, const spec::Rgba8Image& picture);
-
- private:
-  std::optional<baker::Cache> cache_;
-};
 
 class AssetPictures {
  public:
@@ -131,21 +100,14 @@ class AssetPictures {
     std::string error{};        // why an environment map cannot be read
     std::uint32_t texture = 0;  // OpenGL name; 0: none yet
     float aspect = 1.0f;        // width / height of the texture
-    bool coming = false;        // it is being looked for
   };
 
-  // Pictures are kept in this folder between starts. Without it they are made anew.
-  explicit AssetPictures(const std::filesystem::path& folder);
+  AssetPictures();
   ~AssetPictures();
 
   // Returns the picture as far as it is there. The first call for a file, or for a file that changed, asks
   // for it.
   const Picture& of(const Asset& asset);
-  // Returns whether it is known that there is no picture of the asset. The first call asks for it, as of()
-  // does.
-  bool lacks(const Asset& asset);
-  // Gives the asset another picture, and keeps it on disk.
-  void keep(const Asset& asset, spec::Rgba8Image image);
   void update();
   bool busy() const { return coming_ > 0; }
 

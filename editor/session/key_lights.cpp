@@ -14,8 +14,8 @@
 #include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/lighting/light_pieces.hpp"
-#include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/transforms.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {

@@ -20,34 +20,10 @@ std::string_view dockWord(Dock dock) {
   return kWords[static_cast<std::size_t>(dock)];
 }
 
-std::optional<Dock> parseDock(std::string_view word) {
-  for (const Dock dock : kDocks)
-    if (dockWord(dock) == word) return dock;
-  return std::nullopt;
-}
-
 WindowLayout::WindowLayout() {
   of(Dock::Left).tab = "Scene";
   of(Dock::Right).tab = "Inspector";
   of(Dock::Bottom).tab = "Bakes";
-}
-
-std::optional<WindowLayout> layoutNamed(std::string_view name) {
-  WindowLayout layout;
-  if (name == "default") return layout;
-  if (name == "lighting") {
-    layout.moved["Environment"] = Dock::Left;
-    layout.of(Dock::Left).tab = "Environment";
-    layout.of(Dock::Left).share = 0.24f;
-    layout.of(Dock::Bottom).shown = false;
-    return layout;
-  }
-  if (name == "baking") {
-    layout.of(Dock::Right).tab = "Plan";
-    layout.of(Dock::Bottom).share = 0.4f;
-    return layout;
-  }
-  return std::nullopt;
 }
 
 namespace {
@@ -60,12 +36,11 @@ void read(const nlohmann::json& json, const char* name, T& value) {
 }
 
 nlohmann::json layoutJson(const WindowLayout& layout) {
-  nlohmann::json json = {{"viewOnly", layout.view_only}, {"moved", nlohmann::json::object()}};
+  nlohmann::json json = {{"viewOnly", layout.view_only}};
   for (const Dock dock : kDocks) {
     const DockLayout& part = layout.of(dock);
     json[dockWord(dock)] = {{"share", part.share}, {"tab", part.tab}, {"shown", part.shown}};
   }
-  for (const auto& [panel, dock] : layout.moved) json["moved"][panel] = dockWord(dock);
   return json;
 }
 
@@ -77,35 +52,6 @@ void readLayout(const nlohmann::json& json, WindowLayout& layout) {
       read(*part, "share", to.share), read(*part, "tab", to.tab), read(*part, "shown", to.shown);
       to.share = std::clamp(to.share, 0.0f, 1.0f);
     }
-  if (const auto moved = json.find("moved"); moved != json.end())
-    for (const auto& [panel, word] : moved->items())
-      if (const auto dock = parseDock(word.get<std::string>())) layout.moved[panel] = *dock;
-}
-
-nlohmann::json handlesJson(const GizmoOptions& handles) {
-  return {{"mode", static_cast<int>(handles.mode)},
-          {"local", handles.space == GizmoSpace::Local},
-          {"pivot", static_cast<int>(handles.pivot)},
-          {"snap", handles.snap},
-          {"metres", handles.snap_m},
-          {"degrees", handles.snap_deg},
-          {"factor", handles.snap_scale}};
-}
-
-void readHandles(const nlohmann::json& json, GizmoOptions& handles) {
-  int mode = 0, pivot = 0;
-  bool local = false;
-  read(json, "mode", mode), read(json, "pivot", pivot), read(json, "local", local);
-  handles.mode = static_cast<GizmoMode>(std::clamp(mode, 0, 2));
-  handles.pivot = static_cast<GizmoPivot>(std::clamp(pivot, 0, 2));
-  handles.space = local ? GizmoSpace::Local : GizmoSpace::World;
-  read(json, "snap", handles.snap);
-  const auto step = [&](const char* name, float& value) {
-    float given = value;
-    read(json, name, given);
-    if (given > 0.0f) value = given;
-  };
-  step("metres", handles.snap_m), step("degrees", handles.snap_deg), step("factor", handles.snap_scale);
 }
 
 }  // namespace
@@ -135,11 +81,7 @@ Preferences loadPreferences(const std::filesystem::path& file) {
   try {
     read(json, "width", p.width), read(json, "height", p.height);
     if (const auto layout = json.find("layout"); layout != json.end()) readLayout(*layout, p.layout);
-    if (const auto layouts = json.find("layouts"); layouts != json.end())
-      for (const auto& [name, layout] : layouts->items()) readLayout(layout, p.layouts[name]);
-    if (const auto handles = json.find("handles"); handles != json.end()) readHandles(*handles, p.handles);
     read(json, "cameraPreview", p.camera_preview);
-    read(json, "desktopDialogs", p.desktop_dialogs);
     read(json, "scale", p.scale), read(json, "recent", p.recent);
     read(json, "lightUnit", p.light_unit);
   } catch (const nlohmann::json::exception&) {
@@ -156,16 +98,11 @@ void savePreferences(const std::filesystem::path& file, const Preferences& p) {
   std::filesystem::create_directories(file.parent_path(), ignored);
   auto out = AtomicFile::open(file);
   if (!out) return;
-  nlohmann::json layouts = nlohmann::json::object();
-  for (const auto& [name, layout] : p.layouts) layouts[name] = layoutJson(layout);
   const std::string text = nlohmann::json{
       {"width", p.width},
       {"height", p.height},
       {"layout", layoutJson(p.layout)},
-      {"layouts", layouts},
-      {"handles", handlesJson(p.handles)},
       {"cameraPreview", p.camera_preview},
-      {"desktopDialogs", p.desktop_dialogs},
       {"scale", p.scale},
       {"recent", p.recent},
       {"lightUnit",

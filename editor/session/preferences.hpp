@@ -1,4 +1,4 @@
-// Loads and saves what the editor remembers between runs: layout, recent files, how handles drag. The file
+// Loads and saves what the editor remembers between runs: layout and recent files. The file
 // is $XDG_CONFIG_HOME/lambent/editor.json. If it is missing or damaged, defaults are used; errors while
 // saving are ignored.
 #pragma once
@@ -6,20 +6,15 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "editor/gizmo/gizmo.hpp"
 
 namespace lambent::editor {
 
 enum class Dock : std::uint8_t { Left, Right, Bottom };
 inline constexpr std::array kDocks = {Dock::Left, Dock::Right, Dock::Bottom};
 std::string_view dockWord(Dock dock);  // "left", "right", "below"
-std::optional<Dock> parseDock(std::string_view word);
 
 struct DockLayout {
   float share = 0.0f;  // of the window's width or height; 0: what its panels need
@@ -28,31 +23,22 @@ struct DockLayout {
   bool operator==(const DockLayout&) const = default;
 };
 
-// Holds how the window is divided: the room and the front panel of each dock around the view, and which
-// panels the user moved to another dock. Some layouts have names.
+// Holds how the window is divided: the room and the front panel of each dock around the view.
 struct WindowLayout {
   WindowLayout();  // the default layout
 
-  std::array<DockLayout, 3> docks;    // in the order of Dock
-  std::map<std::string, Dock> moved;  // panels that are elsewhere than at first
-  bool view_only = false;             // the view fills the window
+  std::array<DockLayout, 3> docks;  // in the order of Dock
+  bool view_only = false;           // the view fills the window
 
   DockLayout& of(Dock dock) { return docks[static_cast<std::size_t>(dock)]; }
   const DockLayout& of(Dock dock) const { return docks[static_cast<std::size_t>(dock)]; }
   bool operator==(const WindowLayout&) const = default;
 };
 
-// Returns one of the layouts that come with the program: "default", "lighting" (the environment beside the
-// inspector of lamps) or "baking" (bakes and plan). Returns nothing if there is none of that name.
-std::optional<WindowLayout> layoutNamed(std::string_view name);
-
 struct Preferences {
   int width = 1600, height = 950;  // of the window
   WindowLayout layout;
-  std::map<std::string, WindowLayout> layouts;  // those that the user saved, by name
-  GizmoOptions handles;                         // as the view had them at the end of the last run
-  bool camera_preview = true;                   // an inset shows what a selected camera sees
-  bool desktop_dialogs = true;    // files are chosen in the desktop's own dialogs where there are any
+  bool camera_preview = true;     // an inset shows what a selected camera sees
   float scale = 1.0f;             // of text and widgets
   std::string light_unit = "cd";  // in which lights are given that can be given in it
   std::vector<std::string> recent;

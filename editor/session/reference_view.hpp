@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "baker/accuracy/difference.hpp"
+#include "baker/accuracy/compare.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/import/scene_edits.hpp"
 #include "editor/document/document.hpp"

@@ -11,9 +11,9 @@
 #include "editor/session/session.hpp"
 #include "runtime/base/finite.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/materials.hpp"
+#include "runtime/scene/transforms.hpp"
 #include "runtime/world/material_rebake.hpp"
 
 namespace lambent::editor {

@@ -75,16 +75,6 @@ class Scenes {
   // Returns whether bakes are running or have results that update() has not applied yet.
   bool busy() const;
 
-  // Bakes that an earlier session left unfinished and whose scenes are not open. They are offered, and
-  // nothing of them is shown: goOn() bakes one unseen, open() of its scene goes on too, forget() gives it up.
-  void findUnfinished();
-  const std::vector<baker::BakeRequest>& unfinished() const { return unfinished_; }
-  void goOn(std::size_t unfinished);
-  void forget(std::size_t unfinished);
-  // Returns the bakes that goOn() has begun and whose scenes are not open.
-  std::vector<baker::JobState> unseen() const;
-  void cancelUnseen(baker::JobId job) { queue_->cancel(job); }
-
   const std::vector<SceneEntry>& entries() const { return entries_; }
   // Returns the state at the last update() or request, so that all parts of a frame say the same.
   std::optional<baker::JobState> jobOf(std::size_t entry) const;
@@ -101,7 +91,6 @@ class Scenes {
   Result<void> openFolder(const std::filesystem::path& folder);
   void show(SceneEntry& entry, const std::filesystem::path& bundle);
   void take(const baker::BakeEvent& event);
-  void takeUnseen(const baker::BakeEvent& event);
   void take(const baker::WatchEvent& event);
   void watch();
   bool isWatched(const std::filesystem::path& scene) const;
@@ -118,8 +107,6 @@ class Scenes {
   std::unique_ptr<baker::SourceWatch> watch_;
   std::vector<std::filesystem::path> watched_;  // folders
   std::vector<SceneEntry> entries_;
-  std::vector<baker::BakeRequest> unfinished_;
-  std::vector<baker::JobId> unseen_;
   std::vector<baker::JobState> jobs_;  // as update() or a request found them
   std::uint64_t version_ = 1;
   std::uint64_t idle_updates_ = 0;  // consecutive calls of update() with nothing to bake

@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "runtime/base/lower_case.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
@@ -28,13 +28,6 @@ SceneSettings sceneSettings(const SessionOptions& options) {
   return settings;
 }
 
-// Returns the folder of pictures in that of the cache, or an empty path without a cache.
-std::filesystem::path pictureFolder(const SessionOptions& options) {
-  const std::filesystem::path cache =
-      options.cache_folder.empty() ? baker::Cache::defaultFolder() : options.cache_folder;
-  return cache.empty() ? cache : cache / "pictures";
-}
-
 }  // namespace
 
 Session::Session(const SessionOptions& options, Preferences given, Stage made)
@@ -42,8 +35,7 @@ Session::Session(const SessionOptions& options, Preferences given, Stage made)
       stage(std::move(made)),
       scenes(stage.world(), log, sceneSettings(options)),
       document(stage.world().registry()),
-      history(document),
-      asset_pictures(pictureFolder(options)) {
+      history(document) {
   document.adoptAll();
   WorldState world;
   for (const std::string& word : options.light_words) {
@@ -58,7 +50,6 @@ Session::Session(const SessionOptions& options, Preferences given, Stage made)
     world.lights.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
   document.setWorld(std::move(world));
   document.adoptAll();
-  handles.gizmo.options = preferences.handles;
 }
 
 Result<std::unique_ptr<Session>> Session::create(const SessionOptions& options, Preferences preferences) {
@@ -67,7 +58,6 @@ Result<std::unique_ptr<Session>> Session::create(const SessionOptions& options, 
   std::unique_ptr<Session> session(new Session(options, std::move(preferences), std::move(*stage)));
   session->followDocument();
   session->files.openLogged(options.files);
-  session->scenes.findUnfinished();
   session->history.clear();
   return session;
 }
@@ -89,28 +79,7 @@ void Session::logBundleErrors() {
   told_ = std::move(wrong);
 }
 
-// Hands questions for files over to the desktop's dialog, and answers them with what it says. Should it fail,
-// the question is asked in the window.
-void Session::useDesktopDialogs() {
-  using Kind = Dialog::Kind;
-  if (auto closed = window.desktop_dialog.closed()) {
-    if (!closed->answer) {
-      log.warn(closed->answer.error().line() + "; the editor's own file dialogs are used");
-      window.desktop_program.clear();
-      window.dialog = std::move(closed->question);
-    } else if (!closed->answer->empty() && closed->question.answered) {
-      closed->question.answered(*this, *closed->answer);
-    }
-  }
-  if (!window.dialog || window.desktop_program.empty() || !preferences.desktop_dialogs) return;
-  if (window.dialog->kind == Kind::Confirm || window.dialog->kind == Kind::Text) return;
-  // A second question while one is open elsewhere is dropped: the first must be answered or cancelled.
-  Dialog asked = *std::exchange(window.dialog, std::nullopt);
-  if (!window.desktop_dialog.open()) window.desktop_dialog.ask(window.desktop_program, std::move(asked));
-}
-
 void Session::update(double seconds) {
-  useDesktopDialogs();
   if (scenes.update()) {
     document.adoptAll();
     scene_steps.update();
@@ -139,8 +108,7 @@ bool Session::moving() const {
 }
 
 bool Session::awaits() const {
-  return scenes.busy() || window.desktop_dialog.open() || plans.busy() || assets.busy() ||
-         asset_pictures.busy() || log.hasToasts();
+  return scenes.busy() || plans.busy() || assets.busy() || asset_pictures.busy() || log.hasToasts();
 }
 
 bool holdsWords(std::string_view text, std::string_view search) {

@@ -97,7 +97,7 @@ class Session {
   bool loaded() const { return stage.world().loaded() && (!viewing.frame_when_loaded || !awaitsScene()); }
   bool baked() const { return !scenes.busy() && loaded(); }
   bool atRest() const { return loaded() && picture.settled && !picture.in_flight; }
-  bool measured() const { return !settings.busy() && !qualities.busy(); }
+  bool measured() const { return !settings.busy(); }
   // Returns whether frames must be drawn even without input.
   bool moving() const;
   // Returns whether something comes from elsewhere that the window will show: bakes, files that are read,
@@ -121,7 +121,6 @@ class Session {
   PictureFacts picture;
   ReferenceView reference;
   SettingStudy settings;
-  QualityStudy qualities;
   Plans plans;
   AssetBrowser assets;
   AssetPictures asset_pictures;
@@ -135,7 +134,6 @@ class Session {
   // Returns whether a scene is open of which nothing is shown yet, and may be.
   bool awaitsScene() const;
   void logBundleErrors();
-  void useDesktopDialogs();
 
   std::vector<std::string> told_;  // bundle errors that are already in the log
   std::uint64_t world_followed_ = 0;

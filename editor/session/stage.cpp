@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {

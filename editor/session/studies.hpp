@@ -1,6 +1,6 @@
-// Finds out on request what the present view costs with other settings and qualities, and what a bake of a
-// scene would simulate. The studies of the frame measure one thing a frame, so that the editor stays
-// responsive; their update() needs a current OpenGL context, and the renderer calls it. Main thread.
+// Finds out on request what the present view costs with other settings, and what a bake of a scene would
+// simulate. SettingStudy measures one setting a frame, so that the editor stays responsive; its update()
+// needs a current OpenGL context, and the renderer calls it. Main thread.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +14,6 @@
 #include "baker/plan/effect_plan.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/measure/measured_frame.hpp"
-#include "runtime/spec/camera.hpp"
-#include "runtime/spec/image.hpp"
 
 namespace lambent::editor {
 
@@ -34,35 +32,6 @@ class SettingStudy {
  private:
   std::vector<std::string> waiting_;  // the last is the next
   std::map<std::string, frame::SettingCost, std::less<>> costs_;
-};
-
-// Measures what each quality (frame/frame_settings.hpp) costs in time and in error, the highest first. The
-// error is the relative RMS of linear radiance against the picture at high quality, whose own errors only the
-// reference shows.
-class QualityStudy {
- public:
-  // Starts measuring, with the view, light and settings at the next update().
-  void measure();
-  void update(Session& session);
-  bool busy() const { return !waiting_.empty(); }
-
-  struct Row {
-    std::string quality;
-    double error = 0.0;  // relative to the highest quality, where it is 0
-    frame::FrameCost cost;
-  };
-  // Returns the results so far, from the lowest quality to the highest.
-  const std::vector<Row>& rows() const { return rows_; }
-  // Returns the size of the measured pictures: the view's, or smaller if the view is large.
-  const spec::Size& size() const { return size_; }
-  const spec::View& view() const { return view_; }
-
- private:
-  std::vector<std::string> waiting_;  // the last is the next
-  std::vector<Row> rows_;
-  spec::RgbaImage highest_;
-  spec::Size size_{};
-  spec::View view_;
 };
 
 struct ScenePlan {

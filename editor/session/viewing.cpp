@@ -10,8 +10,8 @@
 #include <glm/trigonometric.hpp>
 
 #include "editor/session/session.hpp"
-#include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/transforms.hpp"
 
 namespace lambent::editor {
 
@@ -121,26 +121,12 @@ void Viewing::follow(const WorldState& world) {
   }
 }
 
-namespace {
-
-// Returns the entity if it is a camera, or none.
-ecs::Entity asCamera(const Session& session, ecs::Entity entity) {
+ecs::Entity selectedCamera(const Session& session) {
   const ecs::Registry& registry = session.document.registry();
+  const ecs::Entity entity = session.selection.primaryEntity(session.document);
   const bool camera = registry.alive(entity) && registry.has<scene::CameraComponent>(entity) &&
                       registry.has<scene::Transform>(entity);
   return camera ? entity : ecs::Entity{};
-}
-
-}  // namespace
-
-ecs::Entity selectedCamera(const Session& session) {
-  return asCamera(session, session.selection.primaryEntity(session.document));
-}
-
-ecs::Entity shownCamera(const Session& session) {
-  const ecs::Entity selected = session.preferences.camera_preview ? selectedCamera(session) : ecs::Entity{};
-  return session.document.registry().alive(selected) ? selected
-                                                     : asCamera(session, session.viewing.kept_camera);
 }
 
 float aspectOf(const Session& session, ecs::Entity camera) {

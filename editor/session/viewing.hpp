@@ -75,8 +75,6 @@ class Viewing {
   frame::OverlayOptions overlays;
   // The index into Environment::keys() of the key light whose fields are shown.
   std::optional<std::size_t> key_at_hand;
-  // The camera whose picture stays in the view while other things are selected.
-  ecs::Entity kept_camera;
   PictureScale scale;
   // Returns the surface point in the middle of the picture, or none where the sky is. It is empty without a
   // window.
@@ -108,10 +106,8 @@ class Viewing {
 
 // ---- Cameras that stand in the world.
 
+// Returns the selected entity if it is a camera, or none.
 ecs::Entity selectedCamera(const Session& session);
-// Returns the camera whose picture the view shows as an inset: the selected one, as far as the preferences
-// want that, or else the one that is kept, or none.
-ecs::Entity shownCamera(const Session& session);
 // Returns width over height of the camera's picture: its own, or that of the view.
 float aspectOf(const Session& session, ecs::Entity camera);
 Result<spec::View> viewOfCamera(const Session& session, ecs::Entity camera, float aspect);

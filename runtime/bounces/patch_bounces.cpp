@@ -310,8 +310,9 @@ void PatchBounces::uploadPatches(gpu::Counters& counters) {
       patches.emplace_back(radiance, 0.0f);
     if (!room.room.givenOffByBands().empty()) {
       glm::vec4* patch = &patches[room.first_patch];
+      const float sign = room.room.hasLamps() ? 1.0f : -1.0f;
       for (const glm::vec3& radiance : regions.means(room.room.givenOffByBands()))
-        patch++->w = static_cast<float>(lighting::luminance(radiance));
+        patch++->w = sign * static_cast<float>(lighting::luminance(radiance));
     }
     patches.emplace_back(0.0f);
   }

@@ -7,9 +7,10 @@
 //
 // Patches are coarse, and what they take away may be more than the light that transfer brings. Therefore they
 // also say what they reflect of all light as the bands know it: where that is more than transfer knows of,
-// they take away in proportion (shareOfChange in patch_change.glsl).
+// the change is in proportion (shareOfChange in patch_change.glsl).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -79,6 +80,10 @@ class PatchRoom {
   const std::vector<glm::vec3>& givenOff() const { return given_off_; }
   // Returns the exit radiance of each patch by the bands of all light. Empty if there are no key lights.
   const std::vector<glm::vec3>& givenOffByBands() const { return given_off_by_bands_; }
+  // Returns whether lamps are among its lights.
+  bool hasLamps() const {
+    return std::ranges::any_of(sources_, [](const Source& source) { return source.light.index() == 0; });
+  }
   // Rises when one of these changes.
   std::uint64_t version() const { return version_; }
   // Returns the sum of all relative changes of givenOff() so far.

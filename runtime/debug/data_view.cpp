@@ -17,7 +17,7 @@ namespace {
 
 using evaluate::TransferValue;
 
-// These are the uniform locations of data_view.frag.
+// These are the uniform locations of data_view.glsl.
 constexpr GLint kDrawIndex = 0, kRange = 1, kWireColor = 2;
 
 struct CodingErrors {
@@ -122,7 +122,7 @@ Result<void> DataView::drawAll(World& world, const spec::View& view, Kind kind, 
     if (kind != Kind::Wires) defines.push_back({"LAMBENT_VALUES", "1"});
     if (numbers_) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
     Result<gpu::Program> made = gpu::Program::create(
-        "data view", {{GL_VERTEX_SHADER, "data_view.vert"}, {GL_FRAGMENT_SHADER, "data_view.frag"}},
+        "data view", {{GL_VERTEX_SHADER, "data_view.glsl"}, {GL_FRAGMENT_SHADER, "data_view.glsl"}},
         kDebugShaders, defines);
     if (!made) return failAgain(made.error());
     programs_.emplace(kind, std::move(*made));

@@ -1,14 +1,18 @@
-#include "runtime/debug/overlay_lines.hpp"
-
+// Turns what overlays show of boxes and lights into lines in world space. No GL; empty input adds nothing.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <span>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runtime/world/boxes.hpp"
+#include "runtime/debug/overlays.hpp"
+#include "runtime/scene/bounds.hpp"
+#include "runtime/scene/components.hpp"
 
 namespace lambent::frame {
 
@@ -23,12 +27,13 @@ constexpr glm::vec4 kFaintNeighborhoodColor{0.78f, 0.6f, 1.0f, 0.25f};
 constexpr int kCircleSteps = 48;
 
 struct Glyph {
-  glm::vec3 origin, x, y, z;  // unit axes; the light shines along -z
+  glm::vec3 x, y, z;  // unit axes; the light shines along -z
   glm::vec4 color;
+  float width_px = 1.5f;
   std::vector<OverlayLine>& lines;
 
   void line(const glm::vec3& from, const glm::vec3& to) const {
-    lines.push_back({.from_ws = from, .to_ws = to, .color = color});
+    lines.push_back({.from_ws = from, .to_ws = to, .color = color, .width_px = width_px});
   }
   void circle(const glm::vec3& center, const glm::vec3& a, const glm::vec3& b, float radius) const {
     glm::vec3 before = center + radius * a;
@@ -40,13 +45,15 @@ struct Glyph {
     }
   }
   void arrow(const glm::vec3& from, float length) const {
+    arrow(from, length, 0.22f * length, 0.11f * length);
+  }
+  void arrow(const glm::vec3& from, float length, float head_length, float head_radius) const {
     const glm::vec3 to = from - length * z;
-    const float head = 0.22f * length;
     line(from, to);
-    for (const glm::vec3& side : {x, -x, y, -y}) line(to, to + head * z + 0.5f * head * side);
+    for (const glm::vec3& side : {x, -x, y, -y}) line(to, to + head_length * z + head_radius * side);
   }
   // Draws the outline of a spot's cone at an angle, up to a circle at the given length.
-  void cone(float angle_rad, float length, bool sides) const {
+  void cone(const glm::vec3& origin, float angle_rad, float length, bool sides) const {
     const float along = length * std::cos(angle_rad), radius = length * std::sin(angle_rad);
     const glm::vec3 center = origin - along * z;
     circle(center, x, y, radius);
@@ -75,36 +82,45 @@ void appendSlice(const scene::Box& box, const glm::mat4& world_from_box, const N
                      .width_px = 1.0f});
 }
 
-// Returns the unit vector along v, or `otherwise` if v has no direction.
-glm::vec3 unitOr(const glm::vec3& v, const glm::vec3& otherwise) {
-  const float length = glm::length(v);
-  return length > 0.0f && std::isfinite(length) ? v / length : otherwise;
+// Starts a glyph of a light that shines along -z, a unit vector.
+Glyph glyphAlong(const glm::vec3& z, const glm::vec4& color, std::vector<OverlayLine>& lines) {
+  const glm::vec3 beside = std::abs(z.y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(1.0f, 0.0f, 0.0f);
+  const glm::vec3 x = glm::normalize(glm::cross(beside, z));
+  return {.x = x, .y = glm::cross(z, x), .z = z, .color = color, .lines = lines};
 }
 
-}  // namespace
+// Appends the twelve edges between corners whose bits 1, 2 and 4 select the far end along an axis.
+void appendEdges(const std::array<glm::vec3, 8>& corners, const glm::vec4& color, float width_px,
+                 std::vector<OverlayLine>& lines) {
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    for (const std::size_t bit : {1u, 2u, 4u})
+      if ((i & bit) == 0)
+        lines.push_back(
+            {.from_ws = corners[i], .to_ws = corners[i | bit], .color = color, .width_px = width_px});
+}
 
 void appendBox(const scene::Box& box, const glm::mat4& world_from_box, const glm::vec4& color,
                std::vector<OverlayLine>& lines) {
   if (box.empty()) return;
-  const auto corner = [&](unsigned bits) {
-    const glm::vec3 place((bits & 1u) != 0 ? box.max.x : box.min.x, (bits & 2u) != 0 ? box.max.y : box.min.y,
-                          (bits & 4u) != 0 ? box.max.z : box.min.z);
-    return glm::vec3(world_from_box * glm::vec4(place, 1.0f));
-  };
-  for (unsigned bits = 0; bits < 8; ++bits)
-    for (unsigned axis = 1; axis < 8; axis *= 2)
-      if ((bits & axis) == 0)
-        lines.push_back({.from_ws = corner(bits), .to_ws = corner(bits | axis), .color = color});
+  std::array<glm::vec3, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::vec3 place((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
+                          (i & 4) != 0 ? box.max.z : box.min.z);
+    corners[i] = glm::vec3(world_from_box * glm::vec4(place, 1.0f));
+  }
+  appendEdges(corners, color, 1.5f, lines);
 }
 
+// Appends the outline of a sphere or disc at its size, a cone for a spot, an arrow for a directional light,
+// or a star for a point light. size_m is the length used for what has no size of its own. Lights shine along
+// the node's -Z.
 void appendLight(const scene::LocalLightComponent& light, const glm::mat4& world_from_node, float size_m,
                  const glm::vec4& color, std::vector<OverlayLine>& lines) {
-  const glm::vec3 z = unitOr(glm::vec3(world_from_node[2]), {0.0f, 0.0f, 1.0f});
-  const glm::vec3 across = std::abs(z.y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(1.0f, 0.0f, 0.0f);
-  const glm::vec3 x = glm::normalize(glm::cross(across, z)), y = glm::cross(z, x);
-  const Glyph glyph{
-      .origin = glm::vec3(world_from_node[3]), .x = x, .y = y, .z = z, .color = color, .lines = lines};
-  const glm::vec3& o = glyph.origin;
+  const glm::vec3 back(world_from_node[2]), o(world_from_node[3]);
+  const float length = glm::length(back);
+  const Glyph glyph = glyphAlong(
+      length > 0.0f && std::isfinite(length) ? back / length : glm::vec3(0.0f, 0.0f, 1.0f), color, lines);
+  const glm::vec3 &x = glyph.x, &y = glyph.y, &z = glyph.z;
   switch (light.kind) {
     case Kind::Sphere:
       glyph.circle(o, x, y, light.radius_m);
@@ -116,8 +132,8 @@ void appendLight(const scene::LocalLightComponent& light, const glm::mat4& world
       glyph.arrow(o, std::max(light.radius_m, 0.5f * size_m));
       break;
     case Kind::Spot:
-      glyph.cone(light.outer_cone_rad, 2.0f * size_m, /*sides=*/true);
-      if (light.inner_cone_rad > 0.0f) glyph.cone(light.inner_cone_rad, 2.0f * size_m, /*sides=*/false);
+      glyph.cone(o, light.outer_cone_rad, 2.0f * size_m, /*sides=*/true);
+      if (light.inner_cone_rad > 0.0f) glyph.cone(o, light.inner_cone_rad, 2.0f * size_m, /*sides=*/false);
       break;
     case Kind::Directional: {
       glyph.circle(o, x, y, 0.35f * size_m);
@@ -137,52 +153,114 @@ void appendLight(const scene::LocalLightComponent& light, const glm::mat4& world
   }
 }
 
+// Returns the size of glyphs in this world, in metres.
 float signSize(const World& world) {
   const scene::Box bounds = scene::worldBounds(world.registry());
   const float radius = bounds.empty() ? 1.0f : bounds.radius();
   return radius > 0.0f ? 0.05f * radius : 0.05f;
 }
 
-std::vector<bool> drawnWhole(const std::vector<PlacedBox>& boxes, const glm::vec3& eye) {
-  const auto distance = [&](const PlacedBox& box) {
-    return glm::length(glm::vec3(box.world_from_box * glm::vec4(box.box.center(), 1.0f)) - eye);
-  };
-  std::vector<bool> whole;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    bool foremost = true;
-    for (std::size_t other = 0; other < boxes.size() && foremost; ++other) {
-      const PlacedBox &a = boxes[i], &b = boxes[other];
-      if (other == i || !meet(a.box, a.world_from_box, b.box, b.world_from_box)) continue;
-      // Of two boxes at the same distance, the first counts as nearer.
-      foremost = !b.wanted && (other < i ? distance(a) < distance(b) : distance(a) <= distance(b));
-    }
-    whole.push_back(foremost || boxes[i].wanted);
-  }
-  return whole;
+constexpr float kLeastOutline_rad = 0.0175f;
+constexpr std::size_t kMostBoxes = 4;  // of shadow maps, unless one is chosen
+constexpr glm::vec3 kDark{0.45f};
+
+float fluxOf(const spec::Disc& key) {
+  const float half = std::sin(0.5f * key.radius_rad);
+  return half * half * (key.radiance.r + key.radiance.g + key.radiance.b);
 }
 
-std::vector<std::uint32_t> foremostNeighborhoods(const World& world, const Neighborhoods& neighborhoods,
-                                                 const OverlayOptions& options, const glm::vec3& eye) {
-  std::vector<std::uint32_t> groups;
+// Returns a warm white mixed with the light's colour at full brightness, or grey if it gives nothing.
+glm::vec3 colorOf(const glm::vec3& light, float share) {
+  const float peak = std::max({light.r, light.g, light.b});
+  return peak > 0.0f ? glm::mix(glm::vec3(1.0f, 0.93f, 0.6f), light / peak, share) : kDark;
+}
+
+// Appends the ring of a key light on the sky. Ticks distinguish it from a round object in the scene.
+void appendRing(const spec::Disc& key, const spec::View& view, float distance, const glm::vec4& color,
+                std::vector<OverlayLine>& lines) {
+  Glyph glyph = glyphAlong(key.direction, color, lines);
+  glyph.width_px = 2.0f;
+  const float radius = std::max(key.radius_rad, kLeastOutline_rad), outside = radius + kLeastOutline_rad;
+  const auto centerAt = [&](float beside) { return view.eye_ws + distance * std::cos(beside) * glyph.z; };
+  glyph.circle(centerAt(radius), glyph.x, glyph.y, distance * std::sin(radius));
+  for (const glm::vec3& side : {glyph.x, glyph.y, -glyph.x, -glyph.y})
+    glyph.line(centerAt(radius) + distance * std::sin(radius) * side,
+               centerAt(outside) + distance * std::sin(outside) * side);
+}
+
+void appendKeys(const OverlayOptions& options, const OverlayScene& scene, std::vector<OverlayLine>& lines) {
+  const scene::Box world = scene::worldBounds(scene.world.registry());
+  const std::span<const spec::Disc> keys = scene.environment.keys();
+  float most = 0.0f;
+  for (const spec::Disc& key : keys) most = std::max(most, fluxOf(key));
+  const auto shownAs = [&](const spec::Disc& key, float share) {
+    const float bright = most > 0.0f ? 0.3f + 0.7f * std::sqrt(std::max(fluxOf(key), 0.0f) / most) : 0.3f;
+    return glm::vec4(colorOf(glm::max(key.radiance, 0.0f), 0.6f), share * bright);
+  };
+  const bool perspective = scene.view.clip_from_view[2][3] != 0.0f;
+  const float distance =
+      world.empty() ? 1e3f : 1e2f * (world.radius() + glm::distance(world.center(), scene.view.eye_ws));
+  for (const spec::Disc& key : keys) {
+    const glm::vec4 color = shownAs(key, 1.0f);
+    if (perspective) appendRing(key, scene.view, distance, color, lines);
+    if (world.empty()) continue;
+    const float radius = std::max(world.radius(), 1e-3f);
+    glyphAlong(key.direction, color, lines)
+        .arrow(world.center() + 1.3f * radius * key.direction, 1.05f * radius, 0.12f * radius,
+               0.048f * radius);
+  }
+  std::vector<KeyShadows::ShownRegion> boxes = scene.key_shadows.regions();
+  if (options.key && *options.key < keys.size())
+    std::erase_if(boxes, [&](const KeyShadows::ShownRegion& shown) {
+      return shown.light.direction != keys[*options.key].direction;
+    });
+  std::ranges::stable_sort(boxes, std::ranges::greater(),
+                           [](const KeyShadows::ShownRegion& shown) { return fluxOf(shown.light); });
+  boxes.resize(std::min(boxes.size(), kMostBoxes));
+  for (const KeyShadows::ShownRegion& shown : boxes)
+    appendEdges(cornersOf(shown.region), shownAs(shown.light, 0.7f), 1.0f, lines);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> foremostNeighborhoods(const OverlayOptions& options, const OverlayScene& scene) {
+  struct PlacedBox {
+    std::uint32_t group;
+    scene::Box box;
+    glm::mat4 world_from_box;
+    float distance;  // of its centre, from the eye
+    bool wanted;
+  };
   std::vector<PlacedBox> boxes;
-  for (const auto& grid : neighborhoods.effect().grids()) {
+  for (const auto& grid : scene.neighborhoods.effect().grids()) {
     if (!options.shows(grid.group)) continue;
-    groups.push_back(grid.group);
+    const scene::Box box{grid.points.bounds_min, grid.points.bounds_max};
+    const glm::mat4 place = scene.world.worldFromGroup(grid.group);
     boxes.push_back(
-        {.box = {grid.points.bounds_min, grid.points.bounds_max},
-         .world_from_box = world.worldFromGroup(grid.group),
+        {.group = grid.group,
+         .box = box,
+         .world_from_box = place,
+         .distance = glm::length(glm::vec3(place * glm::vec4(box.center(), 1.0f)) - scene.view.eye_ws),
          .wanted = std::ranges::find(options.foremost_groups, grid.group) != options.foremost_groups.end()});
   }
-  const std::vector<bool> whole = drawnWhole(boxes, eye);
   std::vector<std::uint32_t> foremost;
-  for (std::size_t i = 0; i < groups.size(); ++i)
-    if (whole[i]) foremost.push_back(groups[i]);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const PlacedBox& a = boxes[i];
+    bool first = true;
+    for (std::size_t other = 0; other < boxes.size() && first; ++other) {
+      const PlacedBox& b = boxes[other];
+      if (other == i || !meet(a.box, a.world_from_box, b.box, b.world_from_box)) continue;
+      // Of two boxes at the same distance, the first counts as nearer.
+      first = !b.wanted && (other < i ? a.distance < b.distance : a.distance <= b.distance);
+    }
+    if (first || a.wanted) foremost.push_back(a.group);
+  }
   return foremost;
 }
 
-std::vector<OverlayLine> linesOf(const World& world, const Neighborhoods& neighborhoods,
-                                 const OverlayOptions& options, const glm::vec3& eye) {
+std::vector<OverlayLine> linesOf(const OverlayOptions& options, const OverlayScene& scene) {
   std::vector<OverlayLine> lines = options.lines;
+  const World& world = scene.world;
   const streaming::Residency& residency = world.residency();
   for (std::uint32_t g = 0; g < residency.groups().size(); ++g) {
     if (!options.shows(g)) continue;
@@ -196,8 +274,8 @@ std::vector<OverlayLine> linesOf(const World& world, const Neighborhoods& neighb
     }
   }
   if (options.neighborhoods) {
-    const std::vector<std::uint32_t> foremost = foremostNeighborhoods(world, neighborhoods, options, eye);
-    for (const auto& grid : neighborhoods.effect().grids()) {
+    const std::vector<std::uint32_t> foremost = foremostNeighborhoods(options, scene);
+    for (const auto& grid : scene.neighborhoods.effect().grids()) {
       if (!options.shows(grid.group)) continue;
       const bool whole = std::ranges::find(foremost, grid.group) != foremost.end();
       const scene::Box box{grid.points.bounds_min, grid.points.bounds_max};
@@ -210,82 +288,14 @@ std::vector<OverlayLine> linesOf(const World& world, const Neighborhoods& neighb
     const float size = signSize(world);
     for (auto [entity, light] : world.registry().view<const scene::LocalLightComponent>()) {
       const auto* place = world.registry().tryGet<scene::WorldTransform>(entity);
-      // The line has the light's colour at full brightness, and is dark if the light gives nothing.
-      const float peak = std::max({light.color.r, light.color.g, light.color.b});
-      const bool on = light.power() != glm::vec3(0.0f) && peak > 0.0f;
-      const glm::vec3 color =
-          on ? glm::mix(glm::vec3(1.0f, 0.93f, 0.6f), light.color / peak, 0.5f) : glm::vec3(0.45f);
+      const glm::vec3 color = light.power() != glm::vec3(0.0f) ? colorOf(light.color, 0.5f) : kDark;
       appendLight(light, place ? place->world_from_node : glm::mat4(1.0f), size, glm::vec4(color, 1.0f),
                   lines);
     }
   }
+  if (options.keys) appendKeys(options, scene, lines);
   return lines;
 }
-
-namespace {
-
-constexpr int kOutlineSteps = 48;
-constexpr float kLeastOutline_rad = 0.0175f;
-constexpr glm::vec3 kDark{0.45f};
-
-float fluxOf(const spec::Disc& key) {
-  const float half = std::sin(0.5f * key.radius_rad);
-  return half * half * (key.radiance.r + key.radiance.g + key.radiance.b);
-}
-
-// Returns the light's colour at full brightness.
-glm::vec3 colorOf(const spec::Disc& key) {
-  const float peak = std::max({key.radiance.r, key.radiance.g, key.radiance.b});
-  if (!(peak > 0.0f)) return kDark;
-  return glm::mix(glm::vec3(1.0f, 0.93f, 0.6f), glm::max(key.radiance, 0.0f) / peak, 0.6f);
-}
-
-struct Frame3 {
-  glm::vec3 x, y, z;
-};
-Frame3 frameAlong(const glm::vec3& z) {
-  const glm::vec3 beside = std::abs(z.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-  const glm::vec3 x = glm::normalize(glm::cross(beside, z));
-  return {x, glm::cross(z, x), z};
-}
-
-void appendOutline(const spec::Disc& key, const spec::View& view, float distance, const glm::vec4& color,
-                   std::vector<OverlayLine>& lines) {
-  const Frame3 frame = frameAlong(key.direction);
-  const auto at = [&](float angle, float beside_rad) {
-    const glm::vec3 way = std::cos(beside_rad) * frame.z +
-                          std::sin(beside_rad) * (std::cos(angle) * frame.x + std::sin(angle) * frame.y);
-    return view.eye_ws + distance * way;
-  };
-  constexpr float kTurn = 2.0f * std::numbers::pi_v<float>;
-  const float radius = std::max(key.radius_rad, kLeastOutline_rad);
-  for (int i = 0; i < kOutlineSteps; ++i) {
-    const float from = kTurn * static_cast<float>(i) / kOutlineSteps;
-    const float to = kTurn * static_cast<float>(i + 1) / kOutlineSteps;
-    lines.push_back({.from_ws = at(from, radius), .to_ws = at(to, radius), .color = color, .width_px = 2.0f});
-  }
-  // Ticks distinguish the outline from a round object in the scene.
-  for (int i = 0; i < 4; ++i) {
-    const float angle = kTurn * static_cast<float>(i) / 4.0f;
-    lines.push_back({.from_ws = at(angle, radius),
-                     .to_ws = at(angle, radius + kLeastOutline_rad),
-                     .color = color,
-                     .width_px = 2.0f});
-  }
-}
-
-void appendArrow(const spec::Disc& key, const scene::Box& world, const glm::vec4& color,
-                 std::vector<OverlayLine>& lines) {
-  constexpr float kFrom = 1.3f, kTo = 0.25f, kHead = 0.12f;  // of the world's radius, from its centre
-  const Frame3 frame = frameAlong(key.direction);
-  const float radius = std::max(world.radius(), 1e-3f);
-  const glm::vec3 to = world.center() + kTo * radius * frame.z;
-  lines.push_back({.from_ws = world.center() + kFrom * radius * frame.z, .to_ws = to, .color = color});
-  for (const glm::vec3& side : {frame.x, -frame.x, frame.y, -frame.y})
-    lines.push_back({.from_ws = to, .to_ws = to + kHead * radius * (frame.z + 0.4f * side), .color = color});
-}
-
-}  // namespace
 
 std::array<glm::vec3, 8> cornersOf(const KeyRegion& region) {
   std::array<glm::vec3, 8> corners;
@@ -296,41 +306,6 @@ std::array<glm::vec3, 8> cornersOf(const KeyRegion& region) {
     corners[i] = glm::vec3(x * region.right + y * region.up + z * region.towards);
   }
   return corners;
-}
-
-void appendKeys(std::span<const spec::Disc> keys, std::span<const KeyShadows::ShownRegion> regions,
-                std::optional<std::size_t> chosen, const scene::Box& world, const spec::View& view,
-                std::vector<OverlayLine>& lines) {
-  float most = 0.0f;
-  for (const spec::Disc& key : keys) most = std::max(most, fluxOf(key));
-  const auto alphaOf = [&](const spec::Disc& key) {
-    return most > 0.0f ? 0.3f + 0.7f * std::sqrt(std::max(fluxOf(key), 0.0f) / most) : 0.3f;
-  };
-  const bool perspective = view.clip_from_view[2][3] != 0.0f;
-  const float distance =
-      world.empty() ? 1e3f : 1e2f * (world.radius() + glm::distance(world.center(), view.eye_ws));
-  for (const spec::Disc& key : keys) {
-    const glm::vec4 color(colorOf(key), alphaOf(key));
-    if (perspective) appendOutline(key, view, distance, color, lines);
-    if (!world.empty()) appendArrow(key, world, color, lines);
-  }
-  std::vector<KeyShadows::ShownRegion> boxes(regions.begin(), regions.end());
-  if (chosen && *chosen < keys.size())
-    std::erase_if(boxes, [&](const KeyShadows::ShownRegion& shown) {
-      return shown.light.direction != keys[*chosen].direction;
-    });
-  std::ranges::stable_sort(boxes, std::ranges::greater(),
-                           [](const KeyShadows::ShownRegion& shown) { return fluxOf(shown.light); });
-  boxes.resize(std::min(boxes.size(), kMostBoxes));
-  for (const KeyShadows::ShownRegion& shown : boxes) {
-    const std::array<glm::vec3, 8> corners = cornersOf(shown.region);
-    const glm::vec4 color(colorOf(shown.light), 0.7f * alphaOf(shown.light));
-    for (std::size_t i = 0; i < corners.size(); ++i)
-      for (const std::size_t bit : {1u, 2u, 4u})
-        if ((i & bit) == 0)
-          lines.push_back(
-              {.from_ws = corners[i], .to_ws = corners[i | bit], .color = color, .width_px = 1.0f});
-  }
 }
 
 }  // namespace lambent::frame

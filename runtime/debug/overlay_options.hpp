@@ -1,4 +1,4 @@
-// Defines the options of overlays, which are drawn over a finished picture: light probes as cubes and balls,
+// Defines the options of overlays, which are drawn over a finished picture: light probes as balls,
 // slices through neighborhoods, boxes of volumes and groups, lights as glyphs, key lights with what their
 // shadow maps show, wires of the triangles, and lines that a caller adds. Overlays use the scene's depth, so
 // hidden parts show faintly, and are laid over the tone-mapped picture. The picture keeps its exposure and

@@ -1,5 +1,5 @@
 // This file is shared by C++ and GLSL. It describes slices through grids of neighborhoods, for
-// overlay_slice.vert and .frag. C++ includes runtime/effects/neighborhood/neighborhood_shared.h before it.
+// overlay_slice.glsl. C++ includes runtime/effects/neighborhood/neighborhood_shared.h before it.
 #ifdef __cplusplus
 #pragma once
 

@@ -17,7 +17,7 @@ namespace lambent::frame {
 
 namespace {
 
-constexpr GLint kClipFromWorld = 0;  // as in pick.vert
+constexpr GLint kClipFromWorld = 0;  // as in pick.glsl
 
 struct Ray {
   glm::dvec3 origin{0.0}, direction{0.0};  // starts at the near plane
@@ -64,7 +64,7 @@ Result<void> Picker::compile(const PickOptions& options) {
   std::vector<gpu::Define> defines;
   if (options.finest_texels) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
   Result<gpu::Program> program = gpu::Program::create(
-      "pick", {{GL_VERTEX_SHADER, "pick.vert"}, {GL_FRAGMENT_SHADER, "pick.frag"}}, kDebugShaders, defines);
+      "pick", {{GL_VERTEX_SHADER, "pick.glsl"}, {GL_FRAGMENT_SHADER, "pick.glsl"}}, kDebugShaders, defines);
   if (!program) return failAgain(program.error());
   program_ = std::move(*program);
   seen_ = gpu::Texture("picked", {.format = GL_RGBA32UI});

@@ -16,7 +16,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/draws/surface_record.hpp"
-#include "runtime/ecs/entity.hpp"
+#include "runtime/ecs/registry.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/world/world.hpp"

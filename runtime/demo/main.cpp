@@ -8,7 +8,7 @@
 #include "runtime/base/process.hpp"
 #include "runtime/demo/options.hpp"
 #include "runtime/demo/stage.hpp"
-#include "runtime/gpu/out_of_memory.hpp"
+#include "runtime/gpu/objects.hpp"
 
 int main(int argc, char** argv) {
   using namespace lambent;

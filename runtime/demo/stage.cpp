@@ -13,7 +13,7 @@
 #include "runtime/base/normal_matrix.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/components.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 
 namespace lambent::demo {
 

@@ -136,8 +136,7 @@ std::string axesText(const sh::ZonalFactors& factors) {
 std::vector<gpu::Define> definesOf(const GlossyKind& kind) {
   const bool anisotropic = kind.family == bundle::BrdfFamily::AnisotropicGgx;
   const auto order = static_cast<int>(kind.bands);
-  const sh::ZonalFactors factors =
-      anisotropic ? sh::ZonalFactors::anisotropic(order) : sh::ZonalFactors::isotropic(order);
+  const sh::ZonalFactors factors(order, !anisotropic);
   std::vector<gpu::Define> defines = {{"LAMBENT_GLOSSY", "1"},
                                       {"LAMBENT_BANDS", std::to_string(kind.bands)},
                                       {"LAMBENT_ZONAL_AXES", axesText(factors)}};

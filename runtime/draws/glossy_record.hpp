@@ -12,7 +12,7 @@
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/streaming/brdf_texture.hpp"
+#include "runtime/streaming/textures.hpp"
 
 namespace lambent::frame {
 

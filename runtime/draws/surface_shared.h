@@ -60,7 +60,7 @@ struct TextureSlot {
   uint pad;
 };
 
-// Holds the additional fields of draws that reflect: glossy ones (effects/glossy) and layered ones, which
+// Holds the additional fields of draws that reflect: glossy ones and layered ones, which
 // have no samples.
 struct GlossyPart {
   mat3x4 group_from_world;  // rotation

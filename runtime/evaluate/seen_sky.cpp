@@ -7,11 +7,9 @@
 #include <span>
 #include <utility>
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "runtime/bundle/brdf_table.hpp"
-#include "runtime/evaluate/transfer_table.hpp"
 #include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -123,7 +121,7 @@ double cosineAt(double axis) {
 SeenKernel makeSeenKernel() {
   const std::vector<Node> nodes = quadrature();
   const Matrix factor = factorOf(normalMatrix(nodes));
-  const sh::ZonalFactors factors = sh::ZonalFactors::isotropic(kSeenKernelBands);
+  const sh::ZonalFactors factors(kSeenKernelBands, /*isotropic=*/true);
   SeenKernel kernel;
   kernel.texels.assign(std::size_t{kSeenLayers} * kSeenRoughnesses * kSeenCosines, glm::vec4(0.0f));
   for (std::uint32_t r = 0; r < kSeenRoughnesses; ++r) {
@@ -286,44 +284,25 @@ SeenSky::Tables SeenSky::describe(const streaming::Residency& residency,
   return tables;
 }
 
-Result<const gpu::Program*> SeenSky::program(const char* file, std::uint32_t outputs) {
-  const std::pair<std::string, std::uint32_t> variant(file, outputs);
-  if (const auto found = programs_.find(variant); found != programs_.end()) return &found->second;
-  const std::vector<gpu::Define> defines = {{"LAMBENT_OUTPUTS", std::to_string(outputs)}};
-  Result<gpu::Program> made = gpu::Program::create(fmt::format("{} outputs {}", file, outputs),
-                                                   {{GL_COMPUTE_SHADER, file}}, kEvaluateShaders, defines);
-  if (!made) return failAgain(made.error());
-  return &programs_.emplace(variant, std::move(*made)).first->second;
-}
-
 Result<void> SeenSky::run(streaming::Residency& residency, gpu::Counters& counters) {
+  const auto use = [&](const char* file, std::uint32_t outputs) {
+    return kernels_.use(file, {{"LAMBENT_OUTPUTS", std::to_string(outputs)}});
+  };
   cells_.bindStorage(kBindSeenCells);
   transfers_.bindStorage(transfer::kBindTransfers);
   places_.bindStorage(transfer::kBindPlaces);
-  samples_work_.upload(counters);
-  std::size_t index = 0;
-  for (const auto& [key, items] : samples_work_.batches()) {
-    const Result<const gpu::Program*> kernel = program("seen_sky_samples.comp", key[0]);
-    if (!kernel) return failAgain(kernel.error());
-    (*kernel)->use();
+  Result<void> done = evaluate::run(samples_work_, counters, [&](const gpu::BatchKey& key) {
     residency.transfer().page(key[1]).bindStorage(transfer::kBindTransfer);
-    samples_work_.dispatch(index++, transfer::kBindWork, counters);
-  }
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    return use("seen_sky_samples.comp", key[0]);
+  });
+  if (!done) return done;
   draws_.bindStorage(kBindSeenDraws);
-  vertices_work_.upload(counters);
-  index = 0;
-  for (const auto& [key, items] : vertices_work_.batches()) {
-    const Result<const gpu::Program*> kernel = program("seen_sky_vertices.comp", key[0]);
-    if (!kernel) return failAgain(kernel.error());
-    (*kernel)->use();
+  return evaluate::run(vertices_work_, counters, [&](const gpu::BatchKey& key) {
     residency.rows().page(key[1]).bindStorage(kBindSeenRows);
     residency.geometry().page(key[2]).bindStorage(kBindSeenGeometry);
     residency.radiance().page(key[3]).bindStorage(kBindSeenVertices);
-    vertices_work_.dispatch(index++, transfer::kBindWork, counters);
-  }
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  return {};
+    return use("seen_sky_vertices.comp", key[0]);
+  });
 }
 
 }  // namespace lambent::evaluate

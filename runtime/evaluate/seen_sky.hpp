@@ -14,8 +14,8 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/evaluate/seen_sky_kernels.h"
-#include "runtime/evaluate/transfer_table.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/transfer/seen_sky_shared.h"
 
@@ -59,10 +59,9 @@ class SeenSky {
   bool collect(const streaming::Residency& residency);
   Tables describe(const streaming::Residency& residency, const lighting::GroupLights& lights);
   Result<void> run(streaming::Residency& residency, gpu::Counters& counters);
-  Result<const gpu::Program*> program(const char* file, std::uint32_t outputs);
 
-  std::map<std::pair<std::string, std::uint32_t>, gpu::Program> programs_;  // keyed by file and outputs
-  gpu::Texture kernel_;                                                     // see SeenKernel
+  Kernels kernels_{kEvaluateShaders};
+  gpu::Texture kernel_;  // see SeenKernel
   gpu::Table cells_, transfers_, places_, draws_;
   gpu::WorkList samples_work_, vertices_work_;
   std::vector<std::uint32_t> due_;               // draws to write

@@ -1,12 +1,12 @@
-// Computes numbers of the transfer for views of it, straight from the codes, with one invocation per position of a
-// cell. The CPU twin is in transfer_measures.hpp. LAMBENT_VALUE selects the number: 0 the cell's constant, 1 DC, 2
-// the energy of a band; the cluster is always written. LAMBENT_VISIBILITY is set if the vector is visibility, to the
-// number of bands of the light.
+// Computes numbers of the transfer for views of it, straight from the codes, with one invocation per position of a cell.
+// For matrices (normal maps, glossy surfaces) a number is the mean over all directions of the normal, so that
+// unoccluded surfaces of every kind have the same numbers. Only light from the environment counts. LAMBENT_VALUE
+// selects the number: 0 the cell's constant, 1 DC, 2 the energy of a band; the cluster is always written.
+// LAMBENT_VISIBILITY is set if the vector is visibility, to the number of bands of the light.
 #include "transfer_shared.h"
 #include "transfer_values_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
-layout(location = 0) uniform uint band;
 layout(std430, binding = kBindWork) readonly buffer Work { uint work_count; uint pad[3]; WorkItem work[]; };
 layout(std430, binding = kBindValueCells) readonly buffer Cells { ValueCell cells[]; };
 layout(std430, binding = kBindTransfers) readonly buffer Transfers { TransferRecord transfers[]; };
@@ -16,6 +16,7 @@ layout(std430, binding = kBindValues) buffer Values { SampleValue values[]; };
 #ifdef LAMBENT_VISIBILITY
 layout(std430, binding = kBindProducts3) readonly buffer Products { uint gaunt[]; };
 #endif
+layout(location = 0) uniform uint band;
 
 #include "coded_transfer.glsl"
 

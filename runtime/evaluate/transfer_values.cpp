@@ -1,12 +1,9 @@
 #include "runtime/evaluate/transfer_values.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <utility>
 
-#include <fmt/format.h>
-
-#include "runtime/evaluate/transfer_table.hpp"
-#include "runtime/sh/gaunt.hpp"
+#include "runtime/evaluate/samples.hpp"
 
 namespace lambent::evaluate {
 
@@ -77,55 +74,26 @@ void TransferValues::describe(const streaming::Residency& residency, const light
   if (values_.byteCount() != bytes) values_ = gpu::Buffer("transfer values", bytes);
 }
 
-Result<const gpu::Program*> TransferValues::program(TransferValue value, std::uint32_t visibility) {
-  const std::array<std::uint32_t, 2> variant = {static_cast<std::uint32_t>(value), visibility};
-  if (const auto found = programs_.find(variant); found != programs_.end()) return &found->second;
-  std::vector<gpu::Define> defines = {{"LAMBENT_VALUE", std::to_string(variant[0])}};
-  if (visibility > 0) defines.push_back({"LAMBENT_VISIBILITY", std::to_string(visibility)});
-  Result<gpu::Program> made =
-      gpu::Program::create(fmt::format("transfer values {} visibility {}", variant[0], visibility),
-                           {{GL_COMPUTE_SHADER, "transfer_values.comp"}}, kEvaluateShaders, defines);
-  if (!made) return failAgain(made.error());
-  return &programs_.emplace(variant, std::move(*made)).first->second;
-}
-
-// The layout is that of transfer_values.comp: offsets of the outputs, then each term's j | k << 16 and its
-// value.
-void TransferValues::bindProducts(std::uint32_t order) {
-  gpu::Buffer& buffer = products_[order];
-  if (!buffer) {
-    const sh::GauntTable table = sh::makeGauntTable(static_cast<int>(order), 3);
-    std::vector<std::uint32_t> words = table.offsets;
-    for (const sh::GauntTerm& term : table.terms) {
-      words.push_back(term.j | static_cast<std::uint32_t>(term.k) << 16);
-      words.push_back(std::bit_cast<std::uint32_t>(term.value));
-    }
-    buffer = gpu::Buffer("transfer value products", words.size() * sizeof(std::uint32_t));
-    buffer.write(0, std::span<const std::uint32_t>(words));
-  }
-  buffer.bindStorage(kBindProducts3);
-}
-
 Result<void> TransferValues::run(streaming::Residency& residency, gpu::WorkList& work,
                                  gpu::Counters& counters) {
-  if (work.empty()) return {};
   cells_.bindStorage(kBindValueCells);
   transfers_.bindStorage(transfer::kBindTransfers);
   places_.bindStorage(transfer::kBindPlaces);
   values_.bindStorage(kBindValues);
-  work.upload(counters);
-  std::size_t index = 0;
-  for (const auto& [key, items] : work.batches()) {
-    const Result<const gpu::Program*> kernel = program(question_.value, key[0]);
-    if (!kernel) return failAgain(kernel.error());
-    (*kernel)->use();
-    glUniform1ui(0, question_.band);
-    if (key[0] > 0) bindProducts(key[0]);
+  return evaluate::run(work, counters, [&](const gpu::BatchKey& key) -> Result<void> {
+    std::vector<gpu::Define> defines = {
+        {"LAMBENT_VALUE", std::to_string(static_cast<std::uint32_t>(question_.value))}};
+    if (key[0] > 0) {
+      defines.push_back({"LAMBENT_VISIBILITY", std::to_string(key[0])});
+      gpu::Table& products = products_.try_emplace(key[0], "transfer value products").first->second;
+      if (!products.buffer()) products.assign(std::span<const std::uint32_t>(gauntWords(key[0], 3)));
+      products.bindStorage(kBindProducts3);
+    }
     residency.transfer().page(key[1]).bindStorage(transfer::kBindTransfer);
-    work.dispatch(index++, transfer::kBindWork, counters);
-  }
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  return {};
+    if (Result<void> used = kernels_.use("transfer_values.comp", std::move(defines)); !used) return used;
+    glUniform1ui(0, question_.band);
+    return {};
+  });
 }
 
 }  // namespace lambent::evaluate

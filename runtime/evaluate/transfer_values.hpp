@@ -3,11 +3,10 @@
 // takes the resident codes of all effects that keep them (diffuse, normal-mapped, glossy), and provides a
 // buffer of SampleValue that a raster pass gathers by the rows of vertices. Nothing is held or dispatched
 // until update() is called; update() does nothing if neither the codes nor the question changed.
-// transfer_measures.hpp defines the numbers. Render thread only. Fails if a kernel does not compile on this
+// transfer_values.comp defines the numbers. Render thread only. Fails if a kernel does not compile on this
 // device.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -16,7 +15,7 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/evaluate/transfer_table.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/evaluate/transfer_values_shared.h"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -54,12 +53,10 @@ class TransferValues {
  private:
   void describe(const streaming::Residency& residency, const lighting::GroupLights& lights,
                 std::span<const float> of_cells);
-  Result<const gpu::Program*> program(TransferValue value, std::uint32_t visibility);
-  void bindProducts(std::uint32_t order);
   Result<void> run(streaming::Residency& residency, gpu::WorkList& work, gpu::Counters& counters);
 
-  std::map<std::array<std::uint32_t, 2>, gpu::Program> programs_;  // keyed by value and bands of visibility
-  std::map<std::uint32_t, gpu::Buffer> products_;                  // keyed by bands
+  Kernels kernels_{kEvaluateShaders};
+  std::map<std::uint32_t, gpu::Table> products_;  // keyed by bands
   gpu::Table cells_, transfers_, places_;
   gpu::WorkList work_, adding_work_;
   gpu::Buffer values_;

@@ -5,7 +5,7 @@
 
 #include "runtime/debug/data_view.hpp"
 #include "runtime/gpu/context.hpp"
-#include "runtime/gpu/out_of_memory.hpp"
+#include "runtime/gpu/objects.hpp"
 #include "runtime/surface/surfaces.hpp"
 #include "runtime/tone_map/tone_mapper.hpp"
 

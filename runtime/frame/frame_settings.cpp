@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,65 +23,50 @@ constexpr std::array<std::string_view, 3> kTransferWords = {"unshadowed", "shado
 constexpr std::array<std::string_view, 3> kWindowWords = {"off", "hann", "auto"};
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-template <auto Member>
-constexpr SettingRow switchRow(std::string_view name, std::string_view label, std::optional<double> finest,
-                               std::string_view help, std::string_view former = {}) {
-  return {.name = name,
-          .label = label,
-          .kind = Kind::Switch,
-          .finest = finest,
-          .help = help,
-          .get = [](const FrameSettings& settings) { return settings.*Member ? 1.0 : 0.0; },
-          .put = [](FrameSettings& settings, double value) { settings.*Member = value != 0.0; },
-          .former = former};
-}
-
-// Get and set a number or an enum that is a member of the settings.
-template <auto Member>
-double getNumber(const FrameSettings& settings) {
-  return static_cast<double>(settings.*Member);
-}
-template <auto Member>
-void putNumber(FrameSettings& settings, double value) {
-  using T = std::remove_reference_t<decltype(settings.*Member)>;
-  if constexpr (std::is_enum_v<T>)
-    settings.*Member = static_cast<T>(static_cast<int>(value));
-  else
-    settings.*Member = static_cast<T>(value);
-}
-// Get and set a member of the capture's options.
-template <auto Member>
-double getCapture(const FrameSettings& settings) {
-  return static_cast<double>(settings.capture.*Member);
-}
-template <auto Member>
-void putCapture(FrameSettings& settings, double value) {
-  settings.capture.*Member = static_cast<std::remove_reference_t<decltype(settings.capture.*Member)>>(value);
-}
-
 using S = FrameSettings;
 using C = lighting::CaptureOptions;
 
+// Returns a member of the settings, or of the capture's options.
+template <auto Member>
+auto& memberOf(auto& settings) {
+  if constexpr (requires { settings.*Member; })
+    return settings.*Member;
+  else
+    return settings.capture.*Member;
+}
+
+// Returns the row of a member. Its type gives the kind.
+template <auto Member>
+constexpr SettingRow rowOfMember(SettingRow row) {
+  using T = std::remove_cvref_t<decltype(memberOf<Member>(std::declval<S&>()))>;
+  row.kind = std::is_same_v<T, bool>       ? Kind::Switch
+             : std::is_enum_v<T>           ? Kind::Choice
+             : std::is_floating_point_v<T> ? Kind::Real
+                                           : Kind::Whole;
+  row.get = [](const S& settings) { return static_cast<double>(memberOf<Member>(settings)); };
+  row.put = [](S& settings, double value) {
+    if constexpr (std::is_enum_v<T>)
+      memberOf<Member>(settings) = static_cast<T>(static_cast<int>(value));
+    else
+      memberOf<Member>(settings) = static_cast<T>(value);
+  };
+  return row;
+}
+
 const std::array kRows = {
-    SettingRow{.name = "transfer",
-               .label = "shadows and bounces",
-               .kind = Kind::Choice,
-               .greatest = 2.0,
-               .words = kTransferWords,
-               .finest = 2.0,
-               .help =
-                   "Light that counts: unshadowed, shadowed (no bounces) or full;\nunshadowed, the scenes' "
-                   "own lights are dark",
-               .get = getNumber<&S::transfer>,
-               .put = putNumber<&S::transfer>},
-    SettingRow{.name = "window",
-               .label = "ringing suppression",
-               .kind = Kind::Choice,
-               .greatest = 2.0,
-               .words = kWindowWords,
-               .help = "Against ringing of the light: auto, off or hann",
-               .get = getNumber<&S::window>,
-               .put = putNumber<&S::window>},
+    rowOfMember<&S::transfer>(
+        {.name = "transfer",
+         .label = "shadows and bounces",
+         .greatest = 2.0,
+         .words = kTransferWords,
+         .finest = 2.0,
+         .help = "Light that counts: unshadowed, shadowed (no bounces) or full;\nunshadowed, the scenes' "
+                 "own lights are dark"}),
+    rowOfMember<&S::window>({.name = "window",
+                             .label = "ringing suppression",
+                             .greatest = 2.0,
+                             .words = kWindowWords,
+                             .help = "Against ringing of the light: auto, off or hann"}),
     SettingRow{
         .name = "keys",
         .label = "key lights",
@@ -95,137 +82,120 @@ const std::array kRows = {
               settings.keys.reset();
               if (!std::isnan(value)) settings.keys = static_cast<std::uint32_t>(value);
             }},
-    SettingRow{.name = "key-size",
-               .label = "key shadow resolution",
-               .kind = Kind::Whole,
-               .least = 256.0,
-               .greatest = 8192.0,
-               .finest = 8192.0,
-               .help = "Texels along an edge of the finest shadow map of a key light",
-               .get = getNumber<&S::key_size>,
-               .put = putNumber<&S::key_size>},
-    SettingRow{.name = "key-samples",
-               .label = "key shadow samples",
-               .kind = Kind::Whole,
-               .least = 4.0,
-               .greatest = 128.0,
-               .finest = 128.0,
-               .help = "Rays of a pixel to a key light",
-               .get = getNumber<&S::key_samples>,
-               .put = putNumber<&S::key_samples>},
-    SettingRow{.name = "order",
-               .label = "SH order of the light",
-               .kind = Kind::Whole,
-               .least = 1.0,
-               .greatest = sh::kMaxOrder,
-               .finest = sh::kMaxOrder,
-               .help = "Bands of the light that count, at most",
-               .get = getNumber<&S::order>,
-               .put = putNumber<&S::order>},
-    SettingRow{.name = "glossy-order",
-               .label = "SH order, glossy",
-               .kind = Kind::Whole,
-               .least = 1.0,
-               .greatest = sh::kMaxOrder,
-               .finest = sh::kMaxOrder,
-               .help = "Bands that glossy surfaces reflect, at most",
-               .get = getNumber<&S::glossy_order>,
-               .put = putNumber<&S::glossy_order>},
-    switchRow<&S::diffuse>("diffuse", "diffuse surfaces", 1.0, "Light on diffuse surfaces"),
-    switchRow<&S::glossy>("glossy", "glossy surfaces", 1.0, "Light on glossy surfaces"),
-    switchRow<&S::volumes>("volumes", "volumes", 1.0, "Clouds, smoke and other media"),
-    switchRow<&S::residual>("specular-environment", "sharp sky reflections", 1.0,
-                            "Glossy surfaces reflect what the bands of their light leave out\nof the sky",
-                            "residual"),
-    SettingRow{.name = "reflection-probes",
-               .label = "room reflection probes",
-               .kind = Kind::Whole,
-               .greatest = kMostProbes,
-               .zero = "off",
-               .finest = kMostProbes,
-               .help = "Points of a room from which it is captured for the mirrors in it, at\nmost",
-               .get = getNumber<&S::reflection_probes>,
-               .put = putNumber<&S::reflection_probes>},
-    switchRow<&S::neighborhoods>("neighborhoods", "shadows around bodies", 1.0,
-                                 "Bodies with grids around them shade others by these, off: by\ncaptures"),
-    switchRow<&S::local_shadows>("local-shadows", "local light shadows", 1.0,
-                                 "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
-                                 "harmonics, or by the columns of their groups",
-                                 "near-shadows"),
-    SettingRow{
-        .name = "local-radii",
-        .label = "reach of local lights",
-        .kind = Kind::Real,
-        .greatest = 1000.0,
-        .finest = 1000.0,
-        .help =
-            "Lights beside a body shine per pixel, too, nearer to its middle\nthan so many of its radii; 0: "
-            "only lights within its bounds",
-        .get = getNumber<&S::local_radii>,
-        .put = putNumber<&S::local_radii>,
-        .former = "near-radii"},
-    switchRow<&S::patch_bounces>(
-        "patch-bounces", "bounced local light", 1.0,
-        "Surfaces send on the light of lights among them, and of key\nlights what their "
-        "bands get wrong"),
-    switchRow<&S::captures>("captures", "local light updates", 1.0,
-                            "Bodies light and shadow each other as they stand now"),
-    SettingRow{.name = "capture-size",
-               .label = "update resolution",
-               .kind = Kind::Whole,
-               .least = 4.0,
-               .greatest = 64.0,
-               .finest = 64.0,
-               .help = "Texels along an edge of the cube maps in which light between\nbodies is sampled",
-               .get = getCapture<&C::size>,
-               .put = putCapture<&C::size>},
-    SettingRow{.name = "capture-subsamples",
-               .label = "update subsamples",
-               .kind = Kind::Whole,
-               .least = 1.0,
-               .greatest = 16.0,
-               .finest = 16.0,
-               .help = "Subsamples along an edge of such a texel",
-               .get = getCapture<&C::subsamples>,
-               .put = putCapture<&C::subsamples>},
-    SettingRow{.name = "capture-order",
-               .label = "SH order of updates",
-               .kind = Kind::Whole,
-               .greatest = sh::kMaxOrder,
-               .zero = "auto",
-               .finest = 0.0,
-               .help = "Bands of the light that is sampled; 0: the transfer's",
-               .get = getCapture<&C::order>,
-               .put = putCapture<&C::order>},
-    SettingRow{.name = "captures-per-frame",
-               .label = "updates per frame",
-               .kind = Kind::Whole,
-               .least = 1.0,
-               .greatest = 1e6,
-               .help =
-                   "Light probes that are drawn anew in a frame at most; a picture\nwithout a window is of "
-                   "all of them",
-               .get = getNumber<&S::captures_per_step>,
-               .put = putNumber<&S::captures_per_step>},
-    SettingRow{.name = "light-probes",
-               .label = "light probes per group",
-               .kind = Kind::Whole,
-               .least = 1.0,
-               .greatest = S::kAllLightProbes,
-               .finest = S::kAllLightProbes,
-               .help = "Places at which the light of a group is sampled, at most",
-               .get = getNumber<&S::light_probes>,
-               .put = putNumber<&S::light_probes>,
-               .former = "light-samples"},
-    SettingRow{.name = "march-step",
-               .label = "volume step size",
-               .kind = Kind::Real,
-               .least = 0.125,
-               .greatest = 8.0,
-               .finest = 0.125,
-               .help = "Voxels that a ray through a volume goes at a step; linear\npictures take half of it",
-               .get = getNumber<&S::march_step_voxels>,
-               .put = putNumber<&S::march_step_voxels>},
+    rowOfMember<&S::key_size>({.name = "key-size",
+                               .label = "key shadow resolution",
+                               .least = 256.0,
+                               .greatest = 8192.0,
+                               .finest = 8192.0,
+                               .help = "Texels along an edge of the finest shadow map of a key light"}),
+    rowOfMember<&S::key_samples>({.name = "key-samples",
+                                  .label = "key shadow samples",
+                                  .least = 4.0,
+                                  .greatest = 128.0,
+                                  .finest = 128.0,
+                                  .help = "Rays of a pixel to a key light"}),
+    rowOfMember<&S::order>({.name = "order",
+                            .label = "SH order of the light",
+                            .least = 1.0,
+                            .greatest = sh::kMaxOrder,
+                            .finest = sh::kMaxOrder,
+                            .help = "Bands of the light that count, at most"}),
+    rowOfMember<&S::glossy_order>({.name = "glossy-order",
+                                   .label = "SH order, glossy",
+                                   .least = 1.0,
+                                   .greatest = sh::kMaxOrder,
+                                   .finest = sh::kMaxOrder,
+                                   .help = "Bands that glossy surfaces reflect, at most"}),
+    rowOfMember<&S::diffuse>(
+        {.name = "diffuse", .label = "diffuse surfaces", .finest = 1.0, .help = "Light on diffuse surfaces"}),
+    rowOfMember<&S::glossy>(
+        {.name = "glossy", .label = "glossy surfaces", .finest = 1.0, .help = "Light on glossy surfaces"}),
+    rowOfMember<&S::volumes>(
+        {.name = "volumes", .label = "volumes", .finest = 1.0, .help = "Clouds, smoke and other media"}),
+    rowOfMember<&S::residual>(
+        {.name = "specular-environment",
+         .label = "sharp sky reflections",
+         .finest = 1.0,
+         .help = "Glossy surfaces reflect what the bands of their light leave out\nof the sky",
+         .former = "residual"}),
+    rowOfMember<&S::reflection_probes>(
+        {.name = "reflection-probes",
+         .label = "room reflection probes",
+         .greatest = kMostProbes,
+         .zero = "off",
+         .finest = kMostProbes,
+         .help = "Points of a room from which it is captured for the mirrors in it, at\nmost"}),
+    rowOfMember<&S::neighborhoods>(
+        {.name = "neighborhoods",
+         .label = "shadows around bodies",
+         .finest = 1.0,
+         .help = "Bodies with grids around them shade others by these, off: by\ncaptures"}),
+    rowOfMember<&S::local_shadows>(
+        {.name = "local-shadows",
+         .label = "local light shadows",
+         .finest = 1.0,
+         .help = "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
+                 "harmonics, or by the columns of their groups",
+         .former = "near-shadows"}),
+    rowOfMember<&S::local_radii>(
+        {.name = "local-radii",
+         .label = "reach of local lights",
+         .greatest = 1000.0,
+         .finest = 1000.0,
+         .help =
+             "Lights beside a body shine per pixel, too, nearer to its middle\nthan so many of its radii; 0: "
+             "only lights within its bounds",
+         .former = "near-radii"}),
+    rowOfMember<&S::patch_bounces>(
+        {.name = "patch-bounces",
+         .label = "bounced local light",
+         .finest = 1.0,
+         .help = "Surfaces send on the light of lights among them, and of key\nlights what their "
+                 "bands get wrong"}),
+    rowOfMember<&S::captures>({.name = "captures",
+                               .label = "local light updates",
+                               .finest = 1.0,
+                               .help = "Bodies light and shadow each other as they stand now"}),
+    rowOfMember<&C::size>(
+        {.name = "capture-size",
+         .label = "update resolution",
+         .least = 4.0,
+         .greatest = 64.0,
+         .finest = 64.0,
+         .help = "Texels along an edge of the cube maps in which light between\nbodies is sampled"}),
+    rowOfMember<&C::subsamples>({.name = "capture-subsamples",
+                                 .label = "update subsamples",
+                                 .least = 1.0,
+                                 .greatest = 16.0,
+                                 .finest = 16.0,
+                                 .help = "Subsamples along an edge of such a texel"}),
+    rowOfMember<&C::order>({.name = "capture-order",
+                            .label = "SH order of updates",
+                            .greatest = sh::kMaxOrder,
+                            .zero = "auto",
+                            .finest = 0.0,
+                            .help = "Bands of the light that is sampled; 0: the transfer's"}),
+    rowOfMember<&S::captures_per_step>(
+        {.name = "captures-per-frame",
+         .label = "updates per frame",
+         .least = 1.0,
+         .greatest = 1e6,
+         .help = "Light probes that are drawn anew in a frame at most; a picture\nwithout a window is of "
+                 "all of them"}),
+    rowOfMember<&S::light_probes>({.name = "light-probes",
+                                   .label = "light probes per group",
+                                   .least = 1.0,
+                                   .greatest = S::kAllLightProbes,
+                                   .finest = S::kAllLightProbes,
+                                   .help = "Places at which the light of a group is sampled, at most",
+                                   .former = "light-samples"}),
+    rowOfMember<&S::march_step_voxels>(
+        {.name = "march-step",
+         .label = "volume step size",
+         .least = 0.125,
+         .greatest = 8.0,
+         .finest = 0.125,
+         .help = "Voxels that a ray through a volume goes at a step; linear\npictures take half of it"}),
     SettingRow{.name = "exposure",
                .label = "exposure",
                .kind = Kind::Real,

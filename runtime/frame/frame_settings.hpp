@@ -12,9 +12,9 @@
 #include <string_view>
 
 #include "runtime/base/result.hpp"
-#include "runtime/evaluate/transfer_table.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/lighting/capture_scene.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 #include "runtime/sh/window.hpp"
 
 namespace lambent::frame {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/gpu/out_of_memory.hpp"
+#include "runtime/gpu/objects.hpp"
 
 namespace lambent::gpu {
 
@@ -156,22 +156,10 @@ std::uint32_t Arena::makePage(std::uint64_t byte_count) {
   return index;
 }
 
-Result<Allocation> Arena::allocate(std::uint64_t byte_count) {
-  const std::uint64_t aligned = alignUp(std::max<std::uint64_t>(byte_count, 1));
-  if (aligned > kMaxPageBytes)
-    return fail(label_, fmt::format("{} bytes in one piece; a page holds {}", byte_count, kMaxPageBytes),
-                "split the mesh or the group");
-  for (std::uint32_t i = 0; i < pages_.size(); ++i)
-    if (const auto found = allocateIn(i, byte_count)) return *found;
-  return orOutOfMemory([&]() -> Result<Allocation> {
-    return *allocateIn(makePage(std::max(page_bytes_, aligned)), byte_count);
-  });
-}
-
-Result<Allocation> Arena::allocateWithRoom(std::uint64_t byte_count, std::uint64_t room) {
+Result<Allocation> Arena::allocate(std::uint64_t byte_count, std::uint64_t room) {
   const std::uint64_t wanted = alignUp(std::max<std::uint64_t>({byte_count, room, 1}));
   if (wanted > kMaxPageBytes)
-    return fail(label_, fmt::format("{} bytes in one page; a page holds {}", wanted, kMaxPageBytes),
+    return fail(label_, fmt::format("{} bytes in one piece; a page holds {}", wanted, kMaxPageBytes),
                 "split the mesh or the group");
   for (std::uint32_t i = 0; i < pages_.size(); ++i)
     if (pages_[i].list.largestFree() >= wanted) return *allocateIn(i, byte_count);
@@ -188,12 +176,6 @@ void Arena::release(const Allocation& allocation) {
   if (!isEmpty(page)) return;
   for (Page& other : pages_)
     if (&other != &page && isEmpty(other)) other = {};
-}
-
-std::uint64_t Arena::bytesReserved() const {
-  std::uint64_t bytes = 0;
-  for (const Page& page : pages_) bytes += page.buffer ? page.buffer.byteCount() : 0;
-  return bytes;
 }
 
 void Arena::write(const Allocation& allocation, std::uint64_t offset, std::span<const std::byte> bytes) {

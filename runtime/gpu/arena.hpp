@@ -88,11 +88,10 @@ class Arena {
   explicit Arena(std::string label, std::uint64_t page_bytes = kMaxPageBytes,
                  std::shared_ptr<Staging> staging = std::make_shared<Staging>());
 
-  // Allocates at least one byte, and makes a page of page_bytes (or more, if needed) if no page has room.
-  Result<Allocation> allocate(std::uint64_t byte_count);
-  // Allocates in a page that has a free range of at least `room` bytes, which include byte_count. So related
-  // data can be allocated in the same page afterwards.
-  Result<Allocation> allocateWithRoom(std::uint64_t byte_count, std::uint64_t room);
+  // Allocates at least one byte in a page that has a free range of at least `room` bytes, which include
+  // byte_count, so that related data can be allocated in the same page afterwards. Makes a page of page_bytes
+  // (or more, if needed) if no page has room.
+  Result<Allocation> allocate(std::uint64_t byte_count, std::uint64_t room = 0);
   // Returns nothing if the page has no free range that is large enough.
   std::optional<Allocation> allocateIn(std::uint32_t page, std::uint64_t byte_count);
   // Releases the memory. One empty page is kept until another page is made, because new data often replace
@@ -108,7 +107,6 @@ class Arena {
   // Returns the number of pages. Some of them may be empty handles.
   std::uint32_t pageCount() const { return static_cast<std::uint32_t>(pages_.size()); }
   std::uint64_t bytesUsed() const { return bytes_used_; }
-  std::uint64_t bytesReserved() const;  // returns the size of all pages
 
  private:
   struct Page {

@@ -60,7 +60,7 @@ std::vector<DisplayChoice> displayChoices() {
   return choices;
 }
 
-// A vertex shader reads at most so many storage blocks (runtime/debug/data_view.vert).
+// A vertex shader reads at most so many storage blocks (runtime/debug/data_view.glsl).
 constexpr std::uint32_t kVertexStorageBlocks = 5;
 
 // OpenGL 4.5 leaves storage blocks of vertex shaders optional, and some drivers have none.
@@ -202,16 +202,14 @@ Result<Context> Context::attachToCurrent(const ContextOptions& options) {
                 "update the driver");
   auto state = std::make_unique<State>();
   state->debug = options.debug;
-  state->info = {.renderer = glText(GL_RENDERER), .vendor = glText(GL_VENDOR), .version = glText(GL_VERSION)};
+  state->info = {.renderer = glText(GL_RENDERER), .version = glText(GL_VERSION)};
   GLint64 storage = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storage);
-  GLint blocks = 0, samples = 0, side = 0;
+  GLint blocks = 0, side = 0;
   glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &blocks);
-  glGetIntegerv(GL_MAX_SAMPLES, &samples);
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
   state->info.max_storage_bytes = static_cast<std::uint64_t>(storage);
   state->info.max_vertex_storage_blocks = static_cast<std::uint32_t>(blocks);
-  state->info.max_samples = static_cast<std::uint32_t>(samples);
   state->info.max_texture_side = static_cast<std::uint32_t>(side);
   if (auto enough = checkLimits(state->info); !enough) return failAgain(enough.error());
   if (options.debug) {

@@ -29,10 +29,9 @@ struct ContextOptions {
 };
 
 struct DeviceInfo {
-  std::string renderer, vendor, version;
+  std::string renderer, version;
   std::uint64_t max_storage_bytes = 0;  // size limit of a shader storage block
   std::uint32_t max_vertex_storage_blocks = 0;
-  std::uint32_t max_samples = 0;
   std::uint32_t max_texture_side = 0;
 };
 

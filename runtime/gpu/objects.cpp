@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/gpu/out_of_memory.hpp"
-
 namespace lambent::gpu {
 
 namespace {

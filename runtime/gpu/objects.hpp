@@ -1,11 +1,13 @@
 // Owns GL objects as move-only values with labels for debuggers. They use direct state access. Sizes are in
 // bytes and texels. An object must not outlive its context. Creation fails only by a bug, which debug output
-// reports, or for lack of memory, for which buffers and textures throw OutOfMemory (out_of_memory.hpp).
+// reports, or for lack of memory, for which buffers and textures throw OutOfMemory.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -165,5 +167,26 @@ struct Counters {
   std::uint32_t draw_calls = 0;  // GL calls that issued them
   std::uint64_t uploaded_bytes = 0;
 };
+
+// Says that the driver has no memory for a buffer or a texture. It is thrown, as std::bad_alloc is, since
+// objects are made deep within passes. orOutOfMemory() makes an Error of it where results are returned.
+class OutOfMemory : public std::runtime_error {
+ public:
+  // `what` names the object and its size.
+  explicit OutOfMemory(const std::string& what) : std::runtime_error("has no memory for " + what) {}
+  Error error() const {
+    return {"GPU", what(), "close other programs, or give --max-memory or a smaller picture"};
+  }
+};
+
+// Returns what the call returns, a Result, or an error if the GPU has no memory for it.
+template <typename Call>
+auto orOutOfMemory(Call&& call) -> decltype(call()) {
+  try {
+    return std::forward<Call>(call)();
+  } catch (const OutOfMemory& failure) {
+    return failAgain(failure.error());
+  }
+}
 
 }  // namespace lambent::gpu

@@ -135,7 +135,10 @@ Result<Program> Program::create(std::string_view label, std::initializer_list<St
                                 const ShaderSources& sources) {
   Program program(glCreateProgram());
   for (const Stage& stage : stages) {
-    const Result<ShaderText> shader = assembleShader(stage.file, sources);
+    std::vector<Define> defines(sources.defines.begin(), sources.defines.end());
+    if (stage.kind == GL_VERTEX_SHADER) defines.push_back({"LAMBENT_VERTEX", "1"});
+    const Result<ShaderText> shader = assembleShader(
+        stage.file, {.tables = sources.tables, .defines = defines, .written = sources.written});
     if (!shader) return failAgain(shader.error());
     const Handle<ShaderTraits> object(glCreateShader(stage.kind));
     const char* text = shader->text.c_str();

@@ -1,7 +1,7 @@
 // Makes programs from GLSL text that is embedded in the binary. Each stage has an entry file. The directive
 // `#include "file"` is resolved with the caller's tables of embedded text, each file once. `#version 450
-// core` and the defines are put first. Errors name the file and line of the shader's source, also in included
-// files.
+// core` and the defines are put first, with LAMBENT_VERTEX in vertex shaders, so that both stages of a
+// program may share a file. Errors name the file and line of the shader's source, also in included files.
 #pragma once
 
 #include <cstdint>

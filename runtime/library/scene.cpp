@@ -12,9 +12,9 @@
 
 #include "runtime/library/convert.hpp"
 #include "runtime/library/state.hpp"
-#include "runtime/scene/affine.hpp"
 #include "runtime/scene/bounds.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
+#include "runtime/scene/transforms.hpp"
 
 namespace lambent {
 

@@ -8,7 +8,7 @@
 
 #include "lambent/version.hpp"
 #include "runtime/library/convert.hpp"
-#include "runtime/sh/projection.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/window.hpp"
 #include "runtime/sh/zonal.hpp"

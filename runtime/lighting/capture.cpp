@@ -19,7 +19,6 @@
 #include "runtime/lighting/capture_sky.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/sh/image_layout.hpp"
-#include "runtime/sh/projection.hpp"
 
 namespace lambent::lighting {
 

@@ -30,7 +30,7 @@
 #include "runtime/lighting/capture_scene.hpp"
 #include "runtime/lighting/capture_sky.hpp"
 #include "runtime/lighting/environment.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::lighting::capture {
 

@@ -18,7 +18,7 @@
 #include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/capture_scene.hpp"
 #include "runtime/lighting/capture_shared.h"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::lighting::capture {
 

@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/bundle/container.hpp"
-#include "runtime/sh/projection.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/light.hpp"
 

@@ -25,7 +25,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/lighting/key_lights.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 #include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/light.hpp"
 

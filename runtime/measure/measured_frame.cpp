@@ -113,7 +113,7 @@ struct Drawn {
 };
 
 Result<Drawn> draw(const MeasuredScene& scene, FrameSettings settings, const SettingRow& row, double value,
-                   const SettingOptions& options) {
+                   const MeasureOptions& options) {
   if (Result<void> done = putSetting(row, settings, value); !done) return failAgain(done.error());
   // The number of key lights is a property of the environment, not of the frame.
   std::optional<lighting::Environment> parted;
@@ -124,19 +124,14 @@ Result<Drawn> draw(const MeasuredScene& scene, FrameSettings settings, const Set
   Result<MeasuredFrame> measured =
       measureFrame({scene.world, parted ? *parted : scene.environment, scene.view}, settings, options);
   if (!measured) return failAgain(measured.error());
-  return Drawn{.picture = std::move(measured->picture),
-               .point = {.value = value,
-                         .error = 0.0,
-                         .cpu_ms = measured->cost.cpu_ms,
-                         .gpu_ms = measured->cost.gpu_ms,
-                         .passes = std::move(measured->cost.passes)}};
+  return Drawn{.picture = std::move(measured->picture), .point = {std::move(measured->cost), value, 0.0}};
 }
 
 }  // namespace
 
 Result<std::vector<SettingPoint>> sweepSetting(const MeasuredScene& scene, const FrameSettings& settings,
                                                const SettingRow& row, std::span<const double> values,
-                                               const SettingOptions& options) {
+                                               const MeasureOptions& options) {
   if (!row.finest)
     return fail(std::string(row.name), "has no finest value to measure against", "choose a knob of accuracy");
   Result<Drawn> finest = draw(scene, settings, row, *row.finest, options);
@@ -158,7 +153,7 @@ Result<std::vector<SettingPoint>> sweepSetting(const MeasuredScene& scene, const
 }
 
 Result<SettingCost> measureSetting(const MeasuredScene& scene, const FrameSettings& settings,
-                                   const SettingRow& row, const SettingOptions& options) {
+                                   const SettingRow& row, const MeasureOptions& options) {
   const std::vector<double> values = {row.get(settings), row.finest.value_or(0.0)};
   Result<std::vector<SettingPoint>> points = sweepSetting(scene, settings, row, values, options);
   if (!points) return failAgain(points.error());

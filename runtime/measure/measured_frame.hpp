@@ -60,13 +60,9 @@ Result<double> relativeRms(const spec::RgbaImage& picture, const spec::RgbaImage
 // everything is computed. If the setting is the number of key lights, the light is
 // divided anew for each value. Render thread; waits for the GPU. Fails as frames do, if a value is out of its
 // range, or if nothing is lit in the view.
-using SettingOptions = MeasureOptions;
-
-struct SettingPoint {
+struct SettingPoint : FrameCost {
   double value = 0.0;
-  double error = 0.0;                   // relative to the finest value, which has 0
-  double cpu_ms = 0.0, gpu_ms = 0.0;    // of all passes
-  std::vector<gpu::PassTime> passes{};  // medians, in the order of the frame
+  double error = 0.0;  // relative to the finest value, which has 0
 };
 
 struct SettingCost {
@@ -75,10 +71,10 @@ struct SettingCost {
 
 // Measures the value in `settings` and the finest one. Fails if the row has no finest value.
 Result<SettingCost> measureSetting(const MeasuredScene& scene, const FrameSettings& settings,
-                                   const SettingRow& row, const SettingOptions& options = {});
+                                   const SettingRow& row, const MeasureOptions& options = {});
 // Returns a point for each value, in the order of the values.
 Result<std::vector<SettingPoint>> sweepSetting(const MeasuredScene& scene, const FrameSettings& settings,
                                                const SettingRow& row, std::span<const double> values,
-                                               const SettingOptions& options = {});
+                                               const MeasureOptions& options = {});
 
 }  // namespace lambent::frame

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "runtime/bundle/gltf_types.hpp"
 #include "runtime/scene/components.hpp"
@@ -32,8 +31,7 @@ float advanced(float time, float seconds, float duration, bool loop) {
 }
 
 // Writes the pose at the player's time. Nodes that have this pose already are not touched.
-void pose(ecs::Registry& registry, const AnimatedBundle& bundle, AnimationComponent& player,
-          std::vector<ecs::Entity>& moved) {
+void pose(ecs::Registry& registry, const AnimatedBundle& bundle, AnimationComponent& player) {
   for (const gltf::AnimationChannel& channel : bundle.description->animations[player.animation].channels) {
     const ecs::Entity node = bundle.instance->nodes[channel.node];
     const Transform* now = registry.tryGet<Transform>(node);
@@ -46,24 +44,14 @@ void pose(ecs::Registry& registry, const AnimatedBundle& bundle, AnimationCompon
     transform.translation = parts.translation;
     transform.rotation = parts.rotation;
     transform.scale = parts.scale;
-    moved.push_back(node);
   }
   player.posed_s = player.time_s;
 }
 
-std::uint32_t countOf(std::vector<ecs::Entity>& moved) {
-  std::ranges::sort(moved);
-  const auto again = std::ranges::unique(moved);
-  return static_cast<std::uint32_t>(again.begin() - moved.begin());
-}
-
 }  // namespace
 
-AnimationUpdates playAnimations(ecs::Registry& registry, std::span<const AnimatedBundle> bundles,
-                                float seconds) {
+void playAnimations(ecs::Registry& registry, std::span<const AnimatedBundle> bundles, float seconds) {
   if (!std::isfinite(seconds)) seconds = 0.0f;
-  AnimationUpdates updates;
-  std::vector<ecs::Entity> moved;
   for (auto [entity, player] : registry.view<AnimationComponent>()) {
     const AnimatedBundle* bundle = bundleOf(bundles, player);
     if (!bundle) continue;
@@ -76,18 +64,12 @@ AnimationUpdates playAnimations(ecs::Registry& registry, std::span<const Animate
       }
     }
     if (player.time_s == player.posed_s || std::isnan(player.time_s)) continue;
-    pose(registry, *bundle, player, moved);
-    ++updates.animations;
+    pose(registry, *bundle, player);
   }
-  updates.nodes = countOf(moved);
-  return updates;
 }
 
-AnimationUpdates setAnimationTime(ecs::Registry& registry, std::span<const AnimatedBundle> bundles,
-                                  float time_s) {
+void setAnimationTime(ecs::Registry& registry, std::span<const AnimatedBundle> bundles, float time_s) {
   if (!std::isfinite(time_s)) time_s = 0.0f;
-  AnimationUpdates updates;
-  std::vector<ecs::Entity> moved;
   for (auto [entity, player] : registry.view<AnimationComponent>()) {
     const AnimatedBundle* bundle = bundleOf(bundles, player);
     if (!bundle) continue;
@@ -95,11 +77,8 @@ AnimationUpdates setAnimationTime(ecs::Registry& registry, std::span<const Anima
       player.time_s = time_s;
       registry.touch<AnimationComponent>(entity);
     }
-    pose(registry, *bundle, player, moved);
-    ++updates.animations;
+    pose(registry, *bundle, player);
   }
-  updates.nodes = countOf(moved);
-  return updates;
 }
 
 }  // namespace lambent::scene

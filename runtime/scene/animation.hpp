@@ -20,19 +20,12 @@ struct AnimatedBundle {
   const SceneInstance* instance = nullptr;
 };
 
-struct AnimationUpdates {
-  std::uint32_t animations = 0;  // number of animations whose time changed
-  std::uint32_t nodes = 0;       // number of nodes that moved
-};
-
 // Advances the time of playing animations by `seconds` times their speed. It wraps within 0..duration if they
 // loop, else it stops at the ends. Then sets the pose of animations whose time differs from that of their
 // last pose. If several animations move one node, the last counts. Seconds that are not finite count as 0.
-AnimationUpdates playAnimations(ecs::Registry& registry, std::span<const AnimatedBundle> bundles,
-                                float seconds);
+void playAnimations(ecs::Registry& registry, std::span<const AnimatedBundle> bundles, float seconds);
 
 // Sets the time and the pose of all animations, playing or not. The last value holds beyond the last key.
-AnimationUpdates setAnimationTime(ecs::Registry& registry, std::span<const AnimatedBundle> bundles,
-                                  float time_s);
+void setAnimationTime(ecs::Registry& registry, std::span<const AnimatedBundle> bundles, float time_s);
 
 }  // namespace lambent::scene

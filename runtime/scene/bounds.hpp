@@ -9,11 +9,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include "runtime/ecs/entity.hpp"
-
-namespace lambent::ecs {
-class Registry;
-}
+#include "runtime/ecs/registry.hpp"
 
 namespace lambent::scene {
 
@@ -30,6 +26,11 @@ struct Box {
 
 // Returns the box around the transformed corners. Empty boxes stay empty.
 Box transformed(const Box& box, const glm::mat4& matrix);
+
+// Returns whether the boxes have a point in common; empty boxes never do. The placements may be any affine
+// transforms, because the test uses separating axes of parallelepipeds (Gottschalk, Lin and Manocha 1996). It
+// is exact but for rounding.
+bool meet(const Box& a, const glm::mat4& world_from_a, const Box& b, const glm::mat4& world_from_b);
 
 // These functions read WorldTransform, so call updateTransforms first. A box is empty if the entity, or one
 // that it refers to, does not exist any more.

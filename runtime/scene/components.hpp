@@ -4,6 +4,7 @@
 // handles here, and by StableIds in files.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <numbers>
 #include <optional>
@@ -16,11 +17,27 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include "runtime/ecs/entity.hpp"
 #include "runtime/ecs/fields.hpp"
+#include "runtime/ecs/registry.hpp"
 #include "runtime/scene/bounds.hpp"
 
 namespace lambent::scene {
+
+// A StableId identifies an entity across sessions, in undo, world files and scripts. It is a 64-bit XXH3 hash
+// of the bundle's id, the instance number and the names on the path from the root (with a count if siblings
+// share a name). So a scene keeps its ids when it is imported again with nodes added or reordered elsewhere.
+struct StableId {
+  std::uint64_t value = 0;
+  auto operator<=>(const StableId&) const = default;
+};
+
+enum class StableKind : std::uint8_t { Node = 1, Group, Draw, Lamp, Animation, Material };
+
+// Returns the id of an instance's root entity.
+StableId instanceId(std::string_view bundle_id, std::uint32_t instance);
+// Returns the id of an entity below `parent`. `ordinal` is the number of earlier ones with the same parent,
+// kind and name.
+StableId childId(StableId parent, StableKind kind, std::string_view name, std::uint32_t ordinal);
 
 struct Name {
   std::string value;
@@ -30,13 +47,13 @@ struct Name {
 };
 
 // Holds the local transform of a node: parent_from_node = translation * rotation * scale * shear. Any affine
-// matrix can be written this way (affine.hpp). Mirrors have a negative scale.
+// matrix can be written this way (transforms.hpp). Mirrors have a negative scale.
 struct Transform {
   glm::vec3 translation{0.0f};
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
   glm::vec3 scale{1.0f};
   glm::vec3 shear{0.0f};  // shear of x by y, x by z, y by z; 0 for nodes with translation, rotation, scale
-  ecs::Entity parent;     // set by setParent (transforms.hpp); if none or not alive, the parent is the world
+  ecs::Entity parent;     // if none or not alive, the parent is the world
 
   static constexpr std::string_view kComponentName = "Transform";
   static auto fields() {

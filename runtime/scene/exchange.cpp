@@ -1,5 +1,3 @@
-#include "runtime/scene/exchange.hpp"
-
 #include <cassert>
 #include <limits>
 #include <map>
@@ -10,8 +8,8 @@
 
 #include "runtime/bundle/gltf_types.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "runtime/scene/materials.hpp"
-#include "runtime/scene/stable_id.hpp"
 #include "runtime/scene/transforms.hpp"
 
 namespace lambent::scene {
@@ -29,14 +27,14 @@ struct Untouched {
   }
 };
 
-template <class Visitor>
-void forEachEntity(const SceneInstance& instance, const Visitor& visit) {
+template <class Instance, class Visitor>
+void forEachEntity(Instance& instance, const Visitor& visit) {
   visit(instance.root);
-  for (const auto* list :
+  for (auto* list :
        {&instance.nodes, &instance.groups, &instance.draws, &instance.animations, &instance.materials})
-    for (const ecs::Entity entity : *list) visit(entity);
-  for (const auto& lamps : instance.lamps)
-    for (const ecs::Entity entity : lamps) visit(entity);
+    for (auto& entity : *list) visit(entity);
+  for (auto& lamps : instance.lamps)
+    for (auto& entity : lamps) visit(entity);
 }
 
 std::vector<ecs::Entity> listOf(const SceneInstance& instance) {
@@ -55,7 +53,7 @@ class Exchange {
     matchEntities();
     takePosesBack();
     for (const auto& [entity, made] : entity_of_) {
-      const ecs::Entity old = oldOf(entity);
+      const ecs::Entity old = find(old_of_, entity);
       if (!registry_.alive(made)) continue;  // the user destroyed it
       exchangeTransform(made, old, entity);
       exchangeFields<Name>(made, old, entity);
@@ -103,14 +101,12 @@ class Exchange {
     }
   }
 
-  ecs::Entity oldOf(ecs::Entity entity) const {
-    const auto found = old_of_.find(entity);
-    return found == old_of_.end() ? ecs::Entity{} : found->second;
+  using Entities = std::map<ecs::Entity, ecs::Entity>;
+  static ecs::Entity find(const Entities& in, ecs::Entity entity) {
+    const auto found = in.find(entity);
+    return found == in.end() ? ecs::Entity{} : found->second;
   }
-  ecs::Entity entityOf(ecs::Entity entity) const {
-    const auto found = entity_of_.find(entity);
-    return found == entity_of_.end() ? ecs::Entity{} : found->second;
-  }
+  ecs::Entity entityOf(ecs::Entity entity) const { return find(entity_of_, entity); }
 
   // Resets parts of transforms that have the pose of an animation, since the user did not change them.
   void takePosesBack() {
@@ -178,9 +174,7 @@ class Exchange {
     value->parent = entityOf(value->parent);
     const Transform* stands = registry_.tryGet<Transform>(entity);
     if (stands) {
-      const ecs::Entity was_parent = was_.registry.get<Transform>(old).parent;
-      const auto was = now_of_old_.find(was_parent);
-      const ecs::Entity expected = was == now_of_old_.end() ? ecs::Entity{} : was->second;
+      const ecs::Entity expected = find(now_of_old_, was_.registry.get<Transform>(old).parent);
       if (stands->parent != expected) value->parent = stands->parent;  // the user changed the parent
     }
     registry_.emplace<Transform>(entity, *value);
@@ -225,13 +219,7 @@ class Exchange {
   }
 
   SceneInstance mapped(SceneInstance instance) const {
-    const auto map = [&](ecs::Entity& entity) { entity = entityOf(entity); };
-    map(instance.root);
-    for (auto* list :
-         {&instance.nodes, &instance.groups, &instance.draws, &instance.animations, &instance.materials})
-      for (ecs::Entity& entity : *list) map(entity);
-    for (auto& lamps : instance.lamps)
-      for (ecs::Entity& entity : lamps) map(entity);
+    forEachEntity(instance, [&](ecs::Entity& entity) { entity = entityOf(entity); });
     return instance;
   }
 
@@ -239,8 +227,8 @@ class Exchange {
   const SceneInstance& instance_;
   const bundle::Description& before_;
   const Untouched was_, is_;
-  std::map<ecs::Entity, ecs::Entity> entity_of_, old_of_;  // from is_ to the registry, and from is_ to was_
-  std::map<ecs::Entity, ecs::Entity> now_of_old_;          // from was_ to the registry
+  Entities entity_of_, old_of_;  // from is_ to the registry, and from is_ to was_
+  Entities now_of_old_;          // from was_ to the registry
   std::vector<ecs::Entity> gone_;
   std::set<ecs::Entity> to_pose_;
 };

@@ -1,17 +1,53 @@
 #include "runtime/scene/instantiate.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
+#include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
+#include <vector>
 
-#include "runtime/scene/affine.hpp"
+#include <glm/geometric.hpp>
+
+#include "runtime/bundle/container.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/materials.hpp"
-#include "runtime/scene/stable_id.hpp"
 #include "runtime/scene/transforms.hpp"
 
 namespace lambent::scene {
+
+namespace {
+
+// Appends a value in little-endian order on every machine. Values of fixed size come first and text last, so
+// no two inputs give the same bytes.
+template <class T>
+void append(std::vector<std::byte>& bytes, T value) {
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+    bytes.push_back(static_cast<std::byte>(value >> (8 * i) & 0xff));
+}
+
+StableId hash(std::uint64_t parent, std::uint8_t kind, std::uint32_t ordinal, std::string_view name) {
+  std::vector<std::byte> bytes;
+  append(bytes, parent);
+  append(bytes, ordinal);
+  bytes.push_back(static_cast<std::byte>(kind));
+  for (const char c : name) bytes.push_back(static_cast<std::byte>(c));
+  return {bundle::checksum(bytes)};
+}
+
+}  // namespace
+
+StableId instanceId(std::string_view bundle_id, std::uint32_t instance) {
+  return hash(0, 0, instance, bundle_id);
+}
+
+StableId childId(StableId parent, StableKind kind, std::string_view name, std::uint32_t ordinal) {
+  return hash(parent.value, static_cast<std::uint8_t>(kind), ordinal, name);
+}
+
 namespace {
 
 class Instantiation {
@@ -245,6 +281,83 @@ void destroyInstance(ecs::Registry& registry, const SceneInstance& instance) {
   destroyAll(instance.groups);
   destroyAll(instance.nodes);
   registry.destroy(instance.root);
+}
+
+namespace {
+
+bool usable(const glm::vec3& value) {
+  return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
+}
+
+}  // namespace
+
+MaterialComponent materialComponent(const gltf::Material& baked, std::uint32_t bundle,
+                                    std::uint32_t material) {
+  return {gltf::factorsOf(baked), bundle, material};
+}
+
+gltf::Material withComponent(const gltf::Material& baked, const MaterialComponent& component) {
+  MaterialComponent now = component;
+  const MaterialComponent before = materialComponent(baked, component.bundle, component.material);
+  ecs::forEachField(now, [&](const auto& field, auto& value) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    bool good = ecs::withinRange(field, value);
+    if constexpr (std::is_same_v<Value, glm::vec3>) good = usable(value);
+    if constexpr (std::is_same_v<Value, float>) good = good && std::isfinite(value);
+    if (!good) value = field.of(before);
+  });
+  return gltf::withFactors(baked, now);
+}
+
+namespace {
+
+using Kind = LocalLightComponent::Kind;
+
+// Makes the brightest channel the strength, so that colours are within 0..1.
+LocalLightComponent lightOf(Kind kind, float radius_m, glm::vec3 radiance) {
+  const float strength = std::max({radiance.r, radiance.g, radiance.b});
+  return {.kind = kind,
+          .color = strength > 0.0f ? radiance / strength : glm::vec3(1.0f),
+          .strength = strength,
+          .radius_m = radius_m};
+}
+
+}  // namespace
+
+glm::quat facing(glm::vec3 direction) {
+  const glm::dvec3 to = glm::normalize(glm::dvec3(direction)), from(0.0, 0.0, -1.0);
+  const double w = 1.0 + glm::dot(from, to);
+  if (w < 1e-12) return {0.0f, 0.0f, 1.0f, 0.0f};  // half a turn about +Y
+  const glm::dvec3 axis = glm::cross(from, to);
+  return glm::quat(glm::normalize(glm::dquat(w, axis.x, axis.y, axis.z)));
+}
+
+std::vector<ecs::Entity> addLights(ecs::Registry& registry, std::span<const spec::Light> lights,
+                                   const glm::dvec3& origin) {
+  std::vector<ecs::Entity> entities;
+  for (const spec::LocalLight& light : spec::localLights(lights, origin)) {
+    const ecs::Entity entity = entities.emplace_back(registry.create());
+    Transform place;
+    if (const auto* sphere = std::get_if<spec::SphereLight>(&light)) {
+      place.translation = glm::vec3(sphere->position_ws);
+      registry.emplace<LocalLightComponent>(entity,
+                                            lightOf(Kind::Sphere, sphere->radius_m, sphere->radiance));
+    } else if (const auto* disc = std::get_if<spec::DiscLight>(&light)) {
+      place.translation = glm::vec3(disc->position_ws);
+      place.rotation = facing(disc->normal_ws);
+      registry.emplace<LocalLightComponent>(entity, lightOf(Kind::Disc, disc->radius_m, disc->radiance));
+    }
+    registry.emplace<Transform>(entity, place);
+    registry.emplace<Name>(entity, "light " + std::to_string(entities.size()));
+  }
+  return entities;
+}
+
+ecs::Entity addEnvironment(ecs::Registry& registry, const EnvironmentComponent& environment) {
+  const ecs::Entity entity = registry.create();
+  registry.emplace<Name>(entity, "environment");
+  registry.emplace<EnvironmentComponent>(entity, environment);
+  return entity;
 }
 
 }  // namespace lambent::scene

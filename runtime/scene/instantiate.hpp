@@ -10,12 +10,15 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/ecs/registry.hpp"
+#include "runtime/scene/components.hpp"
+#include "runtime/spec/light.hpp"
 
 namespace lambent::scene {
 
@@ -46,5 +49,31 @@ Result<SceneInstance> instantiate(ecs::Registry& registry, const bundle::Descrip
 // Destroys the entities of an instance. Other entities that have one of them as parent stay alive, in the
 // world.
 void destroyInstance(ecs::Registry& registry, const SceneInstance& instance);
+
+// Replaces a bundle in a registry by another one, which is the same scene baked better, or changed and baked
+// again. Entities are matched by their StableIds. An entity of both bundles is kept, with all changes that
+// the user made: declared fields that differ from the old bundle, components added or removed, another
+// parent, destruction. All its other values come from the new bundle. Entities of the old bundle only are
+// destroyed, and those of the new bundle only are created. playAnimations gives animated nodes a new pose
+// from the new keys.
+
+// Replaces `instance`, which was made from `before` with these options. World matrices and groups are up to
+// date on return.
+SceneInstance exchangeInstance(ecs::Registry& registry, const SceneInstance& instance,
+                               const bundle::Description& before, const bundle::Description& now,
+                               const InstantiateOptions& options);
+
+// Makes entities for lights that belong to no bundle: local lights of the command line, with Name, Transform
+// and LocalLightComponent, and the environment, with an EnvironmentComponent.
+
+// Adds an entity for each local light (spec::localLights), in their order, at positions that count from the
+// origin. The Transform of a disc rotates -Z to the direction in which it shines.
+std::vector<ecs::Entity> addLights(ecs::Registry& registry, std::span<const spec::Light> lights,
+                                   const glm::dvec3& origin = glm::dvec3(0.0));
+
+// Returns the smallest rotation that takes -Z, along which lights shine, to the direction, which is not 0.
+glm::quat facing(glm::vec3 direction);
+
+ecs::Entity addEnvironment(ecs::Registry& registry, const EnvironmentComponent& environment = {});
 
 }  // namespace lambent::scene

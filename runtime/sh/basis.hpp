@@ -11,6 +11,7 @@
 // is off by about l e.
 #pragma once
 
+#include <array>
 #include <cassert>
 #include <concepts>
 #include <cstddef>
@@ -145,9 +146,8 @@ extern template void evaluateBatch<float>(int, const float*, const float*, const
 extern template void evaluateBatch<double>(int, const double*, const double*, const double*, std::size_t,
                                            double*, std::size_t);
 
-// Turns an order that is known at run time into a compile-time constant.
-
-// Calls f with std::integral_constant<int, order>. `order` is in 1..Most.
+// Turns an order that is known at run time into a compile-time constant: calls f with
+// std::integral_constant<int, order>. `order` is in 1..Most.
 template <int Most, typename F>
 void withOrder(int order, F&& f) {
   assert(order >= 1 && order <= Most);
@@ -155,5 +155,36 @@ void withOrder(int order, F&& f) {
     if (order == index + 1) f(std::integral_constant<int, index + 1>{});
   });
 }
+
+// A LightVector is incident light in spherical harmonics: L(s) = sum_i c_i y_i(s) is the radiance (linear
+// Rec.709 RGB) that arrives from unit direction s. The same type holds any RGB function of direction, such as
+// windowed light or irradiance/pi. Coefficients from order² on are zero, so vectors of different orders can
+// be added.
+struct LightVector {
+  int order = 5;
+  std::array<glm::vec3, kMaxCoefficients> c{};
+
+  std::span<const glm::vec3> coefficients() const {
+    return std::span(c).first(static_cast<std::size_t>(coefficientCount(order)));
+  }
+  std::span<glm::vec3> coefficients() {
+    return std::span(c).first(static_cast<std::size_t>(coefficientCount(order)));
+  }
+
+  // Returns L(dir) for a unit direction. It may be negative where the expansion rings.
+  glm::vec3 evaluate(const glm::vec3& dir) const;
+
+  // Returns the first new_order bands, padded with zeros if the order rises.
+  LightVector truncated(int new_order) const;
+
+  LightVector& operator+=(const LightVector& other);  // the order becomes the larger of the two
+  LightVector& operator*=(float scale);
+  LightVector& operator*=(const glm::vec3& scale_rgb);
+};
+
+LightVector operator+(LightVector a, const LightVector& b);
+LightVector operator*(LightVector light, float scale);
+LightVector operator*(float scale, LightVector light);
+LightVector operator*(LightVector light, const glm::vec3& scale_rgb);
 
 }  // namespace lambent::sh

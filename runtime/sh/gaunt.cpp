@@ -14,7 +14,7 @@ namespace lambent::sh {
 
 namespace {
 
-// Smaller values of Γ are rounding errors of 0. The smallest nonzero one is over 1e-4 (gaunt_test.cpp).
+// Smaller values of Γ are rounding errors of 0. The smallest nonzero one is over 1e-4.
 constexpr double kNothing = 1e-12;
 
 struct Node {

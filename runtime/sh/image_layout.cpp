@@ -1,48 +1,33 @@
 #include "runtime/sh/image_layout.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::sh {
 
 namespace {
 
-// Squares of the cross by row and column. Squares in the middle row and column show the cube from inside with
-// +Y up. The bottom one is attached below -Y, so it shows +Z rotated by 180 degrees.
-enum class Square { None, PlusX, MinusX, PlusY, MinusY, PlusZ, MinusZ };
-constexpr Square kSquares[4][3] = {{Square::None, Square::PlusY, Square::None},
-                                   {Square::MinusX, Square::MinusZ, Square::PlusX},
-                                   {Square::None, Square::MinusY, Square::None},
-                                   {Square::None, Square::PlusZ, Square::None}};
+// Squares of the cross by row and column, as faces of the cube; -1: none. Squares in the middle row and
+// column show the cube from inside with +Y up. The bottom one is attached below -Y, so it shows +Z rotated by
+// 180 degrees.
+constexpr int kSquares[4][3] = {{-1, 2, -1}, {1, 5, 0}, {-1, 3, -1}, {-1, 4, -1}};
 
 // Returns the direction at (u, v) of a square, with u to the right and v up, both in [-1, 1].
-glm::dvec3 squareDirection(Square square, double u, double v) {
-  switch (square) {
-    case Square::PlusX:
-      return {1, v, u};
-    case Square::MinusX:
-      return {-1, v, -u};
-    case Square::PlusY:
-      return {u, 1, v};
-    case Square::MinusY:
-      return {u, -1, -v};
-    case Square::PlusZ:
-      return {u, -v, 1};
-    case Square::MinusZ:
-      return {u, v, -1};
-    case Square::None:
-      break;
-  }
-  return glm::dvec3(0);
+glm::dvec3 squareDirection(int face, double u, double v) {
+  const double sign = face == 0 || face == 1 || face == 5 ? -1 : 1;
+  return cubeFaceDirection(face, sign * u, sign * v);
 }
 
 struct CrossTexel {
-  Square square;
+  int face;       // -1: an empty square
   double u0, v0;  // lower left corner
   double edge;
 };
@@ -117,9 +102,9 @@ glm::dvec3 texelDirection(ImageLayout layout, int width, int height, int x, int 
     }
     case ImageLayout::VerticalCross: {
       const CrossTexel texel = crossTexel(width, x, y);
-      if (texel.square == Square::None) return glm::dvec3(0);
+      if (texel.face < 0) return glm::dvec3(0);
       return glm::normalize(
-          squareDirection(texel.square, texel.u0 + texel.edge / 2, texel.v0 + texel.edge / 2));
+          squareDirection(texel.face, texel.u0 + texel.edge / 2, texel.v0 + texel.edge / 2));
     }
   }
   return glm::dvec3(0);
@@ -139,7 +124,7 @@ double texelSolidAngle(ImageLayout layout, int width, int height, int x, int y) 
     }
     case ImageLayout::VerticalCross: {
       const CrossTexel texel = crossTexel(width, x, y);
-      if (texel.square == Square::None) return 0;
+      if (texel.face < 0) return 0;
       return rectangleSolidAngle(texel.u0, texel.u0 + texel.edge, texel.v0, texel.v0 + texel.edge);
     }
   }
@@ -206,6 +191,100 @@ double cubeTexelSolidAngle(int size, int x, int y) {
 double rectangleSolidAngle(double u0, double u1, double v0, double v1) {
   return cornerSolidAngle(u1, v1) - cornerSolidAngle(u0, v1) - cornerSolidAngle(u1, v0) +
          cornerSolidAngle(u0, v0);
+}
+
+LightVector projectImage(int order, ImageLayout layout, int width, int height,
+                         std::span<const glm::vec3> texels) {
+  assert(texels.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const auto count = static_cast<std::size_t>(coefficientCount(order));
+  std::array<std::array<double, kMaxCoefficients>, 3> sum{};
+  std::array<double, kMaxCoefficients> basis;
+
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double solid_angle_sr = texelSolidAngle(layout, width, height, x, y);
+      if (solid_angle_sr <= 0) continue;
+      const glm::vec3& radiance =
+          texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+      if (!isFinite(radiance)) continue;
+      evaluate(order, texelDirection(layout, width, height, x, y), basis);
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        const double weight = static_cast<double>(radiance[static_cast<int>(channel)]) * solid_angle_sr;
+        for (std::size_t i = 0; i < count; ++i) sum[channel][i] += weight * basis[i];
+      }
+    }
+  }
+  LightVector light{.order = order};
+  for (std::size_t i = 0; i < count; ++i) light.c[i] = glm::vec3(glm::dvec3(sum[0][i], sum[1][i], sum[2][i]));
+  return light;
+}
+
+namespace {
+
+// Nodes and weights of 6-point Gauss-Legendre quadrature on [-1, 1]. Integrands are smooth over a texel: 6 x
+// 6 points give the means of y to 1e-4 for a whole face, and up to rounding for faces of 4 or more texels per
+// edge.
+struct GaussNode {
+  double at, weight;
+};
+constexpr std::array<GaussNode, 6> kGauss = {{{-0.93246951420315203, 0.17132449237917035},
+                                              {-0.66120938646626451, 0.36076157304813861},
+                                              {-0.23861918608319691, 0.46791393457269105},
+                                              {0.23861918608319691, 0.46791393457269105},
+                                              {0.66120938646626451, 0.36076157304813861},
+                                              {0.93246951420315203, 0.17132449237917035}}};
+
+// Writes Omega (2 y(centre) - mean y) of a texel for all coefficients.
+void sharpenedWeights(int order, int size, int face, int x, int y, double* weights) {
+  const double half = 1.0 / size;
+  const double sc = 2 * (x + 0.5) / size - 1, tc = 2 * (y + 0.5) / size - 1;
+  const auto count = static_cast<std::size_t>(coefficientCount(order));
+  const double solid_angle_sr = cubeTexelSolidAngle(size, x, y);
+
+  std::array<double, kMaxCoefficients> basis, integral{};
+  double area = 0;
+  for (const GaussNode& u : kGauss) {
+    for (const GaussNode& v : kGauss) {
+      const glm::dvec3 dir = cubeFaceDirection(face, sc + half * u.at, tc + half * v.at);
+      const double squared = glm::dot(dir, dir), length = std::sqrt(squared);
+      const double weight = u.weight * v.weight / (squared * length);
+      evaluate(order, dir / length, basis);
+      area += weight;
+      for (std::size_t i = 0; i < count; ++i) integral[i] += weight * basis[i];
+    }
+  }
+  evaluate(order, cubeTexelDirection(size, face, x, y), basis);
+  for (std::size_t i = 0; i < count; ++i) weights[i] = solid_angle_sr * (2 * basis[i] - integral[i] / area);
+}
+
+}  // namespace
+
+std::vector<float> cubeWeights(int order, int size) {
+  assert(order >= 1 && order <= kMaxOrder && size >= 1);
+  const auto count = static_cast<std::size_t>(coefficientCount(order));
+  const std::size_t texel_count = 6 * static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+  const auto forEachTexel = [&](auto&& f) {
+    std::size_t k = 0;
+    for (int face = 0; face < 6; ++face)
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) f(k++, face, x, y);
+  };
+  // Uniform light must have no coefficient except the first. Without the correction, weights of bands 4 and
+  // up that share the cube's symmetry sum to slightly more than 0 over the whole cube.
+  std::vector<double> sharpened(count * texel_count);
+  std::array<double, kMaxCoefficients> excess{};  // per steradian
+  forEachTexel([&](std::size_t k, int face, int x, int y) {
+    double* const weights = sharpened.data() + k * count;
+    sharpenedWeights(order, size, face, x, y, weights);
+    for (std::size_t i = 1; i < count; ++i) excess[i] += weights[i] / (4 * kPi);
+  });
+  std::vector<float> table(count * texel_count);
+  forEachTexel([&](std::size_t k, int, int x, int y) {
+    const double solid_angle_sr = cubeTexelSolidAngle(size, x, y);
+    for (std::size_t i = 0; i < count; ++i)
+      table[i * texel_count + k] = static_cast<float>(sharpened[k * count + i] - excess[i] * solid_angle_sr);
+  });
+  return table;
 }
 
 }  // namespace lambent::sh

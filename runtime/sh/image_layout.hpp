@@ -1,15 +1,22 @@
-// Maps texels of an environment map to directions. The layouts are lat-long (2:1), angular map (1:1) and
-// vertical cross (3:4), drawn in docs/conventions.md. Texel (x, y) has column x from the left and row y from
-// the top. Continuous image coordinates put the top left corner of the picture at (0, 0) and texel centres at
-// half-integers. Texels that show no direction (outside the circle, in empty squares of the cross) have solid
-// angle 0 and direction (0, 0, 0). Directions are unit vectors, right-handed, with +Y up.
+// Maps texels of an environment map to directions, and projects maps to light vectors. The layouts are
+// lat-long (2:1), angular map (1:1) and vertical cross (3:4), drawn in docs/conventions.md. Texel (x, y) has
+// column x from the left and row y from the top. Continuous image coordinates put the top left corner of the
+// picture at (0, 0) and texel centres at half-integers. Texels that show no direction (outside the circle, in
+// empty squares of the cross) have solid angle 0 and direction (0, 0, 0). Directions are unit vectors,
+// right-handed, with +Y up.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::sh {
 
@@ -50,5 +57,18 @@ double cubeTexelSolidAngle(int size, int x, int y);
 
 // Returns the exact solid angle (sr) of the rectangle [u0, u1] x [v0, v1] on the plane at distance 1.
 double rectangleSolidAngle(double u0, double u1, double v0, double v1);
+
+// Projects a picture to a light vector in double precision: c_i is the sum over texels of radiance
+// y_i(direction) solid angle. `texels` has width * height entries, row by row. A texel with a NaN or infinite
+// channel counts as black.
+LightVector projectImage(int order, ImageLayout layout, int width, int height,
+                         std::span<const glm::vec3> texels);
+
+// Returns the weights of texels. The weight of texel k (in the order of image_layout.hpp) for coefficient i
+// is entry i * 6 size² + k. It is Omega (2 y(centre) - mean of y over the texel), where Omega is the texel's
+// solid angle. For box-filtered texels this cancels the leading error that y(centre) or the mean alone would
+// have. A multiple of Omega is then subtracted from coefficients 1 and up, so that uniform light gives
+// exactly constantLight.
+std::vector<float> cubeWeights(int order, int size);
 
 }  // namespace lambent::sh

@@ -37,30 +37,11 @@ struct Dual {
 // Adds the derivative of y_i at s along the tangent `along` to sums_i. It differentiates the polynomials of
 // evaluateFixed(); other extensions of y_i off the sphere would have the same tangential derivative.
 using Sums = std::array<double, kMaxCoefficients>;
-template <int Order>
-void addSlopes(const glm::dvec3& s, const glm::dvec3& along, Sums& sums) {
-  evaluateFixed<Order>(Dual(s.x, along.x), Dual(s.y, along.y), Dual(s.z, along.z),
-                       [&](int i, const Dual& y) { sums[static_cast<std::size_t>(i)] += y.slope; });
-}
 void addSlopes(int order, const glm::dvec3& s, const glm::dvec3& along, Sums& sums) {
-  switch (order) {
-    case 1:
-      return;  // band 0 is constant
-    case 2:
-      return addSlopes<2>(s, along, sums);
-    case 3:
-      return addSlopes<3>(s, along, sums);
-    case 4:
-      return addSlopes<4>(s, along, sums);
-    case 5:
-      return addSlopes<5>(s, along, sums);
-    case 6:
-      return addSlopes<6>(s, along, sums);
-    case 7:
-      return addSlopes<7>(s, along, sums);
-    default:
-      return addSlopes<8>(s, along, sums);
-  }
+  withOrder<kMaxOrder>(order, [&](auto fixed) {
+    evaluateFixed<fixed>(Dual(s.x, along.x), Dual(s.y, along.y), Dual(s.z, along.z),
+                         [&](int i, const Dual& y) { sums[static_cast<std::size_t>(i)] += y.slope; });
+  });
 }
 
 // Describes a disc in units of its radius, in a frame whose origin is the point. The disc lies in the plane

@@ -7,7 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::sh {
 

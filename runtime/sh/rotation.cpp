@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
-#include <string>
 
 namespace lambent::sh {
 
@@ -164,16 +163,6 @@ Rotation::Rotation(const glm::dmat3& rotation, int order) : order_(order) {
 
 Rotation::Rotation(const glm::dquat& quaternion, int order)
     : Rotation(glm::mat3_cast(glm::normalize(quaternion)), order) {}
-
-Result<Rotation> Rotation::make(const glm::dmat3& matrix, int order) {
-  if (order < 1 || order > kMaxBasisOrder)
-    return fail("rotation", "order " + std::to_string(order) + " is not supported",
-                "use 1 to " + std::to_string(kMaxBasisOrder));
-  if (!isRotation(matrix))
-    return fail("rotation", "its matrix is not a rotation (mirrored, scaled, sheared or not finite)",
-                "pass it through orthonormalised() first");
-  return Rotation(matrix, order);
-}
 
 void Rotation::set(const glm::dmat3& rotation) {
   assert(isRotation(rotation));

@@ -2,9 +2,8 @@
 // per band. Applied to the coefficients of f(s), D gives those of f(R^-1 s), the function rotated by R;
 // likewise y(R s) = D y(s). Rotation(local_from_world) therefore takes light from world space to an object's
 // frame. Blocks are computed in double by the recurrence of Ivanic and Ruedenberg (J. Phys. Chem. 100, 1996,
-// with the additions of 102, 1998) and applied in float or double. make() rejects invalid matrices; the
-// constructors assert. Do not accumulate a rotation by multiplying matrices or blocks, but accumulate a
-// quaternion, normalise it and rebuild.
+// with the additions of 102, 1998) and applied in float or double. Do not accumulate a rotation by
+// multiplying matrices or blocks, but accumulate a quaternion, normalise it and rebuild.
 #pragma once
 
 #include <span>
@@ -14,7 +13,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "runtime/base/result.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::sh {
 
@@ -32,8 +31,6 @@ class Rotation {
   Rotation(const glm::dmat3& rotation, int order);
   // Takes a quaternion of any length except zero.
   Rotation(const glm::dquat& quaternion, int order);
-  // Fails if the matrix is not a rotation.
-  static Result<Rotation> make(const glm::dmat3& matrix, int order);
 
   // Replaces the rotation at the same order without allocating.
   void set(const glm::dmat3& rotation);

@@ -219,8 +219,6 @@ float leastBlend(const Channels& channels) {
   return best;
 }
 
-}  // namespace
-
 BandWeights hannWeights(int order) {
   BandWeights weights{};
   for (int l = 0; l < order; ++l)
@@ -228,8 +226,6 @@ BandWeights hannWeights(int order) {
         static_cast<float>(0.5 * (1 + std::cos(std::numbers::pi * l / static_cast<double>(order))));
   return weights;
 }
-
-namespace {
 
 BandWeights integratedPositiveWeights(int order) {
   BandWeights weights{};
@@ -253,7 +249,9 @@ BandWeights integratedPositiveWeights(int order) {
   return weights;
 }
 
-double blendFor(const LightVector& light, const BandWeights& kernel) {
+// Returns the blend a of Auto, which is 0 if no channel rings. Channels whose mean is not positive are
+// ignored, since no window can help them, and so are lights with coefficients that are not finite.
+float blendFor(const LightVector& light, const BandWeights& kernel) {
   Channels channels{.order = light.order};
   for (int k = 0; k < 3; ++k) {
     Channel channel;
@@ -267,7 +265,7 @@ double blendFor(const LightVector& light, const BandWeights& kernel) {
     }
     if (light.c[0][k] > kHopeless * largest) channels.add(channel);
   }
-  return double{leastBlend(channels)};
+  return leastBlend(channels);
 }
 
 }  // namespace
@@ -281,14 +279,10 @@ BandWeights positiveWeights(int order) {
   return kByOrder[static_cast<std::size_t>(order)];
 }
 
-double deringingBlend(const LightVector& light) {
-  return blendFor(light, positiveWeights(light.order));
-}
-
 BandWeights windowWeights(const LightVector& light, Window window) {
   if (window == Window::Hann) return hannWeights(light.order);
   const BandWeights kernel = positiveWeights(light.order);
-  const auto blend = static_cast<float>(window == Window::Auto ? blendFor(light, kernel) : 0.0);
+  const float blend = window == Window::Auto ? blendFor(light, kernel) : 0.0f;
   BandWeights weights{};
   for (std::size_t l = 0; l < static_cast<std::size_t>(light.order); ++l)
     weights[l] = 1 - blend + blend * kernel[l];

@@ -17,7 +17,7 @@
 
 #include <array>
 
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::sh {
 
@@ -25,16 +25,10 @@ enum class Window { Off, Hann, Auto };
 
 using BandWeights = std::array<float, kMaxOrder>;
 
-BandWeights hannWeights(int order);
-
 // Returns k_l of the extremal polynomial of Gauss quadrature. For odd orders the polynomial is (p(t) / (t -
 // x))², where p is the Legendre polynomial of degree (order + 1) / 2 and x its largest zero. For even orders
 // p is the Jacobi (0, 1) polynomial, and a factor (1 + t) is added. k_1 = x.
 BandWeights positiveWeights(int order);
-
-// Returns the blend a of Auto, which is 0 if no channel rings. Channels whose mean is not positive are
-// ignored, since no window can help them, and so are lights with coefficients that are not finite.
-double deringingBlend(const LightVector& light);
 
 BandWeights windowWeights(const LightVector& light, Window window);
 LightVector applyWindow(const LightVector& light, Window window);

@@ -30,19 +30,6 @@ void scaleBands(int order, const glm::vec<3, T>& dir, std::span<T> out, Scale&& 
     }
 }
 
-template <typename Scale>
-LightVector scaledBands(const LightVector& light, Scale&& scale) {
-  LightVector result{.order = light.order};
-  for (int l = 0; l < light.order; ++l) {
-    const auto factor = static_cast<float>(scale(l));
-    for (int m = -l; m <= l; ++m) {
-      const auto i = static_cast<std::size_t>(coefficientIndex(l, m));
-      result.c[i] = light.c[i] * factor;
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 double clampedCosine(int l) {
@@ -98,10 +85,9 @@ double discZonal(int l, double angular_radius_rad) {
 
 LightVector discLight(int order, const glm::vec3& dir, double angular_radius_rad,
                       const glm::vec3& radiance_rgb) {
-  std::array<double, kMaxOrder> zonal{};
-  for (int l = 0; l < order; ++l) zonal[static_cast<std::size_t>(l)] = discZonal(l, angular_radius_rad);
   std::array<float, kMaxCoefficients> turned;
-  rotateZonal(order, zonal, dir, turned);
+  scaleBands(order, dir, std::span<float>(turned),
+             [&](int l) { return convolutionFactor(l, discZonal(l, angular_radius_rad)); });
   LightVector light{.order = order};
   for (std::size_t i = 0; i < light.coefficients().size(); ++i) light.c[i] = radiance_rgb * turned[i];
   return light;
@@ -113,24 +99,19 @@ LightVector constantLight(int order, const glm::vec3& radiance_rgb) {
   return light;
 }
 
-void rotateZonal(int order, std::span<const double> zonal, const glm::vec3& dir, std::span<float> out) {
-  scaleBands(order, dir, out,
-             [zonal](int l) { return convolutionFactor(l, zonal[static_cast<std::size_t>(l)]); });
-}
-
 void rotateZonal(int order, std::span<const double> zonal, const glm::dvec3& dir, std::span<double> out) {
   scaleBands(order, dir, out,
              [zonal](int l) { return convolutionFactor(l, zonal[static_cast<std::size_t>(l)]); });
 }
 
-LightVector convolved(const LightVector& light, std::span<const double> zonal) {
-  assert(static_cast<int>(zonal.size()) >= light.order);
-  return scaledBands(light,
-                     [zonal](int l) { return convolutionFactor(l, zonal[static_cast<std::size_t>(l)]); });
-}
-
 LightVector cosineConvolved(const LightVector& light) {
-  return scaledBands(light, [](int l) { return clampedCosine(l) / kPi; });
+  LightVector result{.order = light.order};
+  for (int l = 0; l < light.order; ++l) {
+    const auto factor = static_cast<float>(clampedCosine(l) / kPi);
+    for (int i = l * l; i < (l + 1) * (l + 1); ++i)
+      result.c[static_cast<std::size_t>(i)] = light.c[static_cast<std::size_t>(i)] * factor;
+  }
+  return result;
 }
 
 namespace {
@@ -142,8 +123,8 @@ struct AxisAngles {
 };
 
 // These are the axes after z. They were found by random descent on the worst condition number of the band
-// matrices y_lm(a_i) up to band 5, each with its first axes: 2.1 in the plane, 3.5 on the sphere
-// (zonal_factors_test.cpp prints them). Axes for bands 6 to 8 were then added one band at a time: the
+// matrices y_lm(a_i) up to band 5, each with its first axes: 2.1 in the plane, 3.5 on the sphere.
+// Axes for bands 6 to 8 were then added one band at a time: the
 // condition numbers are 2.7, 3.7 and 2.8 in the plane, 11.7, 7.8 and 8.4 on the sphere. Opposite axes are
 // equivalent, so all are on the upper side.
 constexpr std::array<AxisAngles, 8> kInPlane = {{{70.877, 0},
@@ -230,14 +211,6 @@ ZonalFactors::ZonalFactors(int order, bool isotropic) : order_(order), isotropic
   }
 }
 
-ZonalFactors ZonalFactors::isotropic(int order) {
-  return ZonalFactors(order, true);
-}
-
-ZonalFactors ZonalFactors::anisotropic(int order) {
-  return ZonalFactors(order, false);
-}
-
 int ZonalFactors::weightCount() const {
   return isotropic_ ? order_ * (order_ + 1) / 2 : order_ * order_;
 }
@@ -257,24 +230,6 @@ void ZonalFactors::factor(std::span<const float> coefficients, std::span<float> 
     }
     inverse += count * count;
     first += count;
-  }
-}
-
-void ZonalFactors::expand(std::span<const float> weights, std::span<const glm::vec3> turned_axes,
-                          std::span<float> out) const {
-  const auto coefficients = static_cast<std::size_t>(coefficientCount(order_));
-  assert(weights.size() >= static_cast<std::size_t>(weightCount()) && turned_axes.size() >= axes_.size());
-  assert(out.size() >= coefficients);
-  std::fill_n(out.begin(), coefficients, 0.0f);
-  std::array<float, kMaxFactoredOrder * kMaxFactoredOrder> y;
-  for (int i = 0; i < static_cast<int>(axes_.size()); ++i) {
-    evaluate(order_, turned_axes[static_cast<std::size_t>(i)], y);
-    // Bands from l = i on use this axis if isotropic, else bands from 2l = i on.
-    for (int l = isotropic_ ? i : (i + 1) / 2; l < order_; ++l) {
-      const float weight = weights[static_cast<std::size_t>((isotropic_ ? l * (l + 1) / 2 : l * l) + i)];
-      for (int k = l * l; k < (l + 1) * (l + 1); ++k)
-        out[static_cast<std::size_t>(k)] += weight * y[static_cast<std::size_t>(k)];
-    }
   }
 }
 

@@ -10,7 +10,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::sh {
 
@@ -39,11 +39,7 @@ LightVector constantLight(int order, const glm::vec3& radiance_rgb);
 
 // Writes the coefficients of the zonal function zonal[0..order-1], with its axis rotated to dir, to the
 // order² entries of `out`.
-void rotateZonal(int order, std::span<const double> zonal, const glm::vec3& dir, std::span<float> out);
 void rotateZonal(int order, std::span<const double> zonal, const glm::dvec3& dir, std::span<double> out);
-
-// Convolves light with a zonal kernel: band l is scaled by sqrt(4pi/(2l+1)) zonal[l].
-LightVector convolved(const LightVector& light, std::span<const double> zonal);
 
 // Returns irradiance / pi as a function of the normal, which is light with band l scaled by A_l/pi. Uniform
 // light stays unchanged.
@@ -62,11 +58,9 @@ inline constexpr int kMaxFactoredOrder = 9;
 class ZonalFactors {
  public:
   // `order` is in 1..kMaxFactoredOrder.
-  static ZonalFactors isotropic(int order);
-  static ZonalFactors anisotropic(int order);
+  ZonalFactors(int order, bool isotropic);
 
   int order() const { return order_; }
-  bool isIsotropic() const { return isotropic_; }
   // Returns unit axes in the function's own frame: `order` of them if isotropic, else 2 order - 1.
   std::span<const glm::vec3> axes() const { return axes_; }
   int axesOfBand(int l) const { return isotropic_ ? l + 1 : 2 * l + 1; }
@@ -77,12 +71,8 @@ class ZonalFactors {
   // Computes the weights of a function. Coefficients are ordered as in BrdfTable (if isotropic, only m >= 0,
   // with (l, m) at l(l+1)/2 + m). Weight w_l,i goes to l(l+1)/2 + i if isotropic, else to l² + i.
   void factor(std::span<const float> coefficients, std::span<float> weights) const;
-  // Writes the order² coefficients of the function in the frame in which axes() are `turned_axes`.
-  void expand(std::span<const float> weights, std::span<const glm::vec3> turned_axes,
-              std::span<float> out) const;
 
  private:
-  ZonalFactors(int order, bool isotropic);
   int order_;
   bool isotropic_;
   std::vector<glm::vec3> axes_;

@@ -16,10 +16,10 @@
 #include "runtime/lighting/capture_queries.hpp"
 #include "runtime/lighting/light_pieces.hpp"
 #include "runtime/lighting/triangle_tree.hpp"
-#include "runtime/scene/affine.hpp"
+#include "runtime/scene/transforms.hpp"
 #include "runtime/shadows/shadowed_light.hpp"
 #include "runtime/shadows/shadowed_light_choice.hpp"
-#include "runtime/world/boxes.hpp"
+#include "runtime/scene/bounds.hpp"
 
 namespace lambent::frame {
 

@@ -11,7 +11,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "runtime/scene/affine.hpp"
+#include "runtime/scene/transforms.hpp"
 #include "runtime/shadows/key_region.hpp"
 #include "runtime/shadows/shadowed_light.hpp"
 

@@ -11,8 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/base/result.hpp"
-#include "runtime/sh/image_layout.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/spec/light.hpp"
 

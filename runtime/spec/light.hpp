@@ -36,11 +36,13 @@ inline constexpr float kMostRadiance = 1e15f;
 struct EnvironmentMapLight {
   std::filesystem::path file;
   std::optional<sh::ImageLayout> layout;  // --light-layout; by default the picture's shape decides
+  bool operator==(const EnvironmentMapLight&) const = default;
 };
 
 // Describes light with the same radiance from every direction.
 struct ConstantLight {
   glm::vec3 radiance{1.0f};
+  bool operator==(const ConstantLight&) const = default;
 };
 
 // Describes a disc of uniform radiance at infinity.
@@ -49,6 +51,7 @@ struct SunLight {
   float elevation_deg = 0.0f;  // -90..90
   float angle_deg = 0.0f;      // angular radius, 0 < angle <= 180; 90 is half the sphere of directions
   glm::vec3 radiance{1.0f};
+  bool operator==(const SunLight&) const = default;
 };
 
 // Describes a sphere of uniform radiance in the scene. It lights surfaces, but is invisible to the camera and
@@ -57,6 +60,7 @@ struct SphereLight {
   glm::dvec3 position_ws{0.0};
   float radius_m = 0.0f;  // >= 0
   glm::vec3 radiance{1.0f};
+  bool operator==(const SphereLight&) const = default;
 };
 
 // Describes a flat disc of uniform radiance that shines to one side, and otherwise behaves like SphereLight.
@@ -65,6 +69,7 @@ struct DiscLight {
   glm::vec3 normal_ws{0.0f, -1.0f, 0.0f};  // unit, towards the side that shines
   float radius_m = 0.0f;                   // >= 0
   glm::vec3 radiance{1.0f};
+  bool operator==(const DiscLight&) const = default;
 };
 
 using Light = std::variant<EnvironmentMapLight, ConstantLight, SunLight, SphereLight, DiscLight>;

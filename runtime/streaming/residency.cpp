@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "runtime/streaming/sizes.hpp"
+#include "runtime/streaming/resident_tables.hpp"
 
 namespace lambent::streaming {
 
@@ -74,9 +74,8 @@ ResidentVolume& volumeOf(ResidentTables& tables, const ResidentBundle& bundle, b
 
 }  // namespace
 
-Residency::Residency(std::uint64_t max_page_bytes)
-    : max_page_bytes_(max_page_bytes),
-      geometry_("geometry", gpu::Arena::kMaxPageBytes, staging_),
+Residency::Residency()
+    : geometry_("geometry", gpu::Arena::kMaxPageBytes, staging_),
       transfer_("transfer", gpu::Arena::kMaxPageBytes, staging_),
       samples_("samples", gpu::Arena::kMaxPageBytes, staging_),
       rows_("rows", gpu::Arena::kMaxPageBytes, staging_),
@@ -85,7 +84,7 @@ Residency::Residency(std::uint64_t max_page_bytes)
 Result<ResidentTables> Residency::make(const bundle::Description& description) {
   const Needs needs = needsOf(description);
   const auto page_bytes = [&](std::uint64_t need) {
-    return std::min(std::max(need, kMinPageBytes), max_page_bytes_);
+    return std::min(std::max(need, kMinPageBytes), gpu::Arena::kMaxPageBytes);
   };
   geometry_.setPageBytes(page_bytes(needs.geometry));
   transfer_.setPageBytes(page_bytes(needs.transfer));
@@ -148,47 +147,57 @@ Result<void> Residency::add(const bundle::Description& description, std::uint32_
   return {};
 }
 
-void Residency::remove(std::uint32_t bundle) {
-  cancel(bundle);
-  release(extract(tables_, bundle));
+void Residency::remove(std::uint32_t slot) {
+  cancel(slot);
+  release(extract(tables_, slot));
   structureChanged();
 }
 
-Result<Residency::Staged> Residency::stage(const bundle::Description& description) {
+Result<Residency::Place> Residency::stage(const bundle::Description& description) {
   Result<ResidentTables> made = make(description);
   if (!made) return failAgain(made.error());
   staged_.emplace(next_staged_, std::move(*made));
-  return next_staged_++;
+  return Place(/*is_staged=*/true, next_staged_++);
 }
 
-void Residency::discard(Staged staged) {
-  cancel(Whose{true, staged});
-  release(staged_.at(staged));
-  staged_.erase(staged);
+void Residency::discard(const Place& staged) {
+  cancel(staged);
+  release(staged_.at(staged.index));
+  staged_.erase(staged.index);
 }
 
-void Residency::show(Staged staged, std::uint32_t bundle) {
-  assert(!comesStaged(staged));
-  cancel(bundle);
-  const ResidentTables old = present(bundle) ? extract(tables_, bundle) : ResidentTables{};
-  insert(tables_, bundle, std::move(staged_.at(staged)));
-  staged_.erase(staged);
+void Residency::show(const Place& staged, std::uint32_t slot) {
+  assert(!comes(staged));
+  cancel(slot);
+  const ResidentTables old = present(slot) ? extract(tables_, slot) : ResidentTables{};
+  insert(tables_, slot, std::move(staged_.at(staged.index)));
+  staged_.erase(staged.index);
   release(old);
   structureChanged();
 }
 
-Result<void> Residency::upload(std::uint32_t bundle, Ready item) {
-  assert(bundle < tables_.bundles.size() && tables_.bundles[bundle].present);
-  ++version_;
-  if (std::holds_alternative<ProxyChunk>(item)) ++proxies_version_;
-  const At at{tables_, tables_.bundles[bundle]};
-  return std::visit([&](auto& ready) { return put(at, std::move(ready)); }, item);
+Residency::At Residency::at(const Place& place) {
+  assert(place.staged || present(place.index));
+  ResidentTables& tables = place.staged ? staged_.at(place.index) : tables_;
+  return {tables, tables.bundles[place.staged ? 0 : place.index]};
 }
 
-Result<void> Residency::uploadStaged(Staged staged, Ready item) {
+Result<void> Residency::upload(const Place& place, Ready item) {
+  const At into = at(place);
   ++version_;
-  const At into = at({true, staged});
-  return std::visit([&](auto& ready) { return put(into, std::move(ready)); }, item);
+  if (!place.staged && std::holds_alternative<ProxyChunk>(item)) ++proxies_version_;
+  if (comesInPieces(item)) {
+    Result<Upload> made = makeUpload(into, std::move(item));
+    if (!made) return failAgain(made.error());
+    proceed(into, *made, ~std::uint64_t{0});
+    return finish(into, std::move(*made));
+  }
+  return std::visit(
+      [&](const auto& ready) -> Result<void> {
+        if constexpr (requires { this->put(into, ready); }) return put(into, ready);
+        return {};
+      },
+      item);
 }
 
 Result<void> Residency::put(At at, const WeightsChunk& item) {
@@ -225,7 +234,7 @@ Result<void> Residency::put(At at, const WeightsChunk& item) {
 
 Result<void> Residency::reserveCell(ResidentCell& cell) {
   if (cell.block) return {};
-  const Result<gpu::Allocation> block = transfer_.allocateWithRoom(4ull * layOut(cell, 0), wholeBytes(cell));
+  const Result<gpu::Allocation> block = transfer_.allocate(4ull * layOut(cell, 0), wholeBytes(cell));
   if (!block) return failAgain(block.error());
   cell.block = *block;
   layOut(cell, block->word());
@@ -233,7 +242,7 @@ Result<void> Residency::reserveCell(ResidentCell& cell) {
 }
 
 Result<void> Residency::moveCell(ResidentCell& cell) {
-  const Result<gpu::Allocation> block = transfer_.allocateWithRoom(cell.block.byte_count, wholeBytes(cell));
+  const Result<gpu::Allocation> block = transfer_.allocate(cell.block.byte_count, wholeBytes(cell));
   if (!block) return failAgain(block.error());
   const auto move = [&](gpu::Allocation& from, const gpu::Allocation& to) {
     transfer_.copy(from, to);
@@ -328,12 +337,8 @@ std::uint64_t Residency::bytesResident() const {
   for (const gpu::Arena* arena : arenas()) bytes += arena->bytesUsed();
   for (const ResidentBundle& bundle : tables_.bundles) bytes += bundle.texture_bytes;
   for (const auto& [staged, tables] : staged_) bytes += tables.bundles.front().texture_bytes;
-  return bytes + comingBytes();
-}
-
-std::uint64_t Residency::bytesReserved() const {
-  std::uint64_t bytes = 0;
-  for (const gpu::Arena* arena : arenas()) bytes += arena->bytesReserved();
+  for (const auto& [place, upload] : coming_)
+    bytes += bytesOfTexture(upload.color) + bytesOfTexture(upload.linear);
   return bytes;
 }
 
@@ -342,37 +347,6 @@ std::uint64_t Residency::planesResident() const {
   for (const ResidentCell& cell : tables_.cells)
     for (const ResidentTransfer& transfer : cell.transfers) planes += transfer.planes_resident;
   return planes;
-}
-
-std::uint64_t Residency::uploadBytes(const Ready& item) {
-  struct Size {
-    std::uint64_t operator()(const MeshChunk& mesh) const {
-      return 24ull * mesh.data.positions.size() + 8ull * mesh.data.texcoords0.size() +
-             8ull * mesh.data.texcoords1.size() + 8ull * mesh.data.colors.size() +
-             16ull * mesh.data.tangents.size() + 4ull * mesh.data.indices.size();
-    }
-    std::uint64_t operator()(const ImageChunk& image) const {
-      return image.rgba.size() + image.linear.size();
-    }
-    std::uint64_t operator()(const WeightsChunk& rows) const {
-      return 4ull * rows.rows.offsets.size() + 6ull * rows.rows.samples.size();
-    }
-    std::uint64_t operator()(const CodebookChunk& ready) const {
-      const transfer::Codebook& codebook = ready.codebook;
-      return 16ull * codebook.clusters() + 8ull * codebook.axes.size() + 4ull * codebook.vectors.size() +
-             4ull * ready.positions.size();
-    }
-    std::uint64_t operator()(const PlaneChunk& plane) const { return plane.codes.size(); }
-    std::uint64_t operator()(const LightWeightsChunk& weights) const {
-      return sizeof(transfer::LightWeights) * weights.samples.size();
-    }
-    std::uint64_t operator()(const ProxyChunk&) const { return 0; }  // is not uploaded
-    std::uint64_t operator()(const BrdfChunk& ready) const { return ready.texels.bytes(); }
-    // Codes of 8 bits take twice this size on the GPU.
-    std::uint64_t operator()(const DensityChunk& density) const { return density.codes.size(); }
-    std::uint64_t operator()(const VoxelsChunk& ready) const { return 4 * ready.voxels.size(); }
-  };
-  return std::visit(Size{}, item);
 }
 
 }  // namespace lambent::streaming

@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "runtime/base/result.hpp"
@@ -22,53 +23,56 @@ namespace lambent::streaming {
 
 class Residency {
  public:
-  // Pages are as large as a bundle needs, up to max_page_bytes.
-  explicit Residency(std::uint64_t max_page_bytes = gpu::Arena::kMaxPageBytes);
+  Residency();
+
+  // Says where a bundle is: in a slot, or staged, so not in the tables yet.
+  struct Place {
+    Place(std::uint32_t slot) : index(slot) {}
+    Place(bool is_staged, std::uint32_t number) : staged(is_staged), index(number) {}
+    auto operator<=>(const Place&) const = default;
+
+    bool staged = false;
+    std::uint32_t index = 0;  // the slot, or the number of the staged bundle
+  };
 
   // Adds a bundle in the first empty slot and returns the slot.
   Result<std::uint32_t> add(const bundle::Description& description);
   // Adds a bundle in this slot, which must be empty.
   Result<void> add(const bundle::Description& description, std::uint32_t slot);
-  Result<void> upload(std::uint32_t bundle, Ready item);
-  // Gives all cells and draws new versions, so that they are shaded again. Call this after other code wrote
-  // into samples or radiance.
-  void forgetShading();
   // Releases all memory of the bundle. The slot is empty until the next add(); other slots do not change.
-  void remove(std::uint32_t bundle);
+  void remove(std::uint32_t slot);
   // Returns whether the slot holds a bundle.
   bool present(std::uint32_t slot) const {
     return slot < tables_.bundles.size() && tables_.bundles[slot].present;
   }
-  // Returns the number of planes of a transfer to keep.
-  using PlanesToKeep = std::function<std::uint32_t(bundle::CellIndex, bundle::TransferIndex)>;
-  void dropPlanes(std::uint32_t bundle, bundle::GroupIndex group, const PlanesToKeep& keep);
+  Result<Place> stage(const bundle::Description& description);
+  void discard(const Place& staged);
+  // Puts a staged bundle into a slot, and removes the bundle that is there, if any. No upload of the staged
+  // bundle may be in progress.
+  void show(const Place& staged, std::uint32_t slot);
+
+  Result<void> upload(const Place& place, Ready item);
   // Returns whether an item can be uploaded in pieces over several frames. These are images, meshes and
   // codebooks. The item is shown when it is complete. Each bundle has at most one such item at a time.
   static bool comesInPieces(const Ready& item);
   // Begins the upload of an item in pieces.
-  Result<void> begin(std::uint32_t bundle, Ready item);
+  Result<void> begin(const Place& place, Ready item);
   // Returns whether such an upload is in progress.
-  bool comes(std::uint32_t bundle) const { return coming_.contains({false, bundle}); }
+  bool comes(const Place& place) const { return coming_.contains(place); }
   // Continues the upload with at most about max_bytes, and returns the number of bytes.
-  Result<std::uint64_t> proceed(std::uint32_t bundle, std::uint64_t max_bytes);
-  void cancel(std::uint32_t bundle);
-  // Keeps only this many of the coarsest mip levels of an image.
-  void dropLevels(std::uint32_t bundle, std::uint32_t image, std::uint32_t levels);
-  // Drops all transfer and light weights of a group, which is then shown without shadows.
-  void dropTransfer(std::uint32_t bundle, bundle::GroupIndex group);
+  Result<std::uint64_t> proceed(const Place& place, std::uint64_t max_bytes);
+  void cancel(const Place& place);
 
-  // Identifies a bundle that is staged, so not in the tables yet.
-  using Staged = std::uint32_t;
-  Result<Staged> stage(const bundle::Description& description);
-  Result<void> uploadStaged(Staged staged, Ready item);
-  void discard(Staged staged);
-  // These upload items of a staged bundle in pieces, like begin(), comes() and proceed().
-  Result<void> beginStaged(Staged staged, Ready item);
-  bool comesStaged(Staged staged) const { return coming_.contains({true, staged}); }
-  Result<std::uint64_t> proceedStaged(Staged staged, std::uint64_t max_bytes);
-  // Puts a staged bundle into a slot, and removes the bundle that is there, if any. No upload of the staged
-  // bundle may be in progress.
-  void show(Staged staged, std::uint32_t bundle);
+  // Gives all cells and draws new versions, so that they are shaded again. Call this after other code wrote
+  // into samples or radiance.
+  void forgetShading();
+  // Returns the number of planes of a transfer to keep.
+  using PlanesToKeep = std::function<std::uint32_t(bundle::CellIndex, bundle::TransferIndex)>;
+  void dropPlanes(std::uint32_t slot, bundle::GroupIndex group, const PlanesToKeep& keep);
+  // Keeps only this many of the coarsest mip levels of an image.
+  void dropLevels(std::uint32_t slot, std::uint32_t image, std::uint32_t levels);
+  // Drops all transfer and light weights of a group, which is then shown without shadows.
+  void dropTransfer(std::uint32_t slot, bundle::GroupIndex group);
 
   // Returns the bundles by slot. Some slots may be empty.
   const std::vector<ResidentBundle>& bundles() const { return tables_.bundles; }
@@ -92,11 +96,7 @@ class Residency {
 
   // Returns the GPU memory in use by arenas and textures, including staged bundles and unfinished uploads.
   std::uint64_t bytesResident() const;
-  // Returns this memory plus the free memory in pages of the arenas.
-  std::uint64_t bytesReserved() const;
   std::uint64_t planesResident() const;
-  // Returns the number of bytes that the upload of an item takes.
-  static std::uint64_t uploadBytes(const Ready& item);
 
  private:
   Result<ResidentTables> make(const bundle::Description& description);
@@ -110,46 +110,29 @@ class Residency {
     ResidentTables& tables;
     ResidentBundle& bundle;
   };
-  struct ImageUpload {
-    ImageChunk item;  // empty if the image is uploaded at once
-    gpu::Texture color, linear;
-    std::uint32_t rows_done = 0;
+  At at(const Place& place);
+  // An item that is uploaded piece by piece: its parts one after the other, in multiples of a granule.
+  struct Upload {
+    Ready item;
+    std::vector<std::uint64_t> colors;  // of a mesh, as the GPU reads them
+    gpu::Allocation block;              // of a mesh
+    gpu::Texture color, linear;         // of an image
+    std::vector<std::span<const std::byte>> parts;
+    std::uint64_t granule = 1;
+    std::size_t part = 0;         // the first that is not done
+    std::uint64_t part_done = 0;  // bytes of it that are
+    std::uint64_t all_done = 0;
+
+    bool whole() const { return part == parts.size(); }
   };
-  static ImageUpload begin(const ResidentBundle& owner, const ImageChunk& item);
-  static void write(ImageUpload& upload, const ImageChunk& item, std::uint32_t rows);
-  static void finish(ResidentBundle& owner, ImageUpload upload, std::uint32_t image);
-  struct MeshUpload {
-    MeshChunk item;
-    std::vector<std::uint64_t> colors;
-    gpu::Allocation block;
-    std::uint64_t bytes_done = 0;
-  };
-  struct CodebookUpload {
-    CodebookChunk item;
-    std::uint64_t bytes_done = 0;  // bytes of its vectors that are uploaded
-  };
-  using Coming = std::variant<ImageUpload, MeshUpload, CodebookUpload>;
-  struct Whose {
-    bool staged = false;
-    std::uint32_t index = 0;  // the slot, or the Staged number
-    auto operator<=>(const Whose&) const = default;
-  };
-  At at(const Whose& whose);
-  Result<void> begin(const Whose& whose, Ready item);
-  Result<std::uint64_t> proceed(const Whose& whose, std::uint64_t max_bytes);
-  void cancel(const Whose& whose);
-  std::uint64_t proceed(ImageUpload& upload, std::uint64_t max_bytes);
-  std::uint64_t proceed(MeshUpload& upload, std::uint64_t max_bytes);
-  std::uint64_t proceed(At at, CodebookUpload& upload, std::uint64_t max_bytes);
-  Result<MeshUpload> begin(MeshChunk item);
-  Result<void> finish(At at, const MeshUpload& upload);
+  static std::uint64_t bytesOfTexture(const gpu::Texture& texture);  // 0 without one
+  Result<Upload> makeUpload(At at, Ready item);
+  std::uint64_t proceed(At at, Upload& upload, std::uint64_t max_bytes);
+  void write(At at, const Upload& upload, std::span<const std::byte> piece);
+  Result<void> finish(At at, Upload upload);
+  Result<void> finishMesh(At at, const Upload& upload);
   Result<void> writeTables(At at, const CodebookChunk& item);
-  void finish(At at, const CodebookUpload& upload);
-  std::uint64_t comingBytes() const;
-  Result<void> put(At at, MeshChunk item);
-  Result<void> put(At at, const ImageChunk& item);
   Result<void> put(At at, const WeightsChunk& item);
-  Result<void> put(At at, CodebookChunk item);
   Result<void> put(At at, const PlaneChunk& item);
   Result<void> put(At at, const LightWeightsChunk& item);
   Result<void> put(At at, const ProxyChunk& item);
@@ -162,11 +145,10 @@ class Residency {
   // Clears the shaded samples of a group and causes it to be shaded again.
   void forgetShading(const ResidentGroup& group);
 
-  std::uint64_t max_page_bytes_;
   ResidentTables tables_;
-  std::map<Staged, ResidentTables> staged_;
-  Staged next_staged_ = 0;
-  std::map<Whose, Coming> coming_;
+  std::map<std::uint32_t, ResidentTables> staged_;  // by number
+  std::uint32_t next_staged_ = 0;
+  std::map<Place, Upload> coming_;
   std::uint64_t next_id_ = 1;
   std::uint64_t version_ = 1, structure_version_ = 1, proxies_version_ = 1;
   std::shared_ptr<gpu::Staging> staging_ = std::make_shared<gpu::Staging>();

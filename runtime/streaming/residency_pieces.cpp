@@ -1,16 +1,15 @@
-// Uploads large items in pieces over several frames: meshes and codebooks here, textures in
-// residency_images.cpp. An item is used once it is complete. An upload at once is the same with a single
-// piece.
+// Uploads large items in pieces over several frames, which are used once they are complete. Drops finer
+// levels of textures, planes and transfer.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
-#include <optional>
 
+#include <fmt/format.h>
 #include <glm/gtc/packing.hpp>
 
 #include "runtime/streaming/residency.hpp"
-#include "runtime/streaming/sizes.hpp"
+#include "runtime/streaming/textures.hpp"
 
 namespace lambent::streaming {
 
@@ -18,20 +17,38 @@ namespace {
 
 // Smallest piece of a frame, however small its budget is, so that large items are completed at all.
 constexpr std::uint64_t kLeastBytes = std::uint64_t{64} << 10;
-constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
 template <typename T>
-std::span<const std::byte> bytesOf(const std::vector<T>& values) {
+std::span<const std::byte> partOf(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
 }
 
-// The attributes of a mesh, in the order of its block.
-constexpr std::size_t kMeshParts = 7;
-using MeshParts = std::array<std::span<const std::byte>, kMeshParts>;
+// Returns a copy of the texture from its level `from` on.
+gpu::Texture coarser(const gpu::Texture& texture, std::uint32_t from, const std::string& label) {
+  const gpu::TextureDesc& desc = texture.desc();
+  const ImageSize size = sizeAt({desc.width, desc.height}, from);
+  gpu::Texture result(
+      label,
+      {.format = desc.format, .width = size.width, .height = size.height, .levels = desc.levels - from});
+  for (std::uint32_t level = 0; level < desc.levels - from; ++level) {
+    const ImageSize here = sizeAt(size, level);
+    glCopyImageSubData(texture.id(), GL_TEXTURE_2D, static_cast<GLint>(from + level), 0, 0, 0, result.id(),
+                       GL_TEXTURE_2D, static_cast<GLint>(level), 0, 0, 0, static_cast<GLsizei>(here.width),
+                       static_cast<GLsizei>(here.height), 1);
+  }
+  return result;
+}
 
-MeshParts meshPartsOf(const bundle::MeshData& data, const std::vector<std::uint64_t>& colors) {
-  return {bytesOf(data.positions), bytesOf(data.normals),  bytesOf(data.texcoords0), bytesOf(data.texcoords1),
-          bytesOf(colors),         bytesOf(data.tangents), bytesOf(data.indices)};
+void writeRows(const gpu::Texture& texture, std::uint32_t first, std::span<const std::byte> rgba) {
+  const std::uint32_t width = texture.desc().width;
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(texture.id(), 0, 0, static_cast<GLint>(first), static_cast<GLsizei>(width),
+                      static_cast<GLsizei>(rgba.size() / (std::size_t{4} * width)), GL_RGBA, GL_UNSIGNED_BYTE,
+                      rgba.data());
+}
+
+std::string labelOf(std::uint32_t image) {
+  return fmt::format("image {}", image);
 }
 
 // Makes a texture of E/pi with all mip levels, in which nothing is shaded yet.
@@ -45,145 +62,153 @@ gpu::Texture makeIrradiance(std::uint32_t side) {
   return texture;
 }
 
-std::uint64_t bytesOfParts(const MeshParts& parts) {
-  std::uint64_t bytes = 0;
-  for (const std::span<const std::byte> part : parts) bytes += part.size();
-  return bytes;
+ResidentGroup& groupOf(ResidentTables& tables, std::uint32_t bundle, bundle::GroupIndex group) {
+  return tables.groups[tables.bundles[bundle].first.groups + group.value];
 }
 
 }  // namespace
+
+std::uint64_t Residency::bytesOfTexture(const gpu::Texture& texture) {
+  return texture ? textureBytes({texture.desc().width, texture.desc().height}) : 0;
+}
 
 bool Residency::comesInPieces(const Ready& item) {
   return std::holds_alternative<ImageChunk>(item) || std::holds_alternative<MeshChunk>(item) ||
          std::holds_alternative<CodebookChunk>(item);
 }
 
-Residency::At Residency::at(const Whose& whose) {
-  ResidentTables& tables = whose.staged ? staged_.at(whose.index) : tables_;
-  return {tables, tables.bundles[whose.staged ? 0 : whose.index]};
+Result<void> Residency::begin(const Place& place, Ready item) {
+  assert(comesInPieces(item) && !coming_.contains(place));
+  Result<Upload> made = makeUpload(at(place), std::move(item));
+  if (!made) return failAgain(made.error());
+  coming_.emplace(place, std::move(*made));
+  return {};
 }
 
-Result<void> Residency::begin(std::uint32_t bundle, Ready item) {
-  return begin(Whose{false, bundle}, std::move(item));
+Result<std::uint64_t> Residency::proceed(const Place& place, std::uint64_t max_bytes) {
+  const auto found = coming_.find(place);
+  if (found == coming_.end()) return 0;
+  const At into = at(place);
+  const std::uint64_t bytes = proceed(into, found->second, std::max(max_bytes, kLeastBytes));
+  if (!found->second.whole()) return bytes;
+  ++version_;
+  if (Result<void> done = finish(into, std::move(coming_.extract(found).mapped())); !done)
+    return failAgain(done.error());
+  return bytes;
 }
 
-Result<void> Residency::beginStaged(Staged staged, Ready item) {
-  return begin(Whose{true, staged}, std::move(item));
+void Residency::cancel(const Place& place) {
+  const auto found = coming_.find(place);
+  if (found == coming_.end()) return;
+  // Textures delete themselves, and cells own the blocks of codebooks.
+  if (found->second.block) geometry_.release(found->second.block);
+  coming_.erase(found);
 }
 
-Result<std::uint64_t> Residency::proceed(std::uint32_t bundle, std::uint64_t max_bytes) {
-  return proceed(Whose{false, bundle}, max_bytes);
+Result<Residency::Upload> Residency::makeUpload(At at, Ready item) {
+  Upload upload{.item = std::move(item), .colors = {}, .block = {}, .color = {}, .linear = {}, .parts = {}};
+  if (const auto* image = std::get_if<ImageChunk>(&upload.item)) {
+    const ImageUse use = at.bundle.image_uses[image->image];
+    const auto make = [&](const std::string& label, GLenum format) {
+      return gpu::Texture(label, {.format = format,
+                                  .width = image->width,
+                                  .height = image->height,
+                                  .levels = levelCount({image->width, image->height})});
+    };
+    upload.granule = std::uint64_t{4} * image->width;
+    if (use.color) {
+      upload.color = make(labelOf(image->image), GL_SRGB8_ALPHA8);
+      upload.parts.push_back(partOf(image->rgba));
+    }
+    if (use.linear) {
+      upload.linear = make(labelOf(image->image) + " linear", GL_RGBA8);
+      upload.parts.push_back(partOf(image->linear.empty() ? image->rgba : image->linear));
+    }
+  } else if (const auto* mesh = std::get_if<MeshChunk>(&upload.item)) {
+    const bundle::MeshData& data = mesh->data;
+    upload.colors.reserve(data.colors.size());
+    for (const glm::vec4& color : data.colors) upload.colors.push_back(glm::packUnorm4x16(color));
+    upload.parts = {partOf(data.positions),  partOf(data.normals),  partOf(data.texcoords0),
+                    partOf(data.texcoords1), partOf(upload.colors), partOf(data.tangents),
+                    partOf(data.indices)};
+    std::uint64_t bytes = 0;
+    for (const std::span<const std::byte> part : upload.parts) bytes += part.size();
+    const Result<gpu::Allocation> block = geometry_.allocate(bytes);
+    if (!block) return failAgain(block.error());
+    upload.block = *block;
+  } else if (const auto* codebook = std::get_if<CodebookChunk>(&upload.item)) {
+    if (Result<void> written = writeTables(at, *codebook); !written) return failAgain(written.error());
+    upload.parts = {partOf(codebook->codebook.vectors)};
+  }
+  return upload;
 }
 
-Result<std::uint64_t> Residency::proceedStaged(Staged staged, std::uint64_t max_bytes) {
-  return proceed(Whose{true, staged}, max_bytes);
+std::uint64_t Residency::proceed(At at, Upload& upload, std::uint64_t max_bytes) {
+  std::uint64_t bytes = 0;
+  for (; !upload.whole(); ++upload.part, upload.part_done = 0) {
+    const std::span<const std::byte> left = upload.parts[upload.part].subspan(upload.part_done);
+    std::uint64_t room = (max_bytes - bytes) / upload.granule * upload.granule;
+    if (bytes == 0) room = std::max(room, upload.granule);
+    const std::span<const std::byte> piece = left.first(std::min<std::uint64_t>(room, left.size()));
+    if (!piece.empty()) write(at, upload, piece);
+    bytes += piece.size();
+    upload.part_done += piece.size();
+    upload.all_done += piece.size();
+    if (piece.size() < left.size()) break;
+  }
+  return bytes;
 }
 
-void Residency::cancel(std::uint32_t bundle) {
-  cancel(Whose{false, bundle});
+void Residency::write(At at, const Upload& upload, std::span<const std::byte> piece) {
+  if (std::holds_alternative<ImageChunk>(upload.item)) {
+    const gpu::Texture& texture = upload.color && upload.part == 0 ? upload.color : upload.linear;
+    writeRows(texture, static_cast<std::uint32_t>(upload.part_done / upload.granule), piece);
+  } else if (const auto* codebook = std::get_if<CodebookChunk>(&upload.item)) {
+    const ResidentCell& cell = cellOf(at.tables, at.bundle, codebook->group, codebook->cell);
+    const std::uint32_t first_word =
+        cell.transfers[codebook->transfer.value].vectors_word - cell.block.word();
+    transfer_.write(cell.block, 4ull * first_word + upload.part_done, piece);
+  } else {
+    geometry_.write(upload.block, upload.all_done, piece);
+  }
 }
 
-Result<void> Residency::begin(const Whose& whose, Ready item) {
-  assert(comesInPieces(item) && !coming_.contains(whose));
-  const At into = at(whose);
-  if (auto* image = std::get_if<ImageChunk>(&item)) {
-    ImageUpload upload = begin(into.bundle, *image);
-    upload.item = std::move(*image);
-    coming_.emplace(whose, std::move(upload));
-  } else if (auto* mesh = std::get_if<MeshChunk>(&item)) {
-    Result<MeshUpload> upload = begin(std::move(*mesh));
-    if (!upload) return failAgain(upload.error());
-    coming_.emplace(whose, std::move(*upload));
-  } else if (auto* codebook = std::get_if<CodebookChunk>(&item)) {
-    if (Result<void> written = writeTables(into, *codebook); !written) return written;
-    coming_.emplace(whose, CodebookUpload{std::move(*codebook)});
+Result<void> Residency::finish(At at, Upload upload) {
+  if (const auto* image = std::get_if<ImageChunk>(&upload.item)) {
+    const auto take = [&](gpu::Texture& made, gpu::Texture& shown) {
+      if (!made) return;
+      glGenerateTextureMipmap(made.id());
+      at.bundle.texture_bytes += bytesOfTexture(made) - bytesOfTexture(shown);
+      shown = std::move(made);
+    };
+    take(upload.color, at.bundle.images[image->image]);
+    take(upload.linear, at.bundle.linear_images[image->image]);
+  } else if (const auto* codebook = std::get_if<CodebookChunk>(&upload.item)) {
+    ResidentCell& cell = cellOf(at.tables, at.bundle, codebook->group, codebook->cell);
+    cell.transfers[codebook->transfer.value].codebook_resident = true;
+    cell.version = version_;
+  } else {
+    return finishMesh(at, upload);
   }
   return {};
 }
 
-Result<std::uint64_t> Residency::proceed(const Whose& whose, std::uint64_t max_bytes) {
-  const auto found = coming_.find(whose);
-  if (found == coming_.end()) return 0;
-  const At into = at(whose);
-  max_bytes = std::max(max_bytes, kLeastBytes);
-  std::uint64_t bytes = 0;
-  Result<void> done;
-  const auto whole = [&] {
-    ++version_;
-    return std::move(coming_.extract(found).mapped());
-  };
-  if (auto* image = std::get_if<ImageUpload>(&found->second)) {
-    bytes = proceed(*image, max_bytes);
-    if (image->rows_done == image->item.height) {
-      auto upload = std::get<ImageUpload>(whole());
-      finish(into.bundle, std::move(upload), upload.item.image);
-    }
-  } else if (auto* mesh = std::get_if<MeshUpload>(&found->second)) {
-    bytes = proceed(*mesh, max_bytes);
-    if (mesh->bytes_done == bytesOfParts(meshPartsOf(mesh->item.data, mesh->colors)))
-      done = finish(into, std::get<MeshUpload>(whole()));
-  } else if (auto* codebook = std::get_if<CodebookUpload>(&found->second)) {
-    bytes = proceed(into, *codebook, max_bytes);
-    if (codebook->bytes_done == bytesOf(codebook->item.codebook.vectors).size())
-      finish(into, std::get<CodebookUpload>(whole()));
-  }
-  if (!done) return failAgain(done.error());
-  return bytes;
-}
-
-void Residency::cancel(const Whose& whose) {
-  const auto found = coming_.find(whose);
-  if (found == coming_.end()) return;
-  // Textures delete themselves, and cells own the blocks of codebooks.
-  if (const auto* mesh = std::get_if<MeshUpload>(&found->second)) geometry_.release(mesh->block);
-  coming_.erase(found);
-}
-
-// --- meshes ---
-
-Result<Residency::MeshUpload> Residency::begin(MeshChunk item) {
-  MeshUpload upload{.item = std::move(item), .colors = {}, .block = {}};
-  upload.colors.reserve(upload.item.data.colors.size());
-  for (const glm::vec4& color : upload.item.data.colors) upload.colors.push_back(glm::packUnorm4x16(color));
-  const Result<gpu::Allocation> block =
-      geometry_.allocate(bytesOfParts(meshPartsOf(upload.item.data, upload.colors)));
-  if (!block) return failAgain(block.error());
-  upload.block = *block;
-  return upload;
-}
-
-std::uint64_t Residency::proceed(MeshUpload& upload, std::uint64_t max_bytes) {
-  const std::uint64_t before = upload.bytes_done;
-  std::uint64_t first = 0;  // offset of the part
-  for (const std::span<const std::byte> part : meshPartsOf(upload.item.data, upload.colors)) {
-    const std::uint64_t left = max_bytes - (upload.bytes_done - before);
-    if (const std::uint64_t from = upload.bytes_done - first; left > 0 && from < part.size()) {
-      const std::uint64_t count = std::min<std::uint64_t>(left, part.size() - from);
-      geometry_.write(upload.block, upload.bytes_done, part.subspan(from, count));
-      upload.bytes_done += count;
-    }
-    first += part.size();
-    if (upload.bytes_done < first) break;
-  }
-  return upload.bytes_done - before;
-}
-
-Result<void> Residency::finish(At at, const MeshUpload& upload) {
-  const MeshChunk& item = upload.item;
+Result<void> Residency::finishMesh(At at, const Upload& upload) {
+  const auto& item = std::get<MeshChunk>(upload.item);
   const std::uint32_t index = at.bundle.first.meshes + at.bundle.first_primitive[item.mesh] + item.primitive;
   ResidentMesh& mesh = at.tables.meshes[index];
   assert(item.data.positions.size() == mesh.vertex_count && item.data.indices.size() == mesh.index_count);
   mesh.block = upload.block;
   mesh.mean_edge = item.mean_edge;
-  const std::array<std::uint32_t*, kMeshParts> word_of = {
+  // In the order of the parts.
+  const std::array<std::uint32_t*, 7> word_of = {
       &mesh.positions_word, &mesh.normals_word,  &mesh.texcoords_word[0], &mesh.texcoords_word[1],
       &mesh.colors_word,    &mesh.tangents_word, &mesh.indices_word};
-  const MeshParts parts = meshPartsOf(item.data, upload.colors);
   std::uint64_t offset = 0;
-  for (std::size_t i = 0; i < kMeshParts; ++i) {
-    if (parts[i].empty()) continue;
+  for (std::size_t i = 0; i < word_of.size(); ++i) {
+    if (upload.parts[i].empty()) continue;
     *word_of[i] = mesh.block.word() + static_cast<std::uint32_t>(offset / 4);
-    offset += parts[i].size();
+    offset += upload.parts[i].size();
   }
   for (ResidentDraw& draw : at.tables.draws) {
     if (draw.mesh != index) continue;
@@ -199,15 +224,6 @@ Result<void> Residency::finish(At at, const MeshUpload& upload) {
   }
   return {};
 }
-
-Result<void> Residency::put(At at, MeshChunk item) {
-  Result<MeshUpload> upload = begin(std::move(item));
-  if (!upload) return failAgain(upload.error());
-  proceed(*upload, kAll);
-  return finish(at, *upload);
-}
-
-// --- codebooks ---
 
 // Writes everything except the vectors, which are most of a codebook.
 Result<void> Residency::writeTables(At at, const CodebookChunk& item) {
@@ -228,45 +244,22 @@ Result<void> Residency::writeTables(At at, const CodebookChunk& item) {
   const auto write = [&](std::uint32_t word, std::span<const std::byte> bytes) {
     transfer_.write(cell.block, 4ull * (word - cell.block.word()), bytes);
   };
-  write(transfer.clusters_word, bytesOf(clusters));
-  write(transfer.weights_word, bytesOf(weights));
-  write(transfer.positions_word, bytesOf(item.positions));
+  write(transfer.clusters_word, partOf(clusters));
+  write(transfer.weights_word, partOf(weights));
+  write(transfer.positions_word, partOf(item.positions));
   return {};
 }
 
-std::uint64_t Residency::proceed(At at, CodebookUpload& upload, std::uint64_t max_bytes) {
-  const CodebookChunk& item = upload.item;
-  const ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
-  const std::span<const std::byte> left = bytesOf(item.codebook.vectors).subspan(upload.bytes_done);
-  const std::span<const std::byte> piece = left.first(std::min<std::uint64_t>(max_bytes, left.size()));
-  const std::uint32_t first_word = cell.transfers[item.transfer.value].vectors_word - cell.block.word();
-  transfer_.write(cell.block, 4ull * first_word + upload.bytes_done, piece);
-  upload.bytes_done += piece.size();
-  return piece.size();
+void Residency::dropLevels(std::uint32_t bundle, std::uint32_t image, std::uint32_t levels) {
+  ResidentBundle& owner = tables_.bundles[bundle];
+  for (gpu::Texture* texture : {&owner.images[image], &owner.linear_images[image]}) {
+    if (!*texture || texture->desc().levels <= levels) continue;
+    ++version_;
+    gpu::Texture rest = coarser(*texture, texture->desc().levels - levels, labelOf(image));
+    owner.texture_bytes -= bytesOfTexture(*texture) - bytesOfTexture(rest);
+    *texture = std::move(rest);
+  }
 }
-
-void Residency::finish(At at, const CodebookUpload& upload) {
-  ResidentCell& cell = cellOf(at.tables, at.bundle, upload.item.group, upload.item.cell);
-  cell.transfers[upload.item.transfer.value].codebook_resident = true;
-  cell.version = version_;
-}
-
-Result<void> Residency::put(At at, CodebookChunk item) {
-  if (Result<void> written = writeTables(at, item); !written) return written;
-  CodebookUpload upload{std::move(item)};
-  proceed(at, upload, kAll);
-  finish(at, upload);
-  return {};
-}
-
-// Drops planes and transfer of groups from the GPU.
-namespace {
-
-ResidentGroup& groupOf(ResidentTables& tables, std::uint32_t bundle, bundle::GroupIndex group) {
-  return tables.groups[tables.bundles[bundle].first.groups + group.value];
-}
-
-}  // namespace
 
 void Residency::forgetShading(const ResidentGroup& group) {
   if (group.samples) samples_.clear(group.samples);

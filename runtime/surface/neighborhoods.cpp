@@ -12,7 +12,7 @@
 #include "runtime/base/finite.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/surface_shared.h"
-#include "runtime/world/boxes.hpp"
+#include "runtime/scene/bounds.hpp"
 
 namespace lambent::frame {
 
@@ -172,9 +172,9 @@ void Neighborhoods::chooseCarriers(const World& world, LitScene& scene, bool on)
 }
 
 Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& lights,
-                                   const effects::glossy::Glossy& glossy, evaluate::TransferMode mode,
+                                   const evaluate::Samples& samples, evaluate::TransferMode mode,
                                    gpu::Counters& counters) {
-  if (Result<void> done = effect_.update(world.residency(), lights, glossy, counters); !done) return done;
+  if (Result<void> done = effect_.update(world.residency(), lights, samples, counters); !done) return done;
   const bool changed = receivers_changed_.renew(world.residency().version(), world.transformsVersion(),
                                                 effect_.version(), mode, lights.hasKeys());
   if (changed) findReceivers(world, mode, lights.hasKeys());

@@ -27,7 +27,6 @@
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/neighborhood/neighborhood.hpp"
 #include "runtime/effects/neighborhood/vertex_receivers.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -60,9 +59,8 @@ class Neighborhoods {
   // updated. If `on` is false, captures carry all pairs at once.
   void chooseCarriers(const World& world, LitScene& scene, bool on = true);
   // Copies what was shaded into the texture. Call it after the glossy effect.
-  Result<void> update(World& world, const lighting::GroupLights& lights,
-                      const effects::glossy::Glossy& glossy, evaluate::TransferMode mode,
-                      gpu::Counters& counters);
+  Result<void> update(World& world, const lighting::GroupLights& lights, const evaluate::Samples& samples,
+                      evaluate::TransferMode mode, gpu::Counters& counters);
 
   // Returns whether no grid has become ready since carriers were chosen. If one has, the next step shows it.
   bool settled() const { return readyGrids() == ready_when_chosen_; }

@@ -7,7 +7,7 @@
 
 #include "runtime/shadows/lit_scene.hpp"
 #include "runtime/shadows/shadowed_light_choice.hpp"
-#include "runtime/streaming/sizes.hpp"
+#include "runtime/streaming/resident_tables.hpp"
 #include "runtime/surface/surface_program.hpp"
 
 namespace lambent::frame {

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "lambent_draws_embedded.hpp"
-#include "lambent_effects_glossy_embedded.hpp"
 #include "lambent_effects_neighborhood_embedded.hpp"
 #include "lambent_lighting_embedded.hpp"
 #include "lambent_shadows_embedded.hpp"
@@ -17,13 +16,10 @@
 
 namespace lambent::frame {
 
-const gpu::FindText kSurfaceShaders[7] = {&embedded::lambent_surface::find,
-                                          &embedded::lambent_draws::find,
-                                          &embedded::lambent_transfer::find,
-                                          &embedded::lambent_lighting::find,
-                                          &embedded::lambent_shadows::find,
-                                          &embedded::lambent_effects_glossy::find,
-                                          &embedded::lambent_effects_neighborhood::find};
+const gpu::FindText kSurfaceShaders[6] = {
+    &embedded::lambent_surface::find,  &embedded::lambent_draws::find,
+    &embedded::lambent_transfer::find, &embedded::lambent_lighting::find,
+    &embedded::lambent_shadows::find,  &embedded::lambent_effects_neighborhood::find};
 
 namespace {
 
@@ -141,8 +137,8 @@ Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
   if (kind.glossy.bands > 0) defines = definesOf(kind.glossy);
   if (kind.layered) {
     defines.push_back({"LAMBENT_LAYERED", "1"});
-    defines.push_back(
-        {"LAMBENT_SEEN_AXES", axesText(sh::ZonalFactors::isotropic(static_cast<int>(transfer::kSeenBands)))});
+    defines.push_back({"LAMBENT_SEEN_AXES", axesText(sh::ZonalFactors(static_cast<int>(transfer::kSeenBands),
+                                                                      /*isotropic=*/true))});
   }
   return gpu::Program::create("surface",
                               {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}},

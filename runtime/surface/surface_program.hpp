@@ -15,7 +15,7 @@
 namespace lambent::frame {
 
 // The tables of GLSL text that programs of this room include files from.
-extern const gpu::FindText kSurfaceShaders[7];
+extern const gpu::FindText kSurfaceShaders[6];
 
 struct SurfaceKind {
   bool normal_mapped = false;

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/transfer/transfer_measures.hpp"
-
 namespace lambent::frame {
 
 namespace {
@@ -61,12 +59,13 @@ ViewLegend legendOf(const ViewChoice& choice, float largest_error) {
   switch (choice.view) {
     case SurfaceView::TransferDc:
       legend.unit = "E/pi of the light y_00";
-      legend.max = transfer::openDc();
+      legend.max = kOpenDc;
       break;
     case SurfaceView::TransferBand:
       legend.name = fmt::format("Transfer, band {}", choice.band);
       legend.unit = "squared E/pi, mean over channels";
-      legend.max = transfer::usualBandEnergy(choice.band);
+      // Bands in which unoccluded surfaces have almost nothing show what shadows do.
+      legend.max = std::max(openBandEnergy(choice.band), 0.01f);
       break;
     case SurfaceView::ErrorEstimate:
       legend.unit = "relative RMS";

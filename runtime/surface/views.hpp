@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cstdint>
+#include <iterator>
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -86,6 +88,17 @@ constexpr bool showsTransfer(SurfaceView view) {
 // Returns whether the picture shows light, and so has a sky and volumes and is exposed and tone-mapped.
 constexpr bool showsLight(SurfaceView view) {
   return rowOf(view).colors == ViewColors::Light;
+}
+
+// The value of an unoccluded surface in TransferDc: E/pi = A_0/pi y_00 under the light whose only coefficient
+// is l_00 = 1.
+inline constexpr float kOpenDc = 0.28209479177387814f;
+// Returns the same in TransferBand: the sum over m of ((A_l/pi) y_lm(n))² = (A_l/pi)² (2l + 1) / 4 pi, which
+// does not depend on n.
+constexpr float openBandEnergy(std::uint32_t band) {
+  constexpr float kCosineOverPi[] = {1.0f, 2.0f / 3.0f, 0.25f, 0.0f, -1.0f / 24.0f, 0.0f, 1.0f / 64.0f, 0.0f};
+  const float weight = band < std::size(kCosineOverPi) ? kCosineOverPi[band] : 0.0f;
+  return weight * weight * static_cast<float>(2 * band + 1) / (4.0f * std::numbers::pi_v<float>);
 }
 
 struct ViewLegend {

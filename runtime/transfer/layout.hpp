@@ -38,7 +38,7 @@ constexpr Form formOf(Domain domain, std::uint32_t outputs) {
   return domain == Domain::Vertex && outputs == kMappedOutputs ? Form::NormalMapped : Form::Matrix;
 }
 
-// Returns whether samples are evaluated as matrices, output by output (runtime/effects/glossy). This is so
+// Returns whether samples are evaluated as matrices, output by output (runtime/evaluate). This is so
 // for points around bodies, and for more bands than a diffuse receiver takes. Other samples are evaluated as
 // vectors.
 constexpr bool evaluatedAsMatrix(Domain domain, std::uint32_t outputs) {

@@ -24,6 +24,7 @@ LAMBENT_CONSTANT kBindWork = 0u;  // WorkItem per work group
 LAMBENT_CONSTANT kBindLights =
     1u;  // vec4 per coefficient: per group kLightStride for each light probe, then three times its own lights
 LAMBENT_CONSTANT kBindTransfers = 2u;  // TransferRecord
+LAMBENT_CONSTANT kBindFills = 2u;      // FillRecord
 LAMBENT_CONSTANT kBindPlaces = 3u;     // words of a transfer's planes, and its lights
 LAMBENT_CONSTANT kBindProducts =
     4u;  // vec4: a vector times the light, scaled to be multiplied by the code itself
@@ -102,9 +103,20 @@ struct TransferRecord {
   uint pad;
 };
 
+// Describes a cell whose samples show the light itself, because it has no transfer or because the mode asks
+// for it. A cell of a neighborhood then holds no change.
+struct FillRecord {
+  uint first_output;  // vec4 index into the samples page
+  uint output_count;  // all samples of the cell
+  uint outputs;       // per sample
+  uint light;         // vec4 index of the light's first coefficient
+  uint coefficients;  // of the light; 0 for a neighborhood
+  uint open;          // 1: visible in all directions; 0 for a neighborhood, which holds the change V - 1
+};
+
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
 static_assert(sizeof(TransferRecord) == 104 && offsetof(TransferRecord, first_product) == 60 &&
-              offsetof(TransferRecord, accumulate) == 76);
+              offsetof(TransferRecord, accumulate) == 76 && sizeof(FillRecord) == 24);
 }  // namespace lambent::transfer
 #endif

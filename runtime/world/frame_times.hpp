@@ -13,7 +13,6 @@ class FrameTimes {
   explicit FrameTimes(std::size_t kept = 240) : kept_(kept) {}
 
   void add(double milliseconds);
-  void clear() { times_ms_.clear(); }
 
   std::size_t count() const { return times_ms_.size(); }
   double last() const { return times_ms_.empty() ? 0.0 : times_ms_[last_]; }
@@ -25,7 +24,6 @@ class FrameTimes {
   // Counts frames by their time relative to the median: bin i counts those from i / 4 to (i + 1) / 4 of it,
   // and the last bin all longer ones.
   std::vector<std::size_t> histogram(std::size_t bins = 12) const;
-  const std::vector<double>& times() const { return times_ms_; }  // unordered
 
  private:
   std::size_t kept_;
@@ -44,7 +42,6 @@ class UploadPacer {
   double waitSeconds() const;
   // Records the time of the last frame, and whether it uploaded anything.
   void frameTook(double milliseconds, bool uploaded, std::uint64_t most_bytes);
-  const FrameTimes& times() const { return times_; }
 
  private:
   FrameTimes times_{64};

@@ -197,7 +197,7 @@ LoadedParts World::loadedParts() const {
   LoadedParts parts{.planes_resident = residency_.planesResident()};
   for (const std::optional<Bundle>& bundle : bundles_) {
     if (!bundle) continue;
-    parts.bytes_loaded += bundle->bytes_read + (bundle->batch ? bundle->batch->loader.bytesRead() : 0);
+    parts.bytes_loaded += bundle->bytes_read + (bundle->batch ? bundle->batch->loader->bytesRead() : 0);
     parts.bytes_in_bundles += bundle->reader->fileBytes();
     for (const bundle::Group& group : bundle->reader->description().groups)
       for (const bundle::Cell& cell : group.cells)

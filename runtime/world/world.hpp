@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -33,8 +34,8 @@ namespace lambent::frame {
 
 struct WorldOptions {
   // The bundles may take this much GPU memory together; what the camera sees large comes first
-  // (interest.hpp). Only a replacement being loaded, a texture while it gets finer levels, and a single
-  // bundle whose surfaces alone exceed the limit come on top.
+  // (streaming/parts.hpp). Only a replacement being loaded, a texture while it gets finer levels, and a
+  // single bundle whose surfaces alone exceed the limit come on top.
   std::uint64_t max_resident_bytes = ~std::uint64_t{0};
 };
 
@@ -120,9 +121,9 @@ class World {
   // Removes the bundle's entities, its memory and what was being loaded. Other bundles keep their slots.
   void close(std::uint32_t bundle);
   // Shows this file in place of the bundle, in one frame, once all of it is here. Until then the old one
-  // stays, and it stays for good if the file turns out damaged. Changes made by hand are kept (exchange.hpp),
-  // and entities that occur in both stay the same. An earlier replacement still being loaded is cancelled.
-  // Fails if the file is not a bundle, which status() then reports too.
+  // stays, and it stays for good if the file turns out damaged. Changes made by hand are kept
+  // (exchangeInstance), and entities that occur in both stay the same. An earlier replacement still being
+  // loaded is cancelled. Fails if the file is not a bundle, which status() then reports too.
   Result<void> replace(std::uint32_t bundle, const std::filesystem::path& path);
 
   // Returns what positions count from in the world of the files, in m: the origin of the bundle that was
@@ -221,7 +222,7 @@ class World {
     std::uint32_t steps = 1;  // an image may bring several at once
   };
   struct Batch {
-    streaming::Loader loader;
+    std::unique_ptr<streaming::Loader> loader;
     std::deque<Piece> pieces;
   };
   using Proxies = std::vector<std::optional<bundle::CaptureProxy>>;  // indexed by group
@@ -230,18 +231,16 @@ class World {
     streaming::Parts parts;
     Proxies proxies;
     std::vector<std::uint32_t> steps;  // for each unit, the steps that are loaded
-    streaming::Loader loader;
-    streaming::Residency::Staged staged = 0;
+    std::unique_ptr<streaming::Loader> loader;
+    streaming::Residency::Place staged;
   };
-  struct Bundle {
+  struct Bundle : streaming::Interest {
     std::shared_ptr<const bundle::Reader> reader;
     scene::InstantiateOptions options;
     scene::SceneInstance instance;
     std::vector<glm::mat4> world_from_node_at_rest;
-    streaming::Parts parts;
-    std::vector<float> size;                   // for each unit, as seen by the camera
-    std::vector<std::uint32_t> target, steps;  // for each unit: steps that should be here, steps that are
-    Proxies proxies;                           // for its proxy level of detail
+    std::vector<std::uint32_t> steps;  // of each unit that are here
+    Proxies proxies;                   // for its proxy level of detail
     std::uint64_t proxies_id = 0;
     std::optional<Batch> batch;
     std::uint64_t bytes_read = 0;           // before the batch
@@ -255,6 +254,15 @@ class World {
   void setParts(Bundle& bundle, streaming::Parts parts) const;
   std::vector<std::uint32_t> stepsForReplacement(std::uint32_t slot, const streaming::Parts& parts) const;
   void dropReplacement(Bundle& bundle);
+  // What a loader brings, and where it goes.
+  struct Arrivals {
+    streaming::Loader& loader;
+    streaming::Residency::Place place;
+    std::function<Result<void>(streaming::Ready)> accept;  // uploads an item at once
+    std::function<void()> arrived;                         // is called for each item that is complete
+  };
+  // Uploads what is ready within the budget. Returns the first error.
+  std::optional<Error> receive(const Arrivals& from, std::uint64_t& budget_bytes, gpu::Counters& counters);
   void uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::Counters& counters);
   void swapIn(std::uint32_t slot);
   // Rebuilds what is kept per group and draw after the residency's tables have changed.
@@ -306,7 +314,7 @@ class World {
   Chosen chosen_;
   std::uint64_t bundles_version_ = 1;  // rises when a bundle is opened, closed or replaced
   std::uint64_t proxy_lods_version_ = 1, next_proxies_id_ = 1;
-  std::vector<streaming::Loader> retired_;  // kept until their workers have ended
+  std::vector<std::unique_ptr<streaming::Loader>> retired_;  // kept until their workers have ended
   struct Rate {
     std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
     std::uint64_t bytes = 0;

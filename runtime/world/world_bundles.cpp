@@ -2,8 +2,8 @@
 #include <chrono>
 #include <thread>
 
-#include "runtime/gpu/out_of_memory.hpp"
-#include "runtime/scene/exchange.hpp"
+#include "runtime/gpu/objects.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "runtime/scene/transforms.hpp"
 #include "runtime/world/world.hpp"
 
@@ -42,20 +42,9 @@ Result<std::uint32_t> World::open(const std::filesystem::path& path, const OpenO
   opened->countFrom(origin);
   Result<streaming::Parts> parts = streaming::partsOf(*opened, limited());
   if (!parts) return failAgain(parts.error());
-  Bundle bundle{.reader = std::make_shared<const bundle::Reader>(std::move(*opened)),
-                .options = {.bundle_index = slot, .bundle_id = options.bundle_id},
-                .instance = {},
-                .world_from_node_at_rest = {},
-                .parts = {},
-                .size = {},
-                .target = {},
-                .steps = {},
-                .proxies = {},
-                .batch = {},
-                .materials = {},
-                .replacement = {},
-                .error = {},
-                .replacement_error = {}};
+  Bundle bundle;
+  bundle.reader = std::make_shared<const bundle::Reader>(std::move(*opened));
+  bundle.options = {.bundle_index = slot, .bundle_id = options.bundle_id};
   const bundle::Description& description = bundle.reader->description();
   if (bundle.options.bundle_id.empty()) bundle.options.bundle_id = path.string();
   bundle.options.instance = options.instance ? *options.instance : freeInstance(bundle.options.bundle_id);
@@ -108,7 +97,7 @@ Result<void> World::replace(std::uint32_t bundle, const std::filesystem::path& p
   const auto reader = std::make_shared<const bundle::Reader>(std::move(*opened));
   Result<streaming::Parts> parts = streaming::partsOf(*reader, limited());
   if (!parts) return giveUp(parts.error());
-  const Result<streaming::Residency::Staged> staged = residency_.stage(reader->description());
+  const Result<streaming::Residency::Place> staged = residency_.stage(reader->description());
   if (!staged) return giveUp(inBundle(*reader, staged.error()));
   std::vector<std::uint32_t> steps = stepsForReplacement(bundle, *parts);
   std::vector<streaming::Work> work = parts->workOf(steps);
@@ -117,8 +106,8 @@ Result<void> World::replace(std::uint32_t bundle, const std::filesystem::path& p
                   .parts = std::move(*parts),
                   .proxies = Proxies(reader->description().groups.size()),
                   .steps = std::move(steps),
-                  .loader = streaming::Loader(reader, std::move(work), threads_,
-                                              std::max(1u, std::thread::hardware_concurrency())),
+                  .loader = std::make_unique<streaming::Loader>(
+                      reader, std::move(work), threads_, std::max(1u, std::thread::hardware_concurrency())),
                   .staged = *staged});
   return {};
 }
@@ -126,13 +115,14 @@ Result<void> World::replace(std::uint32_t bundle, const std::filesystem::path& p
 void World::dropReplacement(Bundle& bundle) {
   if (!bundle.replacement) return;
   residency_.discard(bundle.replacement->staged);
-  bundle.replacement->loader.stop();
+  bundle.replacement->loader->stop();
   retired_.push_back(std::move(bundle.replacement->loader));
   bundle.replacement.reset();
 }
 
-void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::Counters& counters) {
-  Replacement& next = *bundle.replacement;
+std::optional<Error> World::receive(const Arrivals& from, std::uint64_t& budget_bytes,
+                                    gpu::Counters& counters) {
+  std::optional<Error> error;
   const auto spend = [&](std::uint64_t bytes) {
     budget_bytes -= std::min(budget_bytes, bytes);
     counters.uploaded_bytes += bytes;
@@ -140,35 +130,48 @@ void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::
   // Large items are uploaded over several frames.
   const auto proceed = [&] {
     const Result<std::uint64_t> bytes =
-        gpu::orOutOfMemory([&] { return residency_.proceedStaged(next.staged, budget_bytes); });
-    if (bytes)
-      spend(*bytes);
-    else
-      bundle.replacement_error = inBundle(*next.reader, bytes.error());
+        gpu::orOutOfMemory([&] { return residency_.proceed(from.place, budget_bytes); });
+    if (!bytes) {
+      error = bytes.error();
+      return;
+    }
+    spend(*bytes);
+    if (!residency_.comes(from.place)) from.arrived();
   };
-  if (residency_.comesStaged(next.staged)) proceed();
+  if (residency_.comes(from.place)) proceed();
   std::vector<streaming::Ready> items;
-  if (!bundle.replacement_error && !residency_.comesStaged(next.staged) && budget_bytes > 0)
-    items = next.loader.take(budget_bytes);
+  if (!error && !residency_.comes(from.place) && budget_bytes > 0) items = from.loader.take(budget_bytes);
   for (streaming::Ready& item : items) {
-    const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
-    if (const auto* ready = std::get_if<streaming::ProxyChunk>(&item))
-      next.proxies[ready->group.value] = ready->proxy;
+    const std::uint64_t bytes = streaming::bytesOf(item);
     // An item larger than the budget is uploaded alone.
     const bool in_pieces =
         bytes > budget_bytes && items.size() == 1 && streaming::Residency::comesInPieces(item);
     if (!in_pieces) spend(bytes);
     const Result<void> done = gpu::orOutOfMemory([&] {
-      return in_pieces ? residency_.beginStaged(next.staged, std::move(item))
-                       : residency_.uploadStaged(next.staged, std::move(item));
+      return in_pieces ? residency_.begin(from.place, std::move(item)) : from.accept(std::move(item));
     });
     if (!done) {
-      bundle.replacement_error = inBundle(*next.reader, done.error());
+      error = done.error();
       break;
     }
-    if (in_pieces) proceed();
+    if (in_pieces)
+      proceed();
+    else
+      from.arrived();
   }
-  if (const auto error = next.loader.error()) bundle.replacement_error = *error;
+  return error;
+}
+
+void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::Counters& counters) {
+  Replacement& next = *bundle.replacement;
+  const auto put = [&](streaming::Ready item) {
+    if (const auto* ready = std::get_if<streaming::ProxyChunk>(&item))
+      next.proxies[ready->group.value] = ready->proxy;
+    return residency_.upload(next.staged, std::move(item));
+  };
+  if (const auto error = receive({*next.loader, next.staged, put, [] {}}, budget_bytes, counters))
+    bundle.replacement_error = inBundle(*next.reader, *error);
+  if (const auto error = next.loader->error()) bundle.replacement_error = *error;
   if (bundle.replacement_error) dropReplacement(bundle);
 }
 
@@ -193,7 +196,7 @@ void World::swapIn(std::uint32_t slot) {
   bundle.proxies = std::move(next.proxies);
   bundle.proxies_id = next_proxies_id_++;
   if (limited()) bundle.target = next.steps;
-  bundle.bytes_read = next.loader.bytesRead();
+  bundle.bytes_read = next.loader->bytesRead();
   bundle.materials = now.materials;
   bundle.error.reset();
   retired_.push_back(std::move(next.loader));
@@ -205,7 +208,7 @@ void World::swapIn(std::uint32_t slot) {
 
 Result<void> World::upload(std::uint64_t budget_bytes, gpu::Counters& counters, double most_wait_s) {
   const std::uint64_t uploaded_before = counters.uploaded_bytes;
-  std::erase_if(retired_, [](const streaming::Loader& loader) { return loader.idle(); });
+  std::erase_if(retired_, [](const auto& loader) { return loader->idle(); });
   chooseTargets();
   for (std::uint32_t i = 0; i < bundles_.size(); ++i)
     if (bundles_[i]) evict(i);
@@ -228,14 +231,14 @@ Result<void> World::upload(std::uint64_t budget_bytes, gpu::Counters& counters, 
     const auto loading =
         std::ranges::find_if(bundles_, [](const auto& bundle) { return bundle && bundle->batch; });
     if (loading == bundles_.end()) break;
-    (*loading)->batch->loader.waitForMore(left());
+    (*loading)->batch->loader->waitForMore(left());
     take();
   }
   for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
     if (!bundles_[i] || !bundles_[i]->replacement) continue;
     if (budget_bytes > 0) uploadReplacement(*bundles_[i], budget_bytes, counters);
     const std::optional<Replacement>& next = bundles_[i]->replacement;
-    if (next && isWhole(next->loader) && !residency_.comesStaged(next->staged)) swapIn(i);
+    if (next && isWhole(*next->loader) && !residency_.comes(next->staged)) swapIn(i);
   }
   measureRate(counters.uploaded_bytes - uploaded_before);
   return {};
@@ -252,8 +255,8 @@ Result<void> World::uploadAll(gpu::Counters& counters) {
     if (Result<void> done = upload(kPieceBytes, counters); !done) return done;
     idle = residency_.version() == before ? idle + 1 : 0;
     for (std::optional<Bundle>& bundle : bundles_) {
-      if (bundle && bundle->batch) bundle->batch->loader.waitForMore();
-      if (bundle && bundle->replacement) bundle->replacement->loader.waitForMore();
+      if (bundle && bundle->batch) bundle->batch->loader->waitForMore();
+      if (bundle && bundle->replacement) bundle->replacement->loader->waitForMore();
       if (bundle && (bundle->batch || bundle->replacement)) idle = 0;
     }
   }

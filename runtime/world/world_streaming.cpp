@@ -3,10 +3,10 @@
 #include <thread>
 #include <tuple>
 
-#include "runtime/gpu/out_of_memory.hpp"
+#include "runtime/gpu/objects.hpp"
 #include "runtime/scene/bounds.hpp"
-#include "runtime/streaming/interest.hpp"
-#include "runtime/streaming/sizes.hpp"
+#include "runtime/streaming/parts.hpp"
+#include "runtime/streaming/resident_tables.hpp"
 #include "runtime/world/world.hpp"
 
 namespace lambent::frame {
@@ -43,16 +43,15 @@ struct Next {
 };
 
 // Returns what is missing, the most valuable first.
-std::vector<Next> missing(const streaming::Parts& parts, const std::vector<float>& size,
-                          const std::vector<std::uint32_t>& have, const std::vector<std::uint32_t>& target) {
+std::vector<Next> missing(const streaming::Interest& bundle, const std::vector<std::uint32_t>& have) {
   std::vector<Next> list;
-  for (std::uint32_t u = 0; u < parts.units.size(); ++u)
-    for (std::uint32_t s = have[u]; s < target[u]; ++s)
-      list.push_back({streaming::worthOf(parts, u, s, size[u]), u, s});
+  for (std::uint32_t u = 0; u < bundle.parts.units.size(); ++u)
+    for (std::uint32_t s = have[u]; s < bundle.target[u]; ++s)
+      list.push_back({streaming::worthOf(bundle.parts, u, s, bundle.size[u]), u, s});
   // Proxy levels of detail of all bundles come before anything else.
   constexpr float kProxyLodsFirst = 1e6f;
   for (Next& next : list)
-    if (next.unit == 0 && next.step + 1 < parts.surfaceSteps()) next.worth *= kProxyLodsFirst;
+    if (bundle.parts.isProxyLod(next.unit, next.step)) next.worth *= kProxyLodsFirst;
   std::ranges::sort(list, [](const Next& a, const Next& b) {
     return std::tuple(-a.worth, a.unit, a.step) < std::tuple(-b.worth, b.unit, b.step);
   });
@@ -102,36 +101,32 @@ void World::chooseTargets() {
   const bool waiting =
       std::ranges::any_of(bundles_, [](const auto& bundle) { return bundle && !settled(*bundle); });
   if (!limited() && !waiting) return;  // everything is here and stays
-  std::vector<streaming::Interest> interests;
+  std::vector<streaming::Interest*> open;
   for (std::optional<Bundle>& bundle : bundles_) {
     if (!bundle) continue;
     seeBundle(*bundle);
-    if (limited()) interests.push_back({&bundle->parts, bundle->size, bundle->target});
+    open.push_back(&*bundle);
   }
-  if (!limited()) return;
-  streaming::choose(interests, max_resident_bytes_);
-  auto chosen = interests.begin();
-  for (std::optional<Bundle>& bundle : bundles_)
-    if (bundle) bundle->target = std::move((chosen++)->target);
+  if (limited()) streaming::choose(open, max_resident_bytes_);
 }
 
 std::vector<std::uint32_t> World::stepsForReplacement(std::uint32_t slot,
                                                       const streaming::Parts& parts) const {
   if (!limited()) return allSteps(parts);
-  std::vector<streaming::Interest> interests;
-  std::size_t place = 0;
-  for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
+  std::vector<streaming::Interest> copies(bundles_.size());
+  std::vector<streaming::Interest*> open;
+  for (std::size_t i = 0; i < bundles_.size(); ++i) {
     if (!bundles_[i]) continue;
-    if (i == slot) place = interests.size();
-    interests.push_back({&bundles_[i]->parts, bundles_[i]->size, bundles_[i]->target});
+    copies[i] = *bundles_[i];
+    open.push_back(&copies[i]);
   }
   // The replacement counts as large as the old bundle; units without a counterpart count as large as all of
   // it.
-  streaming::Interest& one = interests[place];
-  one.parts = &parts;
+  streaming::Interest& one = copies[slot];
+  one.parts = parts;
   one.size.resize(parts.units.size(), one.size.front());
   one.target.resize(parts.units.size(), 0);
-  streaming::choose(interests, max_resident_bytes_);
+  streaming::choose(open, max_resident_bytes_);
   return one.target;
 }
 
@@ -148,8 +143,8 @@ std::uint64_t World::bytesTaken() const {
 
 void World::retire(Bundle& bundle) {
   if (!bundle.batch) return;
-  bundle.bytes_read += bundle.batch->loader.bytesRead();
-  bundle.batch->loader.stop();
+  bundle.bytes_read += bundle.batch->loader->bytesRead();
+  bundle.batch->loader->stop();
   residency_.cancel(bundle.options.bundle_index);
   retired_.push_back(std::move(bundle.batch->loader));
   bundle.batch.reset();
@@ -204,7 +199,7 @@ void World::evict(std::uint32_t slot) {
 bool World::startBatch(std::uint32_t slot) {
   Bundle& bundle = *bundles_[slot];
   std::uint64_t taken = bytesTaken(), bytes = 0;
-  const std::vector<Next> list = missing(bundle.parts, bundle.size, bundle.steps, bundle.target);
+  const std::vector<Next> list = missing(bundle, bundle.steps);
   // The surfaces of the largest bundle are always loaded.
   const bool only_proxy_lods =
       std::ranges::none_of(residency_.bundles(), &streaming::ResidentBundle::present);
@@ -213,8 +208,7 @@ bool World::startBatch(std::uint32_t slot) {
            taken + bundle.parts.units[next.unit][next.step].bytes <= max_resident_bytes_;
   };
   if (list.empty() || !fits(list.front())) return false;
-  const bool stands_in = list.front().unit == 0 && list.front().step + 1 < bundle.parts.surfaceSteps();
-  if (!stands_in && !residency_.present(slot)) {
+  if (!bundle.parts.isProxyLod(list.front().unit, list.front().step) && !residency_.present(slot)) {
     if (const Result<void> begun = beginSurfaces(slot); !begun) {
       bundle.error = inBundle(*bundle.reader, begun.error());
       return false;
@@ -245,8 +239,9 @@ bool World::startBatch(std::uint32_t slot) {
   std::vector<streaming::Work> work;
   for (const Piece& piece : pieces) work.insert(work.end(), piece.work.begin(), piece.work.end());
   const unsigned workers = std::max(1u, std::thread::hardware_concurrency() / kBatches);
-  bundle.batch.emplace(Batch{.loader = streaming::Loader(bundle.reader, std::move(work), threads_, workers),
-                             .pieces = std::move(pieces)});
+  bundle.batch.emplace(
+      Batch{.loader = std::make_unique<streaming::Loader>(bundle.reader, std::move(work), threads_, workers),
+            .pieces = std::move(pieces)});
   return true;
 }
 
@@ -261,7 +256,7 @@ void World::request() {
   for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
     if (!bundles_[i] || bundles_[i]->batch || settled(*bundles_[i])) continue;
     const Bundle& bundle = *bundles_[i];
-    const std::vector<Next> next = missing(bundle.parts, bundle.size, bundle.steps, bundle.target);
+    const std::vector<Next> next = missing(bundle, bundle.steps);
     if (!next.empty()) waiting.push_back({next.front().worth, i});
   }
   std::ranges::stable_sort(waiting, [](const Waiting& a, const Waiting& b) { return a.worth > b.worth; });
@@ -283,46 +278,12 @@ void World::countOne(Bundle& bundle) {
 
 void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Counters& counters) {
   Bundle& bundle = *bundles_[slot];
-  const auto spend = [&](std::uint64_t bytes) {
-    budget_bytes -= std::min(budget_bytes, bytes);
-    counters.uploaded_bytes += bytes;
-  };
-  // Large items are uploaded over several frames.
-  const auto comes = [&] {
-    if (!residency_.comes(slot)) return false;
-    const Result<std::uint64_t> bytes =
-        gpu::orOutOfMemory([&] { return residency_.proceed(slot, budget_bytes); });
-    if (!bytes) {
-      bundle.error = inBundle(*bundle.reader, bytes.error());
-      return false;
-    }
-    spend(*bytes);
-    if (residency_.comes(slot)) return true;
-    countOne(bundle);
-    return false;
-  };
-  if (comes()) return;
-  std::vector<streaming::Ready> items;
-  if (!bundle.error) items = bundle.batch->loader.take(budget_bytes);
-  for (streaming::Ready& item : items) {
-    const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
-    // An item larger than the budget is uploaded alone.
-    const bool in_pieces =
-        bytes > budget_bytes && items.size() == 1 && streaming::Residency::comesInPieces(item);
-    if (!in_pieces) spend(bytes);
-    const Result<void> done = gpu::orOutOfMemory(
-        [&] { return in_pieces ? residency_.begin(slot, std::move(item)) : accept(slot, std::move(item)); });
-    if (!done) {
-      bundle.error = inBundle(*bundle.reader, done.error());
-      break;
-    }
-    if (in_pieces) {
-      if (comes()) return;
-    } else {
-      countOne(bundle);
-    }
-  }
-  if (const auto error = bundle.batch->loader.error()) bundle.error = *error;
+  const auto put = [&](streaming::Ready item) { return this->accept(slot, std::move(item)); };
+  const auto arrived = [&] { countOne(bundle); };
+  if (const auto error = receive({*bundle.batch->loader, slot, put, arrived}, budget_bytes, counters))
+    bundle.error = inBundle(*bundle.reader, *error);
+  if (residency_.comes(slot)) return;
+  if (const auto error = bundle.batch->loader->error()) bundle.error = *error;
   if (bundle.error || bundle.batch->pieces.empty()) retire(bundle);
 }
 
@@ -364,6 +325,72 @@ StreamingStatus World::streaming() const {
         status.queued += static_cast<std::uint32_t>(bundle.parts.units[u][s].work.size());
   }
   return status;
+}
+
+// The part of World that shows a proxy level of detail for a bundle whose surfaces are not here.
+
+std::size_t StreamingStatus::count(Shown shown) const {
+  return static_cast<std::size_t>(std::ranges::count(bundles, shown, &BundleStreaming::shown));
+}
+
+std::vector<ProxyLod> World::proxyLods() const {
+  std::vector<ProxyLod> list;
+  for (std::uint32_t slot = 0; slot < bundles_.size(); ++slot) {
+    if (!bundles_[slot]) continue;
+    const Bundle& bundle = *bundles_[slot];
+    if (bundle.parts.hasProxyLod() && bundle.steps.front() > 0 && !hasSurfaces(bundle.parts, bundle.steps))
+      list.push_back({.bundle = slot, .id = bundle.proxies_id, .proxies = bundle.proxies});
+  }
+  return list;
+}
+
+bool World::showsSurfaces(std::uint32_t slot) const {
+  if (!isOpen(slot)) return false;
+  const Bundle& bundle = *bundles_[slot];
+  return !bundle.parts.hasProxyLod() || hasSurfaces(bundle.parts, bundle.steps);
+}
+
+// Proxies stay here for when the surfaces are dropped, and other groups see them in any case.
+Result<void> World::accept(std::uint32_t slot, streaming::Ready item) {
+  Bundle& bundle = *bundles_[slot];
+  auto* ready = std::get_if<streaming::ProxyChunk>(&item);
+  if (ready == nullptr || !bundle.parts.hasProxyLod()) return residency_.upload(slot, std::move(item));
+  bundle.proxies.resize(bundle.reader->description().groups.size());
+  bundle.proxies[ready->group.value] = std::move(ready->proxy);
+  bundle.proxies_id = next_proxies_id_++;
+  return {};
+}
+
+Result<void> World::beginSurfaces(std::uint32_t slot) {
+  const Bundle& bundle = *bundles_[slot];
+  if (Result<void> added = residency_.add(bundle.reader->description(), slot); !added) return added;
+  rebuildTables();
+  for (std::uint32_t g = 0; g < bundle.proxies.size(); ++g)
+    if (bundle.proxies[g])
+      if (Result<void> done =
+              residency_.upload(slot, streaming::ProxyChunk{bundle::GroupIndex{g}, *bundle.proxies[g]});
+          !done)
+        return done;
+  return {};
+}
+
+void World::endSurfaces(std::uint32_t slot) {
+  Bundle& bundle = *bundles_[slot];
+  retire(bundle);
+  residency_.remove(slot);
+  const std::uint32_t proxy_lod = bundle.parts.hasProxyLod() ? bundle.steps.front() : 0;
+  std::ranges::fill(bundle.steps, 0u);
+  bundle.steps.front() = std::min(proxy_lod, bundle.parts.surfaceSteps() - 1);
+  ++proxy_lods_version_;
+  rebuildTables();
+}
+
+void World::dropProxyLod(Bundle& bundle) {
+  if (bundle.steps.front() == 0 && !bundle.batch) return;
+  retire(bundle);
+  bundle.proxies.clear();
+  bundle.steps.front() = 0;
+  ++proxy_lods_version_;
 }
 
 }  // namespace lambent::frame

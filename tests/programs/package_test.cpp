@@ -38,7 +38,7 @@ std::vector<std::string> bakerPartsOf(const std::string& ldd, const fs::path& pr
   for (const Library& library : librariesOf(ldd))
     if (std::regex_search(library.name, kBakerLibrary)) out.push_back(library.name);
   const std::string bytes = bytesOf(program);
-  for (const char* word : {"7lambent5baker", "7lambent6editor", "5ImGui", "Dear ImGui", "tinygltf"})
+  for (const char* word : {"7lambent5baker", "7lambent6editor", "5ImGui", "Dear ImGui"})
     if (bytes.find(word) != std::string::npos) out.emplace_back(word);
   return out;
 }

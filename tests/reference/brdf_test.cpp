@@ -206,30 +206,6 @@ gltf::Material measuredMaterial() {
   return material;
 }
 
-// Evaluates the formula of docs/conventions.md, "Materials", literally.
-glm::dvec3 meanOf(const MeasuredBrdf& brdf, const glm::dvec3& v, const glm::dvec3& s) {
-  const auto place = [](const glm::dvec3& a, const glm::dvec3& b) {
-    const glm::dvec3 h = glm::normalize(a + b);
-    return glm::dvec2(std::sqrt(std::acos(std::min(h.z, 1.0)) * 2.0 / std::numbers::pi),
-                      std::acos(std::min(glm::dot(a, h), 1.0)) * 2.0 / std::numbers::pi);
-  };
-  const auto direction = [](double theta, double phi) {
-    return glm::dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
-  };
-  const glm::dvec2 here = place(v, s);
-  double weights = 0.0;
-  glm::dvec3 sum(0.0);
-  for (const BrdfMeasurement& m : brdf.measurements) {
-    const glm::dvec2 away =
-        place(direction(double{m.theta_i}, double{m.phi_i}), direction(double{m.theta_o}, double{m.phi_o})) -
-        here;
-    const double weight = std::exp(-400.0 * glm::dot(away, away));
-    weights += weight;
-    sum += weight * glm::dvec3(m.value);
-  }
-  return sum / weights;
-}
-
 TEST(Brdf, OfAMeasurementIsTheWeighedMeanAndReciprocal) {
   LAMBENT_NEEDS_SHARED(testing::sharedFile("brdf"));
   for (const char* name : {"acryl_blue.brdf", "garnet_red.brdf"}) {
@@ -241,7 +217,7 @@ TEST(Brdf, OfAMeasurementIsTheWeighedMeanAndReciprocal) {
                                  1.3f * static_cast<float>(i));
       const glm::dvec3 there = glm::dvec3(floor.towards(a).value(b)) / double{b.z},
                        back = glm::dvec3(floor.towards(b).value(a)) / double{a.z};
-      const glm::dvec3 mean = meanOf(brdf, glm::dvec3(a), glm::dvec3(b));
+      const glm::dvec3 mean = testing::weighedMean(brdf, glm::dvec3(a), glm::dvec3(b));
       for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(there[c], back[c], 1e-4 * there[c] + 1e-6);
         EXPECT_NEAR(there[c], mean[c], 0.01 * mean[c] + 1e-4) << name << " " << i;

@@ -1,12 +1,11 @@
 // Tests the sampling of environment maps and discs: densities integrate to one, and samples find all of the
 // light.
-#include "reference/environment.hpp"
-
 #include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "reference/lights.hpp"
 #include "reference/sampler.hpp"
 #include "runtime/spec/light.hpp"
 

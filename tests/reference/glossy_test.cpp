@@ -159,20 +159,16 @@ Scene underCeiling(const gltf::Material& floor, const gltf::Material& ceiling) {
 TEST(Glossy, LimitedKernelsSeeAClosedSkyAboveAndBelow) {
   // The ceiling hides the sky, also for the mirrored directions below the floor, although the kernel is not
   // zero there. An emissive ceiling is uniform light.
-  gltf::Material black = testing::matte();
-  black.base_color = glm::vec4(0, 0, 0, 1);
-  gltf::Material shining = black;
-  shining.emissive = glm::vec3(2.0f);
   const glm::vec3 eye = kPlace + glm::vec3(0.3f, 0.4f, 0.2f);
   for (const Sample& sample : kSamples) {
-    const auto dark =
-        measured(underCeiling(sample.material, black), eye, kPlace, {kSun}, limited(1024, 5, 5));
+    const auto dark = measured(underCeiling(sample.material, testing::matte(0.0f)), eye, kPlace, {kSun},
+                               limited(1024, 5, 5));
     EXPECT_LT(std::abs(dark.mean.g), 4.0 * dark.error.g + 1e-3) << sample.name;
     EXPECT_LT(dark.error.g, 0.01) << sample.name;
     EXPECT_EQ(dark.alpha, 1.0);
     EXPECT_GT(dark.error.g, 0.0) << sample.name;
     const auto bright =
-        measured(underCeiling(sample.material, shining), eye, kPlace, {}, limited(1024, 5, 5));
+        measured(underCeiling(sample.material, testing::lamp(2.0f)), eye, kPlace, {}, limited(1024, 5, 5));
     const sh::LightVector kernel = kernelOf(sample.material, glm::normalize(eye - kPlace), 1);
     const double expected = 2.0 * std::sqrt(4.0 * std::numbers::pi) * double{kernel.c[0].g};
     EXPECT_NEAR(bright.mean.g, expected, 4.0 * bright.error.g + 3e-3 * expected) << sample.name;
@@ -185,8 +181,7 @@ void addWall(Scene& scene) {
   wall.positions = {{0, -1, -500.0f}, {0, 500.0f, -500.0f}, {0, 500.0f, 500.0f}, {0, -1, 500.0f}};
   wall.normals.assign(4, {1, 0, 0});
   wall.indices = {0, 1, 2, 0, 2, 3};
-  gltf::Material black = testing::matte();
-  black.base_color = glm::vec4(0, 0, 0, 1);
+  gltf::Material black = testing::matte(0.0f);
   black.double_sided = true;
   testing::add(scene, wall, black);
 }

@@ -1,9 +1,8 @@
 // Tests surfaces whose smooth normals differ from their triangles' normals: light between the two planes is
 // that of the mirror image, and no energy is lost.
-#include "reference/horizons.hpp"
-
 #include <gtest/gtest.h>
 
+#include "reference/brdf.hpp"
 #include "reference/sampler.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/reference/quadrature.hpp"
@@ -23,13 +22,6 @@ gltf::Material isotropicMetal(float roughness) {
   gltf::Material material;
   material.metallic = 1.0f;
   material.roughness = roughness;
-  return material;
-}
-
-gltf::Material shining(float radiance) {
-  gltf::Material material = testing::matte();
-  material.base_color = glm::vec4(0, 0, 0, 1);
-  material.emissive = glm::vec3(radiance);
   return material;
 }
 
@@ -101,7 +93,7 @@ TEST(LeaningNormals, ReflectAllOfWhatShinesAllAround) {
     Scene floor = floorThatLeans(isotropicMetal(roughness), kLean);
     const auto sphere = measured(floor, eye(), kPlace, {around}, samples(256, 0));
     EXPECT_NEAR(sphere.mean.g, expected, 4.0 * sphere.error.g + 2e-3) << roughness;
-    add(floor, testing::flipped(testing::grid({0, 1, 0}, 1e3f, 1)), shining(2.0f));
+    add(floor, testing::flipped(testing::grid({0, 1, 0}, 1e3f, 1)), testing::lamp(2.0f));
     const auto ceiling = measured(floor, eye(), kPlace, {}, samples(1024, 0));
     EXPECT_NEAR(ceiling.mean.g, expected, 4.0 * ceiling.error.g + 4e-3) << roughness;
     EXPECT_LT(ceiling.error.g, 0.02) << roughness;
@@ -116,7 +108,7 @@ TEST(LeaningNormals, ShowTheSkyOfTheHiddenDirectionItself) {
 
 TEST(LeaningNormals, ShowWhatStandsInTheMirrorImage) {
   Scene lit = floorThatLeans(isotropicMetal(0.0f), kLean);
-  add(lit, wall(), shining(3.0f));
+  add(lit, wall(), testing::lamp(3.0f));
   // Neither the sun behind the wall nor the one in front of the mirror image is visible.
   const auto seen = measured(lit, eye(), kPlace, {sunAt(-kHidden), sunAt(kHidden)}, samples(64, 0));
   EXPECT_NEAR(seen.mean.g, 3.0, 0.01);

@@ -22,14 +22,7 @@ gltf::TextureRef noise(Scene& scene, std::uint32_t seed) {
   spec::Rgba8Image image{4, 4, {}};
   for (std::uint32_t i = 0; i < 64; ++i)
     image.texels.push_back(static_cast<std::uint8_t>(hash32(seed + i) % 200 + 40));
-  const std::vector<std::uint8_t> bytes = spec::encodePng(image);
-  SceneImage file{"noise", "image/png", {}};
-  for (const std::uint8_t byte : bytes) file.file_bytes.push_back(std::byte{byte});
-  scene.images.push_back(std::move(file));
-  gltf::Texture out{.image = static_cast<std::int32_t>(scene.images.size()) - 1, .sampler = {}};
-  out.sampler.mag_filter = 9728;  // NEAREST
-  scene.textures.push_back(out);
-  return {.texture = static_cast<std::int32_t>(scene.textures.size()) - 1};
+  return testing::addTexture(scene, image);
 }
 
 // Makes a sheet with tilted normals and oblique tangents.

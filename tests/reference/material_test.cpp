@@ -23,15 +23,7 @@ Scene floorAndCard(const gltf::Material& material, float width = 2.0f) {
 
 // Makes a texture of `texels` (RGBA, n wide, 1 high), read without filtering.
 gltf::TextureRef stripes(Scene& scene, const std::vector<std::uint8_t>& texels) {
-  spec::Rgba8Image image{static_cast<std::uint32_t>(texels.size() / 4), 1, texels};
-  const std::vector<std::uint8_t> bytes = spec::encodePng(image);
-  SceneImage file{"stripes", "image/png", {}};
-  for (const std::uint8_t byte : bytes) file.file_bytes.push_back(std::byte{byte});
-  scene.images.push_back(std::move(file));
-  gltf::Texture out{.image = static_cast<std::int32_t>(scene.images.size()) - 1, .sampler = {}};
-  out.sampler.mag_filter = 9728;  // NEAREST
-  scene.textures.push_back(out);
-  return {.texture = static_cast<std::int32_t>(scene.textures.size()) - 1};
+  return testing::addTexture(scene, {static_cast<std::uint32_t>(texels.size() / 4), 1, texels});
 }
 
 const spec::Light kZenith = spec::SunLight{.elevation_deg = 90, .angle_deg = 1, .radiance = glm::vec3(1000)};
@@ -71,12 +63,11 @@ TEST(Material, OfBlendedSurfacesCoversTheEyeOnly) {
 }
 
 TEST(Material, OfUnlitSurfacesShowsItsColourBlocksAndGivesNothing) {
-  gltf::Material unlit, black = testing::matte();
+  gltf::Material unlit, black = testing::matte(0.0f);
   unlit.unlit = true;
   unlit.base_color = glm::vec4(0.3f, 0.4f, 0.5f, 1);
   unlit.emissive = glm::vec3(7.0f);
   unlit.double_sided = black.double_sided = true;
-  black.base_color = glm::vec4(0, 0, 0, 1);
   const std::vector<spec::Light> light = {testing::uniform(2.0f)};
   const Measured card = measured(floorAndCard(unlit), {0, 4, 0}, {0, 1, 0}, light, samples(4));
   EXPECT_NEAR(card.mean.r, 0.3, 1e-6);
@@ -125,10 +116,7 @@ TEST(Material, OfEmissiveTexturesShinesWhereTheyAreBright) {
   // other about the lamp's middle get what the whole lamp gives, together.
   Scene scene =
       sceneOf({testing::grid({0, 0, 0}, 8.0f, 1), testing::flipped(testing::grid({0, 1, 0}, 2.0f, 1))});
-  gltf::Material lamp = testing::matte();
-  lamp.base_color = glm::vec4(0, 0, 0, 1);
-  lamp.emissive = glm::vec3(10.0f);
-  testing::paint(scene, 1, lamp);
+  testing::paint(scene, 1, testing::lamp(10.0f));
   const auto at = [](const Scene& lit, float x) {
     return measured(lit, {x, 0.9f, 3}, {x, 0, 0}, {}, samples(256, 0));
   };

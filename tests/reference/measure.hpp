@@ -22,13 +22,9 @@ inline baker::reference::Report rendered(const baker::Scene& scene,
 // Adds a camera as the first of the scene, so that it is the default.
 inline void lookAt(baker::Scene& scene, glm::vec3 eye, glm::vec3 target, float fov_deg) {
   scene.cameras = {{.name = "eye", .yfov_rad = glm::radians(fov_deg)}};
-  gltf::Node node;
-  node.camera = 0;
   const glm::vec3 along = glm::normalize(target - eye);
   const glm::vec3 up = std::abs(along.y) > 0.9f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
-  node.parent_from_node = glm::inverse(glm::lookAt(eye, target, up));
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
+  addNode(scene, glm::inverse(glm::lookAt(eye, target, up))).camera = 0;
 }
 
 struct Measured {
@@ -70,11 +66,32 @@ inline baker::reference::Options samples(std::uint32_t spp, std::optional<std::u
   return options;
 }
 
-// Returns a white Lambert material.
-inline gltf::Material matte() {
+// Returns a grey Lambert material.
+inline gltf::Material matte(float albedo = 1.0f) {
   gltf::Material material;
   material.metallic = 0.0f;
+  material.base_color = glm::vec4(glm::vec3(albedo), 1.0f);
   return material;
+}
+
+// Returns a material that shines and reflects nothing.
+inline gltf::Material lamp(float radiance) {
+  gltf::Material material = matte(0.0f);
+  material.emissive = glm::vec3(radiance);
+  return material;
+}
+
+// Makes a floor and a ball above it; the request is for a picture of them in the light of sky and sun.
+inline baker::Scene ballOnAFloor() {
+  baker::Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 8), icosphere({0, 0.6f, 0}, 0.5f, 3)});
+  scene.materials[0].base_color = glm::vec4(0.7f, 0.6f, 0.5f, 1);
+  return scene;
+}
+inline baker::reference::Request ballInTheSun(const baker::reference::Options& options) {
+  return {.lights = {spec::ConstantLight{.radiance = glm::vec3(0.3f)},
+                     spec::SunLight{.elevation_deg = 40, .angle_deg = 4, .radiance = glm::vec3(50)}},
+          .camera = spec::OrbitCamera{30, 20, 2, 40},
+          .options = options};
 }
 
 inline void paint(baker::Scene& scene, std::size_t mesh, const gltf::Material& material) {
@@ -84,11 +101,19 @@ inline void paint(baker::Scene& scene, std::size_t mesh, const gltf::Material& m
 
 // Adds the mesh with a node of its own, without a transform.
 inline void add(baker::Scene& scene, const bundle::MeshData& mesh, const gltf::Material& material) {
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back({});
-  scene.nodes.back().mesh = static_cast<std::int32_t>(scene.meshes.size());
+  addNode(scene).mesh = static_cast<std::int32_t>(scene.meshes.size());
   scene.meshes.push_back({"", {{mesh, 0}}});
   paint(scene, scene.meshes.size() - 1, material);
+}
+
+// Adds a texture that is read without filtering.
+inline gltf::TextureRef addTexture(baker::Scene& scene, const spec::Rgba8Image& image) {
+  const std::vector<std::uint8_t> png = spec::encodePng(image);
+  const auto bytes = std::as_bytes(std::span(png));
+  scene.textures.push_back({.image = static_cast<std::int32_t>(scene.images.size()), .sampler = {}});
+  scene.textures.back().sampler.mag_filter = 9728;  // NEAREST
+  scene.images.push_back({"texture", "image/png", {bytes.begin(), bytes.end()}});
+  return {.texture = static_cast<std::int32_t>(scene.textures.size()) - 1};
 }
 
 // Gives each triangle vertices of its own with its face normal.

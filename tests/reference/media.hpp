@@ -23,11 +23,8 @@ inline baker::SceneVolume medium(glm::uvec3 size, const std::function<float(glm:
 
 inline void place(baker::Scene& scene, baker::SceneVolume volume,
                   const glm::mat4& parent_from_node = glm::mat4(1)) {
-  gltf::Node node;
-  node.parent_from_node = parent_from_node;
   volume.node = static_cast<std::uint32_t>(scene.nodes.size());
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
+  addNode(scene, parent_from_node);
   scene.volumes.push_back(std::move(volume));
 }
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "reference/light_cache.hpp"
+#include "reference/lights.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/reference/measure.hpp"
 #include "tests/reference/media.hpp"
@@ -35,15 +35,6 @@ void untilTracing(const ProgressiveReference& reference) {
 
 class Progressive : public ::testing::Test {
  protected:
-  Progressive() {
-    scene = testing::sceneOf({testing::grid({0, 0, 0}, 4.0f, 8), testing::icosphere({0, 0.6f, 0}, 0.5f, 3)});
-    scene.materials[0].base_color = glm::vec4(0.7f, 0.6f, 0.5f, 1);
-    request.lights = {testing::uniform(0.3f),
-                      spec::SunLight{.elevation_deg = 40, .angle_deg = 4, .radiance = glm::vec3(50)}};
-    request.camera = spec::OrbitCamera{30, 20, 2, 40};
-    request.options = {.size = {61, 43}, .spp = 40, .seed = 3};
-  }
-
   std::shared_ptr<const Scene> shared() const { return std::make_shared<const Scene>(scene); }
 
   void expectTheReference(const ProgressiveReference& reference) const {
@@ -60,8 +51,8 @@ class Progressive : public ::testing::Test {
     EXPECT_EQ(snapshot->noise, expected.standard_error);
   }
 
-  Scene scene;
-  Request request;
+  Scene scene = testing::ballOnAFloor();
+  Request request = testing::ballInTheSun({.size = {61, 43}, .spp = 40, .seed = 3});
 };
 
 TEST_F(Progressive, EndsInTheBitsOfTheReferenceOfAsManySamples) {

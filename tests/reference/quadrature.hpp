@@ -3,6 +3,7 @@
 // visible normals).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -10,6 +11,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+
+#include "baker/import/measured_brdf.hpp"
 
 namespace lambent::testing {
 
@@ -61,5 +64,29 @@ struct Ggx {
     return sum;
   }
 };
+
+// Evaluates the formula for measured BRDFs of docs/conventions.md, "Materials", literally.
+inline glm::dvec3 weighedMean(const baker::MeasuredBrdf& brdf, const glm::dvec3& v, const glm::dvec3& s) {
+  const auto place = [](const glm::dvec3& a, const glm::dvec3& b) {
+    const glm::dvec3 h = glm::normalize(a + b);
+    return glm::dvec2(std::sqrt(std::acos(std::min(h.z, 1.0)) * 2.0 / std::numbers::pi),
+                      std::acos(std::min(glm::dot(a, h), 1.0)) * 2.0 / std::numbers::pi);
+  };
+  const auto direction = [](double theta, double phi) {
+    return glm::dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+  };
+  const glm::dvec2 here = place(v, s);
+  double weights = 0.0;
+  glm::dvec3 sum(0.0);
+  for (const baker::BrdfMeasurement& m : brdf.measurements) {
+    const glm::dvec2 away =
+        place(direction(double{m.theta_i}, double{m.phi_i}), direction(double{m.theta_o}, double{m.phi_o})) -
+        here;
+    const double weight = std::exp(-400.0 * glm::dot(away, away));
+    weights += weight;
+    sum += weight * glm::dvec3(m.value);
+  }
+  return sum / weights;
+}
 
 }  // namespace lambent::testing

@@ -5,26 +5,20 @@
 #include <gtest/gtest.h>
 
 #include "reference/film.hpp"
+#include "reference/reference.hpp"
 #include "runtime/bundle/container.hpp"
 #include "tests/reference/measure.hpp"
+#include "tests/support/material_values.hpp"
 #include "tests/support/program.hpp"
 
 namespace lambent::baker::reference {
+
 namespace {
 
 using testing::bytesOf;
 
 class Resume : public testing::ProgramTest {
  protected:
-  Resume() {
-    scene = testing::sceneOf({testing::grid({0, 0, 0}, 4.0f, 8), testing::icosphere({0, 0.6f, 0}, 0.5f, 3)});
-    scene.materials[0].base_color = glm::vec4(0.7f, 0.6f, 0.5f, 1);
-    request.lights = {testing::uniform(0.3f),
-                      spec::SunLight{.elevation_deg = 40, .angle_deg = 4, .radiance = glm::vec3(50)}};
-    request.camera = spec::OrbitCamera{30, 20, 2, 40};
-    request.options = {.size = {64, 48}, .spp = 100};
-  }
-
   // Requests a stop once `share` of the remaining work is done.
   Result<Report> renderUntil(const std::filesystem::path& output, double share) const {
     Progress progress;
@@ -40,8 +34,8 @@ class Resume : public testing::ProgramTest {
     return render(scene, request, output, false, progress, stop.get_token());
   }
 
-  Scene scene;
-  Request request;
+  const Scene scene = testing::ballOnAFloor();
+  Request request = testing::ballInTheSun({.size = {64, 48}, .spp = 100});
 };
 
 TEST_F(Resume, EndsInTheBytesOfAPictureThatWasNotInterrupted) {
@@ -78,6 +72,22 @@ TEST_F(Resume, BeginsAnewWhenTheWordsOrTheBytesAreOthers) {
   ASSERT_TRUE(damaged);
   EXPECT_EQ(damaged->notices.size(), 1u);
   EXPECT_EQ(damaged->image.texels, other->image.texels);
+}
+
+// Checks that every field of a material is part of the digest that decides whether a checkpoint can be
+// resumed.
+
+std::uint64_t digestWith(const gltf::Material& material) {
+  Scene scene;
+  scene.materials = {material};
+  return digestOf(scene, {}, {}, {}, {});
+}
+
+TEST(ReferenceDigest, ChangesWithEveryFieldOfAMaterial) {
+  const gltf::Material plain = testing::materialWithEverything();
+  gltf::forEachMaterialField([&](const auto& field) {
+    EXPECT_NE(digestWith(testing::changed(plain, field)), digestWith(plain)) << field.name;
+  });
 }
 
 }  // namespace

@@ -9,16 +9,11 @@ namespace lambent::baker::reference {
 namespace {
 
 using testing::expectMean;
+using testing::formFactor;
+using testing::lamp;
 using testing::measured;
 using testing::samples;
 using testing::sceneOf;
-
-gltf::Material lamp(float radiance) {
-  gltf::Material material = testing::matte();
-  material.base_color = glm::vec4(0, 0, 0, 1);
-  material.emissive = glm::vec3(radiance);
-  return material;
-}
 
 TEST(EmissiveSurface, OfAClosedBoxIsTheGeometricSeries) {
   // With radiance e and albedo rho everywhere, the result is e (1 + rho + rho² + ...).
@@ -31,18 +26,6 @@ TEST(EmissiveSurface, OfAClosedBoxIsTheGeometricSeries) {
   expectMean(seen(0), 1.5);
   expectMean(seen(2), 1.875);
   expectMean(seen({}), 2.0);
-}
-
-// Returns Lambert's form factor of a polygon as seen from `p` with normal n. The polygon is counter-clockwise
-// as seen from p.
-double formFactor(const std::vector<glm::dvec3>& corners, const glm::dvec3& p, const glm::dvec3& n) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec3 a = glm::normalize(corners[i] - p),
-                     b = glm::normalize(corners[(i + 1) % corners.size()] - p);
-    sum += std::acos(glm::dot(a, b)) * glm::dot(glm::normalize(glm::cross(a, b)), n);
-  }
-  return std::abs(sum) / (2.0 * std::numbers::pi);
 }
 
 TEST(EmissiveSurface, LightsAFloorByItsFormFactor) {
@@ -74,12 +57,7 @@ TEST(EmissiveSurface, ShinesFromItsFrontOnlyUnlessTwoSided) {
 
 Scene floorWithLight(const gltf::Light& light, const glm::mat4& place) {
   Scene scene = sceneOf({testing::grid({0, 0, 0}, 20.0f, 1)});
-  scene.lights = {light};
-  gltf::Node node;
-  node.light = 0;
-  node.parent_from_node = place;
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
+  testing::addLight(scene, light, place);
   return scene;
 }
 
@@ -132,11 +110,7 @@ TEST(PunctualLight, OfDirectionsIsLuxOnAFacingSurface) {
 TEST(PunctualLight, CastsShadowsAndAddsUp) {
   const gltf::Light light{.name = {}, .type = gltf::Light::Type::Point, .intensity = 7.0f};
   Scene scene = floorWithLight(light, above(2));
-  scene.lights.push_back({.name = {}, .type = gltf::Light::Type::Directional, .intensity = 3.0f});
-  gltf::Node node;
-  node.light = 1;
-  node.parent_from_node = above(9);
-  scene.nodes.push_back(node);
+  testing::addLight(scene, {.name = {}, .type = gltf::Light::Type::Directional, .intensity = 3.0f}, above(9));
   const double both = 7.0 / std::numbers::pi / 4.0 + 3.0 / std::numbers::pi;
   expectMean(measured(scene, {0, 3, 4}, {0, 0, 0}, {}, samples(64, 0)), both, 1e-4);
   // A card is between the two lights, wider than it has to be for the floor's point.

@@ -2,7 +2,7 @@
 // at a given time.
 #include <gtest/gtest.h>
 
-#include "reference/lamps.hpp"
+#include "reference/lights.hpp"
 #include "reference/reference.hpp"
 #include "tests/reference/measure.hpp"
 
@@ -61,8 +61,7 @@ TEST(SphereLight, FromInsideComesFromEverywhereThatNothingBlocks) {
   // A half plane that is upright on the floor hides half of it.
   scene = sceneOf({testing::grid({0, 0, 0}, 20.0f, 1),
                    testing::turned(testing::grid({0, 0, 0}, 4000.0f, 1), -90.0f, {0, 0, 1})});
-  gltf::Material black = testing::matte();
-  black.base_color = glm::vec4(0, 0, 0, 1);
+  gltf::Material black = testing::matte(0.0f);
   black.double_sided = true;
   testing::paint(scene, 1, black);
   expectMean(measured(scene, {3, 1, 0}, {1e-3f, 0, 0}, {sphere({0, 0, 0}, 1000.0f, 3.0f)}, samples(64, 0)),

@@ -29,13 +29,8 @@ void shine(Scene& scene, glm::vec3 along, float lux) {
   gltf::Light light;
   light.type = gltf::Light::Type::Directional;
   light.intensity = lux;
-  gltf::Node node;
-  node.light = static_cast<std::int32_t>(scene.lights.size());
   const glm::vec3 up = std::abs(along.y) > 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
-  node.parent_from_node = glm::inverse(glm::lookAt(glm::vec3(0), along, up));
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
-  scene.lights.push_back(light);
+  testing::addLight(scene, light, glm::inverse(glm::lookAt(glm::vec3(0), along, up)));
 }
 
 const glm::vec3 kFront(0.1f, 0.2f, 3.0f), kBack(0.1f, 0.2f, -1.0f);  // a ray through all of the cube, 1 m

@@ -14,7 +14,7 @@
 #include "baker/bake/bake.hpp"
 #include "baker/import/gltf.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "tests/stability/show.hpp"
 #include "tests/support/gpu_context.hpp"
 

@@ -87,9 +87,7 @@ TEST_F(NeighborhoodBundle, OfABlackBallHoldsItsClosedForm) {
   // The ball may also be far from its node, because the grid is in the group's frame.
   for (const glm::vec3 off : {glm::vec3(0.0f), glm::vec3(300.0f, 40.0f, 0.0f)}) {
     auto scene = over(icosphere(off, 0.5f, 4), glm::vec3(0.0f, 0.8f, 0.0f) - off);
-    scene.materials.push_back(scene.materials[0]);
-    scene.materials[1].base_color = {0, 0, 0, 1};
-    scene.meshes[1].primitives[0].material = 1;
+    testing::ownMaterial(scene, 1).base_color = {0, 0, 0, 1};
     const auto stored = bake(scene);
     ASSERT_TRUE(stored.has_value());
     EXPECT_TRUE(stored->bounced.empty());

@@ -17,7 +17,7 @@
 #include "baker/import/gltf.hpp"
 #include "reference/reference.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 
 namespace lambent::testing {
 

@@ -35,4 +35,19 @@ double largestDifference(const Numbers& numbers, const Expected& expected) {
   return largest;
 }
 
+// Returns the root mean square of these differences, relative to that of the expected numbers. It is NaN
+// where largestDifference() is.
+template <typename Numbers, typename Expected>
+double relativeDifference(const Numbers& numbers, const Expected& expected) {
+  if (std::size(numbers) != std::size(expected)) return std::numeric_limits<double>::quiet_NaN();
+  double wrong = 0.0, all = 0.0;
+  auto wanted = std::begin(expected);
+  for (const auto& number : numbers) {
+    const double is = double{number}, should = double{*wanted++};
+    wrong += (is - should) * (is - should);
+    all += should * should;
+  }
+  return std::sqrt(wrong / all);
+}
+
 }  // namespace lambent::testing

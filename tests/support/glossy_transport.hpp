@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/surface/inside_faces.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -69,6 +70,22 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
   bake.bounced = std::move(*bounced);
   return bake;
 }
+
+// Reads the BRDFs of a scene's surfaces.
+struct TransportBrdfs {
+  explicit TransportBrdfs(const Transport& t)
+      : images(t.scene),
+        tables(std::move(*baker::BrdfTables::make(t.scene, 5, 5))),
+        brdfs(std::move(*baker::SurfaceBrdfs::load(t.scene, t.geometry, tables, images, 5))) {}
+  baker::ExitKernels kernels() const {
+    return {brdfs.grey(), [this](std::uint32_t triangle, float u, float v, const glm::vec3& to,
+                                 std::span<float> out) { brdfs.exitKernel(triangle, u, v, to, out); }};
+  }
+
+  baker::DecodedImages images;
+  baker::BrdfTables tables;
+  baker::SurfaceBrdfs brdfs;
+};
 
 // Describes Lambert surfaces of the scene's own albedo by kernels: albedo A_l/pi y_k(n), where n is the
 // face's normal.

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "baker/effects/neighborhood/bodies.hpp"
 #include "baker/effects/neighborhood/light_change.hpp"
 #include "baker/effects/neighborhood/neighborhood.hpp"
 #include "runtime/sh/gaunt.hpp"
@@ -43,6 +44,25 @@ inline ChangeMatrix blackSphereChange(const glm::vec3& point, float radius, int 
   const baker::ChangeShape shape{.order = order, .order_out = order_out, .channels = 0};
   return matrixOf(shape, visibility, {});
 }
+
+// Bakes a mesh of one colour as a body.
+struct BakedBody {
+  explicit BakedBody(const bundle::MeshData& mesh, const glm::vec3& albedo = glm::vec3(0.0f))
+      : transport([&] {
+          baker::Scene scene = sceneOf({mesh});
+          scene.materials[0].base_color = glm::vec4(albedo, 1.0f);
+          return scene;
+        }()),
+        baked(transport.bake(5, 256, albedo == glm::vec3(0.0f) ? 0 : -1)),
+        body(transport.diffuse(), {.direct = baked.direct.field,
+                                   .bounced = albedo == glm::vec3(0.0f) ? nullptr : &baked.bounced.field,
+                                   .sends = albedo != glm::vec3(0.0f),
+                                   .brdfs = nullptr,
+                                   .glossy = nullptr}) {}
+  Transport transport;
+  Transport::Baked baked;
+  baker::SurfaceBody body;
+};
 
 class DecodedNeighborhood {
  public:

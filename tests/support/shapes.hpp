@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
@@ -124,6 +125,14 @@ inline bundle::MeshData soup(unsigned seed, float size, float tilt) {
   return mesh;
 }
 
+// Adds a node without parent, and returns it.
+inline gltf::Node& addNode(baker::Scene& scene, const glm::mat4& parent_from_node = glm::mat4(1.0f)) {
+  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+  scene.nodes.push_back({});
+  scene.nodes.back().parent_from_node = parent_from_node;
+  return scene.nodes.back();
+}
+
 // Makes a scene with one static node per mesh, all with one white material.
 inline baker::Scene sceneOf(const std::vector<bundle::MeshData>& meshes) {
   baker::Scene scene;
@@ -133,13 +142,93 @@ inline baker::Scene sceneOf(const std::vector<bundle::MeshData>& meshes) {
   white.metallic = 0.0f;
   scene.materials = {white};
   for (const bundle::MeshData& mesh : meshes) {
-    gltf::Node node;
-    node.mesh = static_cast<std::int32_t>(scene.meshes.size());
-    scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-    scene.nodes.push_back(node);
+    addNode(scene).mesh = static_cast<std::int32_t>(scene.meshes.size());
     scene.meshes.push_back({"", {{mesh, 0}}});
   }
   return scene;
+}
+
+// Gives a mesh a material of its own, the last of the scene: a copy of the first, which may be changed.
+inline gltf::Material& ownMaterial(baker::Scene& scene, std::size_t mesh) {
+  scene.meshes[mesh].primitives[0].material = static_cast<std::int32_t>(scene.materials.size());
+  scene.materials.push_back(scene.materials[0]);
+  return scene.materials.back();
+}
+
+// Adds a light with a node of its own.
+inline void addLight(baker::Scene& scene, const gltf::Light& light, const glm::mat4& place) {
+  addNode(scene, place).light = static_cast<std::int32_t>(scene.lights.size());
+  scene.lights.push_back(light);
+}
+inline void addPointLight(baker::Scene& scene, const glm::vec3& place) {
+  addLight(scene, {}, glm::translate(glm::mat4(1.0f), place));
+}
+
+// Returns the inside of a box without its top.
+inline bundle::MeshData cup(glm::vec3 size, int n) {
+  bundle::MeshData mesh = flipped(box({0, 0, 0}, size, n));
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+    if (mesh.normals[mesh.indices[i]].y > -0.5f)
+      for (std::size_t c = 0; c < 3; ++c) kept.push_back(mesh.indices[i + c]);
+  mesh.indices = kept;
+  return mesh;
+}
+
+// A Cavity is the inside of a unit sphere with a round opening of half angle `alpha` about `axis`. Its
+// `opening` is the fraction of the mesh's sphere area that is open.
+struct Cavity {
+  bundle::MeshData mesh;
+  float opening = 0.0f;
+};
+inline Cavity cavity(glm::vec3 axis, float alpha_deg) {
+  Cavity cavity{flipped(icosphere({0, 0, 0}, 1.0f, 4)), 0.0f};
+  std::vector<std::uint32_t> kept;
+  float removed = 0.0f, all = 0.0f;
+  for (std::size_t i = 0; i < cavity.mesh.indices.size(); i += 3) {
+    const std::uint32_t* corners = &cavity.mesh.indices[i];
+    const glm::vec3 a = cavity.mesh.positions[corners[0]], b = cavity.mesh.positions[corners[1]],
+                    c = cavity.mesh.positions[corners[2]];
+    const float area = glm::length(glm::cross(b - a, c - a));
+    all += area;
+    if (glm::dot(glm::normalize(a + b + c), axis) > std::cos(glm::radians(alpha_deg)))
+      removed += area;
+    else
+      kept.insert(kept.end(), corners, corners + 3);
+  }
+  cavity.mesh.indices = kept;
+  cavity.opening = removed / all;
+  return cavity;
+}
+
+// Makes a ring about the z axis, of radius 1, from z = 0 to z = height. Its material must have two sides.
+inline bundle::MeshData ring(float height, int around) {
+  bundle::MeshData mesh;
+  for (int i = 0; i < around; ++i)
+    for (int top = 0; top < 2; ++top) {
+      const float angle =
+          2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(around);
+      mesh.positions.emplace_back(std::cos(angle), std::sin(angle), top ? height : 0.0f);
+      mesh.normals.emplace_back(std::cos(angle), std::sin(angle), 0.0f);
+    }
+  const auto at = [around](int i, int top) { return static_cast<std::uint32_t>(2 * (i % around) + top); };
+  for (int i = 0; i < around; ++i)
+    for (const std::uint32_t index : {at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 0), at(i + 1, 1), at(i, 1)})
+      mesh.indices.push_back(index);
+  return mesh;
+}
+
+// Returns Lambert's form factor of a polygon as seen from `p` with normal `n`, above whose horizon it lies:
+// the sum over edges of the angle times the edge plane's normal (1760).
+inline double formFactor(const std::vector<glm::dvec3>& corners, const glm::dvec3& p, const glm::dvec3& n) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec3 a = glm::normalize(corners[i] - p),
+                     b = glm::normalize(corners[(i + 1) % corners.size()] - p);
+    const glm::dvec3 across = glm::cross(a, b);
+    sum += std::atan2(glm::length(across), glm::dot(a, b)) * glm::dot(glm::normalize(across), n);
+  }
+  return std::abs(sum) / (2.0 * std::numbers::pi);
 }
 
 }  // namespace lambent::testing

@@ -11,8 +11,8 @@
 #include "baker/effects/surface/direct.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/plan/rigid_groups.hpp"
-#include "baker/transport/direction_table.hpp"
 #include "baker/transport/ray_scene.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::testing {
@@ -98,9 +98,7 @@ struct Transport {
 
   static baker::RayScene build(const baker::GroupGeometry& geometry, const baker::Scene& scene) {
     baker::DecodedImages images(scene);
-    auto maps = baker::loadAlphaMaps(scene, images);
-    EXPECT_TRUE(maps.has_value());
-    auto rays = baker::RayScene::build(geometry, scene, std::move(*maps));
+    auto rays = baker::RayScene::build(geometry, scene, images);
     EXPECT_TRUE(rays.has_value());
     return std::move(*rays);
   }

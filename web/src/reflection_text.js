@@ -1,4 +1,4 @@
-// What shaders of reflecting surfaces share: the kernel of a table of b(v) (runtime/effects/glossy/glossy_kernel.glsl
+// What shaders of reflecting surfaces share: the kernel of a table of b(v) (runtime/surface/glossy_kernel.glsl
 // explains it), bands of light along a direction, and what a mirror sees of the sky.
 import { LOBE_LEVELS } from './lobe.js';
 import { SEEN_AXES } from './seen_sky.js';

@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
-#include "baker/brdf/follow_highlight.hpp"
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/transport/panes.hpp"
 #include "runtime/sh/basis.hpp"
@@ -268,9 +269,10 @@ void SurfaceBody::look(const glm::vec3& from, const DirectionPacket& along, std:
   if (paths) paths->follow(out.sent);
 }
 
-VolumeBody::VolumeBody(const VolumeLight& light, const glm::vec3& bounds_min, const glm::vec3& bounds_max,
+VolumeBody::VolumeBody(March march, int order, const glm::vec3& bounds_min, const glm::vec3& bounds_max,
                        bool scatters)
-    : light_(light),
+    : march_(std::move(march)),
+      order_(order),
       centre_(0.5f * (bounds_min + bounds_max)),
       radius_(0.5f * glm::distance(bounds_min, bounds_max)),
       scatters_(scatters) {}
@@ -278,7 +280,7 @@ VolumeBody::VolumeBody(const VolumeLight& light, const glm::vec3& bounds_min, co
 void VolumeBody::look(const glm::vec3& from, const DirectionPacket& along, std::size_t, bool with_light,
                       BodyLook& out) const {
   out.sends = out.backs = 0;
-  const std::size_t row_size = 3 * static_cast<std::size_t>(sh::coefficientCount(light_.order()));
+  const std::size_t row_size = 3 * static_cast<std::size_t>(sh::coefficientCount(order_));
   std::array<float, 3 * sh::kMaxCoefficients> unwanted;
   const float far = glm::distance(from, centre_) + radius_;
   for (std::size_t k = 0; k < kPacketWidth; ++k) {
@@ -286,7 +288,7 @@ void VolumeBody::look(const glm::vec3& from, const DirectionPacket& along, std::
     const auto row =
         keep ? std::span(out.sent).subspan(k * row_size, row_size) : std::span(unwanted).first(row_size);
     std::fill(row.begin(), row.end(), 0.0f);
-    const float through = light_.look(from, along[k], far, row);
+    const float through = march_(from, along[k], far, row);
     out.stopped[k] = 1.0f - std::clamp(through, 0.0f, 1.0f);
     if (keep && std::any_of(row.begin(), row.end(), [](float value) { return value != 0.0f; }))
       out.sends |= static_cast<std::uint16_t>(1u << k);

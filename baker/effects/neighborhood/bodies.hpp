@@ -7,14 +7,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "baker/brdf/surface_brdfs.hpp"
+#include "baker/effects/neighborhood/light_change.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/surface/direct.hpp"
-#include "baker/effects/neighborhood/body.hpp"
-#include "baker/effects/volume/marched_volume.hpp"
 
 namespace lambent::baker {
 
@@ -61,17 +61,17 @@ class SurfaceBody : public Body {
   std::size_t matrix_outputs_ = 0, matrix_channels_ = 0;
 };
 
-// Presents a baked volume as a body: the light that it lets through, and the light that it scatters
-// (baker/effects/volume/marched_volume.hpp).
-
+// Presents a volume as a body: the light that it lets through, and the light that it scatters.
 class VolumeBody : public Body {
  public:
-  // `light` must outlive this. The bounds are those of the volume, in its group's frame. Without `scatters`
-  // it only stops light.
-  VolumeBody(const VolumeLight& light, const glm::vec3& bounds_min, const glm::vec3& bounds_max,
-             bool scatters);
+  // Does what marchVolume() does with a baked volume (baker/effects/volume/volume.hpp).
+  using March = std::function<float(const glm::vec3& origin, const glm::vec3& direction, float t_max,
+                                    std::span<float> scattered)>;
+  // `order` is that of incident light. The bounds are those of the volume, in its group's frame. Without
+  // `scatters` it only stops light.
+  VolumeBody(March march, int order, const glm::vec3& bounds_min, const glm::vec3& bounds_max, bool scatters);
 
-  int order() const override { return light_.order(); }
+  int order() const override { return order_; }
   std::uint32_t channels() const override { return scatters_ ? 3 : 0; }
   glm::vec3 centre() const override { return centre_; }
   float radius() const override { return radius_; }
@@ -79,7 +79,8 @@ class VolumeBody : public Body {
             BodyLook& out) const override;
 
  private:
-  const VolumeLight& light_;
+  March march_;
+  int order_;
   glm::vec3 centre_;
   float radius_;
   bool scatters_;

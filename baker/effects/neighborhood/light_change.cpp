@@ -12,10 +12,51 @@
 #include "baker/jobs/parallel.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/trace/transfer_field.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/sh/basis.hpp"
-#include "runtime/sh/gaunt.hpp"
 
 namespace lambent::baker {
+
+namespace {
+
+// The cap is a little wider, so that rounding leaves no part of the body out.
+constexpr double kWider = 1.0 + 1e-3;
+
+}  // namespace
+
+double Cap::steradians() const {
+  return 2.0 * std::numbers::pi * past;
+}
+
+Cap capOf(const glm::vec3& point, const glm::vec3& centre, float radius) {
+  const glm::dvec3 to = glm::dvec3(centre) - glm::dvec3(point);
+  const double distance = glm::length(to), wide = kWider * double{radius};
+  if (!(distance > wide)) return {};
+  const double sine = wide / distance;
+  return {.frame = glm::mat3(localFrame(to / distance)),
+          .past = sine * sine / (1.0 + std::sqrt(1.0 - sine * sine))};
+}
+
+CapDirections::CapDirections(std::size_t rays) {
+  // The table's points have z = 1 - r² under Lambert's equal-area map of the disc.
+  const DirectionTable table = uniformTable(rays);
+  for (std::size_t r = 0; r < table.size(); ++r) {
+    const double stretch = std::sqrt(1.0 + double{table.z[r]});
+    disc_.emplace_back(double{table.x[r]} / stretch, double{table.y[r]} / stretch);
+  }
+}
+
+void CapDirections::packet(std::size_t p, const Cap& cap, DirectionPacket& out) const {
+  for (std::size_t k = 0; k < kPacketWidth; ++k) {
+    const glm::dvec2 at = disc_[p * kPacketWidth + k];
+    // The map from the disc to the cap is equal-area too: 1 - z = r² past, and sin = r sqrt(past (2 - r²
+    // past)).
+    const double below = glm::dot(at, at) * cap.past;
+    const double stretch = std::sqrt(std::max(0.0, cap.past * (2.0 - below)));
+    out[k] = cap.frame * glm::vec3(static_cast<float>(stretch * at.x), static_cast<float>(stretch * at.y),
+                                   static_cast<float>(1.0 - below));
+  }
+}
 
 namespace {
 
@@ -101,15 +142,12 @@ const BandPower& receiverPower(const ChangeShape& shape) {
   return shape.order_out > kDiffuseBands ? kShadowedPower : kDiffusePower;
 }
 
-ChangeMeter::ChangeMeter(const ChangeShape& shape) : shape_(shape) {
-  const sh::GauntTable gaunt = sh::makeGauntTable(shape.order, shape.order_out);
+ChangeMeter::ChangeMeter(const ChangeShape& shape)
+    : shape_(shape), gaunt_(sh::makeGauntTable(shape.order, shape.order_out)) {
   const std::size_t columns = shape.columns();
   weights_.resize(shape.outputs() * columns);
   for (std::size_t i = 0; i < shape.outputs(); ++i) {
     const auto band_out = static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)));
-    for (std::uint32_t t = gaunt.offsets[i]; t < gaunt.offsets[i + 1]; ++t)
-      terms_.push_back({static_cast<std::uint32_t>(i * columns) + gaunt.terms[t].j, gaunt.terms[t].k,
-                        gaunt.terms[t].value});
     for (std::size_t j = 0; j < columns; ++j)
       weights_[i * columns + j] =
           static_cast<float>(receiverPower(shape)[band_out] *
@@ -120,7 +158,7 @@ ChangeMeter::ChangeMeter(const ChangeShape& shape) : shape_(shape) {
 
 double ChangeMeter::measure(std::span<const float> visibility, std::span<const float> bounced) const {
   std::vector<float> shadow(weights_.size(), 0.0f);
-  for (const Term& term : terms_) shadow[term.at] += term.value * visibility[term.k];
+  sh::addVisibilityMatrix(gaunt_, visibility, shadow);
   double sum = 0.0;
   const std::size_t channels = bounced.empty() ? 1 : shape_.channels;
   for (std::size_t c = 0; c < channels; ++c)
@@ -216,8 +254,8 @@ class Filler {
           edges.emplace_back(static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(q));
       }
     if (edges.empty()) return;
-    fillStretchFromNeighbours(edges, known, 0, change_.shape.visibilitySize(), change_.visibility);
-    fillStretchFromNeighbours(edges, known, 0, change_.shape.bouncedSize(), change_.bounced);
+    fillFromNeighbours(edges, known, 0, change_.shape.visibilitySize(), change_.visibility);
+    fillFromNeighbours(edges, known, 0, change_.shape.bouncedSize(), change_.bounced);
   }
 
  private:

@@ -11,13 +11,11 @@
 
 #include "baker/compress/light_weights.hpp"
 #include "baker/effects/surface/gather.hpp"
-#include "baker/effects/surface/glossy_passes.hpp"
 #include "baker/effects/surface/inside_faces.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/trace/patches.hpp"
 #include "baker/trace/transfer_field.hpp"
-#include "baker/transport/direction_table.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 
@@ -178,8 +176,8 @@ class Passes {
   std::optional<BounceResult> run() {
     auto brought = gather(1, direct_.field);
     if (!brought || (!enough(1, settings_.tail_error) && !goOn(std::move(*brought)))) return std::nullopt;
-    fillStretchFromNeighbours(edges_, direct_.looks.valid, scene_.samples.normal_mapped.begin,
-                              result_.mapped.vectorSize(), result_.mapped.vectors);
+    fillFromNeighbours(edges_, direct_.looks.valid, scene_.samples.normal_mapped.begin,
+                       result_.mapped.vectorSize(), result_.mapped.vectors);
     if (const InsideFaces* const inside = light_.inside(SurfacePart::Matte);
         inside &&
         !inside->fit(SampleKind::NormalMapped, mapped_inside_.vectors, result_.mapped.vectors, context_.stop))
@@ -248,7 +246,7 @@ class Passes {
     TransferField now = direct_.field.zeros(direct_.field.size());
     const BakeContext own = context_.part("pass", bounce.number);
     if (!gatherMatte(gather_, scene_.samples, bounce, now, result_.mapped, own)) return std::nullopt;
-    fillFromNeighbours(edges_, direct_.looks.valid, now);
+    fillFromNeighbours(edges_, direct_.looks.valid, 0, now.vectorSize(), now.vectors);
     if (!fit(bounce, own.part("inside faces"), now) || !watch(bounce)) return std::nullopt;
     if (glossy_ && !glossy_->gather(bounce, edges_, now, own.part("glossy"))) return std::nullopt;
     add(now, result_.field);

@@ -3,13 +3,14 @@
 //   t^b_p = sum_rays w_r L_out^(b-1)(q_r),
 // with w_r what each ray adds to the outputs of p (hemisphere.hpp), and L_out what leaves q: its albedo,
 // which is textured and coloured, times its transfer t, interpolated over the triangle; at glossy points exit
-// kernel times matrices (glossy_exit.hpp). All samples gather from the same state of the others (Jacobi), so
-// the order of work does not matter; the receiver's own albedo is left out. The first pass is gathered at all
-// samples. All later ones are passed on between patches of samples (patches.hpp) until what is still to come
-// would add less than asked for, and their sum is gathered at all samples once more: a final gather, in place
-// of a gather per pass. A final gather that carries less than a hundredth of all light goes over every fourth
-// ray. Where direct light was fitted, both gathers go over the points inside faces too, and what they bring
-// to vertices is fitted to these (inside_faces.hpp): in rooms most light bounces, and changes within faces.
+// kernel times matrices (exit_radiance.hpp). All samples gather from the same state of the others (Jacobi),
+// so the order of work does not matter; the receiver's own albedo is left out. The first pass is gathered at
+// all samples. All later ones are passed on between patches of samples (patches.hpp) until what is still to
+// come would add less than asked for, and their sum is gathered at all samples once more: a final gather, in
+// place of a gather per pass. A final gather that carries less than a hundredth of all light goes over every
+// fourth ray. Where direct light was fitted, both gathers go over the points inside faces too, and what they
+// bring to vertices is fitted to these (inside_faces.hpp): in rooms most light bounces, and changes within
+// faces.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@
 
 #include "baker/effects/surface/direct.hpp"
 #include "baker/effects/surface/inside_faces.hpp"
-#include "baker/trace/glossy_exit.hpp"
+#include "baker/trace/exit_radiance.hpp"
 
 namespace lambent::baker {
 

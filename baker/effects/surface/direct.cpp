@@ -1,14 +1,16 @@
 #include "baker/effects/surface/direct.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "baker/jobs/parallel.hpp"
 #include "baker/jobs/stage.hpp"
-#include "baker/transport/direction_table.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -286,8 +288,101 @@ void DirectPass::paint(std::size_t first, std::span<const RayCount> ray_counts, 
 }
 
 void DirectPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
-  paint(begin, hits.traceAgain(Walk(*this), begin, end), hits);
+  Walk walk(*this);
+  std::vector<RayCount> ray_counts;
+  hits.offsets.clear();
+  hits.hits.clear();
+  hits.scales.clear();
+  for (std::size_t s = begin; s < end; ++s) {
+    hits.next();
+    walk.look(s);
+    walk.keepHits(hits);
+    ray_counts.push_back(walk.looked().rayCount());
+  }
+  hits.next();
+  paint(begin, ray_counts, hits);
 }
+
+namespace {
+
+// Holds what ranges of samples traced as an output of the stage that traces: the numbers of rays, and their
+// hits. The store gets hits with colours; the output keeps them without, so that traced results stay valid
+// when colours change.
+class TracedRanges {
+ public:
+  // `kept` says that output() will be written. Everything must outlive this.
+  TracedRanges(const DirectPass& pass, std::size_t samples, bool kept, const SampleVisibilities& looks,
+               HitStore& store)
+      : pass_(pass),
+        kept_(kept),
+        looks_(looks),
+        store_(store),
+        rays_((samples + kSamplesPerRange - 1) / kSamplesPerRange, 0),
+        unpainted_(rays_.size()) {}
+
+  // Takes the result of a range that was traced just now. May be called from any thread, once for each range.
+  // If a stop was requested, the hits are not kept.
+  void add(std::size_t range, std::uint64_t rays, RangeHits&& hits, const std::stop_token& stop) {
+    rays_[range] = rays;
+    traced_ += rays;
+    if (!pass_.settings().keep_hits || stop.stop_requested()) return;
+    if (kept_) {
+      ByteWriter bytes;
+      writeHits(hits, bytes);
+      unpainted_[range] = bytes.take();
+    }
+    offer(range, std::move(hits));
+  }
+
+  // Returns an output for a stage with ranges of kSamplesPerRange, after those of SampleVisibilities. It must
+  // not outlive this.
+  Output output() {
+    return {[this](std::size_t begin, std::size_t, ByteWriter& out) {
+              const std::size_t range = begin / kSamplesPerRange;
+              out.add(rays_[range]);
+              // Hits that had no room in memory are not written; they are traced again when they are asked
+              // for.
+              const bool with_hits = pass_.settings().keep_hits && store_.range(range).kept;
+              out.add(with_hits);
+              const std::vector<std::byte> hits = std::exchange(unpainted_[range], {});
+              if (with_hits) out.addBytes(hits);
+            },
+            [this](std::size_t begin, std::size_t end, ByteReader& in) {
+              const std::size_t range = begin / kSamplesPerRange,
+                                triangles = pass_.scene().geometry.triangles.size();
+              bool with_hits = false;
+              RangeHits hits;
+              if (!in.read(rays_[range]) || !in.read(with_hits) ||
+                  (with_hits && !readHits(in, end - begin, triangles, hits)))
+                return false;
+              if (with_hits) offer(range, std::move(hits));
+              return true;
+            }};
+  }
+
+  // May be called once all ranges are there.
+  std::uint64_t raysTraced() const { return traced_; }
+  std::uint64_t raysFound() const {
+    return std::accumulate(rays_.begin(), rays_.end(), std::uint64_t{0}) - traced_;
+  }
+
+ private:
+  void offer(std::size_t range, RangeHits&& hits) {
+    const std::size_t first = store_.first() + range * kSamplesPerRange;
+    pass_.paint(first, std::span(looks_.ray_counts).subspan(first), hits);
+    store_.offer(range, std::move(hits));
+  }
+
+  const DirectPass& pass_;
+  bool kept_;
+  const SampleVisibilities& looks_;
+  HitStore& store_;
+  std::vector<std::uint64_t> rays_;
+  std::vector<std::vector<std::byte>> unpainted_;  // packed hits without colours, until they are written
+  std::atomic<std::uint64_t> traced_ = 0;
+};
+
+}  // namespace
 
 bool traceDirect(const DirectPass& pass, SurfacePart part, const BakeContext& context, const char* stage,
                  DirectResult& out) {
@@ -298,10 +393,7 @@ bool traceDirect(const DirectPass& pass, SurfacePart part, const BakeContext& co
   const auto first = static_cast<std::ptrdiff_t>(stretch.begin);
   TracedPart& traced = out.of(part);
   traced.hits = HitStore(stretch.size(), settings.keep_hits ? settings.hit_memory : 0, stretch.begin);
-  const auto paint = [&](std::size_t begin, RangeHits& hits) {
-    pass.paint(begin, std::span(std::as_const(out.looks.ray_counts)).subspan(begin), hits);
-  };
-  TracedRanges ranges(scene, stretch.size(), {settings.keep_hits, context.keeps()}, paint, traced.hits);
+  TracedRanges ranges(pass, stretch.size(), context.keeps(), out.looks, traced.hits);
   const auto compute = [&](std::size_t begin, std::size_t end) {
     RangeHits hits;
     const std::uint64_t rays = pass.bake(stretch.begin + begin, stretch.begin + end, context.stop, out, hits);
@@ -336,13 +428,13 @@ bool traceDirect(const DirectPass& pass, SurfacePart part, const BakeContext& co
   if (std::ranges::find(own_valid, std::uint8_t{0}) == own_valid.end()) return true;
   const auto edges = sampleEdges(scene.geometry, samples);
   const auto fill = [&](std::size_t begin, std::size_t size, std::vector<float>& values) {
-    return fillStretchFromNeighbours(edges, out.looks.valid, begin, size, values);
+    return fillFromNeighbours(edges, out.looks.valid, begin, size, values);
   };
   if (part == SurfacePart::Glossy) {
     traced.filled_samples = fill(stretch.begin, glossy.visibilitySize(), glossy.visibility);
     if (lights > 0) fill(stretch.begin, lights, glossy.lights_shadowed);
   } else {
-    traced.filled_samples = fillFromNeighbours(edges, out.looks.valid, out.field);
+    traced.filled_samples = fill(0, out.field.vectorSize(), out.field.vectors);
     fill(samples.normal_mapped.begin, out.mapped.vectorSize(), out.mapped.vectors);
   }
   return true;

@@ -17,8 +17,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "baker/transport/direction_table.hpp"
 #include "baker/transport/panes.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/sh/rotation.hpp"
 
 namespace lambent::baker {

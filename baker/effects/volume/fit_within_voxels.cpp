@@ -7,7 +7,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "baker/effects/volume/first_light.hpp"
+#include "baker/effects/volume/volume_rays.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/jobs/stage.hpp"
 

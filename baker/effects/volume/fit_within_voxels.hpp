@@ -13,10 +13,10 @@
 
 #include <glm/vec3.hpp>
 
-#include "baker/effects/volume/first_light.hpp"
 #include "baker/effects/volume/grids.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/volume.hpp"
+#include "baker/effects/volume/volume_rays.hpp"
 #include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {

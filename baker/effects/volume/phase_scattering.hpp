@@ -18,11 +18,9 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/effects/volume/first_light.hpp"
-#include "baker/effects/volume/gmres.hpp"
-#include "baker/effects/volume/ray_steps.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/volume.hpp"
+#include "baker/effects/volume/volume_rays.hpp"
 #include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
@@ -44,7 +42,7 @@ struct PhaseSettings {
 class PhaseScattering {
  public:
   // `clear` is [sample][bands²], int tau y_i ds up to the outside or to surfaces, from many rays
-  // (phased_transfer.cpp); uniform light is corrected to agree with it. `table` has as many bands, and at
+  // (FirstLight); uniform light is corrected to agree with it. `table` has as many bands, and at
   // least 2 bands² rays. Steps that do not fit into the memory are traced again each time, with the same
   // result. Returns nothing if stopped. Scene and table must outlive this.
   static std::optional<PhaseScattering> build(const VolumeScene& scene, const SphereTable& table,
@@ -117,15 +115,5 @@ class PhaseScattering {
   KeptChunks<Chunk> chunks_;
   std::size_t samples_traced_ = 0;
 };
-
-// Computes the transfer of a volume with an anisotropic phase function: the radiance that arrives at its
-// samples, in bands. It is a part of bakeVolumeTransfer().
-
-// Fills in vectors, visibility and figures of a transfer with more than one band, whose grid, order, bands
-// and channels are set. Returns false if stopped.
-bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
-                        VolumeTransfer& out, const BakeContext& context);
-// Removes its checkpoints, except those of the solver.
-void dropPhasedParts(const BakeContext& context, std::size_t samples);
 
 }  // namespace lambent::baker

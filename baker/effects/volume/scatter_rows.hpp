@@ -13,19 +13,50 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
 
-#include "baker/effects/volume/first_light.hpp"
-#include "baker/effects/volume/gmres.hpp"
-#include "baker/effects/volume/ray_steps.hpp"
+#include "baker/cache/bytes.hpp"
 #include "baker/effects/volume/volume.hpp"
+#include "baker/effects/volume/volume_rays.hpp"
 #include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
+
+// Solves linear systems x = G x + b for many right-hand sides at once, each column by itself, by restarted
+// GMRES (Saad and Schultz 1986). Rows are unknowns, with kBlockColumns columns side by side. Sums run in a
+// fixed order, so the result is the same for any number of threads.
+
+struct GmresSettings {
+  double tolerance = 1e-5;    // on the residual relative to b, RMS over all columns
+  int most_iterations = 400;  // applications of G
+  int restart = 24;           // number of basis vectors that are kept
+};
+
+struct GmresResult {
+  int iterations = 0;
+  double residual = 0.0;  // relative, when the solver ended
+  bool stopped = false;
+};
+
+// apply(x, y) computes y = G x and returns false if stopped. `x` is the first guess on entry and the solution
+// on return.
+GmresResult solveGmres(std::span<const float> b, std::span<float> x,
+                       const std::function<bool(std::span<const float>, std::span<float>)>& apply,
+                       const GmresSettings& settings);
+
+// A SolvedBlock is a block of columns with its solution. It is kept as soon as it is solved, since the next
+// block may take long, too.
+struct SolvedBlock {
+  GmresResult result;
+  std::span<float> x;
+};
+void write(const SolvedBlock& block, ByteWriter& out);
+bool read(ByteReader& in, SolvedBlock& block);
 
 // Columns are handled in blocks of this size, with those of a sample side by side: [sample][kBlockColumns].
 inline constexpr std::size_t kBlockColumns = 32;
@@ -103,48 +134,5 @@ class ScatterRows {
   RaySteps steps_;
   std::size_t samples_traced_ = 0;
 };
-
-// Adds scattered light to the first light of a volume: solves for each channel and each block of columns.
-
-// `make(albedo, context)` returns a linear system with solve() and repeat(), whose rows are the outputs of
-// samples; the key of its context is that of the block. The first light is the first block of each of
-// out.vectors, and the channels follow it. Returns false if stopped.
-template <typename Make>
-bool scatterLight(const Make& make, const VolumeSettings& settings, VolumeTransfer& out,
-                  const BakeContext& context) {
-  context.progress.begin("scattered light", out.columns() * out.full_channels, "columns");
-  const std::size_t columns = out.columns(), block_size = out.outputs() * columns,
-                    rows = out.grid.samples() * out.outputs();
-  // A row is one output of a sample; this returns where its columns start in the vectors.
-  const auto at = [&](std::size_t row, std::size_t block) {
-    return &out.vectors[row / out.outputs() * out.vectorSize() + block * block_size +
-                        row % out.outputs() * columns];
-  };
-  std::vector<float> first(rows * kBlockColumns), result(first.size());
-  for (std::size_t begin = 0; begin < columns; begin += kBlockColumns) {
-    const std::size_t width = std::min(kBlockColumns, columns - begin);
-    std::fill(first.begin(), first.end(), 0.0f);
-    for (std::size_t row = 0; row < rows; ++row)
-      std::copy_n(at(row, 0) + begin, width, &first[row * kBlockColumns]);
-    for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
-      const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
-      const BakeContext block_context = context.part("block", begin, channel);
-      auto system = make(albedo);
-      SolvedBlock solved{{}, result};
-      const auto found = findOrMake(block_context.part("solved"), solved, [&] {
-        solved.result = settings.scatterings < 0 ? system.solve(first, result)
-                                                 : system.repeat(first, result, settings.scatterings);
-        return !solved.result.stopped;
-      });
-      if (!found) return false;
-      out.iterations = std::max(out.iterations, solved.result.iterations);
-      out.residual = std::max(out.residual, solved.result.residual);
-      for (std::size_t row = 0; row < rows; ++row)
-        std::copy_n(&result[row * kBlockColumns], width, at(row, 1 + channel) + begin);
-      context.progress.add(width);
-    }
-  }
-  return true;
-}
 
 }  // namespace lambent::baker

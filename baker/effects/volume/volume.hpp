@@ -1,4 +1,4 @@
-// Decides whether a scene needs the volume effect, and computes its transfer.
+// Computes the transfer of volumes.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,11 @@
 #include <glm/vec3.hpp>
 
 #include "baker/cache/bytes.hpp"
-#include "baker/effects/volume/first_light.hpp"
 #include "baker/effects/volume/grids.hpp"
+#include "baker/effects/volume/volume_rays.hpp"
 #include "baker/jobs/bake_context.hpp"
-#include "baker/plan/effect_plan.hpp"
 
 namespace lambent::baker {
-
-// The effect is chosen for every scene with a volume.
-EffectChoice chooseVolume(const Scene& scene, const std::vector<RigidGroup>& groups);
 
 // Computes the transfer of a volume. At each sample of its grid this is the mean radiance that arrives,
 //   T = (1/4pi) int L ds,   the medium's own albedo left out,
@@ -105,5 +101,14 @@ bool read(ByteReader& in, VolumeTransfer& transfer);
 // settings and occluders.
 std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const VolumeSettings& settings,
                                                  const Occluders& occluders, const BakeContext& context);
+
+// Marches a ray over 0..t_max metres through a volume as others see it. Returns the transmittance (0..1) by
+// which light from beyond the ray's far end is multiplied. `scattered` receives the radiance that the volume
+// adds towards the ray's origin, per light coefficient: [channel][order²], three channels. It is the sum over
+// stretches of tau (1 - exp(-depth)) albedo T, where T includes all scatterings if they were baked. With more
+// than one band, sum_lm g^l T_lm y_lm(direction) takes the place of T. Points and directions are in the
+// volume's group frame, and the direction is unit. May be called from any thread.
+float marchVolume(const VolumeTransfer& transfer, const glm::vec3& origin, const glm::vec3& direction,
+                  float t_max, std::span<float> scattered);
 
 }  // namespace lambent::baker

@@ -1,8 +1,10 @@
 #include "runtime/effects/diffuse/diffuse.hpp"
 
 #include <algorithm>
+#include <utility>
 
-#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 
 #include "lambent_effects_diffuse_embedded.hpp"
 #include "lambent_transfer_embedded.hpp"
@@ -12,15 +14,7 @@ namespace lambent::effects::diffuse {
 const gpu::FindText kDiffuseShaders[2] = {&embedded::lambent_effects_diffuse::find,
                                           &embedded::lambent_transfer::find};
 
-static_assert(transfer::kLightStride == lighting::GroupLights::kStride &&
-              transfer::kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
-
 namespace {
-
-// Returns the order that is compiled into the kernel; 0 selects the kernel that loops over any order.
-std::uint32_t variantOf(std::uint32_t order) {
-  return order >= 2 && order <= 6 ? order : 0;
-}
 
 DrawRecord describeDraw(const streaming::Residency& residency, const streaming::ResidentDraw& draw,
                         std::uint32_t light, evaluate::TransferMode mode) {
@@ -50,165 +44,28 @@ DrawRecord describeDraw(const streaming::Residency& residency, const streaming::
 
 }  // namespace
 
-Diffuse::Diffuse()
-    : transfers_table_("diffuse transfers"),
-      places_table_("diffuse places"),
-      draws_table_("diffuse draws"),
-      products_("diffuse products"),
-      project_work_("diffuse project work"),
-      samples_work_("diffuse samples work"),
-      adding_work_("diffuse adding work"),
-      vertices_work_("diffuse vertices work") {}
+Diffuse::Diffuse() : draws_table_("diffuse draws"), work_("diffuse vertices work") {}
 
 Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                            evaluate::TransferMode mode, gpu::Counters& counters,
-                            const evaluate::ShadedKinds& kinds) {
+                            evaluate::TransferMode mode, const evaluate::Samples& samples,
+                            gpu::Counters& counters, bool shown) {
   const bool other_way = way_changed_.renew(mode, lights.hasKeys(), lights.hasPartedLamps());
-  if (other_way) {  // shades everything anew
-    cells_changed_.clear();
-    draws_changed_.clear();
+  if (other_way) draws_changed_.clear();  // shades everything anew
+  if (layout_changed_.renew(residency.version(), lights.groupCount()) || other_way) {
+    draws_.clear();
+    for (const streaming::ResidentDraw& draw : residency.draws())
+      draws_.push_back(describeDraw(residency, draw, lights.firstOf(draw.group), mode));
+    draws_table_.assign(std::span<const DrawRecord>(draws_));
+    draws_changed_.follow(residency.draws(), &streaming::ResidentDraw::id);
   }
-  if (layout_changed_.renew(residency.version(), lights.groupCount()) || other_way)
-    rebuildTables(residency, lights, mode);
-  shaded_ = {};
-  collectCells(residency, lights, mode, kinds);
-  vertices_work_.clear();
+  draws_shaded_ = 0;
+  work_.clear();
   texel_draws_.clear();
-  if (kinds.surfaces) collectDraws(residency, lights);
-  if (Result<void> run = runCells(residency, lights, counters); !run) return run;
-  return runDraws(residency, lights, counters);
-}
-
-void Diffuse::rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights,
-                            evaluate::TransferMode mode) {
-  tables_ = {};
-  for (const streaming::ResidentCell& cell : residency.cells()) {
-    if (cell.matrices())
-      tables_.addNone();
-    else
-      tables_.add(cell, lights, mode);
-  }
-  for (const streaming::ResidentDraw& draw : residency.draws())
-    tables_.draws.push_back(describeDraw(residency, draw, lights.firstOf(draw.group), mode));
-  transfers_table_.assign(std::span<const transfer::TransferRecord>(tables_.transfers));
-  places_table_.assign(std::span<const std::uint32_t>(tables_.places));
-  draws_table_.assign(std::span<const DrawRecord>(tables_.draws));
-  products_.reserve(tables_.product_count * sizeof(glm::vec4));
-  cells_changed_.follow(residency.cells(), &streaming::ResidentCell::id);
-  draws_changed_.follow(residency.draws(), &streaming::ResidentDraw::id);
-  group_shaded_.follow(residency.groups(), &streaming::ResidentGroup::id);
-}
-
-void Diffuse::collectCells(const streaming::Residency& residency, const lighting::GroupLights& lights,
-                           evaluate::TransferMode mode, const evaluate::ShadedKinds& kinds) {
-  project_work_.clear();
-  samples_work_.clear();
-  adding_work_.clear();
-  if (mode == evaluate::TransferMode::Unshadowed) return;
-  for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
-    const streaming::ResidentCell& cell = residency.cells()[i];
-    const evaluate::TransferTable::Cell range = tables_.cells[i];
-    if (!kinds.has(cell.domain) || !cell.usable() || range.count == 0) continue;
-    if (!cells_changed_[i].renew(cell.version, evaluate::lightVersion(lights, cell))) continue;
-    ++group_shaded_[cell.group];
-    ++shaded_.cells;
-    for (std::uint32_t t = range.first; t < range.first + range.count; ++t) {
-      const transfer::TransferRecord& record = tables_.transfers[t];
-      const std::uint32_t order = cell.transfers[t - range.first].shape.order;
-      project_work_.add({variantOf(order), record.outputs, cell.block.page}, t,
-                        record.light_count * record.clusters * record.outputs, transfer::kUnitsPerGroup);
-      (record.accumulate != 0 ? adding_work_ : samples_work_)
-          .add({record.light_count > 1 ? 1u : 0u, record.outputs, cell.block.page,
-                residency.groups()[cell.group].samples.page},
-               t, record.sample_count, transfer::kWorkGroupSize);
-    }
-  }
-}
-
-void Diffuse::collectDraws(const streaming::Residency& residency, const lighting::GroupLights& lights) {
-  for (std::uint32_t i = 0; i < tables_.draws.size(); ++i) {
-    const streaming::ResidentDraw& draw = residency.draws()[i];
-    if (!draw.radiance) continue;
-    if (!draws_changed_[i].renew(draw.version, lights.versionOf(draw.group), group_shaded_[draw.group]))
-      continue;
-    ++shaded_.draws;
-    if (tables_.draws[i].texels > 0) texel_draws_.push_back(i);
-    const streaming::ResidentGroup& group = residency.groups()[draw.group];
-    const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
-    vertices_work_.add({variantOf(group.order), draw.outputs, draw.rows.page, mesh.block.page,
-                        group.samples.page, draw.radiance.page},
-                       i, mesh.vertex_count, transfer::kWorkGroupSize);
-  }
-}
-
-Result<const gpu::Program*> Diffuse::program(Stage stage, std::uint32_t kind, std::uint32_t outputs) {
-  constexpr std::array<const char*, kStageCount> kFiles = {"project_vectors.comp", "shade_vectors.comp",
-                                                           "diffuse_vertices.comp"};
-  auto& programs = programs_[stage];
-  const std::array<std::uint32_t, 2> variant = {kind, stage == Project ? 0 : outputs};
-  if (const auto found = programs.find(variant); found != programs.end()) return &found->second;
-  std::vector<gpu::Define> defines;
-  if (kind != 0)
-    defines.push_back(stage == Samples ? gpu::Define{"LAMBENT_MANY_LIGHTS", "1"}
-                                       : gpu::Define{"LAMBENT_ORDER", std::to_string(kind)});
-  if (stage != Project) defines.push_back({"LAMBENT_OUTPUTS", std::to_string(outputs)});
-  Result<gpu::Program> made =
-      gpu::Program::create(fmt::format("{} kind {} outputs {}", kFiles[stage], kind, outputs),
-                           {{GL_COMPUTE_SHADER, kFiles[stage]}}, kDiffuseShaders, defines);
-  if (!made) return failAgain(made.error());
-  return &programs.emplace(variant, std::move(*made)).first->second;
-}
-
-Result<void> Diffuse::runCells(streaming::Residency& residency, const lighting::GroupLights& lights,
-                               gpu::Counters& counters) {
-  if (project_work_.empty()) return {};
-  project_work_.upload(counters);
-  samples_work_.upload(counters);
-  if (!adding_work_.empty()) adding_work_.upload(counters);
-  lights.bindStorage(transfer::kBindLights);
-  transfers_table_.bindStorage(transfer::kBindTransfers);
-  places_table_.bindStorage(transfer::kBindPlaces);
-  products_.bindStorage(transfer::kBindProducts);
-  std::size_t index = 0;
-  for (const auto& [key, items] : project_work_.batches()) {
-    const Result<const gpu::Program*> kernel = program(Project, key[0], key[1]);
-    if (!kernel) return failAgain(kernel.error());
-    (*kernel)->use();
-    residency.transfer().page(key[2]).bindStorage(transfer::kBindTransfer);
-    project_work_.dispatch(index++, transfer::kBindWork, counters);
-  }
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  if (Result<void> run = runSamples(residency, samples_work_, counters); !run) return run;
-  return runSamples(residency, adding_work_, counters);
-}
-
-Result<void> Diffuse::runSamples(streaming::Residency& residency, const gpu::WorkList& work,
-                                 gpu::Counters& counters) {
-  if (work.empty()) return {};
-  std::size_t index = 0;
-  for (const auto& [key, items] : work.batches()) {
-    const Result<const gpu::Program*> kernel = program(Samples, key[0], key[1]);
-    if (!kernel) return failAgain(kernel.error());
-    (*kernel)->use();
-    residency.transfer().page(key[2]).bindStorage(transfer::kBindTransfer);
-    residency.samples().page(key[3]).bindStorage(transfer::kBindSamples);
-    work.dispatch(index++, transfer::kBindWork, counters);
-  }
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  return {};
-}
-
-Result<void> Diffuse::runDraws(streaming::Residency& residency, const lighting::GroupLights& lights,
-                               gpu::Counters& counters) {
-  if (vertices_work_.empty()) return {};
-  vertices_work_.upload(counters);
+  if (shown) collect(residency, lights, samples);
+  if (work_.empty()) return {};
   lights.bindStorage(transfer::kBindLights);
   draws_table_.bindStorage(kBindDraws);
-  std::size_t index = 0;
-  for (const auto& [key, items] : vertices_work_.batches()) {
-    const Result<const gpu::Program*> kernel = program(Vertices, key[0], key[1]);
-    if (!kernel) return failAgain(kernel.error());
-    (*kernel)->use();
+  Result<void> done = evaluate::run(work_, counters, [&](const gpu::BatchKey& key) {
     // A page may not exist if no draw of the batch has anything in it; any buffer can take its place.
     const auto bind = [&](gpu::Arena& arena, std::uint32_t page, std::uint32_t binding) {
       if (page < arena.pageCount() && arena.page(page))
@@ -220,22 +77,36 @@ Result<void> Diffuse::runDraws(streaming::Residency& residency, const lighting::
     bind(residency.geometry(), key[3], kBindGeometry);
     bind(residency.samples(), key[4], transfer::kBindSamples);
     bind(residency.radiance(), key[5], kBindRadiance);
-    vertices_work_.dispatch(index++, transfer::kBindWork, counters);
+    std::vector<gpu::Define> defines = {{"LAMBENT_OUTPUTS", std::to_string(key[1])}};
+    if (key[0] != 0) defines.push_back({"LAMBENT_ORDER", std::to_string(key[0])});
+    return kernels_.use("diffuse_vertices.comp", std::move(defines));
+  });
+  if (!done || texel_draws_.empty()) return done;
+  return runTexels(residency, counters);
+}
+
+void Diffuse::collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
+                      const evaluate::Samples& samples) {
+  for (std::uint32_t i = 0; i < draws_.size(); ++i) {
+    const streaming::ResidentDraw& draw = residency.draws()[i];
+    if (!draw.radiance) continue;
+    if (!draws_changed_[i].renew(draw.version, lights.versionOf(draw.group),
+                                 samples.vectorsVersionOf(draw.group)))
+      continue;
+    ++draws_shaded_;
+    if (draws_[i].texels > 0) texel_draws_.push_back(i);
+    const streaming::ResidentGroup& group = residency.groups()[draw.group];
+    const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
+    work_.add({evaluate::compiledOrder(group.order), draw.outputs, draw.rows.page, mesh.block.page,
+               group.samples.page, draw.radiance.page},
+              i, mesh.vertex_count, transfer::kWorkGroupSize);
   }
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  return texel_draws_.empty() ? Result<void>() : runTexels(residency, counters);
 }
 
 // Samples that are not shaded leave their texels empty, as all do in the unshadowed mode, and the vertices
 // show.
 Result<void> Diffuse::runTexels(streaming::Residency& residency, gpu::Counters& counters) {
-  if (!texels_program_) {
-    Result<gpu::Program> made = gpu::Program::create(
-        "diffuse_texels.comp", {{GL_COMPUTE_SHADER, "diffuse_texels.comp"}}, kDiffuseShaders, {});
-    if (!made) return failAgain(made.error());
-    texels_program_ = std::move(*made);
-  }
-  texels_program_.use();
+  if (Result<void> done = kernels_.use("diffuse_texels.comp"); !done) return done;
   for (const std::uint32_t i : texel_draws_) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
     residency.rows().page(draw.texel_rows.page).bindStorage(kBindRows);
@@ -250,6 +121,125 @@ Result<void> Diffuse::runTexels(streaming::Residency& residency, gpu::Counters& 
                   GL_TEXTURE_UPDATE_BARRIER_BIT);
   for (const std::uint32_t i : texel_draws_) glGenerateTextureMipmap(residency.draws()[i].irradiance.id());
   return {};
+}
+
+namespace {
+
+// A triangle without area may have any normal, since nobody sees it.
+glm::vec3 normalOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangle& triangle) {
+  const glm::vec3 a = proxy.positions[triangle.vertices[0]], b = proxy.positions[triangle.vertices[1]],
+                  c = proxy.positions[triangle.vertices[2]];
+  const glm::vec3 across = glm::cross(b - a, c - a);
+  const float length = glm::length(across);
+  return length > 0.0f ? across / length : glm::vec3(0.0f, 1.0f, 0.0f);
+}
+
+}  // namespace
+
+Proxies::Proxies()
+    : groups_table_("proxy groups"),
+      triangles_table_("proxy triangles"),
+      entries_table_("proxy entries"),
+      added_table_("proxy radiance from local lights"),
+      radiance_("proxy radiance"),
+      work_("proxy work") {}
+
+void Proxies::makeRecords(const streaming::ResidentGroup& group, Proxy& kept) {
+  kept.made = true;
+  const bundle::CaptureProxy& proxy = *group.proxy;
+  kept.triangles.reserve(proxy.triangles.size());
+  for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
+    const glm::vec3 normal = normalOf(proxy, triangle);
+    kept.triangles.push_back(
+        {.normal = {normal.x, normal.y, normal.z},
+         .first_entry = triangle.first_entry,
+         .emission = {triangle.emission.r, triangle.emission.g, triangle.emission.b},
+         .entry_count = triangle.entry_count,
+         .lamp = triangle.light < 0 ? kNoLamp : static_cast<std::uint32_t>(triangle.light),
+         .pad = {}});
+  }
+  kept.entries.reserve(proxy.entries.size());
+  for (const bundle::ProxyEntry& entry : proxy.entries) {
+    const streaming::SampleStretch stretch = group.stretchOf(group.formOf(entry.sample));
+    kept.entries.push_back({.reflectance = {entry.reflectance.r, entry.reflectance.g, entry.reflectance.b},
+                            .sample_index = stretch.outputOf(entry.sample),
+                            .outputs = stretch.outputs,
+                            .pad = {}});
+  }
+}
+
+void Proxies::rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights) {
+  groups_.clear();
+  triangles_.clear();
+  entries_.clear();
+  kept_.follow(residency.groups(), &streaming::ResidentGroup::id);
+  for (std::size_t g = 0; g < residency.groups().size(); ++g) {
+    const streaming::ResidentGroup& group = residency.groups()[g];
+    Proxy& kept = kept_[g];
+    kept.written = false;
+    if (group.proxy && !kept.made) makeRecords(group, kept);
+    const auto first = static_cast<std::uint32_t>(triangles_.size());
+    const auto first_entry = static_cast<std::uint32_t>(entries_.size());
+    triangles_.insert(triangles_.end(), kept.triangles.begin(), kept.triangles.end());
+    for (std::size_t t = first; t < triangles_.size(); ++t) triangles_[t].first_entry += first_entry;
+    entries_.insert(entries_.end(), kept.entries.begin(), kept.entries.end());
+    groups_.push_back({.first_triangle = first,
+                       .triangle_count = static_cast<std::uint32_t>(kept.triangles.size()),
+                       .light = lights.firstOf(g),
+                       .lamps = lights.lampsOf(g),
+                       .order = group.order,
+                       .lamp_count = group.light_columns,
+                       .pad = {}});
+  }
+  groups_table_.assign(std::span<const ProxyGroupRecord>(groups_));
+  triangles_table_.assign(std::span<const ProxyTriangleRecord>(triangles_));
+  entries_table_.assign(std::span<const ProxyEntryRecord>(entries_));
+  radiance_.reserve(triangles_.size() * sizeof(glm::vec4));
+  added_ = true;  // makes the table be written again
+}
+
+void Proxies::writeAdded(std::span<const AddedRadiance> added, gpu::Counters& counters) {
+  const bool any =
+      std::ranges::any_of(added, [](const AddedRadiance& one) { return !one.triangles.empty(); });
+  if (!any && !added_) return;  // the table is 0 already
+  added_ = any;
+  std::vector<glm::vec4> values(triangles_.size(), glm::vec4(0.0f));
+  for (std::size_t g = 0; g < std::min(added.size(), groups_.size()); ++g)
+    for (std::size_t t = 0; t < std::min<std::size_t>(added[g].triangles.size(), groups_[g].triangle_count);
+         ++t)
+      values[groups_[g].first_triangle + t] = glm::vec4(added[g].triangles[t], 0.0f);
+  added_table_.assign(std::span<const glm::vec4>(values));
+  counters.uploaded_bytes += values.size() * sizeof(glm::vec4);
+}
+
+Result<void> Proxies::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
+                            std::span<const std::uint64_t> shaded, gpu::Counters& counters,
+                            std::span<const AddedRadiance> added) {
+  if (layout_changed_.renew(residency.proxiesVersion(), lights.coefficients().size()))
+    rebuildTables(residency, lights);
+  work_.clear();
+  for (std::uint32_t g = 0; g < groups_.size(); ++g) {
+    const streaming::ResidentGroup& group = residency.groups()[g];
+    if (groups_[g].triangle_count == 0 || !group.samples) continue;
+    Proxy& kept = kept_[g];
+    const std::uint64_t brought = g < added.size() ? added[g].version : 0;
+    const bool changed = kept.changed.renew(shaded[g], lights.versionOf(g), brought);
+    if (changed) kept.version = ++version_;
+    if (std::exchange(kept.written, true) && !changed) continue;
+    work_.add({group.samples.page}, g, groups_[g].triangle_count, transfer::kWorkGroupSize);
+  }
+  if (work_.empty()) return {};
+  writeAdded(added, counters);
+  lights.bindStorage(transfer::kBindLights);
+  groups_table_.bindStorage(kBindProxyGroups);
+  triangles_table_.bindStorage(kBindProxyTriangles);
+  entries_table_.bindStorage(kBindProxyEntries);
+  added_table_.bindStorage(kBindProxyAdded);
+  radiance_.bindStorage(kBindProxyRadiance);
+  return evaluate::run(work_, counters, [&](const gpu::BatchKey& key) {
+    residency.samples().page(key[0]).bindStorage(transfer::kBindSamples);
+    return kernels_.use("diffuse_proxies.comp");
+  });
 }
 
 }  // namespace lambent::effects::diffuse

@@ -141,13 +141,13 @@ void Neighborhood::setGrids(std::vector<Grid> grids, const streaming::Residency&
 }
 
 Result<void> Neighborhood::update(streaming::Residency& residency, const lighting::GroupLights& lights,
-                                  const glossy::Glossy& glossy, gpu::Counters& counters) {
+                                  const evaluate::Samples& samples, gpu::Counters& counters) {
   written_ = 0;
   records_.clear();
   work_.clear();
   for (std::size_t i = 0; i < grids_.size(); ++i) {
     Grid& grid = grids_[i];
-    const std::uint64_t shaded = glossy.versionOf(grid.group);
+    const std::uint64_t shaded = samples.matricesVersionOf(grid.group);
     if (grid.place.outputs == 0 || shaded == written_versions_[i]) continue;
     written_versions_[i] = shaded;
     ++written_;
@@ -173,25 +173,17 @@ Result<void> Neighborhood::update(streaming::Residency& residency, const lightin
 }
 
 Result<void> Neighborhood::write(streaming::Residency& residency, gpu::Counters& counters) {
-  if (!program_) {
-    Result<gpu::Program> made = gpu::Program::create(
-        "neighborhood write", {{GL_COMPUTE_SHADER, "neighborhood_write.comp"}}, kNeighborhoodShaders);
-    if (!made) return failAgain(made.error());
-    program_ = std::move(*made);
-  }
-  program_->use();
   writes_.assign(std::span<const WriteRecord>(records_));
   counters.uploaded_bytes += records_.size() * sizeof(WriteRecord);
-  work_.upload(counters);
   writes_.bindStorage(kBindWrites);
   glBindImageTexture(kImageAtlas, atlas_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-  std::size_t index = 0;
-  for (const auto& [key, items] : work_.batches()) {
-    residency.samples().page(key[0]).bindStorage(kBindWriteSamples);
-    work_.dispatch(index++, kBindWriteWork, counters);
-  }
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  return {};
+  return evaluate::run(
+      work_, counters,
+      [&](const gpu::BatchKey& key) {
+        residency.samples().page(key[0]).bindStorage(kBindWriteSamples);
+        return kernels_.use("neighborhood_write.comp");
+      },
+      GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 }  // namespace lambent::effects::neighborhood

@@ -1,5 +1,5 @@
 // Owns the change of the light around bodies as a texture. It takes grids of groups and their points as the
-// glossy effect has shaded them, (M - I) l in the body's frame (samples arena, cells of kind Neighborhood),
+// frame has shaded them, (M - I) l in the body's frame (samples arena, cells of kind Neighborhood),
 // and writes one 3D texture of half floats with all grids, which receivers look up per
 // pixel (neighborhood_eval.glsl) and per vertex (neighborhood_vertices.comp). A grid is written only when its
 // points were shaded: under light that is constant relative to the body, nothing is dispatched. Without grids
@@ -8,7 +8,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,8 +15,9 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/neighborhood/neighborhood_shared.h"
+#include "runtime/evaluate/kernels.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
@@ -63,7 +63,7 @@ class Neighborhood {
   void setGrids(std::vector<Grid> grids, const streaming::Residency& residency);
   // Writes the grids whose points were shaded since the last call.
   Result<void> update(streaming::Residency& residency, const lighting::GroupLights& lights,
-                      const glossy::Glossy& glossy, gpu::Counters& counters);
+                      const evaluate::Samples& samples, gpu::Counters& counters);
 
   const std::vector<Grid>& grids() const { return grids_; }
   // Rises when a grid becomes ready, or when a Grid::place changes.
@@ -80,7 +80,7 @@ class Neighborhood {
 
   std::vector<Grid> grids_;
   std::vector<std::uint64_t> written_versions_;  // per grid, that of its points when written; 0: none
-  std::optional<gpu::Program> program_;
+  evaluate::Kernels kernels_{kNeighborhoodShaders};
   gpu::Texture atlas_;
   glm::uvec3 atlas_size_{0};
   gpu::Table writes_;

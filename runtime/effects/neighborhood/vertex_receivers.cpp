@@ -75,17 +75,6 @@ VertexReceivers::VertexReceivers()
       planes_("receivers' planes"),
       block_("vertex receiver") {}
 
-Result<const gpu::Program*> VertexReceivers::program(std::uint32_t order) {
-  if (const auto found = programs_.find(order); found != programs_.end()) return &found->second;
-  const char* const file = order == 0 ? "neighborhood_places.comp" : "neighborhood_vertices.comp";
-  std::vector<gpu::Define> defines;
-  if (order != 0) defines.push_back({"LAMBENT_ORDER", fmt::format("{}u", order)});
-  Result<gpu::Program> made = gpu::Program::create(
-      fmt::format("{} order {}", file, order), {{GL_COMPUTE_SHADER, file}}, kNeighborhoodShaders, defines);
-  if (!made) return failAgain(made.error());
-  return &programs_.emplace(order, std::move(*made)).first->second;
-}
-
 // Issues one dispatch for as many records as a block holds. `largest` is the largest number of elements of
 // any record.
 template <typename Record>
@@ -144,9 +133,7 @@ Result<void> VertexReceivers::findPlaces(streaming::Residency& residency, gpu::C
     }
   }
   if (batches.empty()) return {};
-  const Result<const gpu::Program*> kernel = program(0);
-  if (!kernel) return failAgain(kernel.error());
-  (*kernel)->use();
+  if (Result<void> done = kernels_.use("neighborhood_places.comp"); !done) return done;
   sample_places_.bindStorage(kBindSamplePlaces);
   for (const auto& [page, cells] : batches) {
     residency.transfer().page(page).bindStorage(kBindVertexTransfer);
@@ -233,9 +220,10 @@ Result<void> VertexReceivers::update(streaming::Residency& residency, const ligh
   sample_places_.bindStorage(kBindSamplePlaces);
   change_.bindStorage(kBindVertexChange);
   for (const auto& [batch, receivers] : batches) {
-    const Result<const gpu::Program*> kernel = program(batch.order);
-    if (!kernel) return failAgain(kernel.error());
-    (*kernel)->use();
+    if (Result<void> done =
+            kernels_.use("neighborhood_vertices.comp", {{"LAMBENT_ORDER", fmt::format("{}u", batch.order)}});
+        !done)
+      return done;
     residency.transfer().page(batch.transfer_page).bindStorage(kBindVertexTransfer);
     residency.rows().page(batch.rows_page).bindStorage(kBindVertexRows);
     residency.geometry().page(batch.geometry_page).bindStorage(kBindVertexGeometry);

@@ -18,7 +18,7 @@
 #include "runtime/base/result.hpp"
 #include "runtime/effects/neighborhood/neighborhood.hpp"
 #include "runtime/effects/neighborhood/vertex_shared.h"
-#include "runtime/evaluate/transfer_table.hpp"
+#include "runtime/evaluate/samples.hpp"
 
 namespace lambent::effects::neighborhood {
 
@@ -65,14 +65,13 @@ class VertexReceivers {
   void layOut(const streaming::Residency& residency, std::span<const VertexDraw> draws);
   bool changed(const streaming::Residency& residency, const Neighborhood& effect, const VertexDraw& draw);
   Result<void> findPlaces(streaming::Residency& residency, gpu::Counters& counters);
-  Result<const gpu::Program*> program(std::uint32_t order);
   template <typename Record>
   void dispatch(std::span<const Record> records, std::uint32_t largest, gpu::Counters& counters);
 
-  std::map<std::uint32_t, gpu::Program> programs_;  // keyed by order; 0: the kernel that finds places
-  std::map<std::uint32_t, std::uint32_t> words_;    // keyed by draw
-  std::map<std::uint32_t, Places> places_;          // keyed by group
-  std::map<std::uint32_t, DrawChanged> changed_;    // keyed by draw
+  evaluate::Kernels kernels_{kNeighborhoodShaders};
+  std::map<std::uint32_t, std::uint32_t> words_;  // keyed by draw
+  std::map<std::uint32_t, Places> places_;        // keyed by group
+  std::map<std::uint32_t, DrawChanged> changed_;  // keyed by draw
   ChangeGate<evaluate::TransferMode> mode_changed_;
   ChangeGate<std::uint64_t> structure_changed_;
   gpu::Table change_, sample_places_, arrivals_, transfers_, planes_, block_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "lambent_effects_volume_embedded.hpp"
-#include "runtime/streaming/load_request.hpp"
+#include "runtime/streaming/loader.hpp"
 
 namespace lambent::effects::volume {
 
@@ -13,8 +13,8 @@ static_assert(kBlock == streaming::kVolumeBlock && kMaxWorkGroupsX == gpu::WorkL
 
 namespace {
 
-// Returns whether the samples of the cell hold nothing for the mode, so that the light itself is shown. The
-// glossy effect fills its own samples.
+// Returns whether the samples of the cell hold nothing for the mode, so that the light itself is shown.
+// Samples of matrices are filled with it.
 bool isOpen(const streaming::ResidentCell& cell, const evaluate::TransferTable::Cell& transfers,
             evaluate::TransferMode mode) {
   return !cell.matrices() &&
@@ -48,7 +48,7 @@ gpu::Texture Volume::makeTexture(const streaming::ResidentVolume& volume) const 
 
 void Volume::collect(const streaming::Residency& residency, const ShadedLight& light,
                      evaluate::TransferMode mode, std::span<const std::uint8_t> in_view) {
-  const auto& [lights, diffuse, glossy] = light;
+  const auto& [lights, samples] = light;
   work_.clear();
   records_.clear();
   for (std::uint32_t v = 0; v < held_.size(); ++v) {
@@ -57,12 +57,12 @@ void Volume::collect(const streaming::Residency& residency, const ShadedLight& l
     if (!volume.ready() || volume.sample_count == 0) continue;
     if (!in_view.empty() && in_view[v] == 0) continue;
     const auto first = static_cast<std::uint32_t>(records_.size());
-    const std::uint64_t shaded = diffuse.versionOf(volume.group) + glossy.versionOf(volume.group);
+    const std::uint64_t shaded = samples.allVersionOf(volume.group);
     std::uint32_t open_cells = 0;
     const SlabLayout layout = slabLayoutOf(volume.grid.transfer_size, volume.outputs);
     for (std::uint32_t c = group.first_cell; c < group.first_cell + group.cell_count; ++c) {
       const streaming::ResidentCell& cell = residency.cells()[c];
-      const bool open = isOpen(cell, diffuse.tables().cells[c], mode);
+      const bool open = isOpen(cell, samples.tables().cells[c], mode);
       if (open) ++open_cells;
       const glm::uvec3& size = volume.grid.transfer_size;
       records_.push_back({.first_output = cell.first_output,
@@ -95,30 +95,22 @@ Result<void> Volume::shade(streaming::Residency& residency, const ShadedLight& l
   if (residency.volumes().empty()) return {};
   collect(residency, light, mode, in_view);
   if (work_.empty()) return {};
-  if (!program_) {
-    std::vector<gpu::Define> defines;
-    if (precise_) defines.push_back({"LAMBENT_PRECISE", "1"});
-    Result<gpu::Program> made = gpu::Program::create(
-        "volume scatter", {{GL_COMPUTE_SHADER, "volume_scatter.comp"}}, kVolumeShaders, defines);
-    if (!made) return failAgain(made.error());
-    program_ = std::move(*made);
-  }
-  program_->use();
-  work_.upload(counters);
   records_table_.assign(std::span<const ScatterRecord>(records_));
   counters.uploaded_bytes += records_.size() * sizeof(ScatterRecord);
   light.lights.bindStorage(kBindLights);
   records_table_.bindStorage(kBindScatter);
-  std::size_t index = 0;
-  for (const auto& [key, items] : work_.batches()) {
-    residency.volumes()[key[0]].voxels.bindStorage(kBindVoxels);
-    residency.samples().page(key[1]).bindStorage(kBindSamples);
-    glBindImageTexture(kImageLight, held_[key[0]].light.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
-                       precise_ ? GL_RGBA32F : GL_RGBA16F);
-    work_.dispatch(index++, kBindWork, counters);
-  }
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  return {};
+  std::vector<gpu::Define> defines;
+  if (precise_) defines.push_back({"LAMBENT_PRECISE", "1"});
+  return evaluate::run(
+      work_, counters,
+      [&](const gpu::BatchKey& key) {
+        residency.volumes()[key[0]].voxels.bindStorage(kBindVoxels);
+        residency.samples().page(key[1]).bindStorage(kBindSamples);
+        glBindImageTexture(kImageLight, held_[key[0]].light.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
+                           precise_ ? GL_RGBA32F : GL_RGBA16F);
+        return kernels_.use("volume_scatter.comp", defines);
+      },
+      GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 std::uint64_t Volume::textureBytes() const {

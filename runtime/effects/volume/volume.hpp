@@ -1,21 +1,20 @@
-// Owns the light in volumes on the GPU. The diffuse effect shades the samples of a volume's cells with
-// outputs 1 and 9, the glossy effect those with more; this one copies them into a 3D texture per volume,
-// where marched rays look them up (march.hpp). The texture holds the mean radiance that arrives at a voxel of
-// the transfer grid or, for anisotropic phase functions, its spherical harmonics convolved with the phase
-// function. It takes one indirect dispatch per volume whose samples were shaded. What is not resident, and in
-// mode Unshadowed everything, shows the light itself. Without volumes nothing is compiled, held or
-// dispatched. Render thread only.
+// Owns the light in volumes on the GPU. It copies the shaded samples of a volume's cells into a 3D texture
+// per volume, where marched rays look them up (march.hpp). The texture holds the mean radiance that arrives
+// at a voxel of the transfer grid or, for anisotropic phase functions, its spherical harmonics convolved with
+// the phase function. It takes one indirect dispatch per volume whose samples were shaded. What is not
+// resident, and in mode Unshadowed everything, shows the light itself. Without volumes nothing is compiled,
+// held or dispatched. Render thread only.
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/effects/diffuse/diffuse.hpp"
-#include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/volume/volume_shared.h"
+#include "runtime/evaluate/kernels.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/streaming/residency.hpp"
@@ -34,11 +33,10 @@ struct SlabLayout {
 };
 SlabLayout slabLayoutOf(const glm::uvec3& transfer_size, std::uint32_t outputs);
 
-// What the effects before this one shaded.
+// The light on groups, and their samples as last shaded under it.
 struct ShadedLight {
   const lighting::GroupLights& lights;
-  const diffuse::Diffuse& diffuse;
-  const glossy::Glossy& glossy;
+  const evaluate::Samples& samples;
 };
 
 class Volume {
@@ -46,7 +44,7 @@ class Volume {
   // If `precise` is set, light is stored in floats, for pictures that are compared; otherwise in half floats.
   explicit Volume(bool precise = false);
 
-  // Updates the textures to what the other effects last shaded; call it after them. Those of volumes for
+  // Updates the textures to what was last shaded. Those of volumes for
   // which `in_view` has 0 stay as they are until they come into view; an empty list means that all are. Fails
   // if a kernel does not compile on this device.
   Result<void> shade(streaming::Residency& residency, const ShadedLight& light, evaluate::TransferMode mode,
@@ -75,7 +73,7 @@ class Volume {
   gpu::Texture makeTexture(const streaming::ResidentVolume& volume) const;
 
   bool precise_;
-  std::optional<gpu::Program> program_;
+  evaluate::Kernels kernels_{kVolumeShaders};
   KeyedState<Held> held_;  // indexed by volume of the residency
   std::vector<ScatterRecord> records_;
   gpu::Table records_table_;

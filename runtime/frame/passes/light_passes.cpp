@@ -9,8 +9,7 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/bounces/patch_bounces.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
-#include "runtime/effects/diffuse/proxies.hpp"
-#include "runtime/effects/glossy/glossy.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/frame/pass_list.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/lighting/incident_light.hpp"
@@ -218,9 +217,7 @@ class PatchBouncesPass final : public FramePass {
 
 // Updates the light between bodies: shades their capture proxies, and captures the surroundings of light
 // probes where these have changed. The result arrives with the next step.
-using effects::diffuse::Diffuse;
 using effects::diffuse::Proxies;
-using effects::glossy::Glossy;
 
 constexpr std::size_t kAllCaptures = std::numeric_limits<std::size_t>::max();
 
@@ -229,7 +226,7 @@ class CapturePass final : public FramePass {
   explicit CapturePass(Blackboard& board)
       : FramePass(
             {.name = "capture",
-             .reads = resources<World, LitScene, GroupLights, PatchBounces, Diffuse, Glossy, Incident>(),
+             .reads = resources<World, LitScene, GroupLights, PatchBounces, evaluate::Samples, Incident>(),
              .writes = resources<LitScene, Proxies, Incident>(),
              .causes = kLightCauses,
              .counts = {"light_probes_captured", "light_probes_waiting", "capture_pages", "capture_tiles",
@@ -266,7 +263,7 @@ class CapturePass final : public FramePass {
     std::vector<std::uint64_t> shaded;
     std::vector<effects::diffuse::AddedRadiance> added;
     for (std::size_t g = 0; g < frame.world.residency().groups().size(); ++g) {
-      shaded.push_back(frame.read<Diffuse>().versionOf(g) + frame.read<Glossy>().versionOf(g));
+      shaded.push_back(frame.read<evaluate::Samples>().allVersionOf(g));
       added.push_back({.triangles = bounces.sentBy(g), .version = bounces.versionOf(g)});
     }
     return proxies_.shade(frame.world.residency(), frame.read<GroupLights>(), shaded, frame.counters(),

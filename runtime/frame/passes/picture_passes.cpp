@@ -40,14 +40,12 @@ class ToneMapPass final : public FramePass {
 };
 
 // Draws overlays and wires of triangles over the finished picture.
-using effects::diffuse::Proxies;
-
 class OverlayPass final : public FramePass {
  public:
   OverlayPass()
       : FramePass({.name = "overlays",
-                   .reads = resources<World, PictureTargets, lighting::Sky, LitScene, lighting::GroupLights,
-                                      Neighborhoods, KeyShadows, Proxies, ToneMapper>(),
+                   .reads = resources<World, PictureTargets, LitScene, lighting::GroupLights, Neighborhoods,
+                                      KeyShadows, ToneMapper>(),
                    .writes = resources<PictureTargets>(),
                    .causes = kPictureCauses}) {}
 
@@ -69,12 +67,10 @@ class OverlayPass final : public FramePass {
     };
     const OverlayScene scene{frame.world,
                              frame.environment,
-                             frame.read<lighting::Sky>(),
                              frame.read<LitScene>(),
                              frame.read<lighting::GroupLights>(),
                              frame.read<Neighborhoods>(),
                              frame.read<KeyShadows>(),
-                             frame.read<Proxies>(),
                              frame.read<ToneMapper>(),
                              *frame.view,
                              frame.targets.size()};

@@ -13,7 +13,7 @@
 #include "runtime/bounces/patch_bounces.hpp"
 #include "runtime/debug/data_view.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
-#include "runtime/effects/glossy/glossy.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/frame/frame_pass.hpp"
 #include "runtime/frame/pass_list.hpp"
@@ -62,7 +62,6 @@ Result<void> prepareSurfaces(FrameContext& frame, Surfaces& surfaces, const Surf
 // groups that hide most of the sky and have mirrors in them; others cost nothing.
 
 using effects::diffuse::Diffuse;
-using effects::glossy::Glossy;
 using Prefiltered = std::optional<lighting::PrefilteredEnvironment>;
 
 // Shadows of key lights in captures are coarser than in pictures.
@@ -82,8 +81,8 @@ class ReflectionProbesPass final : public FramePass {
  public:
   ReflectionProbesPass(SurfaceVoxelizer voxelizer, ReflectionProbes probes, Blackboard& board)
       : FramePass({.name = "reflection probes",
-                   .reads = resources<World, Diffuse, Glossy, PatchBounces, Neighborhoods, evaluate::SeenSky,
-                                      Prefiltered, LocalShadows>(),
+                   .reads = resources<World, Diffuse, evaluate::Samples, PatchBounces, Neighborhoods,
+                                      evaluate::SeenSky, Prefiltered, LocalShadows>(),
                    .writes = resources<ReflectionProbes, Surfaces, Prefiltered>(),
                    .causes = kLightCauses | Cause::Materials,
                    .counts = {"reflection_probes", "reflection_probes_captured"}}),
@@ -208,8 +207,8 @@ class ReflectionProbesPass final : public FramePass {
                                            prefiltered ? std::uint64_t{1} : std::uint64_t{0}};
     for (std::size_t g = 0; g < world.residency().groups().size(); ++g)
       for (const std::uint64_t version :
-           {frame.read<Diffuse>().versionOf(g), frame.read<Glossy>().versionOf(g),
-            frame.read<PatchBounces>().versionOf(g)})
+           {frame.read<evaluate::Samples>().vectorsVersionOf(g),
+            frame.read<evaluate::Samples>().matricesVersionOf(g), frame.read<PatchBounces>().versionOf(g)})
         versions.push_back(version);
     return versions;
   }

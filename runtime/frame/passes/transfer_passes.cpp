@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "runtime/effects/diffuse/diffuse.hpp"
-#include "runtime/effects/glossy/glossy.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/evaluate/seen_sky.hpp"
 #include "runtime/frame/pass_list.hpp"
 #include "runtime/surface/light_modules.hpp"
@@ -12,30 +12,37 @@ namespace lambent::frame {
 
 namespace {
 
-// Shades E/pi at every vertex whose light or transfer changed.
+// Shades the samples that vertices and volumes take, and E/pi at every vertex whose light or transfer
+// changed.
 class DiffusePass final : public FramePass {
  public:
   explicit DiffusePass(Blackboard& board)
       : FramePass({.name = "shade",
                    .reads = resources<World, lighting::GroupLights>(),
-                   .writes = resources<effects::diffuse::Diffuse>(),
+                   .writes = resources<evaluate::Samples, effects::diffuse::Diffuse>(),
                    .causes = kLightCauses,
                    .counts = {"cells_shaded", "draws_shaded"}}) {
+    board.offer(samples_);
     board.offer(diffuse_);
   }
 
   Result<void> update(FrameContext& frame) override {
     const FrameSettings& settings = frame.settings();
+    streaming::Residency& residency = frame.world.residency();
+    const auto& lights = frame.read<lighting::GroupLights>();
     Result<void> done =
-        diffuse_.shade(frame.world.residency(), frame.read<lighting::GroupLights>(), settings.transfer,
-                       frame.counters(), {.surfaces = settings.diffuse, .volumes = settings.volumes});
+        samples_.shade(residency, lights, settings.transfer, frame.counters(),
+                       {.surfaces = settings.diffuse, .volumes = settings.volumes, .matrices = false});
+    if (!done) return done;
+    done = diffuse_.shade(residency, lights, settings.transfer, samples_, frame.counters(), settings.diffuse);
     if (frame.counters().dispatches > 0) frame.because("light");
-    frame.count("cells_shaded", diffuse_.shadedLast().cells);
-    frame.count("draws_shaded", diffuse_.shadedLast().draws);
+    frame.count("cells_shaded", samples_.cellsShadedLast());
+    frame.count("draws_shaded", diffuse_.drawsShadedLast());
     return done;
   }
 
  private:
+  evaluate::Samples samples_;
   effects::diffuse::Diffuse diffuse_;
 };
 
@@ -66,30 +73,29 @@ class SeenSkyPass final : public FramePass {
 // Shades transferred light at the samples of glossy surfaces, of volumes and of grids, if any have matrices.
 class GlossyPass final : public FramePass {
  public:
-  explicit GlossyPass(Blackboard& board)
+  GlossyPass()
       : FramePass({.name = "glossy",
                    .reads = resources<World, lighting::GroupLights>(),
-                   .writes = resources<effects::glossy::Glossy>(),
+                   .writes = resources<evaluate::Samples>(),
                    .causes = kLightCauses,
-                   .counts = {"cells_shaded"}}) {
-    board.offer(glossy_);
-  }
+                   .counts = {"cells_shaded"}}) {}
 
   bool due(const FrameContext& frame) override {
     return std::ranges::any_of(frame.world.residency().cells(), &streaming::ResidentCell::matrices);
   }
   Result<void> update(FrameContext& frame) override {
     const FrameSettings& settings = frame.settings();
-    Result<void> done = glossy_.shade(
-        frame.world.residency(), frame.read<lighting::GroupLights>(), settings.transfer, frame.counters(),
-        {.surfaces = settings.glossy, .volumes = settings.volumes, .neighborhoods = settings.neighborhoods});
+    auto& samples = frame.write<evaluate::Samples>();
+    Result<void> done = samples.shade(frame.world.residency(), frame.read<lighting::GroupLights>(),
+                                      settings.transfer, frame.counters(),
+                                      {.surfaces = settings.glossy,
+                                       .volumes = settings.volumes,
+                                       .neighborhoods = settings.neighborhoods,
+                                       .vectors = false});
     if (frame.counters().dispatches > 0) frame.because("light");
-    frame.count("cells_shaded", glossy_.cellsShadedLast());
+    frame.count("cells_shaded", samples.cellsShadedLast());
     return done;
   }
-
- private:
-  effects::glossy::Glossy glossy_;
 };
 
 // Updates what bodies with grids change around them. The light pass has chosen which of them act on whom.
@@ -97,7 +103,7 @@ class NeighborhoodPass final : public FramePass {
  public:
   explicit NeighborhoodPass(Blackboard& board)
       : FramePass({.name = "neighborhood",
-                   .reads = resources<World, lighting::GroupLights, effects::glossy::Glossy, Neighborhoods>(),
+                   .reads = resources<World, lighting::GroupLights, evaluate::Samples, Neighborhoods>(),
                    .writes = resources<Neighborhoods>(),
                    .causes = kLightCauses,
                    .counts = {"neighborhood_grids", "neighborhood_grids_ready", "neighborhood_grids_written",
@@ -114,9 +120,9 @@ class NeighborhoodPass final : public FramePass {
     return shown_ && neighborhoods_.any();
   }
   Result<void> update(FrameContext& frame) override {
-    Result<void> done = neighborhoods_.update(frame.world, frame.read<lighting::GroupLights>(),
-                                              frame.read<effects::glossy::Glossy>(),
-                                              frame.settings().transfer, frame.counters());
+    Result<void> done =
+        neighborhoods_.update(frame.world, frame.read<lighting::GroupLights>(),
+                              frame.read<evaluate::Samples>(), frame.settings().transfer, frame.counters());
     if (frame.counters().dispatches > 0 || frame.counters().uploaded_bytes > 0) frame.because("light");
     const NeighborhoodCounts& counts = neighborhoods_.counts();
     frame.count("neighborhood_grids", counts.grids);
@@ -149,8 +155,8 @@ MadePass makeSeenSkyPass(const PassSetup& setup) {
   return std::make_unique<SeenSkyPass>(setup.board);
 }
 
-MadePass makeGlossyPass(const PassSetup& setup) {
-  return std::make_unique<GlossyPass>(setup.board);
+MadePass makeGlossyPass(const PassSetup&) {
+  return std::make_unique<GlossyPass>();
 }
 
 MadePass makeNeighborhoodPass(const PassSetup& setup) {

@@ -4,18 +4,15 @@
 #include <vector>
 
 #include "runtime/draws/view.hpp"
-#include "runtime/effects/diffuse/diffuse.hpp"
-#include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/volume/march.hpp"
 #include "runtime/effects/volume/volume.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/frame/pass_list.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-using effects::diffuse::Diffuse;
-using effects::glossy::Glossy;
 using effects::volume::Volume;
 
 // Returns whether volumes are in the picture: other views show surfaces alone.
@@ -42,7 +39,7 @@ class VolumePass final : public FramePass {
  public:
   VolumePass(bool precise, Blackboard& board)
       : FramePass({.name = "volume",
-                   .reads = resources<World, lighting::GroupLights, Diffuse, Glossy>(),
+                   .reads = resources<World, lighting::GroupLights, evaluate::Samples>(),
                    .writes = resources<Volume>(),
                    .causes = kLightCauses | Cause::View,
                    .counts = {"volumes_shaded", "volume_slabs_written", "volumes_out_of_view"}}),
@@ -54,10 +51,9 @@ class VolumePass final : public FramePass {
   Result<void> update(FrameContext& frame) override {
     // Nothing but the march reads the light of volumes.
     const std::vector<std::uint8_t> in_view = volumesInView(frame);
-    Result<void> done =
-        volume_.shade(frame.world.residency(),
-                      {frame.read<lighting::GroupLights>(), frame.read<Diffuse>(), frame.read<Glossy>()},
-                      frame.settings().transfer, in_view, frame.counters());
+    Result<void> done = volume_.shade(frame.world.residency(),
+                                      {frame.read<lighting::GroupLights>(), frame.read<evaluate::Samples>()},
+                                      frame.settings().transfer, in_view, frame.counters());
     if (frame.counters().dispatches > 0) frame.because("light");
     frame.count("volumes_shaded", volume_.shadedLast().volumes);
     frame.count("volume_slabs_written", volume_.shadedLast().slabs);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace lambent::baker {
+
 namespace {
 
 spec::RgbaImage filled(glm::vec3 color, std::uint32_t width = 8, std::uint32_t height = 4) {
@@ -163,5 +164,128 @@ TEST(ComparePictures, RefusesWhatCannotBeCompared) {
   EXPECT_FALSE(comparePictures(broken, white, nullptr, "a.exr"));
 }
 
+spec::RgbaImage rising(std::uint32_t width, std::uint32_t height) {
+  spec::RgbaImage picture{width, height, {}};
+  for (std::uint32_t i = 0; i < width * height; ++i)
+    picture.texels.emplace_back(static_cast<float>(i), 1.0f, 0.0f, 1.0f);
+  return picture;
+}
+
+TEST(Shrunk, PixelsAreMeansOfTheirBlocks) {
+  const auto small = shrunk(rising(6, 4), 2, "a.exr");
+  ASSERT_TRUE(small) << small.error().line();
+  EXPECT_EQ(small->width, 3u);
+  EXPECT_EQ(small->height, 2u);
+  EXPECT_FLOAT_EQ(small->texels[0].x, (0.0f + 1.0f + 6.0f + 7.0f) / 4.0f);
+  EXPECT_FLOAT_EQ(small->texels[5].x, (16.0f + 17.0f + 22.0f + 23.0f) / 4.0f);
+  EXPECT_FLOAT_EQ(small->texels[5].y, 1.0f);
+}
+
+TEST(Shrunk, CoverageIsAShareAndDepthsAreLeftOut) {
+  spec::RgbaImage picture = rising(2, 2);
+  picture.texels[3] = glm::vec4(0.0f);
+  picture.depths = {1.0f, 2.0f, 3.0f, 4.0f};
+  const auto small = shrunk(picture, 2, "a.exr");
+  ASSERT_TRUE(small);
+  EXPECT_FLOAT_EQ(small->texels[0].w, 0.75f);
+  EXPECT_TRUE(small->depths.empty());
+  EXPECT_EQ(shrunk(picture, 1, "a.exr")->depths.size(), 4u);
+}
+
+using Color = std::array<std::uint8_t, 3>;
+
+spec::RgbaImage grey(float radiance, std::uint32_t width = 10, std::uint32_t height = 10) {
+  return {width, height,
+          std::vector<glm::vec4>(std::size_t{width} * height, glm::vec4(glm::vec3(radiance), 1))};
+}
+
+Color at(const Difference& difference, std::size_t i) {
+  const std::uint8_t* texel = &difference.heat.texels[4 * i];
+  EXPECT_EQ(texel[3], 255);
+  return {texel[0], texel[1], texel[2]};
+}
+
+void set(spec::RgbaImage& image, std::size_t i, float radiance) {
+  image.texels[i] = glm::vec4(glm::vec3(radiance), image.texels[i].w);
+}
+
+// Colours come from a table of 512 steps.
+void expectNear(const Color& seen, const Color& expected) {
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(int{seen[k]}, int{expected[k]}, 2) << k;
+}
+
+TEST(Difference, ShowsTooBrightRedTooDarkBlueAndRightWhite) {
+  auto picture = grey(1.0f);
+  set(picture, 3, 1.2f), set(picture, 4, 0.8f), set(picture, 5, 1.1f), set(picture, 6, 9.0f);
+  const auto out = differenceOf(picture, grey(1.0f), nullptr, 0.2, "a.exr");
+  ASSERT_TRUE(out) << out.error().line();
+  EXPECT_EQ(out->range, 0.2);
+  const Color right = at(*out, 0), bright = at(*out, 3), dark = at(*out, 4);
+  EXPECT_TRUE(right[0] == right[1] && right[1] == right[2] && right[0] > 240);
+  EXPECT_GT(bright[0], 2 * bright[2]);
+  EXPECT_GT(dark[2], 2 * dark[0]);
+  expectNear(at(*out, 5), heatColor(0.5));
+  EXPECT_EQ(at(*out, 6), bright) << "beyond the range";
+}
+
+TEST(Difference, MeasuresDarkPixelsByAFloor) {
+  // A picture of half 2, half 1e-4: the RMS luminance is sqrt(2).
+  auto reference = grey(2.0f);
+  for (std::size_t i = 0; i < 50; ++i) set(reference, i, 1e-4f);
+  auto picture = reference;
+  set(picture, 7, 1e-4f + 0.5f * 0.05f * std::sqrt(2.0f));
+  const auto out = differenceOf(picture, reference, nullptr, 1.0, "a.exr");
+  ASSERT_TRUE(out);
+  expectNear(at(*out, 7), heatColor(0.5));
+}
+
+TEST(Difference, ChoosesARangeThatHoldsAllButTheWorstPixels) {
+  auto picture = grey(1.0f, 100, 10);
+  for (std::size_t i = 0; i < 500; ++i) set(picture, i, 1.13f);
+  for (std::size_t i = 0; i < 9; ++i) set(picture, i, 50.0f);  // fewer than one in a hundred
+  const auto out = differenceOf(picture, grey(1.0f, 100, 10), nullptr, {}, "a.exr");
+  ASSERT_TRUE(out);
+  EXPECT_NEAR(out->range, 0.2, 1e-9) << "13 %, rounded up";
+  const auto same = differenceOf(picture, picture, nullptr, {}, "a.exr");
+  ASSERT_TRUE(same);
+  EXPECT_GT(same->range, 0.0);
+}
+
+// A grey picture of 64 x 64 pixels, whose left half may have another grey.
+spec::Rgba8Image twoGreys(std::uint8_t left, std::uint8_t right) {
+  spec::Rgba8Image picture{64, 64, {}};
+  for (int i = 0; i < 64 * 64; ++i) {
+    const std::uint8_t value = i % 64 < 32 ? left : right;
+    picture.texels.insert(picture.texels.end(), {value, value, value, 255});
+  }
+  return picture;
+}
+
+TEST(Perceptual, EqualPicturesShowNothing) {
+  EXPECT_EQ(visibleShare(twoGreys(128, 128), twoGreys(128, 128), "a").value(), 0.0);
+}
+
+TEST(Perceptual, OneStepOfEightBitsIsInvisibleAndAHalfInAnotherGreyIsNot) {
+  EXPECT_EQ(visibleShare(twoGreys(129, 128), twoGreys(128, 128), "a").value(), 0.0);
+  EXPECT_NEAR(visibleShare(twoGreys(220, 128), twoGreys(128, 128), "a").value(), 0.5, 0.1);
+}
+
+// One grey level in the other column: the same differences, finer than what an eye resolves.
+TEST(Perceptual, FineContrastsHideWhatCoarseOnesShow) {
+  const auto striped = [](std::uint8_t step, int stripe) {
+    spec::Rgba8Image picture{1024, 64, {}};
+    for (int i = 0; i < 1024 * 64; ++i) {
+      const auto value = static_cast<std::uint8_t>(128 + (i % 1024 / stripe % 2 == 0 ? step : 0));
+      picture.texels.insert(picture.texels.end(), {value, value, value, 255});
+    }
+    return picture;
+  };
+  const spec::Rgba8Image plain = striped(0, 1);
+  const double fine = visibleShare(striped(8, 1), plain, "a").value();
+  const double coarse = visibleShare(striped(8, 32), plain, "a").value();
+  EXPECT_LT(fine, 0.1 * coarse);
+}
+
 }  // namespace
+
 }  // namespace lambent::baker

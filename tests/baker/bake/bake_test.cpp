@@ -8,11 +8,11 @@
 #include <string_view>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "baker/import/gltf.hpp"
 #include "runtime/bundle/container.hpp"
 #include "tests/support/shapes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -25,12 +25,6 @@ using testing::sceneOf;
 
 class Bake : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lambent-bake-test-" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   Result<BakeReport> bakeTo(const std::string& name, const Scene& scene, const BakeOptions& options) const {
     Progress progress;
     return bake(scene, options, folder_ / name, {progress});
@@ -43,7 +37,8 @@ class Bake : public ::testing::Test {
     return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
   }
 
-  fs::path folder_;
+  const testing::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 // Makes a static floor and box, and a movable ball: two groups.

@@ -8,15 +8,11 @@
 
 #include "baker/bake/bake.hpp"
 #include "runtime/bundle/container.hpp"
-#include "tests/support/differences.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/support/transport.hpp"
 
 namespace lambent::baker {
 namespace {
-
-using testing::Transport;
 
 // Makes a box that stands on a floor of n x n cells.
 Scene boxOnFloor(int n) {
@@ -114,25 +110,6 @@ TEST(PictureError, OfMetalsIsWithinTheBoundThatWasAskedForAndNotFarBelow) {
   EXPECT_LE(error.all, options.picture_bound)
       << "rays " << error.samples << ", codes " << error.codes << ", interpolation " << error.interpolation;
   EXPECT_GE(error.all, 0.5f * options.picture_bound);
-}
-
-TEST(PictureError, EyesStandInRoomsAndAroundBodies) {
-  const Transport room(openRoom());
-  const ViewPoints in_room = viewPoints(room.diffuse(), Importance(room.geometry, room.rays, {})).diffuse;
-  ASSERT_GT(in_room.eyes.size(), 300u);
-  for (const glm::vec3& normal : in_room.points.samples.normals)
-    EXPECT_GE(normal.y, -0.01f) << "there is no ceiling, and walls are not seen from outside";
-  const Transport sphere(testing::sceneOf({testing::icosphere(glm::vec3(0.0f), 1.0f, 3)}));
-  const ViewPoints around =
-      viewPoints(sphere.diffuse(), Importance(sphere.geometry, sphere.rays, {})).diffuse;
-  ASSERT_GT(around.eyes.size(), 300u);
-  float least = 1.0f, most = -1.0f;
-  for (const glm::vec3& point : around.points.samples.positions)
-    least = testing::smaller(least, point.y), most = testing::larger(most, point.y);
-  EXPECT_LT(least, -0.8f);
-  EXPECT_GT(most, 0.8f);
-  for (std::size_t p = 0; p < around.eyes.size(); ++p)
-    EXPECT_GT(glm::dot(around.to_eyes[p], around.points.samples.positions[p]), -0.1f) << "eyes are outside";
 }
 
 }  // namespace

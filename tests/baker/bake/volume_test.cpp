@@ -4,15 +4,27 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/bake/bake_volume.hpp"
+#include "baker/bake/bake.hpp"
+#include "baker/bake/bake_group.hpp"
 #include "runtime/bundle/container.hpp"
+#include "tests/support/decoded_bundle.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/shapes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lambent::baker {
+
 namespace {
 
-using VolumeBake = testing::ProgramTest;
+class VolumeBake : public testing::ProgramTest {
+ protected:
+  BakeReport bakeTo(const std::string& name, const Scene& scene, const BakeOptions& options) const {
+    Progress progress;
+    const auto report = bake(scene, options, folder / name, {progress});
+    EXPECT_TRUE(report) << report.error().line();
+    return report ? *report : BakeReport();
+  }
+};
 
 Scene foggy() {
   Scene scene = testing::sceneOf({testing::grid({0, -1, 0}, 4.0f, 4)});
@@ -57,11 +69,8 @@ TEST_F(VolumeBake, WritesTheSameBytesWithOneThreadAndWithTwo) {
   const auto bytesWith = [&](unsigned threads) {
     BakeOptions options = small();
     options.threads = threads;
-    const auto path = folder / (std::to_string(threads) + ".lmb.glb");
-    Progress progress;
-    const auto report = bake(foggy(), options, path, {progress});
-    EXPECT_TRUE(report) << report.error().line();
-    std::ifstream file(path, std::ios::binary);
+    bakeTo("fog.lmb.glb", foggy(), options);
+    std::ifstream file(folder / "fog.lmb.glb", std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(file), {});
   };
   const std::string one = bytesWith(1);
@@ -74,10 +83,7 @@ TEST_F(VolumeBake, ScattersAsOftenAsItDoesHoweverFewBouncesAreAskedFor) {
   const auto iterationsWith = [&](int bounces) {
     BakeOptions options = small();
     options.bounces = bounces;
-    Progress progress;
-    const auto report = bake(foggy(), options, folder / (std::to_string(bounces) + ".lmb.glb"), {progress});
-    EXPECT_TRUE(report) << report.error().line();
-    return report && report->volumes.size() == 1 ? report->volumes[0].iterations : -1;
+    return bakeTo("fog.lmb.glb", foggy(), options).volumes.at(0).iterations;
   };
   const int all = iterationsWith(-1);
   EXPECT_GT(all, 1);
@@ -91,11 +97,8 @@ TEST_F(VolumeBake, KeepsNineOutputsOfBroadPhasesAndMatricesOfNarrowOnes) {
     scene.volumes[0].g = g;
     BakeOptions options = small();
     options.order = 4;
-    const auto path = folder / "phase.lmb.glb";
-    Progress progress;
-    const auto report = bake(scene, options, path, {progress});
-    ASSERT_TRUE(report) << report.error().line();
-    const auto reader = bundle::Reader::open(path);
+    bakeTo("phase.lmb.glb", scene, options);
+    const auto reader = bundle::Reader::open(folder / "phase.lmb.glb");
     ASSERT_TRUE(reader) << reader.error().line();
     bool found = false;
     for (const bundle::Group& group : reader->description().groups) {
@@ -139,5 +142,66 @@ TEST_F(VolumeBake, RefusesGridsOfNoVoxelsOrTooMany) {
   }
 }
 
+// Tests that what a plan leaves out is not missed: with everything forced on the bundle shows the same.
+
+using testing::DecodedDraw;
+
+struct Baked {
+  BakeReport report;
+  std::vector<DecodedDraw> draws;
+};
+
+class LeftOut : public ::testing::Test {
+ protected:
+  Baked bakeWith(const Scene& scene, const std::string& effects) const {
+    Progress progress;
+    const auto output = folder_.path() / (effects + ".lmb.glb");
+    const BakeOptions options{.quality = Quality::Draft, .error_bound = 1e-4f, .effects = effects};
+    auto report = bake(scene, options, output, {progress});
+    EXPECT_TRUE(report) << report.error().line();
+    auto draws = testing::decodeBundle(output);
+    EXPECT_TRUE(draws) << draws.error().line();
+    return {std::move(*report), std::move(*draws)};
+  }
+
+ private:
+  testing::TemporaryFolder folder_;
+};
+
+// Relative RMS of transfer at vertices; refinement must not have added any.
+double difference(const Baked& a, const Baked& b) {
+  double square = 0.0, all = 0.0;
+  EXPECT_EQ(a.draws.size(), b.draws.size());
+  for (std::size_t d = 0; d < a.draws.size(); ++d) {
+    EXPECT_EQ(a.draws[d].transfer.size(), b.draws[d].transfer.size());
+    for (std::size_t i = 0; i < a.draws[d].transfer.size(); ++i) {
+      square += std::pow(double{a.draws[d].transfer[i]} - double{b.draws[d].transfer[i]}, 2);
+      all += std::pow(double{b.draws[d].transfer[i]}, 2);
+    }
+  }
+  return std::sqrt(square / all);
+}
+
+TEST_F(LeftOut, ShadowsOfABallAreNotMissed) {
+  const Scene scene = testing::sceneOf({testing::icosphere({0, 0, 0}, 1.0f, 3)});
+  const Baked planned = bakeWith(scene, "auto"), all = bakeWith(scene, "all");
+  EXPECT_EQ(planned.report.rays + planned.report.refinement.rays, 0u);
+  EXPECT_GT(all.report.rays, 0u);
+  EXPECT_GT(all.report.refinement.rays, 0u);
+  EXPECT_LT(difference(planned, all), 5e-4) << "codes alone may differ by 2e-4";
+}
+
+TEST_F(LeftOut, BouncesOfBlackSurfacesAreNotMissed) {
+  Scene scene = testing::sceneOf(
+      {testing::grid({0, 0, 0}, 3.0f, 8), testing::box({0.1f, 0.6f, 0.2f}, {0.8f, 0.6f, 0.7f}, 3)});
+  scene.materials[0].base_color = glm::vec4(1e-4f, 1e-4f, 1e-4f, 1.0f);
+  scene.materials[0].specular = 0.0f;
+  const Baked planned = bakeWith(scene, "auto"), all = bakeWith(scene, "all");
+  EXPECT_EQ(planned.report.hit_bytes, 0u) << "hits are kept for bounces alone";
+  EXPECT_GT(all.report.hit_bytes, 0u);
+  EXPECT_LT(difference(planned, all), 5e-4);
+}
+
 }  // namespace
+
 }  // namespace lambent::baker

@@ -8,6 +8,7 @@
 #include "baker/brdf/brdf.hpp"
 #include "baker/import/measured_brdf.hpp"
 #include "tests/baker/brdf/quadrature.hpp"
+#include "tests/reference/quadrature.hpp"
 #include "tests/runtime/sh/sphere.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -76,28 +77,14 @@ TEST(MeasuredBrdf, IsTheWeighedMeanOverHalfVectorAndDifference) {
   const MeasuredBrdf measured = measure(800, shine);
   const auto brdf = makeMeasured(measured);
   ASSERT_TRUE(brdf);
-  const auto placeOf = [](const glm::dvec3& v, const glm::dvec3& s) {
-    const glm::dvec3 h = glm::normalize(v + s);
-    return std::pair(std::sqrt(2 * std::acos(std::min(h.z, 1.0)) / kPi),
-                     2 * std::acos(std::min(glm::dot(v, h), 1.0)) / kPi);
-  };
   Random random(7);
   for (int k = 0; k < 60; ++k) {
     const glm::dvec3 v = directionOf(1.4 * random.uniform(), 0),
                      s = directionOf(1.4 * random.uniform(), 6 * random.uniform());
-    const auto [x, y] = placeOf(v, s);
-    double weights = 0;
-    glm::dvec3 sum(0.0);
-    for (const BrdfMeasurement& m : measured.measurements) {
-      const auto [px, py] = placeOf(directionOf(m.theta_i, m.phi_i), directionOf(m.theta_o, m.phi_o));
-      const double weight = std::exp(-400 * ((x - px) * (x - px) + (y - py) * (y - py)));
-      weights += weight, sum += weight * glm::dvec3(m.value);
-    }
+    const glm::dvec3 expected = lambent::testing::weighedMean(measured, v, s);
     const auto found = valueOf(**brdf, v, s);
-    for (int c = 0; c < 3; ++c) {
-      const double expected = sum[c] / weights;
-      EXPECT_NEAR(found[static_cast<std::size_t>(c)], expected, 2e-3 * expected) << k;
-    }
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(found[static_cast<std::size_t>(c)], expected[c], 2e-3 * expected[c]) << k;
   }
 }
 

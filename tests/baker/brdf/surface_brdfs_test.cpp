@@ -13,12 +13,15 @@
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/baker/brdf/quadrature.hpp"
+#include "tests/reference/quadrature.hpp"
 #include "tests/runtime/sh/sphere.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace lambent::baker {
 namespace {
 
+using lambent::testing::relativeDifference;
 using sh::testing::Random;
 using testing::kPi;
 
@@ -94,24 +97,6 @@ glm::dvec3 direction(double cosine, double phi) {
   return {r * std::cos(phi), r * std::sin(phi), cosine};
 }
 
-double power5(double x) {
-  return x * x * x * x * x;
-}
-
-// Evaluates f cos of the specular part as the conventions write it, independently of the baker.
-double specular(double alpha_t, double alpha_b, double f0, double f90, const glm::dvec3& v,
-                const glm::dvec3& s) {
-  const glm::dvec3 h = glm::normalize(v + s);
-  const double e = h.x * h.x / (alpha_t * alpha_t) + h.y * h.y / (alpha_b * alpha_b) + h.z * h.z;
-  const double d = 1 / (kPi * alpha_t * alpha_b * e * e);
-  const auto lambda = [&](const glm::dvec3& w) {
-    const double tangent = (alpha_t * alpha_t * w.x * w.x + alpha_b * alpha_b * w.y * w.y) / (w.z * w.z);
-    return 0.5 * (std::sqrt(1 + tangent) - 1);
-  };
-  const double g2 = 1 / (1 + lambda(v) + lambda(s));
-  return d * g2 / (4 * v.z) * (f0 + (f90 - f0) * power5(1 - glm::dot(v, h)));
-}
-
 struct Expected {
   glm::dvec3 f0, base;
   double f90, metal, alpha_t, alpha_b;
@@ -131,8 +116,8 @@ std::vector<double> byQuadrature(const Square& square, const Expected& e, glm::d
       const double phi = 2 * kPi * (k + 0.5) / kTurns, r = std::sin(theta.at);
       const glm::dvec3 light(r * std::cos(phi), r * std::sin(phi), std::cos(theta.at));
       const double weight = theta.weight * r * 2 * kPi / kTurns;
-      const double zero = weight * specular(e.alpha_t, e.alpha_b, 1, 0, v, light),
-                   one = weight * specular(e.alpha_t, e.alpha_b, 0, 1, v, light);
+      const glm::dvec2 lobes = weight * light.z * lambent::testing::Ggx{e.alpha_t, e.alpha_b}.value(v, light);
+      const double zero = lobes.x, one = lobes.y;
       sh::evaluate(kOrder, square.turn * (lobe_frame * light), y);
       for (std::size_t i = 0; i < kCount; ++i) parts[i] += zero * y[i], parts[kCount + i] += one * y[i];
       parts[2 * kCount] += zero, parts[2 * kCount + 1] += one;
@@ -145,15 +130,6 @@ std::vector<double> byQuadrature(const Square& square, const Expected& e, glm::d
     for (std::size_t i = 0; i < kCount; ++i)
       out.push_back(e.f0[channel] * parts[i] + e.f90 * parts[kCount + i] + diffuse[channel] * cosine[i]);
   return out;
-}
-
-double relativeError(const std::vector<float>& found, const std::vector<double>& expected) {
-  double error = 0, norm = 0;
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    error += (static_cast<double>(found[i]) - expected[i]) * (static_cast<double>(found[i]) - expected[i]);
-    norm += expected[i] * expected[i];
-  }
-  return std::sqrt(error / norm);
 }
 
 // Returns the reflection of uniform light of radiance 1, in one channel.
@@ -199,7 +175,7 @@ TEST(SurfaceBrdfs, FollowTheConventionsFormulaOfMetalsAndDielectrics) {
     for (const double cosine : kViewCosines)
       for (const double phi : {0.3, 2.2, 4.4}) {
         const glm::dvec3 v = direction(cosine, phi);
-        EXPECT_LT(relativeError(square.kernel(v), byQuadrature(square, expected, v)), 0.005)
+        EXPECT_LT(relativeDifference(square.kernel(v), byQuadrature(square, expected, v)), 0.005)
             << "metallic " << material.metallic << ", cos " << cosine << ", phi " << phi;
       }
   }
@@ -218,9 +194,9 @@ TEST(SurfaceBrdfs, TurnAnisotropicLobesWithTangentAndRotation) {
     for (const double phi : {0.3, 1.1, 2.2, 3.9, 5.5}) {
       const glm::dvec3 v = direction(cosine, phi);
       const auto kernel = stored.kernel(v);
-      EXPECT_LT(relativeError(kernel, byQuadrature(stored, expected, v)), 0.01)
+      EXPECT_LT(relativeDifference(kernel, byQuadrature(stored, expected, v)), 0.01)
           << "cos " << cosine << ", phi " << phi;
-      EXPECT_LT(relativeError(derived.kernel(v), {kernel.begin(), kernel.end()}), 1e-4);
+      EXPECT_LT(relativeDifference(derived.kernel(v), kernel), 1e-4);
     }
 }
 
@@ -326,7 +302,7 @@ TEST(SurfaceBrdfs, LookUpEachTextureAsWhatItIs) {
     const auto found = a.kernel(v, 0.5f, 0.25f), expected = b.kernel(v), without = untouched.kernel(v);
     for (std::size_t i = 0; i < found.size(); ++i)
       EXPECT_NEAR(found[i], expected[i], 1e-5) << one.name << ": " << i;
-    EXPECT_GT(relativeError(found, {without.begin(), without.end()}), 1e-3) << one.name << " changes nothing";
+    EXPECT_GT(relativeDifference(found, without), 1e-3) << one.name << " changes nothing";
   }
 }
 

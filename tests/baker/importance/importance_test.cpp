@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
@@ -88,6 +88,17 @@ TEST(Importance, ACubeOnAWideGroundTakesUpAGoodPartOfPictures) {
   }
   EXPECT_GT(cube, 0.05) << "it has 6 m^2 of 40,000";
   EXPECT_GT(near, 0.15);
+}
+
+TEST(Importance, EyesLookAtABodyFromAllAround) {
+  const Transport t(sceneOf({testing::icosphere(glm::vec3(0.0f), 1.0f, 3)}));
+  float least = 1.0f, most = -1.0f;
+  for (const SeenPoint& point : importanceOf(t).look(1536, t.geometry, t.rays)) {
+    EXPECT_GT(glm::dot(point.to_eye, point.position), -0.1f) << "eyes are outside";
+    least = std::min(least, point.position.y), most = std::max(most, point.position.y);
+  }
+  EXPECT_LT(least, -0.8f);
+  EXPECT_GT(most, 0.8f);
 }
 
 TEST(Importance, ACameraHasHalfOfAllPicturesInItsFrustum) {

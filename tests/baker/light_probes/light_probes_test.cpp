@@ -1,6 +1,8 @@
 #include "baker/light_probes/light_probes.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <random>
@@ -9,12 +11,271 @@
 #include <gtest/gtest.h>
 
 #include "baker/jobs/parallel.hpp"
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "runtime/bundle/description.hpp"
 #include "tests/support/differences.hpp"
+#include "tests/support/shapes.hpp"
+#include "tests/support/transport.hpp"
 
 namespace lambent::baker {
+
 namespace {
+
+std::vector<glm::vec3> cloud(std::size_t count, unsigned seed = 3) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  std::vector<glm::vec3> points(count);
+  for (glm::vec3& p : points) p = {uniform(random), uniform(random), uniform(random)};
+  return points;
+}
+
+double meanSquare(const std::vector<glm::vec3>& points, const std::vector<glm::vec3>& centres) {
+  double sum = 0.0;
+  for (const glm::vec3& p : points) {
+    double least = 1e30;
+    for (const glm::vec3& c : centres) least = std::min(least, double{glm::dot(p - c, p - c)});
+    sum += least;
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+TEST(LightPoints, FindTheMiddlesOfFarClusters) {
+  std::vector<glm::vec3> points;
+  for (const glm::vec3& middle : {glm::vec3(0, 0, 0), {10, 0, 0}, {0, 10, 0}, {0, 0, 10}})
+    for (const glm::vec3& p : cloud(200)) points.push_back(middle + 0.5f * p);
+  const auto found = lightPoints(points, std::vector<float>(points.size(), 1.0f), 4);
+  ASSERT_EQ(found.size(), 4u);
+  for (const glm::vec3& middle : {glm::vec3(0, 0, 0), {10, 0, 0}, {0, 10, 0}, {0, 0, 10}})
+    EXPECT_TRUE(std::any_of(found.begin(), found.end(),
+                            [&](const glm::vec3& p) { return glm::distance(p, middle) < 0.2f; }));
+}
+
+TEST(LightPoints, LieNearerTheMoreThereAre) {
+  const auto points = cloud(2000);
+  const std::vector<float> areas(points.size(), 1.0f);
+  double before = 1e30;
+  for (const std::size_t count : {1u, 4u, 8u, 16u, 32u}) {
+    const auto found = lightPoints(points, areas, count);
+    EXPECT_EQ(found.size(), count);
+    const double here = meanSquare(points, found);
+    EXPECT_LT(here, before) << count;
+    before = here;
+  }
+  // If each of 32 light probes has an equal part of the cube's 8 m³, the mean square distance is at least
+  // that of a ball of this volume, 3/5 r².
+  EXPECT_LT(before, 1.4 * 0.6 * std::pow(8.0 / 32 * 0.75 / 3.14159, 2.0 / 3.0));
+}
+
+TEST(LightPoints, IgnoreWhatHasNoAreaUnlessNothingHas) {
+  const std::vector<glm::vec3> points = {{0, 0, 0}, {1, 0, 0}, {50, 0, 0}};
+  EXPECT_EQ(lightPoints(points, std::vector{1.0f, 1.0f, 0.0f}, 8).size(), 2u);
+  EXPECT_EQ(lightPoints(points, std::vector{0.0f, 0.0f, 0.0f}, 8).size(), 3u);
+}
+
+TEST(MergePoints, LeavesOneOfThoseThatCoincide) {
+  std::vector<glm::vec3> points = {{1, 0, 0}, {0, 0, 0}, {1, 1e-4f, 0}, {1, 5, 0}, {0, 0, 1e-4f}};
+  mergePoints(points, 1e-3f);
+  EXPECT_EQ(points, (std::vector<glm::vec3>{{1, 0, 0}, {0, 0, 0}, {1, 5, 0}}));
+}
+
+using testing::Transport;
+
+constexpr double kEps = 1e-6;
+constexpr float kDepth = 0.01f;
+
+struct Fitted {
+  Transport transport;
+  std::vector<float> areas;
+  std::vector<glm::vec3> means, points;
+
+  Fitted(const bundle::MeshData& mesh, std::size_t count)
+      : transport(testing::sceneOf({mesh})),
+        areas(sampleAreas(transport.geometry, transport.samples)),
+        means(lightPoints(transport.samples.positions, areas, count)),
+        points(means) {
+    fitPoints(points, transport.samples, areas, kEps, kDepth);
+  }
+};
+
+// Returns the root mean square distance between places and the places that their blends represent.
+double missed(const Fitted& fit, const std::vector<glm::vec3>& points) {
+  double sum = 0.0, areas = 0.0;
+  for (std::size_t i = 0; i < fit.areas.size(); ++i) {
+    const glm::vec3 place = fit.transport.samples.positions[i];
+    const BlendWeights weights = blendWeights(place, points, kEps);
+    glm::dvec3 away = -glm::dvec3(place);
+    for (std::size_t k = 0; k < 4; ++k) away += weights.weight[k] * glm::dvec3(points[weights.light[k]]);
+    sum += double{fit.areas[i]} * glm::dot(away, away);
+    areas += double{fit.areas[i]};
+  }
+  return std::sqrt(sum / areas);
+}
+
+TEST(FitPoints, BringsBlendsNearerToTheSurface) {
+  for (const std::size_t count : {4u, 8u, 16u, 32u}) {
+    const Fitted ball(testing::icosphere({0, 0, 0}, 1.0f, 4), count);
+    EXPECT_LT(missed(ball, ball.points), (count == 4 ? 0.96 : 0.85) * missed(ball, ball.means)) << count;
+    const Fitted box(testing::box({0, 0, 0}, {2, 1, 1}, 24), count);
+    EXPECT_LT(missed(box, box.points), (count == 4 ? 0.96 : 0.85) * missed(box, box.means)) << count;
+  }
+}
+
+TEST(FitPoints, LeavesThemInsideTheBody) {
+  for (const std::size_t count : {4u, 8u, 16u, 32u}) {
+    for (const glm::vec3& point : Fitted(testing::icosphere({0, 0, 0}, 1.0f, 4), count).points)
+      EXPECT_LT(glm::length(point), 1.0f - 0.9f * kDepth);
+    for (const glm::vec3& point : Fitted(testing::box({0, 0, 0}, {2, 1, 1}, 24), count).points)
+      EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(point), glm::vec3(1, 0.5f, 0.5f) + 1e-5f)))
+          << point.x << " " << point.y << " " << point.z;
+  }
+}
+
+TEST(FitPoints, OfFewOrCoincidentPointsStayFinite) {
+  const Fitted ball(testing::icosphere({0, 0, 0}, 1.0f, 2), 1);
+  EXPECT_LT(glm::length(ball.points[0]), 1e-3f);
+  std::vector<glm::vec3> same(3, glm::vec3(0.5f, 0, 0));
+  fitPoints(same, ball.transport.samples, ball.areas, 0.0, kDepth);
+  for (const glm::vec3& point : same) EXPECT_LT(glm::length(point), 1.0f);
+  fitPoints(same, ball.transport.samples, std::vector<float>(ball.areas.size(), 0.0f), 0.0, 0.0f);
+  for (const glm::vec3& point : same) EXPECT_LT(glm::length(point), 1.0f + 1e-5f);
+  SampleSet dot;
+  dot.positions = {{1, 2, 3}};
+  dot.cells = {{0, 1, {1, 2, 3}, {1, 2, 3}}};
+  std::vector<glm::vec3> one = {{0, 0, 0}};
+  fitPoints(one, dot, std::vector{1.0f}, 0.0, kDepth);
+  EXPECT_LT(glm::distance(one[0], dot.positions[0]), 1e-5f);
+}
+
+std::vector<glm::vec3> lights(std::size_t count) {
+  return cloud(count, 9);
+}
+
+std::map<std::uint32_t, double> byLight(const BlendWeights& weights) {
+  std::map<std::uint32_t, double> out;
+  for (std::size_t k = 0; k < 4; ++k) out[weights.light[k]] += weights.weight[k];
+  return out;
+}
+
+TEST(BlendWeights, SumToOneAndAreNotNegative) {
+  for (const std::size_t count : {1u, 2u, 4u, 5u, 32u}) {
+    const auto points = lights(count);
+    for (const glm::vec3& place : lights(500)) {
+      const BlendWeights weights = blendWeights(place, points, kEps);
+      double sum = 0.0;
+      for (const double weight : weights.weight) {
+        EXPECT_GE(weight, 0.0);
+        sum += weight;
+      }
+      EXPECT_NEAR(sum, 1.0, 1e-12);
+    }
+  }
+}
+
+// Along a path through the cloud no weight jumps, although the light probes in use change: the largest change
+// shrinks with the step length.
+TEST(BlendWeights, ChangeWithoutAJumpAlongAPath) {
+  const auto points = lights(24);
+  const auto largestStep = [&](int steps) {
+    double largest = 0.0;
+    std::map<std::uint32_t, double> before;
+    for (int i = 0; i <= steps; ++i) {
+      const float t = static_cast<float>(i) / static_cast<float>(steps);
+      const glm::vec3 place{2.0f * t - 1.0f, std::sin(7.0f * t), 0.3f * std::cos(20.0f * t)};
+      auto here = byLight(blendWeights(place, points, kEps));
+      if (i > 0)
+        for (std::uint32_t k = 0; k < points.size(); ++k)
+          largest = testing::larger(largest, std::abs(here[k] - before[k]));
+      before = std::move(here);
+    }
+    return largest;
+  };
+  const double coarse = largestStep(1000), fine = largestStep(16000);
+  EXPECT_LT(coarse, 0.15);
+  EXPECT_LT(fine, coarse / 8.0) << "a jump would stay as it is";
+}
+
+// Blends of a linear function of space err by less than a fifth of what the nearest light probe alone does,
+// wherever light probes are on all sides.
+TEST(BlendWeights, FollowEvenChangeAmongLightProbes) {
+  const auto points = lights(64);
+  double blended = 0.0, nearest = 0.0;
+  for (const glm::vec3& unit : lights(500)) {
+    const glm::vec3 place = 0.5f * unit;
+    const BlendWeights weights = blendWeights(place, points, kEps);
+    glm::dvec3 there(0.0);
+    for (std::size_t k = 0; k < 4; ++k) there += weights.weight[k] * glm::dvec3(points[weights.light[k]]);
+    blended += glm::dot(there - glm::dvec3(place), there - glm::dvec3(place));
+    double least = 100.0;
+    for (const glm::vec3& point : points)
+      least = testing::smaller(least, double{glm::distance(point, place)});
+    nearest += least * least;
+  }
+  EXPECT_LT(std::sqrt(blended / nearest), 0.2);
+}
+
+// In the middle of two light probes, and of the corners of a cube, the weights are symmetric and few.
+TEST(BlendWeights, OfRegularLightProbesAreFewAndDoNotJump) {
+  std::vector<glm::vec3> grid;
+  for (int i = 0; i < 27; ++i)
+    grid.emplace_back(static_cast<float>(i % 3), static_cast<float>(i / 3 % 3), static_cast<float>(i / 9));
+  const BlendWeights half = blendWeights({0.5f, 0, 0}, grid, kEps);
+  EXPECT_NEAR(half.weight[0], 0.5, 1e-4);
+  EXPECT_NEAR(half.weight[1], 0.5, 1e-4);
+  const auto blended = [&](glm::vec3 place) {
+    const BlendWeights weights = blendWeights(place, grid, kEps);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const glm::vec3 x = grid[weights.light[k]];
+      sum += weights.weight[k] * std::sin(3.0 * x.x + 5.0 * x.y + 7.0 * x.z);
+    }
+    return sum;
+  };
+  for (const glm::vec3& unit : lights(2000)) {
+    const glm::vec3 place = 1.2f * unit + 1.0f;
+    EXPECT_NEAR(blended(place), blended(place + glm::vec3(1e-5f, -1e-5f, 1e-5f)), 1e-3);
+  }
+}
+
+TEST(BlendWeights, OfCoincidentLightProbesStayFinite) {
+  const std::vector<glm::vec3> same(6, glm::vec3(1.0f));
+  for (const double eps : {0.0, kEps})
+    for (const glm::vec3& place : {glm::vec3(1.0f), glm::vec3(2.0f)}) {
+      const BlendWeights weights = blendWeights(place, same, eps);
+      EXPECT_DOUBLE_EQ(std::accumulate(weights.weight.begin(), weights.weight.end(), 0.0), 1.0);
+    }
+}
+
+TEST(QuantizedWeights, SumTo255AndFallAndAreNear) {
+  const auto points = lights(32);
+  for (const glm::vec3& place : lights(2000)) {
+    const BlendWeights weights = blendWeights(place, points, kEps);
+    const QuantizedWeights steps = quantized(weights);
+    EXPECT_EQ(std::accumulate(steps.weight.begin(), steps.weight.end(), 0), 255);
+    auto wanted = byLight(weights);
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (k > 0) {
+        EXPECT_LE(steps.weight[k], steps.weight[k - 1]);
+      }
+      if (steps.weight[k] > 0) {
+        EXPECT_NEAR(steps.weight[k], 255.0 * wanted[steps.light[k]], 1.0);
+      }
+    }
+  }
+}
+
+TEST(LightsNear, HoldAllThatCountAtPlacesInTheBox) {
+  const auto points = lights(4000);
+  const glm::vec3 low(0.6f, -0.8f, 0.7f), high = low + 0.01f;
+  const auto near = lightsNear(low, high, points);
+  EXPECT_LT(near.size(), 3900u);
+  std::vector<glm::vec3> few;
+  for (const std::uint32_t k : near) few.push_back(points[k]);
+  for (const glm::vec3& unit : lights(300)) {
+    const glm::vec3 place = low + (0.5f * unit + 0.5f) * (high - low);
+    auto all = byLight(blendWeights(place, points, kEps)), some = byLight(blendWeights(place, few, kEps));
+    for (const auto& [k, weight] : some) EXPECT_NEAR(all[near[k]], weight, 1e-6);
+  }
+}
 
 LightProbes choose(const SampleSet& samples, LightProbeCount count) {
   glm::vec3 low(1e30f), high(-1e30f);
@@ -97,17 +358,10 @@ TEST(LightProbes, BlendWithoutASeamWhereCellsMeet) {
 }
 
 TEST(LightProbes, OfPointsThatCoincideOrAreFewAreFewer) {
-  SampleSet dot;
-  dot.positions = {{1, 2, 3}};
-  dot.cells = {{0, 1, {1, 2, 3}, {1, 2, 3}}};
-  LightProbes found = choose(dot, {32, false});
-  EXPECT_EQ(found.points, dot.positions);
-  expectSound(found, dot);
-
   SampleSet pile;
   pile.positions.assign(100, glm::vec3(-4.0f));
   pile.cells = {{0, 60, glm::vec3(-4.0f), glm::vec3(-4.0f)}, {60, 40, glm::vec3(-4.0f), glm::vec3(-4.0f)}};
-  found = choose(pile, {32, false});
+  LightProbes found = choose(pile, {32, false});
   EXPECT_EQ(found.points, std::vector{glm::vec3(-4.0f)});
   expectSound(found, pile);
 
@@ -147,4 +401,5 @@ TEST(LightProbes, AreThinnedWhereACellWouldTakeTooMany) {
 }
 
 }  // namespace
+
 }  // namespace lambent::baker

@@ -2,7 +2,7 @@
 // that edits, cancels and failures on the way do no harm.
 #include "baker/pipeline/bake_queue.hpp"
 
-#include "baker/bake/bake_unshadowed.hpp"
+#include "baker/bake/bake.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "runtime/bundle/container.hpp"

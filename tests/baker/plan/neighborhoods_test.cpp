@@ -1,4 +1,3 @@
-// Tests which bodies get a neighborhood in the plan, and for which receivers.
 #include "baker/plan/neighborhoods.hpp"
 
 #include <cmath>
@@ -9,15 +8,17 @@
 #include "tests/support/shapes.hpp"
 
 namespace lambent::baker {
+
 namespace {
 
 using testing::grid;
 using testing::icosphere;
 using testing::sceneOf;
 
-struct PlannedBodies {
+template <typename Plan>
+struct Planned {
   std::vector<RigidGroup> groups;
-  std::vector<PlannedNeighborhood> plans;
+  std::vector<Plan> plans;
 
   std::size_t indexOf(const std::string& name) const {
     for (std::size_t g = 0; g < groups.size(); ++g)
@@ -25,13 +26,130 @@ struct PlannedBodies {
     ADD_FAILURE() << "no group " << name;
     return 0;
   }
-  const PlannedNeighborhood& of(const std::string& name) const { return plans[indexOf(name)]; }
+  const Plan& of(const std::string& name) const { return plans[indexOf(name)]; }
 };
 
-PlannedBodies planBodies(const Scene& scene) {
-  PlannedBodies out{findRigidGroups(scene), {}};
-  out.plans = planNeighborhoods(scene, out.groups);
-  return out;
+Planned<PlannedLightProbes> planLight(const Scene& scene) {
+  const std::vector<RigidGroup> groups = findRigidGroups(scene);
+  return {groups, planLightProbes(scene, groups)};
+}
+
+Planned<PlannedNeighborhood> planBodies(const Scene& scene) {
+  const std::vector<RigidGroup> groups = findRigidGroups(scene);
+  return {groups, planNeighborhoods(scene, groups)};
+}
+
+// Makes a ball of radius 1 (half its box's diagonal: √3) and a point light that moves by itself.
+Scene ballAndLamp(float distance) {
+  Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 3)});
+  scene.nodes[0].name = "ball";
+  gltf::Node lamp;
+  lamp.name = "torch";
+  lamp.light = 0;
+  lamp.movable = true;
+  lamp.parent_from_node = glm::translate(glm::mat4(1.0f), {0, distance, 0});
+  scene.nodes.push_back(lamp);
+  scene.roots.push_back(1);
+  scene.lights.resize(1);
+  return scene;
+}
+
+void move(Scene& scene, std::uint32_t node, glm::vec3 from, glm::vec3 to) {
+  scene.nodes[node].animated = true;
+  scene.nodes[node].trs = gltf::Trs{.translation = from};
+  scene.nodes[node].parent_from_node = glm::translate(glm::mat4(1.0f), from);
+  scene.animations = {{"way",
+                       {{.node = node,
+                         .path = gltf::AnimationChannel::Path::Translation,
+                         .times_s = {0.0f, 2.0f},
+                         .values = {from.x, from.y, from.z, to.x, to.y, to.z}}}}};
+}
+
+TEST(LightProbeCounts, AreOneForOneGroupWithNothingOutside) {
+  Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 2)});
+  EXPECT_EQ(planLight(scene).plans.at(0).count.count, 1u);
+  EXPECT_NE(planLight(scene).plans.at(0).reason.find("far away"), std::string::npos);
+  // Its own lights are in its transfer.
+  scene.materials[0].emissive = glm::vec3(5.0f);
+  scene.lights.resize(1);
+  scene.nodes[0].light = 0;
+  EXPECT_EQ(planLight(scene).plans.at(0).count.count, 1u);
+}
+
+TEST(LightProbeCounts, RiseWithSizeOverDistanceOfALamp) {
+  const float half = std::sqrt(3.0f);
+  for (const auto& [ratio, count] :
+       {std::pair{0.04f, 1u}, {0.12f, 4u}, {0.2f, 8u}, {0.4f, 16u}, {0.6f, 32u}, {5.0f, 32u}})
+    EXPECT_EQ(planLight(ballAndLamp(half / ratio)).plans.at(0).count.count, count) << ratio;
+  EXPECT_NE(planLight(ballAndLamp(half / 0.6f)).plans[0].reason.find("the light of torch is up to 0.60"),
+            std::string::npos)
+      << planLight(ballAndLamp(half / 0.6f)).plans[0].reason;
+}
+
+TEST(LightProbeCounts, IgnoreLampsThatAreDarkDirectionalOrOutOfRange) {
+  Scene scene = ballAndLamp(2.0f);
+  scene.lights[0].type = gltf::Light::Type::Directional;
+  EXPECT_EQ(planLight(scene).plans[0].count.count, 1u);
+  scene = ballAndLamp(2.0f);
+  scene.lights[0].intensity = 0.0f;
+  EXPECT_EQ(planLight(scene).plans[0].count.count, 1u);
+  scene = ballAndLamp(10.0f);
+  EXPECT_EQ(planLight(scene).plans[0].count.count, 8u);
+  scene.lights[0].range_m = 5.0f;
+  EXPECT_EQ(planLight(scene).plans[0].count.count, 1u);
+}
+
+TEST(LightProbeCounts, LookAlongTheWholeWayOfAnAnimation) {
+  Scene scene = ballAndLamp(50.0f);
+  EXPECT_EQ(planLight(scene).plans[0].count.count, 1u);
+  move(scene, 1, {0, 50, 0}, {0, 4, 0});
+  EXPECT_EQ(planLight(scene).plans[0].count.count, 16u);
+}
+
+TEST(LightProbeCounts, CountSurfacesOfOthersThatGiveOffLightAsLamps) {
+  Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 3), grid({0, 3, 0}, 4.0f, 1)});
+  scene.nodes[0].name = "ball";
+  scene.nodes[0].movable = true;
+  scene.materials.push_back(scene.materials[0]);
+  scene.meshes[1].primitives[0].material = 1;
+  EXPECT_EQ(planLight(scene).of("ball").count.count, 4u) << "it only reflects";
+  scene.materials[1].emissive = glm::vec3(1.0f);
+  EXPECT_EQ(planLight(scene).of("ball").count.count, 32u) << "√3 / 3";
+}
+
+TEST(LightProbeCounts, AreMostOfAFloorThatBodiesMoveOver) {
+  Scene scene = sceneOf({grid({0, 0, 0}, 20.0f, 4), icosphere({0, 0, 0}, 1.0f, 3)});
+  scene.nodes[1].name = "ball";
+  move(scene, 1, {-5, 1, 0}, {5, 1, 0});
+  EXPECT_EQ(planLight(scene).of("static").count.count, kMostLightProbes);
+  EXPECT_EQ(planLight(scene).of("static").reason, "ball can come within its bounds");
+  EXPECT_EQ(planLight(scene).of("ball").count.count, 4u);
+  // High above it the ball is a small thing, and the floor a far one.
+  move(scene, 1, {-5, 400, 0}, {5, 400, 0});
+  EXPECT_EQ(planLight(scene).of("static").count.count, 1u);
+  EXPECT_EQ(planLight(scene).of("ball").count.count, 1u);
+}
+
+TEST(LightProbeCounts, OfAPointStayFinite) {
+  Scene scene = ballAndLamp(0.0f);
+  for (glm::vec3& p : scene.meshes[0].primitives[0].mesh.positions) p = glm::vec3(0.0f);
+  EXPECT_EQ(planLight(scene).plans[0].count.count, 1u) << "no size, one place";
+}
+
+TEST(LightsInside, AreThoseWhoseWayMeetsAGroupsBounds) {
+  Scene scene = ballAndLamp(50.0f);
+  const auto sentences = [&] { return lightsInside(scene, findRigidGroups(scene)); };
+  EXPECT_TRUE(sentences().empty());
+  move(scene, 1, {0, 50, 0}, {0, 0.5f, 0});
+  ASSERT_EQ(sentences().size(), 1u);
+  EXPECT_EQ(sentences()[0],
+            "The light of torch can stand among the surfaces of static: direct light per pixel by a shadow "
+            "cube map, its bounces by patches.");
+  // A light that is fixed to the group is baked.
+  scene.animations.clear();
+  scene.nodes[1].animated = scene.nodes[1].movable = false;
+  scene.nodes[1].parent_from_node = glm::mat4(1.0f);
+  EXPECT_TRUE(sentences().empty());
 }
 
 // Makes a floor of 20 m, and movable balls of radius 0.5 m at a height above it.
@@ -56,7 +174,7 @@ Scene rolling(Scene scene) {
 }
 
 TEST(NeighborhoodPlans, AreForBodiesOnGroupsOfMoreThanTwiceTheirSize) {
-  const PlannedBodies planned = planBodies(ballsOver(1, 0.5f));
+  const auto planned = planBodies(ballsOver(1, 0.5f));
   EXPECT_TRUE(planned.of("ball 0").baked);
   EXPECT_FALSE(planned.of("ball 0").asked);
   EXPECT_FALSE(planned.of("static").baked);
@@ -97,13 +215,7 @@ TEST(NeighborhoodPlans, KnowHowReceiversFaceInTheGroupsFrame) {
 
 TEST(NeighborhoodPlans, FollowTheAnimation) {
   Scene scene = ballsOver(1, 3.0f);
-  scene.nodes[1].animated = true;
-  scene.nodes[1].trs = gltf::Trs{.translation = {0, 3, 0}};
-  scene.animations = {{"way",
-                       {{.node = 1,
-                         .path = gltf::AnimationChannel::Path::Translation,
-                         .times_s = {0.0f, 2.0f},
-                         .values = {0, 3, 0, 0, 0.5f, 0}}}}};
+  move(scene, 1, {0, 3, 0}, {0, 0.5f, 0});
   const PlannedNeighborhood ball = planBodies(scene).of("ball 0");
   EXPECT_TRUE(ball.baked);
   EXPECT_NEAR(ball.receivers_min.y, -3.0f, 1e-3f);
@@ -111,7 +223,7 @@ TEST(NeighborhoodPlans, FollowTheAnimation) {
 }
 
 TEST(NeighborhoodPlans, AreForBodiesThatCanBeMovedByHandWhereverTheyStand) {
-  const PlannedBodies planned = planBodies(ballsOver(1, 3.0f));
+  const auto planned = planBodies(ballsOver(1, 3.0f));
   const PlannedNeighborhood& ball = planned.of("ball 0");
   EXPECT_TRUE(ball.baked);
   EXPECT_TRUE(ball.by_hand);
@@ -128,7 +240,7 @@ TEST(NeighborhoodPlans, AreNotForBodiesThatGiveOffLight) {
   scene.materials.push_back(scene.materials[0]);
   scene.materials[1].emissive = glm::vec3(1.0f);
   scene.meshes[1].primitives[0].material = 1;
-  const PlannedBodies planned = planBodies(scene);
+  const auto planned = planBodies(scene);
   EXPECT_FALSE(planned.of("ball 0").baked);
   EXPECT_NE(planned.of("ball 0").reason.find("gives off light"), std::string::npos);
 }
@@ -167,7 +279,7 @@ TEST(NeighborhoodPlans, AreForVolumesWithSurfacesInReach) {
     scene.roots.push_back(1);
     scene.volumes.push_back(
         {.name = "fog", .node = 1, .size = glm::uvec3(2), .density = std::vector<float>(8, 1.0f)});
-    const PlannedBodies planned = planBodies(scene);
+    const auto planned = planBodies(scene);
     EXPECT_EQ(planned.of("cloud").baked, height < 10.0f);
     EXPECT_EQ(planned.of("cloud").carries(planned.indexOf("static")), height < 10.0f);
   }
@@ -175,11 +287,12 @@ TEST(NeighborhoodPlans, AreForVolumesWithSurfacesInReach) {
 
 TEST(NeighborhoodPlans, MakeLightProbesForTheBodyNeedless) {
   const Scene scene = ballsOver(1, 0.5f);
-  const PlannedBodies planned = planBodies(scene);
+  const auto planned = planBodies(scene);
   const std::size_t floor = planned.indexOf("static");
   EXPECT_EQ(planLightProbes(scene, planned.groups)[floor].count.count, 32u);
   EXPECT_EQ(planLightProbes(scene, planned.groups, planned.plans)[floor].count.count, 1u);
 }
 
 }  // namespace
+
 }  // namespace lambent::baker

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "baker/proxy/parts.hpp"
+#include "baker/proxy/shine.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

@@ -38,11 +38,10 @@ Refined refined(const Scene& scene, const RefineOptions& options, bool with_glos
   }
   Progress progress;
   const auto groups = findRigidGroups(scene);
-  const AlphaMaps none;
   DecodedImages images(scene);
   const std::vector<PlannedTransport> all_shadows(groups.size());
-  const auto report = refineMeshes({scene, groups, all_shadows, none, with_glossy, images}, options,
-                                   result.meshes, {progress});
+  const auto report =
+      refineMeshes({scene, groups, all_shadows, with_glossy, images}, options, result.meshes, {progress});
   EXPECT_TRUE(report) << report.error().line();
   if (report) result.report = *report;
   return result;

@@ -7,7 +7,7 @@
 
 #include "assets/scenes.hpp"
 #include "baker/bake/bake.hpp"
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "baker/import/gltf.hpp"
 #include "tests/support/temporary_folder.hpp"
 

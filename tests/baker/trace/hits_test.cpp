@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "baker/trace/transfer_field.hpp"
+
 namespace lambent::baker {
+
 namespace {
 
 std::vector<GatherHit> hitsOf(std::size_t count) {
@@ -78,6 +81,21 @@ TEST(HitBytes, BringBackHitsAndTheirScales) {
   EXPECT_EQ(found.scaleOf(0), 1.5f);
   ByteReader again(bytes);
   EXPECT_FALSE(readHits(again, 3, 7, found)) << "a range of other samples";
+}
+
+TEST(FillFromNeighbours, GrowsInwardsLayerByLayer) {
+  // 0 - 1 - 2 - 3 - 4 in a row, the ends valid: the middle is reached last, from both sides.
+  std::vector<float> values = {1.0f, -9.0f, -9.0f, -9.0f, 5.0f};
+  const std::vector<std::uint8_t> valid = {1, 0, 0, 0, 1};
+  EXPECT_EQ(fillFromNeighbours({{0, 1}, {1, 2}, {2, 3}, {3, 4}}, valid, 0, 1, values), 3u);
+  EXPECT_EQ(values, (std::vector<float>{1.0f, 1.0f, 3.0f, 5.0f, 5.0f}));
+}
+
+TEST(FillFromNeighbours, KeepsWhatNothingValidTouches) {
+  std::vector<float> values = {1.0f, 2.0f, 3.0f};
+  const std::vector<std::uint8_t> valid = {1, 0, 0};
+  EXPECT_EQ(fillFromNeighbours({{1, 2}}, valid, 0, 1, values), 0u);
+  EXPECT_EQ(values, (std::vector<float>{1.0f, 2.0f, 3.0f}));
 }
 
 }  // namespace

@@ -9,8 +9,7 @@
 
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/differences.hpp"
-#include "tests/support/shapes.hpp"
-#include "tests/support/transport.hpp"
+#include "tests/support/glossy_transport.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -26,10 +25,8 @@ using testing::turned;
 struct Lacquered {
   Lacquered(const std::vector<bundle::MeshData>& meshes, float base, float roughness, bool lamp = false)
       : transport(sceneWith(meshes, base, roughness, lamp), /*with_glossy=*/true),
-        images(transport.scene),
-        tables(std::move(*BrdfTables::make(transport.scene, 5, 5))),
-        brdfs(std::move(*SurfaceBrdfs::load(transport.scene, transport.geometry, tables, images, 5))),
-        mirrors(transport.geometry, transport.rays, transport.colors, brdfs, lamp) {
+        surfaces(transport),
+        mirrors(transport.geometry, transport.rays, transport.colors, surfaces.brdfs, lamp) {
     EXPECT_TRUE(transport.samples.glossy.empty()) << "smooth dielectrics have diffuse samples";
     transport.mirrors = &mirrors;
   }
@@ -37,25 +34,15 @@ struct Lacquered {
   static Scene sceneWith(const std::vector<bundle::MeshData>& meshes, float base, float roughness,
                          bool lamp) {
     Scene scene = sceneOf(meshes);
-    scene.materials.push_back(scene.materials[0]);
-    scene.materials[1].roughness = roughness;
-    scene.materials[1].base_color = glm::vec4(glm::vec3(base), 1.0f);
-    scene.meshes[0].primitives[0].material = 1;
-    if (lamp) {
-      gltf::Node node;
-      node.parent_from_node = glm::translate(glm::mat4(1.0f), {0, 0, 1});
-      node.light = 0;
-      scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-      scene.nodes.push_back(node);
-      scene.lights.emplace_back();
-    }
+    gltf::Material& lacquer = testing::ownMaterial(scene, 0);
+    lacquer.roughness = roughness;
+    lacquer.base_color = glm::vec4(glm::vec3(base), 1.0f);
+    if (lamp) testing::addPointLight(scene, {0, 0, 1});
     return scene;
   }
 
   Transport transport;
-  DecodedImages images;
-  BrdfTables tables;
-  SurfaceBrdfs brdfs;
+  testing::TransportBrdfs surfaces;
   MirrorPaths mirrors;
 };
 
@@ -139,7 +126,7 @@ TEST(MirrorPaths, ALampsLightLeavesALacqueredFloorInAllDirectionsByWhatItReflect
       const double lamp = glm::length(to_lamp), plate = glm::length(to_plate);
       const double irradiance = to_lamp.z / (lamp * lamp * lamp), cosine = to_plate.z / plate;
       expected += irradiance / std::numbers::pi *
-                  double{floor.brdfs.layerAlbedo(0, static_cast<float>(cosine))} * cosine * cosine /
+                  double{floor.surfaces.brdfs.layerAlbedo(0, static_cast<float>(cosine))} * cosine * cosine /
                   (plate * plate * std::numbers::pi) * (8.0 / kSteps) * (8.0 / kSteps);
     }
   EXPECT_GT(expected, 1e-3);

@@ -9,21 +9,11 @@ namespace lambent::baker {
 namespace {
 
 using testing::box;
+using testing::cup;
 using testing::flipped;
 using testing::sceneOf;
 using testing::Transport;
 using testing::uniformRadiance;
-
-// Returns the inside of a box without its top.
-bundle::MeshData cup(glm::vec3 size, int n) {
-  bundle::MeshData cup = flipped(box({0, 0, 0}, size, n));
-  std::vector<std::uint32_t> kept;
-  for (std::size_t i = 0; i < cup.indices.size(); i += 3)
-    if (cup.normals[cup.indices[i]].y > -0.5f)
-      for (std::size_t c = 0; c < 3; ++c) kept.push_back(cup.indices[i + c]);
-  cup.indices = kept;
-  return cup;
-}
 
 // An open white room with a closed dark one standing in it, whose walls are thin.
 struct DarkBox {

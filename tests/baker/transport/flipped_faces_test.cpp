@@ -2,9 +2,9 @@
 #include <array>
 #include <bit>
 
-#include "baker/transport/direction_table.hpp"
 #include "baker/transport/group_geometry.hpp"
-#include "baker/transport/seen_origins.hpp"
+#include "baker/transport/ray_scene.hpp"
+#include "baker/transport/samples.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

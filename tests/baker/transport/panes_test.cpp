@@ -110,12 +110,7 @@ TEST(Panes, WeakenLampsBehindThem) {
     Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 2), mesh});
     scene.meshes[1].primitives[0].material = 1;
     scene.materials.push_back(material);
-    gltf::Node node;
-    node.parent_from_node = glm::translate(glm::mat4(1.0f), {0, 2, 0});
-    node.light = 0;
-    scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-    scene.nodes.push_back(node);
-    scene.lights.emplace_back();
+    testing::addPointLight(scene, {0, 2, 0});
     const Transport t(scene);
     const TransferField field = t.direct();
     return field.at(t.sampleAt({0, 0, 0}))[field.columns - 1];

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "baker/transport/direction_table.hpp"
+#include "baker/transport/samples.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
@@ -129,9 +129,7 @@ TEST(RayScene, SeesBacksOnlyFromInsideASolid) {
 TEST(RayScene, TellsWhatBlockedRaysMetInBothWaysAlike) {
   // A double-sided card is over a single-sided floor that is seen from behind.
   Scene scene = sceneOf({grid({0, 1, 0}, 2.0f, 3), grid({0, 3, 0}, 9.0f, 1)});
-  scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].double_sided = true;
-  scene.meshes[0].primitives[0].material = 1;
+  testing::ownMaterial(scene, 0).double_sided = true;
   const Transport t(scene);
   const SampleOrigin origin{{0.1f, 0, 0.2f}, {0, 1, 0}, 1.0f};
   const DirectionTable table = cosineTable(1024);

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <set>
 
+#include <gtest/gtest.h>
+
+#include "baker/transport/group_geometry.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
 namespace lambent::baker {
+
 namespace {
 
 using testing::box;
@@ -68,9 +72,7 @@ TEST(Samples, OfLargeGroupsAreCutIntoCompactCells) {
 
 TEST(Samples, OfNormalMappedDrawsComeLastInCellsOfTheirOwn) {
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 2), grid({0, 0, 0}, 1.0f, 2)});
-  scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].normal_texture.texture = 0;
-  scene.meshes[0].primitives[0].material = 1;
+  testing::ownMaterial(scene, 0).normal_texture.texture = 0;
   const Transport t(scene);
   // The grids coincide, but what they store differs.
   EXPECT_EQ(t.samples.size(), 18u);
@@ -87,6 +89,95 @@ TEST(SampleEdges, AreThoseOfTheTriangles) {
   const auto edges = sampleEdges(t.geometry, t.samples);
   EXPECT_EQ(edges.size(), 2u * 3 * 4 + 9);  // sides of the cells and their diagonals
   EXPECT_TRUE(std::is_sorted(edges.begin(), edges.end()));
+}
+
+using testing::Transport;
+
+std::vector<std::uint32_t> allTriangles(const GroupGeometry& geometry) {
+  std::vector<std::uint32_t> all(geometry.triangles.size());
+  for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
+  return all;
+}
+
+TEST(FacePoints, StandInTheMiddleOfTheirFacesAndOffThem) {
+  const Transport t(testing::sceneOf({testing::icosphere({0.0f, 0.0f, 0.0f}, 1.0f, 2)}));
+  const FacePoints points = facePoints(t.geometry, t.samples, allTriangles(t.geometry));
+  ASSERT_EQ(points.samples.size(), t.geometry.triangles.size());
+  EXPECT_EQ(points.samples.glossy.begin, points.samples.size());  // none is glossy
+  for (std::size_t p = 0; p < points.samples.size(); ++p) {
+    const glm::uvec3 corners = t.geometry.triangles[points.triangles[p]];
+    const glm::vec3 middle = (t.geometry.positions[corners.x] + t.geometry.positions[corners.y] +
+                              t.geometry.positions[corners.z]) /
+                             3.0f;
+    EXPECT_LT(glm::distance(points.samples.positions[p], middle), 1e-6f);
+    EXPECT_NEAR(glm::length(points.samples.normals[p]), 1.0f, 1e-6f);
+    ASSERT_EQ(points.samples.originsOf(p).size(), 1u);
+    const SampleOrigin& origin = points.samples.originsOf(p)[0];
+    EXPECT_GT(glm::dot(origin.position - middle, origin.geometric_normal), 0.0f);
+  }
+}
+
+TEST(FacePoints, OfAFoldHaveNoOrigin) {
+  bundle::MeshData mesh = testing::grid({0.0f, 0.0f, 0.0f}, 1.0f, 1);
+  for (glm::vec3& normal : mesh.normals) normal = -normal;  // faces turn their backs to their normals
+  const Transport t(testing::sceneOf({mesh}));
+  const FacePoints points = facePoints(t.geometry, t.samples, allTriangles(t.geometry));
+  ASSERT_EQ(points.samples.size(), 2u);
+  EXPECT_TRUE(points.samples.origins.empty());
+}
+
+// Alpha masks are sampled with KHR_texture_transform applied.
+TEST(GroupGeometry, TexcoordsAreThoseOfTheTransformedBaseColorTexture) {
+  Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 1.0f, 1)});
+  scene.materials[0].base_color_texture = {
+      .texture = 0, .offset = {0.5f, -1.0f}, .scale = {2.0f, 4.0f}, .rotation_rad = 1.57079632f};
+  const bundle::MeshData& mesh = scene.meshes[0].primitives[0].mesh;
+  const auto geometry = buildGroupGeometry(findRigidGroups(scene).at(0), scene, {{mesh}});
+  ASSERT_EQ(geometry.texcoords.size(), mesh.texcoords0.size());
+  for (std::size_t v = 0; v < mesh.texcoords0.size(); ++v) {
+    // A quarter turn takes (u, v) to (v, -u), as the extension writes its matrix.
+    const glm::vec2 uv = mesh.texcoords0[v];
+    EXPECT_NEAR(geometry.texcoords[v].x, 0.5f + 4.0f * uv.y, 1e-6f);
+    EXPECT_NEAR(geometry.texcoords[v].y, -1.0f - 2.0f * uv.x, 1e-6f);
+  }
+}
+
+// A mirroring node flips the bitangent, and so does the back, whose normal is negated; the direction in which
+// the surface is brushed stays.
+TEST(GroupGeometry, GivesGlossyDrawsTangentsAndBothSetsOfTexcoords) {
+  bundle::MeshData mesh = testing::grid({0, 0, 0}, 1.0f, 1);
+  mesh.tangents.assign(mesh.positions.size(), {1.0f, 0.0f, 0.0f, 1.0f});
+  for (const glm::vec2& uv : mesh.texcoords0) mesh.texcoords1.push_back(3.0f * uv);
+  for (const float mirror : {1.0f, -1.0f}) {
+    Scene scene = testing::sceneOf({mesh});
+    scene.materials[0].metallic = 1.0f;
+    scene.materials[0].double_sided = true;
+    scene.nodes[0].parent_from_node = glm::scale(glm::mat4(1.0f), glm::vec3(1.0f, 1.0f, 2.0f * mirror));
+    const auto geometry =
+        buildGroupGeometry(findRigidGroups(scene).at(0), scene, {{mesh}}, /*with_glossy=*/true);
+    ASSERT_EQ(geometry.draws.size(), 2u);
+    ASSERT_EQ(geometry.tangents.size(), geometry.positions.size());
+    for (const DrawGeometry& draw : geometry.draws)
+      for (std::size_t v = 0; v < draw.vertex_count; ++v) {
+        const std::size_t at = draw.first_vertex + v;
+        EXPECT_EQ(geometry.texcoord_sets[0][at], mesh.texcoords0[v]);
+        EXPECT_EQ(geometry.texcoord_sets[1][at], mesh.texcoords1[v]);
+        const glm::vec4 tangent = geometry.tangents[at];
+        EXPECT_EQ(glm::vec3(tangent), glm::vec3(1.0f, 0.0f, 0.0f));
+        // In the mesh cross(+Y, +X) = -Z; the node may take that to +Z.
+        EXPECT_EQ(tangent.w * glm::cross(geometry.normals[at], glm::vec3(tangent)),
+                  glm::vec3(0.0f, 0.0f, -mirror));
+      }
+  }
+}
+
+TEST(GroupGeometry, OfMatteScenesCarriesNothingForGlossyOnes) {
+  bundle::MeshData mesh = testing::grid({0, 0, 0}, 1.0f, 1);
+  const Scene scene = testing::sceneOf({mesh});
+  const auto geometry =
+      buildGroupGeometry(findRigidGroups(scene).at(0), scene, {{mesh}}, /*with_glossy=*/true);
+  EXPECT_TRUE(geometry.tangents.empty());
+  EXPECT_TRUE(geometry.texcoord_sets[0].empty());
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "baker/transport/face_points.hpp"
+#include "baker/transport/samples.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

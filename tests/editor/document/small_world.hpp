@@ -11,7 +11,6 @@
 #include "runtime/ecs/registry.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/instantiate.hpp"
-#include "runtime/scene/stable_id.hpp"
 
 namespace lambent::editor::testing {
 

@@ -13,7 +13,7 @@
 
 #include "editor/document/history.hpp"
 #include "runtime/base/atomic_file.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "small_world.hpp"
 
 namespace lambent::editor {

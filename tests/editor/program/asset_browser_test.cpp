@@ -53,21 +53,6 @@ TEST_F(EditorProgram, UsesAMapAndOpensASceneOfTheAssetsAsSteps) {
   EXPECT_EQ(states[2]["lights"], map_alone) << "a drag into the view";
   EXPECT_EQ(states[3]["scenes"].size(), 2u) << "Enter uses the first that is found";
   EXPECT_EQ(states[4]["scenes"].size(), 1u);
-  // What the view showed at rest, and the map, have pictures now.
-  const auto pictures = std::filesystem::recursive_directory_iterator(folder / "cache" / "pictures");
-  EXPECT_GE(std::ranges::count_if(pictures, [](const auto& entry) { return entry.is_regular_file(); }), 2);
-}
-
-// Scenes that were never open alone have no picture of their own, only their part of one.
-TEST_F(EditorProgram, TakesThePicturesOfScenesThatStandSideBySide) {
-  std::filesystem::copy(folder / "hello.glb", folder / "second.glb");
-  play(fmt::format("open \"{}\" \"{}\"\nwait loaded 60\nselect second\n"
-                   "set Transform.translation 3 0 0\nselect-none\nwait frames "
-                   "3\nframe-all\nwait rest 60\nwait seconds 2\n",
-                   path("hello.glb"), path("second.glb")),
-       {"--no-bake", "--light", "constant:0.5,0.5,0.5"});
-  const auto pictures = std::filesystem::recursive_directory_iterator(folder / "cache" / "pictures");
-  EXPECT_EQ(std::ranges::count_if(pictures, [](const auto& entry) { return entry.is_regular_file(); }), 2);
 }
 
 }  // namespace

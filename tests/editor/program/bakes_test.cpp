@@ -3,7 +3,7 @@
 
 #include "assets/glb.hpp"
 #include "assets/shapes.hpp"
-#include "baker/bake/option_rows.hpp"
+#include "baker/bake/options.hpp"
 #include "tests/editor/program/editor_program.hpp"
 
 namespace lambent {

@@ -1,5 +1,4 @@
 // Tests opening, dropping and closing scenes and worlds in the editor's window.
-#include "baker/pipeline/journal.hpp"
 #include "tests/editor/program/editor_program.hpp"
 
 namespace lambent {
@@ -13,31 +12,6 @@ TEST_F(EditorProgram, TakesADroppedSceneAndShowsItBeforeItIsBaked) {
   EXPECT_EQ(played.answer("state")["scenes"][0]["bake"]["reached"], "final");
   EXPECT_EQ(played.answer("state")["errors"], 0);
   EXPECT_EQ(played.answer("plan")["ready"], true);
-}
-
-// The remains of another scene's bake must not stand in the scene that is opened.
-TEST_F(EditorProgram, ShowsTheOpenedSceneAloneAndOffersUnfinishedBakes) {
-  std::filesystem::copy(path("hello.glb"), path("other.glb"));
-  baker::Journal(folder / "cache" / baker::kJournalFolder)
-      .begin({.scene = path("other.glb"), .output = path("other.lmb.glb")});
-  const Played played = play(R"(
-wait baked 240
-state
-tree type:bundle
-click bakes.other.glb.go-on
-wait frames 3
-wait baked 240
-state
-tree type:bundle
-)",
-                             {path("hello.glb"), "--fresh"});
-  const std::vector<json> states = played.all("state"), trees = played.all("tree");
-  ASSERT_EQ(trees.size(), 2u);
-  for (const json& tree : trees) EXPECT_EQ(tree.size(), 1u) << tree.dump();
-  EXPECT_EQ(states[0]["unfinished"], json::array({path("other.glb")}));
-  EXPECT_EQ(states[1]["unfinished"], json::array());
-  EXPECT_EQ(states[1]["unseen"][0]["phase"], "done") << states[1].dump();
-  EXPECT_TRUE(std::filesystem::exists(path("other.lmb.glb")));
 }
 
 TEST_F(EditorProgram, OpensAndClosesScenesAsStepsThatKeepEdits) {

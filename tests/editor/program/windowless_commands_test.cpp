@@ -2,7 +2,6 @@
 #include <fstream>
 #include <utility>
 
-#include "baker/pipeline/journal.hpp"
 #include "editor/session/scene_changes.hpp"
 #include "tests/editor/program/windowless.hpp"
 
@@ -246,33 +245,6 @@ TEST_F(WindowlessCommands, SayInOnePlaceThatASceneNeedsARebake) {
   EXPECT_EQ(status().text, "needs a rebake") << "other options are no less a reason";
 }
 
-TEST_F(WindowlessCommands, OfferUnfinishedBakesAndShowNothingOfThem) {
-  const std::filesystem::path other = folder.path() / "other.glb";
-  ASSERT_TRUE(assets::writeGlb(other, assets::hello()));
-  const baker::Journal journal(folder.path() / baker::kJournalFolder);
-  const baker::BakeRequest request{
-      .scene = other, .output = folder.path() / "other.lmb.glb", .last = baker::PreviewLevel::Unshadowed};
-  journal.begin(request);  // the entry is never done, as that of a process that was killed
-  session = makeSession();
-  EXPECT_EQ(answer("state")["unfinished"], json::array({other.string()}));
-  openHello();
-  EXPECT_EQ(session->scenes.entries().size(), 1u) << "only what was opened is there";
-  answer("go-on", {"other.glb"});
-  EXPECT_EQ(answer("state")["unfinished"], json::array());
-  waitFor([&] { return !session->scenes.busy(); });
-  EXPECT_EQ(answer("state")["unseen"][0]["phase"], "done");
-  EXPECT_EQ(session->scenes.entries().size(), 1u);
-
-  journal.begin(request);
-  session = makeSession();
-  answer("forget", {"other.glb"});
-  EXPECT_TRUE(journal.unfinished().empty());
-  journal.begin(request);
-  session = makeSession();
-  answer("open", {other.string()});
-  EXPECT_EQ(answer("state")["unfinished"], json::array()) << "opening it goes on with it";
-}
-
 TEST_F(WindowlessCommands, AskInADialogWhatHasNotBeenSaid) {
   answer("open");
   ASSERT_TRUE(session->window.dialog);
@@ -372,20 +344,17 @@ TEST_F(WindowlessCommands, WhatIsNotSavedIsRescuedBesideTheWorld) {
   EXPECT_NE(json::parse(std::ifstream(rescued)), saved);
 }
 
-TEST_F(WindowlessCommands, SaveLayoutsUnderNames) {
-  answer("move-panel", {"Log", "right"});
-  answer("save-layout", {"mine"});
-  answer("layout", {"lighting"});
-  EXPECT_FALSE(run("save-layout", {"lighting"})) << "it comes with the program";
-  EXPECT_FALSE(run("save-layout", {""}));
-  answer("layout", {"mine"});
-  EXPECT_EQ(session->preferences.layout.moved, (std::map<std::string, Dock>{{"Log", Dock::Right}}));
+TEST_F(WindowlessCommands, ChangeALayoutThatIsRemembered) {
+  answer("bottom-panels");
+  session->preferences.addRecent(folder.path() / "a.glb");
   const std::filesystem::path file = folder.path() / "editor.json";
   savePreferences(file, session->preferences);
-  EXPECT_EQ(loadPreferences(file).layouts, session->preferences.layouts);
-  answer("delete-layout", {"mine"});
-  EXPECT_FALSE(run("layout", {"mine"}));
-  EXPECT_FALSE(run("delete-layout", {"mine"}));
+  const Preferences loaded = loadPreferences(file);
+  EXPECT_EQ(loaded.layout, session->preferences.layout);
+  EXPECT_FALSE(loaded.layout.of(Dock::Bottom).shown);
+  EXPECT_EQ(loaded.recent, session->preferences.recent);
+  answer("layout-default");
+  EXPECT_EQ(session->preferences.layout, WindowLayout());
 }
 
 TEST_F(WindowlessCommands, UseAnAssetByItsName) {

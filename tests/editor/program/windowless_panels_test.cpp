@@ -235,6 +235,29 @@ TEST_F(WindowlessPanels, AFileDialogListsTheKindOfFilesThatIsChosen) {
   EXPECT_EQ(listed(), "a.glb b.json c.txt ") << "all files";
 }
 
+TEST_F(WindowlessPanels, AFileDialogListsFoldersFirstAndWhatComes) {
+  const std::filesystem::path shown = folder.path() / "shown";
+  std::filesystem::create_directories(shown / "z");
+  std::ofstream(shown / "b.glb") << "x";
+  std::ofstream(shown / ".hidden.glb") << "x";
+  answer("open");
+  ASSERT_TRUE(session->window.dialog);
+  Dialog& dialog = *session->window.dialog;
+  dialog.folder = shown;
+  const auto listed = [&] {
+    settle(Panel{"dialogs", Dock::Left, "", &drawDialogs});
+    std::string names;
+    for (const DialogFile& file : dialog.files) names += file.name + ' ';
+    return names;
+  };
+  EXPECT_EQ(listed(), "z b.glb ");
+  std::ofstream(shown / "a.glb") << "x";
+  EXPECT_EQ(listed(), "z a.glb b.glb ");
+  dialog.kind = Dialog::Kind::Folder;
+  dialog.listed.forget();
+  EXPECT_EQ(listed(), "z ");
+}
+
 TEST_F(WindowlessPanels, AFileDialogLeadsToThePlacesOfFilesByOneClick) {
   openHello();
   answer("open");

@@ -5,8 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/debug/overlay_lines.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "tests/support/frame/view_stage.hpp"
 
 namespace lambent::frame {
@@ -84,19 +83,13 @@ TEST_F(OverlayTest, TheBallOfALightProbeHasConstantRadianceUnderConstantLight) {
   const spec::RgbaImage with = stage.frame->readLinear();
   stage.frame->setOverlays(nothing);
   const spec::RgbaImage without = stage.picture();
-  std::size_t ball = 0, edges = 0;
+  std::size_t ball = 0;
   for (const std::size_t i : changes(with, without)) {
     ASSERT_EQ(with.texels[i].a, without.texels[i].a) << "alpha is the scene's coverage";
-    // The cube's faces show the same radiance, and its edges are dark.
-    if (with.texels[i].r < 0.9f * radiance.r) {
-      ++edges;
-      continue;
-    }
     ++ball;
     ASSERT_LT(glm::distance(glm::vec3(with.texels[i]), radiance), 2e-3f);
   }
   EXPECT_GT(ball, 5u);
-  EXPECT_GT(edges, 2u);
 }
 
 TEST_F(OverlayTest, WithoutOverlaysThePictureIsTheSameToTheBitAndThereIsNoPass) {

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "runtime/debug/data_view.hpp"
-#include "runtime/transfer/transfer_measures.hpp"
 #include "tests/support/frame/view_stage.hpp"
 
 namespace lambent::frame {
@@ -67,7 +66,7 @@ TEST_F(ViewTest, TransferDcOfAnOpenSphereIsTheClosedFormAllOver) {
     EXPECT_NEAR(texel.r, 0.2820948f, 0.2820948f / 2048.0f);
   }
   EXPECT_GT(count, 300u);
-  EXPECT_EQ(stage.frame->legend().max, transfer::openDc());
+  EXPECT_EQ(stage.frame->legend().max, kOpenDc);
 }
 
 TEST_F(ViewTest, BandEnergyOfAnOpenSphereIsTheClosedFormForPlainAndMappedSurfacesAlike) {
@@ -76,7 +75,7 @@ TEST_F(ViewTest, BandEnergyOfAnOpenSphereIsTheClosedFormForPlainAndMappedSurface
       BundleBuilder builder = openSphere();
       if (mapped) openMapped(builder);
       ViewStage stage(builder, {kWhite}, linearOptions({SurfaceView::TransferBand, band}));
-      const float expected = transfer::openBandEnergy(band);
+      const float expected = openBandEnergy(band);
       for (const glm::vec4& texel : stage.picture().texels) {
         if (texel.a == 0.0f) continue;
         ASSERT_NEAR(texel.r, expected, 0.005f * expected) << band << mapped;

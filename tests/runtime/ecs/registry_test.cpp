@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <random>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -140,6 +141,58 @@ TEST(Registry, DoesWhatMapsDoOverRandomOperations) {
     }
     ASSERT_EQ(words, expected);
   }
+}
+
+struct A {
+  int value = 0;
+};
+struct B {};
+
+struct Fixture {
+  explicit Fixture(int count) {
+    for (int i = 0; i < count; ++i) {
+      entities.push_back(registry.create());
+      registry.emplace<A>(entities.back(), i);
+    }
+  }
+  Registry registry;
+  std::vector<Entity> entities;
+};
+
+TEST(View, LeavesOutWhatTheLoopDestroyedAndVisitsTheRestOnce) {
+  Fixture f(100);
+  std::set<Entity> visited;
+  for (auto [entity, a] : f.registry.view<A>()) {
+    EXPECT_TRUE(visited.insert(entity).second);
+    const int value = a.value;
+    if (value < 50) f.registry.destroy(f.entities[static_cast<std::size_t>(99 - value)]);
+  }
+  EXPECT_EQ(visited.size(), 50u);
+  for (int i = 0; i < 50; ++i) EXPECT_TRUE(visited.contains(f.entities[static_cast<std::size_t>(i)]));
+}
+
+TEST(View, DoesNotVisitWhatTheLoopCreatesEvenInAReusedSlot) {
+  Fixture f(10);
+  int visits = 0;
+  for (auto [entity, a] : f.registry.view<A>()) {
+    ++visits;
+    f.registry.destroy(entity);
+    f.registry.emplace<A>(f.registry.create(), 100);
+  }
+  EXPECT_EQ(visits, 10);
+  EXPECT_EQ(f.registry.count<A>(), 10u);
+}
+
+TEST(View, MayRemoveAComponentThatItIterates) {
+  Fixture f(10);
+  for (const Entity entity : f.entities) f.registry.emplace<B>(entity);
+  int visits = 0;
+  for ([[maybe_unused]] auto [entity, a, b] : f.registry.view<A, B>()) {
+    ++visits;
+    for (const Entity other : f.entities) f.registry.remove<B>(other);
+  }
+  EXPECT_EQ(visits, 1);
+  EXPECT_EQ(f.registry.count<A>(), 10u);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST_F(FrameGlossy, AnOpenMetalSphereUnderASunIsWhatTheKernelMakesOfTheLight) {
   const spec::View view = stage.view();
   std::vector<glm::vec4> light;
   for (const glm::vec3& coefficient : stage.environment.light().c) light.emplace_back(coefficient, 0.0f);
-  const effects::glossy::glsl::Table table(ggxTable());
+  const glossy::glsl::Table table(ggxTable());
   const glm::mat4 world_from_clip = glm::inverse(view.clip_from_view * view.view_from_world);
   double squared = 0.0, power = 0.0;
   std::size_t count = 0;
@@ -171,7 +171,7 @@ double errorUnderASun(float roughness, bool residual, const spec::SunLight& sun)
   const auto ggx = baker::makeGgx(false);
   const lighting::Disc disc = stage.environment.discs()[0];
   const glm::dvec3 centre = disc.direction;
-  const glm::dvec3 side = effects::glossy::glsl::Isotropic().perpendicular(disc.direction),
+  const glm::dvec3 side = glossy::glsl::Isotropic().perpendicular(disc.direction),
                    up = glm::cross(centre, side);
   const double least = std::cos(static_cast<double>(disc.radius_rad));
   double squared = 0.0, power = 0.0;
@@ -180,8 +180,7 @@ double errorUnderASun(float roughness, bool residual, const spec::SunLight& sun)
       const glm::vec4 texel = image.texels[y * 96 + x];
       const std::optional<Hit> hit = hitSphere(view, world_from_clip, x, y);
       if (texel.a == 0.0f || !hit || hit->rim > 0.9f) continue;
-      const glm::dvec3 normal = hit->normal,
-                       tangent = effects::glossy::glsl::Isotropic().perpendicular(hit->normal);
+      const glm::dvec3 normal = hit->normal, tangent = glossy::glsl::Isotropic().perpendicular(hit->normal);
       const glm::dmat3 local_from_world =
           glm::transpose(glm::dmat3(tangent, glm::cross(normal, tangent), normal));
       const glm::dvec3 to_eye = local_from_world * glm::dvec3(hit->to_eye);

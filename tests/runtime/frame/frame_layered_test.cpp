@@ -94,9 +94,9 @@ std::vector<float> seenWeights(const evaluate::SeenKernel& kernel, float cosine,
 
 float seenAbout(Vector seen, const glm::vec3& normal, const glm::vec3& mirrored, float roughness) {
   static const evaluate::SeenKernel kernel = evaluate::makeSeenKernel();
-  const sh::ZonalFactors factors = sh::ZonalFactors::isotropic(static_cast<int>(transfer::kSeenBands));
+  const sh::ZonalFactors factors(static_cast<int>(transfer::kSeenBands), /*isotropic=*/true);
   std::vector<glm::vec3> axes(factors.axes().begin(), factors.axes().end());
-  const auto view = effects::glossy::glsl::Isotropic().localView(normal, {}, mirrored);
+  const auto view = glossy::glsl::Isotropic().localView(normal, {}, mirrored);
   return transfer::glsl::SeenSky().seenShare(
       seen.data(), seenWeights(kernel, view.cos_theta, roughness).data(), axes.data(),
       glm::mat3(view.tangent, view.bitangent, view.normal));
@@ -153,7 +153,7 @@ TEST_F(FrameLayered, AMirrorInTheDarkDoesNotShowTheSky) {
 TEST_F(FrameLayered, AMirrorBesideAWallShowsWhatTheTwinSaysWithANormalMapOrWithout) {
   const float roughness = 0.3f;
   Vector half = transferOf({0, 0, 1}, openTowardsX);
-  const effects::glossy::glsl::Table table(ggxTable());
+  const glossy::glsl::Table table(ggxTable());
   const float open = transfer::glsl::SeenSky().seenShareOfAll(half.data());
   EXPECT_NEAR(open, 0.5f, 0.01f);
   for (const bool mapped : {false, true})

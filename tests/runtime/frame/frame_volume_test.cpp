@@ -7,7 +7,7 @@
 #include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/bounds.hpp"
-#include "runtime/scene/lights.hpp"
+#include "runtime/scene/instantiate.hpp"
 #include "runtime/shadows/lit_scene.hpp"
 #include "tests/support/frame/view_stage.hpp"
 

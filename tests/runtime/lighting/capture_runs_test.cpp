@@ -8,7 +8,6 @@
 #include "runtime/lighting/capture_plan.hpp"
 #include "runtime/lighting/capture_queries.hpp"
 #include "runtime/sh/image_layout.hpp"
-#include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/lighting/capture_fixture.hpp"
 #include "tests/runtime/lighting/capture_scenes.hpp"
@@ -100,7 +99,6 @@ CapturedLight CaptureRuns::capturedByRays(const Scene& scene, const CapturePoint
   const double pixels = size * subsamples;
   const auto count = static_cast<std::size_t>(sh::coefficientCount(scene.options.order));
   const std::vector<float> weights = sh::cubeWeights(scene.options.order, size);
-  const std::vector<glm::vec3> sky_texels(static_cast<std::size_t>(6 * size * size), sky);
   std::vector<glm::dvec4> sums(2 * count);
   for (int face = 0; face < 6; ++face)
     for (int y = 0; y < size; ++y)
@@ -120,15 +118,15 @@ CapturedLight CaptureRuns::capturedByRays(const Scene& scene, const CapturePoint
         const double share = static_cast<double>(covered) / (subsamples * subsamples);
         sums[0].w += 1.0 - share;
         for (std::size_t i = 0; i < count; ++i) {
-          const double weight = static_cast<double>(weights[i * sky_texels.size() + texel]);
+          const double weight =
+              static_cast<double>(weights[i * static_cast<std::size_t>(6 * size * size) + texel]);
           sums[2 * i] += glm::dvec4(weight / (subsamples * subsamples) * bodies, 0.0);
           sums[2 * i + 1] += weight * share * glm::dvec4(sky, 1.0);
         }
       }
   CapturedLight out;
-  const sh::CubeProjector projector(scene.options.order, size);
-  capture::combine(std::vector<glm::vec4>(sums.begin(), sums.end()), 0,
-                   sh::constantLight(scene.options.order, sky), projector.project(sky_texels), out);
+  const sh::LightVector sky_light = sh::constantLight(scene.options.order, sky);
+  capture::combine(std::vector<glm::vec4>(sums.begin(), sums.end()), 0, sky_light, sky_light, out);
   for (const LightQuery& query : point.queries) {
     std::uint32_t bits = 0, k = 0;
     for (const glm::vec3& direction : capture::discDirections(query)) {

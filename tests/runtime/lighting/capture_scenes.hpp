@@ -13,7 +13,7 @@
 
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/lighting/capture.hpp"
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::testing {
 

@@ -10,7 +10,6 @@
 
 #include "runtime/lighting/environment.hpp"
 #include "runtime/sh/image_layout.hpp"
-#include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
 

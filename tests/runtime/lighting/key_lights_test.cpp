@@ -9,7 +9,6 @@
 
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/image_layout.hpp"
-#include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/shared_data.hpp"
 

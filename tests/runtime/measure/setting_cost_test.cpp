@@ -28,7 +28,7 @@ TEST_F(SettingCostTest, ErrorsFallTowardsTheFinestValueWhichHasNone) {
   const auto before = stage.picture();
   const SettingRow& row = *findSetting("order");
   const double values[] = {1.0, 2.0, 3.0, 5.0, 8.0};
-  const SettingOptions options{.size = {48, 48}, .repeats = 2};
+  const MeasureOptions options{.size = {48, 48}, .repeats = 2};
   const auto points = sweepSetting({stage.world, stage.environment, stage.view()}, stage.frame->settings(),
                                    row, values, options);
   ASSERT_TRUE(points) << points.error().line();

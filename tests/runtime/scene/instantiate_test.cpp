@@ -11,7 +11,6 @@
 
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/materials.hpp"
-#include "runtime/scene/stable_id.hpp"
 #include "runtime/scene/transforms.hpp"
 #include "tests/runtime/scene/values.hpp"
 
@@ -153,7 +152,7 @@ TEST(RigidGroup, IsWhereTheBakerSaysUntilItMoves) {
   const Hall hall;
   ecs::Registry registry;
   const SceneInstance scene = instance(registry, hall.d);
-  EXPECT_EQ(updateTransforms(registry).groups, 0u);
+  updateTransforms(registry);
   const auto& top = registry.get<RigidGroupComponent>(scene.groups[1]);
   EXPECT_EQ(top.rotation, hall.d.groups[1].rest_rotation);
   EXPECT_EQ(top.translation, hall.d.groups[1].rest_translation);
@@ -173,7 +172,7 @@ TEST(RigidGroup, TurnsWithItsNodeInSpiteOfMirrorsAndStretch) {
   moving.rotation = turn * rest.rotation;
   moving.translation = {1.0f, 4.0f, 2.0f};
   moving.scale *= 1.7f;
-  EXPECT_EQ(updateTransforms(registry).groups, 1u);
+  updateTransforms(registry);
   const auto& top = registry.get<RigidGroupComponent>(scene.groups[1]);
   EXPECT_NEAR(std::abs(glm::dot(top.turn_since_rest, turn)), 1.0f, kRounding);
   EXPECT_NEAR(std::abs(glm::dot(top.rotation, turn * hall.d.groups[1].rest_rotation)), 1.0f, kRounding);
@@ -192,7 +191,7 @@ TEST(RigidGroup, KeepsItsLastRotationWhileItIsFlatOrMirrored) {
   const SceneInstance scene = instance(registry, hall.d);
   for (const float scale_x : {0.0f, 1.0f}) {  // at rest it is -1
     registry.edit<Transform>(nodeOf(scene, hall.top)).scale.x = scale_x;
-    EXPECT_EQ(updateTransforms(registry).groups, 1u);
+    updateTransforms(registry);
     EXPECT_EQ(registry.get<RigidGroupComponent>(scene.groups[1]).rotation, hall.d.groups[1].rest_rotation);
   }
 }
@@ -295,12 +294,6 @@ TEST(Instantiate, TwiceNeedsAnotherInstanceNumberAndDestructionTakesOnlyItsOwn) 
   EXPECT_EQ(registry.entityCount(), 0u);
   EXPECT_TRUE(worldBounds(registry).empty());
 }
-
-template <class Component>
-class DeclaredFields : public ::testing::Test {};
-using Components = ::testing::Types<Name, Transform, CameraComponent, EnvironmentComponent, LampComponent,
-                                    LocalLightComponent, AnimationComponent>;
-TYPED_TEST_SUITE(DeclaredFields, Components);
 
 }  // namespace
 }  // namespace lambent::scene

@@ -25,25 +25,6 @@ std::vector<float> randomFunction(Random& random, int bands) {
   return f;
 }
 
-// Checks Σ_k Γ_ijk² = ∫ (y_i y_j)²: visibility has all bands that the product of two functions can have, and
-// no value was dropped.
-TEST(Gaunt, KeepsTheWholeEnergyOfProducts) {
-  const GauntTable table = makeGauntTable(6, 6);
-  std::vector<double> squares(36 * 36), energy(36 * 36);
-  testing::overSphere(64, [&](const glm::dvec3& dir, double weight) {
-    std::array<double, 36> y;
-    evaluate(6, dir, y);
-    for (std::size_t i = 0; i < 36; ++i)
-      for (std::size_t j = 0; j < 36; ++j) squares[i * 36 + j] += weight * y[i] * y[i] * y[j] * y[j];
-  });
-  for (std::size_t i = 0; i < 36; ++i)
-    for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t) {
-      const auto value = static_cast<double>(table.terms[t].value);
-      energy[i * 36 + table.terms[t].j] += value * value;
-    }
-  for (std::size_t n = 0; n < squares.size(); ++n) EXPECT_NEAR(energy[n], squares[n], 1e-6) << n;
-}
-
 // V = c: M = c times the identity; open points transfer light as it is.
 TEST(Gaunt, TakesFullVisibilityToTheIdentity) {
   for (const auto& [in, out] : {std::pair{5, 5}, {6, 6}, {3, 5}, {6, 4}}) {

@@ -10,10 +10,7 @@
 #define STBI_ONLY_HDR
 #include <stb_image.h>
 
-#include "runtime/sh/projection.hpp"
-#include "runtime/sh/window.hpp"
-#include "runtime/sh/zonal.hpp"
-#include "tests/support/differences.hpp"
+#include "runtime/sh/image_layout.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace lambent::sh {
@@ -62,25 +59,6 @@ TEST(ShProbes, GraceCathedralHasItsPrintedCoefficients) {
       // The figures are printed to two decimals, so they are exact to 0.005.
       EXPECT_NEAR(light.c[i][channel] / 3.2f * (odd_in_z ? -1.0f : 1.0f), printed[i][channel], 0.0075f) << i;
   }
-}
-
-TEST(ShProbes, AutoWindowLeavesNoNegativeIrradianceUnderARealSun) {
-  const auto path = lambent::testing::sharedFile("probes/noon_grass_1k.hdr");
-  LAMBENT_NEEDS_SHARED(path);
-  const LightVector light = projectFile(5, path);
-  const LightVector irradiance = cosineConvolved(applyWindow(light, Window::Auto));
-  float least = 1e30f, least_unwindowed = 1e30f;
-  for (int y = 0; y < 128; ++y)
-    for (int x = 0; x < 256; ++x) {
-      const glm::vec3 normal(texelDirection(ImageLayout::LatLong, 256, 128, x, y));
-      const glm::vec3 value = irradiance.evaluate(normal), before = cosineConvolved(light).evaluate(normal);
-      for (int channel = 0; channel < 3; ++channel) {
-        least = lambent::testing::smaller(least, value[channel]);
-        least_unwindowed = lambent::testing::smaller(least_unwindowed, before[channel]);
-      }
-    }
-  EXPECT_GE(least, -1e-5f);
-  EXPECT_LE(least_unwindowed, least);
 }
 
 }  // namespace

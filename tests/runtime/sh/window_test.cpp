@@ -40,6 +40,11 @@ void expectEqual(const LightVector& a, const LightVector& b) {
   for (std::size_t i = 0; i < a.c.size(); ++i) EXPECT_EQ(a.c[i], b.c[i]) << i;
 }
 
+// Returns the blend of Auto, from what it leaves of band 1.
+double blendOf(const LightVector& light) {
+  return (1 - double{windowWeights(light, Window::Auto)[1]}) / (1 - double{positiveWeights(light.order)[1]});
+}
+
 TEST(ShWindow, AutoLeavesNoNegativeLight) {
   Random random(13);
   for (int order = 1; order <= kMaxOrder; ++order) {
@@ -83,7 +88,7 @@ TEST(ShWindow, AutoIsTheLeastThatHelps) {
   for (int order : {3, 5, 7})
     for (double degrees : {1.0, 15.0, 30.0}) {
       const LightVector light = discLight(order, {0.48f, 0.64f, 0.6f}, degrees * kDegree, {1, 1, 1});
-      const double blend = deringingBlend(light);
+      const double blend = blendOf(light);
       ASSERT_GT(blend, 0.0);
       const BandWeights kernel = positiveWeights(order);
       const auto leastAt = [&](double a) {
@@ -106,17 +111,49 @@ TEST(ShWindow, AutoStaysFiniteOnOddLights) {
   expectEqual(applyWindow(quadratic, Window::Auto), quadratic);  // mean 0: no window can help
 
   quadratic.c[0] = {1e-3f, 1e-3f, 1e-3f};  // hardly any mean, as no real light has: all that Auto can do
-  EXPECT_EQ(deringingBlend(quadratic), 1.0);
+  EXPECT_EQ(blendOf(quadratic), 1.0);
 
   quadratic.c[0] = {1e-42f, -1, 1e-30f};  // means that vanish beside the rest
   expectEqual(applyWindow(quadratic, Window::Auto), quadratic);
 
   LightVector broken = discLight(5, {0, 1, 0}, 0.1, {1, 1, 1});
   broken.c[7].g = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(deringingBlend(broken), 0);
+  EXPECT_EQ(blendOf(broken), 0);
 
   LightVector red = discLight(5, {0, 1, 0}, 0.1, {1, 0, 0});  // two channels dark
-  EXPECT_GT(deringingBlend(red), 0);
+  EXPECT_GT(blendOf(red), 0);
+}
+
+TEST(CachedWindow, AScaledLightKeepsTheWindowThatItWouldHave) {
+  Random random(7);
+  for (int i = 0; i < 50; ++i) {
+    const LightVector light = someLights(5, random);
+    CachedWindow kept;
+    kept.follow(light, Window::Auto);
+    EXPECT_EQ(kept.weights(), windowWeights(light, Window::Auto));
+    const BandWeights before = kept.weights();
+    const LightVector scaled =
+        light * glm::vec3(0.01 + random.uniform(), 7.3 * (0.01 + random.uniform()), 300.0f);
+    EXPECT_TRUE(kept.fits(scaled, Window::Auto)) << i;
+    kept.follow(scaled, Window::Auto);
+    EXPECT_EQ(kept.weights(), before);
+    // The result equals that of a new search, up to the search's tolerance.
+    const BandWeights searched = windowWeights(scaled, Window::Auto);
+    for (std::size_t l = 0; l < searched.size(); ++l) EXPECT_NEAR(kept.weights()[l], searched[l], 1e-3f);
+  }
+}
+
+TEST(CachedWindow, WindowsThatDoNotLookAtTheLightFollowItsOrderAndTheirKind) {
+  Random random(10);
+  const LightVector light = someLights(5, random), other = someLights(5, random);
+  CachedWindow kept;
+  for (const Window window : {Window::Hann, Window::Off, Window::Auto}) {
+    EXPECT_FALSE(kept.fits(light, window));
+    kept.follow(light, window);
+    EXPECT_EQ(kept.weights(), windowWeights(light, window));
+    EXPECT_EQ(kept.fits(other, window), window != Window::Auto);
+    EXPECT_FALSE(kept.fits(light.truncated(3), window));
+  }
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <vector>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "runtime/sh/basis.hpp"
@@ -41,41 +44,6 @@ TEST(ShZonal, TransfersAllLightToAnOpenPoint) {
   }
 }
 
-// A wall blocks x < 0 and the receiver looks along z. The table's values carry the Condon-Shortley sign.
-TEST(ShZonal, MatchesTheHalfPlaneInClosedForm) {
-  std::array<double, 25> transfer{}, y;
-  testing::overSphere(40, 0, kPi / 2, -kPi / 2, kPi / 2, [&](const glm::dvec3& dir, double weight) {
-    evaluate(5, dir, y);
-    for (std::size_t i = 0; i < y.size(); ++i) transfer[i] += weight * dir.z * y[i];
-  });
-  struct Entry {
-    int l, m;
-    double value;
-  };
-  const std::array<Entry, 10> table = {{{0, 0, .443113463},
-                                        {1, 0, .511663354},
-                                        {1, 1, -.325735651},
-                                        {2, 0, .247707956},
-                                        {2, 1, -.429044203},
-                                        {3, 1, -.304699606},
-                                        {3, 3, .078672479},
-                                        {4, 0, -.055389183},
-                                        {4, 1, -.131370506},
-                                        {4, 3, .115854788}}};
-  for (int l = 0; l < 5; ++l)
-    for (int m = -l; m <= l; ++m) {
-      const auto found = std::find_if(table.begin(), table.end(),
-                                      [&](const Entry& entry) { return entry.l == l && entry.m == m; });
-      const double expected = found == table.end() ? 0 : found->value * (m % 2 == 0 ? 1 : -1);
-      // The table's own quadrature reaches 4e-6 where m is odd (a square root at the zenith).
-      EXPECT_NEAR(transfer[static_cast<std::size_t>(coefficientIndex(l, m))], expected,
-                  m % 2 == 0 ? 1e-9 : 4e-6)
-          << l << ", " << m;
-    }
-  EXPECT_NEAR(transfer[static_cast<std::size_t>(coefficientIndex(1, 1))], std::sqrt(3 / (4 * kPi)) * 2 / 3,
-              1e-12);
-}
-
 TEST(ShZonal, HasTheDiscsClosedForm) {
   struct Row {
     double degrees;
@@ -111,9 +79,6 @@ TEST(ShZonal, TransferAndConvolutionAgree) {
   Random random(12);
   const LightVector light =
       discLight(6, {0.6f, 0, 0.8f}, 0.7, {3, 2, 1}) + constantLight(6, {0.1f, 0.2f, 0.3f});
-  std::array<double, 6> cosine_zonal;
-  for (int l = 0; l < 6; ++l)
-    cosine_zonal[static_cast<std::size_t>(l)] = clampedCosine(l) / kPi * std::sqrt((2 * l + 1) / (4 * kPi));
   for (int k = 0; k < 20; ++k) {
     const glm::vec3 normal(random.direction());
     std::array<float, 36> transfer;
@@ -121,12 +86,37 @@ TEST(ShZonal, TransferAndConvolutionAgree) {
     glm::vec3 sum(0);
     for (std::size_t i = 0; i < transfer.size(); ++i) sum += transfer[i] * light.c[i];
     const glm::vec3 by_cosine = cosineConvolved(light).evaluate(normal);
-    const glm::vec3 by_kernel = convolved(light, cosine_zonal).evaluate(normal);
-    for (int channel = 0; channel < 3; ++channel) {
-      EXPECT_NEAR(sum[channel], by_cosine[channel], 2e-6f);
-      EXPECT_NEAR(sum[channel], by_kernel[channel], 2e-6f);
-    }
+    for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(sum[channel], by_cosine[channel], 2e-6f);
   }
+}
+
+// Checks that f(s) = Σ_l Σ_i w_l,i (2l+1)/4pi P_l(a_i . s), which depends on angles to the axes alone, so
+// that turned axes give the turned function.
+TEST(ZonalFactors, SumUpToTheFunction) {
+  Random random(21);
+  for (int order = 1; order <= kMaxFactoredOrder; ++order)
+    for (bool isotropic : {true, false})
+      for (int k = 0; k < 50; ++k) {
+        const ZonalFactors factors(order, isotropic);
+        std::vector<float> f(static_cast<std::size_t>(factors.weightCount())), weights(f.size());
+        for (float& c : f) c = static_cast<float>(2 * random.uniform() - 1);
+        factors.factor(f, weights);
+        const glm::dvec3 dir = random.direction();
+        std::vector<double> y(static_cast<std::size_t>(coefficientCount(order)));
+        evaluate(order, dir, y);
+        double sum = 0, expected = 0, energy = 1;
+        std::size_t at = 0;
+        for (int l = 0; l < order; ++l)
+          for (int i = 0; i < factors.axesOfBand(l); ++i, ++at) {
+            const double cosine = glm::dot(glm::dvec3(factors.axes()[static_cast<std::size_t>(i)]), dir);
+            sum += static_cast<double>(weights[at]) * (2 * l + 1) / (4 * kPi) * legendre(l, cosine);
+            const int m = isotropic ? i : i - l;
+            const double c = static_cast<double>(f[at]);
+            expected += c * y[static_cast<std::size_t>(coefficientIndex(l, m))];
+            energy += c * c;
+          }
+        EXPECT_NEAR(sum, expected, 2e-5 * std::sqrt(energy)) << "order " << order << ", " << isotropic;
+      }
 }
 
 }  // namespace

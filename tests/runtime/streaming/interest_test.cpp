@@ -1,11 +1,11 @@
-#include "runtime/streaming/interest.hpp"
-
 #include <limits>
 #include <numeric>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <gtest/gtest.h>
+
+#include "runtime/streaming/parts.hpp"
 
 namespace lambent::streaming {
 namespace {
@@ -19,13 +19,19 @@ Parts smallParts() {
   return parts;
 }
 
+void chooseAmong(std::vector<Interest>& bundles, std::uint64_t max_bytes) {
+  std::vector<Interest*> all;
+  for (Interest& bundle : bundles) all.push_back(&bundle);
+  choose(all, max_bytes);
+}
+
 struct Scene {
-  Parts parts = smallParts();
   std::vector<Interest> bundles;
 
-  explicit Scene(const std::vector<float>& sizes) {
-    for (const float size : sizes) bundles.push_back({&parts, {size, size}, {0, 0}});
+  explicit Scene(const std::vector<float>& sizes, const Parts& parts = smallParts()) {
+    for (const float size : sizes) bundles.push_back({parts, {size, size}, {0, 0}});
   }
+  void choose(std::uint64_t max_bytes) { chooseAmong(bundles, max_bytes); }
   void see(const std::vector<float>& sizes) {
     for (std::size_t i = 0; i < sizes.size(); ++i) bundles[i].size = {sizes[i], sizes[i]};
   }
@@ -33,7 +39,7 @@ struct Scene {
     std::uint64_t sum = 0;
     for (const Interest& bundle : bundles)
       for (std::size_t u = 0; u < 2; ++u)
-        for (std::uint32_t s = 0; s < bundle.target[u]; ++s) sum += parts.units[u][s].bytes;
+        for (std::uint32_t s = 0; s < bundle.target[u]; ++s) sum += bundle.parts.units[u][s].bytes;
     return sum;
   }
   std::vector<std::vector<std::uint32_t>> targets() const {
@@ -50,11 +56,11 @@ using Targets = std::vector<std::vector<std::uint32_t>>;
 TEST(Interest, TakesAllWhereThereIsRoomAndNeverMoreThanTheBudget) {
   const std::vector<float> sizes = {1.0f, 0.01f, 0.3f, 1e-9f};
   Scene all(sizes);
-  choose(all.bundles, 4 * 220);
+  all.choose(4 * 220);
   EXPECT_EQ(all.targets(), Targets(4, {1, 11}));
   for (std::uint64_t budget = 100; budget < 900; budget += 7) {
     Scene scene(sizes);
-    choose(scene.bundles, budget);
+    scene.choose(budget);
     EXPECT_LE(scene.bytes(), budget);
     EXPECT_EQ(scene.bundles[0].target[0], 1u) << "the largest is always shown";
   }
@@ -62,29 +68,29 @@ TEST(Interest, TakesAllWhereThereIsRoomAndNeverMoreThanTheBudget) {
 
 TEST(Interest, LargerInSightComesFirstAndSurfacesBeforeShadowsBeforeDetail) {
   Scene scene({1.0f, 0.5f});
-  choose(scene.bundles, 250);
+  scene.choose(250);
   EXPECT_EQ(scene.targets(), (Targets{{1, 2}, {1, 1}})) << "a share of planes to the larger one";
   Scene far({1.0f, 1e-3f});
-  choose(far.bundles, 250);
+  far.choose(250);
   EXPECT_EQ(far.targets(), (Targets{{1, 11}, {0, 0}})) << "planes of what is near before what is a dot";
 }
 
 TEST(Interest, ProxyLodsComeBeforeAnythingButTheLargestUpToAQuarterOfTheMemory) {
   const std::vector<float> sizes = {1e-4f, 1.0f, 0.5f, 1e-3f, 1e-2f, 1e-5f};
-  Scene scene(sizes);
-  scene.parts.units[0].insert(scene.parts.units[0].begin(), Step{.work = {}, .bytes = 10});
-  choose(scene.bundles, 400);
+  Parts parts = smallParts();
+  parts.units[0].insert(parts.units[0].begin(), Step{.work = {}, .bytes = 10});
+  Scene scene(sizes, parts);
+  scene.choose(400);
   for (const Interest& bundle : scene.bundles) EXPECT_GE(bundle.target[0], 1u);
   EXPECT_EQ(scene.bundles[1].target[0], 2u);
   EXPECT_EQ(scene.bundles[2].target[0], 2u) << "what is left goes by worth";
   EXPECT_LE(scene.bytes(), 400u);
 
-  Scene tight(sizes);
-  tight.parts = scene.parts;
-  choose(tight.bundles, 135);
+  Scene tight(sizes, parts);
+  tight.choose(135);
   EXPECT_EQ(tight.targets(), (Targets{{0, 0}, {2, 0}, {1, 0}, {0, 0}, {1, 0}, {0, 0}}))
       << "the largest, then the proxy levels of detail of those that are next";
-  choose(tight.bundles, 50);
+  tight.choose(50);
   EXPECT_EQ(tight.targets(), (Targets{{0, 0}, {2, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}})) << "in any case";
 }
 
@@ -96,9 +102,9 @@ TEST(Interest, TexturesHaveTheTexelsThatAreSeenAndNoMoreWhereOthersAskForMemory)
   for (std::uint64_t bytes = 4; bytes <= 4096; bytes *= 4)
     parts.units.back().push_back({.work = {}, .bytes = bytes});
   const auto levels = [&](float size, std::uint64_t max_bytes) {
-    std::vector<Interest> bundles(2, {&parts, std::vector<float>(3, size), {0, 0, 0}});
+    std::vector<Interest> bundles(2, {parts, std::vector<float>(3, size), {0, 0, 0}});
     bundles[1].size.assign(3, 0.25f * size);  // half as large in the picture
-    choose(bundles, max_bytes);
+    chooseAmong(bundles, max_bytes);
     return std::vector{bundles[0].target[2], bundles[1].target[2]};
   };
   EXPECT_EQ(levels(0.05f, 100'000), (std::vector{6u, 6u})) << "room for all";
@@ -111,15 +117,15 @@ TEST(Interest, TexturesHaveTheTexelsThatAreSeenAndNoMoreWhereOthersAskForMemory)
 
 TEST(Interest, StaysUntilSomethingElseIsClearlyLarger) {
   Scene scene({1.0f, 1.0f, 0.9f});
-  choose(scene.bundles, 500);
+  scene.choose(500);
   const Targets before = scene.targets();
   for (int i = 0; i < 20; ++i) {
     scene.see({1.0f, i % 2 == 0 ? 0.9f : 1.1f, i % 2 == 0 ? 1.1f : 0.9f});
-    choose(scene.bundles, 500);
+    scene.choose(500);
     ASSERT_EQ(scene.targets(), before) << i;
   }
   scene.see({1.0f, 0.2f, 3.0f});
-  choose(scene.bundles, 500);
+  scene.choose(500);
   EXPECT_NE(scene.targets(), before);
 }
 

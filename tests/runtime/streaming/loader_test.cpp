@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -17,12 +17,16 @@
 
 #include "runtime/bundle/container.hpp"
 #include "runtime/streaming/parts.hpp"
+#include "runtime/streaming/resident_tables.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"
+#include "tests/support/built_volume.hpp"
 
 namespace lambent::streaming {
 namespace {
 
 using testing::Sample;
+
+using lambent::testing::BuiltVolume;
 
 struct Name {
   std::string operator()(const MeshChunk& r) const { return "mesh " + join({r.mesh, r.primitive}); }
@@ -196,11 +200,10 @@ TEST_F(LoaderTest, IsDestroyedMidWayWithoutHanging) {
       loader.waitForMore();
       taken += loader.take(1).size();
     }
-    Loader moved = std::move(loader);
     EXPECT_EQ(taken, take) << "one at a time";
-    EXPECT_FALSE(moved.finished()) << "it is mid way";
-    EXPECT_FALSE(moved.error());
-    EXPECT_LT(moved.bytesRead(), 40 * file_bytes);
+    EXPECT_FALSE(loader.finished()) << "it is mid way";
+    EXPECT_FALSE(loader.error());
+    EXPECT_LT(loader.bytesRead(), 40 * file_bytes);
   }
   EXPECT_EQ(reader.use_count(), 1) << "no worker is left that holds the file";
 }
@@ -270,12 +273,9 @@ TEST_F(LoaderTest, PartsOfABundleAreAllOfItEachOnceInAnOrderThatShows) {
   }
 }
 
-// Loads for as long as LAMBENT_LONG_RUN_SECONDS says (default: half a second), as a camera that wanders
-// would: any parts in any order, by several loaders at once on the same threads, some dropped before they are
-// done.
+// Loads as a camera that wanders would: any parts in any order, by several loaders at once on the same
+// threads, some dropped before they are done.
 TEST_F(LoaderTest, BringsRandomPartsWhileOthersAreDropped) {
-  const char* asked = std::getenv("LAMBENT_LONG_RUN_SECONDS");
-  const std::chrono::duration<double> most(asked ? std::atof(asked) : 0.5);
   write(testing::sampleBundle());
   const auto reader = open();
   const auto parts = partsOf(*reader, /*limited=*/true);
@@ -284,26 +284,111 @@ TEST_F(LoaderTest, BringsRandomPartsWhileOthersAreDropped) {
   for (const Unit& unit : parts->units)
     for (const Step& step : unit) all.insert(all.end(), step.work.begin(), step.work.end());
   std::mt19937 random(7);
-  std::vector<Loader> dropped;
-  std::size_t loads = 0;
-  for (const auto start = std::chrono::steady_clock::now();
-       loads <= 10 || std::chrono::steady_clock::now() - start < most; ++loads) {
+  std::vector<std::unique_ptr<Loader>> dropped;
+  for (int loads = 0; loads < 200; ++loads) {
     std::ranges::shuffle(all, random);
     const std::size_t count = 1 + random() % all.size();
     const auto end = all.begin() + static_cast<std::ptrdiff_t>(count);
-    Loader loader(reader, std::vector<Work>(all.begin(), end), threads_,
-                  static_cast<unsigned>(1 + random() % 3));
+    auto loader = std::make_unique<Loader>(reader, std::vector<Work>(all.begin(), end), threads_,
+                                           static_cast<unsigned>(1 + random() % 3));
     if (random() % 2 == 0) {
-      EXPECT_EQ(drain(loader, 1 + random() % 20'000).size(), count);
-      EXPECT_FALSE(loader.error());
+      EXPECT_EQ(drain(*loader, 1 + random() % 20'000).size(), count);
+      EXPECT_FALSE(loader->error());
       continue;
     }
-    if (random() % 2 == 0) loader.waitForMore(std::chrono::milliseconds(random() % 3));
-    loader.take(1 + random() % 5'000);
-    loader.stop();
+    if (random() % 2 == 0) loader->waitForMore(std::chrono::milliseconds(random() % 3));
+    loader->take(1 + random() % 5'000);
+    loader->stop();
     dropped.push_back(std::move(loader));
-    std::erase_if(dropped, [](const Loader& one) { return one.idle(); });
+    std::erase_if(dropped, [](const auto& one) { return one->idle(); });
   }
+}
+
+BuiltVolume waves() {
+  BuiltVolume volume;
+  volume.size = {11, 9, 20};
+  volume.density = [](const glm::vec3& at) { return 0.5f + 0.5f * std::sin(at.x + 3.0f * at.y - at.z); };
+  volume.transfer_size = {4, 3, 5};
+  volume.has_sample = [](std::uint32_t voxel) { return voxel % 3 != 1; };
+  return volume;
+}
+
+TEST_F(LoaderTest, BringsGridsAsTheyWereWrittenBeforeImagesAndTransfer) {
+  for (const std::uint32_t bits : {8u, 16u}) {
+    testing::Sample sample = testing::sampleBundle();
+    BuiltVolume volume = waves();
+    volume.bits = bits;
+    const std::uint32_t group = lambent::testing::addVolume(sample.description, sample.blobs, volume);
+    write(sample);
+    Loader loader(open(), threads_, 3);
+    const std::vector<Ready> items = drain(loader, 1 << 20);
+    ASSERT_FALSE(loader.error()) << loader.error()->line();
+    const auto placeOf = [&]<class Chunk>() {
+      return std::ranges::find_if(items,
+                                  [](const Ready& item) { return std::holds_alternative<Chunk>(item); }) -
+             items.begin();
+    };
+    const auto density = placeOf.template operator()<DensityChunk>(),
+               voxels = placeOf.template operator()<VoxelsChunk>(),
+               image = placeOf.template operator()<ImageChunk>(),
+               brdf = placeOf.template operator()<BrdfChunk>();
+    EXPECT_LT(brdf, density);
+    EXPECT_EQ(density + 1, voxels);
+    EXPECT_LT(voxels, image);
+    ASSERT_LT(image, static_cast<std::ptrdiff_t>(items.size()));
+    const auto& found = std::get<DensityChunk>(items[static_cast<std::size_t>(density)]);
+    EXPECT_EQ(found.group, bundle::GroupIndex{group});
+    EXPECT_EQ(found.codes, volume.codes());
+    EXPECT_EQ(found.block_maxima.size(), 2u * 2u * 3u);
+    EXPECT_EQ(std::get<VoxelsChunk>(items[static_cast<std::size_t>(voxels)]).voxels, volume.voxels());
+  }
+}
+
+TEST_F(LoaderTest, CountsGridsAndTheirLightAgainstTheBudget) {
+  testing::Sample sample;
+  BuiltVolume volume = waves();
+  volume.shape.outputs = 9;
+  volume.bits = 8;
+  lambent::testing::addVolume(sample.description, sample.blobs, volume);
+  const auto samples = static_cast<std::uint64_t>(volume.voxels().size());
+  // Densities become 16 bits on the GPU; light is four half floats per texel and output.
+  EXPECT_EQ(needsOf(sample.description).volumes, 2 * 11 * 9 * 20 + 4 * samples + 8 * 9 * 4 * 3 * 5);
+  write(sample);
+  const auto parts = partsOf(*open(), /*limited=*/true);
+  ASSERT_TRUE(parts);
+  EXPECT_GE(parts->units[0][0].bytes, needsOf(sample.description).volumes)
+      << "what it takes to show it comes first";
+}
+
+TEST(VolumeBlocks, HoldTheLargestDensityThatIsFoundInThem) {
+  std::mt19937 engine(3);
+  for (const glm::uvec3 size : {glm::uvec3(1, 1, 1), glm::uvec3(8, 8, 8), glm::uvec3(17, 9, 26)})
+    for (const std::uint32_t bits : {8u, 16u}) {
+      std::vector<std::uint32_t> codes(std::size_t{size.x} * size.y * size.z, 0);
+      for (std::uint32_t& code : codes)
+        if (engine() % 40 == 0) code = static_cast<std::uint32_t>(engine()) % (1u << bits);
+      std::vector<std::byte> bytes;
+      for (const std::uint32_t code : codes) {
+        bytes.push_back(static_cast<std::byte>(code & 0xff));
+        if (bits == 16) bytes.push_back(static_cast<std::byte>(code >> 8));
+      }
+      const std::vector<float> found = blockMaxima(bytes, bits, size);
+      const glm::uvec3 blocks = blocksOf(size);
+      ASSERT_EQ(found.size(), std::size_t{blocks.x} * blocks.y * blocks.z);
+      for (std::uint32_t b = 0; b < found.size(); ++b) {
+        const glm::ivec3 first =
+            8 * glm::ivec3(b % blocks.x, b / blocks.x % blocks.y, b / (blocks.x * blocks.y)) - 1;
+        const glm::ivec3 low = glm::max(first, 0), high = glm::min(first + 9, glm::ivec3(size) - 1);
+        std::uint32_t most = 0;
+        for (int z = low.z; z <= high.z; ++z)
+          for (int y = low.y; y <= high.y; ++y)
+            for (int x = low.x; x <= high.x; ++x)
+              most = std::max(most, codes[static_cast<std::size_t>(x) +
+                                          size.x * (static_cast<std::size_t>(y) +
+                                                    std::size_t{size.y} * static_cast<std::size_t>(z))]);
+        EXPECT_EQ(found[b], static_cast<float>(most) / (bits == 16 ? 65535.0f : 255.0f));
+      }
+    }
 }
 
 }  // namespace

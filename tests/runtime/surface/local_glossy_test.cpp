@@ -1,6 +1,6 @@
 // Tests local lights on glossy surfaces: their highlight and the diffuse part.
 #include "baker/brdf/brdf.hpp"
-#include "tests/runtime/effects/glossy/random_table.hpp"
+#include "tests/runtime/evaluate/random_table.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/frame/local_stage.hpp"
 #include "tests/support/gpu_context.hpp"
@@ -15,7 +15,7 @@ TEST_F(LocalGlossyTest, APointLightOnAMetalFloorGivesItsGgxHighlight) {
   floor.material.metallic = 1.0f;
   floor.material.roughness = kRoughness;
   Stage stage(BundleBuilder(5).add(floor).glossy(5, bundle::BrdfFamily::Ggx,
-                                                 effects::glossy::testing::evenTable(5, true, 0.8f, 0.1f)));
+                                                 glossy::testing::evenTable(5, true, 0.8f, 0.1f)));
   ShadowedLight point;
   point.kind = ShadowedLight::Kind::Point;
   point.position_ws = {0.4f, 1.0f, -0.3f};
@@ -46,7 +46,7 @@ TEST_F(LocalGlossyTest, ADielectricFloorAddsItsDiffusePart) {
   floor.material.specular = 0.0f;  // nothing but diffuse is left
   floor.material.roughness = 0.5f;
   Stage stage(BundleBuilder(5).add(floor).glossy(5, bundle::BrdfFamily::Ggx,
-                                                 effects::glossy::testing::evenTable(5, true, 0.8f, 0.1f)));
+                                                 glossy::testing::evenTable(5, true, 0.8f, 0.1f)));
   const auto picture = stage.picture(above(2.0f), sphereLight({0.0f, 1.0f, 0.0f}, 0.2f, {10, 5, 1}));
   for (std::uint32_t x = 0; x < kSize; x += 7) {
     const glm::vec3 to(-placeOf(x, 2.0f), 1.0f, -placeOf(20, 2.0f));

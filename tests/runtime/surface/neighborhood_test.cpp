@@ -233,8 +233,8 @@ TEST_F(NeighborhoodFrame, GlossyReceiversReflectTheChangedLight) {
   stage.half = 2.0f;
   const spec::RgbaImage image = stage.picture();
   ASSERT_EQ(stage.frame->counts()["neighborhood_receivers"], 1u);
-  const effects::glossy::glsl::Table table(*scene.table);
-  effects::glossy::glsl::Isotropic kernel;
+  const glossy::glsl::Table table(*scene.table);
+  glossy::glsl::Isotropic kernel;
   const sh::LightVector light = stage.environment.light().truncated(kOrder);
   const glm::vec3 up(0, 1, 0);
   const auto expected = [&](const glm::vec3& place) {

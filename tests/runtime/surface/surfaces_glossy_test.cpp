@@ -12,7 +12,7 @@
 #include "runtime/draws/surface_shared.h"
 #include "runtime/gpu/program.hpp"
 #include "runtime/surface/surface_program.hpp"
-#include "tests/runtime/effects/glossy/random_table.hpp"
+#include "tests/runtime/evaluate/random_table.hpp"
 #include "tests/runtime/surface/surface_normal.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/glsl/glossy_kernels.hpp"
@@ -21,7 +21,7 @@
 namespace lambent::frame {
 namespace {
 
-namespace kernel = effects::glossy::glsl;
+namespace kernel = glossy::glsl;
 constexpr std::uint32_t kGlossySize = 16;
 using Picture = std::vector<glm::vec4>;
 
@@ -52,7 +52,7 @@ Scene makeScene(lambent::testing::BundleMaker& maker, const GlossyKind& kind, bo
   scene.kind = kind;
   const bool anisotropic = kind.family == bundle::BrdfFamily::AnisotropicGgx;
   const bool measured = kind.family == bundle::BrdfFamily::Measured;
-  scene.table = effects::glossy::testing::randomTable(maker, kind.bands, !anisotropic, measured ? 3 : 2);
+  scene.table = glossy::testing::randomTable(maker, kind.bands, !anisotropic, measured ? 3 : 2);
   for (std::uint32_t i = 0; i < 6 * kind.bands * kind.bands; ++i)
     scene.samples.emplace_back(maker.uniform(-1, 1), maker.uniform(-1, 1), maker.uniform(-1, 1), 0.0f);
   SurfaceDraw& surface = scene.record.surface;
@@ -301,7 +301,7 @@ TEST_F(GlossySurface, MatchesTheTwinFromTheBackAndInParallelViews) {
 TEST_F(GlossySurface, UniformLightShowsTheSameAlbedoAllOver) {
   lambent::testing::BundleMaker maker(63);
   Scene scene = makeScene(maker, {.bands = 5, .family = bundle::BrdfFamily::Ggx}, false);
-  scene.table = effects::glossy::testing::evenTable(5, true, 0.7f, 0.1f);
+  scene.table = glossy::testing::evenTable(5, true, 0.7f, 0.1f);
   scene.record.glossy.roughnesses = scene.table.roughnesses;
   for (std::size_t i = 0; i < scene.samples.size(); ++i)
     scene.samples[i] = glm::vec4(i % 25 == 0 ? 3.5449077f : 0.0f);

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/streaming/images.hpp"
+#include "runtime/streaming/textures.hpp"
 #include "tests/support/frame/world_stage.hpp"
 
 namespace lambent::frame {

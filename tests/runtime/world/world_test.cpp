@@ -12,7 +12,6 @@
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/materials.hpp"
-#include "runtime/scene/stable_id.hpp"
 #include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/frame/neighborhood_scene.hpp"
 #include "tests/support/frame/world_stage.hpp"

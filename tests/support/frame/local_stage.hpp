@@ -70,6 +70,7 @@ struct Stage {
   std::filesystem::path path;
   World world;
   lighting::Environment environment;
+  evaluate::Samples samples;
   effects::diffuse::Diffuse diffuse;
   lighting::GroupLights group_lights;
   LocalShadows shadowed_lights;
@@ -114,7 +115,9 @@ struct Stage {
                         .order = world.residency().groups()[g].order,
                         .lamps = world.lampsOf(g)});
     group_lights.update(environment, sh::Window::Off, places, counters);
-    EXPECT_TRUE(diffuse.shade(world.residency(), group_lights, evaluate::TransferMode::Full, counters));
+    constexpr auto kFull = evaluate::TransferMode::Full;
+    EXPECT_TRUE(samples.shade(world.residency(), group_lights, kFull, counters));
+    EXPECT_TRUE(diffuse.shade(world.residency(), group_lights, kFull, samples, counters));
     const LocalLightModule local_lights(shadowed_lights);
     const SurfaceModule* const modules[] = {&local_lights};
     const Result<void> done = surfaces->prepare(

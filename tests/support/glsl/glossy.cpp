@@ -1,6 +1,6 @@
 #include "tests/support/glsl/glossy_kernels.hpp"
 
-namespace lambent::effects::glossy::glsl {
+namespace lambent::glossy::glsl {
 namespace {
 
 template <typename Kernel>
@@ -50,4 +50,4 @@ Table::Table(const bundle::BrdfTable& table) {
   if (table.order == 6) takeBands.template operator()<6>();
 }
 
-}  // namespace lambent::effects::glossy::glsl
+}  // namespace lambent::glossy::glsl

@@ -1,23 +1,17 @@
-// The kernels of the glossy effect as C++: glossy_kernel.glsl for each count of bands and each kind of table,
+// The kernel of b(v) as C++: glossy_kernel.glsl for each count of bands and each kind of table,
 // and what a view sees by that of any table.
 #pragma once
 
 #include <algorithm>
 #include <functional>
 
-#include "runtime/effects/glossy/glossy_shared.h"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/streaming/brdf_texture.hpp"
+#include "runtime/streaming/textures.hpp"
 #include "tests/support/glsl/transfer.hpp"
 
-namespace lambent::effects::glossy::glsl {
+namespace lambent::glossy::glsl {
 
 using namespace lambent::glsl;
-using namespace transfer;
-
-struct Fill : Invocation {
-#include "as_cpp/glossy_fill.comp"
-};
 
 enum class Lobes { Two, Anisotropic, Measured };
 
@@ -38,8 +32,7 @@ struct Sampled {
 };
 
 inline vec3 zonalAxis(int bands, Lobes lobes, std::size_t i) {
-  const auto factors =
-      lobes == Lobes::Anisotropic ? sh::ZonalFactors::anisotropic(bands) : sh::ZonalFactors::isotropic(bands);
+  const sh::ZonalFactors factors(bands, lobes != Lobes::Anisotropic);
   return factors.axes()[std::min(i, factors.axes().size() - 1)];
 }
 // There are 11 axes at most; kernels read as many as they have.
@@ -88,4 +81,4 @@ class Table {
   std::function<Reflection(const View&, std::span<const vec4>)> reflect_;
 };
 
-}  // namespace lambent::effects::glossy::glsl
+}  // namespace lambent::glossy::glsl

@@ -34,6 +34,10 @@ struct ShadeMatrices : Invocation {
 #include "as_cpp/shade_matrices.comp"
 };
 
+struct FillSamples : Invocation {
+#include "as_cpp/fill_samples.comp"
+};
+
 struct DiffuseLight {
 #include "as_cpp/diffuse_light.glsl"
 };

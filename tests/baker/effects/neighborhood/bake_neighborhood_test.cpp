@@ -1,11 +1,17 @@
 // Tests whole neighborhoods: grids, points inside bodies, codes.
+#include <random>
+
+#include <gtest/gtest.h>
+
 #include "baker/effects/neighborhood/bodies.hpp"
 #include "baker/effects/neighborhood/neighborhood.hpp"
 #include "baker/jobs/parallel.hpp"
+#include "baker/jobs/progress.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/neighborhood.hpp"
 
 namespace lambent::baker {
+
 namespace {
 
 using testing::blackSphereChange;
@@ -17,20 +23,10 @@ using testing::matrixOf;
 using testing::sceneOf;
 using testing::Transport;
 
-// Makes a body of one mesh and colour, with receivers below it or on all sides.
-struct Made {
+// Makes a body with receivers below it or on all sides.
+struct Made : testing::BakedBody {
   explicit Made(const bundle::MeshData& mesh, const glm::vec3& albedo = glm::vec3(0.0f))
-      : transport([&] {
-          Scene scene = sceneOf({mesh});
-          scene.materials[0].base_color = glm::vec4(albedo, 1.0f);
-          return scene;
-        }()),
-        baked(transport.bake(5, 256, albedo == glm::vec3(0.0f) ? 0 : -1)),
-        body(transport.diffuse(), {.direct = baked.direct.field,
-                                   .bounced = albedo == glm::vec3(0.0f) ? nullptr : &baked.bounced.field,
-                                   .sends = albedo != glm::vec3(0.0f),
-                                   .brdfs = nullptr,
-                                   .glossy = nullptr}) {
+      : BakedBody(mesh, albedo) {
     settings.placement.body = {transport.geometry.bounds_min, transport.geometry.bounds_max};
     settings.rays = 512;
     settings.placement.by_length = {16, 16, 8};
@@ -41,9 +37,6 @@ struct Made {
     EXPECT_TRUE(result.has_value());
     return std::move(*result);
   }
-  Transport transport;
-  Transport::Baked baked;
-  SurfaceBody body;
   NeighborhoodSettings settings;
 };
 
@@ -190,15 +183,9 @@ TEST(Neighborhood, IsTheSameOnOneThreadAndOnTwo) {
   for (const unsigned threads : {1u, 2u}) {
     std::optional<BakedAround> around;
     withThreads(threads, [&] { around = made.bake(); });
-    std::vector<std::byte> bytes;
-    for (const CodedTransfer& coded : around->grid->cells.at(0).transfers) {
-      const auto codebook = transfer::encodeCodebook(coded.codebook);
-      bytes.insert(bytes.end(), codebook.begin(), codebook.end());
-      for (const CodedPlane& plane : coded.planes) {
-        const auto codes = transfer::encodeWeightPlane(plane.codes, plane.bits);
-        bytes.insert(bytes.end(), codes.begin(), codes.end());
-      }
-    }
+    ByteWriter out;
+    write(*around, out);
+    const std::vector<std::byte> bytes = out.take();
     if (threads == 1)
       first = bytes;
     else
@@ -239,6 +226,53 @@ TEST(Neighborhood, StopsWhenAsked) {
   stop.request_stop();
   Progress progress;
   EXPECT_FALSE(bakeNeighborhood(made.body, made.settings, {progress, stop.get_token()}).has_value());
+}
+
+// Tests how the change around a body is coded within a limit of bytes.
+
+// Bounced light in which noise of few rays takes as many components as there are values.
+GridChange noisyChange(const GridPlacement& grid) {
+  GridChange change;
+  change.shape = {.order = 5, .order_out = 5, .channels = 1};
+  std::mt19937 random(7);
+  std::normal_distribution<float> noise(0.0f, 1e-3f);
+  const std::size_t size = change.shape.bouncedSize();
+  change.visibility.assign(grid.count() * change.shape.visibilitySize(), 0.0f);
+  change.outside.assign(grid.count(), 1);
+  for (std::size_t p = 0; p < grid.count(); ++p)
+    for (std::size_t i = 0; i < size; ++i) {
+      const float near = 1.0f / (1.0f + glm::length(grid.point(p)));
+      change.bounced.push_back((i == 0 ? 0.5f * near : 0.0f) + near * noise(random));
+    }
+  return change;
+}
+
+// Returns the bytes of a point's codes before compression, which makes noise little smaller.
+double codeBytes(const CodedChange& change, const GridPlacement& grid) {
+  double bytes = 0.0;
+  for (const CodedCell& cell : change.cells)
+    for (const CodedTransfer& part : cell.transfers)
+      for (const CodedPlane& plane : part.planes)
+        bytes += static_cast<double>(plane.codes.size() * plane.bits / 8);
+  return bytes / static_cast<double>(grid.count());
+}
+
+TEST(CodedChange, OfNoiseThatComponentsDoNotHoldKeepsTheLimitOfBytesAndUsesIt) {
+  constexpr double kLimit = 43.0, kCompression = 1.5;
+  const GridPlacement grid{.size = {16, 8, 16}, .box = {glm::vec3(-2.0f), glm::vec3(2.0f)}};
+  const GridChange change = noisyChange(grid);
+  Progress progress;
+  CachedCoding coding(BakeContext{progress});
+  const auto code = [&](double most_bytes) {
+    return codeChange(change, grid, glm::vec3(0.0f), {.bound = 1e-5, .most_bytes = most_bytes}, coding,
+                      progress);
+  };
+  const auto all = code(1e9), limited = code(kLimit);
+  ASSERT_TRUE(all && limited);
+  EXPECT_GT(codeBytes(*all, grid), 2.0 * kLimit);
+  EXPECT_LT(codeBytes(*limited, grid), kCompression * kLimit);
+  EXPECT_GT(codeBytes(*limited, grid), 0.3 * kLimit);
+  EXPECT_LT(limited->error, 3.0 * all->error);
 }
 
 }  // namespace

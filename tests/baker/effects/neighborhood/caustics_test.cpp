@@ -1,6 +1,4 @@
 // Tests light that polished bodies focus, by quantities that mirrors conserve by symmetry.
-#include "baker/brdf/follow_highlight.hpp"
-#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/glossy_transport.hpp"
@@ -12,24 +10,8 @@ namespace {
 using testing::ChangeMatrix;
 using testing::glossyScene;
 using testing::matrixOf;
+using testing::ring;
 using testing::Transport;
-
-// Makes a two-sided ring about the z axis, of radius 1, from z = 0 to z = height.
-bundle::MeshData ring(float height, int around) {
-  bundle::MeshData mesh;
-  for (int i = 0; i < around; ++i)
-    for (int top = 0; top < 2; ++top) {
-      const float angle =
-          2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(around);
-      mesh.positions.emplace_back(std::cos(angle), std::sin(angle), top ? height : 0.0f);
-      mesh.normals.emplace_back(std::cos(angle), std::sin(angle), 0.0f);
-    }
-  const auto at = [around](int i, int top) { return static_cast<std::uint32_t>(2 * (i % around) + top); };
-  for (int i = 0; i < around; ++i)
-    for (const std::uint32_t index : {at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 0), at(i + 1, 1), at(i, 1)})
-      mesh.indices.push_back(index);
-  return mesh;
-}
 
 // Bakes a metal body with bounces.
 struct Metal {
@@ -42,24 +24,16 @@ struct Metal {
           return made;
         }()),
         transport(scene, true),
-        images(transport.scene),
-        tables(std::move(*BrdfTables::make(transport.scene, 5, 5))),
-        brdfs(std::move(*SurfaceBrdfs::load(transport.scene, transport.geometry, tables, images, 5))),
-        baked(testing::bakeGlossy(
-            transport,
-            {brdfs.grey(), [this](std::uint32_t t, float u, float v, const glm::vec3& to,
-                                  std::span<float> out) { brdfs.exitKernel(t, u, v, to, out); }},
-            {.rays = 256, .bounces = 1})),
+        surfaces(transport),
+        baked(testing::bakeGlossy(transport, surfaces.kernels(), {.rays = 256, .bounces = 1})),
         body(transport.diffuse(), {.direct = baked.direct.field,
                                    .bounced = &baked.bounced.field,
                                    .sends = true,
-                                   .brdfs = &brdfs,
+                                   .brdfs = &surfaces.brdfs,
                                    .glossy = &baked.direct.glossy}) {}
   Scene scene;
   Transport transport;
-  DecodedImages images;
-  BrdfTables tables;
-  SurfaceBrdfs brdfs;
+  testing::TransportBrdfs surfaces;
   testing::GlossyBake baked;
   SurfaceBody body;
 };
@@ -117,12 +91,7 @@ TEST(Caustics, OfRoughMetalGoOverFromPathsToKernelsWithoutAStep) {
   PointChange a(path.body, directions, shape), b(kernel.body, directions, shape);
   for (const glm::vec3 p : {glm::vec3(1.5f, 0, 0), {0, 2.0f, 1.0f}, {-2, -2, 2}}) {
     a.look(p), b.look(p);
-    double wrong = 0.0, all = 0.0;
-    for (std::size_t i = 0; i < a.bounced().size(); ++i) {
-      wrong += std::pow(double{a.bounced()[i]} - double{b.bounced()[i]}, 2);
-      all += std::pow(double{b.bounced()[i]}, 2);
-    }
-    EXPECT_LT(std::sqrt(wrong / all), 0.08);
+    EXPECT_LT(testing::relativeDifference(a.bounced(), b.bounced()), 0.08);
   }
 }
 

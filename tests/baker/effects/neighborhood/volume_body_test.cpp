@@ -11,33 +11,25 @@ using testing::matrixOf;
 
 // Makes a homogeneous ball of radius 1 about the origin. It stops light, and sends `glow` times the stopped
 // fraction, in band 0 alone.
-class Fog : public VolumeLight {
- public:
-  Fog(float extinction, float glow) : extinction_(extinction), glow_(glow) {}
-  int order() const override { return 5; }
-  float look(const glm::vec3& origin, const glm::vec3& direction, float t_max,
-             std::span<float> scattered) const override {
+VolumeBody fogBody(double extinction, float glow, bool scatters) {
+  const auto march = [=](const glm::vec3& origin, const glm::vec3& direction, float t_max,
+                         std::span<float> scattered) {
     const double along = -glm::dot(glm::dvec3(origin), glm::dvec3(direction));
     const double off2 = glm::dot(glm::dvec3(origin), glm::dvec3(origin)) - along * along;
     std::fill(scattered.begin(), scattered.end(), 0.0f);
     if (off2 >= 1.0) return 1.0f;
     const double half = std::sqrt(1.0 - off2);
     const double length = std::max(0.0, std::min(along + half, double{t_max}) - std::max(along - half, 0.0));
-    const double through = std::exp(-double{extinction_} * length);
+    const double through = std::exp(-extinction * length);
     for (std::size_t c = 0; c < 3; ++c)
-      scattered[c * 25] = glow_ * static_cast<float>((1.0 - through) * 0.5 / std::sqrt(std::numbers::pi));
+      scattered[c * 25] = glow * static_cast<float>((1.0 - through) * 0.5 / std::sqrt(std::numbers::pi));
     return static_cast<float>(through);
-  }
-
- private:
-  float extinction_, glow_;
-};
-
-constexpr glm::vec3 kLow(-1.0f), kHigh(1.0f);
+  };
+  return VolumeBody(march, /*order=*/5, glm::vec3(-1.0f), glm::vec3(1.0f), scatters);
+}
 
 TEST(VolumeBody, OfGreatDensityIsTheBlackSphere) {
-  const Fog fog(1e6f, 0.0f);
-  const VolumeBody body(fog, kLow, kHigh, /*scatters=*/false);
+  const VolumeBody body = fogBody(1e6, 0.0f, /*scatters=*/false);
   const CapDirections directions(4096);
   const ChangeShape shape{.order = 5, .order_out = 3, .channels = 0};
   PointChange point(body, directions, shape);
@@ -51,24 +43,22 @@ TEST(VolumeBody, OfGreatDensityIsTheBlackSphere) {
 }
 
 TEST(VolumeBody, LetsThroughAtItsMiddleWhatBeerAndLambertSay) {
-  for (const float extinction : {0.0f, 1e-6f, 1.0f, 4.0f}) {
-    const Fog fog(extinction, 0.0f);
-    const VolumeBody body(fog, kLow, kHigh, false);
+  for (const double extinction : {0.0, 1e-6, 1.0, 4.0}) {
+    const VolumeBody body = fogBody(extinction, 0.0f, /*scatters=*/false);
     const CapDirections directions(8192);
     PointChange point(body, directions, {.order = 5, .order_out = 3, .channels = 0});
     point.look(glm::vec3(0.0f));
     EXPECT_FALSE(point.inside());
     // Literature 7.8: transmittance from the middle is exp(-sigma) in all directions.
     const double root = std::sqrt(4.0 * std::numbers::pi);
-    EXPECT_NEAR(point.visibility()[0], root * (std::exp(-double{extinction}) - 1.0), 1e-5);
+    EXPECT_NEAR(point.visibility()[0], root * (std::exp(-extinction) - 1.0), 1e-5);
     for (std::size_t i = 1; i < point.visibility().size(); ++i)
       EXPECT_NEAR(point.visibility()[i], 0.0f, 2e-3f);
   }
 }
 
 TEST(VolumeBody, ThatSendsAllThatItStopsLeavesUniformLightAsItIs) {
-  const Fog fog(2.0f, 1.0f);
-  const VolumeBody body(fog, kLow, kHigh, true);
+  const VolumeBody body = fogBody(2.0, 1.0f, /*scatters=*/true);
   const CapDirections directions(1024);
   const ChangeShape shape{.order = 5, .order_out = 3, .channels = 3};
   PointChange point(body, directions, shape);

@@ -13,7 +13,7 @@
 namespace lambent::baker {
 namespace {
 
-using testing::box;
+using testing::cavity;
 using testing::flipped;
 using testing::grid;
 using testing::icosphere;
@@ -24,46 +24,12 @@ using testing::Transport;
 using testing::turned;
 using testing::uniformRadiance;
 
-float triangleArea(const bundle::MeshData& mesh, std::size_t first) {
-  const glm::vec3 a = mesh.positions[mesh.indices[first]], b = mesh.positions[mesh.indices[first + 1]],
-                  c = mesh.positions[mesh.indices[first + 2]];
-  return 0.5f * glm::length(glm::cross(b - a, c - a));
-}
-
-// A Cavity is the inside of a unit sphere with a round opening of half angle `alpha` about `axis`. Its
-// `opening` is the fraction of the mesh's sphere area that is open.
-struct Cavity {
-  bundle::MeshData mesh;
-  float opening = 0.0f;
-};
-
-Cavity cavity(glm::vec3 axis, float alpha_deg) {
-  Cavity cavity{flipped(icosphere({0, 0, 0}, 1.0f, 4)), 0.0f};
-  std::vector<std::uint32_t> kept;
-  float removed = 0.0f, all = 0.0f;
-  for (std::size_t i = 0; i < cavity.mesh.indices.size(); i += 3) {
-    glm::vec3 centre(0.0f);
-    for (std::size_t c = 0; c < 3; ++c) centre += cavity.mesh.positions[cavity.mesh.indices[i + c]] / 3.0f;
-    const float area = triangleArea(cavity.mesh, i);
-    all += area;
-    if (glm::dot(glm::normalize(centre), axis) > std::cos(glm::radians(alpha_deg)))
-      removed += area;
-    else
-      for (std::size_t c = 0; c < 3; ++c) kept.push_back(cavity.mesh.indices[i + c]);
-  }
-  cavity.mesh.indices = kept;
-  cavity.opening = removed / all;
-  return cavity;
-}
-
 // Returns the mean over the surface of every column of channel 0.
 std::vector<double> surfaceMean(const Transport& t, const TransferField& field) {
   std::vector<double> sum(field.columns, 0.0);
   double area = 0.0;
   for (const glm::uvec3& triangle : t.geometry.triangles) {
-    const glm::vec3 a = t.geometry.positions[triangle.x], b = t.geometry.positions[triangle.y],
-                    c = t.geometry.positions[triangle.z];
-    const double share = double{glm::length(glm::cross(b - a, c - a))} / 3.0;
+    const double share = triangleArea(t.geometry, triangle) / 3.0;
     area += 3.0 * share;
     for (int corner = 0; corner < 3; ++corner) {
       const auto vector = field.at(t.samples.vertex_sample[triangle[corner]]);
@@ -76,7 +42,7 @@ std::vector<double> surfaceMean(const Transport& t, const TransferField& field) 
 
 TEST(Bounces, InACavityMatchTheClosedFormForEveryHarmonicAndBounce) {
   const glm::vec3 axis = glm::normalize(glm::vec3(0.3f, 0.8f, -0.5f));
-  const Cavity shape = cavity(axis, 60.0f);
+  const testing::Cavity shape = cavity(axis, 60.0f);
   const double f = double{shape.opening};
   for (const float albedo : {0.5f, 0.8f}) {
     Scene scene = sceneOf({shape.mesh});
@@ -111,16 +77,7 @@ TEST(Bounces, InACavityMatchTheClosedFormForEveryHarmonicAndBounce) {
 TEST(Bounces, InAWhiteFurnaceAddUpToOne) {
   // A ball is in an open cup, with albedo 1 and uniform light. No light is lost, so every point sees radiance
   // 1.
-  auto cup = flipped(box({0, 0, 0}, {2, 1, 2}, 6));
-  std::vector<std::uint32_t> kept;
-  for (std::size_t i = 0; i < cup.indices.size(); i += 3) {
-    const bool lid = cup.normals[cup.indices[i]].y < -0.5f;
-    if (!lid)
-      kept.insert(kept.end(), cup.indices.begin() + static_cast<std::ptrdiff_t>(i),
-                  cup.indices.begin() + static_cast<std::ptrdiff_t>(i) + 3);
-  }
-  cup.indices = kept;
-  const Transport t(sceneOf({cup, icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 3)}));
+  const Transport t(sceneOf({testing::cup({2, 1, 2}, 6), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 3)}));
   const auto baked = t.bake(3, 256, kMostBounces);
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
     if (t.samples.originsOf(s).empty()) continue;
@@ -163,9 +120,7 @@ TEST(Bounces, CarryTheColourOfTheWallAndOfItsTexture) {
   Scene scene =
       sceneOf({grid({0, 0, 0}, 1.0f, 4), transformed(turned(grid({0, 0, 0}, 1.0f, 4), -90.0f, {0, 0, 1}),
                                                      glm::translate(glm::mat4(1.0f), {-0.5f, 0.5f, 0}))});
-  scene.materials.push_back(scene.materials[0]);
-  scene.meshes[1].primitives[0].material = 1;
-  scene.materials[1].base_color = {1.0f, 0.0f, 0.0f, 1.0f};
+  testing::ownMaterial(scene, 1).base_color = {1.0f, 0.0f, 0.0f, 1.0f};
   const Transport painted(scene);
   EXPECT_FALSE(painted.colors.grey());
   const auto a = painted.bake(3, 256, 1);
@@ -199,12 +154,7 @@ TEST(Bounces, AreTheSameForAnyMemoryAndNumberOfThreads) {
 
 TEST(Bounces, LoseNoLightByHitsThatAreNotKept) {
   Scene lit = sceneOf({flipped(icosphere({0, 0, 0}, 1.0f, 3))});  // a white room of radius 1
-  lit.lights.emplace_back();                                      // a point light
-  gltf::Node lamp;
-  lamp.parent_from_node = glm::translate(glm::mat4(1.0f), glm::vec3(0.4f, 0.1f, 0.0f));
-  lamp.light = 0;
-  lit.roots.push_back(static_cast<std::int32_t>(lit.nodes.size()));
-  lit.nodes.push_back(lamp);
+  testing::addPointLight(lit, {0.4f, 0.1f, 0.0f});
   const auto bouncesWith = [&](std::uint32_t hits_of_every) {
     const Transport room(lit);
     const DirectPass pass(room.diffuse(), {.order = 3,

@@ -211,18 +211,17 @@ TEST(DirectTransfer, OfATwoSidedCardIsWholeOnBothSides) {
 TEST(DirectTransfer, CutOutsBlockByTheirAlpha) {
   // The roof over the floor is solid, cut out completely by vertex alpha, or blended.
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 2), flipped(grid({0, 1.0f, 0}, 50.0f, 1))});
-  scene.materials.push_back(scene.materials[0]);
-  scene.meshes[1].primitives[0].material = 1;
+  gltf::Material& roof = testing::ownMaterial(scene, 1);
   const auto at_centre = [&] {
     const Transport t(scene);
     return uniformRadiance(t.direct().at(t.sampleAt({0, 0, 0})));
   };
   EXPECT_LT(at_centre(), 0.02f);
-  scene.materials[1].alpha_mode = gltf::AlphaMode::Mask;
+  roof.alpha_mode = gltf::AlphaMode::Mask;
   EXPECT_LT(at_centre(), 0.02f);
-  scene.materials[1].base_color.w = 0.4f;
+  roof.base_color.w = 0.4f;
   EXPECT_NEAR(at_centre(), 1.0f, 1e-5f);
-  scene.materials[1].alpha_mode = gltf::AlphaMode::Blend;
+  roof.alpha_mode = gltf::AlphaMode::Blend;
   EXPECT_NEAR(at_centre(), 1.0f, 1e-5f);
 }
 

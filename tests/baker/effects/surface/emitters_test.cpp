@@ -15,26 +15,11 @@ using testing::sceneOf;
 using testing::transformed;
 using testing::Transport;
 
-// Returns irradiance over pi at `p` with normal `n` from a polygon of radiance 1 that is entirely above its
-// horizon (Lambert 1760: sum over edges of the angle times the edge plane's normal).
-double underPolygon(glm::dvec3 p, glm::dvec3 n, const std::vector<glm::dvec3>& corners) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec3 a = glm::normalize(corners[i] - p),
-                     b = glm::normalize(corners[(i + 1) % corners.size()] - p);
-    const glm::dvec3 across = glm::cross(a, b);
-    sum += std::atan2(glm::length(across), glm::dot(a, b)) * glm::dot(glm::normalize(across), n);
-  }
-  return std::abs(sum) / (2.0 * std::numbers::pi);
-}
-
 // Makes a floor under a square panel that emits downwards.
 Scene panelScene(float height, float width, float floor_width = 4.0f) {
   Scene scene = sceneOf({grid({0, 0, 0}, floor_width, 8), flipped(grid({0, height, 0}, width, 2))});
   scene.materials[0].base_color = {0.0f, 0.0f, 0.0f, 1.0f};
-  scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].emissive = {2.0f, 3.0f, 4.0f};
-  scene.meshes[1].primitives[0].material = 1;
+  testing::ownMaterial(scene, 1).emissive = {2.0f, 3.0f, 4.0f};
   return scene;
 }
 
@@ -52,7 +37,7 @@ TEST(GroupLights, PanelAboveAFloorMatchesLambertsFormula) {
     for (std::size_t s = 0; s < t.samples.size(); ++s) {
       const glm::vec3 p = t.samples.positions[s];
       if (p.y != 0.0f) continue;
-      const double exact = underPolygon(p, {0, 1, 0}, corners);
+      const double exact = testing::formFactor(corners, p, {0, 1, 0});
       EXPECT_NEAR(field.at(s)[4], exact, 0.02) << height << " at " << p.x << ", " << p.z;
       error += std::pow(double{field.at(s)[4]} - exact, 2), energy += exact * exact;
     }
@@ -87,12 +72,7 @@ TEST(GroupLights, SingleSidedPanelShinesToItsFrontOnly) {
 
 Scene underLight(gltf::Light light, const glm::mat4& place) {
   Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 8)});
-  gltf::Node node;
-  node.parent_from_node = place;
-  node.light = 0;
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
-  scene.lights.push_back(light);
+  testing::addLight(scene, light, place);
   return scene;
 }
 
@@ -120,10 +100,7 @@ TEST(GroupLights, PointLightFallsOffWithTheSquareAndTheCosine) {
 TEST(GroupLights, PointLightIsShadowed) {
   Scene scene = underLight({}, glm::translate(glm::mat4(1.0f), {0, 2, 0}));
   scene.meshes.push_back({"", {{flipped(grid({0, 1, 0}, 1.0f, 1)), 0}}});
-  gltf::Node roof;
-  roof.mesh = 1;
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(roof);
+  testing::addNode(scene).mesh = 1;
   const Transport t(scene);
   const auto field = t.direct(2, 128);
   EXPECT_EQ(field.at(t.sampleAt({0.5f, 0, 0.5f}))[4], 0.0f);  // shadow reaches out to 1 m

@@ -1,6 +1,5 @@
 // Compares interreflection over glossy surfaces, and between glossy and diffuse ones, with closed forms.
-#include "baker/brdf/surface_brdfs.hpp"
-#include "baker/effects/surface/glossy_passes.hpp"
+#include "baker/effects/surface/gather.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/glossy_transport.hpp"
 
@@ -14,6 +13,7 @@ using testing::glossyScene;
 using testing::grid;
 using testing::icosphere;
 using testing::lambertKernels;
+using testing::relativeDifference;
 using testing::sceneOf;
 using testing::shadowMatrix;
 using testing::transformed;
@@ -21,28 +21,15 @@ using testing::Transport;
 using testing::turned;
 using testing::uniformRadiance;
 
-bundle::MeshData cup() {
-  auto mesh = flipped(box({0, 0, 0}, {2, 1, 2}, 6));
-  std::vector<std::uint32_t> kept;
-  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
-    if (!(mesh.normals[mesh.indices[i]].y < -0.5f))
-      kept.insert(kept.end(), mesh.indices.begin() + static_cast<std::ptrdiff_t>(i),
-                  mesh.indices.begin() + static_cast<std::ptrdiff_t>(i) + 3);
-  mesh.indices = kept;
-  return mesh;
-}
-
 // Makes a floor and a wall at a right angle, either of which may be glossy.
 Scene corner(bool glossy_floor, bool glossy_wall, glm::vec3 floor_color = glm::vec3(0.8f)) {
   Scene scene =
       sceneOf({grid({0, 0, 0}, 1.0f, 12), transformed(turned(grid({0, 0, 0}, 1.0f, 12), -90.0f, {0, 0, 1}),
                                                       glm::translate(glm::mat4(1.0f), {-0.5f, 0.5f, 0}))});
-  scene.materials.push_back(scene.materials[0]);
+  testing::ownMaterial(scene, 1).base_color = {0.6f, 0.6f, 0.6f, 1.0f};
   scene.materials[0].base_color = glm::vec4(floor_color, 1.0f);
-  scene.materials[1].base_color = {0.6f, 0.6f, 0.6f, 1.0f};
   scene.materials[0].metallic = glossy_floor ? 1.0f : 0.0f;
   scene.materials[1].metallic = glossy_wall ? 1.0f : 0.0f;
-  scene.meshes[1].primitives[0].material = 1;
   return scene;
 }
 
@@ -69,7 +56,7 @@ double difference(const Transport& a, const TransferField& of_a, const Transport
 TEST(GlossyBounces, InAWhiteFurnaceLeaveUniformLightAsItIs) {
   // Nothing is lost, so uniform light arrives everywhere as uniform light: the first column is (1, 0, 0,
   // ...).
-  const Transport t(glossyScene({cup(), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 3)}), true);
+  const Transport t(glossyScene({testing::cup({2, 1, 2}, 6), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 3)}), true);
   const auto baked =
       bakeGlossy(t, lambertKernels(t), {.order = 4, .order_out = 5, .rays = 512, .bounces = kMostBounces});
   const GlossyField& field = baked.direct.glossy;
@@ -113,16 +100,8 @@ TEST(GlossyBounces, ReachNormalMappedSurfacesAsThoseOfAMatteSurfaceDo) {
   ASSERT_GT(t.samples.size(), t.samples.glossy.begin);
   const auto truth = matte.bake(5, 1024, 1);
   const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 1024, .bounces = 1});
-  const TransferField &a = baked.bounced.mapped, &b = truth.bounced.mapped;
-  ASSERT_EQ(a.vectors.size(), b.vectors.size());
   EXPECT_EQ(baked.direct.mapped.vectors, truth.direct.mapped.vectors);
-  double sum = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < a.vectors.size(); ++i) {
-    sum += std::pow(double{a.vectors[i]} - double{b.vectors[i]}, 2);
-    all += std::pow(double{b.vectors[i]}, 2);
-  }
-  EXPECT_GT(all, 0.0);
-  EXPECT_LT(std::sqrt(sum / all), 0.03);
+  EXPECT_LT(relativeDifference(baked.bounced.mapped.vectors, truth.bounced.mapped.vectors), 0.03);
 }
 
 TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
@@ -131,9 +110,8 @@ TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
   const auto plate =
       transformed(flipped(grid({0, 0, 0}, 0.02f, 2)), glm::translate(glm::mat4(1.0f), {0, 1, 0}));
   Scene scene = sceneOf({grid({0, 0, 0}, 200.0f, 100), plate});
-  scene.materials.push_back(scene.materials[0]);
+  testing::ownMaterial(scene, 1);
   scene.materials[0].metallic = 1.0f;
-  scene.meshes[1].primitives[0].material = 1;
   const Transport t(scene, true);
   const ExitKernels kernels{true, [](std::uint32_t, float, float, const glm::vec3& to, std::span<float> out) {
                               std::fill(out.begin(), out.end(), 0.0f);
@@ -153,11 +131,7 @@ TEST(GlossyBounces, InASphereSpreadALampEvenly) {
   // / 4 instead of 1 (the odd bands cancel).
   Scene scene = glossyScene({flipped(icosphere({0, 0, 0}, 2.0f, 4))});
   scene.materials[0].base_color = glm::vec4(glm::vec3(0.5f), 1.0f);
-  scene.lights = {gltf::Light{}};
-  gltf::Node node;
-  node.light = 0;
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
+  testing::addPointLight(scene, {0, 0, 0});
   const Transport t(scene, true);
   const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 256, .bounces = -1, .tail_error = 1e-4});
   const GlossyField& field = baked.direct.glossy;
@@ -295,20 +269,12 @@ TEST(GlossyBounces, WithMoreBandsForWhatLeavesHaveAsManyAsWereAskedFor) {
   // Lambert surfaces have almost nothing in the bands above.
   const Transport t(corner(true, false), true);
   const auto few = bakeGlossy(t, lambertKernels(t), {.rays = 512, .bounces = 3});
-  const auto difference = [](const std::vector<float>& a, const std::vector<float>& b) {
-    double square = 0.0, all = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-      square += double{a[i] - b[i]} * double{a[i] - b[i]}, all += double{b[i]} * double{b[i]};
-    return std::sqrt(square / all);
-  };
   for (const int exit : {7, 9}) {
     const auto more = bakeGlossy(t, lambertKernels(t), {.exit_order = exit, .rays = 512, .bounces = 3});
     EXPECT_EQ(more.direct.glossy.order_out, 5);
-    ASSERT_EQ(more.direct.glossy.visibility.size(), few.direct.glossy.visibility.size());
-    ASSERT_EQ(more.direct.glossy.bounced.size(), few.direct.glossy.bounced.size());
-    EXPECT_LT(difference(more.direct.glossy.visibility, few.direct.glossy.visibility), 0.01) << exit;
-    EXPECT_LT(difference(more.direct.glossy.bounced, few.direct.glossy.bounced), 0.02) << exit;
-    EXPECT_LT(difference(more.bounced.field.vectors, few.bounced.field.vectors), 0.02) << exit;
+    EXPECT_LT(relativeDifference(more.direct.glossy.visibility, few.direct.glossy.visibility), 0.01) << exit;
+    EXPECT_LT(relativeDifference(more.direct.glossy.bounced, few.direct.glossy.bounced), 0.02) << exit;
+    EXPECT_LT(relativeDifference(more.bounced.field.vectors, few.bounced.field.vectors), 0.02) << exit;
     for (std::size_t b = 0; b < few.bounced.energy.size(); ++b)
       EXPECT_NEAR(more.bounced.energy[b], few.bounced.energy[b], 0.01) << exit;
   }
@@ -323,18 +289,11 @@ TEST(GlossyBounces, OfNoneLeaveTheFieldWithoutThem) {
 
 TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
   for (const float roughness : {0.2f, 0.5f, 0.9f}) {
-    Scene scene = glossyScene({cup(), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 2)});
+    Scene scene = glossyScene({testing::cup({2, 1, 2}, 6), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 2)});
     scene.materials[0].roughness = roughness;
     const Transport t(scene, true);
-    DecodedImages images(scene);
-    const auto tables = BrdfTables::make(scene, 5, 5);
-    ASSERT_TRUE(tables.has_value());
-    const auto brdfs = SurfaceBrdfs::load(t.scene, t.geometry, *tables, images, 5);
-    ASSERT_TRUE(brdfs.has_value());
-    const ExitKernels kernels{brdfs->grey(),
-                              [&](std::uint32_t triangle, float u, float v, const glm::vec3& to,
-                                  std::span<float> out) { brdfs->exitKernel(triangle, u, v, to, out); }};
-    const auto baked = bakeGlossy(t, kernels, {.rays = 512, .bounces = 12});
+    const testing::TransportBrdfs surfaces(t);
+    const auto baked = bakeGlossy(t, surfaces.kernels(), {.rays = 512, .bounces = 12});
     const GlossyField& field = baked.direct.glossy;
     double largest = 0.0, most = 0.0;
     for (std::size_t s = 0; s < field.size(); ++s) {
@@ -359,7 +318,7 @@ TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
 TEST(GlossyBounces, OfFewBandsOfLightAreTheFirstColumnsOfThoseOfMany) {
   // Passes leave columns where they are, so fewer bands of light give the same matrices, cut: but for the
   // weights of rays, which are exact for other bands of visibility.
-  const Transport t(glossyScene({cup()}), true);
+  const Transport t(glossyScene({testing::cup({2, 1, 2}, 6)}), true);
   for (const int order_out : {4, 6}) {
     const auto kernels = lambertKernels(t);
     const auto outputs = static_cast<std::size_t>(order_out * order_out);

@@ -154,9 +154,7 @@ TEST(GlossyDirect, LeavesMatteSamplesAsTheyAre) {
   const std::vector<bundle::MeshData> meshes = {grid({0, 0, 0}, 2.0f, 10), icosphere({0, 0.6f, 0}, 0.5f, 3)};
   Scene scene = testing::sceneOf(meshes);
   const Transport matte(scene);
-  scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].metallic = 1.0f;
-  scene.meshes[1].primitives[0].material = 1;
+  testing::ownMaterial(scene, 1).metallic = 1.0f;
   const Transport mixed(scene, true);
   ASSERT_EQ(mixed.samples.glossy.begin, 121u);
   const auto baked = bakeGlossy(mixed, lambertKernels(mixed), {});
@@ -170,12 +168,7 @@ TEST(GlossyDirect, LeavesMatteSamplesAsTheyAre) {
 }
 
 Scene withPointLight(Scene scene, glm::vec3 position) {
-  scene.lights = {gltf::Light{}};
-  gltf::Node node;
-  node.light = 0;
-  node.parent_from_node[3] = glm::vec4(position, 1.0f);
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
+  testing::addPointLight(scene, position);
   return scene;
 }
 
@@ -203,9 +196,7 @@ TEST(GlossyDirect, ReceivesAPointLightAndItsMirrorImage) {
 
 TEST(GlossyDirect, ReceivesASphereOfLightAsItsDisc) {
   Scene scene = glossyScene({grid({0, 0, 0}, 0.01f, 2), icosphere({0.5f, 1.0f, 0.0f}, 0.4f, 4)});
-  scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].emissive = glm::vec3(1.0f);
-  scene.meshes[1].primitives[0].material = 1;
+  testing::ownMaterial(scene, 1).emissive = glm::vec3(1.0f);
   const Transport t(scene, true);
   const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 2048});
   const std::size_t s = t.sampleAt({0, 0, 0});

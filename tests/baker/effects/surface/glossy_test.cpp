@@ -1,5 +1,5 @@
 // Tests what the plan says about glossy surfaces.
-#include "baker/effects/surface/surface_plan.hpp"
+#include "baker/effects/effect_list.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
@@ -11,7 +11,7 @@ using testing::grid;
 using testing::sceneOf;
 
 EffectChoice choiceOf(const Scene& scene) {
-  return chooseGlossy(scene, findRigidGroups(scene));
+  return effectsNamed("glossy")->front().choose(scene, findRigidGroups(scene));
 }
 
 TEST(ChooseGlossy, LeavesMatteScenesAlone) {
@@ -25,12 +25,11 @@ TEST(ChooseGlossy, LeavesMatteScenesAlone) {
 
 TEST(ChooseGlossy, CountsWhatThereIsAndSaysWhatFiveBandsCannotCarry) {
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1), grid({2, 0, 0}, 1.0f, 1), grid({4, 0, 0}, 1.0f, 1)});
-  scene.materials.push_back(scene.materials[0]);
+  gltf::Material& metal = testing::ownMaterial(scene, 1);
+  metal.metallic = 1.0f;
+  metal.roughness = 0.3f;
+  metal.anisotropy = 0.5f;
   scene.materials[0].roughness = 0.8f;
-  scene.materials[1].metallic = 1.0f;
-  scene.materials[1].roughness = 0.3f;
-  scene.materials[1].anisotropy = 0.5f;
-  scene.meshes[1].primitives[0].material = 1;
   const EffectChoice choice = choiceOf(scene);
   EXPECT_TRUE(choice.baked);
   EXPECT_EQ(
@@ -43,10 +42,8 @@ TEST(ChooseGlossy, CountsWhatThereIsAndSaysWhatFiveBandsCannotCarry) {
 
 TEST(ChooseGlossy, SaysHowLittleOfTheirHighlightsSmoothDielectricsWouldHaveByMatrices) {
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1), grid({2, 0, 0}, 1.0f, 1), grid({4, 0, 0}, 1.0f, 1)});
-  scene.materials.push_back(scene.materials[0]);
+  testing::ownMaterial(scene, 1).roughness = 0.4f;
   scene.materials[0].roughness = 0.0f;
-  scene.materials[1].roughness = 0.4f;
-  scene.meshes[1].primitives[0].material = 1;
   EXPECT_TRUE(choiceOf(scene).baked) << "it makes the table";
   EXPECT_EQ(
       choiceOf(scene).reason,

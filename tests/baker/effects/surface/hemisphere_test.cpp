@@ -76,12 +76,7 @@ TEST(NormalMappedTransfer, AtTheSurfacesOwnNormalIsThePlainTransferBouncesInclud
 
 TEST(NormalMappedTransfer, OfThePointLightFollowsTheTilt) {
   Scene scene = mappedScene({grid({0, 0, 0}, 1.0f, 2)});
-  gltf::Node node;
-  node.parent_from_node = glm::translate(glm::mat4(1.0f), {0, 2, 0});
-  node.light = 0;
-  scene.roots.push_back(1);
-  scene.nodes.push_back(node);
-  scene.lights.push_back({});
+  testing::addPointLight(scene, {0, 2, 0});
   const Transport t(scene);
   const auto baked = t.bake(2, 256, 0);
   const std::size_t s = t.sampleAt({0, 0, 0});

@@ -83,15 +83,8 @@ TEST(GlossyInsideFaces, OfAWhiteFurnaceLeaveUniformLightAsItIs) {
 
 TEST(GlossyInsideFaces, GiveTheSameLightForAnyMemoryAndNumberOfThreads) {
   Scene scene = slot(8);
-  scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].metallic = 0.0f;
-  scene.meshes[1].primitives[0].material = 1;  // the ceiling is matte
-  scene.lights = {gltf::Light{}};
-  gltf::Node lamp;
-  lamp.light = 0;
-  lamp.parent_from_node[3] = glm::vec4(0.1f, 0.2f, 0.1f, 1.0f);
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(lamp);
+  testing::ownMaterial(scene, 1).metallic = 0.0f;  // the ceiling is matte
+  testing::addPointLight(scene, {0.1f, 0.2f, 0.1f});
   const Transport t(scene, true);
   const auto baked = [&](std::size_t memory) {
     return bakeGlossy(

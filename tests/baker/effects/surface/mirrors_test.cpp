@@ -6,7 +6,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/plan/smooth_dielectrics.hpp"
 #include "baker/trace/mirror_paths.hpp"
 #include "tests/support/differences.hpp"
@@ -35,46 +34,27 @@ void addMetal(bundle::MeshData mesh, float roughness, const glm::vec3& color, Sc
   metal.metallic = 1.0f;
   metal.double_sided = true;
   metal.roughness = roughness;
-  gltf::Node node;
-  node.mesh = static_cast<std::int32_t>(scene.meshes.size());
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
+  testing::addNode(scene).mesh = static_cast<std::int32_t>(scene.meshes.size());
   scene.meshes.push_back({"", {{std::move(mesh), static_cast<std::int32_t>(scene.materials.size())}}});
   scene.materials.push_back(metal);
 }
 
 // Makes a ring about the y axis that stands on the floor, of radius 1; its material must have two sides.
 bundle::MeshData ring(float height, int around) {
-  bundle::MeshData mesh;
-  for (int i = 0; i <= around; ++i)
-    for (int top = 0; top < 2; ++top) {
-      const float angle =
-          -2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(around);
-      mesh.positions.emplace_back(std::cos(angle), top ? height : 0.0f, std::sin(angle));
-      mesh.normals.emplace_back(std::cos(angle), 0.0f, std::sin(angle));
-    }
-  const auto at = [](int i, int top) { return static_cast<std::uint32_t>(2 * i + top); };
-  for (int i = 0; i < around; ++i)
-    for (const std::uint32_t index : {at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 0), at(i + 1, 1), at(i, 1)})
-      mesh.indices.push_back(index);
-  return mesh;
+  return turned(testing::ring(height, around), -90.0f, {1, 0, 0});
 }
 
 // A scene with metals, whose rays follow mirrors unless told otherwise.
 struct Room {
   explicit Room(const Scene& scene, bool follow = true)
       : transport(scene, true),
-        images(transport.scene),
-        tables(std::move(*BrdfTables::make(transport.scene, 5, 5))),
-        brdfs(std::move(*SurfaceBrdfs::load(transport.scene, transport.geometry, tables, images, 5))),
-        mirrors(transport.geometry, transport.rays, transport.colors, brdfs, !transport.lights.empty()) {
+        surfaces(transport),
+        mirrors(transport.geometry, transport.rays, transport.colors, surfaces.brdfs,
+                !transport.lights.empty()) {
     if (follow) transport.mirrors = &mirrors;
   }
   GlossyBake bake(const GlossyBakeSettings& settings) const {
-    const ExitKernels kernels{brdfs.grey(),
-                              [this](std::uint32_t triangle, float u, float v, const glm::vec3& to,
-                                     std::span<float> out) { brdfs.exitKernel(triangle, u, v, to, out); }};
-    return bakeGlossy(transport, kernels, settings);
+    return bakeGlossy(transport, surfaces.kernels(), settings);
   }
   // The sum of direct light and bounces at the diffuse sample nearest to a place.
   std::vector<float> transferAt(const GlossyBake& baked, const glm::vec3& place) const {
@@ -86,9 +66,7 @@ struct Room {
   }
 
   Transport transport;
-  DecodedImages images;
-  BrdfTables tables;
-  SurfaceBrdfs brdfs;
+  testing::TransportBrdfs surfaces;
   MirrorPaths mirrors;
 };
 
@@ -226,14 +204,7 @@ TEST(Mirrors, OfHalfAMetalSendAsMuchLightAsTheirKernels) {
 // A path never meets a lamp that is a point, so its light leaves the mirror by the kernel.
 TEST(Mirrors, SendOnTheLightOfPointLampsByTheirKernels) {
   Scene scene = wallBesideAFloor(/*roughness=*/0.2f, /*size=*/2.0f, /*n=*/12);
-  gltf::Light lamp;
-  lamp.type = gltf::Light::Type::Point;
-  scene.lights.push_back(lamp);
-  gltf::Node node;
-  node.parent_from_node = glm::translate(glm::mat4(1.0f), {0.5f, 0.5f, 0.0f});
-  node.light = 0;
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back(node);
+  testing::addPointLight(scene, {0.5f, 0.5f, 0.0f});
   const Room room(scene), kernels(scene, /*follow=*/false);
   ASSERT_EQ(room.transport.lights.size(), 1u);
   const auto of = [](const Room& r) {

@@ -3,14 +3,18 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "baker/effects/volume/first_light.hpp"
-#include "baker/effects/volume/marched_volume.hpp"
+#include "baker/effects/volume/volume.hpp"
+#include "baker/effects/volume/volume_rays.hpp"
+#include "runtime/sh/basis.hpp"
 #include "tests/baker/effects/volume/media.hpp"
 
 namespace lambent::baker {
+
 namespace {
 
 using testing::cube;
@@ -63,7 +67,7 @@ TEST(FitWithinVoxels, BringsWhatGoesOutOfAMediumOfShortFreePathsNearer) {
     VolumeSettings settings = gridOf(8, 2, 1024);
     settings.scatterings = 0;
     settings.fit_within_voxels = fitted;
-    const MarchedVolume volume(transferOf(fog, settings));
+    const VolumeTransfer volume = transferOf(fog, settings);
     for (int k = 0; k < 30; ++k) {
       const glm::vec3 enters = glm::vec3(0.9f, 0.9f, 0.0f) * placeOf(k) + glm::vec3(0.0f, 0.0f, 0.5f);
       const glm::vec3 along = glm::normalize(glm::vec3(0.3f, -0.2f, -1.0f));
@@ -77,7 +81,7 @@ TEST(FitWithinVoxels, BringsWhatGoesOutOfAMediumOfShortFreePathsNearer) {
         light += std::exp(-depth) * kStep * double{arrives[0]} * kRoot4Pi;
       }
       std::array<float, 12> scattered;
-      volume.look(enters - along, along, 100.0f, scattered);
+      marchVolume(volume, enters - along, along, 100.0f, scattered);
       const double error = double{scattered[0]} * kRoot4Pi / light - 1.0;
       wrong[fitted] += error * error / 30.0, bias[fitted] += error / 30.0;
     }
@@ -93,6 +97,64 @@ TEST(FitWithinVoxels, LeavesThinMediaAlone) {
   Progress progress;
   ASSERT_TRUE(fitWithinVoxels(fog.medium(), gridOf(9, 2, 256), {}, nullptr, transfer, {progress}));
   EXPECT_EQ(transfer.vectors, before);
+}
+
+// Tests a baked volume as other groups see it.
+
+using testing::cube;
+using testing::transferOf;
+
+VolumeSettings coarse() {
+  VolumeSettings settings;
+  settings.order = 2;
+  settings.rays = 256;
+  settings.grid = glm::uvec3(8);
+  return settings;
+}
+
+TEST(MarchedVolume, ThatAbsorbsNothingIsNotSeenInUniformLightWhateverItsPhase) {
+  for (const float g : {0.0f, 0.5f, -0.7f}) {
+    const VolumeTransfer volume = transferOf(cube(4.0f), coarse(), glm::vec3(1.0f), {}, g);
+    const glm::vec3 direction = glm::normalize(glm::vec3(1.0f, 0.2f, -0.4f));
+    for (const glm::vec3& origin : {glm::vec3(0.0f), glm::vec3(-2.0f, -0.3f, 0.7f), glm::vec3(0.45f)}) {
+      std::array<float, 12> scattered;
+      const float clear = marchVolume(volume, origin, direction, 100.0f, scattered);
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(clear + scattered[4 * c] * std::sqrt(4.0f * std::numbers::pi_v<float>), 1.0f, 5e-3f);
+    }
+  }
+}
+
+// Along a chord of depth d, a thin volume adds d sum_i g^l(i) l_i y_i(direction) of the light l. With g > 0
+// this is more for light that travels towards the eye.
+TEST(MarchedVolume, ThatIsThinScattersWhatComesFromBehindItByItsPhase) {
+  constexpr float kSigma = 1e-3f, kG = 0.6f;
+  const VolumeTransfer volume = transferOf(cube(kSigma), coarse(), glm::vec3(0.5f), {}, kG);
+  const glm::vec3 direction = glm::normalize(glm::vec3(1.0f, 0.0f, 0.5f));
+  std::array<float, 12> scattered;
+  marchVolume(volume, -2.0f * direction, direction, 100.0f, scattered);
+  const float chord = std::sqrt(1.25f);
+  std::array<float, 4> y;
+  sh::evaluate(2, direction, std::span<float>(y));
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(scattered[i] / (0.5f * kSigma * chord), y[i] * (i == 0 ? 1.0f : kG), 3e-3f) << i;
+}
+
+TEST(MarchedVolume, LetsThroughWhatTheChordLetsThrough) {
+  const VolumeTransfer volume = transferOf(cube(2.0f), coarse(), glm::vec3(0.5f, 0.25f, 0.0f));
+  std::array<float, 12> scattered;
+  EXPECT_NEAR(marchVolume(volume, {-3, 0, 0}, {1, 0, 0}, 100.0f, scattered), std::exp(-2.0f), 1e-4f);
+  EXPECT_GT(scattered[0], scattered[4]);
+  EXPECT_GT(scattered[4], 0.0f);
+  EXPECT_EQ(scattered[8], 0.0f);  // blue scatters nothing
+  EXPECT_NEAR(marchVolume(volume, {-3, 0, 0}, {1, 0, 0}, 2.75f, scattered), std::exp(-0.5f), 1e-4f);
+}
+
+TEST(MarchedVolume, ThatIsEmptyIsInvisibleToTheLastBit) {
+  const VolumeTransfer volume = transferOf(cube(0.0f, 4), coarse());
+  std::array<float, 12> scattered;
+  EXPECT_EQ(marchVolume(volume, {-3, 0, 0}, {1, 0, 0}, 100.0f, scattered), 1.0f);
+  for (const float value : scattered) EXPECT_EQ(value, 0.0f);
 }
 
 }  // namespace

@@ -59,18 +59,6 @@ inline baker::VolumeTransfer transferOf(const Fog& fog, const baker::VolumeSetti
   return std::move(*transfer);
 }
 
-// Returns the interpolated mean radiance at a place under uniform light of radiance 1. block 0 is single
-// scattering, block 1 all scattering.
-inline double uniformAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::size_t block,
-                        std::size_t i = 0) {
-  const auto at = t.grid.stencil(t.grid.gridFromGroup(place), 0);
-  double sum = 0.0;
-  for (int k = 0; k < at.count; ++k)
-    sum += at.weight[static_cast<std::size_t>(k)] *
-           double{t.vectors[at.node[static_cast<std::size_t>(k)] * t.vectorSize() + block * t.columns() + i]};
-  return sum * kRoot4Pi;
-}
-
 // Returns one interpolated coefficient of the light that arrives at a place, per column of the environment.
 inline double arrivingAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::size_t block,
                          std::size_t output, std::size_t column) {
@@ -81,6 +69,13 @@ inline double arrivingAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::
            double{t.vectors[at.node[static_cast<std::size_t>(k)] * t.vectorSize() +
                             (block * t.outputs() + output) * t.columns() + column]};
   return sum;
+}
+
+// Returns the interpolated mean radiance at a place under uniform light of radiance 1, of isotropic
+// scattering. block 0 is single scattering, block 1 all scattering.
+inline double uniformAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::size_t block,
+                        std::size_t i = 0) {
+  return kRoot4Pi * arrivingAt(t, place, block, 0, i);
 }
 
 }  // namespace lambent::testing

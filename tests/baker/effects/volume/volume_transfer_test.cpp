@@ -1,13 +1,8 @@
 // Compares the transfer of volumes with closed forms (literature 7.8), and checks general properties.
 #include <array>
-#include <numbers>
-#include <random>
 
 #include <gtest/gtest.h>
 
-#include "baker/import/density_file.hpp"
-#include "baker/jobs/parallel.hpp"
-#include "runtime/sh/basis.hpp"
 #include "tests/baker/effects/volume/media.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
@@ -97,39 +92,6 @@ TEST(VolumeTransfer, OfTheCubesCentreWithAllScatteringsIsThatOfRandomWalks) {
   }
 }
 
-TEST(VolumeTransfer, GainsFromEveryScatteringUpToTheWhole) {
-  VolumeSettings settings = gridOf(6, 2, 256);
-  const Fog fog = cube(4.0f);
-  const glm::vec3 albedo(0.9f);
-  const double whole = uniformAt(transferOf(fog, settings, albedo), kCenter, 1);
-  double before = uniformAt(transferOf(fog, singly(settings), albedo), kCenter, 0);
-  for (const int times : {1, 2, 4, 60}) {
-    settings.scatterings = times;
-    const double now = uniformAt(transferOf(fog, settings, albedo), kCenter, 1);
-    EXPECT_GT(now, before) << times;
-    EXPECT_LT(now, whole + 1e-4) << times;
-    before = now;
-  }
-  EXPECT_NEAR(before, whole, 1e-3);
-}
-
-TEST(VolumeTransfer, OfThreeAlbedosIsThatOfEachByItself) {
-  const Fog fog = cube(4.0f);
-  const VolumeSettings settings = gridOf(6, 3, 256);
-  const VolumeTransfer colored = transferOf(fog, settings, {1.0f, 0.5f, 0.0f});
-  ASSERT_EQ(colored.full_channels, 3u);
-  const VolumeTransfer white = transferOf(fog, settings, glm::vec3(1.0f)),
-                       half = transferOf(fog, settings, glm::vec3(0.5f));
-  for (std::size_t p = 0; p < colored.grid.samples(); ++p)
-    for (std::size_t i = 0; i < 9; ++i) {
-      const float* v = &colored.vectors[p * 36];
-      ASSERT_EQ(v[9 + i], white.vectors[p * 18 + 9 + i]);
-      ASSERT_EQ(v[18 + i], half.vectors[p * 18 + 9 + i]);
-      ASSERT_NEAR(v[27 + i], v[i], 1e-6f);  // scatters nothing
-    }
-  EXPECT_EQ(transferOf(fog, settings, glm::vec3(0.0f)).full_channels, 0u);
-}
-
 TEST(VolumeTransfer, OfNothingHasNoSamplesAndOfALumpOnlyThoseThatReachIt) {
   EXPECT_EQ(transferOf(cube(0.0f, 8), gridOf(8)).grid.samples(), 0u);
   // One voxel of sixteen: linear to its neighbours' centres, so 24/16 wide; voxels of the transfer, of the
@@ -160,67 +122,6 @@ TEST(VolumeTransfer, StaysFiniteAndInRangeAtAnyOpticalDepth) {
         EXPECT_NEAR(uniformAt(t, kCenter, 1), 1.0, 1e-5);
       }
     }
-}
-
-TEST(VolumeTransfer, IsTheSameWithOneThreadWithTwoAndWithRowsThatDoNotFit) {
-  const Fog fog = cube(6.0f, 3);
-  VolumeSettings settings = gridOf(7, 3, 256);
-  std::vector<float> one, two, small;
-  withThreads(1, [&] { one = transferOf(fog, settings, glm::vec3(0.9f)).vectors; });
-  withThreads(2, [&] { two = transferOf(fog, settings, glm::vec3(0.9f)).vectors; });
-  settings.memory = 1000;
-  withThreads(2, [&] { small = transferOf(fog, settings, glm::vec3(0.9f)).vectors; });
-  EXPECT_EQ(one, two);
-  EXPECT_EQ(one, small);
-}
-
-// Estimates what arrives at a place by random walks with delta tracking: mean radiance per coefficient, order
-// 2.
-std::array<double, 4> walked(const DensityField& density, float largest, glm::vec3 place, double albedo,
-                             int walks) {
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  std::array<double, 4> sum{};
-  for (int walk = 0; walk < walks; ++walk) {
-    glm::vec3 p = place;
-    double weight = 1.0;
-    glm::vec3 s;
-    for (bool out = false; !out;) {
-      const double z = 2.0 * unit(random) - 1.0, phi = 2.0 * std::numbers::pi * unit(random);
-      s = glm::vec3(glm::dvec3(std::sqrt(1.0 - z * z) * glm::dvec2(std::cos(phi), std::sin(phi)), z));
-      for (;;) {
-        p += static_cast<float>(-std::log(1.0 - unit(random)) / double{largest}) * s;
-        const glm::vec3 grid = density.gridFromGroup(p);
-        out = glm::any(glm::lessThan(grid, glm::vec3(0.0f))) ||
-              glm::any(glm::greaterThan(grid, glm::vec3(density.size())));
-        if (out || unit(random) * double{largest} < double{density.atGrid(grid)}) break;
-      }
-      if (!out) weight *= albedo;
-    }
-    std::array<float, 4> y;
-    sh::evaluate(2, s, std::span<float>(y));
-    for (std::size_t i = 0; i < 4; ++i) sum[i] += weight * double{y[i]} / walks;
-  }
-  return sum;
-}
-
-TEST(VolumeTransfer, OfACloudIsThatOfRandomWalks) {
-  const DensityGrid cloud = proceduralCloud(7);
-  std::vector<float> values = cloud.values;
-  constexpr float kLargest = 20.0f;
-  constexpr double kAlbedo = 0.95;
-  for (float& value : values) value *= kLargest;
-  const auto field = std::make_shared<DensityField>(cloud.size, values, glm::mat4(cloud.file_from_grid));
-  Progress progress;
-  const auto t = bakeVolumeTransfer({field, values, glm::vec3(static_cast<float>(kAlbedo))},
-                                    gridOf(24, 2, 512), {}, {progress});
-  ASSERT_TRUE(t);
-  const std::size_t samples = t->grid.samples();
-  for (const std::size_t p : {samples / 7, samples / 3, samples / 2, samples * 3 / 4, samples * 6 / 7}) {
-    const auto wanted = walked(*field, kLargest, t->grid.place(p), kAlbedo, 20000);
-    for (std::size_t i = 0; i < 4; ++i)
-      EXPECT_NEAR(double{t->vectors[p * 8 + 4 + i]}, wanted[i], 0.01 * wanted[0] + 0.003) << p << " " << i;
-  }
 }
 
 // A wall is in the plane x = 0: thin fog on either side sees its half of the sky.

@@ -8,23 +8,29 @@
 #include <vector>
 
 #include "runtime/effects/diffuse/diffuse.hpp"
-#include "runtime/effects/diffuse/proxies.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_kernels.hpp"
-#include "tests/runtime/effects/diffuse/shading_bench.hpp"
+#include "tests/runtime/evaluate/shading_bench.hpp"
 #include "tests/support/differences.hpp"
 
 namespace lambent::effects::diffuse {
 
-struct DiffuseBench : testing::ShadingBench<Diffuse> {
+struct DiffuseBench : testing::ShadingBench {
   using ShadingBench::ShadingBench;
-  Diffuse& diffuse = effect;
+  Diffuse diffuse;
   Proxies proxies;
 
-  std::uint32_t shade(evaluate::TransferMode mode = evaluate::TransferMode::Full) { return shadeIn(mode); }
+  // Shades once and returns the number of dispatches.
+  std::uint32_t shade(evaluate::TransferMode mode = evaluate::TransferMode::Full) {
+    gpu::Counters counters;
+    shadeSamples(mode, {}, counters);
+    const Result<void> shaded = diffuse.shade(residency, lights, mode, samples, counters);
+    EXPECT_TRUE(shaded) << shaded.error().line();
+    return counters.dispatches;
+  }
 
   std::vector<std::uint64_t> shadedGroups() const {
     std::vector<std::uint64_t> shaded;
-    for (std::size_t g = 0; g < residency.groups().size(); ++g) shaded.push_back(diffuse.versionOf(g));
+    for (std::size_t g = 0; g < residency.groups().size(); ++g) shaded.push_back(samples.vectorsVersionOf(g));
     return shaded;
   }
 
@@ -58,34 +64,35 @@ struct DiffuseBench : testing::ShadingBench<Diffuse> {
     const auto geometry = pagesOf<float>(residency.geometry()),
                radiance = pagesOf<float>(residency.radiance());
     const auto shaded = pagesOf<glm::vec4>(residency.samples());
-    const Tables& tables = diffuse.tables();
-    std::vector<std::vector<glm::vec4>> samples;
-    for (const auto& page : shaded) samples.emplace_back(page.size(), glm::vec4(0.0f));
+    const evaluate::TransferTable& tables = samples.tables();
+    std::vector<std::vector<glm::vec4>> wanted_samples;
+    for (const auto& page : shaded) wanted_samples.emplace_back(page.size(), glm::vec4(0.0f));
     std::vector<glm::vec4> products(tables.product_count);
     for (std::size_t i = 0; i < tables.cells.size(); ++i) {
       const streaming::ResidentCell& resident = residency.cells()[i];
       if (!resident.usable()) continue;
       for (uint t = 0; t < tables.cells[i].count; ++t)
-        transfer::glsl::shadeVectors({.lights = lights.coefficients(),
-                                      .page = transfer[resident.block.page],
-                                      .places = tables.places,
-                                      .gaunt = {},
-                                      .products = products,
-                                      .samples = samples[residency.groups()[resident.group].samples.page]},
-                                     tables.transfers[tables.cells[i].first + t]);
+        transfer::glsl::shadeVectors(
+            {.lights = lights.coefficients(),
+             .page = transfer[resident.block.page],
+             .places = tables.places,
+             .gaunt = {},
+             .products = products,
+             .samples = wanted_samples[residency.groups()[resident.group].samples.page]},
+            tables.transfers[tables.cells[i].first + t]);
     }
     double difference = 0.0, largest = 0.0;
     const auto compare = [&](float got, float wanted) {
       largest = testing::larger(largest, double{std::abs(wanted)});
       difference = testing::larger(difference, double{std::abs(got - wanted)});
     };
-    for (std::size_t page = 0; page < samples.size(); ++page)
-      for (std::size_t i = 0; i < samples[page].size(); ++i)
-        for (int k = 0; k < 4 && samples[page][i] != glm::vec4(0.0f); ++k)
-          compare(shaded[page][i][k], samples[page][i][k]);
-    for (std::size_t i = 0; i < tables.draws.size(); ++i) {
+    for (std::size_t page = 0; page < wanted_samples.size(); ++page)
+      for (std::size_t i = 0; i < wanted_samples[page].size(); ++i)
+        for (int k = 0; k < 4 && wanted_samples[page][i] != glm::vec4(0.0f); ++k)
+          compare(shaded[page][i][k], wanted_samples[page][i][k]);
+    for (std::size_t i = 0; i < diffuse.draws().size(); ++i) {
       const streaming::ResidentDraw& resident = residency.draws()[i];
-      const DrawRecord& draw = tables.draws[i];
+      const DrawRecord& draw = diffuse.draws()[i];
       const std::vector<float>& got = radiance[resident.radiance.page];
       std::vector<float> wanted(got.size());
       const auto shadeBy = [&](auto kernel) {
@@ -93,7 +100,7 @@ struct DiffuseBench : testing::ShadingBench<Diffuse> {
         kernel.draws = std::span(&draw, 1);
         kernel.row_words = rows[resident.rows.page];
         kernel.geometry = geometry[residency.meshes()[resident.mesh].block.page];
-        kernel.samples = samples[residency.groups()[resident.group].samples.page];
+        kernel.samples = wanted_samples[residency.groups()[resident.group].samples.page];
         kernel.radiance_out = wanted;
         glsl::run(kernel, draw.vertex_count);
       };

@@ -39,8 +39,8 @@ TEST_F(DiffuseGpu, ShadesTexelsAsItsTwinAndAveragesThemInMipLevels) {
   const auto samples = DiffuseBench::pagesOf<glm::vec4>(bench.residency.samples());
   const auto rows = DiffuseBench::pagesOf(bench.residency.rows());
   std::size_t textures = 0;
-  for (std::size_t d = 0; d < bench.diffuse.tables().draws.size(); ++d) {
-    const DrawRecord& draw = bench.diffuse.tables().draws[d];
+  for (std::size_t d = 0; d < bench.diffuse.draws().size(); ++d) {
+    const DrawRecord& draw = bench.diffuse.draws()[d];
     const streaming::ResidentDraw& resident = bench.residency.draws()[d];
     EXPECT_EQ(draw.texels, draw.outputs == 1 ? 32u : 0u);
     if (draw.texels == 0) continue;
@@ -103,7 +103,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereSomeLampsStandApart) {
       bench.uploadAll(4);
       bench.shade();
       EXPECT_LT(bench.differenceToTwin(), 1e-3) << full << " channels";
-      for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers) {
+      for (const transfer::TransferRecord& record : bench.samples.tables().transfers) {
         EXPECT_EQ(record.bounced, (record.order == 0 || keys) && full > 0 ? 1u : 0u);
         if (record.order == 0) {
           EXPECT_EQ(record.straight_channels, 1u);
@@ -112,7 +112,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereSomeLampsStandApart) {
       for (lighting::GroupPlace& place : bench.places) place.lamps_apart.clear();
       bench.shade();
       EXPECT_LT(bench.differenceToTwin(), 1e-3) << "all by their columns again";
-      for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers)
+      for (const transfer::TransferRecord& record : bench.samples.tables().transfers)
         if (record.order == 0) {
           EXPECT_EQ(record.straight_channels, 0u);
         }
@@ -140,7 +140,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
           bench.shade(mode);
           EXPECT_LT(bench.differenceToTwin(), 1e-3)
               << shadowed << " and " << full << " channels, " << lights << " lights";
-          for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers) {
+          for (const transfer::TransferRecord& record : bench.samples.tables().transfers) {
             EXPECT_EQ(record.bounced,
                       record.order > 0 && mode == evaluate::TransferMode::Full && full > 0 ? 1u : 0u);
             EXPECT_EQ(record.straight_channels, record.order > 0 ? shadowed : 0u);
@@ -155,12 +155,12 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
           for (lighting::Incident& incident : place.incident) incident.key = nullptr;
         bench.shade();
         EXPECT_LT(bench.differenceToTwin(), 1e-3) << "no key lights";
-        for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers)
+        for (const transfer::TransferRecord& record : bench.samples.tables().transfers)
           EXPECT_EQ(record.bounced, 0u);
         bench.shineByKeyLights();
         bench.shade();
         EXPECT_LT(bench.differenceToTwin(), 1e-3) << "they are back";
-        for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers)
+        for (const transfer::TransferRecord& record : bench.samples.tables().transfers)
           EXPECT_EQ(record.bounced, record.order > 0 && full > 0 ? 1u : 0u);
       }
 }
@@ -190,10 +190,10 @@ TEST_F(DiffuseGpu, ShadesOnlyCellsWhoseLightProbesChanged) {
   bench.shade();
   bench.places[1].incident[0].version = 2;  // which no cell uses
   bench.shade();
-  EXPECT_EQ(bench.diffuse.shadedLast().cells, 0u);
+  EXPECT_EQ(bench.samples.cellsShadedLast(), 0u);
   bench.places[1].incident[2].version = 2;
   bench.shade();
-  EXPECT_EQ(bench.diffuse.shadedLast().cells, 2u) << "those of the second group";
+  EXPECT_EQ(bench.samples.cellsShadedLast(), 2u) << "those of the second group";
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
 }
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/sh/light_vector.hpp"
+#include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_kernels.hpp"

@@ -8,8 +8,8 @@
 #include "lambent_effects_neighborhood_embedded.hpp"
 #include "runtime/effects/neighborhood/neighborhood.hpp"
 #include "test_effects_neighborhood_gpu_embedded.hpp"
-#include "tests/runtime/effects/diffuse/shading_bench.hpp"
 #include "tests/runtime/effects/neighborhood/neighborhood_kernels.hpp"
+#include "tests/runtime/evaluate/shading_bench.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -17,7 +17,7 @@ namespace lambent::effects::neighborhood {
 
 namespace {
 
-struct Bench : lambent::testing::ShadingBench<glossy::Glossy> {
+struct Bench : lambent::testing::ShadingBench {
   Neighborhood neighborhood;
 
   Bench(lambent::testing::BundleMaker& maker, const lambent::testing::RandomBundleOptions& options,
@@ -32,10 +32,10 @@ struct Bench : lambent::testing::ShadingBench<glossy::Glossy> {
     uploadMeshes();
     uploadRows();
   }
-  gpu::Counters run(glossy::TransferMode mode = glossy::TransferMode::Full) {
-    shadeIn(mode);
-    gpu::Counters counters;
-    const Result<void> done = neighborhood.update(residency, lights, effect, counters);
+  gpu::Counters run(evaluate::TransferMode mode = evaluate::TransferMode::Full) {
+    gpu::Counters before, counters;
+    shadeSamples(mode, {.vectors = false}, before);
+    const Result<void> done = neighborhood.update(residency, lights, samples, counters);
     EXPECT_TRUE(done) << done.error().line();
     return counters;
   }
@@ -167,7 +167,7 @@ TEST_F(NeighborhoodGpu, IsReadyOnceAllHasArrivedAndWritesOnlyWhatChanged) {
   bench.environment.setTurn(20.0f);
   bench.run();
   EXPECT_EQ(bench.neighborhood.gridsWrittenLast(), 2u);
-  bench.run(glossy::TransferMode::Unshadowed);
+  bench.run(evaluate::TransferMode::Unshadowed);
   for (const glm::vec4& texel : bench.atlas().values) ASSERT_EQ(texel, glm::vec4(0.0f));
 }
 

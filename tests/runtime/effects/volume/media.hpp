@@ -10,7 +10,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "runtime/effects/volume/march.hpp"
-#include "runtime/streaming/load_request.hpp"
+#include "runtime/streaming/loader.hpp"
 #include "tests/support/built_volume.hpp"
 #include "tests/support/glsl/glsl.hpp"
 

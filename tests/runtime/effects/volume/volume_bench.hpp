@@ -21,8 +21,7 @@ struct Bench {
   std::vector<bundle::Blob> blobs;
   streaming::Residency residency;
   lighting::GroupLights lights;
-  diffuse::Diffuse diffuse;
-  glossy::Glossy glossy;
+  evaluate::Samples samples;
   Volume volume;
   March march;
   MarchOptions options;
@@ -62,11 +61,9 @@ struct Bench {
     counters = {};
     gpu::Counters others;
     lights.update(environment, sh::Window::Off, places, others);
-    const Result<void> diffuse_done = diffuse.shade(residency, lights, mode, others);
-    EXPECT_TRUE(diffuse_done) << diffuse_done.error().line();
-    const Result<void> glossy_done = glossy.shade(residency, lights, mode, others);
-    EXPECT_TRUE(glossy_done) << glossy_done.error().line();
-    const Result<void> done = volume.shade(residency, {lights, diffuse, glossy}, mode, {}, counters);
+    const Result<void> shaded = samples.shade(residency, lights, mode, others);
+    EXPECT_TRUE(shaded) << shaded.error().line();
+    const Result<void> done = volume.shade(residency, {lights, samples}, mode, {}, counters);
     EXPECT_TRUE(done) << done.error().line();
     return counters.dispatches;
   }

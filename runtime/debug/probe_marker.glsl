@@ -1,0 +1,90 @@
+// Draws balls at light probes, each made of the six faces of a cube. A point of a ball has the radiance that the
+// probe's harmonics give in the direction of its normal.
+struct Sign {
+  vec4 place_and_radius;
+  vec4 group_from_world;
+  uint light;
+  uint order;
+  uint pad[2];
+};
+layout(std430, binding = 1) readonly buffer Signs { Sign signs[]; };
+
+#ifdef LAMBENT_VERTEX
+#include "surface_shared.h"
+
+layout(std140, binding = kBindView) uniform ViewBlock {
+  mat4 view_from_world;
+  mat4 clip_from_view;
+  vec4 eye;
+};
+layout(location = 0) out vec3 direction;  // from the centre of the ball, world axes
+layout(location = 1) flat out int sign_index;
+
+const int kBallCells = 10;
+
+// Does the same as sh::cubeFaceDirection.
+vec3 faceDirection(int face, vec2 st) {
+  if (face == 0) return vec3(1.0, -st.y, -st.x);
+  if (face == 1) return vec3(-1.0, -st.y, st.x);
+  if (face == 2) return vec3(st.x, 1.0, st.y);
+  if (face == 3) return vec3(st.x, -1.0, -st.y);
+  if (face == 4) return vec3(st.x, -st.y, 1.0);
+  return vec3(-st.x, -st.y, -1.0);
+}
+
+void main() {
+  const vec2 kCorners[6] = vec2[6](vec2(0, 0), vec2(1, 0), vec2(0, 1), vec2(0, 1), vec2(1, 0), vec2(1, 1));
+  int quad = gl_VertexID / 6, face = quad / (kBallCells * kBallCells);
+  vec2 cell = vec2(quad % kBallCells, quad / kBallCells % kBallCells);
+  vec2 st = 2.0 * (cell + kCorners[gl_VertexID % 6]) / float(kBallCells) - 1.0;
+  sign_index = gl_InstanceID;
+  vec4 place_and_radius = signs[gl_InstanceID].place_and_radius;
+  direction = normalize(faceDirection(face, tan(0.78539816 * st)));
+  vec3 place = place_and_radius.xyz + place_and_radius.w * direction;
+  gl_Position = clip_from_view * (view_from_world * vec4(place, 1.0));
+}
+#else
+#include "overlay_colors.glsl"
+
+layout(std430, binding = 2) readonly buffer Lights { vec4 lights[]; };
+layout(location = 0) in vec3 direction;
+layout(location = 1) flat in int sign_index;
+layout(location = 0) out vec4 color;
+
+vec3 turned(vec4 turn, vec3 v) { return v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v); }
+
+// Returns the sum over i of l_i y_i(n), with the recurrences of unshadowedRadiance in diffuse_eval.glsl
+// without its weights.
+vec3 harmonics(vec3 n, uint light, int order) {
+  vec3 sum = vec3(0.0);
+  float c = 1.0, s = 0.0, sectoral = 0.28209479177387814;
+  for (int m = 0; m < order; ++m) {
+    if (m > 0) {
+      float next_c = n.x * c - n.y * s;
+      s = n.x * s + n.y * c;
+      c = next_c;
+      sectoral *= m == 1 ? sqrt(3.0) : sqrt(float(2 * m + 1) / float(2 * m));
+    }
+    float p = sectoral, before = 0.0;
+    for (int l = m; l < order; ++l) {
+      if (l > m) {
+        float z_factor = sqrt(float(4 * l * l - 1) / float(l * l - m * m));
+        float back = l == m + 1 ? 0.0
+                                : z_factor * sqrt(float((l - 1) * (l - 1) - m * m) / float(4 * (l - 1) * (l - 1) - 1));
+        float next = z_factor * n.z * p - back * before;
+        before = p;
+        p = next;
+      }
+      uint centre = light + uint(l * (l + 1));
+      sum += p * (m == 0 ? lights[centre].rgb : c * lights[centre + uint(m)].rgb + s * lights[centre - uint(m)].rgb);
+    }
+  }
+  return sum;
+}
+
+void main() {
+  Sign sign_of = signs[sign_index];
+  vec3 dir = turned(sign_of.group_from_world, normalize(direction));
+  color = vec4(shownLight(harmonics(dir, sign_of.light, int(sign_of.order))), 1.0);
+}
+#endif
