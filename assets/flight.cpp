@@ -13,7 +13,6 @@
 
 #include "assets/scenes.hpp"
 #include "assets/shapes.hpp"
-#include "runtime/spec/image.hpp"
 
 namespace lambent::assets {
 
@@ -82,29 +81,21 @@ Mesh terrainMesh(const Terrain& terrain, int cells) {
   return mesh;
 }
 
-// Returns an sRGB PNG of side x side texels.
-std::vector<std::uint8_t> terrainPng(const Terrain& terrain, int side) {
-  const auto texels = static_cast<std::uint32_t>(side);
-  spec::Rgba8Image image{texels, texels, {}};
-  image.texels.reserve(std::size_t{4} * texels * texels);
-  for (std::uint32_t row = 0; row < texels; ++row)
-    for (std::uint32_t column = 0; column < texels; ++column) {
-      const float u = (static_cast<float>(column) + 0.5f) / static_cast<float>(side);
-      const float v = (static_cast<float>(row) + 0.5f) / static_cast<float>(side);
-      const float x = terrain.side_m * (u - 0.5f), z = terrain.side_m * (v - 0.5f);
-      const float level = terrain.height(x, z) / terrain.height_m;
-      const float steep = 1.0f - normalAt(terrain, x, z).y;
-      const float grain = noise(glm::vec2(column, row) * 0.37f, 4096, terrain.seed + 90) - 0.5f;
-      const glm::vec3 grass(0.17f, 0.26f, 0.075f), rock(0.33f, 0.29f, 0.25f), snow(0.82f, 0.84f, 0.87f);
-      glm::vec3 color = glm::mix(grass, glm::vec3(0.30f, 0.30f, 0.12f), std::clamp(3.0f * level, 0.0f, 1.0f));
-      color = glm::mix(color, rock, glm::smoothstep(0.10f, 0.26f, steep + 0.08f * grain));
-      color = glm::mix(color, snow, glm::smoothstep(0.52f, 0.66f, level + 0.10f * grain - 0.4f * steep));
-      color *= 1.0f + 0.25f * grain;
-      for (int channel = 0; channel < 3; ++channel)
-        image.texels.push_back(static_cast<std::uint8_t>(std::lround(255.0f * srgb(color[channel]))));
-      image.texels.push_back(255);
-    }
-  return spec::encodePng(image);
+std::vector<std::uint8_t> terrainPng(const Terrain& terrain, std::uint32_t side) {
+  return squarePng(side, [&](std::uint32_t column, std::uint32_t row) {
+    const float u = (static_cast<float>(column) + 0.5f) / static_cast<float>(side);
+    const float v = (static_cast<float>(row) + 0.5f) / static_cast<float>(side);
+    const float x = terrain.side_m * (u - 0.5f), z = terrain.side_m * (v - 0.5f);
+    const float level = terrain.height(x, z) / terrain.height_m;
+    const float steep = 1.0f - normalAt(terrain, x, z).y;
+    const float grain = noise(glm::vec2(column, row) * 0.37f, 4096, terrain.seed + 90) - 0.5f;
+    const glm::vec3 grass(0.17f, 0.26f, 0.075f), rock(0.33f, 0.29f, 0.25f), snow(0.82f, 0.84f, 0.87f);
+    glm::vec3 color = glm::mix(grass, glm::vec3(0.30f, 0.30f, 0.12f), std::clamp(3.0f * level, 0.0f, 1.0f));
+    color = glm::mix(color, rock, glm::smoothstep(0.10f, 0.26f, steep + 0.08f * grain));
+    color = glm::mix(color, snow, glm::smoothstep(0.52f, 0.66f, level + 0.10f * grain - 0.4f * steep));
+    color *= 1.0f + 0.25f * grain;
+    return glm::vec3(srgb(color.r), srgb(color.g), srgb(color.b));
+  });
 }
 
 enum FlightMaterial { kLand, kHull, kPolished };
@@ -153,8 +144,7 @@ Mesh spindle(glm::vec3 axes) {
     mesh.positions[i] *= axes;
     mesh.normals[i] = glm::normalize(mesh.normals[i] / axes);
   }
-  mesh.texcoords.clear();
-  return mesh;
+  return withoutTexcoords(std::move(mesh));
 }
 
 // Makes a band about +Y.
@@ -162,9 +152,7 @@ Mesh ringWing(float radius, float width, float thickness) {
   const float low = -0.5f * width, high = 0.5f * width, inner = radius - thickness;
   const std::vector<glm::vec2> profile = {
       {inner, low}, {radius, low}, {radius, high}, {inner, high}, {inner, low}};
-  Mesh mesh = lathe(profile, 96, width / 4.0f);
-  mesh.texcoords.clear();
-  return mesh;
+  return withoutTexcoords(lathe(profile, 96, width / 4.0f));
 }
 
 }  // namespace
@@ -193,17 +181,14 @@ Scene flight() {
   scene.meshes.push_back({"hull", std::move(hull), kHull});
   scene.meshes.push_back({"ring wing", ringWing(0.95f, 0.42f, 0.03f), kPolished});
   Node flyer{.name = "flyer", .mesh = 1};
-  flyer.motion = leaningCircle(kCircle, kHeight);
-  flyer.translation = flyer.motion.translations.front();
-  flyer.rotation = flyer.motion.rotations.front();
+  setMotion(flyer, leaningCircle(kCircle, kHeight));
   flyer.scale = kScale;
   flyer.neighborhood = Neighborhood{.size = {64, 8, 64}, .extent = {11.0f, 4.4f, 11.0f}};
   scene.nodes.push_back(std::move(flyer));
   scene.nodes.push_back({.name = "ring wing", .mesh = 2, .translation = {0.0f, 0.06f, 0.2f}, .parent = 1});
 
   Node cloud{.name = "cloud", .mesh = -1};
-  cloud.motion = drifting({-5.0f, 6.6f, -4.0f}, {5.0f, 6.6f, -4.0f});
-  cloud.translation = cloud.motion.translations.front();
+  setMotion(cloud, drifting({-5.0f, 6.6f, -4.0f}, {5.0f, 6.6f, -4.0f}));
   cloud.volume = Volume{.file = "procedural:cloud,7",
                         .density_scale = 3.0f,
                         .albedo = glm::vec3(0.99f),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <numbers>
 #include <span>
@@ -14,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/base/atomic_file.hpp"
+#include "runtime/spec/image.hpp"
 
 namespace lambent::assets {
 
@@ -258,6 +260,41 @@ class Writer {
 };
 
 }  // namespace
+
+int addMesh(Scene& scene, const std::string& name, Mesh mesh, int material) {
+  scene.meshes.push_back({name, std::move(mesh), material});
+  return static_cast<int>(scene.meshes.size()) - 1;
+}
+
+void place(Scene& scene, const std::string& name, int mesh, glm::vec3 at, float turn_deg, float scale) {
+  const float half = turn_deg * std::numbers::pi_v<float> / 360.0f;
+  scene.nodes.push_back({name, mesh, at, glm::quat(std::cos(half), 0.0f, std::sin(half), 0.0f), scale});
+}
+
+void show(Scene& scene, const std::string& name, Mesh mesh, int material, glm::vec3 at, float turn_deg,
+          float scale) {
+  place(scene, name, addMesh(scene, name, std::move(mesh), material), at, turn_deg, scale);
+}
+
+void setMotion(Node& node, Motion motion) {
+  node.translation = motion.translations.front();
+  if (!motion.rotations.empty()) node.rotation = motion.rotations.front();
+  node.motion = std::move(motion);
+}
+
+std::vector<std::uint8_t> squarePng(std::uint32_t side,
+                                    const std::function<glm::vec3(std::uint32_t x, std::uint32_t y)>& srgb) {
+  spec::Rgba8Image image{side, side, {}};
+  image.texels.reserve(std::size_t{4} * side * side);
+  for (std::uint32_t y = 0; y < side; ++y)
+    for (std::uint32_t x = 0; x < side; ++x) {
+      const glm::vec3 color = srgb(x, y);
+      for (int channel = 0; channel < 3; ++channel)
+        image.texels.push_back(static_cast<std::uint8_t>(std::lround(255.0f * color[channel])));
+      image.texels.push_back(255);
+    }
+  return spec::encodePng(image);
+}
 
 Result<void> writeGlb(const std::filesystem::path& path, const Scene& scene) {
   Result<AtomicFile> file = AtomicFile::open(path);

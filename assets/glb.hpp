@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -97,6 +98,20 @@ struct Scene {
   std::vector<Node> nodes;
   std::vector<Camera> cameras;
 };
+
+// Adds a mesh to the scene, and returns its index.
+int addMesh(Scene& scene, const std::string& name, Mesh mesh, int material);
+// Adds a node that shows a mesh, turned about +Y.
+void place(Scene& scene, const std::string& name, int mesh, glm::vec3 at = glm::vec3(0.0f),
+           float turn_deg = 0.0f, float scale = 1.0f);
+// Adds a mesh, and a node of the same name that shows it.
+void show(Scene& scene, const std::string& name, Mesh mesh, int material, glm::vec3 at = glm::vec3(0.0f),
+          float turn_deg = 0.0f, float scale = 1.0f);
+// Gives a node a motion, with the first key as its place.
+void setMotion(Node& node, Motion motion);
+// Returns an sRGB PNG of side x side texels.
+std::vector<std::uint8_t> squarePng(std::uint32_t side,
+                                    const std::function<glm::vec3(std::uint32_t x, std::uint32_t y)>& srgb);
 
 // Errors: the file cannot be written.
 Result<void> writeGlb(const std::filesystem::path& path, const Scene& scene);

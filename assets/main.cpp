@@ -17,14 +17,11 @@ Result<void> writeAll(const std::filesystem::path& folder) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   if (code) return fail(folder.string(), "cannot be created: " + code.message(), "choose another folder");
-  if (auto done = assets::writeGlb(folder / "gallery.glb", assets::gallery()); !done) return done;
-  if (auto done = assets::writeGlb(folder / "hello.glb", assets::hello()); !done) return done;
-  if (auto done = assets::writeGlb(folder / "knot.glb", assets::knot()); !done) return done;
-  if (auto done = assets::writeGlb(folder / "playroom.glb", assets::playroom()); !done) return done;
-  if (auto done = assets::writeGlb(folder / "field.glb", assets::field()); !done) return done;
-  if (auto done = assets::writeGlb(folder / "metals.glb", assets::metals()); !done) return done;
-  if (auto done = assets::writeGlb(folder / "flight.glb", assets::flight()); !done) return done;
-  if (auto done = assets::writeGlb(folder / "ring.glb", assets::ring()); !done) return done;
+  for (const auto make : {assets::gallery, assets::hello, assets::knot, assets::playroom, assets::field,
+                          assets::metals, assets::flight, assets::ring}) {
+    const assets::Scene scene = make();
+    if (auto done = assets::writeGlb(folder / (scene.name + ".glb"), scene); !done) return done;
+  }
   constexpr std::uint32_t kProbeWidth = 512;
   if (auto done = spec::writeHdr(folder / "sky.hdr", assets::skyMap(kProbeWidth)); !done) return done;
   return spec::writeHdr(folder / "studio.hdr", assets::studioMap(kProbeWidth));

@@ -10,39 +10,30 @@
 
 #include "assets/scenes.hpp"
 #include "assets/shapes.hpp"
-#include "assets/teapot.hpp"
-#include "runtime/spec/image.hpp"
 
 namespace lambent::assets {
 
 std::vector<std::uint8_t> stonePng(int tiles, int texels_per_tile) {
   const auto side = static_cast<std::uint32_t>(tiles * texels_per_tile);
-  spec::Rgba8Image image{side, side, {}};
-  image.texels.reserve(std::size_t{4} * side * side);
-  for (std::uint32_t y = 0; y < side; ++y)
-    for (std::uint32_t x = 0; x < side; ++x) {
-      const auto per_tile = static_cast<std::uint32_t>(texels_per_tile);
-      const std::uint32_t tile_x = x / per_tile, tile_y = y / per_tile;
-      const float in_x = static_cast<float>(x % per_tile) + 0.5f,
-                  in_y = static_cast<float>(y % per_tile) + 0.5f;
-      const float edge = static_cast<float>(texels_per_tile);
-      const float to_joint = std::min({in_x, in_y, edge - in_x, edge - in_y});
-      float grain = 0.0f;
-      for (std::uint32_t octave = 0; octave < 5; ++octave) {
-        const std::uint32_t period = static_cast<std::uint32_t>(tiles) * (2u << octave);
-        const glm::vec2 at = glm::vec2(x, y) * (static_cast<float>(period) / static_cast<float>(side));
-        grain += (noise(at, period, octave) - 0.5f) / static_cast<float>(1u << (octave / 2));
-      }
-      const glm::vec3 tone =
-          (tile_x + tile_y) % 2 ? glm::vec3(0.80f, 0.74f, 0.65f) : glm::vec3(0.62f, 0.54f, 0.46f);
-      const float own = 1.0f + 0.08f * (hash(tile_x, tile_y, 99) - 0.5f) + 0.07f * grain;
-      const float joint = glm::mix(0.62f, 1.0f, glm::smoothstep(1.0f, 2.5f, to_joint));
-      const glm::vec3 colour = glm::clamp(tone * own * joint, 0.0f, 1.0f);
-      for (int channel = 0; channel < 3; ++channel)
-        image.texels.push_back(static_cast<std::uint8_t>(std::lround(255.0f * colour[channel])));
-      image.texels.push_back(255);
+  return squarePng(side, [&](std::uint32_t x, std::uint32_t y) {
+    const auto per_tile = static_cast<std::uint32_t>(texels_per_tile);
+    const std::uint32_t tile_x = x / per_tile, tile_y = y / per_tile;
+    const float in_x = static_cast<float>(x % per_tile) + 0.5f,
+                in_y = static_cast<float>(y % per_tile) + 0.5f;
+    const float edge = static_cast<float>(texels_per_tile);
+    const float to_joint = std::min({in_x, in_y, edge - in_x, edge - in_y});
+    float grain = 0.0f;
+    for (std::uint32_t octave = 0; octave < 5; ++octave) {
+      const std::uint32_t period = static_cast<std::uint32_t>(tiles) * (2u << octave);
+      const glm::vec2 at = glm::vec2(x, y) * (static_cast<float>(period) / static_cast<float>(side));
+      grain += (noise(at, period, octave) - 0.5f) / static_cast<float>(1u << (octave / 2));
     }
-  return spec::encodePng(image);
+    const glm::vec3 tone =
+        (tile_x + tile_y) % 2 ? glm::vec3(0.80f, 0.74f, 0.65f) : glm::vec3(0.62f, 0.54f, 0.46f);
+    const float own = 1.0f + 0.08f * (hash(tile_x, tile_y, 99) - 0.5f) + 0.07f * grain;
+    const float joint = glm::mix(0.62f, 1.0f, glm::smoothstep(1.0f, 2.5f, to_joint));
+    return glm::clamp(tone * own * joint, 0.0f, 1.0f);
+  });
 }
 
 namespace {
@@ -76,11 +67,6 @@ Mesh slab(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, glm::vec3 depth,
   append(mesh, plane(corner + depth, -depth, edge_v, kCoarse));
   append(mesh, plane(corner + edge_v, edge_u, depth, kCoarse));
   append(mesh, plane(corner + depth, edge_u, -depth, kCoarse));
-  return mesh;
-}
-
-Mesh withoutTexcoords(Mesh mesh) {
-  mesh.texcoords.clear();
   return mesh;
 }
 
@@ -120,57 +106,47 @@ Scene gallery() {
   scene.materials = galleryMaterials();
   scene.images = {{"stone", stonePng(/*tiles=*/2, /*texels_per_tile=*/128)}};
 
-  const auto add = [&](const std::string& name, Mesh mesh, GalleryMaterial material) {
-    scene.meshes.push_back({name, std::move(mesh), material});
-    return static_cast<int>(scene.meshes.size()) - 1;
-  };
-  const auto place = [&](const std::string& name, int mesh, glm::vec3 at = glm::vec3(0.0f),
-                         float turn_deg = 0.0f, float scale = 1.0f) {
-    const float half = turn_deg * std::numbers::pi_v<float> / 360.0f;
-    scene.nodes.push_back({name, mesh, at, glm::quat(std::cos(half), 0.0f, std::sin(half), 0.0f), scale});
-  };
-
   const float depth = kGalleryFront - kGalleryBack;
-  place("floor", add("floor", tiledFloor(), kStone));
-  place("back wall",
-        add("back wall",
-            withoutTexcoords(slab({-kGalleryHalfWidth, 0, kGalleryBack}, {2 * kGalleryHalfWidth, 0, 0},
-                                  {0, kGalleryHeight, 0}, {0, 0, -kThick}, kFine)),
-            kPlaster));
-  place("left wall", add("left wall",
-                         withoutTexcoords(slab({-kGalleryHalfWidth, 0, kGalleryFront}, {0, 0, -depth},
-                                               {0, kGalleryHeight, 0}, {-kThick, 0, 0}, kFine)),
-                         kRedWall));
-  place("right wall", add("right wall",
-                          withoutTexcoords(slab({kGalleryHalfWidth, 0, kGalleryBack}, {0, 0, depth},
-                                                {0, kGalleryHeight, 0}, {kThick, 0, 0}, kFine)),
-                          kTeal));
+  show(scene, "floor", tiledFloor(), kStone);
+  show(scene, "back wall",
+       withoutTexcoords(slab({-kGalleryHalfWidth, 0, kGalleryBack}, {2 * kGalleryHalfWidth, 0, 0},
+                             {0, kGalleryHeight, 0}, {0, 0, -kThick}, kFine)),
+       kPlaster);
+  show(scene, "left wall",
+       withoutTexcoords(slab({-kGalleryHalfWidth, 0, kGalleryFront}, {0, 0, -depth}, {0, kGalleryHeight, 0},
+                             {-kThick, 0, 0}, kFine)),
+       kRedWall);
+  show(scene, "right wall",
+       withoutTexcoords(slab({kGalleryHalfWidth, 0, kGalleryBack}, {0, 0, depth}, {0, kGalleryHeight, 0},
+                             {kThick, 0, 0}, kFine)),
+       kTeal);
 
-  place("column", add("column", column(), kLimestone));
-  place("teapot", add("teapot", teapot(/*cells=*/22, /*height_m=*/0.74f), kPorcelain), {0, 0.90f, 0}, 24.0f);
+  show(scene, "column", column(), kLimestone);
+  show(scene, "teapot", teapot(/*cells=*/22, /*height_m=*/0.74f), kPorcelain, {0, 0.90f, 0}, 24.0f);
 
-  const int plinth = add("plinth", box({-0.42f, 0, -0.42f}, {0.42f, 0.46f, 0.42f}, 0.04f), kLimestone);
-  place("plinth of the knot", plinth, {1.46f, 0, -1.05f}, -18.0f);
-  place("plinth of the spheres", plinth, {-1.50f, 0, -1.15f}, 14.0f);
+  const int plinth =
+      addMesh(scene, "plinth", box({-0.42f, 0, -0.42f}, {0.42f, 0.46f, 0.42f}, 0.04f), kLimestone);
+  place(scene, "plinth of the knot", plinth, {1.46f, 0, -1.05f}, -18.0f);
+  place(scene, "plinth of the spheres", plinth, {-1.50f, 0, -1.15f}, 14.0f);
 
   // The knot's own axis is vertical; here it stands upright on its plinth and faces the room.
-  const int knot = add("torus knot",
-                       torusKnot({.ring_radius = 0.36f,
-                                  .torus_radius = 0.16f,
-                                  .tube_radius = 0.085f,
-                                  .cells_along = 420,
-                                  .cells_around = 36}),
-                       kBronze);
+  const int knot = addMesh(scene, "torus knot",
+                           torusKnot({.ring_radius = 0.36f,
+                                      .torus_radius = 0.16f,
+                                      .tube_radius = 0.085f,
+                                      .cells_along = 420,
+                                      .cells_around = 36}),
+                           kBronze);
   const glm::quat upright = glm::angleAxis(-0.35f, glm::vec3(0, 1, 0)) *
                             glm::angleAxis(std::numbers::pi_v<float> / 2, glm::vec3(1, 0, 0));
   scene.nodes.push_back({"torus knot", knot, {1.46f, 1.03f, -1.05f}, upright, 1.0f});
 
-  const int ball = add("ball", sphere(/*radius=*/1.0f, /*cells=*/24), kCobalt);
-  place("large ball", ball, {-1.50f, 0.80f, -1.15f}, 0.0f, 0.34f);
-  place("small ball", ball, {-0.98f, 0.15f, 0.62f}, 0.0f, 0.15f);
+  const int ball = addMesh(scene, "ball", sphere(/*radius=*/1.0f, /*cells=*/24), kCobalt);
+  place(scene, "large ball", ball, {-1.50f, 0.80f, -1.15f}, 0.0f, 0.34f);
+  place(scene, "small ball", ball, {-0.98f, 0.15f, 0.62f}, 0.0f, 0.15f);
 
-  place("cube", add("cube", box({-0.16f, 0, -0.16f}, {0.16f, 0.32f, 0.16f}, 0.025f), kOchre),
-        {1.12f, 0, 0.55f}, 31.0f);
+  show(scene, "cube", box({-0.16f, 0, -0.16f}, {0.16f, 0.32f, 0.16f}, 0.025f), kOchre, {1.12f, 0, 0.55f},
+       31.0f);
 
   scene.cameras = {{"main", {0.65f, 1.72f, 4.9f}, {0.02f, 0.93f, -0.3f}, 35.0f},
                    {"detail", {-0.75f, 1.75f, 1.9f}, {0.1f, 1.13f, -0.1f}, 34.0f}};
@@ -248,65 +224,56 @@ Scene playroom() {
                      {.name = "wood", .base_color = {0.34f, 0.20f, 0.10f}},
                      {.name = "brass", .base_color = {0.55f, 0.40f, 0.16f}}};
   const auto add = [&](const std::string& name, Mesh mesh, PlayroomMaterial material) {
-    scene.meshes.push_back({name, std::move(mesh), material});
-    return static_cast<int>(scene.meshes.size()) - 1;
+    return addMesh(scene, name, std::move(mesh), material);
   };
-  const auto place = [&](Node node) {
+  const auto placed = [&](Node node) {
     scene.nodes.push_back(std::move(node));
     return static_cast<int>(scene.nodes.size()) - 1;
   };
 
   const float width = 2 * kRoomHalfWidth;
-  place({.name = "floor",
-         .mesh = add(
-             "floor",
-             plane({-kRoomHalfWidth, 0, kRoomFront}, {width, 0, 0}, {0, 0, kRoomBack - kRoomFront}, kCell),
-             kFloor)});
-  place({.name = "white wall",
-         .mesh = add("white wall",
-                     plane({-kRoomHalfWidth, 0, kRoomBack}, {width, 0, 0}, {0, kRoomHeight, 0}, kCell),
-                     kWhiteWall)});
+  show(scene, "floor",
+       plane({-kRoomHalfWidth, 0, kRoomFront}, {width, 0, 0}, {0, 0, kRoomBack - kRoomFront}, kCell), kFloor);
+  show(scene, "white wall", plane({-kRoomHalfWidth, 0, kRoomBack}, {width, 0, 0}, {0, kRoomHeight, 0}, kCell),
+       kWhiteWall);
 
   constexpr float kBallRadius = 0.32f;
   Node ball{.name = "red ball", .mesh = add("red ball", sphere(kBallRadius, 14), kRedBall)};
-  ball.motion = rolling(kBallRadius);
-  ball.translation = ball.motion.translations.front();
-  ball.rotation = ball.motion.rotations.front();
-  place(std::move(ball));
+  setMotion(ball, rolling(kBallRadius));
+  placed(std::move(ball));
 
   Node stand{.name = "teapot on its stand",
              .mesh = add("stand", box({-0.28f, 0, -0.28f}, {0.28f, 0.5f, 0.28f}, 0.07f), kWood),
              .translation = {1.0f, 0, -0.25f}};
   stand.movable = true;
-  const int stand_node = place(std::move(stand));
-  place({.name = "teapot",
-         .mesh = add("teapot", teapot(/*cells=*/8, /*height_m=*/0.52f), kTeapotPorcelain),
-         .translation = {0, 0.5f, 0},
-         .rotation = glm::angleAxis(0.5f, glm::vec3(0, 1, 0)),
-         .parent = stand_node});
+  const int stand_node = placed(std::move(stand));
+  placed({.name = "teapot",
+          .mesh = add("teapot", teapot(/*cells=*/8, /*height_m=*/0.52f), kTeapotPorcelain),
+          .translation = {0, 0.5f, 0},
+          .rotation = glm::angleAxis(0.5f, glm::vec3(0, 1, 0)),
+          .parent = stand_node});
 
   Node screen{.name = "screen",
               .mesh = add("screen", box({-0.4f, -0.015f, -0.36f}, {0.4f, 0.015f, 0.36f}, 0.08f), kWood)};
-  screen.motion = sliding();
-  screen.translation = screen.motion.translations.front();
-  place(std::move(screen));
+  setMotion(screen, sliding());
+  placed(std::move(screen));
 
   constexpr float kArm = 0.5f;
   Node lamp{.name = "lamp", .mesh = add("lamp", lampShade(kArm), kBrass), .translation = {0.9f, 2.3f, 1.3f}};
   lamp.motion = swinging(lamp.translation);
-  const int lamp_node = place(std::move(lamp));
+  const int lamp_node = placed(std::move(lamp));
   scene.spots = {{.name = "bulb",
                   .color = {1.0f, 0.82f, 0.58f},
                   .intensity_cd = 14.0f,
                   .inner_cone_deg = 22.0f,
                   .outer_cone_deg = 42.0f}};
   // It points to the teapot: down and back.
-  place({.name = "bulb",
-         .mesh = -1,
-         .translation = {0, -kArm - 0.12f, 0},
-         .rotation = glm::angleAxis(-0.72f, glm::vec3(1, 0, 0)),
-         .parent = lamp_node,
-         .spot = 0});
+  placed({.name = "bulb",
+          .mesh = -1,
+          .translation = {0, -kArm - 0.12f, 0},
+          .rotation = glm::angleAxis(-0.72f, glm::vec3(1, 0, 0)),
+          .parent = lamp_node,
+          .spot = 0});
 
   scene.cameras = {{"main", {-0.9f, 1.55f, 4.6f}, {0.1f, 0.72f, -0.5f}, 36.0f},
                    {"detail", {0.1f, 1.25f, 2.2f}, {1.0f, 0.75f, -0.3f}, 36.0f}};

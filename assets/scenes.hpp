@@ -5,8 +5,8 @@
 // come near it. In `playroom` a red ball rolls along a white wall, a lamp swings over a teapot, and a screen
 // slides between the two, about 20,000 vertices. `field` is 200 bodies on a lawn, 20 of them moving. `metals`
 // has a golden teapot, copper balls from polished to rough, brushed steel and glazed clay in front of a white
-// wall. In `flight` a flyer with a polished ring for a wing circles over hills, under a cloud. `ring` is a polished
-// ring of gold on a white plane of 256 x 256 vertices, on which it gathers light.
+// wall. In `flight` a flyer with a polished ring for a wing circles over hills, under a cloud. `ring` is a
+// polished ring of gold on a white plane of 256 x 256 vertices, on which it gathers light.
 #pragma once
 
 #include "assets/glb.hpp"

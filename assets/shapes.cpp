@@ -45,6 +45,11 @@ void append(Mesh& mesh, const Mesh& more, const glm::mat4& place) {
   for (const std::uint32_t index : more.indices) mesh.indices.push_back(first + index);
 }
 
+Mesh withoutTexcoords(Mesh mesh) {
+  mesh.texcoords.clear();
+  return mesh;
+}
+
 Mesh surface(int cells_u, int cells_v, const std::function<SurfacePoint(double u, double v)>& point) {
   Mesh mesh;
   for (int j = 0; j <= cells_v; ++j)

@@ -26,6 +26,8 @@ struct Mesh {
 // Appends `more`, transformed by a matrix without shear. Both must have texture coordinates, or neither.
 void append(Mesh& mesh, const Mesh& more, const glm::mat4& place = glm::mat4(1.0f));
 
+Mesh withoutTexcoords(Mesh mesh);
+
 // Makes a flat quad of cells_u x cells_v cells; its normal is edge_u x edge_v. Texture coordinates are in
 // metres.
 Mesh plane(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, int cells_u, int cells_v);
@@ -62,6 +64,12 @@ struct TorusKnot {
 
 // Makes a closed mesh with analytic normals.
 Mesh torusKnot(const TorusKnot& knot);
+
+// Makes the Utah teapot from Martin Newell's 32 bicubic Bezier patches (1975, public domain), with the bottom
+// that Frank Crow added. In Newell's data +Z is up, the spout points along +X, and the height is 3.15. Here
+// +Y is up and the bottom is at 0. Body, lid, handle and spout intersect each other, and the surface is open
+// there. Divides each patch into cells x cells. Normals are analytic, with their limits at poles.
+Mesh teapot(int cells, float height_m);
 
 // Computes value noise for the generator, with the same results on every machine.
 

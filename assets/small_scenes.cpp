@@ -6,7 +6,6 @@
 
 #include "assets/scenes.hpp"
 #include "assets/shapes.hpp"
-#include "assets/teapot.hpp"
 
 namespace lambent::assets {
 
@@ -16,9 +15,7 @@ Scene hello() {
   scene.materials = {{.name = "floor", .base_color = {0.7f, 0.68f, 0.64f}},
                      {.name = "box", .base_color = {0.75f, 0.25f, 0.12f}},
                      {.name = "sphere", .base_color = {0.2f, 0.4f, 0.7f}}};
-  Mesh floor = plane({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0.125f);
-  floor.texcoords.clear();
-  scene.meshes = {{"floor", std::move(floor), 0},
+  scene.meshes = {{"floor", withoutTexcoords(plane({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0.125f)), 0},
                   {"box", box({-0.25f, 0, -0.25f}, {0.25f, 0.5f, 0.25f}, 0.125f), 1},
                   {"sphere", sphere(/*radius=*/0.3f, /*cells=*/6), 2}};
   scene.nodes = {{.name = "floor", .mesh = 0},
@@ -53,13 +50,11 @@ Scene ring() {
       {.name = "plane", .base_color = glm::vec3(0.8f)},
       {.name = "gold", .base_color = {1.0f, 0.77f, 0.34f}, .roughness = 0.05f, .metallic = 1.0f}};
   Mesh floor = plane({-kHalf, 0, kHalf}, {2 * kHalf, 0, 0}, {0, 0, -2 * kHalf}, kTexels - 1, kTexels - 1);
-  floor.texcoords.clear();
   // The band has no lower side: it stands on the plane.
   const std::vector<glm::vec2> profile = {
       {kOuter, 0.0f}, {kOuter, kHeight}, {kInner, kHeight}, {kInner, 0.0f}};
-  Mesh band = lathe(profile, 192, 0.04f);
-  band.texcoords.clear();
-  scene.meshes = {{"plane", std::move(floor), 0}, {"ring", std::move(band), 1}};
+  scene.meshes = {{"plane", withoutTexcoords(std::move(floor)), 0},
+                  {"ring", withoutTexcoords(lathe(profile, 192, 0.04f)), 1}};
   scene.nodes = {{"plane", 0}, {"ring", 1}};
   scene.cameras = {{"main", {0.0f, 1.9f, 1.9f}, {0.0f, 0.02f, 0.08f}, 38.0f},
                    {"detail", {0.0f, 1.1f, 0.7f}, {0.0f, 0.0f, -0.12f}, 38.0f}};
@@ -122,9 +117,7 @@ Scene field() {
     Node node{.name = "body", .mesh = 1 + i * 7 % kinds, .translation = place};
     node.movable = true;
     if (i % (kRows * kColumns / kMoving) == 1) {
-      node.motion = circling(place, static_cast<float>(i % 7) / 7.0f);
-      node.translation = node.motion.translations.front();
-      node.rotation = node.motion.rotations.front();
+      setMotion(node, circling(place, static_cast<float>(i % 7) / 7.0f));
     }
     scene.nodes.push_back(std::move(node));
   }
@@ -178,42 +171,24 @@ Scene metals() {
   scene.name = "metals";
   scene.materials = metalsMaterials();
   scene.images = {{"stone", stonePng(/*tiles=*/2, /*texels_per_tile=*/128)}};
-  const auto add = [&](const std::string& name, Mesh mesh, int material) {
-    scene.meshes.push_back({name, std::move(mesh), material});
-    return static_cast<int>(scene.meshes.size()) - 1;
-  };
-  const auto place = [&](const std::string& name, int mesh, glm::vec3 at, float turn_deg = 0.0f,
-                         float scale = 1.0f) {
-    const float half = turn_deg * std::numbers::pi_v<float> / 360.0f;
-    scene.nodes.push_back({name, mesh, at, glm::quat(std::cos(half), 0.0f, std::sin(half), 0.0f), scale});
-  };
-  const auto without = [](Mesh mesh) {
-    mesh.texcoords.clear();
-    return mesh;
-  };
-
-  place("table", add("table", plane({-2.2f, 0, 1.4f}, {4.4f, 0, 0}, {0, 0, -2.8f}, 0.05f), kTable), {});
-  place("wall", add("wall", without(plane({-2.2f, 0, -1.4f}, {4.4f, 0, 0}, {0, 1.8f, 0}, 0.05f)), kBackWall),
-        {});
-  place("teapot", add("teapot", without(teapot(/*cells=*/18, /*height_m=*/0.8f)), kGold), {0.05f, 0, -0.45f},
-        20.0f);
-  place("bowl", add("bowl", turnedBowl(), kSteel), {1.22f, 0, -0.25f});
-  place("knot",
-        add("knot",
-            without(torusKnot({.ring_radius = 0.30f,
-                               .torus_radius = 0.13f,
-                               .tube_radius = 0.07f,
-                               .cells_along = 260,
-                               .cells_around = 24})),
-            kGlaze),
-        {-1.22f, 0.21f, -0.35f});
+  show(scene, "table", plane({-2.2f, 0, 1.4f}, {4.4f, 0, 0}, {0, 0, -2.8f}, 0.05f), kTable);
+  show(scene, "wall", withoutTexcoords(plane({-2.2f, 0, -1.4f}, {4.4f, 0, 0}, {0, 1.8f, 0}, 0.05f)),
+       kBackWall);
+  show(scene, "teapot", withoutTexcoords(teapot(/*cells=*/18, /*height_m=*/0.8f)), kGold, {0.05f, 0, -0.45f},
+       20.0f);
+  show(scene, "bowl", turnedBowl(), kSteel, {1.22f, 0, -0.25f});
+  show(scene, "knot",
+       withoutTexcoords(torusKnot({.ring_radius = 0.30f,
+                                   .torus_radius = 0.13f,
+                                   .tube_radius = 0.07f,
+                                   .cells_along = 260,
+                                   .cells_around = 24})),
+       kGlaze, {-1.22f, 0.21f, -0.35f});
   for (std::size_t i = 0; i < std::size(kRoughnesses); ++i)
-    place("copper ball",
-          add("copper ball", without(sphere(/*radius=*/0.2f, /*cells=*/16)),
-              kFirstCopper + static_cast<int>(i)),
-          {-0.85f + 0.5f * static_cast<float>(i), 0.2f, 0.62f});
-  place("rubber ball", add("rubber ball", without(sphere(/*radius=*/0.16f, /*cells=*/12)), kRubber),
-        {1.2f, 0.16f, 0.66f});
+    show(scene, "copper ball", withoutTexcoords(sphere(/*radius=*/0.2f, /*cells=*/16)),
+         kFirstCopper + static_cast<int>(i), {-0.85f + 0.5f * static_cast<float>(i), 0.2f, 0.62f});
+  show(scene, "rubber ball", withoutTexcoords(sphere(/*radius=*/0.16f, /*cells=*/12)), kRubber,
+       {1.2f, 0.16f, 0.66f});
 
   scene.cameras = {{"main", {0.35f, 1.35f, 3.3f}, {0.0f, 0.32f, -0.1f}, 38.0f},
                    {"detail", {0.9f, 0.75f, 1.5f}, {0.1f, 0.3f, -0.2f}, 36.0f}};

@@ -2,8 +2,6 @@
 // revolution; each quadrant has the control polygon (r, 0), (r, -q), (q, -r), (0, -r), so a row is (r, q, z).
 // Handle and spout are tubes of two mirrored halves, each with the control polygon (x0, 0, z0), (x0, -w, z0),
 // (x1, -w, z1), (x1, 0, z1).
-#include "assets/teapot.hpp"
-
 #include <array>
 #include <cmath>
 

@@ -106,21 +106,6 @@ void rotationBuild(benchmark::State& state) {
 }
 BENCHMARK(rotationBuild)->Arg(5)->Arg(6);
 
-void rotationBuildAndApplyOneChannel(benchmark::State& state) {
-  const auto rotations = someRotations();
-  const int order = static_cast<int>(state.range(0));
-  std::array<float, kMaxCoefficients> in{}, out{};
-  in.fill(0.5f);
-  for (auto _ : state)
-    for (const glm::dmat3& matrix : rotations) {
-      const Rotation rotation(matrix, order);
-      rotation.apply(in, std::span<float>(out));
-      benchmark::DoNotOptimize(out);
-    }
-  perItem(state, static_cast<double>(rotations.size()));
-}
-BENCHMARK(rotationBuildAndApplyOneChannel)->Arg(5)->Arg(6);
-
 void rotationApplyOneChannel(benchmark::State& state) {
   const Rotation rotation(someRotations()[1], static_cast<int>(state.range(0)));
   std::array<float, kMaxCoefficients> in{}, out{};

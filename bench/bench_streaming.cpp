@@ -1,5 +1,5 @@
 // Measures frames of a flight along many bundles that need more memory than there is: bench_streaming
-// FOLDER|BUNDLE... [--share S] [--copies N] [--frames N] [--size WxH] [--light LIGHT] [--log FILE]. It opens
+// FOLDER|BUNDLE... [--share S] [--copies N] [--frames N] [--size WxH] [--light LIGHT]. It opens
 // every bundle N times, side by side along X, and flies past them twice: with enough memory and everything
 // loaded, then streaming with a share S of that memory. For both flights it prints how long frames took
 // (median, worst, how many took over twice the median, and a histogram), what was resident, and how bundles
@@ -13,7 +13,6 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <optional>
@@ -43,7 +42,6 @@ struct Words {
   int copies = 1, frames = 300;
   spec::Size size{640, 360};
   std::string light = "constant:1,1,1";
-  std::string log;  // file; empty: no log
 };
 
 void stop(const Error& error) {
@@ -64,8 +62,6 @@ Words understand(int argc, char** argv) {
       words.frames = std::max(2, std::atoi(value().c_str()));
     else if (word == "--light")
       words.light = value();
-    else if (word == "--log")
-      words.log = value();
     else if (word == "--size") {
       const Result<spec::Size> size = spec::parseSize(value());
       if (!size) stop(size.error());
@@ -138,28 +134,6 @@ std::string dearest(std::span<const gpu::PassTime> passes, double frame_ms) {
   return text;
 }
 
-// Lists name, CPU ms, GPU ms and bytes uploaded of each pass: "upload:12.10:0.30:65536 raster:1.00:4.00:0".
-std::string everyPass(std::span<const gpu::PassTime> passes) {
-  std::string text;
-  for (const gpu::PassTime& pass : passes) {
-    std::string name = pass.name;
-    std::ranges::replace(name, ' ', '-');
-    text += fmt::format("{}{}:{:.2f}:{:.2f}:{}", text.empty() ? "" : " ", name, pass.cpu_ms, pass.gpu_ms,
-                        pass.counters.uploaded_bytes);
-  }
-  return text;
-}
-
-// Returns seconds of CLOCK_MONOTONIC, which profilers can use too.
-double seconds(std::chrono::steady_clock::time_point time) {
-  return std::chrono::duration<double>(time.time_since_epoch()).count();
-}
-
-void openLog(const Words& words) {
-  if (words.log.empty()) return;
-  if (std::ofstream log(words.log); !log) stop({words.log, "cannot be written", "give a path to a file"});
-}
-
 Flight fly(const Words& words, Row& row, lighting::Environment& environment, bool load_first) {
   frame::FrameOptions options;
   options.size = words.size;
@@ -194,10 +168,6 @@ Flight fly(const Words& words, Row& row, lighting::Environment& environment, boo
     flight.most_bytes = std::max(flight.most_bytes, bytes);
     flight.least_bytes = std::min(flight.least_bytes, bytes);
     frame->timers().finish();
-    if (!words.log.empty())
-      std::ofstream(words.log, std::ios::app)
-          << fmt::format("{} {} {:.6f} {:.6f} {}\n", load_first ? "resident" : "streaming", i, seconds(start),
-                         seconds(end), everyPass(frame->timers().latest()));
     for (const gpu::PassTime& pass : frame->timers().latest()) {
       flight.passes.try_emplace(pass.name, empty).first->second.add(pass.cpu_ms);
       if (pass.name == "upload") {
@@ -253,7 +223,6 @@ void print(const std::string& name, const Flight& flight) {
 
 int main(int argc, char** argv) {
   const Words words = understand(argc, argv);
-  openLog(words);
   Result<gpu::Context> context = gpu::Context::createHeadless();
   if (!context) stop(context.error());
   const Result<spec::Light> light = spec::parseLight(words.light);

@@ -303,15 +303,16 @@ class Assembler {
     const SampleSet& samples = baked.samples;
     transfer::VertexWeights rows;
     rows.offsets.push_back(0);
-    for (std::uint32_t v = 0; v < geometry.vertex_count; ++v) {
-      // Rows without a sample show the light that falls on them, unshadowed (bakeUnshadowed).
-      if (const std::uint32_t sample = samples.vertex_sample[geometry.first_vertex + v];
-          sample != kNoSample) {
+    // Rows without a sample show the light that falls on them, unshadowed (bakeUnshadowed).
+    const auto addRow = [&](std::uint32_t sample) {
+      if (sample != kNoSample) {
         rows.samples.push_back(sample);
         rows.weights.push_back(1.0f);
       }
       rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));
-    }
+    };
+    for (std::uint32_t v = 0; v < geometry.vertex_count; ++v)
+      addRow(samples.vertex_sample[geometry.first_vertex + v]);
     bundle::Draw draw{planned.node,
                       planned.mesh,
                       planned.primitive,
@@ -323,11 +324,7 @@ class Assembler {
       if (map.draw != index) continue;
       draw.texels = map.side;
       draw.texel_set = scene_.meshes[planned.mesh].primitives[planned.primitive].texel_set;
-      for (const std::uint32_t sample : dilated(map)) {
-        rows.samples.push_back(sample);
-        rows.weights.push_back(1.0f);
-        rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));
-      }
+      for (const std::uint32_t sample : dilated(map)) addRow(sample);
       report_.texel_samples += static_cast<std::uint64_t>(
           std::ranges::count_if(map.sample_of, [](std::uint32_t sample) { return sample != kNoSample; }));
     }

@@ -69,18 +69,16 @@ BakeContext contextOf(const Around& around, const BakeContext& body) {
   const BakeOptions& options = around.bake.options;
   const std::optional<Box3> receivers = receiversOf(around);
   KeyMaker key = KeyMaker::ofStage("neighborhood");
-  key.add(body.key).add(around.origin).add(std::uint64_t{around.rays});
-  key.add(plan.asked).add(plan.by_hand).add(plan.matrices).add(plan.size).add(plan.extent);
-  key.add(receivers.has_value());
+  key.add(body.key, around.origin, std::uint64_t{around.rays}, plan.asked, plan.by_hand, plan.matrices,
+          plan.size, plan.extent, receivers.has_value());
   if (receivers) key.add(receivers->low).add(receivers->high);
-  key.add(plan.receivers_face);
-  key.add(options.neighborhood_grid).add(options.effectiveErrorBound());
+  key.add(plan.receivers_face, options.neighborhood_grid, options.effectiveErrorBound());
   return body.keyed(key.key());
 }
 
 bool findAround(const Around& around, const BakeContext& context, BakedGroup& out) {
   BakedAround found;
-  if (!findKept(context, found)) return false;
+  if (!findNeighborhood(context, found)) return false;
   take(around, std::move(found), out);
   return true;
 }
@@ -382,7 +380,9 @@ Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs,
   // A result that is found needs neither colours nor rays. The body sends the light that the cells were coded
   // from, so their key serves the neighborhood too.
   const BakeContext cells_context = context.keyed(group.keys.cells);
-  const Around around{bake, index, group.geometry.origin, raysAroundSurfaces(bake.options), report};
+  // A sample of a surface spreads its rays over a hemisphere; a point in free space spreads them over the
+  // directions that the body fills, and the body's rim counts.
+  const Around around{bake, index, group.geometry.origin, 2 * bake.options.effectiveRays(), report};
   const BakeContext around_context = contextOf(around, cells_context);
   const bool found = findSurfaces(cells_context, baked.surfaces);
   if (found) reportSurfaces(group, baked.surfaces.figures, found, report);

@@ -114,18 +114,6 @@ bool findAround(const Around& around, const BakeContext& context, BakedGroup& ou
 bool bakeAround(const Around& around, const Body& body, const Box3& bounds, const BakeContext& context,
                 BakedGroup& out);
 
-// Returns the rays per grid point around surfaces. A sample of a surface spreads its rays over a hemisphere;
-// a point in free space spreads them over the directions that the body fills, and the body's rim counts.
-inline std::size_t raysAroundSurfaces(const BakeOptions& options) {
-  return 2 * options.effectiveRays();
-}
-// Returns the rays per grid point around a volume. A medium has no sharp rim to find, and each ray is
-// marched.
-inline std::size_t raysAroundVolumes(const BakeOptions& options) {
-  constexpr std::size_t kSampleRaysPerMarch = 4;
-  return options.effectiveRays() / kSampleRaysPerMarch;
-}
-
 // Bakes one volume, from its density to codes: quantization, rays, scattering, coding.
 
 // Checks whether the volume can be baked. Errors: a phase function that needs matrices with more than 6 bands

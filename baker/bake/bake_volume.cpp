@@ -343,7 +343,8 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std:
                              .fit_within_voxels = true}};
   const BakeContext own =
       context.keyed(context.cache ? transferKey(scene, out, placed.settings, placed.within) : Key{});
-  const Around around{bake, index, glm::vec3(0.0f), raysAroundVolumes(options), report};
+  // A medium has no sharp rim to find, and each ray is marched.
+  const Around around{bake, index, glm::vec3(0.0f), options.effectiveRays() / 4, report};
   const BakeContext around_context = contextOf(around, own);
 
   CodedVolume coded;

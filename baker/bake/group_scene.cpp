@@ -61,8 +61,8 @@ void addReflection(const Scene& scene, const GroupGeometry& geometry, int order,
     });
     // Only the coordinates of the normal map count: they define the tangent.
     const gltf::TextureRef& normal = m->normal_texture;
-    key.add(normal.texture >= 0).add(normal.texcoord).add(normal.offset).add(normal.scale);
-    key.add(normal.rotation_rad).add(m->brdf >= 0);
+    key.add(normal.texture >= 0, normal.texcoord, normal.offset, normal.scale, normal.rotation_rad,
+            m->brdf >= 0);
     if (m->brdf >= 0) key.addList(scene.brdfs[static_cast<std::size_t>(m->brdf)].measurements);
   }
 }
@@ -92,31 +92,21 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
   keys.proxy = proxy.add(reflecting).key();
   KeyMaker rays = KeyMaker::ofStage("rays");
   addEyes(planned.cameras, rays);
-  keys.rays = rays.add(seen)
-                  .add(options.order)
-                  .add(std::uint64_t{options.effectiveRays()})
-                  .add(planned.shadows)
-                  .add(planned.bounces)
-                  .key();
-  keys.glossy_rays = KeyMaker::ofStage("glossy rays").add(keys.rays).add(options.exitOrder()).key();
+  keys.rays =
+      rays.add(seen, options.order, std::uint64_t{options.effectiveRays()}, planned.shadows, planned.bounces)
+          .key();
+  keys.glossy_rays = KeyMaker::ofStage("glossy rays").add(keys.rays, options.exitOrder()).key();
   keys.bounces = KeyMaker::ofStage("bounces")
-                     .add(keys.glossy_rays)
-                     .add(colored)
-                     .add(reflecting)
-                     .add(options.glossy_order)
-                     .add(options.fitsDiffuse())
-                     .add(options.fitsGlossy())
+                     .add(keys.glossy_rays, colored, reflecting, options.glossy_order, options.fitsDiffuse(),
+                          options.fitsGlossy())
                      .key();
   KeyMaker cells = KeyMaker::ofStage("cells");
   for (const PlannedLight& light : lights) cells.add(light.color);  // errors are those of lamps as they are
-  keys.cells = cells.add(keys.bounces)
-                   .add(options.bounces)
-                   .add(options.leavesNothingOut())
-                   .add(options.effectiveErrorBound())
-                   .add(options.picture_bound)
-                   .add(options.error_bound > 0.0f)
-                   .add(options.effectiveGlossyErrorBound())
-                   .key();
+  keys.cells =
+      cells
+          .add(keys.bounces, options.bounces, options.leavesNothingOut(), options.effectiveErrorBound(),
+               options.picture_bound, options.error_bound > 0.0f, options.effectiveGlossyErrorBound())
+          .key();
   return keys;
 }
 
@@ -146,8 +136,7 @@ Key brdfTablesKey(const Scene& scene, int order, int shipped) {
 namespace {
 
 void addField(const gltf::TextureRef& ref, KeyMaker& digest) {
-  digest.add(ref.texture), digest.add(ref.texcoord);
-  digest.add(ref.offset), digest.add(ref.scale), digest.add(ref.rotation_rad);
+  digest.add(ref.texture, ref.texcoord, ref.offset, ref.scale, ref.rotation_rad);
 }
 void addField(const std::string& text, KeyMaker& digest) {
   digest.addText(text);
@@ -164,41 +153,38 @@ void addMaterial(const gltf::Material& material, KeyMaker& digest) {
 
 void addCamera(const gltf::Camera& c, KeyMaker& digest) {
   digest.addText(c.name);
-  digest.add(c.perspective);
-  for (const float value : {c.yfov_rad, c.aspect, c.xmag, c.ymag, c.znear, c.zfar}) digest.add(value);
+  digest.add(c.perspective, c.yfov_rad, c.aspect, c.xmag, c.ymag, c.znear, c.zfar);
 }
 
 void addLight(const gltf::Light& light, KeyMaker& digest) {
   digest.addText(light.name);
-  digest.add(light.type), digest.add(light.color), digest.add(light.intensity), digest.add(light.range_m);
-  digest.add(light.inner_cone_rad), digest.add(light.outer_cone_rad);
+  digest.add(light.type, light.color, light.intensity, light.range_m, light.inner_cone_rad,
+             light.outer_cone_rad);
 }
 
 void addAnimation(const gltf::Animation& animation, KeyMaker& digest) {
   digest.addText(animation.name);
   digest.add(animation.channels.size());
   for (const gltf::AnimationChannel& channel : animation.channels) {
-    digest.add(channel.node), digest.add(channel.path), digest.add(channel.interpolation);
-    digest.addList(channel.times_s);
-    digest.addList(channel.values);
+    digest.add(channel.node, channel.path, channel.interpolation);
+    digest.addList(channel.times_s).addList(channel.values);
   }
 }
 
 void addNode(const gltf::Node& node, KeyMaker& digest) {
   digest.addText(node.name);
-  digest.add(node.parent), digest.addList(node.children), digest.add(node.parent_from_node);
-  digest.add(node.mesh), digest.add(node.camera), digest.add(node.light);
-  digest.add(node.animated), digest.add(node.movable), digest.add(node.trs.has_value());
+  digest.add(node.parent).addList(node.children);
+  digest.add(node.parent_from_node, node.mesh, node.camera, node.light, node.animated, node.movable,
+             node.trs.has_value());
   if (!node.trs) return;
   const glm::quat& q = node.trs->rotation;
-  digest.add(node.trs->translation), digest.add(glm::vec4(q.x, q.y, q.z, q.w)), digest.add(node.trs->scale);
+  digest.add(node.trs->translation, glm::vec4(q.x, q.y, q.z, q.w), node.trs->scale);
 }
 
 void addVolume(const SceneVolume& volume, KeyMaker& digest) {
   digest.addText(volume.name);
-  digest.add(volume.node), digest.add(volume.size);
-  digest.addList(volume.density);
-  digest.add(volume.node_from_grid), digest.add(volume.albedo), digest.add(volume.g);
+  digest.add(volume.node, volume.size).addList(volume.density);
+  digest.add(volume.node_from_grid, volume.albedo, volume.g);
 }
 
 }  // namespace
@@ -216,23 +202,19 @@ std::uint64_t sceneDigest(const Scene& scene) {
     for (const ScenePrimitive& primitive : mesh.primitives) {
       addMesh(primitive.mesh, digest);
       digest.add(primitive.material);
-      if (primitive.texels > 0) digest.add(primitive.texels), digest.add(primitive.texel_set);
+      if (primitive.texels > 0) digest.add(primitive.texels, primitive.texel_set);
     }
   }
   for (const gltf::Material& material : scene.materials) addMaterial(material, digest);
   digest.add(scene.brdfs.size());
   for (const MeasuredBrdf& brdf : scene.brdfs) {
-    digest.addText(brdf.name);
-    digest.addList(brdf.measurements);
+    digest.addText(brdf.name).addList(brdf.measurements);
   }
   for (const gltf::Texture& texture : scene.textures) {
-    digest.add(texture.image);
-    digest.add(texture.sampler);
+    digest.add(texture.image, texture.sampler);
   }
   for (const SceneImage& image : scene.images) {
-    digest.addText(image.name);
-    digest.addText(image.mime_type);
-    digest.addList(image.file_bytes);
+    digest.addText(image.name).addText(image.mime_type).addList(image.file_bytes);
   }
   for (const gltf::Camera& camera : scene.cameras) addCamera(camera, digest);
   digest.add(scene.lights.size());
@@ -243,7 +225,7 @@ std::uint64_t sceneDigest(const Scene& scene) {
   for (const SceneVolume& volume : scene.volumes) addVolume(volume, digest);
   digest.add(scene.neighborhoods.size());
   for (const NeighborhoodRequest& request : scene.neighborhoods)
-    digest.add(request.node), digest.add(request.size), digest.add(request.extent);
+    digest.add(request.node, request.size, request.extent);
   return digest.key().low;
 }
 

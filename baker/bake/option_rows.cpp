@@ -219,7 +219,6 @@ std::span<const OptionRow> optionRows() {
   static const std::array kRows{
       OptionRow{.name = "quality",
                 .group = kAccuracy,
-                .setting = "",
                 .kind = "draft|standard|high",
                 .member = &B::quality,
                 .help = "Rays, refinement and error bounds together; default standard",
@@ -268,12 +267,10 @@ std::span<const OptionRow> optionRows() {
               "scattering in volumes, which else scatter as often as they do; default: until what is left "
               "out is far under the error bound",
           .words = {{"auto", -1}},
-          .least = 0,
           .greatest = B::kMostBounces,
           .hint = "leave it out to bake as many as the error bound asks for"},
       OptionRow{.name = "max-memory",
                 .group = kMachine,
-                .setting = "",
                 .kind = "BYTES",
                 .member = &B::memory_bytes,
                 .help = "The memory that the bake takes if it can, in bytes or like 4GB; default half of the "
@@ -315,7 +312,6 @@ std::span<const OptionRow> optionRows() {
                 .kind = "M",
                 .member = &B::max_edge_m,
                 .help = "Split edges longer than this (scene units), so that large faces catch shadows",
-                .least = 0.0f,
                 .greatest = double{std::numeric_limits<float>::max()},
                 .limits = "a length",
                 .hint = "give a positive number in the scene's units, or leave it out"},
@@ -395,7 +391,6 @@ std::span<const OptionRow> optionRows() {
                 .shows_default = true},
       OptionRow{.name = "threads",
                 .group = kMachine,
-                .setting = "",
                 .kind = "N",
                 .member = &B::threads,
                 .help = "Threads; default all. The result does not depend on it",

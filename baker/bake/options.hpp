@@ -126,10 +126,10 @@ std::optional<glm::uvec3> gridSizeFrom(std::string_view text);
 // option_rows.cpp. Errors name the option: a word is not of its kind, or a value lies outside its range.
 
 struct OptionRow {
-  std::string_view name;     // as in --name, in scripts and journals
-  std::string_view group;    // its heading in the help
-  std::string_view setting;  // in the settings that a bundle records; empty: it does not change the bytes
-  std::string_view kind;     // what a word looks like, for help: "N|auto"
+  std::string_view name;       // as in --name, in scripts and journals
+  std::string_view group;      // its heading in the help
+  std::string_view setting{};  // in the settings that a bundle records; empty: it does not change the bytes
+  std::string_view kind;       // what a word looks like, for help: "N|auto"
   std::variant<Quality BakeOptions::*, int BakeOptions::*, std::uint32_t BakeOptions::*,
                std::uint64_t BakeOptions::*, float BakeOptions::*, std::optional<bool> BakeOptions::*,
                glm::uvec3 BakeOptions::*, std::string BakeOptions::*>

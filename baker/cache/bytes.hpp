@@ -4,6 +4,7 @@
 // look at ok() once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -43,7 +44,7 @@ class ByteWriter {
   std::vector<std::byte> take() { return std::exchange(bytes_, {}); }
 
  private:
-  void append(std::span<const std::byte> bytes);
+  void append(std::span<const std::byte> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
 
   std::vector<std::byte> bytes_;
 };
@@ -96,7 +97,12 @@ class ByteReader {
     left_ = {};
     return false;
   }
-  bool copy(std::span<std::byte> to);
+  bool copy(std::span<std::byte> to) {
+    if (!ok_ || to.size() > left_.size()) return failed();
+    std::ranges::copy(left_.first(to.size()), to.begin());
+    left_ = left_.subspan(to.size());
+    return true;
+  }
 
   std::span<const std::byte> left_;
   bool ok_ = true;

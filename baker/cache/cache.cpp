@@ -1,18 +1,21 @@
 #include "baker/cache/cache.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
-#include <ctime>
+#include <cstring>
+#include <fstream>
 #include <mutex>
 #include <system_error>
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
+#include <zstd.h>
 
-#include "baker/cache/entry_file.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::baker {
 
@@ -20,22 +23,120 @@ namespace fs = std::filesystem;
 
 namespace {
 
+using Time = fs::file_time_type;
+
 constexpr const char* kExtension = ".entry";
+constexpr const char* kPartMark = ".part-";  // in the names of files that are being written
 // Eviction frees a tenth of the cache at a time, so that a full one is not listed for every entry.
 constexpr double kLeftAfterEviction = 0.9;
 // A file that has been in the process of being written for this long was left by a killed program.
-constexpr std::int64_t kAbandoned_ns = std::int64_t{3600} * 1'000'000'000;
+constexpr std::chrono::hours kAbandoned{1};
 
-std::int64_t now_ns() {
-  timespec now{};
-  ::clock_gettime(CLOCK_REALTIME, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+// This clock is common to all processes, and finer than the one with which the system stamps files.
+Time now() {
+  return Time::clock::now();
+}
+
+// This fails in a folder without write permission, but there nothing is evicted either.
+void touch(const fs::path& file) {
+  std::error_code ignored;
+  fs::last_write_time(file, now(), ignored);
+}
+
+// An entry is a file: a header, then the bytes, compressed by zstd if that saves enough.
+
+constexpr std::array<char, 8> kMagic = {'L', 'M', 'C', 'A', 'C', 'H', 'E', '1'};
+enum class Codec : std::uint64_t { Raw, Zstd };
+// A fast level suits bytes that are mostly floats. Compression is kept if it saves an eighth, and tried only
+// if a piece from the middle suggests that it may.
+constexpr int kZstdLevel = 1;
+constexpr std::size_t kTryBytes = std::size_t{128} << 10;
+
+bool pays(std::size_t compressed, std::size_t bytes) {
+  return ZSTD_isError(compressed) == 0 && compressed + bytes / 8 < bytes;
+}
+
+bool mayPay(std::span<const std::byte> bytes) {
+  if (bytes.size() < 4 * kTryBytes) return true;
+  std::vector<std::byte> out(ZSTD_compressBound(kTryBytes));
+  const auto piece = bytes.subspan(bytes.size() / 2, kTryBytes);
+  return pays(ZSTD_compress(out.data(), out.size(), piece.data(), piece.size(), kZstdLevel), kTryBytes);
+}
+
+// Limit on an entry's size; a header that claims more is damaged.
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 36;
+
+struct Header {
+  std::array<char, 8> magic = kMagic;
+  Key key;
+  Codec codec = Codec::Raw;
+  std::uint64_t bytes = 0, stored_bytes = 0;
+  std::uint64_t checksum = 0;  // of the header up to here, and of the stored bytes
+};
+static_assert(sizeof(Header) == 56 && std::has_unique_object_representations_v<Header>);
+
+std::uint64_t checksumOf(Header header, std::span<const std::byte> stored) {
+  header.checksum = bundle::checksum(stored);
+  return bundle::checksum(std::as_bytes(std::span(&header, 1)));
+}
+
+// Returns the content of the file of an entry.
+std::vector<std::byte> packEntry(const Key& key, std::span<const std::byte> bytes) {
+  Header header{.key = key, .bytes = bytes.size(), .stored_bytes = bytes.size()};
+  std::vector<std::byte> file;
+  if (mayPay(bytes)) {
+    file.resize(sizeof(Header) + ZSTD_compressBound(bytes.size()));
+    const std::size_t compressed = ZSTD_compress(file.data() + sizeof(Header), file.size() - sizeof(Header),
+                                                 bytes.data(), bytes.size(), kZstdLevel);
+    if (pays(compressed, bytes.size())) {
+      header.codec = Codec::Zstd;
+      header.stored_bytes = compressed;
+      file.resize(sizeof(Header) + compressed);
+    }
+  }
+  if (header.codec == Codec::Raw) {
+    file.resize(sizeof(Header));
+    file.insert(file.end(), bytes.begin(), bytes.end());
+  }
+  header.checksum = checksumOf(header, std::span<const std::byte>(file).subspan(sizeof(Header)));
+  std::memcpy(file.data(), &header, sizeof(Header));
+  return file;
+}
+
+// Returns the whole file, and sets its time to now, since that is when it was last used.
+std::optional<std::vector<std::byte>> readAndTouch(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in ? std::streamoff{in.tellg()} : -1;
+  if (size < 0) return std::nullopt;
+  touch(path);
+  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
+  in.seekg(0).read(reinterpret_cast<char*>(bytes.data()), size);
+  if (in.gcount() != size) return std::nullopt;
+  return bytes;
+}
+
+// Writes a file beside `path`, under a different name for each call, then renames it. Error: the system's
+// reason.
+Result<void> writeBeside(const fs::path& path, std::span<const std::byte> bytes) {
+  static std::atomic<std::uint64_t> count = 0;
+  fs::path part = path;
+  part += kPartMark + std::to_string(::getpid()) + "-" + std::to_string(count++);
+  std::ofstream out(part, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  // There is no fsync: a killed program loses nothing without it, and the checksum detects what a power cut
+  // may spoil.
+  out.close();
+  touch(part);
+  if (out && ::rename(part.c_str(), path.c_str()) == 0) return {};
+  const std::string why = std::strerror(errno);
+  ::unlink(part.c_str());
+  return fail(path.string(), "cannot be written: " + why);
 }
 
 struct Listed {
   fs::path path;
   std::uint64_t bytes = 0;
-  std::int64_t used_ns = 0;
+  Time used;
 };
 
 // Lists the entries, oldest first. Removes files that killed programs left half written.
@@ -44,27 +145,48 @@ std::vector<Listed> list(const fs::path& folder) {
   std::error_code code;
   for (auto at = fs::recursive_directory_iterator(folder, code); !code && at != fs::end(at);
        at.increment(code)) {
-    struct stat status {};
-    if (::stat(at->path().c_str(), &status) != 0 || !S_ISREG(status.st_mode)) continue;
-    const std::int64_t used_ns = std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+    std::error_code gone;
+    const std::uint64_t bytes = at->is_regular_file(gone) ? at->file_size(gone) : 0;
+    if (gone || bytes == 0) continue;
+    const Time used = at->last_write_time(gone);
+    if (gone) continue;
     if (at->path().extension() == kExtension)
-      entries.push_back({at->path(), static_cast<std::uint64_t>(status.st_size), used_ns});
+      entries.push_back({at->path(), bytes, used});
     else if (at->path().filename().string().find(std::string(kExtension) + kPartMark) != std::string::npos &&
-             now_ns() - used_ns > kAbandoned_ns)
+             now() - used > kAbandoned)
       ::unlink(at->path().c_str());
   }
-  std::sort(entries.begin(), entries.end(), [](const Listed& a, const Listed& b) {
-    return a.used_ns != b.used_ns ? a.used_ns < b.used_ns : a.path < b.path;
+  std::ranges::sort(entries, [](const Listed& a, const Listed& b) {
+    return a.used != b.used ? a.used < b.used : a.path < b.path;
   });
   return entries;
 }
 
 }  // namespace
 
+std::optional<std::vector<std::byte>> unpackEntry(const Key& key, std::span<const std::byte> file) {
+  if (file.size() < sizeof(Header)) return std::nullopt;
+  Header header;
+  std::memcpy(&header, file.data(), sizeof(Header));
+  const auto stored = file.subspan(sizeof(Header));
+  if (header.magic != kMagic || header.key != key || header.stored_bytes != stored.size() ||
+      header.bytes > kMostBytes || header.checksum != checksumOf(header, stored))
+    return std::nullopt;
+  if (header.codec == Codec::Raw) {
+    if (header.bytes != stored.size()) return std::nullopt;
+    return std::vector<std::byte>(stored.begin(), stored.end());
+  }
+  if (header.codec != Codec::Zstd) return std::nullopt;
+  std::vector<std::byte> bytes(static_cast<std::size_t>(header.bytes));
+  if (ZSTD_decompress(bytes.data(), bytes.size(), stored.data(), stored.size()) != bytes.size())
+    return std::nullopt;
+  return bytes;
+}
+
 struct Cache::State {
   fs::path folder;
   std::uint64_t most_bytes = 0;
-  std::atomic<std::int64_t> bake_began_ns = 0, checkpoint_ns = 0;
+  std::atomic<Time> bake_began = Time(), checkpoint = Time();
   std::atomic<double> checkpoint_every_s = kCheckpointEvery_s;
   std::atomic<bool> reading = true, writing = true;
   mutable std::atomic<std::uint64_t> found = 0, bytes_read = 0, stored = 0, bytes_written = 0, damaged = 0,
@@ -89,7 +211,7 @@ void Cache::State::makeRoom() {
   for (const Listed& entry : entries) sum += entry.bytes;
   const auto wanted = static_cast<std::uint64_t>(kLeftAfterEviction * static_cast<double>(most_bytes));
   for (const Listed& entry : entries) {
-    if (sum <= wanted || entry.used_ns >= bake_began_ns) break;
+    if (sum <= wanted || entry.used >= bake_began.load()) break;
     if (::unlink(entry.path.c_str()) != 0) continue;
     sum -= entry.bytes;
     ++evicted;
@@ -175,7 +297,7 @@ void Cache::drop(const Key& key) {
 }
 
 void Cache::beginBake() {
-  state_->bake_began_ns = now_ns();
+  state_->bake_began = now();
   checkpointed();
 }
 
@@ -192,11 +314,12 @@ double Cache::checkpointEvery() const {
 }
 
 bool Cache::checkpointDue() const {
-  return static_cast<double>(now_ns() - state_->checkpoint_ns) * 1e-9 >= state_->checkpoint_every_s;
+  return std::chrono::duration<double>(now() - state_->checkpoint.load()).count() >=
+         state_->checkpoint_every_s;
 }
 
 void Cache::checkpointed() {
-  state_->checkpoint_ns = now_ns();
+  state_->checkpoint = now();
 }
 
 const fs::path& Cache::folder() const {

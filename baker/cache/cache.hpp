@@ -71,4 +71,8 @@ class Cache {
   std::unique_ptr<State> state_;
 };
 
+// Returns the bytes of an entry; nothing unless `file`, from its first byte to its last, is the entry of
+// `key`.
+std::optional<std::vector<std::byte>> unpackEntry(const Key& key, std::span<const std::byte> file);
+
 }  // namespace lambent::baker

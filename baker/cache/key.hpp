@@ -50,9 +50,10 @@ class KeyMaker {
   KeyMaker& operator=(KeyMaker&&) noexcept;
   ~KeyMaker();
 
-  template <PlainBytes T>
-  KeyMaker& add(const T& value) {
-    return addBytes(std::as_bytes(std::span(&value, 1)));
+  template <PlainBytes... T>
+  KeyMaker& add(const T&... values) {
+    (addBytes(std::as_bytes(std::span(&values, 1))), ...);
+    return *this;
   }
   // Lists and texts are preceded by their length, so that no two sequences of values have the same bytes.
   template <PlainBytes T>

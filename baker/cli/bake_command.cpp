@@ -124,15 +124,10 @@ Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cach
     expected = std::move(guess.seconds);
   }
   if (cache) cache->setReading(!a.force);
-  const Key progress_key = progressKey(*scene, a.options);
   Result<BakeReport> report = [&] {
-    const WholeProgress whole(std::move(expected), cache ? findProgress(progress_key, *cache) : 0.0);
-    std::optional<ProgressWatch> keeper;
-    if (cache) keeper.emplace(keepProgress(progress, whole, *cache, progress_key));
-    const ProgressLine line(progress, whole, a.say, a.scene);
+    const ProgressLine line(progress, WholeProgress(std::move(expected)), a.say, a.scene);
     return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
   }();
-  if (report && cache) cache->drop(progress_key);
   if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
   if (!report) {
     if (stop.stop_requested())

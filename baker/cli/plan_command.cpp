@@ -185,7 +185,6 @@ void printPlan(const PlanReport& report, bool verbose) {
   for (const EffectChoice& choice : plan.effects)
     lines.push_back(
         fmt::format("    {:<12} {}: {}", choice.effect, choice.baked ? "baked" : "not baked", choice.reason));
-  addSentences("local lights", plan.shadowed_lights, verbose, lines);
   const BakeGuess& guess = report.guess;
   lines.push_back(fmt::format("  about {} samples, {} rays, {}, {} of memory for transfer",
                               countText(guess.samples), countText(guess.rays),
@@ -257,7 +256,6 @@ void printPlanJson(const PlanReport& report) {
   const nlohmann::json json = {{"scene", scene.source.string()},
                                {"groups", groups},
                                {"effects", effects},
-                               {"nearLights", plan.shadowed_lights},
                                {"leftOut", plan.left_out},
                                {"estimate",
                                 {{"samples", std::llround(guess.samples)},

@@ -80,6 +80,12 @@ template <>
 inline constexpr auto kKeptMembers<CodedCell> = std::tuple(&CodedCell::count, &CodedCell::bounds_min,
                                                            &CodedCell::bounds_max, &CodedCell::transfers);
 
+template <>
+inline constexpr auto kKeptMembers<BakedNeighborhood> = std::tuple(&BakedNeighborhood::size,
+                                                                   &BakedNeighborhood::bounds_min,
+                                                                   &BakedNeighborhood::bounds_max,
+                                                                   &BakedNeighborhood::cells);
+
 // Codes transfers that belong together, one after the other, on one thread.
 class CachedCoding {
  public:

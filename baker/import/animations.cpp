@@ -11,7 +11,7 @@
 
 #include "baker/import/convert.hpp"
 #include "baker/import/document.hpp"
-#include "baker/import/error_text.hpp"
+#include "baker/import/scene_files.hpp"
 
 namespace lambent::baker {
 namespace {

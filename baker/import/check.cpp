@@ -15,7 +15,7 @@
 
 #include "baker/import/convert.hpp"
 #include "baker/import/details.hpp"
-#include "baker/import/error_text.hpp"
+#include "baker/import/scene_files.hpp"
 #include "baker/import/texture_transfer.hpp"
 #include "runtime/bundle/material_fields.hpp"
 

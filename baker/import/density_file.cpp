@@ -21,7 +21,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "baker/import/error_text.hpp"
 #include "baker/import/openimageio/module.hpp"
 #include "baker/import/scene_files.hpp"
 #include "runtime/base/atomic_file.hpp"

@@ -2,11 +2,13 @@
 // the file, at voxel centres; extras.lambent.volume says what they mean (volumes.cpp).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
@@ -31,7 +33,14 @@ Result<DensityGrid> readVdb(const std::filesystem::path& file, const std::string
 Result<DensityGrid> readNrrd(const std::filesystem::path& file);
 
 // Errors name `subject`.
-Result<void> checkGridSize(const glm::u64vec3& size, const std::string& subject);
+inline Result<void> checkGridSize(const glm::u64vec3& size, const std::string& subject) {
+  const bool sides =
+      std::max({size.x, size.y, size.z}) <= kMostVoxelsAlongAnAxis && std::min({size.x, size.y, size.z}) >= 1;
+  if (sides && size.x * size.y * size.z <= kMostVoxels) return {};
+  return fail(subject, fmt::format("has {} x {} x {} voxels", size.x, size.y, size.z),
+              fmt::format("save it with 1 to {} along each axis, {} at most in all", kMostVoxelsAlongAnAxis,
+                          kMostVoxels));
+}
 
 // Makes a fair-weather cloud from a formula, for scenes that ship without files: flat below, with billows on
 // billows above. The same seed gives the same cloud.

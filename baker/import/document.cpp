@@ -11,7 +11,7 @@
 #include <meshoptimizer.h>
 
 #include "baker/import/check.hpp"
-#include "baker/import/error_text.hpp"
+#include "baker/import/scene_files.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -172,7 +172,8 @@ class BufferSource {
                   kExportAgain);
     std::vector<std::byte> bytes(buffer.length);
     for (const CodedView& view : buffer.coded) {
-      if (auto loaded = load(view.source()); !loaded) return loaded;
+      if (sources_.at(view.source()).empty())
+        if (auto loaded = load(view.source()); !loaded) return loaded;
       const auto coded =
           std::span<const std::byte>(sources_.at(view.source())).subspan(view.first(), view.bytes());
       const auto decoded =
@@ -312,7 +313,8 @@ void forEachElement(const Document& document, const json& accessor, std::size_t 
   if (sparse.is_null() || count == 0) return;
   const auto type = sparse.at("indices").at("componentType").get<std::uint32_t>();
   const std::byte *indices = firstOf(sparse.at("indices")), *values = firstOf(sparse.at("values"));
-  for (std::size_t i = 0; i < sparse.at("count").get<std::size_t>(); ++i) {
+  const auto replaced = sparse.at("count").get<std::size_t>();
+  for (std::size_t i = 0; i < replaced; ++i) {
     const std::size_t target = toIndex(indices + i * componentBytes(type), type);
     if (target < count) put(target, values + i * element);  // otherwise there is nothing to replace
   }

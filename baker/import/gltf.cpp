@@ -13,8 +13,8 @@
 #include "baker/import/check.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/document.hpp"
-#include "baker/import/error_text.hpp"
 #include "baker/import/openimageio/module.hpp"
+#include "baker/import/scene_files.hpp"
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {

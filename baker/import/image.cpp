@@ -15,8 +15,8 @@
 
 #include <fmt/format.h>
 
-#include "baker/import/error_text.hpp"
 #include "baker/import/openimageio/module.hpp"
+#include "baker/import/scene_files.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/spec/rec709.hpp"
 

@@ -14,8 +14,8 @@
 #include "baker/import/convert.hpp"
 #include "baker/import/details.hpp"
 #include "baker/import/document.hpp"
-#include "baker/import/error_text.hpp"
 #include "baker/import/mesh_edits.hpp"
+#include "baker/import/scene_files.hpp"
 #include "baker/import/texture_transfer.hpp"
 
 namespace lambent::baker {

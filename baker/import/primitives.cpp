@@ -14,7 +14,7 @@
 #include "baker/import/check.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/document.hpp"
-#include "baker/import/error_text.hpp"
+#include "baker/import/scene_files.hpp"
 #include "runtime/base/normal_matrix.hpp"
 
 namespace lambent::baker {

@@ -82,29 +82,17 @@ glm::vec3 vectorFrom(const json& value) {
   return {value.at(0).get<float>(), value.at(1).get<float>(), value.at(2).get<float>()};
 }
 
-json jsonOf(float value) {
-  return value;
-}
-json jsonOf(const glm::vec3& value) {
-  return vectorJson(value);
-}
-json jsonOf(std::int32_t value) {
-  return value;
-}
-void readInto(const json& from, float& value) {
-  value = from.get<float>();
-}
-void readInto(const json& from, glm::vec3& value) {
-  value = vectorFrom(from);
-}
-void readInto(const json& from, std::int32_t& value) {
-  value = from.get<std::int32_t>();
-}
-
 json materialJson(const SceneEdits::Material& m) {
   json to = {{"index", m.index}, {"name", m.name}};
   for (const auto& [name, value] : m.values)
-    to[name] = std::visit([](const auto& v) { return jsonOf(v); }, value);
+    to[name] = std::visit(
+        []<class T>(const T& v) -> json {
+          if constexpr (std::is_same_v<T, glm::vec3>)
+            return vectorJson(v);
+          else
+            return v;
+        },
+        value);
   return to;
 }
 
@@ -113,9 +101,10 @@ SceneEdits::Material materialFrom(const json& from) {
   from.at("index").get_to(m.index), from.at("name").get_to(m.name);
   forEachValue([&]<class T>(const auto&, const gltf::LiveValue<T>& live) {
     if (!from.contains(live.edit)) return;
-    T value;
-    readInto(from.at(live.edit), value);
-    m.values[live.edit] = value;
+    if constexpr (std::is_same_v<T, glm::vec3>)
+      m.values[live.edit] = vectorFrom(from.at(live.edit));
+    else
+      m.values[live.edit] = from.at(live.edit).template get<T>();
   });
   return m;
 }

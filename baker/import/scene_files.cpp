@@ -12,7 +12,6 @@
 
 #include <fmt/format.h>
 
-#include "baker/import/error_text.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/bundle/glb.hpp"
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <filesystem>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,17 @@ struct ImportOptions {
   // still be written to.
   bool whole_images = false;
 };
+
+// For files that break the rules of glTF.
+inline constexpr const char* kExportAgain = "export the scene again";
+
+// Returns the exception's text without the tag that nlohmann::json puts in front.
+inline std::string reasonOf(const std::exception& exception) {
+  if (dynamic_cast<const std::bad_alloc*>(&exception)) return "it needs more memory than there is";
+  const std::string text = exception.what();
+  const std::size_t tag = text.starts_with("[json.") ? text.find("] ") : std::string::npos;
+  return tag == std::string::npos ? text : text.substr(tag + 2);
+}
 
 // Opens a glTF file. It tells .gltf text from a .glb container by the first bytes and takes the container
 // apart. The JSON text and, for a .glb, its binary chunk go out; every length is compared with the file's

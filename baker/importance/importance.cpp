@@ -91,8 +91,10 @@ Importance::Importance(const GroupGeometry& geometry, const RayScene& rays, std:
     for (const glm::vec3& p : points) along.push_back(p[axis]);
     std::ranges::sort(along);
     const auto last = static_cast<float>(along.size() - 1);
-    size[axis] = along[static_cast<std::size_t>(0.5f * (1.0f + kMiddle) * last)] -
-                 along[static_cast<std::size_t>(0.5f * (1.0f - kMiddle) * last)];
+    const float low = along[static_cast<std::size_t>(0.5f * (1.0f - kMiddle) * last)];
+    const float high = along[static_cast<std::size_t>(0.5f * (1.0f + kMiddle) * last)];
+    size[axis] = high - low;
+    middle_[axis] = 0.5f * (low + high);
   }
   extent_ = std::max(glm::length(size), 1e-6f * glm::distance(geometry.bounds_min, geometry.bounds_max));
   regions_ = Regions(std::move(points), kRegionDepth);

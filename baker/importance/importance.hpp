@@ -129,6 +129,8 @@ class Importance {
   const Regions& regions() const { return regions_; }
   // Returns the diagonal of the box that holds nearly all of what eyes see, m.
   float extent() const { return extent_; }
+  // Returns the middle of that box.
+  const glm::vec3& middle() const { return middle_; }
 
   ImportanceAt at(const Place& place) const;
   // Returns a bound on what at() finds to be seen, without rays.
@@ -151,6 +153,7 @@ class Importance {
   std::vector<Sender> senders_;
   Regions regions_;
   float extent_ = 0.0f;
+  glm::vec3 middle_{0.0f};
 };
 
 }  // namespace lambent::baker

@@ -252,7 +252,6 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       unrecorded = entry.error()->line() + "; if this bake is cut short, no later session goes on with it";
   }
   bool up_to_date = false;
-  Key progress_key = {};
   std::vector<std::string> warnings;
   const Result<BakeReport> result = [&]() -> Result<BakeReport> {
     try {
@@ -262,11 +261,6 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       const auto scene = sceneOf(request, asked_then);
       if (!scene) return failAgain(scene.error());
       warnings = (*scene)->warnings;
-      double begun = 0.0;  // share of the final bake
-      if (settings.cache != nullptr) {
-        progress_key = progressKey(**scene, request.options);
-        begun = findProgress(progress_key, *settings.cache);
-      }
       if (record && isUpToDate(**scene, request.options, request.output)) {
         up_to_date = true;
         return BakeReport{};
@@ -280,12 +274,8 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       // The coarse preview and the final bake count; the unshadowed preview is short.
       std::optional<WholeProgress> whole;
       if (preview_level == PreviewLevel::Coarse)
-        whole.emplace(guess(PreviewLevel::Coarse), begun, JobSeconds{.left = sumSeconds(expected)});
-      if (preview_level == PreviewLevel::Final)
-        whole.emplace(std::move(expected), begun, JobSeconds{.spent = coarse_seconds});
-      std::optional<ProgressWatch> keeper;
-      if (settings.cache != nullptr && preview_level == PreviewLevel::Final)
-        keeper.emplace(keepProgress(*progress, *whole, *settings.cache, progress_key));
+        whole.emplace(guess(PreviewLevel::Coarse), 0.0, sumSeconds(expected));
+      if (preview_level == PreviewLevel::Final) whole.emplace(std::move(expected), coarse_seconds);
       {
         const std::lock_guard again(lock);
         if (job->asked == asked_then) {
@@ -302,8 +292,6 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
     }
   }();
   progress->end();
-  if (progress_key != Key{} && preview_level == PreviewLevel::Final && result)
-    settings.cache->drop(progress_key);
 
   hold.lock();
   running = nullptr;

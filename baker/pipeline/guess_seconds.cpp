@@ -26,6 +26,7 @@ constexpr double kOpenRay_s = 1e-7, kOpenSample_s = 1e-4;
 constexpr double kGlossyRay_s = 2.5e-6, kGlossySample_s = 2.6e-4;
 // Refinement is expected to double the vertices where it may.
 constexpr double kGrowth = 2.0;
+constexpr const char* kRefinement = "refinement";
 // Stages of a group share that so, roughly. Of diffuse and of glossy samples, codes take these shares of all.
 constexpr double kProbing = 1.0, kDirect = 1.0, kBounce = 0.3, kPatches = 0.09;
 // So many passes gather light; the rest passes between patches (effects/surface/bounces.hpp).

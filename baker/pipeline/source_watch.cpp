@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "baker/import/check.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/import/scene_files.hpp"
 
@@ -19,14 +20,6 @@ namespace lambent::baker {
 namespace {
 
 using nlohmann::json;
-
-// Returns the member of that name, or null. Nothing in the text has been validated.
-const json& memberOf(const json& value, const char* name) {
-  static const json kNone;
-  if (!value.is_object()) return kNone;
-  const auto found = value.find(name);
-  return found == value.end() ? kNone : *found;
-}
 
 void add(const json& uri, const std::filesystem::path& folder, std::vector<std::filesystem::path>& files) {
   if (!uri.is_string()) return;
@@ -45,11 +38,11 @@ std::vector<std::filesystem::path> sourceFiles(const std::filesystem::path& scen
   const json document = json::parse(container->json, nullptr, /*allow_exceptions=*/false);
   const std::filesystem::path folder = scene.parent_path();
   for (const char* list : {"buffers", "images"})
-    for (const json& entry : memberOf(document, list)) add(memberOf(entry, "uri"), folder, files);
-  for (const json& node : memberOf(document, "nodes"))
-    add(memberOf(memberOf(memberOf(memberOf(node, "extras"), "lambent"), "volume"), "file"), folder, files);
-  for (const json& material : memberOf(document, "materials"))
-    add(memberOf(memberOf(memberOf(material, "extras"), "lambent"), "brdf"), folder, files);
+    for (const json& entry : memberOf(document, {list})) add(memberOf(entry, {"uri"}), folder, files);
+  for (const json& node : memberOf(document, {"nodes"}))
+    add(memberOf(node, {"extras", "lambent", "volume", "file"}), folder, files);
+  for (const json& material : memberOf(document, {"materials"}))
+    add(memberOf(material, {"extras", "lambent", "brdf"}), folder, files);
   return files;
 }
 
@@ -250,8 +243,6 @@ SourceWatch::SourceWatch(std::vector<fs::path> sources, WatchSettings settings)
   impl_->sources = std::move(sources);
   impl_->thread = std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->run(stop); });
 }
-
-SourceWatch::SourceWatch(std::vector<fs::path> sources) : SourceWatch(std::move(sources), WatchSettings{}) {}
 
 SourceWatch::~SourceWatch() {
   impl_->thread.request_stop();

@@ -41,8 +41,7 @@ struct WatchEvent {
 class SourceWatch {
  public:
   // `sources` are scene files and folders; those that do not exist yet are waited for.
-  SourceWatch(std::vector<std::filesystem::path> sources, WatchSettings settings);
-  explicit SourceWatch(std::vector<std::filesystem::path> sources);
+  explicit SourceWatch(std::vector<std::filesystem::path> sources, WatchSettings settings = {});
   ~SourceWatch();
   SourceWatch(const SourceWatch&) = delete;
   SourceWatch& operator=(const SourceWatch&) = delete;

@@ -1,21 +1,17 @@
-// Sees a job with many stages as one: the share of the whole that is done, which never falls, and the time
-// that is left. The caller says what each stage is expected to take, in each part of the job
-// (Progress::beginPart); measured times replace that as stages run. One thread at a time uses an object.
+// Combines the progress of many stages into one: the share of the expected work that is done, which never
+// falls, and the time that is left. The caller says what each stage is expected to take, in each part of the
+// job (Progress::beginPart); how long the work so far took says how long the rest takes. One thread at a time
+// uses an object.
 #pragma once
 
 #include <chrono>
 #include <functional>
 #include <map>
-#include <span>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "baker/bake/options.hpp"
-#include "baker/cache/cache.hpp"
-#include "baker/cache/key.hpp"
-#include "baker/import/scene.hpp"
 #include "baker/jobs/progress.hpp"
 
 namespace lambent::baker {
@@ -23,24 +19,21 @@ namespace lambent::baker {
 using StageSeconds = std::map<std::string, double>;
 using PartSeconds = std::vector<StageSeconds>;
 
-inline constexpr const char* kRefinement = "refinement";
-
 double sumSeconds(const PartSeconds& parts);
 
-// Seconds of a job: spent, where what the cache held counts as though it had been computed, and left.
+// Seconds of a job as they were expected: of what is done, by computation or since the cache held it, and of
+// what is left. `pace` is how much longer the computed work took.
 struct JobSeconds {
-  double spent = 0.0, left = 0.0;
+  double done = 0.0, left = 0.0, pace = 1.0;
 };
-// Returns those of a job that was expected to take `expected`, has finished these stages and is at `now`.
-JobSeconds jobSeconds(const PartSeconds& expected, std::span<const Progress::Stage> finished,
-                      const Progress::Stage& now);
+// The last of the stages is the one that runs; those before are finished.
+JobSeconds jobSeconds(const PartSeconds& expected, std::vector<Progress::Stage> stages);
 
 class WholeProgress {
  public:
-  // `share` is that which an earlier run of the same job had reached (findProgress()). `others` are jobs
-  // that count as parts of this one: a preview counts with the bake that follows.
-  explicit WholeProgress(PartSeconds expected, double share = 0.0, JobSeconds others = {})
-      : expected_(std::move(expected)), share_(share), others_(others) {}
+  // Jobs before and after this one count as parts of it: a preview counts with the bake that follows.
+  explicit WholeProgress(PartSeconds expected, double before_s = 0.0, double after_s = 0.0)
+      : expected_(std::move(expected)), before_s_(before_s), after_s_(after_s) {}
 
   struct Seen {
     double share = 0.0;  // 0..1
@@ -52,8 +45,7 @@ class WholeProgress {
 
  private:
   PartSeconds expected_;
-  double share_;
-  JobSeconds others_;
+  double before_s_, after_s_, share_ = 0.0;
 };
 
 // While it lives, says how far a job is: every so often and, if wanted, once at the end, on a thread of its
@@ -66,15 +58,5 @@ class ProgressWatch {
  private:
   std::jthread thread_;
 };
-
-// Records how far a bake is, so that a later run that goes on with it begins to count where it was. The
-// record lies in the cache beside the results that it counts, under the same scene and options. A record is
-// no promise: a bake that was killed may have kept less than it counts, and takes longer than it says.
-
-Key progressKey(const Scene& scene, const BakeOptions& options);
-// Returns the share that was reached, 0..1; 0 if there is no record.
-double findProgress(const Key& key, const Cache& cache);
-// Keeps the record while the result lives. The cache must outlive it too.
-ProgressWatch keepProgress(const Progress& progress, WholeProgress whole, Cache& cache, const Key& key);
 
 }  // namespace lambent::baker

@@ -228,7 +228,6 @@ EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects, bo
   else
     plan.neighborhoods.resize(plan.groups.size());
   plan.light_probes = planLightProbes(scene, plan.groups, plan.neighborhoods);
-  plan.shadowed_lights = lightsInside(scene, plan.groups);
   plan.left_out = leftOut(scene, plan.bakes("glossy"));
   return plan;
 }

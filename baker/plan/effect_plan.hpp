@@ -63,7 +63,6 @@ struct EffectPlan {
   std::vector<PlannedTransport> transport;         // one per group
   std::vector<PlannedNeighborhood> neighborhoods;  // one per group; none is baked without that effect
   std::vector<PlannedLightProbes> light_probes;    // one per group
-  std::vector<std::string> shadowed_lights;        // one sentence for each lamp that comes within a group
   // Each sentence names something that the scene has and the bake will not show.
   std::vector<std::string> left_out;
 

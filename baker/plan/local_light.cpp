@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -187,28 +186,6 @@ std::vector<PlannedLightProbes> planLightProbes(const Scene& scene, const std::v
   std::vector<PlannedLightProbes> out;
   for (Choice& choice : choices) out.push_back(choice.take());
   return out;
-}
-
-std::vector<std::string> lightsInside(const Scene& scene, const std::vector<RigidGroup>& groups) {
-  const Motion motion(scene, groups);
-  std::set<std::pair<std::uint32_t, std::size_t>> known;
-  std::vector<std::string> sentences;
-  for (int time = 0; time < motion.times(); ++time) {
-    const Moment moment = motion.at(time);
-    for (const Lamp& lamp : moment.lamps)
-      for (std::size_t g = 0; g < groups.size(); ++g) {
-        const Box& own = moment.bodies[g].all;
-        if (lamp.root == groups[g].root || own.empty() || own.distance(lamp.place) > 0.0f) continue;
-        if (!known.emplace(lamp.node, g).second) continue;
-        std::string sentence = fmt::format(
-            "{} can stand among the surfaces of {}: direct light per pixel by a shadow cube map, its bounces "
-            "by patches.",
-            motion.lampName(lamp), groups[g].name);
-        sentence[0] = 'T';
-        sentences.push_back(std::move(sentence));
-      }
-  }
-  return sentences;
 }
 
 }  // namespace lambent::baker

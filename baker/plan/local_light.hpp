@@ -1,6 +1,5 @@
-// Decides how many light probes each group needs, from how near light comes to it, and lists the lamps that
-// come within a group, where light probes cannot describe their light. Both look at the scene at rest and, if
-// it has animations, at 64 times along them.
+// Decides how many light probes each group needs, from how near light comes to it, at rest and, if the scene
+// has animations, at 64 times along them.
 #pragma once
 
 #include <array>
@@ -119,8 +118,5 @@ struct PlannedLightProbes {
 // holds one entry per group, or is empty.
 std::vector<PlannedLightProbes> planLightProbes(const Scene& scene, const std::vector<RigidGroup>& groups,
                                                 const std::vector<PlannedNeighborhood>& neighborhoods = {});
-
-// Returns one sentence for each lamp of another group that comes within a group's bounds.
-std::vector<std::string> lightsInside(const Scene& scene, const std::vector<RigidGroup>& groups);
 
 }  // namespace lambent::baker

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -197,6 +198,7 @@ class ProxyMaker {
     if (!counts) return;
     for (std::size_t p = 0; p < parts_.size(); ++p)
       if ((*counts)[p] < simple[p].triangles.size()) simple[p] = simplified(meshes_[p], (*counts)[p]);
+    cutAroundEyes(simple);
     if (kFewer * static_cast<double>(trianglesOf(simple)) <=
         static_cast<double>(proxy_.levels.front().triangle_count))
       return;
@@ -211,6 +213,52 @@ class ProxyMaker {
     patches.error_m = std::max(patches.error_m, allowed);
     setDetail(faces, patches);
     for (glm::vec3& position : patches.positions) position += geometry_.origin;
+  }
+
+  // All patches of a triangle are of one size, and what they send counts alike. A ground that reaches far
+  // beyond what eyes see, and under the walls of their room, is therefore cut into triangles that grow with
+  // the distance.
+  void cutAroundEyes(std::vector<SimpleMesh>& simple) const {
+    constexpr float kNear = 1.0f / 16.0f, kGrowth = 0.5f;
+    const float extent = importance_.extent();
+    std::size_t left =
+        bundle::kMaxPatchTriangles - std::min<std::size_t>(trianglesOf(simple), bundle::kMaxPatchTriangles);
+    for (std::size_t p = 0; p < simple.size(); ++p) {
+      SimpleMesh& mesh = simple[p];
+      std::deque<glm::uvec3> wide;
+      std::vector<glm::uvec3> done;
+      const auto edge = [&](const glm::uvec3& t, int k) {
+        return glm::distance(mesh.positions[t[k]], mesh.positions[t[(k + 1) % 3]]);
+      };
+      const auto longest = [&](const glm::uvec3& t) {
+        const std::array lengths = {edge(t, 0), edge(t, 1), edge(t, 2)};
+        return static_cast<int>(std::ranges::max_element(lengths) - lengths.begin());
+      };
+      for (const glm::uvec3& t : mesh.triangles)
+        if (edge(t, longest(t)) > extent)
+          wide.push_back(t);
+        else
+          done.push_back(t);
+      while (!wide.empty()) {
+        const glm::uvec3 t = wide.front();
+        wide.pop_front();
+        const int k = longest(t);
+        const float length = edge(t, k);
+        const glm::vec3 middle = (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0f;
+        const float away = glm::distance(middle, importance_.middle()) - length - 0.5f * extent;
+        if (length <= std::max(kNear * extent, kGrowth * away) || left < parts_[p].sides()) {
+          done.push_back(t);
+          continue;
+        }
+        left -= parts_[p].sides();
+        const auto cut = static_cast<std::uint32_t>(mesh.positions.size());
+        const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
+        mesh.positions.push_back(0.5f * (mesh.positions[a] + mesh.positions[b]));
+        wide.push_back({a, cut, c});
+        wide.push_back({cut, b, c});
+      }
+      mesh.triangles = std::move(done);
+    }
   }
 
   // Patches are to be as small as what they send matters where eyes look. Points a little in front of the

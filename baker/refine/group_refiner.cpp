@@ -173,8 +173,8 @@ struct GroupRefiner::Whole {
   Key key;
 };
 
-GroupRefiner::GroupRefiner(const RefineProbes& probes, bool with_glossy)
-    : few_(probes.few), many_(probes.many), with_glossy_(with_glossy) {}
+GroupRefiner::GroupRefiner(const ShadowProbe& few, const ShadowProbe& many, bool with_glossy)
+    : few_(few), many_(many), with_glossy_(with_glossy) {}
 GroupRefiner::GroupRefiner(GroupRefiner&&) noexcept = default;
 GroupRefiner::~GroupRefiner() = default;
 

@@ -1,5 +1,3 @@
-#include "baker/refine/probed_points.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "baker/compress/light_weights.hpp"
 #include "baker/jobs/stage.hpp"
+#include "baker/refine/group_refiner.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/samples.hpp"
 #include "runtime/sh/basis.hpp"

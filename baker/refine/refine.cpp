@@ -7,7 +7,6 @@
 
 #include "baker/jobs/stage.hpp"
 #include "baker/refine/group_refiner.hpp"
-#include "baker/refine/probed_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 
 namespace lambent::baker {
@@ -98,8 +97,7 @@ class Rounds {
         report_(report),
         few_(options.rays),
         many_(options.many_rays) {
-    for (std::size_t g = 0; g < from.groups.size(); ++g)
-      refiners_.emplace_back(RefineProbes{few_, many_}, options.glossy);
+    for (std::size_t g = 0; g < from.groups.size(); ++g) refiners_.emplace_back(few_, many_, options.glossy);
   }
 
   // `geometries` are those of the groups before any split. Errors: stopped; no memory for the hierarchy.

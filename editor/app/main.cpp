@@ -181,12 +181,6 @@ Result<void> run(const Options& options) {
   auto renderer = Renderer::create(s);
   if (!renderer) return failAgain(renderer.error());
   Ui ui(*window, s.preferences.scale);
-  s.clipboard.put_system = [](const std::string& text) { ImGui::SetClipboardText(text.c_str()); };
-  s.clipboard.get_system = [] {
-    const char* text = ImGui::GetClipboardText();
-    return std::string(text ? text : "");
-  };
-
   s.viewing.surface_ahead = [&s, &r = *renderer]() -> std::optional<glm::vec3> {
     const spec::Size size = s.viewing.size;
     const auto picked =

@@ -1,7 +1,17 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/ranges.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "editor/commands/rows.hpp"
 #include "editor/document/actions.hpp"
+#include "runtime/spec/numbers.hpp"
 
 namespace lambent::editor {
 
@@ -36,14 +46,16 @@ Result<void> copy(Session& session, Words words) {
   const ecs::Entity primary = session.selection.primaryEntity(session.document);
   return (words.empty() ? copyEntities(session.document, selected(session))
                         : copyComponent(session.document, primary, words[0]))
-      .map([&](const std::string& text) { session.clipboard.put(text); });
+      .map([&](Clip clip) { session.clipboard = std::move(clip); });
 }
 
 Result<void> paste(Session& session) {
-  const std::string text = session.clipboard.get();
-  if (peekClip(text) == Pasted::Component)
-    return pasteComponent(session.document, session.history, selected(session), text);
-  return pasteEntities(session.document, session.history, ecs::Entity{}, text)
+  const Clip& clip = session.clipboard;
+  if (clip.component)
+    return pasteComponent(session.document, session.history, selected(session), *clip.component);
+  if (clip.entities.empty())
+    return fail("clipboard", "holds nothing that was copied here", "copy a component or entities first");
+  return pasteEntities(session.document, session.history, clip.entities)
       .map([&](const std::vector<ecs::Entity>& pasted) { selectAll(session, pasted); });
 }
 
@@ -131,6 +143,144 @@ std::vector<Command> editCommands() {
        scripted("select",
                 "Select by name, id (id:0123...) or search (type:light); the first named is the primary one",
                 "NAME...", 1, kMostSelected, select)});
+}
+
+// Implements the commands that create entities, and decides where new lights stand and how bright they are.
+
+namespace {
+
+using LampKind = scene::LocalLightComponent::Kind;
+
+constexpr float kShareOfWay = 0.35f;  // from the surface towards the camera
+constexpr float kRadiusOfDistance = 0.1f;
+constexpr float kOfWhite = 0.5f;  // what a white surface that faces the light is shown as
+// A new directional light stands over the camera's shoulder, so that it lights what the camera sees and
+// casts shadows to one side.
+constexpr float kShoulderDeg = 40.0f, kHighDeg = 50.0f;
+
+// Rounds to two digits, as a person would choose it.
+float rounded(float value) {
+  if (!(value > 0.0f) || !std::isfinite(value)) return value;
+  const float step = std::pow(10.0f, std::floor(std::log10(value)) - 1.0f);
+  return step * std::round(value / step);
+}
+
+glm::vec3 lookedAt(const Session& session) {
+  const Viewing& viewing = session.viewing;
+  return (viewing.surface_ahead ? viewing.surface_ahead() : std::nullopt).value_or(viewing.goal.target_ws);
+}
+
+// Returns the rotation that takes +Z, from where lights shine, to this direction.
+glm::quat facing(float azimuth_deg, float elevation_deg) {
+  return glm::angleAxis(glm::radians(azimuth_deg), glm::vec3(0.0f, 1.0f, 0.0f)) *
+         glm::angleAxis(-glm::radians(elevation_deg), glm::vec3(1.0f, 0.0f, 0.0f));
+}
+glm::quat facing(const glm::vec3& direction) {
+  return facing(glm::degrees(std::atan2(direction.x, direction.z)),
+                glm::degrees(std::asin(std::clamp(direction.y, -1.0f, 1.0f))));
+}
+
+void put(EntitySnapshot& snapshot, std::string_view component, std::string_view field, scene::Value value) {
+  for (ComponentValues& part : snapshot.components) {
+    if (part.component->name != component) continue;
+    for (std::size_t i = 0; i < part.values.size(); ++i)
+      if (part.component->fields[i].name == field) part.values[i] = std::move(value);
+  }
+}
+
+// Returns the strength at which a white surface at this distance, facing the light, is seen well.
+float strengthFor(LampKind kind, float distance_m, float radius_m, float exposure_ev) {
+  const float irradiance = std::numbers::pi_v<float> * kOfWhite * std::exp2(-exposure_ev);
+  const float intensity = irradiance * distance_m * distance_m;
+  if (kind == LampKind::Directional) return irradiance;
+  if (kind == LampKind::Point || kind == LampKind::Spot) return intensity;
+  return intensity / (std::numbers::pi_v<float> * radius_m * radius_m);
+}
+
+// Returns the point that a new entity gets: on the way from the surface in the middle of the picture to the
+// camera, or the point that the camera turns about where there is no surface.
+glm::vec3 newPlace(const Session& session) {
+  const glm::vec3 surface = lookedAt(session);
+  return surface + kShareOfWay * (session.viewing.goal.eye() - surface);
+}
+
+// Returns a light of this kind at `at`, or at newPlace() without it. It is turned towards the surface that
+// the camera looks at, and as bright as the present exposure shows well, so that it is seen at once.
+EntitySnapshot newLight(const Session& session, LampKind kind, std::string name,
+                        const std::optional<glm::vec3>& at) {
+  const glm::vec3 place = at.value_or(newPlace(session));
+  const glm::vec3 back = place - lookedAt(session);
+  const float distance = glm::length(back) > 0.0f ? glm::length(back) : 1.0f;
+  const float radius = rounded(kRadiusOfDistance * distance);
+  EntitySnapshot light = lightEntity(scene::kLightKindWords[static_cast<std::size_t>(kind)], std::move(name));
+  put(light, "Transform", "translation", place);
+  if (kind == LampKind::Directional)
+    put(light, "Transform", "rotation", facing(session.viewing.goal.azimuth_deg + kShoulderDeg, kHighDeg));
+  if (kind == LampKind::Spot || kind == LampKind::Disc)
+    put(light, "Transform", "rotation", facing(back / distance));
+  if (kind == LampKind::Sphere || kind == LampKind::Disc) put(light, "Light", "radius", radius);
+  put(light, "Light", "strength", rounded(strengthFor(kind, distance, radius, session.picture.exposure_ev)));
+  return light;
+}
+
+// Returns the place that the words give, or none without words.
+Result<std::optional<glm::vec3>> placeOf(Words words) {
+  if (words.empty()) return std::nullopt;
+  const auto numbers = spec::parseNumbers(fmt::format("{}", fmt::join(words, ",")));
+  if (!numbers || numbers->size() != 3)
+    return fail("create", "is no place", "give three numbers, or none: in front of what the camera sees");
+  return glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+}
+
+Answer create(Session& session, const EntitySnapshot& snapshot) {
+  const auto made = session.history.create(snapshot);
+  if (!made) return failAgain(made.error());
+  const StableId id = session.document.idOf(*made);
+  session.selection.set(id);
+  return nlohmann::json{{"id", idText(id)}, {"name", session.document.nameOf(*made)}};
+}
+
+Command lightOf(LampKind kind, const char* id, const char* title, const char* help) {
+  return item(id, title, "", help,
+              [kind](Session& session, Words words) -> Answer {
+                const auto at = placeOf(words);
+                if (!at) return failAgain(at.error());
+                const std::string word(scene::kLightKindWords[static_cast<std::size_t>(kind)]);
+                return create(session, newLight(session, kind, unusedName(session.document, word), *at));
+              })
+      .taking("[X Y Z]", 0, 3);
+}
+
+// The entity is created at the place that the words give, or where a new light would stand.
+Command entityOf(EntitySnapshot (*make)(std::string), const char* id, const char* title, const char* stem,
+                 const char* help) {
+  return item(id, title, "", help,
+              [make, stem](Session& session, Words words) -> Answer {
+                const auto at = placeOf(words);
+                if (!at) return failAgain(at.error());
+                EntitySnapshot snapshot = make(unusedName(session.document, stem));
+                put(snapshot, "Transform", "translation", at->value_or(newPlace(session)));
+                return create(session, snapshot);
+              })
+      .taking("[X Y Z]", 0, 3);
+}
+
+}  // namespace
+
+std::vector<Command> createCommands() {
+  return inMenu(
+      "Create",
+      {lightOf(LampKind::Point, "create-point", "Point light",
+               "A lamp without size, in front of what the camera sees"),
+       lightOf(LampKind::Spot, "create-spot", "Spot light",
+               "A lamp that shines along its -Z, at what the camera sees"),
+       lightOf(LampKind::Directional, "create-directional", "Directional light",
+               "Light from one direction, without end"),
+       lightOf(LampKind::Sphere, "create-sphere", "Sphere of light", "A lamp with a radius: soft shadows"),
+       lightOf(LampKind::Disc, "create-disc", "Disc of light", "A flat lamp that shines to one side"),
+       separator(),
+       entityOf(&cameraEntity, "create-camera", "Camera", "camera", "A camera that stands in the world"),
+       entityOf(&emptyEntity, "create-empty", "Empty", "empty", "A place to hang other things from")});
 }
 
 }  // namespace lambent::editor

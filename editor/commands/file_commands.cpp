@@ -45,7 +45,7 @@ Answer saveTo(Session& session, Words words, const std::filesystem::path& presen
 constexpr std::size_t kMostFiles = 1000;
 
 Answer assets(Session& session, Words words) {
-  session.assets.updateNow(session);
+  session.assets.update(session);
   if (!words.empty()) session.assets.search = words[0];
   Answer answer = nlohmann::json::array();
   for (const AssetGroup& group : session.assets.groups())
@@ -62,7 +62,7 @@ Answer assets(Session& session, Words words) {
 Answer useAsset(Session& session, Words words) {
   std::optional<Asset> asset = assetAt(words[0]);
   if (!asset) {
-    session.assets.updateNow(session);
+    session.assets.update(session);
     if (const Asset* listed = session.assets.find(words[0])) asset = *listed;
   }
   if (!asset) return fail(words[0], "is no asset", "\"assets\" lists them");

@@ -73,15 +73,6 @@ Result<void> setEnvironmentMap(Session& session, Words words) {
   });
 }
 
-void addEnvironmentMapFolder(Session& session, Words words) {
-  if (!words.empty()) return session.assets.addFolder(words[0]);
-  session.window.dialog =
-      Dialog{.kind = Dialog::Kind::Folder,
-             .title = "Folder of environment maps",
-             .folder = workingFolder(),
-             .answered = [](Session& s, const std::string& folder) { s.assets.addFolder(folder); }};
-}
-
 Result<void> setLights(Session& session, Words words) {
   for (const std::string& word : words)
     if (const auto checked = fromInfinity(word); !checked) return failAgain(checked.error());
@@ -193,8 +184,6 @@ std::vector<Command> lightCommands() {
           scripted("remove-light", "Take one away, counted from 0", "NUMBER", 1, 1, removeLight),
           scripted("environment-map", "Light from this environment map; without a name a dialog asks",
                    "[FILE]", 0, 1, setEnvironmentMap),
-          scripted("environment-map-folder", "Show the environment maps of a folder", "[FOLDER]", 0, 1,
-                   addEnvironmentMapFolder),
           scripted("exposure", "Stops above radiance 1 = white", "EV|auto", 1, 1, setExposure),
           scripted("keys", "The key lights that were found: where they stand, how strong they are", "", 0, 0,
                    listKeys),

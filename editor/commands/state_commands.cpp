@@ -2,7 +2,7 @@
 #include <array>
 
 #include "editor/commands/rows.hpp"
-#include "editor/document/actions.hpp"
+#include "editor/document/value_json.hpp"
 #include "editor/session/scene_changes.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/spec/numbers.hpp"
@@ -12,16 +12,6 @@ namespace lambent::editor {
 namespace {
 
 using nlohmann::json;
-
-json valueJson(const scene::Value& value) {
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
-  if (const auto* whole = std::get_if<std::int32_t>(&value)) return *whole;
-  if (const auto* number = std::get_if<float>(&value)) return *number;
-  if (const auto* v = std::get_if<glm::vec3>(&value)) return {v->x, v->y, v->z};
-  if (const auto* q = std::get_if<glm::quat>(&value)) return {q->x, q->y, q->z, q->w};
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  return std::get<scene::Word>(value).text;
-}
 
 Result<scene::Value> readValue(const scene::FieldInfo& field, Words words) {
   using Kind = scene::ValueKind;
@@ -89,30 +79,9 @@ Answer get(Session& session, Words words) {
   const scene::ComponentInfo* component = scene::findComponent(place->field->component);
   if (!component->has(session.document.registry(), entity))
     return fail(words[0], session.document.nameOf(entity) + " has no " + std::string(component->name));
-  return valueJson(place->field->get(session.document.registry(), entity));
-}
-
-Answer inspect(Session& session, Words words) {
-  ecs::Entity entity = session.selection.primaryEntity(session.document);
-  if (!words.empty()) {
-    const auto found = findEntities(session, words[0]);
-    if (!found) return failAgain(found.error());
-    entity = found->back();
-  }
-  if (!session.document.registry().alive(entity))
-    return fail("inspect", "nothing is selected", "select first");
-  json components = json::object();
-  for (const scene::ComponentInfo& component : scene::components()) {
-    if (!component.has(session.document.registry(), entity)) continue;
-    json fields = json::object();
-    for (const scene::FieldInfo& field : component.fields)
-      fields[std::string(field.name)] = valueJson(field.get(session.document.registry(), entity));
-    components[std::string(component.name)] = fields;
-  }
-  return json{{"name", session.document.nameOf(entity)},
-              {"id", idText(session.document.idOf(entity))},
-              {"created", session.document.created(entity)},
-              {"components", components}};
+  return valueJson(place->field->get(session.document.registry(), entity)).map([](const Json& value) {
+    return json(value);
+  });
 }
 
 json jobJson(const baker::JobState& job) {
@@ -216,33 +185,17 @@ Answer logEntries(Session& session) {
   return rows;
 }
 
-Answer plan(Session& session) {
-  const auto entry = sceneAtHand(session);
-  if (!entry || session.scenes.entries()[*entry].source.empty())
-    return fail("plan", "no scene is open", "open a .gltf or .glb file");
-  const SceneEntry& scene = session.scenes.entries()[*entry];
-  const auto* made = session.plans.find(scene.source, scene.options);
-  if (!made) return json{{"ready", false}};
-  if (!*made) return failAgain(made->error());
-  json effects = json::array();
-  for (const baker::EffectChoice& choice : (*made)->plan.effects)
-    effects.push_back({{"effect", choice.effect}, {"baked", choice.baked}, {"reason", choice.reason}});
-  return json{{"ready", true}, {"effects", effects}, {"groups", (*made)->plan.groups.size()}};
-}
-
 constexpr std::size_t kMostWords = 16;
 
 }  // namespace
 
 std::vector<Command> stateCommands() {
   return {scripted("state", "Everything at a glance", "", 0, 0, state),
-          scripted("inspect", "All components of an entity", "[NAME]", 0, 1, inspect),
           scripted("get", "A field of what is selected or named", "[NAME:]COMPONENT.FIELD", 1, 1, get),
           scripted("set", "The same, given a value", "[NAME:]COMPONENT.FIELD VALUE...", 2, kMostWords, set),
           scripted("tree", "What the scene tree shows, searched", "[SEARCH]", 0, 1, tree),
           scripted("reference", "The reference beside: samples, difference", "", 0, 0, reference),
           scripted("passes", "Passes of the last frame, their times and why they ran", "", 0, 0, passes),
-          scripted("plan", "What the bake of the scene at hand simulates", "", 0, 0, plan),
           scripted("log", "Notices and errors", "", 0, 0, logEntries)};
 }
 

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "editor/document/value_json.hpp"
 #include "runtime/scene/components.hpp"
 
 namespace lambent::editor {
@@ -63,21 +62,20 @@ Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history
   return entities;
 }
 
-// Returns "ball 2" for "ball" and "ball 1", or the next free number.
-std::string nextName(const Document& document, const std::string& name) {
-  std::string stem = name;
-  while (!stem.empty() && stem.back() >= '0' && stem.back() <= '9') stem.pop_back();
-  if (stem.empty() || stem.size() == name.size() || stem.back() != ' ') stem = name + " ";
+}  // namespace
+
+std::string unusedName(const Document& document, const std::string& name) {
   std::vector<std::string> taken;
   for (auto [entity, there] : std::as_const(document.registry()).view<scene::Name>())
     taken.push_back(there.value);
-  for (int number = 2;; ++number) {
-    std::string next = stem + std::to_string(number);
-    if (std::find(taken.begin(), taken.end(), next) == taken.end()) return next;
-  }
+  std::string stem = name;
+  while (!stem.empty() && stem.back() >= '0' && stem.back() <= '9') stem.pop_back();
+  if (stem.empty() || stem.size() == name.size() || stem.back() != ' ') stem = name + " ";
+  std::string next = name;
+  for (int number = 2; std::ranges::find(taken, next) != taken.end(); ++number)
+    next = stem + std::to_string(number);
+  return next;
 }
-
-}  // namespace
 
 Result<std::vector<ecs::Entity>> duplicate(Document& document, History& history,
                                            std::span<const ecs::Entity> entities) {
@@ -92,7 +90,7 @@ Result<std::vector<ecs::Entity>> duplicate(Document& document, History& history,
   }
   for (const ecs::Entity entity : *made) {
     if (const Result<void> named =
-            history.setField(entity, "Name", "name", nextName(document, document.nameOf(entity)));
+            history.setField(entity, "Name", "name", unusedName(document, document.nameOf(entity)));
         !named) {
       history.cancel();
       return failAgain(named.error());
@@ -137,120 +135,22 @@ Result<void> resetToDefault(Document& document, History& history, const Baseline
       /*in_range=*/false);
 }
 
-namespace {
-
-constexpr const char* kMark = "lambent_clip";
-constexpr std::uint64_t kClipVersion = 1;
-const std::string kSubject = "clipboard";
-
-Result<Json> componentJson(const ComponentValues& part) {
-  Json fields = Json::object();
-  for (std::size_t i = 0; i < part.values.size(); ++i) {
-    Result<Json> value = valueJson(part.values[i]);
-    if (!value)
-      return fail(fmt::format("{}.{}", part.component->name, part.component->fields[i].name),
-                  value.error().problem, value.error().hint);
-    fields[std::string(part.component->fields[i].name)] = std::move(*value);
-  }
-  return fields;
-}
-
-const scene::ComponentInfo& componentAt(const Place& place, const std::string& name) {
-  const scene::ComponentInfo* info = scene::findComponent(name);
-  if (!info) place.fault("is a component that this version does not know");
-  return *info;
-}
-
-// A field that the text omits gets its default.
-ComponentValues readComponent(const Place& place, const scene::ComponentInfo& info) {
-  for (const auto& [name, value] : place.members()) {
-    if (!info.field(name)) value.fault("is a field that this version does not know");
-  }
-  ComponentValues part{&info, {}};
-  for (const scene::FieldInfo& field : info.fields) {
-    const std::string name(field.name);
-    part.values.push_back(place.has(name) ? place.at(name).value(field) : field.default_value);
-  }
-  return part;
-}
-
-StableId readId(const Place& place) {
-  const auto id = parseId(place.text());
-  if (!id) place.fault("is not 16 hexadecimal digits");
-  return *id;
-}
-
-Result<ReadJson> readClip(std::string_view text, const char* part) {
-  Result<ReadJson> json = parseJson(text, kSubject);
-  if (!json || !json->is_object() || !json->contains(kMark))
-    return fail(kSubject, "holds nothing that was copied here", "copy a component or entities first");
-  const ReadJson& version = (*json)[kMark];
-  if (!version.is_number_unsigned() || version.get<std::uint64_t>() > kClipVersion)
-    return fail(kSubject, "was copied by a newer version", "update this program");
-  if (!json->contains(part)) return fail(kSubject, fmt::format("holds no {}", part), "copy one first");
-  return json;
-}
-
-tl::unexpected<Error> asError(const JsonFault& fault) {
-  return fail(kSubject + ": " + fault.place, fault.problem, fault.hint);
-}
-
-}  // namespace
-
-Result<std::string> copyComponent(const Document& document, ecs::Entity entity, std::string_view component) {
+Result<Clip> copyComponent(const Document& document, ecs::Entity entity, std::string_view component) {
   const scene::ComponentInfo* info = scene::findComponent(component);
   if (!info || !info->has(document.registry(), entity))
     return fail(document.nameOf(entity), fmt::format("has no {}", component));
-  Result<Json> fields = componentJson(componentValues(document.registry(), entity, *info));
-  if (!fields) return failAgain(fields.error());
-  Json clip = Json::object();
-  clip[kMark] = kClipVersion;
-  clip["component"] = std::string(component);
-  clip["fields"] = std::move(*fields);
-  return clip.dump(1, ' ', false, Json::error_handler_t::replace);
+  return Clip{.component = componentValues(document.registry(), entity, *info), .entities = {}};
 }
 
-Result<std::string> copyEntities(const Document& document, std::span<const ecs::Entity> entities) {
-  const Result<std::vector<EntitySnapshot>> copies = copiesOf(document, entities);
-  if (!copies) return failAgain(copies.error());
-  Json list = Json::array();
-  for (const EntitySnapshot& copy : *copies) {
-    Json entry = Json::object();
-    entry["id"] = idText(copy.id);
-    if (copy.parent != kNoId) entry["parent"] = idText(copy.parent);
-    for (const ComponentValues& part : copy.components) {
-      Result<Json> fields = componentJson(part);
-      if (!fields) return failAgain(fields.error());
-      entry["components"][std::string(part.component->name)] = std::move(*fields);
-    }
-    list.push_back(std::move(entry));
-  }
-  Json clip = Json::object();
-  clip[kMark] = kClipVersion;
-  clip["entities"] = std::move(list);
-  return clip.dump(1, ' ', false, Json::error_handler_t::replace);
-}
-
-Pasted peekClip(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object() || !json.contains(kMark)) return Pasted::Nothing;
-  return json.contains("component")  ? Pasted::Component
-         : json.contains("entities") ? Pasted::Entities
-                                     : Pasted::Nothing;
+Result<Clip> copyEntities(const Document& document, std::span<const ecs::Entity> entities) {
+  return copiesOf(document, entities).map([](std::vector<EntitySnapshot> copies) {
+    return Clip{.component = {}, .entities = std::move(copies)};
+  });
 }
 
 Result<void> pasteComponent(Document& document, History& history, std::span<const ecs::Entity> entities,
-                            std::string_view text) {
-  const Result<ReadJson> clip = readClip(text, "component");
-  if (!clip) return failAgain(clip.error());
-  ComponentValues part;
-  try {
-    const Place top(*clip, "");
-    part = readComponent(top.at("fields"), componentAt(top.at("component"), top.at("component").text()));
-  } catch (const JsonFault& fault) {
-    return asError(fault);
-  }
-  const scene::ComponentInfo& info = *part.component;
+                            const ComponentValues& component) {
+  const scene::ComponentInfo& info = *component.component;
   history.begin(fmt::format("paste of {} onto {}", info.name, entitiesName(document, entities)));
   std::vector<FieldEdit> edits;
   for (const ecs::Entity entity : entities) {
@@ -260,8 +160,8 @@ Result<void> pasteComponent(Document& document, History& history, std::span<cons
         return added;
       }
     }
-    for (std::size_t i = 0; i < part.values.size(); ++i)
-      edits.push_back({entity, info.name, info.fields[i].name, part.values[i]});
+    for (std::size_t i = 0; i < component.values.size(); ++i)
+      edits.push_back({entity, info.name, info.fields[i].name, component.values[i]});
   }
   if (const Result<void> set = history.setFields(edits); !set) {
     history.cancel();
@@ -271,35 +171,10 @@ Result<void> pasteComponent(Document& document, History& history, std::span<cons
   return {};
 }
 
-Result<std::vector<ecs::Entity>> pasteEntities(Document& document, History& history, ecs::Entity parent,
-                                               std::string_view text) {
-  const Result<ReadJson> clip = readClip(text, "entities");
-  if (!clip) return failAgain(clip.error());
-  std::vector<EntitySnapshot> copies;
-  try {
-    for (const Place& entry : Place(*clip, "").at("entities").items()) {
-      EntitySnapshot copy;
-      copy.id = readId(entry.at("id"));
-      if (entry.has("parent")) copy.parent = readId(entry.at("parent"));
-      for (const auto& [name, place] : entry.at("components").members()) {
-        const scene::ComponentInfo& info = componentAt(place, name);
-        if (!info.addable) place.fault("cannot be made by hand: it comes with a bundle");
-        copy.components.push_back(readComponent(place, info));
-      }
-      if (std::any_of(copies.begin(), copies.end(), [&](const auto& other) { return other.id == copy.id; }))
-        entry.at("id").fault("stands there twice");
-      copies.push_back(std::move(copy));
-    }
-  } catch (const JsonFault& fault) {
-    return asError(fault);
-  }
-  // A copy whose parent was not copied goes below the entity that it is pasted to.
-  const StableId below = parent ? document.adopt(parent) : kNoId;
-  for (std::size_t i = 0; i < copies.size(); ++i) {
-    const bool inside = std::any_of(copies.begin(), copies.begin() + static_cast<std::ptrdiff_t>(i),
-                                    [&](const auto& other) { return other.id == copies[i].parent; });
-    if (!inside) copies[i].parent = below;
-  }
+Result<std::vector<ecs::Entity>> pasteEntities(Document& document, History& history,
+                                               std::vector<EntitySnapshot> copies) {
+  for (EntitySnapshot& copy : copies)
+    if (std::ranges::find(copies, copy.parent, &EntitySnapshot::id) == copies.end()) copy.parent = kNoId;
   return makeCopies(document, history, std::move(copies), "paste");
 }
 

@@ -1,8 +1,8 @@
 // Implements the edit commands of menus: duplicate, reset, copy and paste, each as one step of the history.
-// A copy is JSON text for the system's clipboard, so it can be pasted into another program
-// (docs/world-file.md). An error says what is wrong and changes nothing.
+// An error says what is wrong and changes nothing.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +13,9 @@
 #include "runtime/base/result.hpp"
 
 namespace lambent::editor {
+
+// Returns the name if no entity has it, or else with the next free number: "ball 2".
+std::string unusedName(const Document& document, const std::string& name);
 
 // Copies each entity with its descendants, places the copy beside its original and returns the copies. Takes
 // Created entities, and those entities of bundles that a person could have made (lights, cameras, empty
@@ -30,23 +33,23 @@ Result<void> resetToDefault(Document& document, History& history, const Baseline
                             std::span<const ecs::Entity> entities, std::string_view component,
                             std::string_view field = {});
 
-// ---- clipboard
+// Holds what was copied last: one component, or entities with their descendants, parents first.
+struct Clip {
+  std::optional<ComponentValues> component;
+  std::vector<EntitySnapshot> entities;
+};
 
-// Returns one component of an entity as JSON text. Error: the entity does not have it.
-Result<std::string> copyComponent(const Document& document, ecs::Entity entity, std::string_view component);
-// Returns the entities with their descendants as JSON text. Takes the same entities as duplicate().
-Result<std::string> copyEntities(const Document& document, std::span<const ecs::Entity> entities);
-
-enum class Pasted { Nothing, Component, Entities };
-Pasted peekClip(std::string_view text);
+// Error: the entity does not have the component.
+Result<Clip> copyComponent(const Document& document, ecs::Entity entity, std::string_view component);
+// Takes the same entities as duplicate().
+Result<Clip> copyEntities(const Document& document, std::span<const ecs::Entity> entities);
 
 // Pastes a component onto all given entities. A Created entity that lacks the component gets it if the
-// component may be added. Errors: the text was not copied by the editor; it is damaged (names the JSON path);
-// an entity cannot take the component.
+// component may be added. Errors: an entity cannot take the component.
 Result<void> pasteComponent(Document& document, History& history, std::span<const ecs::Entity> entities,
-                            std::string_view text);
-// Creates the copied entities below `parent` (none: at the top of the world) and returns the topmost ones.
-Result<std::vector<ecs::Entity>> pasteEntities(Document& document, History& history, ecs::Entity parent,
-                                               std::string_view text);
+                            const ComponentValues& component);
+// Creates the copied entities at the top of the world, and returns the topmost ones.
+Result<std::vector<ecs::Entity>> pasteEntities(Document& document, History& history,
+                                               std::vector<EntitySnapshot> copies);
 
 }  // namespace lambent::editor

@@ -49,7 +49,8 @@ class History {
   static constexpr std::size_t kDefaultBytes = std::size_t{64} << 20;
 
   // The document must outlive the history. When the steps take more than max_bytes, the oldest are dropped.
-  explicit History(Document& document, std::size_t max_bytes = kDefaultBytes);
+  explicit History(Document& document, std::size_t max_bytes = kDefaultBytes)
+      : document_(document), max_bytes_(max_bytes) {}
 
   // ---- Each of these edits is one step, unless a step is open.
   Result<void> setField(ecs::Entity entity, std::string_view component, std::string_view field,
@@ -101,7 +102,7 @@ class History {
   bool canUndo() const { return done_ > 0 || !current_.empty(); }
   bool canRedo() const { return current_.empty() && done_ < steps_.size(); }
   std::string undoName() const;  // "Undo move of ball"; "Undo" if there is nothing to undo
-  std::string redoName() const;
+  std::string redoName() const { return canRedo() ? "Redo " + steps_[done_].name : "Redo"; }
   // Return the names of all steps, oldest first, and how many of them are done.
   std::vector<std::string> stepNames() const;
   std::size_t stepsDone() const { return done_; }
@@ -160,7 +161,9 @@ class History {
   Result<std::vector<Change>> moves(ecs::Entity entity, ecs::Entity parent, bool keep_place);
   void push(std::string name, std::vector<Change> changes);
   void forgetOldest();
-  Result<void> mayChangeComponents(ecs::Entity entity, const scene::ComponentInfo& component) const;
+  // Returns the component if a person may add it to the entity (has: false) or remove it from there (true).
+  Result<const scene::ComponentInfo*> changeable(ecs::Entity entity, std::string_view component,
+                                                 bool has) const;
 
   Document& document_;
   std::size_t max_bytes_, bytes_ = 0;

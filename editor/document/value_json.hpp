@@ -1,5 +1,5 @@
-// Converts field values to JSON and back, for world files and the clipboard. Its reader knows the path to
-// each JSON value, so that errors can name it. Only this room uses it.
+// Converts field values to JSON and back, for world files and scripts. Its reader knows the path to each JSON
+// value, so that errors can name it.
 #pragma once
 
 #include <array>

@@ -57,7 +57,7 @@ class Gizmo {
   // Call both every frame. During a drag new targets are ignored, but a new view is used. The last target is
   // the primary one, about whose origin all turn and scale. Without targets there are no handles.
   void setTargets(std::vector<GizmoTarget> targets);
-  void setView(const spec::View& view, const Viewport& viewport);
+  void setView(const spec::View& view, const Viewport& viewport) { projection_ = {view, viewport}; }
 
   Handle hit(glm::vec2 pixel) const;
   void hover(glm::vec2 pixel);
@@ -71,7 +71,7 @@ class Gizmo {
   // Returns the new Transforms of the targets, in their order, or an empty list if there is no drag.
   // other_snap: snaps if options.snap does not, and the other way round (a modifier key is held).
   std::vector<scene::Transform> drag(glm::vec2 pixel, bool other_snap = false);
-  void release();
+  void release() { active_ = Handle::None; }
 
   // Returns a pixel at which a script can grab the handle, away from the others, or none if the handle is not
   // visible.
@@ -125,21 +125,6 @@ class Gizmo {
   double turn_rad_ = 0.0, last_angle_ = 0.0;  // before snapping; the pointer's angle at the last call
 };
 
-// ---- What a drag does to one target.
-
-// Returns the unit axes of the target's node in the world, or the world's axes if the node is flat.
-glm::dmat3 axesOf(const GizmoTarget& target);
-glm::dvec3 originOf(const GizmoTarget& target);
-
-// Moves the origin by `delta_ws` and keeps rotation and scale.
-scene::Transform movedBy(const GizmoTarget& target, const glm::dvec3& delta_ws);
-// Turns the target about a unit axis through a point, in world space. If the parent is scaled non-uniformly,
-// the local result is no pure rotation, and the shear of the Transform stores the rest.
-scene::Transform turnedBy(const GizmoTarget& target, const glm::dvec3& pivot_ws, const glm::dvec3& axis_ws,
-                          double angle_rad);
-// Scales the target along its own axes, and its distance from the pivot along `axes` by the same factors.
-scene::Transform scaledLocally(const GizmoTarget& target, const glm::dvec3& pivot_ws, const glm::dmat3& axes,
-                               const glm::dvec3& factors);
 // Scales the target along the world's axes, about a point.
 scene::Transform scaledInWorld(const GizmoTarget& target, const glm::dvec3& pivot_ws,
                                const glm::dvec3& factors);

@@ -9,7 +9,6 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
 #include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {
@@ -17,6 +16,7 @@ namespace lambent::editor {
 namespace {
 
 constexpr float kShape = 16.0f / 9.0f;  // of the picture
+constexpr float kTileEms = 7.0f;        // width of a tile
 
 ImU32 colorOf(AssetKind kind) {
   constexpr std::array kColors = {IM_COL32(70, 105, 150, 255), IM_COL32(95, 95, 100, 255),
@@ -49,10 +49,10 @@ void drawCornerSign(const std::string& word, const ImVec2& corner) {
   canvas->AddText(at, IM_COL32(225, 225, 225, 255), word.c_str());
 }
 
-}  // namespace
-
-bool drawAssetTile(Session& session, const Asset& asset, float width_ems, bool selected) {
-  const float width = std::max(em(2.0f), std::min(em(width_ems), ImGui::GetContentRegionAvail().x));
+// Draws a tile as one widget, which is the last one afterwards. While there is no picture, the tile has the
+// word of the asset's kind. Returns whether it was clicked.
+bool drawAssetTile(Session& session, const Asset& asset, bool selected) {
+  const float width = std::max(em(2.0f), std::min(em(kTileEms), ImGui::GetContentRegionAvail().x));
   const float height = width / kShape, line = ImGui::GetTextLineHeight();
   const ImVec2 low = ImGui::GetCursorScreenPos(), high(low.x + width, low.y + height);
   const bool clicked = ImGui::InvisibleButton(asset.file.c_str(), ImVec2(width, height + line + em(0.2f)));
@@ -79,16 +79,11 @@ bool drawAssetTile(Session& session, const Asset& asset, float width_ems, bool s
   return clicked;
 }
 
+// Returns path, kind, size and, if the asset cannot be read, why.
 std::string describe(Session& session, const Asset& asset) {
   const std::string& error = session.asset_pictures.of(asset).error;
   return fmt::format("{}\n{}, {}{}{}", asset.file.string(), kindWord(asset.kind),
                      bytesText(static_cast<double>(asset.bytes)), error.empty() ? "" : "\n", error);
-}
-
-namespace {
-
-const char* useOf(AssetKind kind) {
-  return kind == AssetKind::EnvironmentMap ? "Use as environment" : "Open";
 }
 
 void use(Session& session, const Asset& asset) {
@@ -97,8 +92,7 @@ void use(Session& session, const Asset& asset) {
 
 void drawTile(Session& session, Marks& marks, const Asset& asset) {
   AssetBrowser& browser = session.assets;
-  const bool clicked =
-      drawAssetTile(session, asset, browser.large ? kLargeTileEms : kTileEms, browser.selected == asset.file);
+  const bool clicked = drawAssetTile(session, asset, browser.selected == asset.file);
   marks.put("assets." + asset.file.filename().string());
   if (clicked) browser.selected = asset.file;
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) use(session, asset);
@@ -111,12 +105,6 @@ void drawTile(Session& session, Marks& marks, const Asset& asset) {
     ImGui::SetDragDropPayload(kDraggedAsset, file.c_str(), file.size() + 1);
     ImGui::TextUnformatted(asset.file.filename().c_str());
     ImGui::EndDragDropSource();
-  }
-  if (ImGui::BeginPopupContextItem()) {
-    browser.selected = asset.file;
-    if (ImGui::MenuItem(useOf(asset.kind))) use(session, asset);
-    marks.put("assets.use");
-    ImGui::EndPopup();
   }
 }
 
@@ -132,9 +120,6 @@ void drawAssets(Session& session, Marks& marks) {
       ImGui::InputTextWithHint("##search", "search", &browser.search, ImGuiInputTextFlags_EnterReturnsTrue);
   marks.put("assets.search");
   tooltip("Parts of a name or a kind, as sky, scene, bundle or world");
-  sameLineIfFits("large pictures");
-  ImGui::Checkbox("large pictures", &browser.large);
-  marks.put("assets.large");
   ImGui::BeginChild("tiles");
   const Asset* first = nullptr;
   const Asset* selected = nullptr;
@@ -143,7 +128,7 @@ void drawAssets(Session& session, Marks& marks) {
     for (const Asset& asset : group.assets) {
       if (!matches(asset, browser.search)) continue;
       if (titled) {
-        sameLineIfFits(em(browser.large ? kLargeTileEms : kTileEms));
+        sameLineIfFits(em(kTileEms));
       } else {
         fittedText(dimmed(), group.title);
       }
@@ -153,7 +138,7 @@ void drawAssets(Session& session, Marks& marks) {
       if (asset.file == browser.selected) selected = &asset;
     }
   }
-  if (!first) ImGui::TextDisabled("%s", browser.busy() ? "Reading the folders..." : "Nothing is found.");
+  if (!first) ImGui::TextDisabled("Nothing is found.");
   ImGui::EndChild();
   if (!enter || !first) return;
   // Enter uses what is selected. While nothing of what was found is, it uses the first.
@@ -179,7 +164,7 @@ void drawTitle(const char* title) {
 void drawAssetTiles(Session& session, Marks& marks, const std::vector<Asset>& assets) {
   for (std::size_t i = 0; i < assets.size(); ++i) {
     if (i > 0) sameLineIfFits(em(kTileEms));
-    const bool clicked = drawAssetTile(session, assets[i], kTileEms, /*selected=*/false);
+    const bool clicked = drawAssetTile(session, assets[i], /*selected=*/false);
     marks.put(fmt::format("start.{}", assets[i].file.filename().string()));
     if (ImGui::IsItemHovered()) tooltip(describe(session, assets[i]));
     if (clicked) open(session, assets[i].file.string());

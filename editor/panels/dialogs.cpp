@@ -9,7 +9,6 @@
 #include <imgui_stdlib.h>
 
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "runtime/base/process.hpp"
 

@@ -9,8 +9,6 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
-#include "editor/session/assets.hpp"
 #include "editor/session/key_lights.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "runtime/spec/light.hpp"
@@ -210,7 +208,7 @@ void drawLight(Session& session, Marks& marks, std::size_t index, const std::str
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - em(1.2f));
   if (ImGui::SmallButton("x")) runOrLog(session, "remove-light", std::array{std::to_string(index)});
   marks.put(mark + ".remove");
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Take this light away");
+  tooltip("Take this light away");
   if (open && light) {
     if (const auto* sun = std::get_if<spec::SunLight>(&*light)) drawSun(session, marks, index, *sun);
     if (const auto* constant = std::get_if<spec::ConstantLight>(&*light)) {
@@ -220,27 +218,6 @@ void drawLight(Session& session, Marks& marks, std::size_t index, const std::str
     if (std::holds_alternative<spec::EnvironmentMapLight>(*light)) ImGui::TextWrapped("%s", word.c_str());
   }
   ImGui::PopID();
-}
-
-void drawShelf(Session& session, Marks& marks) {
-  if (!ImGui::CollapsingHeader("Environment maps", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  session.assets.update(session);
-  std::vector<Asset> maps;
-  for (const AssetGroup& group : session.assets.groups())
-    std::ranges::copy_if(group.assets, std::back_inserter(maps),
-                         [](const Asset& asset) { return asset.kind == AssetKind::EnvironmentMap; });
-  if (maps.empty()) ImGui::TextDisabled("None beside the open files; add a folder of .hdr or .exr files.");
-  bool follows = false;
-  for (const Asset& environment_map : maps) {
-    if (std::exchange(follows, true)) sameLineIfFits(em(kTileEms));
-    if (drawAssetTile(session, environment_map, kTileEms, /*selected=*/false))
-      runOrLog(session, "environment-map", std::array{environment_map.file.string()});
-    marks.put("environment-map." + environment_map.file.stem().string());
-    if (ImGui::IsItemHovered())
-      tooltip(describe(session, environment_map) + "\nClick: the light from outside is this environment map");
-  }
-  if (ImGui::Button("Add folder of environment maps...")) runOrLog(session, "environment-map-folder", {});
-  marks.put("environment.add-folder");
 }
 
 void drawStand(Session& session, Marks& marks) {
@@ -284,7 +261,6 @@ void drawEnvironment(Session& session, Marks& marks) {
   marks.put("environment.add-map");
   drawKeyLights(session, marks);
   ImGui::PopItemWidth();
-  drawShelf(session, marks);
 }
 
 }  // namespace lambent::editor

@@ -14,9 +14,7 @@
 #include <imgui_stdlib.h>
 
 #include "editor/document/actions.hpp"
-#include "editor/document/field_edits.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
 #include "editor/session/field_numbers.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "runtime/scene/materials.hpp"
@@ -247,6 +245,17 @@ bool editFieldWord(const FieldRow& row, scene::Word& word, Marks& marks) {
   }
   ImGui::EndCombo();
   return changed;
+}
+
+// Returns the measured BRDFs of the bundle that the material belongs to: values of its field, and names.
+std::vector<std::pair<std::int32_t, std::string>> measuredBrdfs(const Session& session,
+                                                                const scene::MaterialComponent& material) {
+  std::vector<std::pair<std::int32_t, std::string>> found;
+  const auto& tables = session.stage.world().description(material.bundle).brdf_tables;
+  for (std::size_t i = 0; i < tables.size(); ++i)
+    if (tables[i].family == bundle::BrdfFamily::Measured)
+      found.emplace_back(static_cast<std::int32_t>(i), tables[i].name);
+  return found;
 }
 
 // Edits which measured BRDF replaces a material's reflection, by its name.

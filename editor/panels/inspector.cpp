@@ -6,9 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
-#include "editor/document/actions.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
 #include "editor/session/session.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "editor/ui/marks.hpp"
@@ -18,47 +16,42 @@ namespace lambent::editor {
 
 namespace {
 
-constexpr float kSwatchEms = 1.6f, kPictureEms = 4.0f;
-
-// Asks for the pictures of a material, and returns those that are there.
-MaterialPictures::Pictures picturesOf(Session& session, ecs::Entity material) {
-  session.material_pictures.wanted.insert(material);
-  const auto found = session.material_pictures.of.find(material);
-  return found == session.material_pictures.of.end() ? MaterialPictures::Pictures{} : found->second;
-}
-
-void drawThumbnail(std::uint32_t picture, float size) {
-  if (picture != 0)
-    ImGui::Image(textureOf(picture), ImVec2(size, size));
-  else
-    ImGui::Dummy(ImVec2(size, size));
-}
-
-// Draws a sphere of the material, and its textures.
-void drawMaterialPictures(Session& session, Marks& marks, ecs::Entity material) {
-  const MaterialPictures::Pictures pictures = picturesOf(session, material);
-  const float size = em(kPictureEms), right = ImGui::GetWindowContentRegionMax().x + ImGui::GetWindowPos().x;
-  drawThumbnail(pictures.preview, size);
-  marks.put("inspector.preview");
-  tooltip("The material's factors, without its textures");
-  for (const MaterialPictures::Texture& texture : pictures.textures) {
-    ImGui::SameLine();
-    if (ImGui::GetCursorScreenPos().x + size > right) ImGui::NewLine();
-    ImGui::BeginGroup();
-    drawThumbnail(texture.picture, size);
-    ImGui::EndGroup();
-    marks.put("inspector.texture." + std::string(texture.use));
-    const std::string pixels =
-        texture.width > 0 ? fmt::format("{} x {}", texture.width, texture.height) : "not loaded";
-    tooltip(fmt::format("{}: {}\n{}, {}", fieldLabel("Material", texture.use), texture.name, pixels,
-                        texture.use));
+// Returns the materials of a draw, or of all draws at and below a node, each once. They are none for other
+// entities.
+std::vector<ecs::Entity> materialsOf(const Session& session, ecs::Entity object) {
+  const ecs::Registry& registry = session.document.registry();
+  std::vector<ecs::Entity> found;
+  for (const auto [draw, item] : registry.view<const scene::DrawItem>()) {
+    if (draw != object && item.node != object && !isBelow(registry, item.node, object)) continue;
+    if (item.material < 0) continue;
+    const ecs::Entity material =
+        session.stage.world().instance(item.bundle).materials[static_cast<std::size_t>(item.material)];
+    if (std::ranges::find(found, material) == found.end()) found.push_back(material);
   }
+  return found;
+}
+
+// Lists the textures that the material of the file names.
+void drawTextures(const Session& session, Marks& marks, ecs::Entity material) {
+  const auto& component = session.document.registry().get<scene::MaterialComponent>(material);
+  const bundle::Description& description = session.stage.world().description(component.bundle);
+  gltf::forEachMaterialField([&](const auto& field) {
+    if constexpr (std::is_same_v<typename std::remove_cvref_t<decltype(field)>::Value, gltf::TextureRef>) {
+      const gltf::TextureRef& reference = description.materials[component.material].*field.member;
+      if (reference.texture < 0) return;
+      const std::int32_t image = description.textures[static_cast<std::size_t>(reference.texture)].image;
+      if (image < 0) return;
+      const std::string& name = description.images[static_cast<std::size_t>(image)].name;
+      fittedText(dimmed(), fmt::format("{}: {}", fieldLabel("Material", field.name), name), field.name);
+      marks.put("inspector.texture." + std::string(field.name));
+    }
+  });
 }
 
 void drawMaterial(Session& session, Marks& marks, ecs::Entity material) {
   const std::string name = session.document.nameOf(material);
-  const float height = em(kSwatchEms);
-  drawThumbnail(picturesOf(session, material).preview, height);
+  const glm::vec3& color = session.document.registry().get<scene::MaterialComponent>(material).base_color;
+  ImGui::ColorButton("##color", ImVec4(color.r, color.g, color.b, 1.0f), ImGuiColorEditFlags_NoTooltip);
   ImGui::SameLine();
   const float select = ImGui::CalcTextSize("Select").x + 3.0f * ImGui::GetStyle().FramePadding.x;
   const std::string shown =
@@ -70,13 +63,13 @@ void drawMaterial(Session& session, Marks& marks, ecs::Entity material) {
   if (ImGui::SmallButton("Select")) session.selection.set(session.document.idOf(material));
   marks.put("inspector.material." + name + ".select");
   if (!open) return;
-  drawMaterialPictures(session, marks, material);
+  drawTextures(session, marks, material);
   const ecs::Entity one[] = {material};
   drawFields(session, marks, *scene::findComponent(scene::MaterialComponent::kComponentName), one);
   ImGui::TreePop();
 }
 
-// Draws the materials of an object with pictures and fields; nothing for an entity without draws.
+// Draws the materials of an object with their fields; nothing for an entity without draws.
 void drawObjectMaterials(Session& session, Marks& marks, ecs::Entity object) {
   const std::vector<ecs::Entity> materials = materialsOf(session, object);
   if (materials.empty()) return;
@@ -96,16 +89,22 @@ void drawPrimitive(Session& session, Marks& marks, ecs::Entity draw) {
   const bool open = ImGui::CollapsingHeader("Primitive", ImGuiTreeNodeFlags_DefaultOpen);
   marks.put("inspector.primitive");
   if (!open || !beginFieldTable("primitive")) return;
-  const PrimitiveFacts facts = factsOf(session, *item);
+  const bundle::Description& description = session.stage.world().description(item->bundle);
+  const bundle::Mesh& mesh = description.meshes[item->mesh];
+  const bundle::Primitive& primitive = mesh.primitives[item->primitive];
+  const transfer::Form form = description.draws[item->draw].form();
   const auto row = [](std::string_view label, std::string_view help, const std::string& value) {
     beginFieldRow(label, help);
     fittedText(value);
   };
   row("Node", "It moves with this node", session.document.nameOf(item->node));
-  row("Mesh", "", facts.mesh.empty() ? fmt::format("number {}", item->mesh) : facts.mesh);
-  row("Vertices", "", std::to_string(facts.vertices));
-  row("Triangles", "", std::to_string(facts.triangles));
-  row("Light", "Where the light that was baked is evaluated", facts.shading);
+  row("Mesh", "", mesh.name.empty() ? fmt::format("number {}", item->mesh) : mesh.name);
+  row("Vertices", "", std::to_string(primitive.vertex_count));
+  row("Triangles", "", std::to_string(primitive.index_count / 3));
+  row("Light", "Where the light that was baked is evaluated",
+      form == transfer::Form::Matrix         ? "glossy, per pixel"
+      : form == transfer::Form::NormalMapped ? "diffuse, per pixel by its normal map"
+                                             : "diffuse, at its vertices");
   if (item->back) row("Side", "Of a double-sided surface", "back");
   ImGui::EndTable();
 }
@@ -119,18 +118,11 @@ bool allCreated(const Session& session, std::span<const ecs::Entity> entities) {
 void drawComponentMenu(Session& session, const ComponentInfo& component,
                        std::span<const ecs::Entity> entities) {
   if (!ImGui::BeginPopupContextItem()) return;
-  if (ImGui::MenuItem("Copy")) {
-    if (auto text = copyComponent(session.document, entities.back(), component.name))
-      ImGui::SetClipboardText(text->c_str());
-    else
-      session.log.error(text.error());
-  }
-  const char* clip = ImGui::GetClipboardText();
-  if (ImGui::MenuItem("Paste", nullptr, false, peekClip(clip ? clip : "") == Pasted::Component))
-    logRefusal(session, pasteComponent(session.document, session.history, entities, clip));
-  if (ImGui::MenuItem("Reset"))
-    logRefusal(session, resetToDefault(session.document, session.history, session.changes.baseline(),
-                                       entities, component.name));
+  const std::string name(component.name);
+  if (ImGui::MenuItem("Copy")) runOrLog(session, "copy", std::array{name});
+  if (ImGui::MenuItem("Paste", nullptr, false, session.clipboard.component.has_value()))
+    runOrLog(session, "paste", {});
+  if (ImGui::MenuItem("Reset")) runOrLog(session, "reset", std::array{name});
   if (component.removable && allCreated(session, entities) && ImGui::MenuItem("Remove")) {
     session.history.begin(
         fmt::format("removal of {} from {}", component.name, entitiesName(session.document, entities)));
@@ -152,7 +144,7 @@ void drawComponent(Session& session, Marks& marks, const ComponentInfo& componen
   marks.put("inspector." + name);
   drawComponentMenu(session, component, entities);
   if (!open) return;
-  if (name == scene::MaterialComponent::kComponentName) drawMaterialPictures(session, marks, entities.back());
+  if (name == scene::MaterialComponent::kComponentName) drawTextures(session, marks, entities.back());
   drawFields(session, marks, component, entities);
 }
 
@@ -177,17 +169,6 @@ void drawAdd(Session& session, Marks& marks, std::span<const ecs::Entity> select
     marks.put("inspector.add." + name);
   }
   ImGui::EndPopup();
-}
-
-// Returns the height of drawRebake: a line, a button and the reasons, each as a wrapped text behind a bullet.
-float rebakeHeight(const std::vector<std::string>& reasons) {
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const float wrap = ImGui::GetContentRegionAvail().x - ImGui::GetFontSize() - 2.0f * style.FramePadding.x;
-  float height =
-      ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing() + 4.0f * style.ItemSpacing.y;
-  for (const std::string& reason : reasons)
-    height += ImGui::CalcTextSize(reason.c_str(), nullptr, false, wrap).y + style.ItemSpacing.y;
-  return height;
 }
 
 // Lists what the picture only approximates since the bundle was baked, with a button to bake it again.
@@ -231,7 +212,10 @@ void drawInspector(Session& session, Marks& marks) {
       entry ? session.changes.needsRebakeNow(*entry) : std::vector<std::string>();
   // The reasons stand below the fields, which must not move under the pointer while an edit gives a reason.
   const float room = ImGui::GetContentRegionAvail().y;
-  const float below = reasons.empty() ? 0.0f : std::min(rebakeHeight(reasons), 0.4f * room);
+  // A title, a button, and a line for each reason; where these are wrapped, they scroll.
+  const float lines = 3.5f + static_cast<float>(reasons.size());
+  const float below =
+      reasons.empty() ? 0.0f : std::min(lines * ImGui::GetFrameHeightWithSpacing(), 0.4f * room);
   ImGui::BeginChild("fields", ImVec2(0.0f, std::max(1.0f, room - below)));
   if (selected.empty()) {
     ImGui::PushTextWrapPos(0.0f);

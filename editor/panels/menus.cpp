@@ -12,7 +12,6 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
 #include "editor/session/scene_changes.hpp"
 #include "editor/ui/dear_imgui.hpp"
 
@@ -245,43 +244,27 @@ constexpr std::array kPointer = {
     KeyRow{"Double click", "In the tree: frame"},
 };
 
-constexpr float kColumnEms = 22.0f, kKeyEms = 7.5f;
-
 }  // namespace
 
 void drawKeys(Session& session, Marks& marks) {
   if (!session.window.keys) return;
   constexpr const char* kTitle = "Keys and pointer";
   if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
-  std::vector<KeyRow> rows;
-  for (const Command& command : commandList())
-    if (*command.shortcut != '\0') rows.emplace_back(command.shortcut, command.title);
-  rows.insert(rows.end(), kPointer.begin(), kPointer.end());
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  const ImVec2 most(0.96f * screen.x, 0.92f * screen.y);
-  const int columns = std::clamp(static_cast<int>(most.x / em(kColumnEms)), 1, 3);
-  const auto lines = static_cast<float>((static_cast<int>(rows.size()) + columns - 1) / columns);
-  ImGui::SetNextWindowSize(ImVec2(std::min(most.x, static_cast<float>(columns) * em(kColumnEms)),
-                                  std::min(most.y, (lines + 5.0f) * ImGui::GetTextLineHeightWithSpacing())));
+  ImGui::SetNextWindowSize(ImVec2(std::min(em(32.0f), 0.96f * screen.x), 0.92f * screen.y));
   ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.5f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
   bool open = true;
   if (!ImGui::BeginPopupModal(kTitle, &open, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoResize))
     return;
   ImGui::BeginChild("keys", ImVec2(0.0f, -1.5f * ImGui::GetFrameHeight()));
-  if (ImGui::BeginTable("keys", 2 * columns)) {
-    for (int column = 0; column < columns; ++column) {
-      ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthFixed, em(kKeyEms));
-      ImGui::TableSetupColumn("command", ImGuiTableColumnFlags_WidthStretch);
-    }
-    for (std::size_t line = 0; line < static_cast<std::size_t>(lines); ++line) {
-      ImGui::TableNextRow();
-      for (std::size_t i = line; i < rows.size(); i += static_cast<std::size_t>(lines)) {
-        ImGui::TableNextColumn();
-        fittedText(rows[i].first);
-        ImGui::TableNextColumn();
-        fittedText(rows[i].second);
-      }
-    }
+  if (beginFieldTable("keys", 0.3f)) {
+    const auto row = [](const char* key, const char* what) {
+      beginFieldRow(key, {});
+      fittedText(what);
+    };
+    for (const Command& command : commandList())
+      if (*command.shortcut != '\0') row(command.shortcut, command.title);
+    for (const auto& [input, what] : kPointer) row(input, what);
     ImGui::EndTable();
   }
   ImGui::EndChild();

@@ -8,7 +8,6 @@
 #include "editor/commands/command.hpp"
 #include "editor/document/tree.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
 #include "editor/ui/dear_imgui.hpp"
 
 namespace lambent::editor {
@@ -39,7 +38,7 @@ void drawKindSign(std::string_view kind) {
   for (const KindLook& look : kLooks)
     if (look.kind == kind) {
       ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(look.color), "%s", look.sign);
-      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(kind).c_str());
+      tooltip(kind);
       return;
     }
   ImGui::TextDisabled("-");

@@ -9,7 +9,6 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
 #include "editor/ui/dear_imgui.hpp"
 #include "runtime/frame/frame_settings.hpp"
 
@@ -22,8 +21,6 @@ std::string capitalized(std::string_view label) {
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;
 }
-
-}  // namespace
 
 void editSetting(Session& session, Marks& marks, const frame::SettingRow& row, const std::string& mark) {
   using SettingKind = frame::SettingRow::Kind;
@@ -67,8 +64,6 @@ void editSetting(Session& session, Marks& marks, const frame::SettingRow& row, c
   if (ImGui::IsItemDeactivated()) session.history.endDrag();
 }
 
-namespace {
-
 // Draws the choice of quality, which sets the number of key lights and their shadow resolution.
 void drawQuality(Session& session, Marks& marks) {
   const std::string now(frame::qualityOf(session.stage.settings()));
@@ -78,8 +73,7 @@ void drawQuality(Session& session, Marks& marks) {
   ImGui::SetNextItemWidth(em(6.5f));
   const bool open = ImGui::BeginCombo("##quality", now.empty() ? "own" : now.c_str());
   marks.put("quality");
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("How many key lights there are and how finely they shadow: time against error");
+  tooltip("How many key lights there are and how finely they shadow: time against error");
   if (open) {
     for (const std::string_view name : frame::qualityNames()) {
       const std::string word(name);
@@ -105,6 +99,17 @@ void drawSlice(Session& session, Marks& marks) {
   if (changed) session.viewing.changed = true;
 }
 
+// Returns what a setting costs at its present value and at its finest.
+std::string costText(const frame::SettingCost& cost) {
+  const auto milliseconds = [](const frame::SettingPoint& point) {
+    return point.gpu_ms > 0.0 ? point.gpu_ms : point.cpu_ms;
+  };
+  const std::string error =
+      cost.now.error <= 0.0 ? "no error" : fmt::format("error {:.2g} %", 100.0 * cost.now.error);
+  return fmt::format("{}, {:.2f} ms; finest {:.2f} ms", error, milliseconds(cost.now),
+                     milliseconds(cost.finest));
+}
+
 void drawRows(Session& session, Marks& marks) {
   for (const frame::SettingRow& row : frame::settingRows()) {
     if (row.name == "exposure") continue;  // the environment's panel shows it
@@ -112,6 +117,8 @@ void drawRows(Session& session, Marks& marks) {
     ImGui::PushID(name.c_str());
     beginFieldRow(capitalized(row.label), fmt::format("{}\n{}", name, row.help));
     editSetting(session, marks, row, "setting." + name);
+    if (const auto found = session.settings.costs().find(row.name); found != session.settings.costs().end())
+      fittedText(dimmed(), costText(found->second));
     ImGui::PopID();
   }
   beginFieldRow("Pixels", "Pixels of the picture for each of the window along an edge: less is faster");
@@ -127,6 +134,12 @@ void drawRows(Session& session, Marks& marks) {
 
 void drawSettings(Session& session, Marks& marks) {
   drawQuality(session, marks);
+  if (ImGui::Button(session.settings.busy() ? "Measuring..." : "Measure in this view"))
+    session.settings.measureAll();
+  marks.put("setting.measure");
+  tooltip(
+      "Error against each setting's finest value, same view at rest; times of a frame that shades "
+      "everything");
   ImGui::Separator();
   if (beginFieldTable("settings", 0.56f)) {
     drawRows(session, marks);

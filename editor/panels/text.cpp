@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "editor/panels/widgets.hpp"
+#include "editor/panels/panel.hpp"
 
 namespace lambent::editor {
 

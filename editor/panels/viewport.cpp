@@ -2,12 +2,12 @@
 #include <array>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <imgui.h>
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
 #include "editor/render/renderer.hpp"
 #include "editor/session/viewing.hpp"
 #include "editor/ui/dear_imgui.hpp"
@@ -15,6 +15,163 @@
 namespace lambent::editor {
 
 namespace {
+
+constexpr float kClickPixels = 4.0f;  // a press in the view that moves no further is a click
+
+void paint(const Painting& painting, const Viewport& viewport) {
+  ImDrawList* canvas = ImGui::GetWindowDrawList();
+  canvas->PushClipRect(ImVec2(viewport.x, viewport.y),
+                       ImVec2(viewport.x + viewport.width, viewport.y + viewport.height), true);
+  for (const Stroke& stroke : painting) {
+    std::vector<ImVec2> points;
+    for (const glm::vec2& point : stroke.points) points.emplace_back(point.x, point.y);
+    const int count = static_cast<int>(points.size());
+    if (stroke.filled)
+      canvas->AddConvexPolyFilled(points.data(), count, stroke.color);
+    else
+      canvas->AddPolyline(points.data(), count, stroke.color, stroke.closed ? ImDrawFlags_Closed : 0,
+                          stroke.width_px);
+  }
+  canvas->PopClipRect();
+}
+
+void setTransforms(Session& session, const std::vector<ecs::Entity>& entities,
+                   const std::vector<scene::Transform>& to) {
+  std::vector<FieldEdit> edits;
+  for (std::size_t i = 0; i < to.size(); ++i)
+    for (FieldEdit& edit : transformEdits(entities[i], to[i])) edits.push_back(std::move(edit));
+  if (!edits.empty()) logRefusal(session, session.history.setFields(edits));
+}
+
+void setLight(Session& session, ecs::Entity entity, const scene::LocalLightComponent& to) {
+  const FieldEdit edits[] = {{entity, "Light", "strength", to.strength},
+                             {entity, "Light", "radius", to.radius_m},
+                             {entity, "Light", "range", to.range_m},
+                             {entity, "Light", "inner_cone", to.inner_cone_rad},
+                             {entity, "Light", "outer_cone", to.outer_cone_rad}};
+  logRefusal(session, session.history.setFields(edits));
+}
+
+std::vector<GizmoTarget> targetsOf(const Session& session, const std::vector<ecs::Entity>& entities) {
+  const ecs::Registry& registry = session.document.registry();
+  std::vector<GizmoTarget> targets;
+  for (const ecs::Entity entity : entities) {
+    const ecs::Entity parent = parentOf(registry, entity);
+    targets.push_back({registry.get<scene::Transform>(entity),
+                       registry.alive(parent) ? worldFromNode(registry, parent) : glm::mat4(1.0f)});
+  }
+  return targets;
+}
+
+void markHandles(const Session& session, Marks& marks, const std::vector<SunOnSky>& suns) {
+  const auto mark = [&](const std::string& name, const std::optional<glm::vec2>& at) {
+    if (at) marks.put(name, {*at - glm::vec2(1.0f), *at + glm::vec2(1.0f)});
+  };
+  for (const Handle handle : kHandles)
+    mark("gizmo." + std::string(handleWord(handle)), session.handles.gizmo.handleScreenPoint(handle));
+  for (const LightHandle handle : kLightHandles)
+    mark("light." + std::string(lightHandleWord(handle)),
+         session.handles.light_gizmo.handleScreenPoint(handle));
+  mark("gizmo.pivot", session.handles.gizmo.pivotScreenPoint());
+  for (std::size_t sun = 0; sun < session.handles.sun_gizmo.count(); ++sun)
+    if (const auto at = session.handles.sun_gizmo.place(sun)) {
+      if (sun < suns.size() && suns[sun].key)
+        mark(fmt::format("key.{}.handle", *suns[sun].key), at->pixel);
+      else
+        mark(sun == 0 ? "sun.handle" : fmt::format("sun.handle.{}", sun + 1), at->pixel);
+    }
+}
+
+void addReadout(const glm::vec2& pixel, const std::string& text) {
+  if (!text.empty())
+    ImGui::GetWindowDrawList()->AddText(ImVec2(pixel.x + 16.0f, pixel.y + 12.0f), IM_COL32_WHITE,
+                                        text.c_str());
+}
+
+// Handles the pointer in the view, except for the camera: it picks entities, drags the handles of the
+// selection and of lights, and drags suns over the sky. Every drag is one step of the history. Call it right
+// after the view's own widget. Returns the pixel at which the user clicked to pick something, from the view's
+// top left corner, or none if there was no such click.
+std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewport& viewport, bool hovered) {
+  Handles& handles = session.handles;
+  if (!handles.shown) return std::nullopt;
+  const spec::View& view = session.viewing.shown_view;
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::vec2 pixel(io.MousePos.x, io.MousePos.y);
+  ecs::Registry& registry = session.document.registry();
+  std::vector<ecs::Entity> entities = session.selection.topmost(session.document);
+  std::erase_if(entities, [&](ecs::Entity entity) { return !registry.has<scene::Transform>(entity); });
+  Gizmo& gizmo = handles.gizmo;
+  LightGizmo& light_gizmo = handles.light_gizmo;
+  gizmo.setView(view, viewport);
+  light_gizmo.setView(view, viewport);
+  gizmo.setTargets(targetsOf(session, entities));
+  const ecs::Entity primary = session.selection.primaryEntity(session.document);
+  const auto* light = registry.tryGet<scene::LocalLightComponent>(primary);
+  const bool light_handles = light && registry.has<scene::Transform>(primary);
+  if (light_handles) light_gizmo.setLight(*light, worldFromNode(registry, primary));
+  SunGizmo& sun_gizmo = handles.sun_gizmo;
+  const std::vector<SunOnSky> suns = sunsOf(session);
+  sun_gizmo.setView(view, viewport);
+  std::vector<glm::vec3> towards;
+  for (const SunOnSky& sun : suns) towards.push_back(sun.towards_ws);
+  sun_gizmo.setSuns(std::move(towards));
+
+  std::optional<glm::vec2> clicked;
+  const bool eye_moves = io.KeyAlt;
+  const auto dragging = [&] { return gizmo.dragging() || light_gizmo.dragging() || sun_gizmo.dragging(); };
+  const auto release = [&] { gizmo.release(), light_gizmo.release(), sun_gizmo.release(); };
+  if (hovered && !dragging()) {
+    gizmo.hover(pixel);
+    sun_gizmo.hover(pixel);
+    if (light_handles) light_gizmo.hover(pixel);
+  }
+  if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !eye_moves) {
+    handles.pointer.press(pixel);
+    if (sun_gizmo.press(pixel)) {
+      handles.sun_taken = suns[*sun_gizmo.active()];
+      if (handles.sun_taken->key) session.viewing.key_at_hand = handles.sun_taken->key;
+      session.history.begin("turn of " + handles.sun_taken->name);
+    } else if (light_handles && light_gizmo.press(pixel)) {
+      session.history.begin("light of " + session.document.nameOf(primary));
+    } else if (gizmo.press(pixel)) {
+      session.history.begin(fmt::format("{} of {}",
+                                        gizmo.options.mode == GizmoMode::Move     ? "move"
+                                        : gizmo.options.mode == GizmoMode::Rotate ? "turn"
+                                                                                  : "scale",
+                                        session.document.nameOf(primary)));
+    }
+  }
+  if (dragging()) {
+    const glm::vec2 at = handles.pointer.moved(pixel, /*fine=*/io.KeyShift);
+    if (escapePressed()) {
+      release();
+      session.history.cancel();
+    } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+      if (sun_gizmo.dragging()) {
+        // A click without a drag does not move a sun that is at the border.
+        if (io.MouseDragMaxDistanceSqr[0] > 0.0f) moveSun(session, *handles.sun_taken, sun_gizmo.drag(at));
+      } else if (light_gizmo.dragging()) {
+        setLight(session, primary, light_gizmo.drag(at));
+      } else {
+        setTransforms(session, entities, gizmo.drag(at, /*other_snap=*/io.KeyCtrl));
+      }
+    } else {
+      release();
+      session.history.commit();
+    }
+  } else if (hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !eye_moves &&
+             ImGui::GetIO().MouseDragMaxDistanceSqr[0] <= kClickPixels * kClickPixels) {
+    clicked = pixel - glm::vec2(viewport.x, viewport.y);
+  }
+  paint(gizmo.paint(), viewport);
+  if (light_handles) paint(light_gizmo.paint(), viewport);
+  paint(sun_gizmo.paint(), viewport);
+  addReadout(pixel, gizmo.readout());
+  if (const auto sun = sun_gizmo.active()) addReadout(pixel, sunReadout(session, suns[*sun]));
+  markHandles(session, marks, suns);
+  return clicked;
+}
 
 constexpr float kBarWidth = 3.0f;
 constexpr float kFlyFast = 4.0f;
@@ -88,32 +245,6 @@ void textOver(const ImVec2& at, const std::string& text, ImU32 color = IM_COL32(
   canvas->AddRectFilled(ImVec2(at.x - 5.0f, at.y - 2.0f), ImVec2(at.x + size.x + 5.0f, at.y + size.y + 2.0f),
                         IM_COL32(0, 0, 0, 150), 3.0f);
   canvas->AddText(at, color, text.c_str());
-}
-
-// Draws what the selected camera sees into a corner. Returns whether the pointer is over it.
-bool drawPreview(Session& session, const Renderer& renderer, Marks& marks, const ImVec2& low,
-                 const ImVec2& high) {
-  const gpu::Texture& preview = renderer.picture.preview();
-  if (!preview) return false;
-  constexpr float kShare = 0.3f, kGap = 12.0f;
-  const auto texels =
-      ImVec2(static_cast<float>(preview.desc().width), static_cast<float>(preview.desc().height));
-  const float zoom =
-      std::min(kShare * (high.x - low.x) / texels.x, 1.5f * kShare * (high.y - low.y) / texels.y);
-  const ImVec2 size(zoom * texels.x, zoom * texels.y);
-  const ImVec2 at(high.x - kGap - size.x, high.y - kGap - size.y);
-  const ImVec2 end(at.x + size.x, at.y + size.y);
-  ImDrawList* canvas = ImGui::GetWindowDrawList();
-  canvas->AddImage(handleOf(preview), at, end, ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
-  canvas->AddRect(ImVec2(at.x - 1.0f, at.y - 1.0f), ImVec2(end.x + 1.0f, end.y + 1.0f),
-                  IM_COL32(235, 235, 235, 255));
-  const std::string name = session.document.nameOf(selectedCamera(session));
-  textOver(ImVec2(at.x + 8.0f, at.y + 5.0f), ellipsized(name, size.x - 16.0f));
-  ImGui::SetCursorScreenPos(at);
-  if (ImGui::InvisibleButton("camera preview", size)) runOrLog(session, "look-through", {});
-  marks.put("camera-preview");
-  tooltip("What this camera sees\nClick: look through it (C). Shift+C: place it where the view is.");
-  return ImGui::IsItemHovered() || ImGui::IsItemActive();
 }
 
 void drawLegends(Session& session, Marks& marks, const ImVec2& low, const ImVec2& high) {
@@ -197,7 +328,6 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
                             static_cast<std::uint32_t>(std::max(16.0f, scale * viewport.height))});
   drawFrame(session, renderer, low, high);
   const bool over_split = dragSplit(session, marks, low, high);
-  const bool over_preview = drawPreview(session, renderer, marks, low, high);
 
   ImGui::SetCursorScreenPos(low);
   ImGui::InvisibleButton("picture", ImVec2(viewport.width, viewport.height),
@@ -207,8 +337,7 @@ void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
   takeAsset(session);
   const bool hovered = session.viewing.hovered = ImGui::IsItemHovered();
   moveEye(session, viewport, hovered);
-  const auto clicked =
-      over_split || over_preview ? std::nullopt : manipulate(session, marks, viewport, hovered);
+  const auto clicked = over_split ? std::nullopt : manipulate(session, marks, viewport, hovered);
   if (clicked) pick(session, renderer, scale * *clicked);
   drawLegends(session, marks, low, high);
   drawViewMenu(session, marks);

@@ -1,8 +1,176 @@
 #include "editor/render/renderer.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "editor/document/tree.hpp"
+#include "editor/session/viewing.hpp"
+#include "runtime/effects/volume/volume.hpp"
+
 namespace lambent::editor {
+
+PictureClock::Query PictureClock::timestamp() {
+  if (free_.empty()) {
+    GLuint id = 0;
+    glCreateQueries(GL_TIMESTAMP, 1, &id);
+    free_.emplace_back(id);
+  }
+  Query query = std::move(free_.back());
+  free_.pop_back();
+  glQueryCounter(query.id(), GL_TIMESTAMP);
+  return query;
+}
+
+void PictureClock::begin() {
+  begun_ = std::chrono::steady_clock::now();
+  first_ = timestamp();
+}
+
+void PictureClock::end(bool whole) {
+  const std::chrono::duration<double, std::milli> cpu = std::chrono::steady_clock::now() - begun_;
+  Query last = timestamp();
+  pictures_.push_back({std::move(first_), std::move(last), cpu.count(), whole});
+  glFlush();  // otherwise a driver may hold the commands back until something else is drawn
+}
+
+std::optional<PictureClock::Time> PictureClock::take() {
+  if (pictures_.empty()) return std::nullopt;
+  Picture& oldest = pictures_.front();
+  GLint ready = 0;
+  glGetQueryObjectiv(oldest.last.id(), GL_QUERY_RESULT_AVAILABLE, &ready);
+  if (ready == 0) return std::nullopt;
+  GLuint64 from_ns = 0, to_ns = 0;
+  glGetQueryObjectui64v(oldest.first.id(), GL_QUERY_RESULT, &from_ns);
+  glGetQueryObjectui64v(oldest.last.id(), GL_QUERY_RESULT, &to_ns);
+  const double gpu_ms = 1e-6 * static_cast<double>(to_ns - std::min(from_ns, to_ns));
+  const Time time{std::max(gpu_ms, oldest.cpu_ms), oldest.whole};
+  free_.push_back(std::move(oldest.first));
+  free_.push_back(std::move(oldest.last));
+  pictures_.pop_front();
+  return time;
+}
+
+namespace {
+
+// Returns the resident groups that hold anything that is selected.
+std::vector<std::uint32_t> selectedGroups(const Session& session) {
+  std::vector<std::uint32_t> found;
+  const ecs::Registry& registry = session.document.registry();
+  const std::vector<ecs::Entity> selected = session.selection.entities(session.document);
+  const auto& groups = session.stage.world().residency().groups();
+  const auto add = [&](const scene::RigidGroupComponent& group) {
+    for (std::uint32_t i = 0; i < groups.size(); ++i)
+      if (groups[i].bundle == group.bundle && groups[i].index.value == group.group) found.push_back(i);
+  };
+  for (const ecs::Entity entity : selected)
+    if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(entity)) add(*group);
+  for (const auto [draw, item] : registry.view<const scene::DrawItem>())
+    for (const ecs::Entity entity : selected)
+      if (draw == entity || isBelow(registry, item.node, entity))
+        if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(item.group)) add(*group);
+  return found;
+}
+
+// Returns the overlays that are asked for, with boxes around what is selected.
+frame::OverlayOptions overlaysOf(const Session& session) {
+  frame::OverlayOptions overlays = session.viewing.overlays;
+  if (overlays.neighborhoods) overlays.foremost_groups = selectedGroups(session);
+  overlays.key = session.viewing.key_at_hand;
+  if (!session.handles.shown) return overlays;
+  constexpr glm::vec4 kColor(1.0f, 0.62f, 0.2f, 0.9f);
+  for (const TurnedBox& turned : selectionBoxes(session.document, session.selection)) {
+    const scene::Box& box = turned.box;
+    const auto corner = [&](int i) {
+      return glm::vec3(turned.world_from_box * glm::vec4((i & 1) != 0 ? box.max.x : box.min.x,
+                                                         (i & 2) != 0 ? box.max.y : box.min.y,
+                                                         (i & 4) != 0 ? box.max.z : box.min.z, 1.0f));
+    };
+    for (int i = 0; i < 8; ++i)
+      for (const int bit : {1, 2, 4})
+        if ((i & bit) == 0) overlays.lines.push_back({corner(i), corner(i | bit), kColor});
+  }
+  return overlays;
+}
+
+// Returns a number that rises with every edit and selection that changes the picture.
+std::uint64_t editsVersion(const Session& session) {
+  return session.history.version() + session.selection.version();
+}
+
+}  // namespace
+
+Result<Picture> Picture::create(const Session& session) {
+  auto frame = frame::Frame::create({.size = session.viewing.size, .output = frame::Output::Display},
+                                    session.stage.environment());
+  if (!frame) return failAgain(frame.error());
+  return Picture(std::move(*frame));
+}
+
+Result<std::optional<frame::Picked>> Picture::pick(Session& session, float x, float y) {
+  return frame_.pick(session.stage.world(), session.viewing.shown_view, x, y);
+}
+
+// Reads what is known only once the GPU has finished, so that nothing waits for it.
+void Picture::readFinished(Session& session) {
+  PictureFacts& facts = session.picture;
+  while (const auto time = clock_.take()) {
+    facts.times.add(time->milliseconds);
+    if (time->whole) session.viewing.scale.wholeTook(time->milliseconds);
+  }
+  facts.in_flight = clock_.inFlight();
+  if (facts.in_flight || !std::exchange(unread_, false)) return;
+  facts.negative_pixels = frame_.negativePixels();
+  facts.exposure_ev = frame_.exposureEv();
+}
+
+Result<void> Picture::draw(Session& session, const spec::View& view, spec::Size size) {
+  Stage& stage = session.stage;
+  if (!(size == frame_.options().size)) frame_.resize(size);
+  if (auto set = frame_.setSettings(stage.settings()); !set) return set;
+  frame_.setView(session.viewing.surfaces);
+  frame_.setOverlays(overlaysOf(session));
+  stage.followEnvironment();
+  stage.world().updateTransforms();
+  if (auto drawn = frame_.render(stage.world(), stage.environment(), view); !drawn) return drawn;
+  PictureFacts& facts = session.picture;
+  const frame::StepCounts& counts = facts.counts = frame_.counts();
+  facts.legend = frame_.legend();
+  facts.passes = frame_.timers().latest();
+  facts.volume_bytes = frame_.kept<effects::volume::Volume>().textureBytes();
+  facts.settled = stage.world().loaded() && counts["light_probes_captured"] == 0 &&
+                  counts["light_probes_waiting"] == 0 && counts["cells_shaded"] == 0 &&
+                  counts["draws_shaded"] == 0 && counts["reflection_probes_captured"] == 0;
+  return {};
+}
+
+void Picture::update(Session& session, spec::Size size) {
+  readFinished(session);
+  Viewing& viewing = session.viewing;
+  viewing.size = size;
+  const auto view = viewing.view(session.document, size);
+  if (!view) return session.log.error(view.error());
+  viewing.shown_view = *view;
+  const bool resized = !(size == drawn_.size);
+  // Another size changes the aspect, which does not count as movement: otherwise slow pictures would be drawn
+  // coarse, that is at another size, and so on for ever.
+  const bool view_moved = view->view_from_world != drawn_.view.view_from_world ||
+                          (!resized && view->clip_from_view != drawn_.view.clip_from_view);
+  const bool moved = view_moved || drawn_.edits != editsVersion(session);
+  const bool live = session.playback.playing || !session.picture.settled;
+  const bool needed = moved || resized || viewing.changed || live;
+  const bool moves = moved || session.playback.playing || session.history.open();
+  const bool coarse = viewing.scale.coarse();
+  if (!moves && viewing.scale.settle()) viewing.changed = true;
+  if (!needed) return;
+  viewing.changed = false;
+  drawn_ = {editsVersion(session), *view, size};
+  clock_.begin();
+  if (auto drawn = draw(session, *view, size); !drawn) session.log.error(drawn.error());
+  clock_.end(/*whole=*/!coarse);
+  viewing.scale.drawn(moves);
+  session.picture.in_flight = unread_ = true;
+  ++session.picture.drawn;
+}
 
 namespace {
 
@@ -78,6 +246,21 @@ void ReferencePicture::update(Session& session) {
   exposure_ev_ = exposure_ev;
 }
 
+void Thumbnails::update(Session& session) {
+  auto& pictures = session.asset_pictures.pictures();
+  std::erase_if(textures_, [&](const auto& texture) { return !pictures.contains(texture.first); });
+  for (auto& [file, picture] : pictures) {
+    if (picture.image.texels.empty()) continue;
+    const spec::Rgba8Image image = std::exchange(picture.image, {});
+    gpu::Texture texture("thumbnail", {.format = GL_RGBA8, .width = image.width, .height = image.height});
+    glTextureSubImage2D(texture.id(), 0, 0, 0, static_cast<GLsizei>(image.width),
+                        static_cast<GLsizei>(image.height), GL_RGBA, GL_UNSIGNED_BYTE, image.texels.data());
+    picture.texture = texture.id();
+    picture.aspect = static_cast<float>(image.width) / static_cast<float>(image.height);
+    textures_[file] = std::move(texture);
+  }
+}
+
 Result<Renderer> Renderer::create(const Session& session) {
   auto made = Picture::create(session);
   if (!made) return failAgain(made.error());
@@ -89,7 +272,6 @@ void Renderer::update(Session& session, spec::Size size) {
   reference.update(session);
   session.settings.update(session);
   thumbnails.update(session);
-  materials.update(session);
 }
 
 }  // namespace lambent::editor

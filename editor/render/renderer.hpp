@@ -18,9 +18,7 @@
 
 namespace lambent::editor {
 
-// Owns the textures of small pictures: those of assets, which the session finds on the CPU, and those of
-// materials. Main thread, with a current OpenGL context.
-
+// Owns the textures of small pictures of assets, which the session makes on the CPU.
 class Thumbnails {
  public:
   // Uploads new pictures, and tells the session their textures. Call it once a frame.
@@ -28,20 +26,6 @@ class Thumbnails {
 
  private:
   std::map<std::filesystem::path, gpu::Texture> textures_;
-};
-
-// Makes the pictures of the materials that panels ask for: a sphere of each, drawn anew when the material
-// changes, and its textures as they are on the GPU.
-class MaterialPainter {
- public:
-  void update(Session& session);
-
- private:
-  struct Preview {
-    std::uint64_t version = 0;  // of the component that is on the picture
-    gpu::Texture texture;
-  };
-  std::map<ecs::Entity, Preview> previews_;
 };
 
 // Renders the runtime's picture of the world from the editor's camera, whenever something that it shows has
@@ -85,27 +69,6 @@ class PictureClock {
   std::chrono::steady_clock::time_point begun_;
 };
 
-// Draws what the selected camera sees into a small picture of its own, by the frame of
-// the main picture: a second frame would keep light probes, captures and shading of its own. The main
-// picture must be drawn anew afterwards. It draws only when something in it changed: while the world comes
-// to rest, and while main pictures are slow and move, it waits.
-class CameraPreview {
- public:
-  // Returns whether the preview is to be drawn now. edits: a number that rises with edits and selections.
-  // stale: the main picture changes by something else than edits and its view.
-  bool due(Session& session, std::uint64_t edits, bool stale);
-  // Draws it. Errors: those of the camera and the frame.
-  Result<void> draw(Session& session, frame::Frame& frame);
-  // Returns the picture, with row 0 at the bottom, or one without handle if no camera is shown.
-  const gpu::Texture& texture() const { return texture_; }
-
- private:
-  gpu::Texture texture_;
-  ecs::Entity camera_;
-  std::uint64_t edits_ = 0;
-  bool stale_ = true;
-};
-
 class Picture {
  public:
   static Result<Picture> create(const Session& session);
@@ -117,7 +80,6 @@ class Picture {
   Result<std::optional<frame::Picked>> pick(Session& session, float x, float y);
   // Row 0 of the texture is the bottom.
   const gpu::Texture& texture() const { return frame_.picture(); }
-  const gpu::Texture& preview() const { return preview_.texture(); }
 
  private:
   explicit Picture(frame::Frame frame) : frame_(std::move(frame)) {}
@@ -126,7 +88,6 @@ class Picture {
 
   frame::Frame frame_;
   PictureClock clock_;
-  CameraPreview preview_;
   // Identifies what the last picture showed.
   struct Drawn {
     std::uint64_t edits = 0;  // sum of the versions of history and selection
@@ -169,7 +130,6 @@ class Renderer {
   Picture picture;
   ReferencePicture reference{};
   Thumbnails thumbnails{};
-  MaterialPainter materials{};
 };
 
 }  // namespace lambent::editor

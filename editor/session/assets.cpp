@@ -2,13 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <deque>
 #include <fstream>
-#include <mutex>
-#include <span>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -94,28 +90,9 @@ std::filesystem::path folderInUse(const Preferences& preferences) {
   return std::filesystem::is_directory(last, ignored) ? last : last.parent_path();
 }
 
-std::vector<AssetGroup> listed(std::vector<AssetGroup> groups) {
-  for (AssetGroup& group : groups)
-    for (const std::filesystem::path& folder : group.folders)
-      for (Asset& asset : listAssets(folder)) group.assets.push_back(std::move(asset));
-  return groups;
-}
-
 }  // namespace
 
-void AssetBrowser::addFolder(const std::filesystem::path& folder) {
-  if (std::ranges::find(added_, folder) == added_.end()) added_.push_back(folder);
-}
-
-void AssetBrowser::take() {
-  groups_ = coming_.get();
-}
-
 void AssetBrowser::update(const Session& session) {
-  if (coming_.valid()) {
-    if (busy()) return;
-    take();
-  }
   std::vector<AssetGroup> groups;
   const auto add = [&](const std::filesystem::path& named) {
     std::error_code ignored;
@@ -126,7 +103,6 @@ void AssetBrowser::update(const Session& session) {
       groups.push_back({.title = folder.string(), .folders = {folder}, .assets = {}});
   };
   if (const std::filesystem::path folder = folderInUse(session.preferences); !folder.empty()) add(folder);
-  for (const std::filesystem::path& folder : added_) add(folder);
   for (const std::string& word : session.document.world().lights)
     if (isEnvironmentMap(word)) add(std::filesystem::path(word).parent_path());
   for (const SceneEntry& entry : session.scenes.entries())
@@ -140,18 +116,11 @@ void AssetBrowser::update(const Session& session) {
       folders.push_back(one);
       times.push_back(std::filesystem::last_write_time(one, ignored));
     }
-  if (changed_.renew(folders, times, session.scenes.version()))
-    coming_ = std::async(std::launch::async, listed, std::move(groups));
-}
-
-void AssetBrowser::updateNow(const Session& session) {
-  if (coming_.valid()) take();
-  update(session);
-  if (coming_.valid()) take();
-}
-
-bool AssetBrowser::busy() const {
-  return coming_.valid() && coming_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  if (!changed_.renew(folders, times, session.scenes.version())) return;
+  for (AssetGroup& group : groups)
+    for (const std::filesystem::path& folder : group.folders)
+      for (Asset& asset : listAssets(folder)) group.assets.push_back(std::move(asset));
+  groups_ = std::move(groups);
 }
 
 const AssetGroup* AssetBrowser::samples() const {
@@ -229,70 +198,29 @@ namespace {
 // How many pictures are held in memory; a window shows far fewer at a time.
 constexpr std::size_t kMostPictures = 512;
 
+// Returns the picture that came with the file: one of its name beside it, in the shape of a view, since
+// textures are named like their scenes, too. The samples have such pictures.
+spec::Rgba8Image pictureBeside(const Asset& asset) {
+  const std::filesystem::path file = asset.file.parent_path() / (nameOf(asset) + ".png");
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return {};
+  const auto picture = spec::readPng(file);
+  if (!picture || std::uint64_t{9} * picture->width != std::uint64_t{16} * picture->height) return {};
+  return smallPictureOf(*picture);
+}
+
+AssetPictures::Made make(const Asset& asset) {
+  try {
+    if (asset.kind != AssetKind::EnvironmentMap) return {.asset = asset, .image = pictureBeside(asset)};
+    const auto map = spec::readLightImage(asset.file);
+    if (!map) return {.asset = asset, .error = map.error().line()};
+    return {.asset = asset, .image = smallPictureOf(*map)};
+  } catch (const std::exception& failure) {  // out of memory, mostly
+    return {.asset = asset, .error = failure.what()};
+  }
+}
+
 }  // namespace
-
-// Makes pictures on a thread of its own.
-struct AssetPictures::Worker {
-  struct Made {
-    Asset asset;
-    spec::Rgba8Image image{};
-    std::string error{};
-  };
-
-  Worker() : thread([this](std::stop_token stop) { run(stop); }) {}
-
-  void add(Asset asset) {
-    const std::lock_guard hold(lock);
-    requests.push_back(std::move(asset));
-    wake.notify_one();
-  }
-  std::vector<Made> take() {
-    const std::lock_guard hold(lock);
-    return std::exchange(made, {});
-  }
-
-  void run(std::stop_token stop) {
-    while (true) {
-      std::unique_lock hold(lock);
-      if (!wake.wait(hold, stop, [this] { return !requests.empty(); }) || stop.stop_requested()) return;
-      const Asset asset = std::move(requests.front());
-      requests.pop_front();
-      hold.unlock();
-      Made one = make(asset);
-      hold.lock();
-      made.push_back(std::move(one));
-    }
-  }
-  // Returns the picture that came with the file: one of its name beside it, in the shape of a view, since
-  // textures are named like their scenes, too. The samples have such pictures.
-  static spec::Rgba8Image pictureBeside(const Asset& asset) {
-    const std::filesystem::path file = asset.file.parent_path() / (nameOf(asset) + ".png");
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) return {};
-    const auto picture = spec::readPng(file);
-    if (!picture || std::uint64_t{9} * picture->width != std::uint64_t{16} * picture->height) return {};
-    return smallPictureOf(*picture);
-  }
-  static Made make(const Asset& asset) {
-    try {
-      if (asset.kind != AssetKind::EnvironmentMap) return {.asset = asset, .image = pictureBeside(asset)};
-      const auto map = spec::readLightImage(asset.file);
-      if (!map) return {.asset = asset, .error = map.error().line()};
-      return {.asset = asset, .image = smallPictureOf(*map)};
-    } catch (const std::exception& failure) {  // out of memory, mostly
-      return {.asset = asset, .error = failure.what()};
-    }
-  }
-
-  std::mutex lock;  // protects the members below
-  std::condition_variable_any wake;
-  std::deque<Asset> requests;
-  std::vector<Made> made;
-  std::jthread thread;  // it is joined before the others go
-};
-
-AssetPictures::AssetPictures() : worker_(std::make_unique<Worker>()) {}
-AssetPictures::~AssetPictures() = default;
 
 const AssetPictures::Picture& AssetPictures::of(const Asset& asset) {
   const auto [asked, first] = asked_.try_emplace(asset.file, asset);
@@ -300,20 +228,24 @@ const AssetPictures::Picture& AssetPictures::of(const Asset& asset) {
   if (!first && asked->second == asset) return picture;
   asked->second = asset;
   picture = {};
-  ++coming_;
-  worker_->add(asset);
+  wanted_.push_back(asset);
   return picture;
 }
 
 void AssetPictures::update() {
-  for (Worker::Made& made : worker_->take()) {
-    --coming_;
+  if (coming_.valid() && coming_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    Made made = coming_.get();
     // The file may have changed in the meantime.
     const auto asked = asked_.find(made.asset.file);
-    if (asked == asked_.end() || asked->second != made.asset) continue;
-    Picture& picture = pictures_[made.asset.file];
-    picture.image = std::move(made.image);
-    picture.error = std::move(made.error);
+    if (asked != asked_.end() && asked->second == made.asset) {
+      Picture& picture = pictures_[made.asset.file];
+      picture.image = std::move(made.image);
+      picture.error = std::move(made.error);
+    }
+  }
+  if (!coming_.valid() && !wanted_.empty()) {
+    coming_ = std::async(std::launch::async, make, std::move(wanted_.front()));
+    wanted_.pop_front();
   }
   // What is still shown is made again.
   if (pictures_.size() <= kMostPictures || busy()) return;

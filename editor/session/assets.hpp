@@ -4,10 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <future>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -50,43 +50,35 @@ struct AssetGroup {
 };
 
 // Lists the assets to choose from: those of the folder in use, which is that of what was opened last, those
-// beside open scenes and environment maps in use, those of folders that were added, and the samples that came
-// with the program. Folders are read on another thread. It also holds what the Assets panel remembers.
+// beside open scenes and environment maps in use, and the samples that came with the program. It also holds
+// what the Assets panel remembers.
 class AssetBrowser {
  public:
-  void addFolder(const std::filesystem::path& folder);
-  // Takes what was read, and reads the folders again if they or the open scenes have changed. Panels call it
-  // in each frame in which they show assets.
+  // Reads the folders again if they or the open scenes have changed. Panels call it in each frame in which
+  // they show assets.
   void update(const Session& session);
-  // The same, but the list is complete when it returns.
-  void updateNow(const Session& session);
-  bool busy() const;
 
   const std::vector<AssetGroup>& groups() const { return groups_; }
-  // Returns the group of the samples, or null if there are none or they have not been read.
+  // Returns the group of the samples, or null if there are none.
   const AssetGroup* samples() const;
   // Returns the asset with this path or file name, or null if none is listed.
   const Asset* find(std::string_view name) const;
 
   std::string search;
   std::filesystem::path selected;
-  bool large = false;  // large pictures
 
  private:
-  void take();
-
-  std::vector<std::filesystem::path> added_, samples_ = sampleFolders();
+  std::vector<std::filesystem::path> samples_ = sampleFolders();
   std::vector<AssetGroup> groups_;
   // Tells when folders must be read again: it compares them, their times, and the version of the scenes.
   ChangeGate<std::vector<std::filesystem::path>, std::vector<std::filesystem::file_time_type>, std::uint64_t>
       changed_;
-  std::future<std::vector<AssetGroup>> coming_;
 };
 
 // Brings the pictures of assets: those of environment maps are made of their files, those of scenes, bundles
-// and worlds are PNGs of their names that lie beside them. Panels ask for them; a thread makes them, in the
-// order in which they were asked for. The renderer turns them into textures. AssetPictures belongs to the
-// main thread.
+// and worlds are PNGs of their names that lie beside them. Panels ask for them; they are made on
+// another thread, one for each update(), in the order in which they were asked for. The renderer turns them
+// into textures. AssetPictures belongs to the main thread.
 
 // Exposes the environment map so that its median becomes middle grey.
 spec::Rgba8Image smallPictureOf(const spec::RgbImage& environment_map);
@@ -102,24 +94,25 @@ class AssetPictures {
     float aspect = 1.0f;        // width / height of the texture
   };
 
-  AssetPictures();
-  ~AssetPictures();
+  struct Made {
+    Asset asset;
+    spec::Rgba8Image image{};
+    std::string error{};
+  };
 
   // Returns the picture as far as it is there. The first call for a file, or for a file that changed, asks
   // for it.
   const Picture& of(const Asset& asset);
   void update();
-  bool busy() const { return coming_ > 0; }
+  bool busy() const { return coming_.valid() || !wanted_.empty(); }
 
   std::map<std::filesystem::path, Picture>& pictures() { return pictures_; }
 
  private:
-  struct Worker;
-
   std::map<std::filesystem::path, Picture> pictures_;
   std::map<std::filesystem::path, Asset> asked_;  // the files as they were when their pictures were asked for
-  std::size_t coming_ = 0;
-  std::unique_ptr<Worker> worker_;
+  std::deque<Asset> wanted_;
+  std::future<Made> coming_;
 };
 
 }  // namespace lambent::editor

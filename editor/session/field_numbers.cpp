@@ -1,13 +1,16 @@
 #include "editor/session/field_numbers.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include "editor/session/session.hpp"
+#include "runtime/scene/components.hpp"
 #include "runtime/scene/materials.hpp"
 
 namespace lambent::editor {
@@ -128,6 +131,72 @@ double stepOf(const Session& session, const FieldInfo& field, double number) {
   if (field.kind == ValueKind::Whole) return 10.0;
   if (field.range && field.range->greatest - field.range->least <= 10.0f) return 0.1;
   return 0.1 * std::pow(10.0, std::floor(std::log10(std::max(std::abs(number), 0.1))));
+}
+
+namespace {
+
+bool isUsed(const scene::LocalLightComponent& light, std::string_view field) {
+  using Kind = scene::LocalLightComponent::Kind;
+  if (field == "radius") return light.kind == Kind::Sphere || light.kind == Kind::Disc;
+  if (field == "range") return light.kind == Kind::Point || light.kind == Kind::Spot;
+  if (field == "inner_cone" || field == "outer_cone") return light.kind == Kind::Spot;
+  return true;
+}
+
+bool isUsed(const scene::CameraComponent& camera, std::string_view field) {
+  if (field == "yfov" || field == "aspect") return camera.perspective;
+  if (field == "xmag" || field == "ymag") return !camera.perspective;
+  return true;
+}
+
+}  // namespace
+
+bool isUsed(const ecs::Registry& registry, ecs::Entity entity, const scene::FieldInfo& field) {
+  if (field.component == scene::LocalLightComponent::kComponentName)
+    return isUsed(registry.get<scene::LocalLightComponent>(entity), field.name);
+  if (field.component == scene::CameraComponent::kComponentName)
+    return isUsed(registry.get<scene::CameraComponent>(entity), field.name);
+  // Only matrices of files have shear; taken apart, others have a rounding error.
+  if (field.component == scene::Transform::kComponentName && field.name == "shear")
+    return glm::length(registry.get<scene::Transform>(entity).shear) > 1e-6f;
+  if (field.component == scene::MaterialComponent::kComponentName && field.name == "anisotropy_rotation")
+    return registry.get<scene::MaterialComponent>(entity).anisotropy > 0.0f;
+  return true;
+}
+
+namespace {
+
+// Returns the number that the text is, with blanks around it.
+std::optional<double> numberIn(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == text.npos) return std::nullopt;
+  text = text.substr(first, text.find_last_not_of(' ') + 1 - first);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [read, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && read == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+double NumberEdit::appliedTo(double number) const {
+  return kind == Kind::Set ? amount : kind == Kind::Add ? number + amount : number * amount;
+}
+
+std::optional<NumberEdit> parseNumberEdit(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  if (text.empty()) return std::nullopt;
+  const char sign = text.front();
+  const bool assigns = text.size() > 1 && text[1] == '=';
+  // A number may begin with + or -, but not with * or /.
+  const bool relative = sign == '*' || sign == '/' || ((sign == '+' || sign == '-') && assigns);
+  const auto value = numberIn(relative ? text.substr(assigns ? 2 : 1) : text);
+  if (!value) return std::nullopt;
+  if (!relative) return NumberEdit{NumberEdit::Kind::Set, *value};
+  if (sign == '/' && *value == 0.0) return std::nullopt;
+  if (sign == '+' || sign == '-') return NumberEdit{NumberEdit::Kind::Add, sign == '+' ? *value : -*value};
+  return NumberEdit{NumberEdit::Kind::Multiply, sign == '*' ? *value : 1.0 / *value};
 }
 
 }  // namespace lambent::editor

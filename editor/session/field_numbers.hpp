@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -73,5 +74,25 @@ scene::Value valueOf(const Session& session, const scene::FieldInfo& field, ecs:
                      const std::vector<double>& numbers);
 // Returns the step by which the number goes with Ctrl: that of the gizmos where they drag the same.
 double stepOf(const Session& session, const scene::FieldInfo& field, double number);
+
+// Answers what inspectors ask about fields: which of them mean something, and what a widget or typed text
+// does to a number, so that the same can be done to that number of each selected entity.
+
+// Returns whether a field means something with the component's present values: a point light has no radius,
+// and only a spot light has cones. Inspectors leave the others out; files and scripts have all fields. The
+// entity must have the field's component.
+bool isUsed(const ecs::Registry& registry, ecs::Entity entity, const scene::FieldInfo& field);
+
+// Sets a number, shifts it, or scales it. Of typed text, "6" sets 6, "+=1" shifts by 1, "*2" and "/=4" scale.
+struct NumberEdit {
+  enum class Kind : std::uint8_t { Set, Add, Multiply };
+  Kind kind = Kind::Set;
+  double amount = 0.0;
+
+  double appliedTo(double number) const;
+};
+
+// Returns nothing if the text is none of these with a finite number.
+std::optional<NumberEdit> parseNumberEdit(std::string_view text);
 
 }  // namespace lambent::editor

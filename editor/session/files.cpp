@@ -91,7 +91,7 @@ Result<void> SceneSteps::bring(const ClosedScene& scene) {
     return {};
   }
   if (auto done = session_.scenes.reopen(scene.entry, scene.place); !done) return done;
-  waiting_.push_back({scene.entry, scene.kept});
+  awaited_.insert(awaited_.end(), scene.kept.begin(), scene.kept.end());
   update();
   return {};
 }
@@ -105,15 +105,6 @@ bool SceneSteps::take(ClosedScene& scene) {
   if (!place) return false;
   scene.entry = session_.scenes.entries()[*place];
   scene.place = *place;
-  const auto waits = std::ranges::find_if(
-      waiting_, [&](const Waiting& waiting) { return waiting.entry.isSame(scene.entry); });
-  if (waits != waiting_.end()) {
-    // Its edits were never restored, so they are what is kept.
-    scene.kept = std::move(waits->kept);
-    waiting_.erase(waits);
-    session_.scenes.close(*place);
-    return true;
-  }
   Overrides all = captureOverrides(session_.document, session_.changes.baseline());
   session_.scenes.close(*place);
   scene.kept = lacking(session_.document, std::move(all));
@@ -125,7 +116,7 @@ std::size_t SceneSteps::await(const Overrides& edits) {
   return awaited_.size();
 }
 
-void SceneSteps::restoreAwaited() {
+void SceneSteps::update() {
   Overrides here;
   for (const EntityOverride& edit : awaited_)
     if (session_.document.find(edit.id)) here.push_back(edit);
@@ -133,22 +124,6 @@ void SceneSteps::restoreAwaited() {
   applyOverrides(session_.document, here);
   awaited_ = lacking(session_.document, std::move(awaited_));
   session_.viewing.changed = true;
-}
-
-void SceneSteps::update() {
-  restoreAwaited();
-  for (std::size_t i = 0; i < waiting_.size();) {
-    const auto place = placeOf(session_.scenes, waiting_[i].entry);
-    if (place && !session_.scenes.entries()[*place].slot) {
-      ++i;
-      continue;
-    }
-    if (place)
-      for (const std::string& missing : applyOverrides(session_.document, waiting_[i].kept).missing)
-        session_.log.warn(missing + " is not there any more; its edits are lost");
-    waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
-    session_.viewing.changed = true;
-  }
 }
 
 namespace {

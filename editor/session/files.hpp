@@ -41,9 +41,9 @@ class SceneSteps {
   // Keeps those of a world file's edits whose entities do not exist, until their scenes are shown. Returns
   // how many these are.
   std::size_t await(const Overrides& edits);
-  // Restores the edits of scenes whose bundle is now shown. Call it once a frame.
+  // Restores the edits whose entities have come. Call it when the scenes have changed.
   void update();
-  void clear() { waiting_.clear(), awaited_.clear(); }
+  void clear() { awaited_.clear(); }
 
   // The rest is for the steps themselves. bring() opens the scene again.
   Result<void> bring(const ClosedScene& scene);
@@ -51,16 +51,8 @@ class SceneSteps {
   bool take(ClosedScene& scene);
 
  private:
-  struct Waiting {
-    SceneEntry entry;
-    Overrides kept;
-  };
-
   Session& session_;
-  void restoreAwaited();
-
-  std::vector<Waiting> waiting_;
-  Overrides awaited_;
+  Overrides awaited_;  // edits whose entities do not exist yet, of the world file and of reopened scenes
 };
 
 class Files {

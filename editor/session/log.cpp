@@ -1,5 +1,6 @@
 #include "editor/session/log.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace lambent::editor {
@@ -17,21 +18,19 @@ void Log::add(Severity severity, std::string text) {
   const std::lock_guard hold(lock_);
   if (severity == Severity::Error) ++errors_;
   if (!entries_.empty() && entries_.back().text == text && entries_.back().severity == severity) {
-    entries_.back().when = now;
-    ++entries_.back().times;
-    std::erase_if(toasts_, [&](const Toast& toast) { return toast.number == entries_.back().number; });
+    LogEntry& last = entries_.back();
+    last.when = now;
+    ++last.times;
+    last.is_toast = true, last.shown.reset(), last.frames = 0;
   } else {
-    entries_.push_back({severity, std::move(text), now, 1, next_++});
+    entries_.push_back({.severity = severity, .text = std::move(text), .when = now, .number = next_++});
   }
-  toasts_.push_back({.number = entries_.back().number});
-  if (toasts_.size() > kMostToasts) toasts_.pop_front();
   if (entries_.size() > kMostEntries) entries_.pop_front();
 }
 
 void Log::clear() {
   const std::lock_guard hold(lock_);
   entries_.clear();
-  toasts_.clear();
 }
 
 std::vector<LogEntry> Log::entries() const {
@@ -41,22 +40,23 @@ std::vector<LogEntry> Log::entries() const {
 
 std::vector<LogEntry> Log::toasts(std::chrono::steady_clock::time_point now) {
   const std::lock_guard hold(lock_);
-  std::erase_if(toasts_, [&](const Toast& toast) {
-    return toast.shown && now - *toast.shown > kToastAge && toast.frames >= kToastFrames;
-  });
   std::vector<LogEntry> shown;
-  for (Toast& toast : toasts_) {
-    if (!toast.shown) toast.shown = now;
-    ++toast.frames;
-    for (const LogEntry& entry : entries_)
-      if (entry.number == toast.number) shown.push_back(entry);
+  for (std::size_t i = entries_.size() - std::min(entries_.size(), kMostToasts); i < entries_.size(); ++i) {
+    LogEntry& entry = entries_[i];
+    const bool old = entry.shown && now - *entry.shown > kToastAge && entry.frames >= kToastFrames;
+    entry.is_toast = entry.is_toast && !old;
+    if (!entry.is_toast) continue;
+    if (!entry.shown) entry.shown = now;
+    ++entry.frames;
+    shown.push_back(entry);
   }
   return shown;
 }
 
 bool Log::hasToasts() const {
   const std::lock_guard hold(lock_);
-  return !toasts_.empty();
+  const auto latest = static_cast<std::ptrdiff_t>(std::min(entries_.size(), kMostToasts));
+  return std::any_of(entries_.end() - latest, entries_.end(), [](const LogEntry& e) { return e.is_toast; });
 }
 
 std::uint64_t Log::errors() const {

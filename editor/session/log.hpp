@@ -21,6 +21,11 @@ struct LogEntry {
   std::chrono::system_clock::time_point when;  // of the latest, if it was repeated
   std::uint32_t times = 1;                     // how often it was added in a row
   std::uint64_t number = 0;                    // increases from entry to entry
+  // As a toast over the view: whether it still stands, since when (nothing: not yet), and for how many
+  // frames.
+  bool is_toast = true;
+  std::optional<std::chrono::steady_clock::time_point> shown{};
+  std::uint32_t frames = 0;
 };
 
 class Log {
@@ -42,15 +47,8 @@ class Log {
   std::uint64_t errors() const;
 
  private:
-  struct Toast {
-    std::uint64_t number = 0;                                      // of its entry
-    std::optional<std::chrono::steady_clock::time_point> shown{};  // first; nothing: not yet
-    std::uint32_t frames = 0;
-  };
-
   mutable std::mutex lock_;
   std::deque<LogEntry> entries_;
-  std::deque<Toast> toasts_;  // the latest last
   std::uint64_t next_ = 0, errors_ = 0;
 };
 

@@ -81,7 +81,6 @@ Preferences loadPreferences(const std::filesystem::path& file) {
   try {
     read(json, "width", p.width), read(json, "height", p.height);
     if (const auto layout = json.find("layout"); layout != json.end()) readLayout(*layout, p.layout);
-    read(json, "cameraPreview", p.camera_preview);
     read(json, "scale", p.scale), read(json, "recent", p.recent);
     read(json, "lightUnit", p.light_unit);
   } catch (const nlohmann::json::exception&) {
@@ -98,15 +97,10 @@ void savePreferences(const std::filesystem::path& file, const Preferences& p) {
   std::filesystem::create_directories(file.parent_path(), ignored);
   auto out = AtomicFile::open(file);
   if (!out) return;
-  const std::string text = nlohmann::json{
-      {"width", p.width},
-      {"height", p.height},
-      {"layout", layoutJson(p.layout)},
-      {"cameraPreview", p.camera_preview},
-      {"scale", p.scale},
-      {"recent", p.recent},
-      {"lightUnit",
-       p.light_unit}}.dump(2);
+  const std::string text =
+      nlohmann::json{{"width", p.width}, {"height", p.height}, {"layout", layoutJson(p.layout)},
+                     {"scale", p.scale}, {"recent", p.recent}, {"lightUnit", p.light_unit}}
+          .dump(2);
   if (out->write(text)) (void)out->commit();
 }
 

@@ -38,7 +38,6 @@ struct WindowLayout {
 struct Preferences {
   int width = 1600, height = 950;  // of the window
   WindowLayout layout;
-  bool camera_preview = true;     // an inset shows what a selected camera sees
   float scale = 1.0f;             // of text and widgets
   std::string light_unit = "cd";  // in which lights are given that can be given in it
   std::vector<std::string> recent;

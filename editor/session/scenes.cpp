@@ -216,14 +216,13 @@ void Scenes::unwatchFolder(const std::filesystem::path& folder) {
   watch();
 }
 
-void Scenes::request(SceneEntry& entry) {
+void Scenes::request(SceneEntry& entry, baker::PreviewLevel last) {
   entry.missing.reset();
-  entry.job =
-      queue_->add({.scene = entry.source,
-                   .output = entry.bundle,
-                   .options = entry.options,
-                   .edits = entry.edits,
-                   .last = settings_.bake ? baker::PreviewLevel::Final : baker::PreviewLevel::Unshadowed});
+  entry.job = queue_->add({.scene = entry.source,
+                           .output = entry.bundle,
+                           .options = entry.options,
+                           .edits = entry.edits,
+                           .last = last});
   jobs_ = queue_->states();
 }
 
@@ -321,11 +320,8 @@ Result<void> Scenes::bake(std::size_t index, baker::SceneEdits edits) {
   std::error_code ignored;
   if (!std::filesystem::exists(entry.source, ignored))
     return fail(entry.source.string(), "is not there", "put it back, or close the scene");
-  entry.missing.reset();
   entry.edits = std::move(edits);
-  entry.job = queue_->add(
-      {.scene = entry.source, .output = entry.bundle, .options = entry.options, .edits = entry.edits});
-  jobs_ = queue_->states();
+  request(entry, baker::PreviewLevel::Final);
   return {};
 }
 

@@ -94,7 +94,10 @@ class Scenes {
   void take(const baker::WatchEvent& event);
   void watch();
   bool isWatched(const std::filesystem::path& scene) const;
-  void request(SceneEntry& entry);
+  void request(SceneEntry& entry, baker::PreviewLevel last);
+  void request(SceneEntry& entry) {
+    request(entry, settings_.bake ? baker::PreviewLevel::Final : baker::PreviewLevel::Unshadowed);
+  }
   std::string idFor(const std::filesystem::path& bundle) const;
   std::filesystem::path bundleFor(const std::filesystem::path& scene) const;
   SceneEntry* find(const std::filesystem::path& source);

@@ -4,6 +4,8 @@
 // results to `picture`. Main thread. Errors are logged, and the session goes on.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -11,30 +13,121 @@
 #include <string>
 #include <vector>
 
+#include "editor/document/actions.hpp"
 #include "editor/document/document.hpp"
 #include "editor/document/history.hpp"
-#include "editor/document/selection.hpp"
 #include "editor/document/tree.hpp"
 #include "editor/gizmo/gizmo.hpp"
-#include "editor/gizmo/light_gizmo.hpp"
+#include "editor/gizmo/light_gizmos.hpp"
 #include "editor/gizmo/projection.hpp"
-#include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/assets.hpp"
-#include "editor/session/dialog.hpp"
 #include "editor/session/field_numbers.hpp"
 #include "editor/session/files.hpp"
 #include "editor/session/key_lights.hpp"
 #include "editor/session/log.hpp"
-#include "editor/session/materials.hpp"
 #include "editor/session/preferences.hpp"
 #include "editor/session/reference_view.hpp"
 #include "editor/session/scene_changes.hpp"
 #include "editor/session/scenes.hpp"
-#include "editor/session/stage.hpp"
-#include "editor/session/studies.hpp"
 #include "editor/session/viewing.hpp"
+#include "runtime/base/change_gate.hpp"
+#include "runtime/frame/frame_settings.hpp"
+#include "runtime/lighting/environment.hpp"
+#include "runtime/world/world.hpp"
 
 namespace lambent::editor {
+
+// Owns the lit world: the bundles' entities, the distant light, and the frame settings, all kept in step with
+// the document. Light words are loaded when they change; if an environment map cannot be read, the light
+// stays as it was. Main thread. With a limit in max_memory_bytes, bundles are uploaded with the first
+// picture. Without a limit, and when one bundle replaces another, loading needs a current OpenGL context.
+// Errors: those of lighting::Environment.
+
+class Stage {
+ public:
+  static Result<Stage> create(std::uint64_t max_memory_bytes);
+
+  frame::World& world() { return world_; }
+  const frame::World& world() const { return world_; }
+  lighting::Environment& environment() { return environment_; }
+  const lighting::Environment& environment() const { return environment_; }
+  ecs::Entity environmentEntity() const { return environment_entity_; }
+  const frame::FrameSettings& settings() const { return settings_; }
+  // Returns the distant lights: those of the document, or the previous ones if these could not be loaded.
+  const std::vector<spec::Light>& lights() const { return lights_; }
+  const std::vector<spec::Light>& fadeLights() const { return fade_lights_; }
+
+  // Applies lights, edits of key lights, settings and exposure of `state`. Errors: unknown words and
+  // environment maps that cannot be read; everything else is applied.
+  std::vector<Error> follow(const WorldState& state);
+  void followEnvironment();
+
+ private:
+  Stage(frame::World world, lighting::Environment environment);
+  Result<void> followLights(const WorldState& state);
+
+  frame::World world_;
+  lighting::Environment environment_;
+  frame::FrameSettings settings_;
+  ecs::Entity environment_entity_;
+  std::vector<std::string> words_, fade_words_;
+  std::vector<spec::Light> lights_, fade_lights_;
+};
+
+// Describes questions to the user: which file, which text, or whether to go on. panels/dialogs.cpp draws
+// them, and the rest of the editor keeps running. Main thread.
+
+class Session;
+
+struct DialogPlace {
+  std::string name;
+  std::filesystem::path folder;
+};
+
+struct DialogFile {
+  std::string name;
+  bool is_folder = false;
+};
+
+// Names a kind of file by the endings of its names.
+struct FileKind {
+  std::string name;
+  std::vector<std::string> endings;
+};
+
+struct Dialog {
+  enum class Kind : std::uint8_t { OpenFile, SaveFile, Folder, Confirm, Text };
+  Kind kind = Kind::Confirm;
+  std::string title{}, question{};
+  std::vector<FileKind> kinds{};                   // of files to list; empty: all files
+  std::size_t filter = 0;                          // 0: all these kinds; n: the nth; past the last: all files
+  std::filesystem::path folder{};                  // the folder that is shown
+  std::string name{};                              // the text typed so far
+  std::string yes = "OK", no = "Cancel", third{};  // button texts; an empty third one has no button
+  std::function<void(Session&, const std::string& answer)> answered{};
+  std::function<void(Session&)> third_chosen{};
+
+  // What the window lists: places where files are likely to be, found when the dialog opens, and the contents
+  // of the folder. Disks are not asked in every frame.
+  std::vector<DialogPlace> places{};
+  std::vector<DialogFile> files{};
+  ChangeGate<std::filesystem::path, std::filesystem::file_time_type, std::size_t> listed{};
+};
+
+// Holds what commands request from the window: a dialog, panels to bring to the front, or the end of the
+// program. The window reads and clears them once a frame.
+struct WindowRequests {
+  std::optional<Dialog> dialog;            // at most one at a time
+  std::vector<std::string> wanted_panels;  // names of panels to bring to the front
+  bool raise_tabs = true;                  // also bring the preferences' tabs to the front
+  // Ids of commands to run in the next frame, when fields that were open have taken over what was typed.
+  std::vector<std::string> wanted_commands;
+  bool palette = false;  // the list of commands is open
+  bool keys = false;     // the list of keys is open
+  std::string palette_words;
+  bool quit = false;
+  std::uint64_t frames = 0;  // how many the window has drawn
+};
 
 struct SessionOptions {
   std::vector<std::filesystem::path> files;
@@ -48,7 +141,7 @@ struct SessionOptions {
 };
 
 // Holds the state of the gizmos between frames: the handles that move, turn and scale the selection, shape
-// lights, and drag suns. editor/panels/manipulate.cpp drives them.
+// lights, and drag suns. editor/panels/viewport.cpp drives them.
 struct Handles {
   bool shown = true;
   Gizmo gizmo;
@@ -62,20 +155,6 @@ struct Handles {
 struct Playback {
   bool playing = false;
   float time_s = 0.0f;
-};
-
-// Holds the text that was copied last: in the system's clipboard if a window has set its functions, else in
-// `text`.
-struct Clipboard {
-  std::function<void(const std::string&)> put_system;
-  std::function<std::string()> get_system;
-  std::string text;
-
-  void put(const std::string& value) {
-    text = value;
-    if (put_system) put_system(value);
-  }
-  std::string get() const { return get_system ? get_system() : text; }
 };
 
 class Session {
@@ -121,11 +200,9 @@ class Session {
   PictureFacts picture;
   ReferenceView reference;
   SettingStudy settings;
-  Plans plans;
   AssetBrowser assets;
   AssetPictures asset_pictures;
-  MaterialPictures material_pictures;
-  Clipboard clipboard;
+  Clip clipboard;
   FieldEditState field_edit;
   WindowRequests window;
 

@@ -10,6 +10,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "editor/session/session.hpp"
+#include "runtime/frame/frame_settings.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/transforms.hpp"
 
@@ -121,31 +122,34 @@ void Viewing::follow(const WorldState& world) {
   }
 }
 
+void SettingStudy::measureAll() {
+  waiting_.clear();
+  for (const frame::SettingRow& row : frame::settingRows())
+    if (row.finest) waiting_.insert(waiting_.begin(), std::string(row.name));
+}
+
+void SettingStudy::update(Session& session) {
+  if (waiting_.empty() || !session.atRest()) return;
+  const frame::SettingRow* row = frame::findSetting(waiting_.back());
+  waiting_.pop_back();
+  const spec::Size whole = session.viewing.size;
+  const spec::Size size{320, std::max(1u, 320 * whole.height / std::max(1u, whole.width))};
+  Stage& stage = session.stage;
+  auto cost = frame::measureSetting({stage.world(), stage.environment(), session.viewing.shown_view},
+                                    stage.settings(), *row, {.size = size, .repeats = 3});
+  if (cost)
+    costs_[std::string(row->name)] = std::move(*cost);
+  else
+    session.log.error(cost.error());
+  session.viewing.changed = true;
+}
+
 ecs::Entity selectedCamera(const Session& session) {
   const ecs::Registry& registry = session.document.registry();
   const ecs::Entity entity = session.selection.primaryEntity(session.document);
   const bool camera = registry.alive(entity) && registry.has<scene::CameraComponent>(entity) &&
                       registry.has<scene::Transform>(entity);
   return camera ? entity : ecs::Entity{};
-}
-
-float aspectOf(const Session& session, ecs::Entity camera) {
-  const float own = session.document.registry().get<scene::CameraComponent>(camera).aspect;
-  return own > 0.0f ? own : session.viewing.size.aspect();
-}
-
-Result<spec::View> viewOfCamera(const Session& session, ecs::Entity camera, float aspect) {
-  const ecs::Registry& registry = session.document.registry();
-  const auto& component = registry.get<scene::CameraComponent>(camera);
-  gltf::Camera lens;
-  lens.name = session.document.nameOf(camera);
-  lens.perspective = component.perspective;
-  lens.yfov_rad = component.yfov_rad;
-  lens.xmag = component.xmag, lens.ymag = component.ymag;
-  const glm::mat4 world_from_node = worldFromNode(registry, camera);
-  scene::Box box = scene::worldBounds(registry);
-  if (box.empty()) box.add(glm::vec3(world_from_node[3]));
-  return spec::cameraView(lens, world_from_node, box.min, box.max, aspect);
 }
 
 void lookThrough(Session& session, ecs::Entity camera) {

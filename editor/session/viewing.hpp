@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "editor/gizmo/camera_control.hpp"
 #include "runtime/debug/overlay_options.hpp"
 #include "runtime/frame/frame.hpp"
+#include "runtime/measure/measured_frame.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/surface/views.hpp"
@@ -58,7 +60,6 @@ struct PictureFacts {
   std::uint64_t drawn = 0;            // how many pictures there were
   bool settled = false;               // everything is loaded, and the light did not change in the last frame
   bool in_flight = false;             // the GPU still works on the last picture
-  bool preview_waits = false;         // the inset of the selected camera is to be drawn anew
   // These belong to the last picture that the GPU has finished.
   std::uint32_t negative_pixels = 0;
   float exposure_ev = 0.0f;
@@ -104,13 +105,26 @@ class Viewing {
   std::string pose_followed_;
 };
 
+// Measures on request what each setting of the frame costs in time and in error: one a frame, so that the
+// editor stays responsive. update() needs a current OpenGL context, and the renderer calls it.
+class SettingStudy {
+ public:
+  // Starts measuring every setting at its present value.
+  void measureAll();
+  void update(Session& session);
+  bool busy() const { return !waiting_.empty(); }
+
+  const std::map<std::string, frame::SettingCost, std::less<>>& costs() const { return costs_; }
+
+ private:
+  std::vector<std::string> waiting_;  // the last is the next
+  std::map<std::string, frame::SettingCost, std::less<>> costs_;
+};
+
 // ---- Cameras that stand in the world.
 
 // Returns the selected entity if it is a camera, or none.
 ecs::Entity selectedCamera(const Session& session);
-// Returns width over height of the camera's picture: its own, or that of the view.
-float aspectOf(const Session& session, ecs::Entity camera);
-Result<spec::View> viewOfCamera(const Session& session, ecs::Entity camera, float aspect);
 void lookThrough(Session& session, ecs::Entity camera);
 // Places the camera where the view is and gives it the view's angle, as one step.
 Result<void> placeAtView(Session& session, ecs::Entity camera);

@@ -40,7 +40,6 @@ struct Report {
   std::uint32_t rest_steps = 0;      // steps after the last frame until no light changed any more
   double load_ms = 0.0;              // from opening the bundles until everything was resident
   std::uint64_t bytes_resident = 0;
-  frame::LoadedParts parts;
   frame::StreamingStatus streaming;
   std::uint32_t negative_pixels = 0;
   float exposure_ev = 0.0f;
@@ -180,10 +179,6 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"gl_errors", report.gl_errors},
                      {"load_ms", report.load_ms},
                      {"bytes_resident", report.bytes_resident},
-                     {"bytes_loaded", report.parts.bytes_loaded},
-                     {"bytes_in_bundles", report.parts.bytes_in_bundles},
-                     {"planes_resident", report.parts.planes_resident},
-                     {"planes_in_bundles", report.parts.planes_in_bundles},
                      {"streaming", streamingJson(report.streaming)},
                      {"negative_pixels", report.negative_pixels},
                      {"frames", options.frames},
@@ -320,7 +315,6 @@ Result<void> runHeadless(const Options& options) {
       if (Result<void> finished = finishPicture(i); !finished) return finished;
   }
   if (!options.json) return {};
-  report.parts = world.loadedParts();
   report.streaming = world.streaming();
   report.bytes_resident =
       report.streaming.resident_bytes + frame->kept<effects::volume::Volume>().textureBytes();

@@ -17,14 +17,7 @@ namespace {
 constexpr std::size_t kMessagesKept = 8;
 
 bool hasExtension(const char* list, std::string_view name) {
-  std::string_view rest = list ? list : "";
-  while (!rest.empty()) {
-    const std::size_t end = rest.find(' ');
-    if (rest.substr(0, end) == name) return true;
-    if (end == std::string_view::npos) break;
-    rest.remove_prefix(end + 1);
-  }
-  return false;
+  return fmt::format(" {} ", list ? list : "").find(fmt::format(" {} ", name)) != std::string::npos;
 }
 
 struct DisplayChoice {

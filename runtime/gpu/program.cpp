@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cctype>
 #include <cstring>
 #include <optional>
+#include <regex>
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -64,33 +65,13 @@ struct Assembler {
   }
 };
 
-// The line number, and its range in the text, that drivers write before a message: "0:12(5): error" (Mesa),
-// "0(12) : error" (NVIDIA), "ERROR: 0:12: ..." (AMD, Apple).
-struct Position {
-  int line = 0;
-  std::size_t begin = 0, end = 0;
-};
-std::optional<Position> findPosition(std::string_view log_line) {
-  const std::size_t zero = log_line.find('0');
-  if (zero == std::string_view::npos || zero > 8 || zero + 2 >= log_line.size()) return {};
-  const char separator = log_line[zero + 1];
-  if (separator != ':' && separator != '(') return {};
-  std::size_t at = zero + 2;
-  int line = 0;
-  while (at < log_line.size() && std::isdigit(static_cast<unsigned char>(log_line[at])))
-    line = line * 10 + (log_line[at++] - '0');
-  if (at == zero + 2) return {};
-  // The column and the punctuation before the message are skipped.
-  at = log_line.find(": ", at);
-  if (at == std::string_view::npos) return {};
-  return Position{line, zero, at};
-}
-
-std::string shaderLog(GLuint shader) {
+// Returns the log of a shader or a program.
+template <typename Get, typename GetLog>
+std::string logOf(GLuint id, Get get, GetLog get_log) {
   GLint length = 0;
-  glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+  get(id, GL_INFO_LOG_LENGTH, &length);
   std::string log(static_cast<std::size_t>(length), '\0');
-  glGetShaderInfoLog(shader, length, &length, log.data());
+  get_log(id, length, &length, log.data());
   log.resize(static_cast<std::size_t>(length));
   return log;
 }
@@ -111,19 +92,19 @@ Result<ShaderText> assembleShader(std::string_view file, const ShaderSources& so
 }
 
 std::string mapLog(std::string_view log, const ShaderText& shader) {
+  // Drivers write before a message "0:12(5): error" (Mesa), "0(12) : error" (NVIDIA), or "ERROR: 0:12: ..."
+  // (AMD, Apple). The column and the punctuation before the message are left out.
+  static const std::regex kPosition("([^0]{0,8})0[:(]([0-9]{1,9}).*?(: [\\s\\S]*)");
   std::string mapped;
-  while (!log.empty()) {
-    const std::size_t end = log.find('\n');
-    const std::string_view line = log.substr(0, end);
-    log.remove_prefix(end == std::string_view::npos ? log.size() : end + 1);
+  std::istringstream lines{std::string(log)};
+  for (std::string line; std::getline(lines, line);) {
     if (line.empty()) continue;
     if (!mapped.empty()) mapped += " | ";
-    const auto position = findPosition(line);
-    if (position && position->line >= 1 &&
-        static_cast<std::size_t>(position->line) <= shader.origins.size()) {
-      const auto& origin = shader.origins[static_cast<std::size_t>(position->line - 1)];
-      mapped += fmt::format("{}{}:{}{}", line.substr(0, position->begin), origin.file, origin.line,
-                            line.substr(position->end));
+    std::smatch found;
+    const std::size_t number = std::regex_match(line, found, kPosition) ? std::stoul(found[2]) : 0;
+    if (number >= 1 && number <= shader.origins.size()) {
+      const ShaderText::Origin& origin = shader.origins[number - 1];
+      mapped += fmt::format("{}{}:{}{}", found[1].str(), origin.file, origin.line, found[3].str());
     } else {
       mapped += line;
     }
@@ -148,20 +129,16 @@ Result<Program> Program::create(std::string_view label, std::initializer_list<St
     glGetShaderiv(object.id(), GL_COMPILE_STATUS, &done);
     if (!done)
       return fail(std::string(stage.file),
-                  fmt::format("does not compile: {}", mapLog(shaderLog(object.id()), *shader)));
+                  fmt::format("does not compile: {}",
+                              mapLog(logOf(object.id(), glGetShaderiv, glGetShaderInfoLog), *shader)));
     glAttachShader(program.id(), object.id());
   }
   glLinkProgram(program.id());
   GLint done = 0;
   glGetProgramiv(program.id(), GL_LINK_STATUS, &done);
-  if (!done) {
-    GLint length = 0;
-    glGetProgramiv(program.id(), GL_INFO_LOG_LENGTH, &length);
-    std::string log(static_cast<std::size_t>(length), '\0');
-    glGetProgramInfoLog(program.id(), length, &length, log.data());
-    log.resize(static_cast<std::size_t>(length));
-    return fail(std::string(label), fmt::format("does not link: {}", log));
-  }
+  if (!done)
+    return fail(std::string(label),
+                fmt::format("does not link: {}", logOf(program.id(), glGetProgramiv, glGetProgramInfoLog)));
   glObjectLabel(GL_PROGRAM, program.id(), static_cast<GLsizei>(label.size()), label.data());
   return program;
 }

@@ -12,6 +12,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "runtime/base/finite.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/materials.hpp"
@@ -283,14 +284,6 @@ void destroyInstance(ecs::Registry& registry, const SceneInstance& instance) {
   registry.destroy(instance.root);
 }
 
-namespace {
-
-bool usable(const glm::vec3& value) {
-  return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
-}
-
-}  // namespace
-
 MaterialComponent materialComponent(const gltf::Material& baked, std::uint32_t bundle,
                                     std::uint32_t material) {
   return {gltf::factorsOf(baked), bundle, material};
@@ -302,7 +295,7 @@ gltf::Material withComponent(const gltf::Material& baked, const MaterialComponen
   ecs::forEachField(now, [&](const auto& field, auto& value) {
     using Value = std::remove_reference_t<decltype(value)>;
     bool good = ecs::withinRange(field, value);
-    if constexpr (std::is_same_v<Value, glm::vec3>) good = usable(value);
+    if constexpr (std::is_same_v<Value, glm::vec3>) good = isFinite(value);
     if constexpr (std::is_same_v<Value, float>) good = good && std::isfinite(value);
     if (!good) value = field.of(before);
   });

@@ -117,10 +117,6 @@ ComponentInfo row(By by) {
     ecs::forEachField(target, [&](const auto& field, auto& value) { value = field.of(source); });
     return true;
   };
-  info.version = [](const ecs::Registry& registry) { return registry.version<C>(); };
-  info.versionOf = [](const ecs::Registry& registry, ecs::Entity entity) {
-    return registry.version<C>(entity);
-  };
   info.bundle = [](const ecs::Registry& registry, ecs::Entity entity) -> std::optional<std::uint32_t> {
     if constexpr (requires(const C& c) { std::uint32_t{c.bundle}; }) {
       if (const C* component = registry.tryGet<C>(entity)) return component->bundle;

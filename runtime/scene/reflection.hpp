@@ -83,9 +83,6 @@ struct ComponentInfo {
   bool (*remove)(ecs::Registry&, ecs::Entity) = nullptr;  // returns false if there was none
   // Copies the declared fields only. Does nothing and returns false unless both entities have the component.
   bool (*copy)(ecs::Registry&, ecs::Entity from, ecs::Entity to) = nullptr;
-  // These return Registry::version<T>() of all components of the type, and of one.
-  std::uint64_t (*version)(const ecs::Registry&) = nullptr;
-  std::uint64_t (*versionOf)(const ecs::Registry&, ecs::Entity) = nullptr;
   // Returns the number of the bundle that the component belongs to, or nothing if it belongs to none.
   std::optional<std::uint32_t> (*bundle)(const ecs::Registry&, ecs::Entity) = nullptr;
 };

@@ -235,34 +235,6 @@ std::vector<Work> requestsOf(const bundle::Description& d) {
   return list;
 }
 
-std::uint64_t bytesInFile(const bundle::Description& d, const Work& work) {
-  const auto view = [&](std::uint32_t index) { return d.views[index].length; };
-  const auto payload = [&](std::uint32_t index) { return view(d.payloads[index].view); };
-  return std::visit(
-      Overloaded{
-          [&](const MeshRequest& at) { return view(d.meshes[at.mesh].primitives[at.primitive].view); },
-          [&](const WeightsRequest& at) { return payload(d.draws[at.draw].rows); },
-          [&](const ImageRequest& at) { return view(d.images[at.image].view); },
-          [&](const CodebookRequest& at) {
-            const bundle::CellTransfer& transfer = transferOf(d, at);
-            const std::uint64_t codebook = payload(transfer.codebook);
-            return transfer.cluster_ids < 0
-                       ? codebook
-                       : codebook + payload(static_cast<std::uint32_t>(transfer.cluster_ids));
-          },
-          [&](const PlaneRequest& at) { return payload(transferOf(d, at).planes[at.plane.value].payload); },
-          [&](const LightWeightsRequest& at) {
-            return payload(static_cast<std::uint32_t>(cellOf(d, at).light_weights));
-          },
-          [&](const ProxyRequest& at) {
-            return payload(static_cast<std::uint32_t>(d.groups[at.group.value].proxy));
-          },
-          [&](const BrdfRequest& at) { return payload(d.brdf_tables[at.table].payload); },
-          [&](const DensityRequest& at) { return payload(d.groups[at.group.value].volume->density); },
-          [&](const VoxelsRequest& at) { return payload(d.groups[at.group.value].volume->voxels); }},
-      work);
-}
-
 std::optional<Result<Ready>> load(const bundle::Reader& reader, const Work& work, const Reserve& reserve) {
   return std::visit(Load(reader, reserve), work);
 }
@@ -391,7 +363,6 @@ void Loader::runWorker() {
     {
       const std::lock_guard lock(mutex_);
       if (*loaded) {
-        bytes_read_ += bytesInFile(reader_->description(), work_[at]);
         hold(at, bytesOf(**loaded));
         slots_[at].ready = std::move(**loaded);
       } else {
@@ -472,11 +443,6 @@ std::optional<Error> Loader::error() const {
 bool Loader::idle() const {
   const std::lock_guard lock(mutex_);
   return working_ == 0;
-}
-
-std::uint64_t Loader::bytesRead() const {
-  const std::lock_guard lock(mutex_);
-  return bytes_read_;
 }
 
 }  // namespace lambent::streaming

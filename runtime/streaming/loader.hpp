@@ -144,9 +144,6 @@ using Work = std::variant<MeshRequest, WeightsRequest, ImageRequest, CodebookReq
 // always comes before its planes, which keep their order.
 std::vector<Work> requestsOf(const bundle::Description& description);
 
-// Returns the size of an item in the file.
-std::uint64_t bytesInFile(const bundle::Description& description, const Work& work);
-
 // Reserves the bytes that an item will need in memory. Returns false if the item is not wanted any more.
 using Reserve = std::function<bool(std::size_t)>;
 
@@ -192,8 +189,6 @@ class Loader {
   // Returns the first error, at which loading stops.
   std::optional<Error> error() const;
 
-  std::uint64_t bytesRead() const;
-
   // Stops loading. Workers end after their current items.
   void stop();
   // Returns whether all workers have ended, so that the destructor does not wait.
@@ -228,7 +223,6 @@ class Loader {
   std::size_t held_bytes_ = 0;
   std::size_t failed_at_ = kNone;
   Error failure_;
-  std::uint64_t bytes_read_ = 0;
   bool stopping_ = false;
   std::size_t working_ = 0;        // number of workers that have not ended
   std::condition_variable ended_;  // signals that a worker has ended

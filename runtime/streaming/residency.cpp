@@ -74,8 +74,9 @@ ResidentVolume& volumeOf(ResidentTables& tables, const ResidentBundle& bundle, b
 
 }  // namespace
 
-Residency::Residency()
-    : geometry_("geometry", gpu::Arena::kMaxPageBytes, staging_),
+Residency::Residency(std::uint64_t max_page_bytes)
+    : max_page_bytes_(max_page_bytes),
+      geometry_("geometry", gpu::Arena::kMaxPageBytes, staging_),
       transfer_("transfer", gpu::Arena::kMaxPageBytes, staging_),
       samples_("samples", gpu::Arena::kMaxPageBytes, staging_),
       rows_("rows", gpu::Arena::kMaxPageBytes, staging_),
@@ -84,7 +85,7 @@ Residency::Residency()
 Result<ResidentTables> Residency::make(const bundle::Description& description) {
   const Needs needs = needsOf(description);
   const auto page_bytes = [&](std::uint64_t need) {
-    return std::min(std::max(need, kMinPageBytes), gpu::Arena::kMaxPageBytes);
+    return std::min(std::max(need, kMinPageBytes), max_page_bytes_);
   };
   geometry_.setPageBytes(page_bytes(needs.geometry));
   transfer_.setPageBytes(page_bytes(needs.transfer));
@@ -340,13 +341,6 @@ std::uint64_t Residency::bytesResident() const {
   for (const auto& [place, upload] : coming_)
     bytes += bytesOfTexture(upload.color) + bytesOfTexture(upload.linear);
   return bytes;
-}
-
-std::uint64_t Residency::planesResident() const {
-  std::uint64_t planes = 0;
-  for (const ResidentCell& cell : tables_.cells)
-    for (const ResidentTransfer& transfer : cell.transfers) planes += transfer.planes_resident;
-  return planes;
 }
 
 }  // namespace lambent::streaming

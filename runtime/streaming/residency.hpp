@@ -23,7 +23,8 @@ namespace lambent::streaming {
 
 class Residency {
  public:
-  Residency();
+  // Pages are as large as a bundle needs, up to max_page_bytes.
+  explicit Residency(std::uint64_t max_page_bytes = gpu::Arena::kMaxPageBytes);
 
   // Says where a bundle is: in a slot, or staged, so not in the tables yet.
   struct Place {
@@ -96,7 +97,6 @@ class Residency {
 
   // Returns the GPU memory in use by arenas and textures, including staged bundles and unfinished uploads.
   std::uint64_t bytesResident() const;
-  std::uint64_t planesResident() const;
 
  private:
   Result<ResidentTables> make(const bundle::Description& description);
@@ -145,6 +145,7 @@ class Residency {
   // Clears the shaded samples of a group and causes it to be shaded again.
   void forgetShading(const ResidentGroup& group);
 
+  std::uint64_t max_page_bytes_;
   ResidentTables tables_;
   std::map<std::uint32_t, ResidentTables> staged_;  // by number
   std::uint32_t next_staged_ = 0;

@@ -193,20 +193,6 @@ void World::scaleLamps(float factor) {
         registry_.edit<scene::LocalLightComponent>(node).strength *= factor;
 }
 
-LoadedParts World::loadedParts() const {
-  LoadedParts parts{.planes_resident = residency_.planesResident()};
-  for (const std::optional<Bundle>& bundle : bundles_) {
-    if (!bundle) continue;
-    parts.bytes_loaded += bundle->bytes_read + (bundle->batch ? bundle->batch->loader->bytesRead() : 0);
-    parts.bytes_in_bundles += bundle->reader->fileBytes();
-    for (const bundle::Group& group : bundle->reader->description().groups)
-      for (const bundle::Cell& cell : group.cells)
-        for (const bundle::CellTransfer& transfer : cell.transfers)
-          parts.planes_in_bundles += transfer.planes.size();
-  }
-  return parts;
-}
-
 glm::mat4 World::worldFromMesh(std::size_t draw) const {
   const streaming::ResidentDraw& resident = residency_.draws()[draw];
   const auto* item =

@@ -39,12 +39,6 @@ struct WorldOptions {
   std::uint64_t max_resident_bytes = ~std::uint64_t{0};
 };
 
-// States how much of the bundles has been loaded.
-struct LoadedParts {
-  std::uint64_t bytes_loaded = 0, bytes_in_bundles = 0;  // of the files
-  std::uint64_t planes_resident = 0, planes_in_bundles = 0;
-};
-
 struct OpenOptions {
   // This is the name of the bundle in StableIds, whatever file it is in. If empty, it is the path.
   std::string bundle_id{};
@@ -157,7 +151,6 @@ class World {
   Result<void> uploadAll(gpu::Counters& counters);
   // Returns whether nothing is being loaded.
   bool loaded() const;
-  LoadedParts loadedParts() const;
 
   void updateTransforms();
   // Plays all animations of the bundles. Call it before updateTransforms().
@@ -243,7 +236,6 @@ class World {
     Proxies proxies;                   // for its proxy level of detail
     std::uint64_t proxies_id = 0;
     std::optional<Batch> batch;
-    std::uint64_t bytes_read = 0;           // before the batch
     std::vector<gltf::Material> materials;  // as they are now
     std::optional<Replacement> replacement;
     std::optional<Error> error, replacement_error;

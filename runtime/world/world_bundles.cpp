@@ -196,7 +196,6 @@ void World::swapIn(std::uint32_t slot) {
   bundle.proxies = std::move(next.proxies);
   bundle.proxies_id = next_proxies_id_++;
   if (limited()) bundle.target = next.steps;
-  bundle.bytes_read = next.loader->bytesRead();
   bundle.materials = now.materials;
   bundle.error.reset();
   retired_.push_back(std::move(next.loader));

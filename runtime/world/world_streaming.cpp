@@ -143,7 +143,6 @@ std::uint64_t World::bytesTaken() const {
 
 void World::retire(Bundle& bundle) {
   if (!bundle.batch) return;
-  bundle.bytes_read += bundle.batch->loader->bytesRead();
   bundle.batch->loader->stop();
   residency_.cancel(bundle.options.bundle_index);
   retired_.push_back(std::move(bundle.batch->loader));
@@ -282,7 +281,7 @@ void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Count
   const auto arrived = [&] { countOne(bundle); };
   if (const auto error = receive({*bundle.batch->loader, slot, put, arrived}, budget_bytes, counters))
     bundle.error = inBundle(*bundle.reader, *error);
-  if (residency_.comes(slot)) return;
+  if (!bundle.error && residency_.comes(slot)) return;
   if (const auto error = bundle.batch->loader->error()) bundle.error = *error;
   if (bundle.error || bundle.batch->pieces.empty()) retire(bundle);
 }

@@ -1,6 +1,6 @@
 // Checks that the patches are Newell's by their known extent, smooth seams, outward normals, and the points
 // of an independent copy of the data.
-#include "assets/teapot.hpp"
+#include "assets/shapes.hpp"
 
 #include <algorithm>
 #include <fstream>

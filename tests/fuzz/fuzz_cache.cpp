@@ -1,6 +1,6 @@
 // Reads cache entries and what is stored in them.
 #include "baker/cache/bytes.hpp"
-#include "baker/cache/entry_file.hpp"
+#include "baker/cache/cache.hpp"
 #include "baker/trace/hits.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "tests/fuzz/input_file.hpp"

@@ -1,5 +1,4 @@
-// Reads world files, which are written and read again, and looks at texts from the clipboard.
-#include "editor/document/actions.hpp"
+// Reads world files, which are written and read again.
 #include "editor/document/world_file.hpp"
 #include "tests/fuzz/input_file.hpp"
 #include "tests/fuzz/json_mutator.hpp"
@@ -12,7 +11,6 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace lambent;
   const std::string text(reinterpret_cast<const char*>(data), size);
-  static_cast<void>(editor::peekClip(text));
   if (const auto world = editor::parseWorld(text, "world")) {
     const auto again = editor::worldText(*world);
     fuzz::require(again.has_value(), "a world that was read is written");

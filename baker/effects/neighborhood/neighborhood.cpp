@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include <glm/common.hpp>
 
@@ -262,34 +263,16 @@ std::optional<Changed> changeAround(const Body& body, const NeighborhoodSettings
 
 }  // namespace
 
-void write(const BakedAround& around, ByteWriter& out) {
-  const NeighborhoodFigures& f = around.figures;
-  out.add(f.size), out.add(f.bounds_min), out.add(f.bounds_max), out.add(std::uint64_t{f.inside_points});
-  out.add(f.rays + f.rays_kept), out.add(f.error), out.add(f.change_error);
-  out.add(around.grid.has_value());
-  if (!around.grid) return;
-  out.add(around.grid->size), out.add(around.grid->bounds_min), out.add(around.grid->bounds_max);
-  write(around.grid->cells, out);
-}
-
-bool read(ByteReader& in, BakedAround& around) {
-  NeighborhoodFigures& f = around.figures;
-  std::uint64_t inside = 0;
-  bool any = false;
-  in.read(f.size), in.read(f.bounds_min), in.read(f.bounds_max), in.read(inside);
-  in.read(f.rays_kept), in.read(f.error), in.read(f.change_error);
-  f.inside_points = inside;
-  if (!in.read(any)) return false;
-  if (!any) return true;
-  BakedNeighborhood& grid = around.grid.emplace();
-  in.read(grid.size), in.read(grid.bounds_min), in.read(grid.bounds_max);
-  return read(in, grid.cells);
+bool findNeighborhood(const BakeContext& context, BakedAround& around) {
+  if (!findKept(context, around)) return false;
+  around.figures.rays_kept += std::exchange(around.figures.rays, 0);
+  return true;
 }
 
 std::optional<BakedAround> bakeNeighborhood(const Body& body, const NeighborhoodSettings& settings,
                                             const BakeContext& context) {
   BakedAround out;
-  if (findKept(context, out)) return out;
+  if (findNeighborhood(context, out)) return out;
   out = {};
   const bool all_bands = settings.matrices && body.order() >= kLeastMatrixBands;
   const ChangeShape shape{.order = body.order(),

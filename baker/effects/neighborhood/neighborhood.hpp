@@ -94,8 +94,16 @@ struct BakedAround {
   NeighborhoodFigures figures;
 };
 
-void write(const BakedAround& around, ByteWriter& out);
-bool read(ByteReader& in, BakedAround& around);
+template <>
+inline constexpr auto kKeptMembers<NeighborhoodFigures> = std::tuple(
+    &NeighborhoodFigures::size, &NeighborhoodFigures::bounds_min, &NeighborhoodFigures::bounds_max,
+    &NeighborhoodFigures::inside_points, &NeighborhoodFigures::rays, &NeighborhoodFigures::rays_kept,
+    &NeighborhoodFigures::error, &NeighborhoodFigures::change_error);
+template <>
+inline constexpr auto kKeptMembers<BakedAround> = std::tuple(&BakedAround::grid, &BakedAround::figures);
+
+// Looks for a result in the cache.
+bool findNeighborhood(const BakeContext& context, BakedAround& around);
 
 // The light has up to 6 bands. Returns nothing if stopped. The result does not depend on the number of
 // threads. The key of the context covers body and settings; the result is kept under it.

@@ -14,14 +14,6 @@ spec::RgbaImage filled(glm::vec3 color, std::uint32_t width = 8, std::uint32_t h
   return {width, height, std::vector<glm::vec4>(std::size_t{width} * height, glm::vec4(color, 1.0f))};
 }
 
-TEST(ComparePictures, OfAPictureWithItselfIsZero) {
-  const auto error = comparePictures(filled({1, 2, 3}), filled({1, 2, 3}), nullptr, "a.exr");
-  ASSERT_TRUE(error) << error.error().line();
-  EXPECT_EQ(error->pixels, 32u);
-  EXPECT_EQ(error->relative_rms, 0.0);
-  EXPECT_EQ(error->largest, 0.0);
-}
-
 TEST(ComparePictures, CountsOnlyWhatAllPicturesCover) {
   auto picture = filled({1, 1, 1});
   const auto reference = filled({1, 1, 1});
@@ -30,11 +22,13 @@ TEST(ComparePictures, CountsOnlyWhatAllPicturesCover) {
   ASSERT_TRUE(error);
   EXPECT_EQ(error->pixels, 31u);
   EXPECT_EQ(error->pixels_apart, 1u);
+  EXPECT_EQ(error->relative_rms, 0.0);
   EXPECT_EQ(error->largest, 0.0);
   picture.texels[3].w = 1.0f;
   error = comparePictures(picture, reference, nullptr, "a.exr");
   EXPECT_EQ(error->pixels, 32u);
   EXPECT_GT(error->largest, 50.0);
+  EXPECT_NEAR(error->bias[1], -1.0 / 32.0, 1e-9);
   EXPECT_EQ(error->median, 0.0);
 }
 
@@ -59,27 +53,6 @@ TEST(ComparePictures, LeavesOutTheRimsOfCloudsWhereverTheyFallUnderTheBound) {
   EXPECT_EQ(error->pixels, 29u);
   EXPECT_EQ(error->pixels_apart, 1u);
   EXPECT_NEAR(error->largest, 4.0, 1e-6);
-}
-
-TEST(ComparePictures, WithTwoReferencesIsFreeOfTheirNoise) {
-  // The picture is 2 % too bright, and each reference has 30 % independent noise.
-  std::mt19937 random(5);
-  std::normal_distribution<float> noise(1.0f, 0.3f);
-  const auto noisy = [&] {
-    auto image = filled({1, 1, 1}, 512, 512);
-    for (glm::vec4& texel : image.texels)
-      texel = glm::vec4(noise(random), noise(random), noise(random), 1.0f);
-    return image;
-  };
-  const auto picture = filled({1.02f, 1.02f, 1.02f}, 512, 512);
-  const auto a = noisy(), b = noisy();
-  const auto one = comparePictures(picture, a, nullptr, "a.exr");
-  const auto both = comparePictures(picture, a, &b, "a.exr");
-  ASSERT_TRUE(one && both);
-  EXPECT_NEAR(one->relative_rms, 0.3 / std::sqrt(1.09), 0.01);
-  // The product of the noises averages to 0.09 / sqrt(786432) = 1e-4, against 4e-4 of true error.
-  EXPECT_NEAR(both->relative_rms, 0.02, 0.008);
-  EXPECT_NEAR(both->bias[1], 0.02, 0.002);
 }
 
 TEST(ComparePictures, OfATexturedErrorRecoversItUnderNoiseThatIsLarger) {
@@ -195,8 +168,7 @@ TEST(Shrunk, CoverageIsAShareAndDepthsAreLeftOut) {
 using Color = std::array<std::uint8_t, 3>;
 
 spec::RgbaImage grey(float radiance, std::uint32_t width = 10, std::uint32_t height = 10) {
-  return {width, height,
-          std::vector<glm::vec4>(std::size_t{width} * height, glm::vec4(glm::vec3(radiance), 1))};
+  return filled(glm::vec3(radiance), width, height);
 }
 
 Color at(const Difference& difference, std::size_t i) {
@@ -259,10 +231,6 @@ spec::Rgba8Image twoGreys(std::uint8_t left, std::uint8_t right) {
     picture.texels.insert(picture.texels.end(), {value, value, value, 255});
   }
   return picture;
-}
-
-TEST(Perceptual, EqualPicturesShowNothing) {
-  EXPECT_EQ(visibleShare(twoGreys(128, 128), twoGreys(128, 128), "a").value(), 0.0);
 }
 
 TEST(Perceptual, OneStepOfEightBitsIsInvisibleAndAHalfInAnotherGreyIsNot) {

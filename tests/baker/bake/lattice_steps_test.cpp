@@ -15,18 +15,10 @@ using testing::grid;
 using testing::icosphere;
 using testing::sceneOf;
 
-Meshes meshesOf(const Scene& scene) {
-  Meshes meshes;
-  for (const SceneMesh& mesh : scene.meshes) {
-    meshes.emplace_back();
-    for (const ScenePrimitive& primitive : mesh.primitives) meshes.back().push_back(primitive.mesh);
-  }
-  return meshes;
-}
-
 Meshes shipped(const Scene& scene) {
   Progress progress;
-  auto out = shipMeshes(scene, findRigidGroups(scene), meshesOf(scene), {progress});
+  const std::vector<RigidGroup> groups = findRigidGroups(scene);
+  auto out = shipMeshes(scene, groups, *splitMeshes(scene, groups, 0.0f), {progress});
   EXPECT_TRUE(out) << out.error().line();
   return out ? std::move(out->decoded) : Meshes{};
 }

@@ -132,16 +132,6 @@ TEST(VolumePlan, RefusesNarrowPhasesWithMoreBandsOrVoxelsThanMatricesMayHave) {
   EXPECT_NE(refusal(5, 128).find("--volume-grid of at most"), std::string::npos);
 }
 
-TEST_F(VolumeBake, RefusesGridsOfNoVoxelsOrTooMany) {
-  for (const std::uint32_t n : {0u, 257u}) {
-    BakeOptions options = small();
-    options.volume_grid.y = n;
-    const auto checked = checkRequest(options, folder / "a.lmb.glb");
-    ASSERT_FALSE(checked);
-    EXPECT_EQ(checked.error().subject, "--volume-grid");
-  }
-}
-
 // Tests that what a plan leaves out is not missed: with everything forced on the bundle shows the same.
 
 using testing::DecodedDraw;

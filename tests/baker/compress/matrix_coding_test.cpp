@@ -161,12 +161,6 @@ std::vector<float> bouncedMatrices(std::size_t count, unsigned seed, float noise
   return out;
 }
 
-std::vector<float> decodedMatrix(const CodedTransfer& coded) {
-  std::vector<std::vector<std::uint32_t>> codes;
-  for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
-  return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
-}
-
 Points pointsOf(const std::vector<float>& vectors, std::uint32_t size) {
   return Eigen::Map<const Eigen::MatrixXf>(vectors.data(), size,
                                            static_cast<Eigen::Index>(vectors.size() / size));
@@ -177,7 +171,7 @@ TEST(MatrixCoding, KeepsItsBoundOnVisibility) {
   for (const float bound : {0.03f, 0.01f, 0.003f}) {
     const CodedTransfer coded = codeTransfer(vectors, 3000, kVisibility, {.bound = bound});
     EXPECT_LE(coded.error, bound);
-    EXPECT_NEAR(radianceError(vectors, decodedMatrix(coded), kVisibility), double{coded.error}, 1e-7);
+    EXPECT_NEAR(radianceError(vectors, decodeTransfer(coded), kVisibility), double{coded.error}, 1e-7);
   }
 }
 
@@ -226,7 +220,7 @@ TEST(MatrixCoding, BoundsBouncedLightRelativeToAllThatIsShown) {
     const CodedTransfer coded =
         codeTransfer(vectors, 1500, kBounced, {.bound = 0.01f, .shown_energy = beside * own});
     EXPECT_LE(coded.error, 0.01f);
-    EXPECT_NEAR(radianceError(vectors, decodedMatrix(coded), kBounced, beside * own), double{coded.error},
+    EXPECT_NEAR(radianceError(vectors, decodeTransfer(coded), kBounced, beside * own), double{coded.error},
                 1e-7);
     EXPECT_GT(coded.error, 0.005f) << "what is allowed is made use of";
   }
@@ -277,8 +271,8 @@ TEST(MatrixCoding, StaysFiniteAndTheSameOnDegenerateInput) {
       const CodingSettings settings{.bound = 0.01f, .clusters = clusters};
       const CodedTransfer a = codeTransfer(*vectors, vectors->size() / 81, kVisibility, settings);
       const CodedTransfer b = codeTransfer(*vectors, vectors->size() / 81, kVisibility, settings);
-      for (const float value : decodedMatrix(a)) ASSERT_TRUE(std::isfinite(value));
-      EXPECT_EQ(decodedMatrix(a), decodedMatrix(b));
+      for (const float value : decodeTransfer(a)) ASSERT_TRUE(std::isfinite(value));
+      EXPECT_EQ(decodeTransfer(a), decodeTransfer(b));
       EXPECT_LE(a.error, 0.01f);
     }
 }

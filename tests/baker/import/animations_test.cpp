@@ -73,19 +73,6 @@ TEST(Animations, TakeAMatrixApartUnlessItShears) {
   EXPECT_NE(sheared.warnings[0].find("node 0 is animated but has a matrix with shear"), std::string::npos);
 }
 
-TEST(Animations, OfMorphWeightsAreLeftOutWithAWarning) {
-  TemporaryFolder folder;
-  GltfWriter writer = oneTriangle();
-  animate(writer, "translation", {0.0f}, {0, 0, 0});
-  writer.json["animations"][0]["channels"][0]["target"]["path"] = "weights";
-  const auto scene = importScene(writer.writeText(folder));
-  ASSERT_TRUE(scene) << scene.error().line();
-  EXPECT_TRUE(scene->animations.empty());
-  EXPECT_FALSE(scene->nodes[0].animated);
-  ASSERT_EQ(scene->warnings.size(), 1u);
-  EXPECT_NE(scene->warnings[0].find("morph weights"), std::string::npos);
-}
-
 TEST(Animations, ThatMakeNoSenseAreLeftOutByName) {
   TemporaryFolder folder;
   const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -1,5 +1,5 @@
-// Writes small glTF files for the importer's tests: into a folder that vanishes with the test, from
-// one-triangle scenes as JSON, which each test modifies.
+// Writes small glTF files for the importer's tests, from one-triangle scenes as JSON, which each test
+// modifies.
 #pragma once
 
 #include <cstddef>
@@ -11,34 +11,11 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "baker/import/gltf.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lambent::testing {
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() / (std::string("lambent_") + info->test_suite_name() +
-                                                      "_" + info->name() + "_" + std::to_string(getpid()));
-    std::filesystem::create_directories(path_);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 // A PNG of one gray texel, as a file and as a URI.
 inline const std::string kPngFile(

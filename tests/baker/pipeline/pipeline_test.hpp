@@ -6,25 +6,16 @@
 #include <iterator>
 #include <string>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "assets/scenes.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lambent::testing {
 
 class PipelineTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::path(::testing::TempDir()) /
-             fmt::format("{}-{}-{}", ::getpid(), test->test_suite_name(), test->name());
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
   static std::string bytesOf(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -37,7 +28,8 @@ class PipelineTest : public ::testing::Test {
     ASSERT_TRUE(written) << written.error().line();
   }
 
-  std::filesystem::path folder;
+  const TemporaryFolder own_folder;
+  const std::filesystem::path folder = own_folder.path();
 };
 
 }  // namespace lambent::testing

@@ -136,22 +136,6 @@ TEST(LightProbeCounts, OfAPointStayFinite) {
   EXPECT_EQ(planLight(scene).plans[0].count.count, 1u) << "no size, one place";
 }
 
-TEST(LightsInside, AreThoseWhoseWayMeetsAGroupsBounds) {
-  Scene scene = ballAndLamp(50.0f);
-  const auto sentences = [&] { return lightsInside(scene, findRigidGroups(scene)); };
-  EXPECT_TRUE(sentences().empty());
-  move(scene, 1, {0, 50, 0}, {0, 0.5f, 0});
-  ASSERT_EQ(sentences().size(), 1u);
-  EXPECT_EQ(sentences()[0],
-            "The light of torch can stand among the surfaces of static: direct light per pixel by a shadow "
-            "cube map, its bounces by patches.");
-  // A light that is fixed to the group is baked.
-  scene.animations.clear();
-  scene.nodes[1].animated = scene.nodes[1].movable = false;
-  scene.nodes[1].parent_from_node = glm::mat4(1.0f);
-  EXPECT_TRUE(sentences().empty());
-}
-
 // Makes a floor of 20 m, and movable balls of radius 0.5 m at a height above it.
 Scene ballsOver(int balls, float height, int cells = 40) {
   std::vector<bundle::MeshData> meshes = {grid({0, 0, 0}, 20.0f, cells)};

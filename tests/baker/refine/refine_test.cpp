@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/jobs/parallel.hpp"
-#include "baker/refine/probed_points.hpp"
+#include "baker/refine/group_refiner.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
@@ -145,23 +145,6 @@ TEST(Refinement, BringsWhatAGlossyFloorReflectsUnderTheBound) {
   const Refined result = refined(scene, {.bound = 0.02f}, /*with_glossy=*/true);
   EXPECT_GT(result.report.error_before, 0.05);
   EXPECT_LT(result.report.error_after, 0.02);
-}
-
-TEST(Refinement, OpensNoCrackBetweenMeshes) {
-  // Two halves of a floor are separate meshes, with the slab over one of them.
-  bundle::MeshData left = grid({-1, 0, 0}, 2.0f, 1), right = grid({1, 0, 0}, 2.0f, 1);
-  const Refined result =
-      refined(sceneOf({left, right, box({0.6f, 0.3f, 0.0f}, {1.0f, 0.05f, 1.0f}, 1)}), {.bound = 0.01f});
-  const auto onSeam = [](const bundle::MeshData& mesh) {
-    std::vector<float> z;
-    for (const glm::vec3& p : mesh.positions)
-      if (p.x == 0.0f) z.push_back(p.z);
-    std::sort(z.begin(), z.end());
-    z.erase(std::unique(z.begin(), z.end()), z.end());
-    return z;
-  };
-  EXPECT_GT(onSeam(result.meshes[0][0]).size(), 2u);
-  EXPECT_EQ(onSeam(result.meshes[0][0]), onSeam(result.meshes[1][0]));
 }
 
 // Makes a closed box with thin walls on a floor of two halves, each of two triangles: it is dark inside.

@@ -22,18 +22,6 @@ std::set<std::string> knobsOf(const SceneFacts& facts) {
   return names;
 }
 
-TEST(Knobs, OnlyThoseAreTurnedThatTheSceneCallsFor) {
-  const std::set<std::string> plain = knobsOf({.surfaces = true});
-  for (const char* name :
-       {"volume-grid", "glossy-order", "neighborhood-grid", "light-probes", "capture-size"})
-    EXPECT_FALSE(plain.contains(name)) << name;
-  EXPECT_TRUE(plain.contains("refine"));
-  EXPECT_TRUE(knobsOf({.volumes = true}).contains("volume-grid"));
-  EXPECT_FALSE(knobsOf({.volumes = true}).contains("refine"));
-  EXPECT_TRUE(knobsOf({.glossy = true}).contains("glossy-order"));
-  EXPECT_TRUE(knobsOf({.many_bodies = true}).contains("capture-size"));
-}
-
 // Returns the knobs that a sweep of the scene turns.
 std::set<std::string> knobsOfScene(const assets::Scene& made) {
   const testing::TemporaryFolder folder;
@@ -54,6 +42,8 @@ TEST(Knobs, OfAnEffectAreTurnedForScenesThatHaveIt) {
     return turned;
   };
   EXPECT_TRUE(knobsOfScene(assets::hello()).contains("rays"));
+  EXPECT_TRUE(knobsOfScene(assets::hello()).contains("refine"));
+  EXPECT_FALSE(knobsOf({.volumes = true}).contains("refine"));
   EXPECT_EQ(ofEffects(assets::hello()), std::set<std::string>{});
   const std::set<std::string> things_that_move = {"neighborhood-grid", "light-probes", "capture-size",
                                                   "capture-subsamples"};

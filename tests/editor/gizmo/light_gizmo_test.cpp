@@ -1,12 +1,10 @@
-#include "editor/gizmo/light_gizmo.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "editor/gizmo/camera_control.hpp"
-#include "editor/gizmo/sun_gizmo.hpp"
+#include "editor/gizmo/light_gizmos.hpp"
 #include "runtime/spec/light.hpp"
 #include "views.hpp"
 

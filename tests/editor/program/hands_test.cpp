@@ -27,7 +27,7 @@ drag inspector.Light.strength 40 0
 get a:Light.strength
 get b:Light.strength
 click inspector.Transform.translation.x
-type 2*3
+type 6
 key Enter
 get a:Transform.translation
 get b:Transform.translation
@@ -102,24 +102,6 @@ get Transform.translation
   EXPECT_NEAR(y(5), 0.1 * y(4), 0.02 * y(4));
   EXPECT_NEAR(4.0 * y(6), std::round(4.0 * y(6)), 1e-4);
   EXPECT_NEAR(y(6), y(4), 0.126);
-}
-
-TEST_F(EditorProgram, DragsLightsAndSunsInSteps) {
-  const Played played = playInHello(R"(
-create-sphere 0 1 0
-set Light.radius 0.3
-wait frames 3
-drag light.radius 50 0 Ctrl
-get Light.radius
-select environment
-camera orbit:20,-10,3,60
-wait frames 20
-drag sun.handle 40 15 Ctrl
-state
-)",
-                                    {"--light", "sun:200,20,1,5"});
-  EXPECT_EQ(played.answer("get"), 0.5);
-  EXPECT_EQ(played.answer("state")["lights"][0], "sun:-165,15,1,5");
 }
 
 TEST_F(EditorProgram, SlidesTheNumberOfKeyLightsAwayFromAutoAndBack) {
@@ -275,13 +257,10 @@ state
   EXPECT_EQ(pictures[3], pictures[2]);
 }
 
-TEST_F(EditorProgram, ShowsWhatASelectedCameraSees) {
+TEST_F(EditorProgram, LooksThroughTheSelectedCameraAndPlacesItAtTheView) {
   const Played played = playInHello(R"(
 create-camera 0 1 3
-wait rest 60
-wait frames 5
-where camera-preview
-click camera-preview
+key C
 wait frames 3
 state
 camera orbit:120,30,2,40
@@ -289,17 +268,12 @@ key Shift+C
 get Transform.translation
 undo
 get Transform.translation
-select-none
-wait frames 5
-marks
 )");
-  EXPECT_GT(played.answer("where")["width"], 100.0);
   EXPECT_TRUE(played.answer("state")["eye"].get<std::string>().starts_with("pose:0,1,"))
       << "as high as the camera";
   const std::vector<json> places = played.all("get");
   EXPECT_NE(places[0], places[1]);
   EXPECT_EQ(places[1], (json{0.0, 1.0, 3.0}));
-  EXPECT_EQ(played.answer("marks").dump().find("camera-preview"), std::string::npos);
 }
 
 }  // namespace

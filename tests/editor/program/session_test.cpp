@@ -5,11 +5,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "editor/document/field_edits.hpp"
 #include "editor/document/history.hpp"
 #include "editor/session/field_numbers.hpp"
 #include "editor/session/log.hpp"
-#include "editor/session/materials.hpp"
 #include "editor/session/scene_changes.hpp"
 #include "editor/session/viewing.hpp"
 #include "tests/editor/document/small_world.hpp"
@@ -128,6 +126,32 @@ TEST(LightUnits, OfASpotAreTheIntegralOfItsFalloff) {
   EXPECT_NEAR(unitOf(spot, "lm").factor, 2.0 * kPi, 1e-6) << "half of all directions";
 }
 
+// Returns what the typed text makes of 10.
+double ofTen(std::string_view text) {
+  const auto edit = parseNumberEdit(text);
+  EXPECT_TRUE(edit) << text;
+  return edit ? edit->appliedTo(10.0) : -1.0;
+}
+
+TEST(NumberEdit, SetsWhatIsTyped) {
+  EXPECT_EQ(ofTen("2.5"), 2.5);
+  EXPECT_EQ(ofTen("-3"), -3.0) << "a number, not a difference";
+  EXPECT_EQ(ofTen(" +1e2 "), 100.0);
+}
+
+TEST(NumberEdit, ShiftsAndScalesTheNumberThatIsThere) {
+  EXPECT_EQ(ofTen("+=1"), 11.0);
+  EXPECT_EQ(ofTen("-= 4"), 6.0);
+  EXPECT_EQ(ofTen("*2"), 20.0);
+  EXPECT_EQ(ofTen("*=1.5"), 15.0);
+  EXPECT_EQ(ofTen("/4"), 2.5);
+}
+
+TEST(NumberEdit, RefusesWhatIsNoFiniteNumber) {
+  for (const char* text : {"", " ", "2*", "two", "/0", "nan", "inf", "1e999", "+=", "++1", "2 3"})
+    EXPECT_FALSE(parseNumberEdit(text)) << text;
+}
+
 class NewLights : public testing::Windowless {
  protected:
   void SetUp() override {
@@ -240,46 +264,6 @@ TEST(SamePlace, ForgivesRoundingButNoMove) {
   // A thousandth of the size of a small thing counts as a change.
   EXPECT_FALSE(samePlace(glm::scale(small, glm::vec3(1.001f)), small));
   EXPECT_TRUE(samePlace(glm::scale(small, glm::vec3(1.000001f)), small));
-}
-
-// Tests the spheres that show materials.
-
-constexpr std::uint32_t kSize = 33;
-
-// Returns the texel at these shares of the picture.
-const std::uint8_t* at(const spec::Rgba8Image& image, float x, float y) {
-  const auto column = static_cast<std::size_t>(x * kSize), row = static_cast<std::size_t>(y * kSize);
-  return &image.texels[(row * kSize + column) * 4];
-}
-
-gltf::MaterialFactors matte(const glm::vec3& color) {
-  gltf::MaterialFactors material;
-  material.base_color = color;
-  material.metallic = 0.0f;
-  return material;
-}
-
-TEST(MaterialPreview, ShowsTheColorOnASphere) {
-  const spec::Rgba8Image red = previewOf(matte({0.8f, 0.02f, 0.02f}), kSize);
-  EXPECT_EQ(at(red, 0.01f, 0.01f)[3], 0) << "the corner is transparent";
-  EXPECT_EQ(at(red, 0.5f, 0.5f)[3], 255);
-  EXPECT_GT(at(red, 0.5f, 0.5f)[0], at(red, 0.5f, 0.5f)[1] + 60);
-  EXPECT_GT(at(red, 0.3f, 0.3f)[0], at(red, 0.7f, 0.8f)[0] + 20) << "the lamp stands above to the left";
-}
-
-TEST(MaterialPreview, TellsPolishedFromRoughAndDarkFromBright) {
-  gltf::MaterialFactors polished = matte({0.05f, 0.05f, 0.05f});
-  polished.roughness = 0.15f;
-  int brightest = 0, rough = 0;
-  const spec::Rgba8Image a = previewOf(polished, kSize), b = previewOf(matte({0.05f, 0.05f, 0.05f}), kSize);
-  for (std::size_t i = 0; i < a.texels.size(); i += 4) {
-    brightest = std::max(brightest, int{a.texels[i]});
-    rough = std::max(rough, int{b.texels[i]});
-  }
-  EXPECT_GT(brightest, rough + 60) << "a highlight";
-  gltf::MaterialFactors glowing = matte({0.0f, 0.0f, 0.0f});
-  glowing.emission = {0.0f, 1.0f, 0.0f};
-  EXPECT_EQ(at(previewOf(glowing, kSize), 0.5f, 0.5f)[1], 255);
 }
 
 }  // namespace

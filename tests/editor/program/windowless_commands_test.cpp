@@ -64,7 +64,7 @@ TEST_F(WindowlessCommands, DeleteAndBringBack) {
   EXPECT_EQ(answer("tree", {"type:light"}).size(), 2u);
 }
 
-TEST_F(WindowlessCommands, CopyAndPasteWithoutASystemClipboard) {
+TEST_F(WindowlessCommands, CopyAndPasteAComponent) {
   answer("create-disc");
   answer("set", {"Light.strength", "5"});
   answer("copy", {"Light"});

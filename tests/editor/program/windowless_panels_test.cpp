@@ -1,4 +1,5 @@
 // Tests panels in a Dear ImGui context without window and OpenGL, whose only input comes from the test.
+#include <chrono>
 #include <fstream>
 
 #include <imgui.h>
@@ -81,7 +82,7 @@ TEST_F(WindowlessPanels, AllOfThemDrawASceneThatIsOpen) {
   answer("select", {"sphere"});
   for (const Panel& row : panelList()) {
     settle(row);
-    EXPECT_FALSE(row.name != std::string("Plan") && marks.names().empty()) << row.name;
+    EXPECT_FALSE(marks.names().empty()) << row.name;
   }
   EXPECT_EQ(session->log.errors(), 0u);
 }
@@ -111,7 +112,6 @@ TEST_F(WindowlessPanels, AnObjectLeadsToItsMaterial) {
   click(inspector, "inspector.material.box");
   settle(inspector);
   EXPECT_TRUE(marks.find("inspector.Material.roughness")) << "it is edited in place";
-  EXPECT_TRUE(session->material_pictures.wanted.size() == 1u) << "its picture is asked for";
   click(inspector, "inspector.material.box.select");
   const ecs::Entity primary = session->selection.primaryEntity(session->document);
   EXPECT_TRUE(session->document.registry().has<scene::MaterialComponent>(primary));
@@ -171,8 +171,7 @@ TEST_F(WindowlessPanels, KeepTheirWidgetsWithinNarrowRoomAtALargeFont) {
   answer("select", {"type:material box"});
   ImGui::GetIO().FontGlobalScale = 2.0f;
   ImGui::GetStyle().ScaleAllSizes(2.0f);
-  for (const char* name :
-       {"Scene", "Inspector", "Environment", "Settings", "Plan", "Assets", "History", "Log"}) {
+  for (const char* name : {"Scene", "Inspector", "Environment", "Settings", "Assets", "History", "Log"}) {
     const Panel& row = panel(name);
     const float width = (row.dock == Dock::Left ? 13.0f : 22.0f) * 26.0f;
     ImGui::GetIO().DisplaySize = ImVec2(width, 900.0f);
@@ -252,6 +251,8 @@ TEST_F(WindowlessPanels, AFileDialogListsFoldersFirstAndWhatComes) {
   };
   EXPECT_EQ(listed(), "z b.glb ");
   std::ofstream(shown / "a.glb") << "x";
+  // The clock of the file system may be too coarse to tell both times apart.
+  std::filesystem::last_write_time(shown, std::filesystem::last_write_time(shown) + std::chrono::seconds(1));
   EXPECT_EQ(listed(), "z a.glb b.glb ");
   dialog.kind = Dialog::Kind::Folder;
   dialog.listed.forget();

@@ -1,13 +1,11 @@
 #include "tests/runtime/streaming/sample_bundle.hpp"
 
 #include <array>
-#include <cstdlib>
 #include <utility>
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -236,17 +234,6 @@ Sample manyImages(std::uint32_t count, std::uint32_t side) {
     sample.description.images.push_back({.name = "wall", .mime_type = "image/jpeg", .view = 0});
   }
   return sample;
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "lambent-streaming-XXXXXX").string();
-  EXPECT_NE(::mkdtemp(name.data()), nullptr);
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace lambent::streaming::testing

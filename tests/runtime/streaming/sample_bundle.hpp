@@ -4,8 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <string>
 #include <vector>
 
 #include "runtime/bundle/brdf_table.hpp"
@@ -32,18 +30,5 @@ bundle::BrdfTable brdfTable();  // the table of sampleBundle()
 // Makes a bundle of `count` images that share one view: side x side texels, small in the file and large in
 // memory.
 Sample manyImages(std::uint32_t count, std::uint32_t side);
-
-// Makes a folder for one test, which is removed with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace lambent::streaming::testing

@@ -1,21 +1,42 @@
 #include <algorithm>
 #include <array>
 #include <cfloat>
+#include <ctime>
+#include <span>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <imgui.h>
-#include <nlohmann/json.hpp>
 
-#include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/panels/widgets.hpp"
 #include "editor/ui/dear_imgui.hpp"
-#include "runtime/effects/volume/volume.hpp"
-#include "runtime/frame/frame_settings.hpp"
 
 namespace lambent::editor {
 
 namespace {
+
+struct Column {
+  const char* title;
+  float width;  // in ems, or below 1 as a share of the rest
+};
+
+// Begins a table that scrolls where its panel is narrower than this. Returns whether it is shown.
+bool beginReport(const char* id, float least_ems, std::span<const Column> columns) {
+  constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
+                                     ImGuiTableFlags_Resizable | ImGuiTableFlags_ScrollY |
+                                     ImGuiTableFlags_ScrollX;
+  if (!ImGui::BeginTable(id, static_cast<int>(columns.size()), kTable, ImVec2(0.0f, 0.0f),
+                         std::max(ImGui::GetContentRegionAvail().x, em(least_ems))))
+    return false;
+  for (const auto& [title, width] : columns)
+    if (width < 1.0f)
+      ImGui::TableSetupColumn(title, ImGuiTableColumnFlags_WidthStretch, width);
+    else
+      ImGui::TableSetupColumn(title, ImGuiTableColumnFlags_WidthFixed, em(width));
+  ImGui::TableSetupScrollFreeze(0, 1);
+  ImGui::TableHeadersRow();
+  return true;
+}
 
 void drawMilliseconds(double value) {
   if (value < 0.0)
@@ -25,20 +46,10 @@ void drawMilliseconds(double value) {
 }
 
 void drawPasses(const std::vector<gpu::PassTime>& passes) {
-  constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
-                                     ImGuiTableFlags_Resizable | ImGuiTableFlags_ScrollY |
-                                     ImGuiTableFlags_ScrollX;
-  if (!ImGui::BeginTable("passes", 7, kTable, ImVec2(0.0f, 0.0f),
-                         std::max(ImGui::GetContentRegionAvail().x, em(40.0f))))
-    return;
-  ImGui::TableSetupColumn("Pass", ImGuiTableColumnFlags_WidthFixed, em(6.7f));
-  ImGui::TableSetupColumn("CPU ms", ImGuiTableColumnFlags_WidthFixed, em(4.0f));
-  ImGui::TableSetupColumn("GPU ms", ImGuiTableColumnFlags_WidthFixed, em(4.0f));
-  ImGui::TableSetupColumn("Dispatches", ImGuiTableColumnFlags_WidthFixed, em(5.0f));
-  ImGui::TableSetupColumn("Draws", ImGuiTableColumnFlags_WidthFixed, em(3.3f));
-  ImGui::TableSetupColumn("Uploaded", ImGuiTableColumnFlags_WidthFixed, em(5.0f));
-  ImGui::TableSetupColumn("Why it ran", ImGuiTableColumnFlags_WidthStretch);
-  ImGui::TableHeadersRow();
+  constexpr std::array kColumns = {
+      Column{"Pass", 6.7f},  Column{"CPU ms", 4.0f},   Column{"GPU ms", 4.0f},    Column{"Dispatches", 5.0f},
+      Column{"Draws", 3.3f}, Column{"Uploaded", 5.0f}, Column{"Why it ran", 0.9f}};
+  if (!beginReport("passes", 40.0f, kColumns)) return;
   double cpu = 0.0, gpu = 0.0;
   for (const gpu::PassTime& pass : passes) {
     cpu += pass.cpu_ms, gpu += std::max(0.0, pass.gpu_ms);
@@ -100,62 +111,6 @@ void drawCost(Session& session, Marks& marks) {
 
 namespace {
 
-double frameMilliseconds(const frame::SettingPoint& point) {
-  return point.gpu_ms > 0.0 ? point.gpu_ms : point.cpu_ms;
-}
-
-std::string percentText(double error) {
-  return error <= 0.0 ? "none" : fmt::format("{:.2g} %", 100.0 * error);
-}
-
-}  // namespace
-
-void drawAccuracy(Session& session, Marks& marks) {
-  if (ImGui::Button(session.settings.busy() ? "Measuring..." : "Measure in this view"))
-    session.settings.measureAll();
-  marks.put("accuracy.measure");
-  ImGui::SameLine();
-  fittedText(
-      dimmed(),
-      "error against the knob's finest value, same view at rest; times of a frame that shades everything");
-  constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
-                                     ImGuiTableFlags_ScrollY | ImGuiTableFlags_Resizable |
-                                     ImGuiTableFlags_ScrollX;
-  if (!ImGui::BeginTable("knobs", 5, kTable, ImVec2(0.0f, 0.0f),
-                         std::max(ImGui::GetContentRegionAvail().x, em(32.0f))))
-    return;
-  ImGui::TableSetupColumn("Knob", ImGuiTableColumnFlags_WidthStretch, 0.24f);
-  ImGui::TableSetupColumn("Value", ImGuiTableColumnFlags_WidthStretch, 0.26f);
-  ImGui::TableSetupColumn("Error", ImGuiTableColumnFlags_WidthFixed, em(5.0f));
-  ImGui::TableSetupColumn("ms now", ImGuiTableColumnFlags_WidthFixed, em(4.0f));
-  ImGui::TableSetupColumn("ms finest", ImGuiTableColumnFlags_WidthFixed, em(4.3f));
-  ImGui::TableSetupScrollFreeze(0, 1);
-  ImGui::TableHeadersRow();
-  for (const frame::SettingRow& row : frame::settingRows()) {
-    if (!row.finest) continue;
-    const auto found = session.settings.costs().find(row.name);
-    ImGui::PushID(row.name.data());
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    fittedText(row.label, fmt::format("{}\n{}", row.name, row.help));
-    ImGui::TableNextColumn();
-    editSetting(session, marks, row, fmt::format("accuracy.{}", row.name));
-    if (found != session.settings.costs().end()) {
-      const frame::SettingCost& cost = found->second;
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(percentText(cost.now.error).c_str());
-      for (const frame::SettingPoint* point : {&cost.now, &cost.finest}) {
-        ImGui::TableNextColumn();
-        ImGui::Text("%.2f", frameMilliseconds(*point));
-      }
-    }
-    ImGui::PopID();
-  }
-  ImGui::EndTable();
-}
-
-namespace {
-
 const char* stateWord(frame::BundleStatus::State state) {
   constexpr std::array kStateWords = {"closed", "loading", "as far as there is room", "whole", "damaged"};
   return kStateWords[static_cast<std::size_t>(state)];
@@ -166,24 +121,15 @@ void drawTimes(const frame::FrameTimes& times) {
   std::vector<float> heights(bins.begin(), bins.end());
   ImGui::PlotHistogram("##times", heights.data(), static_cast<int>(heights.size()), 0, nullptr, 0.0f, FLT_MAX,
                        ImVec2(ImGui::GetContentRegionAvail().x, em(4.6f)));
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("Frames by their time, in quarters of the median; the last bar: all beyond");
+  tooltip("Frames by their time, in quarters of the median; the last bar: all beyond");
   fittedText(fmt::format("median {:.1f} ms, worst {:.1f} ms, {} of {} over twice the median", times.median(),
                          times.worst(), times.overTwiceMedian(), times.count()));
 }
 
 void drawBundles(const frame::StreamingStatus& status, Marks& marks) {
-  constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
-                                     ImGuiTableFlags_ScrollY | ImGuiTableFlags_ScrollX;
-  if (!ImGui::BeginTable("bundles", 4, kTable, ImVec2(0.0f, 0.0f),
-                         std::max(ImGui::GetContentRegionAvail().x, em(32.0f))))
-    return;
-  ImGui::TableSetupColumn("Bundle", ImGuiTableColumnFlags_WidthStretch, 0.3f);
-  ImGui::TableSetupColumn("Resident", ImGuiTableColumnFlags_WidthStretch, 0.4f);
-  ImGui::TableSetupColumn("Size in view", ImGuiTableColumnFlags_WidthFixed, em(6.0f));
-  ImGui::TableSetupColumn("State", ImGuiTableColumnFlags_WidthStretch, 0.3f);
-  ImGui::TableSetupScrollFreeze(0, 1);
-  ImGui::TableHeadersRow();
+  constexpr std::array kColumns = {Column{"Bundle", 0.3f}, Column{"Resident", 0.4f},
+                                   Column{"Size in view", 6.0f}, Column{"State", 0.3f}};
+  if (!beginReport("bundles", 32.0f, kColumns)) return;
   for (const frame::BundleStreaming& bundle : status.bundles) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -234,6 +180,89 @@ void drawStreaming(Session& session, Marks& marks) {
   ImGui::BeginChild("list");
   drawBundles(status, marks);
   ImGui::EndChild();
+}
+
+namespace {
+
+// Toasts are no wider than the view.
+constexpr float kToastEms = 28.0f, kToastGap = 12.0f;
+
+}  // namespace
+
+void drawLog(Session& session, Marks& marks) {
+  const auto entries = session.log.entries();
+  if (ImGui::Button("Clear")) session.log.clear();
+  marks.put("log.clear");
+  ImGui::SameLine();
+  if (ImGui::Button("Copy all")) {
+    std::string text;
+    for (const LogEntry& entry : entries) text += entry.text + "\n";
+    ImGui::SetClipboardText(text.c_str());
+  }
+  marks.put("log.copy");
+  ImGui::BeginChild("entries");
+  for (const LogEntry& entry : entries) {
+    const std::time_t when = std::chrono::system_clock::to_time_t(entry.when);
+    ImGui::TextDisabled("%s", fmt::format("{:%H:%M:%S}", fmt::localtime(when)).c_str());
+    ImGui::SameLine();
+    ImGui::PushStyleColor(ImGuiCol_Text, severityColor(entry.severity));
+    const std::string times = entry.times > 1 ? fmt::format(" ({} times)", entry.times) : std::string();
+    ImGui::TextWrapped("%s%s", entry.text.c_str(), times.c_str());
+    ImGui::PopStyleColor();
+  }
+  if (ImGui::GetScrollY() >= ImGui::GetScrollMaxY()) ImGui::SetScrollHereY(1.0f);
+  ImGui::EndChild();
+}
+
+void drawToasts(Session& session, Marks& marks, const Rectangle& view) {
+  const std::vector<LogEntry> recent = session.log.toasts(std::chrono::steady_clock::now());
+  const float room = view.max.x - view.min.x - 2.0f * kToastGap, right = view.max.x - kToastGap;
+  const float width = std::max(std::min(em(kToastEms), room), 1.0f);
+  float bottom = view.max.y - kToastGap;
+  for (std::size_t i = recent.size(); i-- > 0;) {
+    const LogEntry& entry = recent[i];
+    ImGui::SetNextWindowPos(ImVec2(right, bottom), ImGuiCond_Always, ImVec2(1.0f, 1.0f));
+    ImGui::SetNextWindowSize(ImVec2(width, 0.0f));
+    ImGui::SetNextWindowBgAlpha(0.94f);
+    ImGui::PushStyleColor(ImGuiCol_Border, severityColor(entry.severity));
+    const std::string id = fmt::format("##toast{}", entry.number);
+    ImGui::Begin(id.c_str(), nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoInputs);
+    ImGui::TextWrapped("%s", entry.text.c_str());
+    bottom -= ImGui::GetWindowHeight() + 8.0f;
+    ImGui::End();
+    ImGui::PopStyleColor();
+  }
+  if (!recent.empty()) marks.put("toasts", {{right - width, bottom}, {right, view.max.y}});
+}
+
+void drawHistory(Session& session, Marks& marks) {
+  History& history = session.history;
+  const std::vector<std::string> names = history.stepNames();
+  const std::size_t done = history.stepsDone();
+  std::size_t wanted = done;
+  const std::string first = ellipsized("The world as it was opened", ImGui::GetContentRegionAvail().x);
+  if (ImGui::Selectable(first.c_str(), done == 0)) wanted = 0;
+  marks.put("history.0");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    const bool undone = i >= done;
+    if (undone) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+    const std::string shown = ellipsized(names[i], ImGui::GetContentRegionAvail().x);
+    if (ImGui::Selectable(shown.c_str(), i + 1 == done)) wanted = i + 1;
+    if (undone) ImGui::PopStyleColor();
+    if (shown != names[i]) tooltip(names[i]);
+    marks.put("history." + std::to_string(i + 1));
+    ImGui::PopID();
+  }
+  std::vector<std::string> missing;
+  while (history.stepsDone() > wanted && history.canUndo())
+    for (std::string& gone : history.undo().missing) missing.push_back(std::move(gone));
+  while (history.stepsDone() < wanted && history.canRedo())
+    for (std::string& gone : history.redo().missing) missing.push_back(std::move(gone));
+  for (const std::string& gone : missing) session.log.warn(gone + " is not there now; it was passed over");
 }
 
 }  // namespace lambent::editor
