@@ -14,7 +14,7 @@
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/spec/environment_map.hpp"
+#include "runtime/spec/distant_lights.hpp"
 
 namespace {
 

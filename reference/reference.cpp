@@ -19,7 +19,7 @@
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/process.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/bundle/keyframes.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/spec/numbers.hpp"
 

@@ -6,7 +6,7 @@
 #include "baker/bake/bake_group.hpp"
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/bundle/container.hpp"
-#include "runtime/bundle/volume_grid.hpp"
+#include "runtime/bundle/description.hpp"
 #include "runtime/transfer/weights.hpp"
 
 namespace lambent::baker {

@@ -9,7 +9,6 @@
 
 #include "baker/bake/options.hpp"
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
 #include "baker/sweep/report.hpp"
 #include "runtime/command_line/help.hpp"
@@ -27,18 +26,10 @@ struct AccuracyArguments {
   SayOptions say;
 };
 
-// Lists the names in lines as long as those of the help.
 std::string knobNames() {
-  constexpr std::size_t kLine = 66;
-  std::string all, line;
-  for (const Knob& knob : knobs()) {
-    if (line.size() + knob.name.size() > kLine) {
-      all += line + "\n";
-      line.clear();
-    }
-    line += fmt::format("{}{}", knob.name, &knob == &knobs().back() ? "" : ", ");
-  }
-  return all + line;
+  std::vector<std::string_view> names;
+  for (const Knob& knob : knobs()) names.push_back(knob.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 Result<void> checkWords(const SweepRequest& request) {
@@ -54,56 +45,35 @@ Result<void> checkWords(const SweepRequest& request) {
 }
 
 // Prints one line that changes on a terminal, and a line for each setting elsewhere.
-class Lines {
- public:
-  SweepListener listener() {
-    return {
-        .begin = [this](std::size_t done, std::size_t all,
-                        const std::string& what) { begin(done, all, what); },
-        .measured = [this](std::size_t done, std::size_t all, const Measured& m) { measured(done, all, m); }};
-  }
-  void end() const {
-    if (terminal_) fmt::print(stderr, "\r\033[K");
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  void begin(std::size_t done, std::size_t all, const std::string& what) const {
-    if (!terminal_) return;
-    fmt::print(stderr, "\r\033[Klambent: {} of {}  {}{}", done + 1, all, what, left(done, all));
+SweepListener progressLines(bool terminal) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto begin = [=](std::size_t done, std::size_t all, const std::string& what) {
+    if (!terminal) return;
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    const double left = done == 0 ? 0.0 : spent.count() / double(done) * double(all - done);
+    fmt::print(stderr, "\r\033[Klambent: {} of {}  {}{}", done + 1, all, what,
+               done == 0 ? "" : fmt::format(", about {} left", durationText(left)));
     std::fflush(stderr);
-  }
-  void measured(std::size_t done, std::size_t all, const Measured& m) const {
+  };
+  const auto measured = [=](std::size_t done, std::size_t all, const Measured& m) {
     const Figures& f = m.picture.as_light_is;
     fmt::print(stderr, "{}lambent: {} of {}  {}: {} wrong, bake {}, frame {:.1f} ms, {}\n",
-               terminal_ ? "\r\033[K" : "", done, all, m.setting.name(), percentText(f.rms, 2),
+               terminal ? "\r\033[K" : "", done, all, m.setting.name(), percentText(f.rms, 2),
                durationText(m.bake.seconds), m.picture.frame_ms,
                bytesText(static_cast<double>(m.bake.bytes)));
-  }
-  std::string left(std::size_t done, std::size_t all) const {
-    if (done == 0) return {};
-    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
-    return fmt::format(", about {} left", durationText(spent / double(done) * double(all - done)));
-  }
-
-  bool terminal_ = ::isatty(STDERR_FILENO) != 0;
-  Clock::time_point start_ = Clock::now();
-};
+  };
+  return {.begin = begin, .measured = measured};
+}
 
 int runAccuracy(AccuracyArguments a) {
-  constexpr int kWrongUsage = 2;
   a.request.quality = a.quality.quality;
-  if (const auto checked = checkWords(a.request); !checked) {
-    reportError(checked.error());
-    return kWrongUsage;
-  }
+  if (const auto checked = checkWords(a.request); !checked) return wrongUsage(checked.error());
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
-  Lines lines;
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
   const auto results =
-      runSweep(a.request, a.say.quiet ? SweepListener{} : lines.listener(), stop.get_token());
-  if (!a.say.quiet) lines.end();
+      runSweep(a.request, a.say.quiet ? SweepListener{} : progressLines(terminal), stop.get_token());
+  if (!a.say.quiet && terminal) fmt::print(stderr, "\r\033[K");
   if (!results) return reportError(results.error());
   const auto page = writeReport(*results, a.request.output);
   if (!page) return reportError(page.error());
@@ -134,42 +104,29 @@ void addAccuracyCommand(CLI::App& app, Command& run) {
       "accuracy",
       "Measure what each knob costs and how exact it makes the picture, and write a page about it");
   command->add_option("SCENE", request.scene, "The scene, .gltf or .glb; default: a sample scene");
-  command
-      ->add_option("-o,--output", request.output,
-                   "Folder for sweep.json and index.html, which draws it. What it\nholds of an earlier run "
-                   "is not measured again")
-      ->required()
-      ->type_name("DIR");
+  command_line::addValue(*command, "-o,--output", request.output, "DIR",
+                         "Folder for sweep.json and index.html, which draws it. What it holds of an earlier "
+                         "run is not measured again")
+      ->required();
   // This is an option of its own, since it also says how thoroughly to measure.
-  command
-      ->add_option_function<std::string>(
-          "--quality",
-          [a](const std::string& word) {
-            if (auto put = putOption(a->quality, "quality", word); !put)
-              throw CLI::ValidationError("--quality", put.error().problem);
-          },
-          "The base from which knobs are turned, the number of their values, and the\nsize and paths of "
-          "references; "
-          "default draft")
-      ->type_name("draft|standard|high");
-  command
-      ->add_option(
-          "--knob", request.knobs,
-          "Turn only this knob; =V1,V2 turns it to these values. Several are\ngiven one by one. Knobs: " +
-              ("\n" + knobNames()))
-      ->type_name("KNOB[=VALUES]")
-      ->take_all()
-      ->expected(1);
-  command->add_option("--light", request.lights, "Light, as lambent reference takes it; several add up")
-      ->type_name("LIGHT")
-      ->take_all()
-      ->expected(1);
-  command->add_option("--camera", request.camera, "Camera, as lambent reference takes it")->type_name("CAM");
-  command->add_option("--size", request.size, "Pictures in pixels; default by --quality, 320x180 for draft")
-      ->type_name("WxH");
-  command->add_option("--spp", request.spp, "Samples a pixel of each of two references; default by --quality")
-      ->check(CLI::Range(2u, 1u << 20).description(""))
-      ->type_name("N");
+  command_line::addWord(
+      *command, "--quality", "draft|standard|high",
+      "The base from which knobs are turned, the number of their values, and the size and paths of "
+      "references; default draft",
+      [a](const std::string& word) { return putOption(a->quality, "quality", word); });
+  command_line::addWords(*command, "--knob", request.knobs, "KNOB[=VALUES]",
+                         "Turn only this knob; =V1,V2 turns it to these values. Several are given one by "
+                         "one. Knobs: " +
+                             knobNames());
+  command_line::addWords(*command, "--light", request.lights, "LIGHT",
+                         "Light, as lambent reference takes it; several add up");
+  command_line::addValue(*command, "--camera", request.camera, "CAM",
+                         "Camera, as lambent reference takes it");
+  command_line::addValue(*command, "--size", request.size, "WxH",
+                         "Pictures in pixels; default by --quality, 320x180 for draft");
+  command_line::addValue(*command, "--spp", request.spp, "N",
+                         "Samples a pixel of each of two references; default by --quality")
+      ->check(CLI::Range(2u, 1u << 20).description(""));
   command->add_flag("--allow-outside", request.allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--force", request.force, "Measure all anew");

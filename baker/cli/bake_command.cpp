@@ -1,23 +1,33 @@
-// Implements lambent bake SCENE [-o OUT.lmb.glb], --watch DIR, --resume. SCENE may be a folder.
+// Implements lambent bake SCENE [-o OUT.lmb.glb], --resume. SCENE may be a folder.
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "baker/bake/bake.hpp"
 #include "baker/bake/options.hpp"
+#include "baker/cache/cache.hpp"
 #include "baker/cli/bake_report.hpp"
-#include "baker/cli/bake_scene.hpp"
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
+#include "baker/import/gltf.hpp"
+#include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/source_watch.hpp"
+#include "baker/pipeline/whole_progress.hpp"
 #include "baker/plan/counted.hpp"
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/base/result.hpp"
 #include "runtime/command_line/help.hpp"
 
 namespace lambent::baker {
@@ -28,35 +38,144 @@ namespace lambent::baker {
 namespace {
 
 CLI::Option* add(CLI::App& command, std::string_view name, const OptionRow& row, BakeOptions& options) {
-  CLI::Option* option = command.add_option_function<std::string>(
-      "--" + std::string(name), [&options, &row](const std::string& word) { row.put(options, word); },
-      row.help);
-  option->type_name(std::string(row.kind))->group(std::string(row.group));
-  option->check(CLI::Validator(
-      [&row](const std::string& word) {
-        BakeOptions tried;
-        const auto put = row.put(tried, word);
-        return put ? std::string() : put.error().problem + "; " + put.error().hint;
-      },
-      ""));
-  return option;
-}
-
-void add(CLI::App& command, const OptionRow& row, BakeOptions& options) {
-  CLI::Option* option = add(command, row.name, row, options);
-  if (row.shows_default) option->default_str(row.word(BakeOptions{}));
-  if (!row.former.empty()) add(command, row.former, row, options)->group("");  // hidden in the help
+  return command_line::addWord(command, "--" + std::string(name), std::string(row.kind), row.help,
+                               [&options, &row](const std::string& word) { return row.put(options, word); });
 }
 
 }  // namespace
 
 void addBakeOptions(CLI::App& command, BakeOptions& options) {
-  for (const OptionRow& row : optionRows()) add(command, row, options);
+  for (const OptionRow& row : optionRows()) {
+    CLI::Option* option = add(command, row.name, row, options)->group(std::string(row.group));
+    if (row.shows_default) option->default_str(row.word(BakeOptions{}));
+    if (!row.former.empty()) add(command, row.former, row, options)->group("");  // hidden in the help
+  }
 }
 
 namespace {
 
 namespace fs = std::filesystem;
+
+struct BakeArguments {
+  std::filesystem::path scene, output;
+  bool resume = false;
+  double checkpoint_s = 0.0;  // 0 keeps the cache's own interval
+  BakeOptions options;
+  bool force = false, json = false, allow_outside = false;
+  bool strict = false;  // a bake that misses a bound fails
+  std::string cache;    // a folder, "off", or empty for the default one
+  std::uint64_t cache_bytes = kCacheBytes;
+  SayOptions say;
+};
+
+using BakeOutcome = std::optional<BakeReport>;
+
+// Opens the cache that the arguments name, if any. A bake without a cache is only slower, so a problem with
+// the folder is reported and no error.
+std::optional<Cache> bakeCache(const BakeArguments& a) {
+  if (a.cache == "off") return std::nullopt;
+  const std::filesystem::path folder =
+      a.cache.empty() ? Cache::defaultFolder() : std::filesystem::path(a.cache);
+  if (folder.empty()) return std::nullopt;
+  auto cache = Cache::open(folder, a.cache_bytes);
+  if (!cache) {
+    fmt::print(stderr, "lambent: {}; going on without it\n", cache.error().line());
+    return std::nullopt;
+  }
+  if (a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
+  return std::move(*cache);
+}
+
+// The journal of this program lies in the cache's folder.
+Journal bakeJournal(const std::optional<Cache>& cache) {
+  return Journal(cache ? cache->folder() / "journal" : std::filesystem::path());
+}
+
+// Returns the report, or nothing if the bundle was up to date. Bakes are recorded in the journal, progress is
+// shown, and a bundle that is up to date is left alone.
+Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cache,
+                              const std::stop_token& stop) {
+  if (const auto readable = checkRegularFile(a.scene, "a scene, .gltf or .glb"); !readable)
+    return failAgain(readable.error());
+  if (const auto checked = checkRequest(a.options, a.output); !checked) return failAgain(checked.error());
+  Journal::Entry record = bakeJournal(cache).begin({.scene = a.scene,
+                                                    .output = a.output,
+                                                    .options = a.options,
+                                                    .import = {.allow_outside = a.allow_outside}});
+  if (record.error())
+    fmt::print(stderr, "lambent: {}; --resume will not know of this bake\n", record.error()->line());
+  Progress progress;
+  progress.begin("import");
+  auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
+  if (!scene) {
+    record.done();
+    return failAgain(scene.error());
+  }
+  for (const std::string& warning : scene->warnings) reportNotice(a.scene, warning);
+  if (!a.force && isUpToDate(*scene, a.options, a.output)) {
+    record.done();
+    return BakeOutcome{};
+  }
+  PartSeconds expected;
+  if (const auto plan = planFor(*scene, a.options)) {
+    BakeGuess guess = guessBake(*scene, *plan, a.options);
+    if (const auto notice = longBakeNotice(guess.processor_seconds); notice && !a.say.quiet)
+      reportNotice(a.scene, *notice);
+    expected = std::move(guess.seconds);
+  }
+  if (cache) cache->setReading(!a.force);
+  Result<BakeReport> report = [&] {
+    const ProgressLine line(progress, WholeProgress(std::move(expected)), a.say, a.scene);
+    return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
+  }();
+  if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
+  if (!report) {
+    if (stop.stop_requested())
+      report.error().hint = cache ? "bake it again, or give --resume, and it goes on from where it was"
+                                  : "with a cache, the next bake would go on from where it was";
+    return failAgain(report.error());
+  }
+  for (const std::string& notice : report->notices) reportNotice(a.scene, notice);
+  return std::move(*report);
+}
+
+// Returns whether the bake missed a bound and is to fail for it.
+bool failsStrictly(const BakeArguments& a, const BakeOutcome& outcome) {
+  return a.strict && outcome && missesBound({a.output, a.options, *outcome});
+}
+
+nlohmann::json outcomeJson(const BakeArguments& a, const BakeOutcome& outcome) {
+  if (!outcome) return {{"output", a.output.string()}, {"upToDate", true}};
+  return reportJson({a.output, a.options, *outcome});
+}
+
+// Says where each scene of a folder is baked to: beside the scene, or under a folder for bundles that mirrors
+// the scenes' own.
+class FolderOutputs {
+ public:
+  // If `output` is empty, bundles lie beside their scenes.
+  FolderOutputs(fs::path folder, fs::path output) : folder_(std::move(folder)), output_(std::move(output)) {}
+
+  // Returns the bundle, whose folder it makes. Fails if another scene, as a.gltf beside a.glb, has it.
+  Result<fs::path> outputOf(const fs::path& scene) {
+    fs::path output = bundleBeside(scene);
+    if (!output_.empty())
+      output =
+          (output_ / scene.parent_path().lexically_relative(folder_)).lexically_normal() / output.filename();
+    const auto [entry, added] = scene_of_.try_emplace(output, scene);
+    if (!added && entry->second != scene)
+      return fail(scene.string(),
+                  fmt::format("would be baked to {}, where {} is", output.string(), entry->second.string()),
+                  "rename one of them");
+    std::error_code ignored;  // the bake reports that it cannot write
+    fs::create_directories(output.parent_path(), ignored);
+    return output;
+  }
+
+ private:
+  fs::path folder_, output_;
+  std::map<fs::path, fs::path> scene_of_;  // by output
+};
 
 double secondsSince(std::chrono::steady_clock::time_point begun) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -113,8 +232,8 @@ class FolderReport {
   nlohmann::json json_ = nlohmann::json::array();
 };
 
-}  // namespace
-
+// Bakes every scene of the folder `a.scene` once. `a.output` is a folder for bundles, or empty: beside the
+// scenes. Returns the exit code: 1 if a scene has no bundle that shows it as it is.
 int bakeFolder(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
   const std::vector<fs::path> scenes = scenesIn(a.scene);
   if (scenes.empty())
@@ -140,8 +259,6 @@ int bakeFolder(const BakeArguments& a, std::optional<Cache>& cache, const std::s
   return report.end(scenes.size());
 }
 
-namespace {
-
 int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
   if (!outcome) return reportError(outcome.error());
   if (a.json) {
@@ -153,12 +270,6 @@ int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
       fmt::print("{} is up to date; --force bakes it again\n", a.output.string());
   }
   return failsStrictly(a, *outcome) ? 1 : 0;
-}
-
-// Reports an error in the command line and returns the exit code 2.
-int wrongUsage(const Error& error) {
-  reportError(error);
-  return 2;
 }
 
 // Bakes everything that was cut short, with the options that it had.
@@ -188,12 +299,6 @@ int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::
 }
 
 int runBake(BakeArguments a) {
-  if (!a.watch.empty()) {
-    if (!a.scene.empty() || a.resume || a.force)
-      return wrongUsage({"--watch", "is given with a scene, --resume or --force", "give it a folder alone"});
-    std::optional<Cache> cache = bakeCache(a);
-    return watchFolder(a, cache ? &*cache : nullptr);
-  }
   if (a.scene.empty() && !a.resume)
     return wrongUsage({"SCENE", "is missing", "name a scene or a folder of scenes"});
   if (a.scene.empty() && !a.output.empty())
@@ -216,37 +321,25 @@ void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
   CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene, or a folder of them, into bundles");
   command->add_option("SCENE", a->scene, "The scene, .gltf or .glb, or a folder: all scenes in it and below");
-  command
-      ->add_option("-o,--output", a->output,
-                   "The bundle to write, OUT.lmb.glb, or of a folder of scenes one for bundles; default: "
-                   "beside the scene, with its name")
-      ->type_name("PATH");
-  command
-      ->add_option("--watch", a->watch,
-                   "Bake all scenes in DIR and below, then again what changes, until interrupted")
-      ->type_name("DIR");
+  command_line::addValue(*command, "-o,--output", a->output, "PATH",
+                         "The bundle to write, OUT.lmb.glb, or of a folder of scenes one for bundles; "
+                         "default: beside the scene, with its name");
   command->add_flag("--resume", a->resume,
                     "Without SCENE: finish all bakes that were cut short. With it there is no need: a bake "
                     "always goes on from what the cache holds of it");
   addBakeOptions(*command, a->options);
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
-  command
-      ->add_option(
-          "--cache", a->cache,
-          "Folder where results are kept, so that the next bake does only what changed; off: none; default "
-          "$LAMBENT_CACHE, else $XDG_CACHE_HOME/lambent, else ~/.cache/lambent")
-      ->type_name("DIR|off");
-  command
-      ->add_option("--cache-size", a->cache_bytes,
-                   "Bytes that the cache may hold, like 8GB (default); what was not used longest goes first")
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false))
-      ->type_name("BYTES");
-  command
-      ->add_option("--checkpoint", a->checkpoint_s,
-                   "How many seconds of work a bake that is killed may lose, about; default 8")
-      ->check(CLI::Range(0.05, 600.0))
-      ->type_name("S");
+  command_line::addValue(*command, "--cache", a->cache, "DIR|off",
+                         "Folder where results are kept, so that the next bake does only what changed; off: "
+                         "none; default $LAMBENT_CACHE, else $XDG_CACHE_HOME/lambent, else "
+                         "~/.cache/lambent");
+  command_line::addBytes(
+      *command, "--cache-size", a->cache_bytes,
+      "Bytes that the cache may hold, like 8GB (default); what was not used longest goes first");
+  command_line::addValue(*command, "--checkpoint", a->checkpoint_s, "S",
+                         "How many seconds of work a bake that is killed may lose, about; default 8")
+      ->check(CLI::Range(0.05, 600.0));
   command->add_flag(
       "--strict", a->strict,
       "Fail, with exit code 1, where the error of pictures misses its bound; the bundle is written");
@@ -255,8 +348,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
   command->add_flag("--json", a->json, "Print figures as JSON; of a folder an array of them");
   addQuiet(*command, a->say);
   addProgress(*command, a->say);
-  command_line::group(*command, "Files and runs",
-                      {"--output", "--watch", "--resume", "--force", "--allow-outside"});
+  command_line::group(*command, "Files and runs", {"--output", "--resume", "--force", "--allow-outside"});
   command_line::group(*command, "Accuracy", {"--strict"});
   command_line::group(*command, "Machine", {"--cache", "--cache-size", "--checkpoint"});
   command_line::group(*command, "Output", {"--json", "--quiet", "--progress"});
@@ -264,8 +356,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
       *command, {{"lambent bake scene.gltf", "bakes the scene to scene.lmb.glb beside it"},
                  {"lambent bake scene.gltf -o out.lmb.glb --quality draft", "takes the fewest rays"},
                  {"lambent bake scene.gltf --error 2%", "takes as many rays as 2 % of error need"},
-                 {"lambent bake scenes -o bundles", "bakes all scenes of a folder, and fails if one fails"},
-                 {"lambent bake --watch scenes -o bundles", "goes on with what changes there"}});
+                 {"lambent bake scenes -o bundles", "bakes all scenes of a folder, and fails if one fails"}});
   command->callback([a, &run] { run = [a] { return runBake(*a); }; });
 }
 

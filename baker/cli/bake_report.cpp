@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/cli/output.hpp"
+#include "baker/cli/commands.hpp"
 #include "baker/plan/counted.hpp"
 #include "runtime/base/process.hpp"
 

@@ -9,7 +9,6 @@
 
 #include "baker/accuracy/compare.hpp"
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
 #include "runtime/command_line/help.hpp"
 
@@ -101,27 +100,19 @@ void addCompareCommand(CLI::App& app, Command& run) {
   CLI::App* command = app.add_subcommand("compare", "Error figures of a linear picture against a reference");
   command->add_option("PICTURE", a->picture, "The picture, .exr")->required();
   command->add_option("REFERENCE", a->reference, "What it should be, .exr of the same size")->required();
-  command
-      ->add_option("--reference2", a->reference2,
-                   "A second, independent reference: cancels the noise of both")
-      ->type_name("EXR");
-  command
-      ->add_option("--shrink", a->shrink,
-                   "Compare means of N x N pixels, as a screen shows a picture of\nso many samples a pixel")
+  command_line::addValue(*command, "--reference2", a->reference2, "EXR",
+                         "A second, independent reference: cancels the noise of both");
+  command_line::addValue(*command, "--shrink", a->shrink, "N",
+                         "Compare means of N x N pixels, as a screen shows a picture of so many samples a "
+                         "pixel")
       ->capture_default_str()
-      ->check(CLI::Range(1, 64))
-      ->type_name("N");
-  command
-      ->add_option(
-          "--heat", a->heat,
-          "Write where they differ as colors: luminance relative to the\nreference's, blue too dark, red too "
-          "bright. Gray: neither shows\nthe scene, violet: one of them")
-      ->type_name("PNG");
-  command
-      ->add_option("--heat-range", a->heat_range,
-                   "Where the colors end, as a share (0.1: 10 %; default: by the\npicture)")
-      ->check(CLI::PositiveNumber)
-      ->type_name("SHARE");
+      ->check(CLI::Range(1, 64));
+  command_line::addValue(*command, "--heat", a->heat, "PNG",
+                         "Write where they differ as colors: luminance relative to the reference's, blue too "
+                         "dark, red too bright. Gray: neither shows the scene, violet: one of them");
+  command_line::addValue(*command, "--heat-range", a->heat_range, "SHARE",
+                         "Where the colors end, as a share (0.1: 10 %; default: by the picture)")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--json", a->json, "Print figures as JSON");
   command_line::group(*command, "Heat map", {"--heat", "--heat-range"});
   command_line::addExamples(*command,

@@ -14,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "lambent/bundle.hpp"
 #include "lambent/sh.hpp"
 #include "runtime/base/atomic_file.hpp"
@@ -64,11 +63,8 @@ Result<void> writeNpy(const fs::path& path, const ArrayShape& shape, const std::
   std::string text = "\x93NUMPY";
   text += {'\1', '\0', static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)};
   text += header;
-  Result<AtomicFile> file = AtomicFile::open(path);
-  if (!file) return failAgain(file.error());
-  if (Result<void> done = file->write(text); !done) return done;
-  if (Result<void> done = file->write(std::as_bytes(std::span(values))); !done) return done;
-  return file->commit();
+  text.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
+  return writeFile(path, std::as_bytes(std::span(text)));
 }
 
 // Writes arrays into the folder, and keeps the first error.
@@ -224,10 +220,9 @@ Result<void> exportBundle(const ExportArguments& a) {
   }
   if (!arrays.done()) return arrays.done();
   // The description comes last, so that a folder that has one is whole.
-  Result<AtomicFile> file = AtomicFile::open(a.folder / "bundle.json");
-  if (!file) return failAgain(file.error());
-  if (Result<void> done = file->write(described.dump(2) + "\n"); !done) return done;
-  if (Result<void> done = file->commit(); !done) return done;
+  const std::string text = described.dump(2) + "\n";
+  if (Result<void> done = writeFile(a.folder / "bundle.json", std::as_bytes(std::span(text))); !done)
+    return done;
   if (a.json)
     fmt::print("{}\n", described.dump(2));
   else if (!a.say.quiet)
@@ -242,13 +237,12 @@ void addExportCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", "Write the numbers of a bundle as arrays for NumPy");
   command->add_option("BUNDLE", a->bundle, "The bundle, .lmb.glb")->required();
-  command->add_option("-o,--output", a->folder, "The folder to write arrays (.npy) and bundle.json into")
-      ->required()
-      ->type_name("DIR");
-  command
-      ->add_option("--light", a->light,
-                   "Also write the light vector of a light at infinity; several add up (docs/conventions.md)")
-      ->type_name("LIGHT");
+  command_line::addValue(*command, "-o,--output", a->folder, "DIR",
+                         "The folder to write arrays (.npy) and bundle.json into")
+      ->required();
+  command_line::addValue(*command, "--light", a->light, "LIGHT",
+                         "Also write the light vector of a light at infinity; several add up "
+                         "(docs/conventions.md)");
   command->add_option("--order", a->order, "Bands of the light vector, 1..8")
       ->check(CLI::Range(1, kMaxBands))
       ->capture_default_str();

@@ -1,5 +1,8 @@
 // Implements lambent info BUNDLE.
+#include <algorithm>
+#include <map>
 #include <memory>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -8,7 +11,6 @@
 
 #include "baker/cli/bake_report.hpp"
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/plan/counted.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/command_line/help.hpp"
@@ -22,37 +24,50 @@ struct InfoArguments {
   bool json = false;
 };
 
-struct Sizes {
-  std::uint64_t mesh = 0, image = 0, rows = 0, codebooks = 0, ids = 0, planes = 0, light_weights = 0,
-                proxies = 0, brdf_tables = 0, densities = 0, importance = 0;
+// Bytes of a bundle, by the names that text and JSON have for what they hold.
+struct SizeRow {
+  const char *name, *key;
+  std::uint64_t bytes;
+  bool shown = true;  // in the text
+};
+
+std::vector<SizeRow> sizesOf(const bundle::Reader& reader) {
+  using Type = bundle::PayloadType;
+  const bundle::Description& d = reader.description();
+  std::uint64_t meshes = 0, images = 0;
+  for (const bundle::Mesh& mesh : d.meshes)
+    for (const bundle::Primitive& primitive : mesh.primitives) meshes += d.views[primitive.view].length;
+  for (const bundle::Image& image : d.images) images += d.views[image.view].length;
+  std::map<Type, std::uint64_t> of;
+  for (const bundle::Payload& payload : d.payloads) of[payload.type] += d.views[payload.view].length;
+  const std::uint64_t densities = of[Type::Density] + of[Type::Voxels];
+  return {{"meshes", "meshBytes", meshes},
+          {"images", "imageBytes", images},
+          {"vertex rows", "rowBytes", of[Type::VertexWeights]},
+          {"codebooks", "codebookBytes", of[Type::Codebook]},
+          {"cluster ids", "clusterIdBytes", of[Type::ClusterIds]},
+          {"weight planes", "planeBytes", of[Type::WeightPlane]},
+          {"light weights", "lightWeightBytes", of[Type::LightWeights]},
+          {"proxies", "proxyBytes", of[Type::CaptureProxy]},
+          {"BRDF tables", "brdfTableBytes", of[Type::BrdfTable], !d.brdf_tables.empty()},
+          {"densities", "densityBytes", densities, densities > 0},
+          {"importance", "importanceBytes", of[Type::Importance]},
+          {"whole file", "fileBytes", reader.fileBytes()}};
+}
+
+struct Counts {
   std::uint64_t vertices = 0, triangles = 0, texels = 0;
 };
 
-Sizes sizesOf(const bundle::Description& d) {
-  Sizes sizes;
-  for (const bundle::Mesh& mesh : d.meshes)
-    for (const bundle::Primitive& primitive : mesh.primitives) sizes.mesh += d.views[primitive.view].length;
-  for (const bundle::Image& image : d.images) sizes.image += d.views[image.view].length;
-  for (const bundle::Payload& payload : d.payloads) {
-    const std::uint64_t length = d.views[payload.view].length;
-    if (payload.type == bundle::PayloadType::VertexWeights) sizes.rows += length;
-    if (payload.type == bundle::PayloadType::Codebook) sizes.codebooks += length;
-    if (payload.type == bundle::PayloadType::ClusterIds) sizes.ids += length;
-    if (payload.type == bundle::PayloadType::WeightPlane) sizes.planes += length;
-    if (payload.type == bundle::PayloadType::LightWeights) sizes.light_weights += length;
-    if (payload.type == bundle::PayloadType::CaptureProxy) sizes.proxies += length;
-    if (payload.type == bundle::PayloadType::BrdfTable) sizes.brdf_tables += length;
-    if (payload.type == bundle::PayloadType::Importance) sizes.importance += length;
-    if (payload.type == bundle::PayloadType::Density || payload.type == bundle::PayloadType::Voxels)
-      sizes.densities += length;
-  }
+Counts countsOf(const bundle::Description& d) {
+  Counts counts;
   for (const bundle::Draw& draw : d.draws) {
     const bundle::Primitive& primitive = d.meshes[draw.mesh].primitives[draw.primitive];
-    sizes.vertices += primitive.vertex_count;
-    sizes.triangles += primitive.index_count / 3;
-    sizes.texels += draw.texels * draw.texels;
+    counts.vertices += primitive.vertex_count;
+    counts.triangles += primitive.index_count / 3;
+    counts.texels += draw.texels * draw.texels;
   }
-  return sizes;
+  return counts;
 }
 
 // Returns the triangles of each level, finest first; empty if the group has no proxy.
@@ -85,8 +100,9 @@ const char* partName(const transfer::TransferShape& shape) {
   return shape.full_channels > 0 ? "shadowed and full" : "shadowed";
 }
 
-void printBundleJson(const bundle::Reader& reader, const Sizes& sizes) {
+void printBundleJson(const bundle::Reader& reader) {
   const bundle::Description& d = reader.description();
+  const Counts counts = countsOf(d);
   nlohmann::json groups = nlohmann::json::array();
   for (const bundle::Group& group : d.groups) {
     nlohmann::json cells = nlohmann::json::array();
@@ -114,7 +130,7 @@ void printBundleJson(const bundle::Reader& reader, const Sizes& sizes) {
                       {"pictureError", pictureErrorJson(group.picture_error)},
                       {"transfer", cells}});
   }
-  const nlohmann::json json = {
+  nlohmann::json json = {
       {"file", reader.path().string()},
       {"formatVersion", d.version},
       {"generator",
@@ -122,52 +138,31 @@ void printBundleJson(const bundle::Reader& reader, const Sizes& sizes) {
       {"settings", d.generator.settings},
       {"origin", {d.origin.x, d.origin.y, d.origin.z}},
       {"draws", d.draws.size()},
-      {"vertices", sizes.vertices},
-      {"triangles", sizes.triangles},
-      {"texels", sizes.texels},
-      {"fileBytes", reader.fileBytes()},
-      {"meshBytes", sizes.mesh},
-      {"imageBytes", sizes.image},
-      {"rowBytes", sizes.rows},
-      {"codebookBytes", sizes.codebooks},
-      {"clusterIdBytes", sizes.ids},
-      {"planeBytes", sizes.planes},
-      {"lightWeightBytes", sizes.light_weights},
-      {"proxyBytes", sizes.proxies},
-      {"brdfTableBytes", sizes.brdf_tables},
-      {"densityBytes", sizes.densities},
-      {"importanceBytes", sizes.importance},
+      {"vertices", counts.vertices},
+      {"triangles", counts.triangles},
+      {"texels", counts.texels},
       {"groups", groups}};
+  for (const SizeRow& row : sizesOf(reader)) json[row.key] = row.bytes;
   fmt::print("{}\n", json.dump(2));
 }
 
-void printBundle(const bundle::Reader& reader, const Sizes& sizes) {
+void printBundle(const bundle::Reader& reader) {
   const bundle::Description& d = reader.description();
+  const Counts counts = countsOf(d);
   fmt::print("{}: format {}, {} {} ({})\n", reader.path().string(), d.version, d.generator.program,
              d.generator.version, d.generator.isa);
   for (const auto& [name, value] : d.generator.settings) fmt::print("  {:<13} {}\n", name, value);
   if (d.origin != glm::dvec3(0.0))
     fmt::print("  {:<13} {}, {}, {} m\n", "origin", d.origin.x, d.origin.y, d.origin.z);
-  const double vertices = static_cast<double>(std::max<std::uint64_t>(sizes.vertices, 1));
-  const auto line = [&](const char* name, std::uint64_t bytes) {
-    fmt::print("  {:<13} {:>10}  {:6.2f} bytes a vertex\n", name, bytesText(static_cast<double>(bytes)),
-               static_cast<double>(bytes) / vertices);
-  };
-  fmt::print("{}, {} vertices, {} triangles\n", counted(d.draws.size(), "draw"), sizes.vertices,
-             sizes.triangles);
-  if (sizes.texels > 0) fmt::print("{} texels of E/pi\n", sizes.texels);
-  line("meshes", sizes.mesh);
-  line("images", sizes.image);
-  line("vertex rows", sizes.rows);
-  line("codebooks", sizes.codebooks);
-  line("cluster ids", sizes.ids);
-  line("weight planes", sizes.planes);
-  line("light weights", sizes.light_weights);
-  line("proxies", sizes.proxies);
-  if (!d.brdf_tables.empty()) line("BRDF tables", sizes.brdf_tables);
-  if (sizes.densities > 0) line("densities", sizes.densities);
-  line("importance", sizes.importance);
-  line("whole file", reader.fileBytes());
+  fmt::print("{}, {} vertices, {} triangles\n", counted(d.draws.size(), "draw"), counts.vertices,
+             counts.triangles);
+  if (counts.texels > 0) fmt::print("{} texels of E/pi\n", counts.texels);
+  const double vertices = static_cast<double>(std::max<std::uint64_t>(counts.vertices, 1));
+  for (const SizeRow& row : sizesOf(reader)) {
+    const auto bytes = static_cast<double>(row.bytes);
+    if (row.shown)
+      fmt::print("  {:<13} {:>10}  {:6.2f} bytes a vertex\n", row.name, bytesText(bytes), bytes / vertices);
+  }
   std::size_t missed = 0;
   for (const bundle::Group& group : d.groups) {
     fmt::print("group \"{}\": {} in {}\n", group.name, counted(group.sample_count, "sample"),
@@ -209,7 +204,7 @@ int runInfo(const InfoArguments& a) {
   const auto reader = bundle::Reader::open(a.bundle);
   if (!reader) return reportError(reader.error());
   if (const auto checked = reader->checkAll(); !checked) return reportError(checked.error());
-  (a.json ? printBundleJson : printBundle)(*reader, sizesOf(reader->description()));
+  (a.json ? printBundleJson : printBundle)(*reader);
   return 0;
 }
 

@@ -9,7 +9,6 @@
 #include <CLI/CLI.hpp>
 
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "runtime/base/process.hpp"
 #include "runtime/command_line/help.hpp"
 

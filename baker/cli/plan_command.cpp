@@ -9,13 +9,11 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "baker/bake/bake.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/decisions/decisions.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/import/scene.hpp"
@@ -44,7 +42,7 @@ struct GroupSize {
 };
 
 // PlanLines of a screen, and of these at most so many for warnings and for local lights.
-constexpr std::size_t kMostLines = 40, kMostSentences = 6, kMostNames = 3;
+constexpr std::size_t kMostLines = 40, kMostSentences = 6;
 constexpr const char* kRest = "lambent plan --verbose lists them";
 
 using PlanLines = std::vector<std::string>;
@@ -106,76 +104,27 @@ void addPrimitives(const Scene& scene, const RigidGroup& group, const GroupDecis
   }
 }
 
-double areaOf(const Scene& scene, const PlannedDraw& draw) {
-  const bundle::MeshData& mesh = primitiveOf(scene, draw).mesh;
-  const auto corner = [&](std::size_t i) {
-    return glm::dvec3(draw.group_from_mesh * glm::vec4(mesh.positions[mesh.indices[i]], 1.0f));
+// Adds a line for each decision about draws of the group: for how many, and the first one's reason.
+void addAlike(const GroupDecisions& of, PlanLines& lines) {
+  struct Alike {
+    const Decision* first;
+    std::size_t draws;
   };
-  double area = 0.0;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-    area += 0.5 * glm::length(glm::cross(corner(i + 1) - corner(i), corner(i + 2) - corner(i)));
-  return area;
-}
-
-// The draws of a group about which the same was decided, those of the largest area first.
-struct Alike {
-  const Decision* least = nullptr;  // of the least first figure
-  const Decision* most = nullptr;
-  std::size_t draws = 0;
-  double area = 0.0;
-  std::vector<std::string> materials = {};
-};
-
-std::string figureText(const Figure& figure) {
-  return figure.unit == "%" ? percentText(figure.value / 100.0) : fmt::format("{:.2g}", figure.value);
-}
-
-std::string alikeText(const Alike& alike, std::size_t draws, double area) {
-  std::string text =
-      fmt::format("      {:<16} {}", wordsOf(alike.least->effect), choiceText(alike.least->choice));
-  if (draws > 1) {
-    const std::size_t named = std::min(alike.materials.size(), kMostNames);
-    text +=
-        fmt::format(" for {} of {}, {} of the area ({}{})", alike.draws, counted(draws, "draw"),
-                    percentText(alike.area / std::max(area, 1e-30)),
-                    fmt::join(alike.materials.begin(), alike.materials.begin() + std::ptrdiff_t(named), ", "),
-                    named < alike.materials.size()
-                        ? fmt::format(" and {}", counted(alike.materials.size() - named, "more material"))
-                        : "");
-  }
-  text += ": " + alike.least->reason;
-  if (alike.most->reason != alike.least->reason)
-    text += " (up to " + figureText(alike.most->figures[0]) + ")";
-  return text;
-}
-
-// Adds a line for each decision about draws of the group.
-void addAlike(const Scene& scene, const RigidGroup& group, const GroupDecisions& of, PlanLines& lines) {
-  std::vector<double> areas;
-  for (const PlannedDraw& draw : group.draws) areas.push_back(areaOf(scene, draw));
-  std::vector<std::size_t> order(of.primitives.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(),
-                           [&](std::size_t i) { return areas[of.primitives[i].draw]; });
-  const auto figure = [](const Decision& d) { return d.figures.empty() ? 0.0 : d.figures[0].value; };
   std::vector<Alike> all;
-  for (const std::size_t i : order)
-    for (const Decision& d : of.primitives[i].decisions) {
+  for (const PrimitiveDecisions& primitive : of.primitives)
+    for (const Decision& d : primitive.decisions) {
       if (d.choice == Choice::Absent) continue;
       auto alike = std::ranges::find_if(all, [&](const Alike& known) {
-        return known.least->effect == d.effect && known.least->choice == d.choice;
+        return known.first->effect == d.effect && known.first->choice == d.choice;
       });
-      if (alike == all.end()) alike = all.insert(alike, {.least = &d, .most = &d});
-      if (figure(d) < figure(*alike->least)) alike->least = &d;
-      if (figure(d) > figure(*alike->most)) alike->most = &d;
-      const PlannedDraw& draw = group.draws[of.primitives[i].draw];
-      ++alike->draws, alike->area += areas[of.primitives[i].draw];
-      const std::string material = shownMaterial(scene, draw);
-      if (std::ranges::find(alike->materials, material) == alike->materials.end())
-        alike->materials.push_back(material);
+      if (alike == all.end()) alike = all.insert(alike, {&d, 0});
+      ++alike->draws;
     }
-  const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
-  for (const Alike& alike : all) lines.push_back(alikeText(alike, of.primitives.size(), area));
+  for (const auto& [first, draws] : all)
+    lines.push_back(fmt::format(
+        "      {:<16} {}{}: {}", wordsOf(first->effect), choiceText(first->choice),
+        of.primitives.size() > 1 ? fmt::format(" for {} of {} draws", draws, of.primitives.size()) : "",
+        first->reason));
 }
 
 PlanLines groupLines(const PlanReport& report, std::size_t g, bool verbose) {
@@ -192,7 +141,10 @@ PlanLines groupLines(const PlanReport& report, std::size_t g, bool verbose) {
                                 counted(group.draws.size(), "draw"), size.vertices, size.triangles));
   }
   addDecisions(report.decisions[g].decisions, "      ", lines);
-  (verbose ? addPrimitives : addAlike)(report.scene, group, report.decisions[g], lines);
+  if (verbose)
+    addPrimitives(report.scene, group, report.decisions[g], lines);
+  else
+    addAlike(report.decisions[g], lines);
   return lines;
 }
 

@@ -6,9 +6,7 @@
 #include <fmt/format.h>
 
 #include "baker/cli/commands.hpp"
-#include "baker/cli/output.hpp"
 #include "baker/web_view/file_server.hpp"
-#include "baker/web_view/viewer_files.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/lower_case.hpp"
 #include "runtime/bundle/container.hpp"
@@ -68,10 +66,9 @@ void addViewCommand(CLI::App& app, Command& run) {
   CLI::App* command =
       app.add_subcommand("view", "Show a bundle in the browser, from a server on this machine");
   command->add_option("BUNDLE", a->bundle, "The bundle, .lmb.glb")->required();
-  command->add_option("--light", a->light, "Environment map to begin with, .hdr or .exr")->type_name("MAP");
-  command->add_option("--port", a->port, "Port at 127.0.0.1; default one that is free")
-      ->check(CLI::Range(1, 65535).description(""))
-      ->type_name("N");
+  command_line::addValue(*command, "--light", a->light, "MAP", "Environment map to begin with, .hdr or .exr");
+  command_line::addValue(*command, "--port", a->port, "N", "Port at 127.0.0.1; default one that is free")
+      ->check(CLI::Range(1, 65535).description(""));
   command->add_flag("--no-browser", a->no_browser, "Print the address only");
   command_line::addExamples(*command, {{"lambent view scene.lmb.glb", "opens it in the browser"},
                                        {"lambent view scene.lmb.glb --light sky.hdr --port 8080 --no-browser",

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "runtime/bundle/keyframes.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 
 namespace lambent::baker {
 

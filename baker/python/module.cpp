@@ -1,14 +1,86 @@
 // The Python module `lambent`: light in harmonics, bundles as arrays, and baking (docs/python.md).
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <future>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include "baker/python/arrays.hpp"
+#include "lambent/bake.hpp"
 #include "lambent/bundle.hpp"
 #include "lambent/version.hpp"
 
 namespace lambent::python {
 namespace {
+
+namespace py = pybind11;
+// Whatever is given is made a dense array of this type.
+template <class Value>
+using Array = py::array_t<Value, py::array::c_style | py::array::forcecast>;
+using Floats = Array<float>;
+using Words = Array<std::uint32_t>;
+
+// A failure of the library is a ValueError with its line.
+[[noreturn]] void raise(const Failure& failure) {
+  throw py::value_error(failure.line());
+}
+template <class T>
+T valueOf(Expected<T> expected) {
+  if (!expected) raise(expected.failure());
+  return std::move(*expected);
+}
+void check(const Expected<void>& expected) {
+  if (!expected) raise(expected.failure());
+}
+
+// Takes an array whose last side is three. Raises, naming it, if it is not.
+std::vector<Vec3> vectorsOf(const Floats& array, const std::string& name) {
+  if (array.ndim() < 1 || array.shape(array.ndim() - 1) != 3)
+    raise({name, "is not an array of vectors", "its last side is 3"});
+  const auto count = static_cast<std::size_t>(array.size() / 3);
+  std::vector<Vec3> vectors(count);
+  for (std::size_t i = 0; i < count; ++i)
+    vectors[i] = {array.data()[3 * i], array.data()[3 * i + 1], array.data()[3 * i + 2]};
+  return vectors;
+}
+
+Floats arrayOf(const std::vector<Vec3>& vectors) {
+  Floats array({static_cast<py::ssize_t>(vectors.size()), py::ssize_t{3}});
+  float* out = array.mutable_data();
+  for (const Vec3& v : vectors) out = std::copy_n(&v.x, 3, out);
+  return array;
+}
+
+template <class Value>
+Array<Value> arrayOf(const std::vector<Value>& values, const std::vector<py::ssize_t>& shape) {
+  Array<Value> array(shape);
+  std::copy(values.begin(), values.end(), array.mutable_data());
+  return array;
+}
+
+// Light as an array of order² x 3.
+LightVector lightOf(const Floats& coefficients) {
+  LightVector light;
+  light.coefficients = vectorsOf(coefficients, "light");
+  light.order = 1;
+  while (light.order < kMaxBands &&
+         static_cast<std::size_t>(light.order * light.order) < light.coefficients.size())
+    ++light.order;
+  if (static_cast<std::size_t>(light.order * light.order) != light.coefficients.size())
+    raise({"light", "has " + std::to_string(light.coefficients.size()) + " coefficients",
+           "order n has n², n 1..8"});
+  return light;
+}
 
 Floats harmonics(int order, const Floats& directions) {
   const std::vector<Vec3> vectors = vectorsOf(directions, "directions");
@@ -70,6 +142,115 @@ Floats matrixOf(const Matrix4& matrix) {
 
 py::tuple tupleOf(const Vec3& v) {
   return py::make_tuple(v.x, v.y, v.z);
+}
+
+// Holds the arrays of a mesh while it is added.
+struct MeshArrays {
+  std::vector<Vec3> positions, normals;
+  std::vector<std::uint32_t> indices;
+};
+
+Vec3 colorOf(const py::handle& value, const std::string& name) {
+  const std::vector<Vec3> one = vectorsOf(py::cast<Floats>(value), name);
+  if (one.size() != 1) raise({name, "is no colour", "give three numbers"});
+  return one[0];
+}
+
+void addMesh(BakeScene& scene, const py::dict& described) {
+  MeshArrays arrays;
+  BakeMesh mesh;
+  for (const auto& [key, value] : described) {
+    const auto name = py::cast<std::string>(key);
+    if (name == "name")
+      mesh.name = py::cast<std::string>(value);
+    else if (name == "positions")
+      arrays.positions = vectorsOf(py::cast<Floats>(value), name);
+    else if (name == "normals")
+      arrays.normals = vectorsOf(py::cast<Floats>(value), name);
+    else if (name == "triangles") {
+      const auto words = py::cast<Words>(value);
+      arrays.indices.assign(words.data(), words.data() + words.size());
+    } else if (name == "albedo")
+      mesh.albedo = colorOf(value, name);
+    else if (name == "emission")
+      mesh.emission = colorOf(value, name);
+    else if (name == "metallic")
+      mesh.metallic = py::cast<float>(value);
+    else if (name == "roughness")
+      mesh.roughness = py::cast<float>(value);
+    else if (name == "double_sided")
+      mesh.double_sided = py::cast<bool>(value);
+    else if (name == "movable")
+      mesh.movable = py::cast<bool>(value);
+    else if (name == "world_from_mesh") {
+      const auto matrix = py::cast<Floats>(value);
+      if (matrix.size() != 16) raise({name, "is no 4 x 4 matrix", {}});
+      for (std::size_t i = 0; i < 16; ++i) mesh.world_from_mesh[i] = matrix.data()[i % 4 * 4 + i / 4];
+    } else
+      raise({name, "is nothing that a mesh has", "see docs/python.md"});
+  }
+  mesh.positions = arrays.positions;
+  mesh.normals = arrays.normals;
+  mesh.indices = arrays.indices;
+  check(scene.add(mesh));
+}
+
+py::dict bake(const py::object& source, const std::string& output, const py::object& progress,
+              const std::string& cache, const py::kwargs& options) {
+  BakeScene scene;
+  if (py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__"))
+    scene = valueOf(BakeScene::open(py::cast<std::string>(py::str(source))));
+  else
+    for (const py::handle mesh : source) addMesh(scene, py::cast<py::dict>(mesh));
+  Baker baker;
+  for (const auto& [key, value] : options) {
+    std::string name = py::cast<std::string>(key);
+    std::ranges::replace(name, '_', '-');
+    check(baker.set(name, py::cast<std::string>(py::str(value))));
+  }
+  if (!cache.empty()) check(baker.keepResultsIn(cache));
+  // The bake runs on a thread of its own. This one, which Python called, shows progress and looks for Ctrl-C.
+  std::mutex lock;
+  std::optional<BakeProgress> latest;
+  std::atomic<bool> stop = false;
+  const auto watch = [&](const BakeProgress& seen) {
+    const std::lock_guard held(lock);
+    latest = seen;
+    return !stop;
+  };
+  auto running = std::async(std::launch::async, [&] { return baker.run(scene, output, watch); });
+  std::exception_ptr raised;
+  const auto over = [&] {
+    const py::gil_scoped_release released;
+    return running.wait_for(std::chrono::milliseconds(100)) == std::future_status::ready;
+  };
+  while (!over()) {
+    if (raised) continue;
+    try {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      std::optional<BakeProgress> seen;
+      {
+        const std::lock_guard held(lock);
+        seen = std::exchange(latest, {});
+      }
+      if (!seen || progress.is_none()) continue;
+      const py::object answer = progress(seen->fraction, seen->stage);
+      if (!answer.is_none() && !py::cast<bool>(answer)) stop = true;
+    } catch (...) {
+      raised = std::current_exception();
+      stop = true;
+    }
+  }
+  Expected<BakeResult> result = running.get();
+  if (raised) std::rethrow_exception(raised);
+  const BakeResult done = valueOf(std::move(result));
+  py::dict out;
+  out["rays"] = done.rays;
+  out["samples"] = done.samples;
+  out["file_bytes"] = done.file_bytes;
+  out["seconds"] = done.seconds;
+  out["notices"] = done.notices;
+  return out;
 }
 
 }  // namespace
@@ -157,5 +338,9 @@ PYBIND11_MODULE(lambent, module) {
           },
           "Irradiance / pi at the vertices of a diffuse surface under light in its group's frame.",
           py::arg("surface"), py::arg("light"), py::arg("full") = true);
-  addBaking(module);
+  module.def("bake", &bake,
+             "Bakes a glTF file, or a list of meshes as dictionaries of arrays, into a bundle. Keywords are "
+             "the options of "
+             "`lambent bake`; progress(fraction, stage) may return False to stop.",
+             py::arg("scene"), py::arg("output"), py::arg("progress") = py::none(), py::arg("cache") = "");
 }

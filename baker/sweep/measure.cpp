@@ -11,7 +11,7 @@
 #include "baker/accuracy/compare.hpp"
 #include "baker/cache/key.hpp"
 #include "runtime/base/atomic_file.hpp"
-#include "runtime/spec/display.hpp"
+#include "runtime/spec/image.hpp"
 #include "runtime/spec/rec709.hpp"
 
 namespace lambent::baker {

@@ -13,7 +13,6 @@
 #include "runtime/scene/instantiate.hpp"
 #include "runtime/scene/reflection.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {

@@ -16,7 +16,6 @@
 #include "runtime/lighting/key_lights.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/transforms.hpp"
-#include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {

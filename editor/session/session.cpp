@@ -10,7 +10,6 @@
 
 #include "runtime/base/lower_case.hpp"
 #include "runtime/scene/instantiate.hpp"
-#include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {

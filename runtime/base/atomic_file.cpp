@@ -129,6 +129,13 @@ Result<void> AtomicFile::commit() {
               "choose another place");
 }
 
+Result<void> writeFile(const fs::path& path, std::span<const std::byte> bytes) {
+  Result<AtomicFile> file = AtomicFile::open(path);
+  if (!file) return failAgain(std::move(file.error()));
+  if (Result<void> written = file->write(bytes); !written) return written;
+  return file->commit();
+}
+
 Result<void> checkRegularFile(const fs::path& path, const std::string& kind) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);

@@ -39,6 +39,9 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
+// Writes a whole file that way.
+Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
 // Checks that there is a regular file to read, before anything opens it: a pipe would wait for its other end
 // for ever. `kind` is what to name instead, as "a file".
 Result<void> checkRegularFile(const std::filesystem::path& path, const std::string& kind);

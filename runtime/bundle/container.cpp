@@ -14,7 +14,6 @@
 #include "runtime/base/payload_bytes.hpp"
 #include "runtime/bundle/description_json.hpp"
 #include "runtime/bundle/glb.hpp"
-#include "runtime/bundle/gltf_parts.hpp"
 #include "runtime/transfer/weights.hpp"
 
 namespace lambent::bundle {

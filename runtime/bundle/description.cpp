@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "runtime/bundle/gltf_types.hpp"
+#include "runtime/base/payload_bytes.hpp"
 
 namespace lambent::bundle {
 
@@ -34,40 +34,30 @@ bool isLayered(const Description& description, const Draw& draw) {
          });
 }
 
-}  // namespace lambent::bundle
-
-namespace lambent::gltf {
-
-glm::mat4 Trs::matrix() const {
-  glm::mat4 matrix = glm::mat4_cast(rotation);
-  for (int column = 0; column < 3; ++column) matrix[column] *= scale[column];
-  matrix[3] = glm::vec4(translation, 1.0f);
-  return matrix;
+std::vector<std::byte> encodeVoxels(std::span<const std::uint32_t> voxels) {
+  std::vector<std::int32_t> steps(voxels.size());
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+    steps[i] = static_cast<std::int32_t>(voxels[i] - (i > 0 ? voxels[i - 1] : 0u));
+  std::vector<std::byte> bytes;
+  appendIntegers(bytes, steps);
+  return bytes;
 }
 
-std::vector<glm::mat4> worldTransforms(const std::vector<Node>& nodes) {
-  std::vector<glm::dmat4> world_from_node(nodes.size(), glm::dmat4(1.0));
-  std::vector<bool> done(nodes.size(), false);
-  std::vector<std::size_t> chain;
-  for (std::size_t start = 0; start < nodes.size(); ++start) {
-    // The loop climbs to the first ancestor that is done and comes back down. It does not recurse, because
-    // hierarchies may be deep.
-    chain.clear();
-    for (std::int32_t i = static_cast<std::int32_t>(start); i >= 0 && !done[static_cast<std::size_t>(i)];
-         i = nodes[static_cast<std::size_t>(i)].parent) {
-      chain.push_back(static_cast<std::size_t>(i));
-      done[static_cast<std::size_t>(i)] = true;
-    }
-    while (!chain.empty()) {
-      const std::size_t i = chain.back();
-      chain.pop_back();
-      const std::int32_t parent = nodes[i].parent;
-      world_from_node[i] = glm::dmat4(nodes[i].parent_from_node);
-      if (parent >= 0)
-        world_from_node[i] = world_from_node[static_cast<std::size_t>(parent)] * world_from_node[i];
-    }
+Result<std::vector<std::uint32_t>> decodeVoxels(std::span<const std::byte> bytes, const glm::uvec3& grid_size,
+                                                const std::string& subject) {
+  if (bytes.size() % 4 != 0) return fail(subject, "has a list of voxels that ends in one", "bake it again");
+  const std::vector<std::int32_t> steps = Front(bytes).integers(bytes.size() / 4);
+  const std::int64_t count = std::int64_t{grid_size.x} * grid_size.y * grid_size.z;
+  std::vector<std::uint32_t> voxels;
+  voxels.reserve(steps.size());
+  std::int64_t voxel = 0;
+  for (const std::int32_t step : steps) {
+    voxel += step;
+    if (step < 0 || (step == 0 && !voxels.empty()) || voxel >= count)
+      return fail(subject, "has a list of voxels that is not in order", "bake it again");
+    voxels.push_back(static_cast<std::uint32_t>(voxel));
   }
-  return {world_from_node.begin(), world_from_node.end()};
+  return voxels;
 }
 
-}  // namespace lambent::gltf
+}  // namespace lambent::bundle

@@ -10,13 +10,16 @@
 #include <array>
 #include <cmath>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "runtime/base/result.hpp"
 #include "runtime/bundle/gltf_types.hpp"
 #include "runtime/transfer/codebook.hpp"
 
@@ -95,8 +98,8 @@ enum class PayloadType : std::uint8_t {
   LightWeights,   // light probes of each sample of a cell (light_weights.hpp)
   CaptureProxy,   // a group in a few triangles, as other groups see it (capture_proxy.hpp)
   BrdfTable,      // b(v) of a family of BRDFs (brdf_table.hpp)
-  Density,        // extinction of a volume at its own resolution (volume_grid.hpp)
-  Voxels,         // voxels of its transfer grid at which a volume has samples (volume_grid.hpp)
+  Density,        // extinction of a volume at its own resolution
+  Voxels,         // voxels of its transfer grid at which a volume has samples (encodeVoxels())
   Importance,     // how much each sample of a cell matters to pictures (importanceCode())
 };
 
@@ -207,6 +210,16 @@ struct VolumeGrid {
   glm::uvec3 transfer_size{1};      // number of voxels of the transfer grid along x, y and z
   std::uint32_t voxels = 0;         // payload
 };
+
+// A volume has two payloads:
+//   "density": one code of 8 or 16 bits per voxel, little endian, x fastest, then y, then z, where
+//              extinction = density_max * code / (2^bits - 1).
+//   "voxels":  rising indices of voxels of the transfer grid (x fastest), each as its difference from the one
+//              before it (the first from 0), as 32-bit integers in the form of payload_bytes.hpp.
+std::vector<std::byte> encodeVoxels(std::span<const std::uint32_t> voxels);
+// Fails, naming `subject`, if the voxels do not rise or lie outside the grid.
+Result<std::vector<std::uint32_t>> decodeVoxels(std::span<const std::byte> bytes, const glm::uvec3& grid_size,
+                                                const std::string& subject);
 
 // Describes a grid of points that stores how the group changes the light around it: M - I in the group's
 // frame, which falls to 0 towards the faces of the grid. The points are the samples of the group's

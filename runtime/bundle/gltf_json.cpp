@@ -1,19 +1,23 @@
-// Writes and reads the glTF 2.0 part of a bundle's JSON, which any viewer can read. Materials, cameras,
-// lights and animations have files of their own (gltf_parts.hpp).
+// Writes and reads the JSON of a bundle, of which any viewer can read the glTF 2.0 part. Materials,
+// animations and the extension have files of their own (description_json.hpp).
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <set>
 
-#include "runtime/bundle/description.hpp"
+#include <fmt/format.h>
+
+#include "runtime/base/payload_bytes.hpp"
 #include "runtime/bundle/description_json.hpp"
-#include "runtime/bundle/gltf_parts.hpp"
-#include "runtime/bundle/json_fields.hpp"
 
 namespace lambent::bundle {
 
 namespace {
 
 constexpr std::uint64_t kLargestCount = 0xffffffffu;
+constexpr const char* kPunctualLights = "KHR_lights_punctual";
+constexpr std::array kCameraTypes = {"orthographic", "perspective"};
+constexpr std::array kLightTypes = {"directional", "point", "spot"};
 
 // --- meshes ---
 
@@ -182,12 +186,51 @@ std::size_t samplerIndex(const gltf::Sampler& sampler, std::vector<gltf::Sampler
   return static_cast<std::size_t>(std::find(samplers.begin(), samplers.end(), sampler) - samplers.begin());
 }
 
+// --- cameras and lights ---
+
+void cameraFields(const auto& io, auto& camera) {
+  if (io.has("name", !camera.name.empty())) io("name", camera.name);
+  io.word("type", camera.perspective, kCameraTypes);
+  io.child(kCameraTypes[camera.perspective ? 1 : 0], [&](const auto& lens) {
+    lens("znear", camera.znear);
+    if (lens.has("zfar", camera.zfar > 0.0f)) lens("zfar", camera.zfar);
+    if (camera.perspective) {
+      lens("yfov", camera.yfov_rad);
+      if (lens.has("aspectRatio", camera.aspect > 0.0f)) lens("aspectRatio", camera.aspect);
+    } else {
+      lens("xmag", camera.xmag);
+      lens("ymag", camera.ymag);
+    }
+  });
+}
+
+void lightFields(const auto& io, auto& light) {
+  if (io.has("name", !light.name.empty())) io("name", light.name);
+  io.word("type", light.type, kLightTypes);
+  io("color", light.color);
+  io.require(light.color.x >= 0.0f && light.color.y >= 0.0f && light.color.z >= 0.0f, "color", "is negative");
+  io("intensity", light.intensity);
+  io.require(light.intensity >= 0.0f, "intensity", "is negative");
+  if (io.has("range", light.range_m > 0.0f)) {
+    io("range", light.range_m);
+    io.require(light.range_m >= 0.0f, "range", "is negative");
+  }
+  if (light.type != gltf::Light::Type::Spot) return;
+  io.child("spot", [&](const auto& spot) {
+    spot("innerConeAngle", light.inner_cone_rad);
+    spot.require(light.inner_cone_rad >= 0.0f, "innerConeAngle", "is negative");
+    spot("outerConeAngle", light.outer_cone_rad);
+    spot.require(light.outer_cone_rad >= 0.0f, "outerConeAngle", "is negative");
+  });
+  io.require(
+      light.inner_cone_rad < light.outer_cone_rad && light.outer_cone_rad <= std::numbers::pi_v<float> / 2,
+      "spot", "is not a cone inside a cone of at most 90 degrees");
+}
+
 template <typename List, typename ToJson>
 void writeList(Json& document, const char* key, const List& list, ToJson to_json) {
   for (const auto& item : list) document[key].push_back(to_json(item));  // glTF forbids empty lists
 }
-
-}  // namespace
 
 void writeGltf(const Description& d, std::uint64_t binary_bytes, Json& document) {
   document["asset"] = {{"version", "2.0"}, {"generator", d.generator.program + " " + d.generator.version}};
@@ -229,9 +272,13 @@ void writeGltf(const Description& d, std::uint64_t binary_bytes, Json& document)
   std::set<std::string> used{std::string(kExtensionName)};
   writeList(document, "materials", d.materials,
             [&](const gltf::Material& material) { return materialJson(material, used); });
-  writeList(document, "cameras", d.cameras, cameraJson);
+  writeList(document, "cameras", d.cameras, [](const gltf::Camera& camera) {
+    return written([&](const auto& io) { cameraFields(io, camera); });
+  });
   if (!d.lights.empty()) {
-    writeList(document["extensions"][kPunctualLights], "lights", d.lights, lightJson);
+    writeList(document["extensions"][kPunctualLights], "lights", d.lights, [](const gltf::Light& light) {
+      return written([&](const auto& io) { lightFields(io, light); });
+    });
     used.insert(kPunctualLights);
   }
   writeList(document, "nodes", d.nodes, [&](const gltf::Node& node) {
@@ -273,10 +320,11 @@ void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d)
   }
   for (const Field& material : document.list("materials"))
     d.materials.push_back(readMaterial(material, d.textures.size()));
-  for (const Field& camera : document.list("cameras")) d.cameras.push_back(readCamera(camera));
+  for (const Field& camera : document.list("cameras"))
+    cameraFields(FieldReader(camera, d), d.cameras.emplace_back());
   if (document.has("extensions") && document["extensions"].has(kPunctualLights))
     for (const Field& light : document["extensions"][kPunctualLights].list("lights"))
-      d.lights.push_back(readLight(light));
+      lightFields(FieldReader(light, d), d.lights.emplace_back());
 
   const auto accessors = document.list("accessors");
   for (const Field& field : document.list("meshes")) {
@@ -312,6 +360,46 @@ void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d)
   for (std::size_t i = 0; i < std::min<std::size_t>(scenes.size(), 1); ++i)
     for (const Field& root : scenes[i].list("nodes"))
       d.roots.push_back(static_cast<std::int32_t>(root.index(d.nodes.size())));
+}
+
+}  // namespace
+
+std::string toJson(const Description& description, std::uint64_t binary_bytes) {
+  Json document;
+  writeGltf(description, binary_bytes, document);
+  document["extensions"][std::string(kExtensionName)] = writeTransfer(description);
+  return document.dump();
+}
+
+Result<Description> fromJson(const std::string& text, std::uint64_t binary_bytes, const std::string& file) {
+  const std::string name(kExtensionName);
+  try {
+    const Json document = Json::parse(text);
+    const Field root(document, "");
+    if (!root.has("extensions") || !root["extensions"].has(name.c_str()))
+      return fail(file, "is a glTF file without baked transfer", "bake it with `lambent bake`");
+    const Field extension = root["extensions"][name.c_str()];
+    const std::uint64_t version = extension["version"].count(0xffffffffu);
+    if (version > kVersionCurrent)
+      return fail(
+          file, fmt::format("has format version {}, newer than this program's {}", version, kVersionCurrent),
+          "use a newer lambent or bake it again");
+    if (version >= kVersionFirstLight && version < kVersionVolumesAndNeighborhoods)
+      return fail(file,
+                  fmt::format("was written by an older program (format version {}, this one reads {})",
+                              version, kVersionCurrent),
+                  "bake it again");
+    if (version < kVersionFirstLight)
+      return fail(file, fmt::format("has the unknown format version {}", version), "bake it again");
+    Description description;
+    readGltf(root, binary_bytes, description);
+    readTransfer(extension, description);
+    return description;
+  } catch (const JsonFault& fault) {
+    return fail(file, fmt::format("is damaged: {}", fault.what()), "bake it again");
+  } catch (const Json::exception&) {
+    return fail(file, "is damaged: its JSON cannot be read", kCopyAgain);
+  }
 }
 
 }  // namespace lambent::bundle

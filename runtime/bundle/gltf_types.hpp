@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -196,5 +197,23 @@ struct Animation {
 
 // Returns world_from_node for every node, composed in double. Parents may follow their children in the list.
 std::vector<glm::mat4> worldTransforms(const std::vector<Node>& nodes);
+
+// Evaluates animations at a point in time, as glTF 2.0, appendix C says: step, linear (slerp for rotations)
+// or cubic Hermite splines. The first value holds before the first key, the last value after the last key.
+// Quaternions are returned with unit length. Times that are not finite count as 0.
+
+// Evaluate a Translation or Scale channel, and a Rotation channel.
+glm::vec3 vectorAt(const AnimationChannel& channel, float time_s);
+glm::quat rotationAt(const AnimationChannel& channel, float time_s);
+
+// Returns the time of the last key in seconds, or 0 if there is none.
+float durationOf(const Animation& animation);
+
+// Sets the part of a node's transform that the channel animates.
+void applyChannel(const AnimationChannel& channel, float time_s, Trs& parts);
+
+// Sets trs and parent_from_node of all animated nodes for the time. If several channels animate the same
+// part, the last one counts.
+void applyAnimations(std::span<const Animation> animations, float time_s, std::vector<Node>& nodes);
 
 }  // namespace lambent::gltf

@@ -4,13 +4,15 @@
 #include <array>
 #include <optional>
 
-#include "runtime/bundle/gltf_parts.hpp"
+#include "runtime/bundle/description_json.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::bundle {
 
 namespace {
 
+constexpr const char* kTextureTransform = "KHR_texture_transform";
+constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
 constexpr std::array kAlphaModes = {"OPAQUE", "MASK", "BLEND"};
 
 Json textureJson(const gltf::TextureRef& ref, std::set<std::string>& used) {
@@ -39,48 +41,29 @@ gltf::TextureRef readTexture(const Field& field, std::size_t texture_count) {
 
 // ---- values as JSON
 
-Json valueJson(const gltf::TextureRef& value, std::set<std::string>& used) {
-  return textureJson(value, used);
-}
-Json valueJson(gltf::AlphaMode value, std::set<std::string>&) {
-  return kAlphaModes[static_cast<std::size_t>(value)];
-}
-Json valueJson(std::int32_t value, std::set<std::string>&) {
-  return static_cast<std::uint32_t>(value);
-}
-template <glm::length_t L>
-Json valueJson(const glm::vec<L, float>& value, std::set<std::string>&) {
-  return vectorJson(value);
-}
 template <class T>
-Json valueJson(const T& value, std::set<std::string>&) {
-  return value;
+Json fieldJson(const T& value, std::set<std::string>& used) {
+  if constexpr (std::is_same_v<T, gltf::TextureRef>)
+    return textureJson(value, used);
+  else if constexpr (std::is_same_v<T, gltf::AlphaMode>)
+    return kAlphaModes[static_cast<std::size_t>(value)];
+  else if constexpr (std::is_same_v<T, std::int32_t>)
+    return static_cast<std::uint32_t>(value);
+  else
+    return valueJson(value);
 }
 
-void readValue(const Field& field, std::size_t texture_count, gltf::TextureRef& value) {
-  value = readTexture(field, texture_count);
-}
-void readValue(const Field& field, std::size_t, gltf::AlphaMode& value) {
-  const auto found = std::find(kAlphaModes.begin(), kAlphaModes.end(), field.text());
-  if (found == kAlphaModes.end()) field.fault("is not OPAQUE, MASK or BLEND");
-  value = static_cast<gltf::AlphaMode>(found - kAlphaModes.begin());
-}
-void readValue(const Field& field, std::size_t, std::int32_t& value) {
+template <class T>
+void readField(const Field& field, std::size_t texture_count, T& value) {
   constexpr std::uint64_t kMostBrdfs = 1u << 16;  // transfer_json.cpp checks that the table exists
-  value = static_cast<std::int32_t>(field.count(kMostBrdfs));
-}
-template <glm::length_t L>
-void readValue(const Field& field, std::size_t, glm::vec<L, float>& value) {
-  value = field.vector<glm::vec<L, float>>();
-}
-void readValue(const Field& field, std::size_t, float& value) {
-  value = field.number();
-}
-void readValue(const Field& field, std::size_t, bool& value) {
-  value = field.flag();
-}
-void readValue(const Field& field, std::size_t, std::string& value) {
-  value = field.text();
+  if constexpr (std::is_same_v<T, gltf::TextureRef>)
+    value = readTexture(field, texture_count);
+  else if constexpr (std::is_same_v<T, gltf::AlphaMode>)
+    value = field.word<gltf::AlphaMode>(kAlphaModes);
+  else if constexpr (std::is_same_v<T, std::int32_t>)
+    value = static_cast<std::int32_t>(field.count(kMostBrdfs));
+  else
+    readValue(field, value);
 }
 
 using Allowed = gltf::MaterialJson::Allowed;
@@ -123,7 +106,7 @@ void writeRow(const Row& row, const gltf::Material& material, Json& json, std::s
   const auto [outer, inner] = row.json.objects;
   if (inner && std::string_view(outer) == "extensions") used.insert(inner);
   if (row.json.key)
-    (*place)[row.json.key] = valueJson(value, used);
+    (*place)[row.json.key] = fieldJson(value, used);
   else
     *place = Json::object();
 }
@@ -143,7 +126,7 @@ void readRow(const Row& row, const Field& field, std::size_t texture_count, gltf
       return;
     }
   if (!row.json.required && !place.has(row.json.key)) return;
-  readValue(place[row.json.key], texture_count, value);
+  readField(place[row.json.key], texture_count, value);
   checkValue(place[row.json.key], row.json.allowed, value);
 }
 

@@ -7,7 +7,6 @@
 #include <sstream>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace lambent::command_line {
@@ -92,6 +91,26 @@ class HelpFormatter : public CLI::Formatter {
 };
 
 }  // namespace
+
+CLI::Option* addWords(CLI::App& app, const std::string& names, std::vector<std::string>& words,
+                      const std::string& type, const std::string& help) {
+  return app.add_option(names, words, help)->type_name(type)->take_all()->expected(1);
+}
+
+CLI::Option* addBytes(CLI::App& app, const std::string& names, std::uint64_t& bytes,
+                      const std::string& help) {
+  return app.add_option(names, bytes, help)
+      ->type_name("BYTES")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
+}
+
+CLI::Option* addWord(CLI::App& app, const std::string& names, const std::string& type,
+                     const std::string& help, std::function<Result<void>(const std::string& word)> take) {
+  const auto checked = [take = std::move(take)](const std::string& word) {
+    if (const Result<void> taken = take(word); !taken) throw CLI::ValidationError(taken.error().line());
+  };
+  return app.add_option_function<std::string>(names, checked, help)->type_name(type);
+}
 
 void addExamples(CLI::App& app, const std::vector<Example>& examples, const std::string& notes) {
   std::string footer = notes.empty() ? "" : wrapped(notes, kWidth) + "\n\n";

@@ -4,20 +4,47 @@
 // work begins.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "runtime/base/result.hpp"
+#include <CLI/CLI.hpp>
 
-namespace CLI {
-class App;
-}
+#include "runtime/base/result.hpp"
 
 namespace lambent::command_line {
 
 // Breaks the words into lines of at most `width` letters.
 std::string wrapped(const std::string& words, std::size_t width);
+
+// Adds an option; --help shows `type` where its value stands.
+template <class Value>
+CLI::Option* addValue(CLI::App& app, const std::string& names, Value& value, const std::string& type,
+                      const std::string& help) {
+  return app.add_option(names, value, help)->type_name(type);
+}
+// Adds an option that may be given several times, with a word each.
+CLI::Option* addWords(CLI::App& app, const std::string& names, std::vector<std::string>& words,
+                      const std::string& type, const std::string& help);
+// Adds an option for a number of bytes, which may have a unit of 1024 and its powers: "4GB".
+CLI::Option* addBytes(CLI::App& app, const std::string& names, std::uint64_t& bytes, const std::string& help);
+// Adds an option whose word `take` understands, or refuses as wrong usage.
+CLI::Option* addWord(CLI::App& app, const std::string& names, const std::string& type,
+                     const std::string& help, std::function<Result<void>(const std::string& word)> take);
+
+// Returns a function for addWord() that keeps in `value` what `parse` makes of the word.
+template <class Value, class Parse>
+auto into(Value& value, Parse parse) {
+  return [&value, parse](const std::string& word) -> Result<void> {
+    auto parsed = parse(word);
+    if (!parsed) return failAgain(parsed.error());
+    value = std::move(*parsed);
+    return {};
+  };
+}
 
 struct Example {
   std::string command;  // as "lambent bake scene.gltf"

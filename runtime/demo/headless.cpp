@@ -13,7 +13,6 @@
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "runtime/demo/camera.hpp"
 #include "runtime/demo/options.hpp"
 #include "runtime/demo/stage.hpp"
 #include "runtime/effects/volume/volume.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -18,48 +17,10 @@ namespace lambent::demo {
 
 namespace {
 
-// The raw strings from CLI11, before they are parsed.
+// Words that mean something only together with others.
 struct Words {
-  std::vector<std::string> bundles, lights, fade_lights, key_edits;
-  std::string light_layout, camera, size = "1280x720", headless, view = "final", overlay, quality = "default";
-  std::string rotate_light = "0", lamps = "1", fade = "0", time, step = "0.0333";
-  std::vector<std::string> settings;  // of the frame, one per row
-  std::uint64_t max_memory = ~std::uint64_t{0};
-  std::uint32_t frames = 1;
-  bool json = false;
-};
-
-struct Row {
-  const char* name;
-  std::string Words::*field;
-  const char* type;
-  const char* help;
-};
-
-constexpr Row kRows[] = {
-    {"--light-layout", &Words::light_layout, "LAYOUT",
-     "Layout of environment maps whose shape misleads: lat-long, angular-map\nor vertical-cross"},
-    {"--camera", &Words::camera, "CAM",
-     "Name or index of a camera in the file, or orbit:AZ,EL,DIST,FOV\n(default: the file's first, else an "
-     "orbit)"},
-    {"--size", &Words::size, "WxH", "Picture or window in pixels"},
-    {"--headless", &Words::headless, "OUT",
-     "Write one picture (.png tone-mapped, .exr linear) without a display;\nwith a run of # in its name "
-     "every "
-     "frame: out-###.png"},
-    {"--view", &Words::view, "NAME",
-     "What surfaces show: final, irradiance, transfer-dc,\ntransfer-band[:BAND], error, clusters, normals or "
-     "wireframe;\nan "
-     ".exr holds the numbers"},
-    {"--overlay", &Words::overlay, "LIST",
-     "Drawn over the picture: light-probes, neighborhoods[:AXIS,POSITION],\nvolumes, groups, lights, keys"},
-    {"--rotate-light", &Words::rotate_light, "DEG", "Turn all lights about +Y (+Z towards +X)"},
-    {"--fade", &Words::fade, "SHARE", "From the lights of --light to those of --fade-to: 0..1"},
-    {"--time", &Words::time, "S",
-     "Where the scenes' animations stand in the last frame, in\nseconds (default: headless, the scenes at "
-     "rest)"},
-    {"--step", &Words::step, "S", "Seconds of animation from frame to frame, headless"},
-    {"--lamps", &Words::lamps, "FACTOR", "Times the strength of the scenes' own lights; 0 switches them off"},
+  std::vector<std::string> bundles, key_edits;
+  std::string light_layout;
 };
 
 // Returns the type of an option as help shows it.
@@ -77,62 +38,111 @@ std::string typeOf(const frame::SettingRow& row) {
   return "NUMBER";
 }
 
-void declare(CLI::App& app, Words& words) {
+// Returns a parser of numbers from 0 to `most`, which are `what`.
+auto numberUpTo(float most, const char* option, const char* what) {
+  return [=](const std::string& word) -> Result<float> {
+    const std::optional<float> number = spec::parseNumber(word);
+    if (number && *number >= 0.0f && *number <= most) return *number;
+    return fail(option, fmt::format("\"{}\" is not {}", word, what), fmt::format("give 0..{}", most));
+  };
+}
+
+// Returns the parser with the option's name in its errors.
+template <class Parse>
+auto named(const char* option, Parse parse) {
+  return [=](const std::string& word) {
+    auto parsed = parse(word);
+    if (!parsed) parsed.error().subject = option;
+    return parsed;
+  };
+}
+
+Result<void> takePicture(const std::string& word, Options& options) {
+  options.headless = word;
+  const std::string extension = lowerCase(options.headless->extension().string());
+  options.linear = extension == ".exr";
+  if (extension == ".png" || options.linear) return {};
+  return fail("--headless", fmt::format("\"{}\" is neither .png nor .exr", word),
+              "name a .png (tone-mapped) or an .exr (linear)");
+}
+
+void declare(CLI::App& app, Options& options, Words& words) {
+  using command_line::addWord, command_line::addWords, command_line::into;
   app.add_option("BUNDLE", words.bundles, "Baked scenes to show (.lmb.glb), or folders of them")
       ->required()
       ->type_name("");
-  app.add_option("--light", words.lights,
-                 "Several add up: an environment map file (.hdr, .exr), constant:R,G,B "
-                 "or\nsun:AZ,EL,ANGLE,R[,G,B] (degrees, "
-                 "angular radius, radiance);\nin the scene: sphere:X,Y,Z,RADIUS,R[,G,B] or "
-                 "disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]")
-      ->type_name("LIGHT")
-      ->take_all()
-      ->expected(1);
-  app.add_option("--fade-to", words.fade_lights,
-                 "Lights from infinity to fade to, see --fade; several add up")
-      ->type_name("LIGHT")
-      ->take_all()
-      ->expected(1);
-  app.add_option(
-         "--edit-key", words.key_edits,
-         "key:AZ,EL,TO_AZ,TO_EL,R[,G,B]: the key light that was found in a\nprobe at AZ,EL stands at "
-         "TO_AZ,TO_EL and shines by these factors\n(--json lists the key lights); several edit several")
-      ->type_name("EDIT")
-      ->take_all()
-      ->expected(1);
-  for (const Row& row : kRows) {
-    CLI::Option* option = app.add_option(row.name, words.*row.field, row.help)->type_name(row.type);
-    if (!(words.*row.field).empty()) option->capture_default_str();
+  addWords(app, "--light", options.light_words, "LIGHT",
+           "Several add up: an environment map file (.hdr, .exr), constant:R,G,B or "
+           "sun:AZ,EL,ANGLE,R[,G,B] (degrees, angular radius, radiance); in the scene: "
+           "sphere:X,Y,Z,RADIUS,R[,G,B] or disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]");
+  addWords(app, "--fade-to", options.fade_words, "LIGHT",
+           "Lights from infinity to fade to, see --fade; several add up");
+  addWords(app, "--edit-key", words.key_edits, "EDIT",
+           "key:AZ,EL,TO_AZ,TO_EL,R[,G,B]: the key light that was found in a probe at AZ,EL stands at "
+           "TO_AZ,TO_EL and shines by these factors (--json lists the key lights); several edit several");
+  command_line::addValue(app, "--light-layout", words.light_layout, "LAYOUT",
+                         "Layout of environment maps whose shape misleads: lat-long, angular-map or "
+                         "vertical-cross");
+  addWord(app, "--camera", "CAM",
+          "Name or index of a camera in the file, or orbit:AZ,EL,DIST,FOV (default: the file's first, else "
+          "an orbit)",
+          into(options.camera, spec::parseCamera));
+  addWord(app, "--size", "WxH", "Picture or window in pixels", into(options.size, spec::parseSize))
+      ->default_str("1280x720");
+  addWord(app, "--headless", "OUT",
+          "Write one picture (.png tone-mapped, .exr linear) without a display; with a run of # in its name "
+          "every frame: out-###.png",
+          [&](const std::string& word) { return takePicture(word, options); });
+  addWord(
+      app, "--view", "NAME",
+      "What surfaces show: final, irradiance, transfer-dc, transfer-band[:BAND], error, clusters, normals "
+      "or wireframe; an .exr holds the numbers",
+      into(options.view, named("--view", frame::parseView)))
+      ->default_str("final");
+  addWord(
+      app, "--overlay", "LIST",
+      "Drawn over the picture: light-probes, neighborhoods[:AXIS,POSITION], volumes, groups, lights, keys",
+      into(options.overlays, named("--overlay", frame::parseOverlays)));
+  addWord(app, "--rotate-light", "DEG", "Turn all lights about +Y (+Z towards +X)",
+          into(options.rotate_light_deg, spec::parseDegrees))
+      ->default_str("0");
+  addWord(app, "--fade", "SHARE", "From the lights of --light to those of --fade-to: 0..1",
+          into(options.fade, numberUpTo(1.0f, "--fade", "a share")))
+      ->default_str("0");
+  addWord(
+      app, "--time", "S",
+      "Where the scenes' animations stand in the last frame, in seconds (default: headless, the scenes at "
+      "rest)",
+      into(options.time_s, numberUpTo(1e6f, "--time", "a number of seconds")));
+  addWord(app, "--step", "S", "Seconds of animation from frame to frame, headless",
+          into(options.step_s, numberUpTo(1e3f, "--step", "a number of seconds")))
+      ->default_str("0.0333");
+  addWord(app, "--lamps", "FACTOR", "Times the strength of the scenes' own lights; 0 switches them off",
+          into(options.lamps, numberUpTo(1e6f, "--lamps", "a factor")))
+      ->default_str("1");
+  // The library takes options over in this order, so that single ones go before --quality.
+  addWord(app, "--quality", "low|default|high",
+          "How many key lights there are and how finely they shadow; single options go before it",
+          into(options.settings, frame::settingsOfQuality))
+      ->default_str("default");
+  for (const frame::SettingRow& row : frame::settingRows()) {
+    const auto put = [&](const std::string& word) {
+      return frame::putSetting(options.settings, row.name, word);
+    };
+    addWord(app, "--" + std::string(row.name), typeOf(row), std::string(row.help), put)
+        ->default_str(frame::settingWord(row, {}));
+    if (!row.former.empty()) addWord(app, "--" + std::string(row.former), "", "", put)->group("");  // hidden
   }
-  const frame::FrameSettings defaults;
-  words.settings.resize(frame::settingRows().size());  // empty: not given, so --quality decides
-  for (std::size_t i = 0; i < words.settings.size(); ++i) {
-    const frame::SettingRow& row = frame::settingRows()[i];
-    app.add_option("--" + std::string(row.name), words.settings[i], std::string(row.help))
-        ->type_name(typeOf(row))
-        ->default_str(frame::settingWord(row, defaults));
-    if (!row.former.empty())
-      app.add_option("--" + std::string(row.former), words.settings[i])->group("");  // hidden in help
-  }
-  app.add_option("--quality", words.quality,
-                 "How many key lights there are and how finely\nthey shadow; single "
-                 "options go before it")
-      ->type_name("low|default|high")
-      ->capture_default_str();
-  app.add_option("--frames", words.frames,
-                 "Frames to render headless, the last one is written or, with # in\nthe name, every one; the "
-                 "light turns through "
-                 "--rotate-light and time goes on over them")
-      ->type_name("N")
+  command_line::addValue(app, "--frames", options.frames, "N",
+                         "Frames to render headless, the last one is written or, with # in the name, every "
+                         "one; the light turns through --rotate-light and time goes on over them")
       ->capture_default_str()
       ->check(CLI::Range(1u, 1'000'000u).description(""));
-  app.add_option("--max-memory", words.max_memory,
-                 "GPU memory for the scenes, in bytes or like 200MB; what the camera\nsees large comes first "
-                 "(default: no limit)")
-      ->type_name("BYTES")
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
-  app.add_flag("--json", words.json, "Report on stdout: times, counts, bytes resident");
+  command_line::addBytes(
+      app, "--max-memory", options.max_memory_bytes,
+      "GPU memory for the scenes, in bytes or like 200MB; what the camera sees large comes "
+      "first (default: no limit)");
+  app.add_flag("--json", options.json, "Report on stdout: times, counts, bytes resident");
 }
 
 // Puts the options in groups, with examples.
@@ -162,14 +172,12 @@ void describe(CLI::App& app) {
 }
 
 Result<void> understandLights(const Words& words, Options& options) {
-  options.default_light = words.lights.empty();
-  options.light_words = words.lights;
+  options.default_light = options.light_words.empty();
   if (options.default_light)
     options.light_words.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
   auto lights = spec::parseLights(options.light_words, words.light_layout);
   if (!lights) return failAgain(lights.error());
   options.lights = std::move(*lights);
-  options.fade_words = words.fade_lights;
   auto fade_lights = spec::parseLights(options.fade_words, words.light_layout);
   if (!fade_lights) return failAgain(fade_lights.error());
   options.fade_lights = std::move(*fade_lights);
@@ -180,40 +188,8 @@ Result<void> understandLights(const Words& words, Options& options) {
     if (!edit) return failAgain(edit.error());
     options.key_edits.push_back(*edit);
   }
-  const std::optional<float> fade = spec::parseNumber(words.fade);
-  if (!fade || *fade < 0.0f || *fade > 1.0f)
-    return fail("--fade", fmt::format("\"{}\" is not a share", words.fade), "give 0..1");
-  if (*fade > 0.0f && options.fade_lights.empty())
+  if (options.fade > 0.0f && options.fade_lights.empty())
     return fail("--fade", "there is nothing to fade to", "give lights with --fade-to");
-  options.fade = *fade;
-  return {};
-}
-
-Result<float> understandSeconds(const char* option, const std::string& word, float low, float high) {
-  const std::optional<float> seconds = spec::parseNumber(word);
-  if (!seconds || !(*seconds >= low && *seconds <= high))
-    return fail(option, fmt::format("\"{}\" is not a number of seconds", word),
-                fmt::format("give {}..{}", low, high));
-  return *seconds;
-}
-
-Result<void> understandPicture(const Words& words, Options& options) {
-  const Result<spec::Size> size = spec::parseSize(words.size);
-  if (!size) return failAgain(size.error());
-  options.size = *size;
-  if (!words.camera.empty()) {
-    const Result<spec::Camera> camera = spec::parseCamera(words.camera);
-    if (!camera) return failAgain(camera.error());
-    options.camera = *camera;
-  }
-  if (!words.headless.empty()) {
-    options.headless = words.headless;
-    const std::string extension = lowerCase(options.headless->extension().string());
-    if (extension != ".png" && extension != ".exr")
-      return fail("--headless", fmt::format("\"{}\" is neither .png nor .exr", words.headless),
-                  "name a .png (tone-mapped) or an .exr (linear)");
-    options.linear = extension == ".exr";
-  }
   return {};
 }
 
@@ -230,50 +206,13 @@ Result<std::vector<std::filesystem::path>> bundlesIn(const std::filesystem::path
   return found;
 }
 
-Result<Options> understand(const Words& words) {
-  Options options;
+Result<void> understand(const Words& words, Options& options) {
   for (const std::string& word : words.bundles) {
     const Result<std::vector<std::filesystem::path>> found = bundlesIn(word);
     if (!found) return failAgain(found.error());
     options.bundles.insert(options.bundles.end(), found->begin(), found->end());
   }
-  if (Result<void> done = understandLights(words, options); !done) return failAgain(done.error());
-  if (Result<void> done = understandPicture(words, options); !done) return failAgain(done.error());
-  const Result<frame::FrameSettings> settings = frame::settingsOfQuality(words.quality);
-  if (!settings) return failAgain(settings.error());
-  options.settings = *settings;
-  for (std::size_t i = 0; i < words.settings.size(); ++i) {
-    if (words.settings[i].empty()) continue;
-    if (Result<void> done =
-            frame::putSetting(options.settings, frame::settingRows()[i].name, words.settings[i]);
-        !done)
-      return failAgain(done.error());
-  }
-  const Result<frame::ViewChoice> view = frame::parseView(words.view);
-  if (!view) return fail("--view", view.error().problem, view.error().hint);
-  options.view = *view;
-  Result<frame::OverlayOptions> overlays = frame::parseOverlays(words.overlay);
-  if (!overlays) return fail("--overlay", overlays.error().problem, overlays.error().hint);
-  options.overlays = std::move(*overlays);
-  const Result<float> turn = spec::parseDegrees(words.rotate_light);
-  if (!turn) return failAgain(turn.error());
-  const std::optional<float> lamps = spec::parseNumber(words.lamps);
-  if (!lamps || *lamps < 0.0f || *lamps > 1e6f)
-    return fail("--lamps", fmt::format("\"{}\" is not a factor", words.lamps), "give 0..1000000");
-  options.lamps = *lamps;
-  if (!words.time.empty()) {
-    const Result<float> time = understandSeconds("--time", words.time, 0.0f, 1e6f);
-    if (!time) return failAgain(time.error());
-    options.time_s = *time;
-  }
-  const Result<float> step = understandSeconds("--step", words.step, 0.0f, 1e3f);
-  if (!step) return failAgain(step.error());
-  options.step_s = *step;
-  options.max_memory_bytes = words.max_memory;
-  options.rotate_light_deg = *turn;
-  options.frames = words.frames;
-  options.json = words.json;
-  return options;
+  return understandLights(words, options);
 }
 
 }  // namespace
@@ -285,14 +224,16 @@ void printError(const Error& error) {
 std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
   CLI::App app("Shows baked scenes under light that changes: in a window, or as a picture with --headless.",
                "lambent-demo");
+  Options options;
   Words words;
-  declare(app, words);
+  declare(app, options, words);
   describe(app);
   if (const auto ended = command_line::parse(app, argc, argv)) return *ended;
-  Result<Options> options = understand(words);
-  if (options) return std::move(*options);
-  printError(options.error());
-  return 2;
+  if (const Result<void> understood = understand(words, options); !understood) {
+    printError(understood.error());
+    return 2;
+  }
+  return options;
 }
 
 }  // namespace lambent::demo

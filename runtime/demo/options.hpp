@@ -12,7 +12,6 @@
 #include "runtime/debug/overlay_options.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/surface/views.hpp"
 
@@ -37,7 +36,7 @@ struct Options {
   std::uint32_t frames = 1;
   float rotate_light_deg = 0.0f;
   std::optional<float> time_s;  // of the scenes' animations in the last frame; nothing: at rest
-  float step_s = 0.0f;          // time between frames
+  float step_s = 0.0333f;       // time between frames
   float lamps = 1.0f;           // factor on the strength of the scenes' own lights
   std::uint64_t max_memory_bytes = ~std::uint64_t{0};  // GPU memory for the bundles
   bool json = false;

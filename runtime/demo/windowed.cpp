@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "runtime/demo/camera.hpp"
 #include "runtime/demo/stage.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/gpu/window.hpp"

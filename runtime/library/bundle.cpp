@@ -26,31 +26,9 @@ namespace {
 using library::failureOf;
 using library::fromGlm;
 
-TransferForm shownForm(transfer::Form form) {
-  switch (form) {
-    case transfer::Form::Vector:
-      return TransferForm::Vector;
-    case transfer::Form::NormalMapped:
-      return TransferForm::NormalMapped;
-    case transfer::Form::Visibility:
-      return TransferForm::Visibility;
-    case transfer::Form::Matrix:
-      return TransferForm::Matrix;
-  }
-  return TransferForm::Vector;
-}
-
-TransferPlace shownPlace(transfer::Domain domain) {
-  switch (domain) {
-    case transfer::Domain::Vertex:
-      return TransferPlace::Surface;
-    case transfer::Domain::Voxel:
-      return TransferPlace::Volume;
-    case transfer::Domain::GridPoint:
-      return TransferPlace::Neighborhood;
-  }
-  return TransferPlace::Surface;
-}
+// The enumerations of the library have the values of the room's.
+static_assert(static_cast<int>(TransferForm::Matrix) == static_cast<int>(transfer::Form::Matrix));
+static_assert(static_cast<int>(TransferPlace::Neighborhood) == static_cast<int>(transfer::Domain::GridPoint));
 
 std::string lampName(const bundle::Description& description, const bundle::GroupLight& lamp) {
   return lamp.kind == bundle::GroupLight::Kind::Material ? description.materials[lamp.index].name
@@ -58,8 +36,8 @@ std::string lampName(const bundle::Description& description, const bundle::Group
 }
 
 TransferBlock blockOf(const bundle::Cell& cell, const transfer::TransferShape& shape) {
-  TransferBlock block{.form = shownForm(shape.form(cell.domain)),
-                      .place = shownPlace(cell.domain),
+  TransferBlock block{.form = static_cast<TransferForm>(shape.form(cell.domain)),
+                      .place = static_cast<TransferPlace>(cell.domain),
                       .first_sample = cell.first_sample,
                       .samples = cell.sample_count,
                       .order = shape.order,
@@ -147,7 +125,7 @@ Expected<Bundle> Bundle::open(const std::string& path) {
                      .vertices = primitive.vertex_count,
                      .triangles = primitive.index_count / 3,
                      .back = draw.back,
-                     .form = shownForm(draw.form())};
+                     .form = static_cast<TransferForm>(draw.form())};
     if (primitive.material >= 0) {
       const gltf::Material& material = description.materials[static_cast<std::size_t>(primitive.material)];
       info.material = material.name;

@@ -33,21 +33,7 @@ ecs::Entity entityOf(std::uint64_t id) {
   return {.index = static_cast<std::uint32_t>(id), .generation = static_cast<std::uint32_t>(id >> 32)};
 }
 
-Component::Kind kindOf(Light::Kind kind) {
-  switch (kind) {
-    case Light::Kind::Point:
-      return Component::Kind::Point;
-    case Light::Kind::Spot:
-      return Component::Kind::Spot;
-    case Light::Kind::Directional:
-      return Component::Kind::Directional;
-    case Light::Kind::Sphere:
-      return Component::Kind::Sphere;
-    case Light::Kind::Disc:
-      return Component::Kind::Disc;
-  }
-  return Component::Kind::Sphere;
-}
+static_assert(static_cast<int>(Component::Kind::Disc) == static_cast<int>(Light::Kind::Disc));
 
 Expected<void> checkLight(const Light& light) {
   const auto wrong = [](const char* what) { return Failure{"light", what, {}}; };
@@ -72,7 +58,7 @@ void writeLight(ecs::Registry& registry, ecs::Entity entity, const Light& light)
   place.translation = toGlm(light.position);
   place.rotation = scene::facing(toGlm(light.direction));
   registry.emplace<scene::Transform>(entity, place);
-  registry.emplace<Component>(entity, Component{.kind = kindOf(light.kind),
+  registry.emplace<Component>(entity, Component{.kind = static_cast<Component::Kind>(light.kind),
                                                 .color = toGlm(light.color),
                                                 .strength = light.strength,
                                                 .radius_m = light.radius,

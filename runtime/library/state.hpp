@@ -1,4 +1,4 @@
-// What renderer.cpp and scene.cpp share: what a Scene owns, and the OpenGL state of the host.
+// What scene.cpp and renderer.cpp share: what a Scene owns, and the OpenGL state of the host.
 #pragma once
 
 #include <array>
@@ -14,7 +14,6 @@
 
 namespace lambent {
 
-// Holds what a Scene of the library owns, for scene.cpp and renderer.cpp.
 struct Scene::State {
   frame::World world;
   lighting::Environment environment;

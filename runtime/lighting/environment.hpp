@@ -27,7 +27,7 @@
 #include "runtime/lighting/key_lights.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/spec/distant_lights.hpp"
-#include "runtime/spec/key_edit.hpp"
+#include "runtime/spec/light.hpp"
 
 namespace lambent::lighting {
 

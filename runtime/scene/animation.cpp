@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/bundle/keyframes.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 #include "runtime/scene/components.hpp"
 
 namespace lambent::scene {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/bundle/keyframes.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/instantiate.hpp"
 #include "runtime/scene/materials.hpp"

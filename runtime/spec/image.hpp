@@ -20,6 +20,11 @@ namespace lambent::spec {
 // A picture may have at most this many texels (16384 x 8192), which are 1.5 GiB as RgbImage.
 inline constexpr std::uint64_t kMaxImageTexels = std::uint64_t{1} << 27;
 
+// Fails if width x height is 0, more than kMaxImageTexels, or more than `file_bytes` could hold at
+// `texels_per_byte`. So a small file with a false header cannot make us reserve gigabytes.
+Result<void> checkImageSize(const std::filesystem::path& path, std::uint64_t width, std::uint64_t height,
+                            std::uint64_t file_bytes, std::uint64_t texels_per_byte);
+
 struct RgbImage {
   std::uint32_t width = 0, height = 0;
   std::vector<glm::vec3> texels;  // row-major, width * height
@@ -64,5 +69,9 @@ Result<Rgba8Image> readPng(const std::filesystem::path& path);
 Result<void> writePng(const std::filesystem::path& path, const Rgba8Image& image);
 // Returns the bytes of the PNG, for embedding in scenes, where its use says what values are.
 std::vector<std::uint8_t> encodePng(const Rgba8Image& image);
+
+// Returns what lambent-demo shows at --exposure 0: the same tone curve (runtime/tone_map/tone_curve.glsl),
+// then sRGB. The picture is opaque.
+Rgba8Image displayed(const RgbaImage& linear);
 
 }  // namespace lambent::spec

@@ -16,7 +16,7 @@
 #define STBI_WRITE_NO_STDIO
 #include <stb/stb_image_write.h>
 
-#include "runtime/spec/file_bytes.hpp"
+#include "runtime/base/atomic_file.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::spec {
@@ -104,7 +104,7 @@ Result<void> writePng(const std::filesystem::path& path, const Rgba8Image& image
   constexpr std::ptrdiff_t kHeaderEnd = 8 + 4 + 4 + 13 + 4;  // the signature and the chunk IHDR
   const std::vector<std::uint8_t> chunks = srgbChunks();
   bytes.insert(bytes.begin() + kHeaderEnd, chunks.begin(), chunks.end());
-  return writeWholeFile(path, std::as_bytes(std::span(bytes)));
+  return writeFile(path, std::as_bytes(std::span(bytes)));
 }
 
 }  // namespace lambent::spec

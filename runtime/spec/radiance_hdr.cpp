@@ -15,7 +15,7 @@
 #include <cmath>
 #include <optional>
 
-#include "runtime/spec/file_bytes.hpp"
+#include "runtime/base/atomic_file.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rec709.hpp"
@@ -303,7 +303,7 @@ Result<void> writeHdr(const std::filesystem::path& path, const RgbImage& image) 
         for (const std::uint8_t component : texel) out += static_cast<char>(component);
     }
   }
-  return writeWholeFile(path, std::as_bytes(std::span(out)));
+  return writeFile(path, std::as_bytes(std::span(out)));
 }
 
 }  // namespace lambent::spec

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "runtime/bundle/volume_grid.hpp"
+#include "runtime/bundle/description.hpp"
 #include "runtime/streaming/resident_tables.hpp"
 #include "runtime/streaming/textures.hpp"
 

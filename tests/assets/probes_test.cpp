@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "assets/environment_maps.hpp"
-#include "runtime/spec/environment_map.hpp"
+#include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::assets {

@@ -1,7 +1,7 @@
 // Reads environment maps. The first byte says of which kind the file is.
 #include <cmath>
 
-#include "runtime/spec/environment_map.hpp"
+#include "runtime/spec/distant_lights.hpp"
 #include "tests/fuzz/input_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

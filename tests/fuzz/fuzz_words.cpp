@@ -1,7 +1,6 @@
 // Parses words of command lines.
 #include "baker/bake/options.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 #include "tests/fuzz/input_file.hpp"
 

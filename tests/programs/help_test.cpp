@@ -44,7 +44,12 @@ class Help : public testing::ProgramTest {
 
 TEST_F(Help, OfEveryCommandEndsWithExamplesAndExitCodesAndFits) {
   for (const Page& page : pages()) {
-    const std::string help = ask(page, {"--help"}).out;
+    const Outcome version = ask(page, {"--version"}), asked = ask(page, {"--help"});
+    EXPECT_EQ(version.exit_code, 0);
+    EXPECT_TRUE(version.out.starts_with("lambent")) << version.out;
+    EXPECT_EQ(asked.exit_code, 0);
+    EXPECT_EQ(asked.err, "");
+    const std::string& help = asked.out;
     const std::size_t examples = help.find("\nExamples:\n  lambent"), codes = help.find("\nExit codes:\n");
     EXPECT_NE(examples, std::string::npos) << help;
     EXPECT_NE(codes, std::string::npos) << help;

@@ -17,21 +17,6 @@ using testing::LambentProgram;
 using testing::Outcome;
 using testing::writeBytes;
 
-TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
-  const Outcome version = lambent({"--version"});
-  EXPECT_EQ(version.exit_code, 0);
-  EXPECT_TRUE(version.out.starts_with("lambent ")) << version.out;
-  const Outcome help = lambent({"--help"});
-  EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"bake", "reference", "plan", "info", "view", "accuracy", "compare"}) {
-    EXPECT_NE(help.out.find(command), std::string::npos) << command;
-    const Outcome about = lambent({command, "--help"});
-    EXPECT_EQ(about.exit_code, 0) << command;
-    EXPECT_EQ(about.err, "") << command;
-    EXPECT_EQ(lambent({command, "--version"}).out, version.out) << command;
-  }
-}
-
 TEST_F(LambentProgram, WrongUsageIsExitCode2AndOneLine) {
   const std::vector<std::vector<std::string>> wrong = {
       {},

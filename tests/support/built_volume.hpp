@@ -15,7 +15,6 @@
 
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/volume_grid.hpp"
 #include "runtime/streaming/loader.hpp"
 #include "tests/support/frame/bundle_store.hpp"
 

@@ -1,6 +1,6 @@
 // Keeps the largest or smallest of the numbers that a test holds against a bound. std::max(x, NaN) is x, so
 // with std::max a test passes whose shader or baker gives only NaN. Here NaN stays, and every comparison with
-// it fails. tests/docs/differences_test.cpp keeps std::max and std::min out of such places.
+// it fails. tests/docs/helpers_test.cpp keeps std::max and std::min out of such places.
 #pragma once
 
 #include <cmath>

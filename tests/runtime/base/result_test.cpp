@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/base/lower_case.hpp"
+
 namespace lambent {
 namespace {
 
@@ -21,6 +23,13 @@ TEST(Error, IsUtf8WhateverBytesAFilesNamesHave) {
             "caf\xc3\xa9: grid \xe2\x82\xac \xf0\x9f\x92\xa1");
   EXPECT_EQ((Error{"", "\xff\xc0 \x80 \xc3", ""}).line(), "?? ? ?");
   EXPECT_EQ((Error{"", "\xe2\x82", ""}).line(), "??");
+}
+
+TEST(LowerCase, FoldsAsciiLettersAndLeavesTheBytesOfOthers) {
+  EXPECT_EQ(lowerCase("Hall.HDR"), "hall.hdr");
+  EXPECT_EQ(lowerCase("@[`{"), "@[`{") << "the neighbours of the letters";
+  EXPECT_EQ(lowerCase("\xC3\x84 \xC3\xA4"), "\xC3\x84 \xC3\xA4") << "UTF-8 stays whole";
+  EXPECT_EQ(lowerCase(""), "");
 }
 
 }  // namespace

@@ -1,36 +1,18 @@
 // Tests that materials, lights and animations are read back as they were written, and that what no viewer
 // could use is refused.
-#include "runtime/bundle/gltf_parts.hpp"
-
-#include <filesystem>
-
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "runtime/bundle/container.hpp"
-#include "runtime/bundle/glb.hpp"
+#include "runtime/bundle/description_json.hpp"
+#include "runtime/bundle/material_fields.hpp"
+#include "tests/runtime/bundle/bundle_file.hpp"
+#include "tests/support/material_values.hpp"
 
 namespace lambent::bundle {
 namespace {
 
-namespace fs = std::filesystem;
 using gltf::AnimationChannel;
 
-class GltfParts : public ::testing::Test {
- protected:
-  void SetUp() override {
-    path_ = fs::temp_directory_path() / ("lambent-gltf-parts-" + std::to_string(::getpid()) + ".lmb.glb");
-  }
-  void TearDown() override { fs::remove(path_); }
-
-  Result<Reader> through(const Description& description, const std::vector<Blob>& blobs = {}) const {
-    if (auto written = write(path_, description, blobs); !written) return failAgain(written.error());
-    return Reader::open(path_);
-  }
-  std::string json() const { return GlbFile::open(path_)->json(); }
-
-  fs::path path_;
-};
+using GltfParts = BundleFile;
 
 Description empty() {
   Description d;
@@ -80,7 +62,7 @@ TEST_F(GltfParts, LightsComeBackWithTheirNodes) {
   d.nodes.resize(2);
   d.nodes[1].light = 2;
   d.roots = {0, 1};
-  const auto reader = through(d);
+  const auto reader = through({d, {}});
   ASSERT_TRUE(reader) << reader.error().line();
   const Description& back = reader->description();
   ASSERT_EQ(back.lights.size(), 3u);
@@ -119,7 +101,7 @@ Description moving() {
 
 TEST_F(GltfParts, AnimationsKeepEveryKeyAndTheirNodesTheirParts) {
   const Description d = moving();
-  const auto reader = through(d, {Blob(3)});
+  const auto reader = through({d, {Blob(3)}});
   ASSERT_TRUE(reader) << reader.error().line();
   const Description& back = reader->description();
   EXPECT_EQ(back.views.size(), 3u);  // the blob, and one for each animation
@@ -150,9 +132,7 @@ TEST_F(GltfParts, ThatNobodyCouldUseAreRefusedByName) {
     Description d = moving();
     d.lights.resize(1);
     spoil(d);
-    const auto reader = through(d);
-    ASSERT_FALSE(reader) << words;
-    EXPECT_NE(reader.error().problem.find(words), std::string::npos) << reader.error().line();
+    BundleFile::refused({d, {}}, words);
   };
   refused([](Description& d) { d.animations[0].channels[0].node = 2; }, "target.node");
   refused([](Description& d) { d.animations[0].channels[0].times_s[1] = 9.0f; },
@@ -170,6 +150,46 @@ TEST_F(GltfParts, ThatNobodyCouldUseAreRefusedByName) {
         d.lights[0] = {.name = "", .type = gltf::Light::Type::Spot, .inner_cone_rad = 1.0f};
       },
       "spot");
+}
+
+// Checks that every field of a material survives JSON, and the copy between the material and its live values.
+
+using testing::changed;
+using testing::materialWithEverything;
+
+TEST(MaterialFields, EveryFieldChangesTheJsonAndComesBackFromIt) {
+  const gltf::Material plain = materialWithEverything();
+  std::set<std::string> used;
+  const Json before = materialJson(plain, used);
+  gltf::forEachMaterialField([&](const auto& field) {
+    const gltf::Material other = changed(plain, field);
+    const Json json = materialJson(other, used);
+    EXPECT_NE(json, before) << field.name;
+    const gltf::Material read =
+        readMaterial(Field(Json::parse(json.dump()), "material"), testing::kMaterialTextures);
+    EXPECT_EQ(read.*field.member, other.*field.member) << field.name;
+    // Nothing else may have changed with it.
+    std::size_t differ = 0;
+    gltf::forEachMaterialField([&](const auto& each) { differ += read.*each.member != plain.*each.member; });
+    EXPECT_EQ(differ, 1u) << field.name;
+  });
+}
+
+TEST(MaterialFields, EveryLiveValueIsReadFromItsFieldAndChangesIt) {
+  const gltf::Material plain = materialWithEverything();
+  const gltf::MaterialFactors factors = gltf::factorsOf(plain);
+  gltf::forEachMaterialField([&](const auto& each) {
+    EXPECT_EQ(gltf::withFactors(plain, factors).*each.member, plain.*each.member) << each.name;
+  });
+  gltf::forEachLiveValue([&](const auto& field, const auto& live) {
+    gltf::MaterialFactors other = factors;
+    testing::change(other.*live.factor);
+    const gltf::Material material = gltf::withFactors(plain, other);
+    gltf::forEachMaterialField([&](const auto& each) {
+      EXPECT_EQ(material.*each.member != plain.*each.member, each.name == field.name)
+          << live.name << " in " << each.name;
+    });
+  });
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 // Compares animations at a point in time with closed forms.
-#include "runtime/bundle/keyframes.hpp"
-
 #include <cmath>
 #include <limits>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+
+#include "runtime/bundle/gltf_types.hpp"
 
 namespace lambent::gltf {
 namespace {

@@ -1,7 +1,7 @@
 // Tests the limits of the wheel in lambent-demo.
 #include <gtest/gtest.h>
 
-#include "runtime/demo/camera.hpp"
+#include "runtime/demo/stage.hpp"
 
 namespace lambent::demo {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/bundle/keyframes.hpp"
+#include "runtime/bundle/gltf_types.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/instantiate.hpp"
 #include "runtime/scene/transforms.hpp"

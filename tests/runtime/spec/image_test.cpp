@@ -19,8 +19,6 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include "runtime/spec/display.hpp"
-
 namespace lambent::spec {
 namespace {
 

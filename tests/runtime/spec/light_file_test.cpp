@@ -19,7 +19,7 @@
 #include <gtest/gtest.h>
 #include <half.h>
 
-#include "runtime/spec/environment_map.hpp"
+#include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::spec {
@@ -136,14 +136,9 @@ TEST_F(LightFile, ColorsOfOtherPrimariesBecomeThoseOfRec709) {
   EXPECT_EQ(without->notices.size(), 1u);
 }
 
-TEST_F(LightFile, ASunThatHalfFloatsCannotHoldIsAsBrightAsTheyCan) {
-  constexpr float kInfinite = std::numeric_limits<float>::infinity();
-  writeHalves({kInfinite, kInfinite, 0.5f}, std::nullopt);
-  const Result<RgbImage> image = readLightImage(file_);
-  EXPECT_EQ(first(image), glm::vec3(65504.0f, 65504.0f, 0.5f));
-  ASSERT_EQ(image->notices.size(), 1u);
-  // In other colours too, where a matrix would make NaN of an infinite channel.
-  writeHalves(glm::vec3(kInfinite),
+// A matrix would make NaN of the other channels.
+TEST_F(LightFile, ASunThatHalfFloatsCannotHoldIsAsBrightAsTheyCanInAnyColors) {
+  writeHalves(glm::vec3(std::numeric_limits<float>::infinity()),
               Imf::Chromaticities({.713f, .293f}, {.165f, .83f}, {.128f, .044f}, {.32168f, .33767f}));
   expectColor(first(readLightImage(file_)), glm::vec3(65504.0f), 1.0f);
 }

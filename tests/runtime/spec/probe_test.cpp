@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/spec/environment_map.hpp"
+#include "runtime/spec/distant_lights.hpp"
 
 namespace lambent::spec {
 namespace {

@@ -1,6 +1,8 @@
 // Tests that every word parses to what the documentation says, and nothing else parses.
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -47,26 +49,27 @@ TEST(SpecLight, ParsesConstantSunAndProbe) {
 }
 
 TEST(SpecLight, RefusesEverythingElseAndShowsTheForm) {
-  for (const char* wrong : {"constant:", "constant:1", "constant:1,2", "constant:1,2,3,4", "constant:1,2,-3",
-                            "constant:1,2,nan", "constant:1,2,3e38", "constant:1,2,3 "}) {
-    const Result<Light> light = parseLight(wrong);
-    ASSERT_FALSE(light) << wrong;
-    EXPECT_NE(light.error().line().find("constant:R,G,B"), std::string::npos) << light.error().line();
-  }
-  for (const char* wrong :
+  const std::vector<std::pair<const char*, std::vector<const char*>>> wrong_by_form = {
+      {"constant:R,G,B",
+       {"constant:", "constant:1", "constant:1,2", "constant:1,2,3,4", "constant:1,2,-3", "constant:1,2,nan",
+        "constant:1,2,3e38", "constant:1,2,3 "}},
+      {"sun:AZ,EL,ANGLE,R[,G,B]",
        {"sun:", "sun:1,2,3", "sun:1,2,3,4,5", "sun:1,2,3,4,5,6,7", "sun:0,91,1,1", "sun:0,-91,1,1",
-        "sun:0,0,0,1", "sun:0,0,181,1", "sun:0,0,1,-1", "sun:0,0,1,3e38", "sun:0,0,1,1x", "sun:inf,0,1,1"}) {
-    const Result<Light> light = parseLight(wrong);
-    ASSERT_FALSE(light) << wrong;
-    EXPECT_NE(light.error().line().find("sun:AZ,EL,ANGLE,R[,G,B]"), std::string::npos)
-        << light.error().line();
-  }
-  for (const char* wrong : {"", "sunn:1,2,3,4", "Sun:1,2,3,4", "probe.png", "hdr", "constant"}) {
-    const Result<Light> light = parseLight(wrong);
-    ASSERT_FALSE(light) << wrong;
-    EXPECT_NE(light.error().line().find("environment map file (.hdr or .exr)"), std::string::npos)
-        << light.error().line();
-  }
+        "sun:0,0,0,1", "sun:0,0,181,1", "sun:0,0,1,-1", "sun:0,0,1,3e38", "sun:0,0,1,1x", "sun:inf,0,1,1"}},
+      {"sphere:X,Y,Z,RADIUS,R[,G,B]",
+       {"sphere:", "sphere:0,0,0,1", "sphere:0,0,0,1,1,1", "sphere:0,0,0,-1,1", "sphere:0,0,0,1,-1",
+        "sphere:0,nan,0,1,1", "sphere:0,0,0,1,1,1,1,1"}},
+      {"disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]",
+       {"disc:", "disc:0,0,0,0,1,0,1", "disc:0,0,0,0,1,0,1,1,1", "disc:0,0,0,0,0,0,1,1",
+        "disc:0,0,0,0,1,0,-1,1", "disc:0,0,0,0,1,0,1,-1", "disc:0,0,0,0,inf,0,1,1"}},
+      {"environment map file (.hdr or .exr)",
+       {"", "sunn:1,2,3,4", "Sun:1,2,3,4", "probe.png", "hdr", "constant"}}};
+  for (const auto& [form, words] : wrong_by_form)
+    for (const char* wrong : words) {
+      const Result<Light> light = parseLight(wrong);
+      ASSERT_FALSE(light) << wrong;
+      EXPECT_NE(light.error().line().find(form), std::string::npos) << light.error().line();
+    }
 }
 
 TEST(SpecLight, ParsesLightsThatStandInTheScene) {
@@ -99,23 +102,6 @@ TEST(SpecLight, ParsesLightsThatStandInTheScene) {
   ASSERT_TRUE(distant);
   EXPECT_TRUE(distant->discs.empty() && distant->environment_maps.empty()) << "they do not stand at infinity";
   EXPECT_EQ(distant->constant, glm::vec3(1.0f));
-}
-
-TEST(SpecLight, RefusesSpheresAndDiscsThatAreNone) {
-  for (const char* wrong : {"sphere:", "sphere:0,0,0,1", "sphere:0,0,0,1,1,1", "sphere:0,0,0,-1,1",
-                            "sphere:0,0,0,1,-1", "sphere:0,nan,0,1,1", "sphere:0,0,0,1,1,1,1,1"}) {
-    const Result<Light> light = parseLight(wrong);
-    ASSERT_FALSE(light) << wrong;
-    EXPECT_NE(light.error().line().find("sphere:X,Y,Z,RADIUS,R[,G,B]"), std::string::npos)
-        << light.error().line();
-  }
-  for (const char* wrong : {"disc:", "disc:0,0,0,0,1,0,1", "disc:0,0,0,0,1,0,1,1,1", "disc:0,0,0,0,0,0,1,1",
-                            "disc:0,0,0,0,1,0,-1,1", "disc:0,0,0,0,1,0,1,-1", "disc:0,0,0,0,inf,0,1,1"}) {
-    const Result<Light> light = parseLight(wrong);
-    ASSERT_FALSE(light) << wrong;
-    EXPECT_NE(light.error().line().find("disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]"), std::string::npos)
-        << light.error().line();
-  }
 }
 
 TEST(SpecLight, NoGarbageCrashesOrSlipsThrough) {
@@ -158,6 +144,46 @@ TEST(SpecRotate, PositiveTurnsTakeFrontToRightAndAddToAzimuths) {
             kTolerance);
   EXPECT_EQ(parseDegrees("-22.5").value(), -22.5f);
   EXPECT_FALSE(parseDegrees("90deg"));
+}
+
+TEST(KeyEdit, SaysWhichKeyLightStandsWhereAndHowItShines) {
+  const auto edit = parseKeyEdit("key:90,0,0,90,0.5");
+  ASSERT_TRUE(edit) << edit.error().line();
+  EXPECT_EQ(edit->set, 0u);
+  EXPECT_LT(glm::distance(edit->found, glm::vec3(1, 0, 0)), 1e-6f);
+  EXPECT_LT(glm::distance(edit->towards, glm::vec3(0, 1, 0)), 1e-6f);
+  EXPECT_EQ(edit->factor, glm::vec3(0.5f)) << "one factor is that of all channels";
+  const auto fade = parseKeyEdit("fade-key:0,0,0,0,1,0,0.25");
+  ASSERT_TRUE(fade);
+  EXPECT_EQ(fade->set, 1u);
+  EXPECT_EQ(fade->factor, glm::vec3(1.0f, 0.0f, 0.25f));
+}
+
+TEST(KeyEdit, WordsReadBackToTheSameEditWithinAThousandthOfADegree) {
+  for (const glm::vec3& direction :
+       {glm::vec3(0.3f, 0.8f, -0.5f), glm::vec3(-0.7f, -0.1f, 0.2f), glm::vec3(0, 1, 0), glm::vec3(0, -1, 0)})
+    for (const std::size_t set : {0u, 1u}) {
+      const KeyEdit edit{.set = set,
+                         .found = glm::normalize(direction),
+                         .towards = glm::normalize(glm::vec3(direction.z, direction.y, direction.x)),
+                         .factor = {0.1f, 2.0f, 1.0f / 3.0f}};
+      const auto read = parseKeyEdit(keyEditWord(edit));
+      ASSERT_TRUE(read) << keyEditWord(edit);
+      EXPECT_EQ(read->set, set);
+      EXPECT_LT(glm::distance(read->found, edit.found), 2e-5f) << keyEditWord(edit);
+      EXPECT_LT(glm::distance(read->towards, edit.towards), 2e-5f) << keyEditWord(edit);
+      EXPECT_EQ(read->factor, edit.factor);
+    }
+  EXPECT_EQ(keyEditWord({.found = {0, 0, 1}, .towards = {1, 0, 0}}), "key:0,0,90,0,1");
+}
+
+TEST(KeyEdit, RefusesOtherWordsAndSaysTheForm) {
+  for (const char* word : {"", "sun:1,2,3,4", "key:", "key:1,2,3,4", "key:1,2,3,4,5,6", "key:0,91,0,0,1",
+                           "key:0,0,0,-91,1", "key:0,0,0,0,-1", "key:0,0,0,0,2e6", "key:0,0,0,0,x"}) {
+    const auto edit = parseKeyEdit(word);
+    ASSERT_FALSE(edit) << word;
+    EXPECT_NE(edit.error().line().find("key:AZ,EL,TO_AZ,TO_EL,R[,G,B]"), std::string::npos) << word;
+  }
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "baker/compress/draco_encode.hpp"
 #include "runtime/base/normal_matrix.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
-#include "runtime/bundle/volume_grid.hpp"
+#include "runtime/bundle/description.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/transfer/weights.hpp"

@@ -1,16 +1,21 @@
+// Tests the helpers of tests.
+//
 // Proves that tests which gather the largest difference fail on NaN, and that they gather it with the helper
 // for which that is so.
-#include "tests/support/differences.hpp"
-
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <regex>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 
 #include "runtime/base/atomic_file.hpp"
+#include "tests/support/differences.hpp"
+#include "tests/support/require.hpp"
 
 namespace lambent {
 namespace {
@@ -71,7 +76,51 @@ TEST(Differences, AreGatheredByTheHelperInAllTests) {
           << "\nkeeps quiet about NaN; see tests/support/differences.hpp";
     }
   }
-  EXPECT_GT(files, 300u);
+  EXPECT_GT(files, 200u);
+}
+
+// Proves that a test which lacks something skips, and that it fails where LAMBENT_REQUIRE names the thing.
+
+void lackGl() {
+  LAMBENT_LACKS("gl", "no OpenGL 4.5 here");
+}
+
+class Require : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    if (before)
+      ::setenv("LAMBENT_REQUIRE", before->c_str(), /*overwrite=*/1);
+    else
+      ::unsetenv("LAMBENT_REQUIRE");
+  }
+  std::optional<std::string> before = std::getenv("LAMBENT_REQUIRE")
+                                          ? std::optional<std::string>(std::getenv("LAMBENT_REQUIRE"))
+                                          : std::nullopt;
+};
+
+TEST_F(Require, NamesWholeWordsOfItsList) {
+  EXPECT_TRUE(testing::names("gl", "gl"));
+  EXPECT_TRUE(testing::names("data,gl,validator", "gl"));
+  EXPECT_FALSE(testing::names("", "gl"));
+  EXPECT_FALSE(testing::names("glx,data", "gl"));
+  EXPECT_FALSE(testing::names("data", "gl"));
+}
+
+TEST_F(Require, FailsATestThatLacksWhatItNames) {
+  ::setenv("LAMBENT_REQUIRE", "data,gl", 1);
+  EXPECT_FATAL_FAILURE(lackGl(), "no OpenGL 4.5 here; LAMBENT_REQUIRE has gl");
+}
+
+TEST_F(Require, LeavesATestThatLacksSomethingElseToSkip) {
+  ::setenv("LAMBENT_REQUIRE", "data", 1);
+  ::testing::TestPartResultArray results;
+  {
+    const ::testing::ScopedFakeTestPartResultReporter reporter(
+        ::testing::ScopedFakeTestPartResultReporter::INTERCEPT_ONLY_CURRENT_THREAD, &results);
+    lackGl();
+  }
+  ASSERT_EQ(results.size(), 1);
+  EXPECT_TRUE(results.GetTestPartResult(0).skipped());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "baker/cli/output.hpp"
+#include "baker/cli/commands.hpp"
 
 #include <array>
 #include <chrono>
@@ -65,6 +65,11 @@ std::string durationText(double seconds) {
 int reportError(const Error& error) {
   fmt::print(stderr, "lambent: {}\n", error.line());
   return 1;
+}
+
+int wrongUsage(const Error& error) {
+  reportError(error);
+  return 2;
 }
 
 void reportNotice(const std::filesystem::path& subject, const std::string& sentence) {

@@ -1,6 +1,8 @@
+#include "runtime/base/process.hpp"
+
 #include <gtest/gtest.h>
 
-#include "runtime/base/process.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lambent {
 namespace {
@@ -41,6 +43,23 @@ TEST(RunProgram, EndsWhenAStopIsRequested) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_FALSE(runProgram("/bin/sleep", {"60"}, stop.get_token())) << "it ended by itself";
+}
+
+TEST(OwnProgram, IsThisTest) {
+  const Result<std::filesystem::path> program = ownProgram();
+  ASSERT_TRUE(program) << program.error().line();
+  EXPECT_EQ(program->filename(), "test_base");
+  EXPECT_TRUE(std::filesystem::is_regular_file(*program));
+}
+
+TEST(OwnProgram, FindsSamplesInABuildAndWhereItIsInstalled) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path program = folder.path() / "bin/lambent";
+  EXPECT_TRUE(sampleFolders(program).empty());
+  std::filesystem::create_directories(folder.path() / "share/lambent/probes");
+  EXPECT_EQ(sampleFolders(program), std::vector{folder.path() / "share/lambent/probes"});
+  std::filesystem::create_directories(folder.path() / "assets");
+  EXPECT_EQ(sampleFolders(program).back(), folder.path() / "assets");
 }
 
 }  // namespace
