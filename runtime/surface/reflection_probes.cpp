@@ -102,7 +102,7 @@ spec::View probeFaceView(const glm::vec3& place_ws, int face, float near_m, floa
 }
 
 ReflectionProbes::ReflectionProbes()
-    : kernels_(kSurfaceShaders), block_("reflection probes"), angles_("probe lobe") {
+    : SurfaceModule(kProbes), kernels_(kSurfaceShaders), block_("reflection probes"), angles_("probe lobe") {
   for (std::uint32_t level = 0; level < kProbeLevels; ++level)
     lobes_.push_back(lighting::makeReflectedLobe(lighting::roughnessOfLevel(level, kProbeLevels)));
 }
@@ -254,8 +254,5 @@ void ReflectionProbes::bindFor(SurfaceReceiver receiver) const {
 SpecularEnvironmentModule::SpecularEnvironmentModule(
     const std::optional<lighting::PrefilteredEnvironment>& environment, const bool& shown)
     : SurfaceModule(kSpecular), environment_(environment), on_(shown) {}
-
-ReflectionProbes::ReflectionProbes()
-    : SurfaceModule(kProbes), block_("reflection probes"), angles_("probe lobe") {}
 
 }  // namespace lambent::frame

@@ -196,8 +196,11 @@ Kernel kernelOf(std::span<const float> vector, std::vector<std::uint32_t>& words
 TEST(TransferValueKernels, OpenSurfacesOfEveryKindHaveTheSameNumbers) {
   constexpr float kFourPi = 4.0f * std::numbers::pi_v<float>;
   constexpr float kCosineOverPi[] = {1.0f, 2.0f / 3.0f, 0.25f, 0.0f};  // A_l/pi
-  constexpr TransferRecord kPlain{.columns = kOrder * kOrder, .channels = 1, .outputs = 1, .order = kOrder};
-  TransferRecord mapped = kPlain, visibility = kPlain;
+  TransferRecord plain{};
+  plain.columns = kOrder * kOrder;
+  plain.channels = plain.outputs = 1;
+  plain.order = kOrder;
+  TransferRecord mapped = plain, visibility = plain;
   mapped.outputs = 9;
   visibility.outputs = 25;
   visibility.visibility = 1;
@@ -212,7 +215,7 @@ TEST(TransferValueKernels, OpenSurfacesOfEveryKindHaveTheSameNumbers) {
     return kernelOf<DcKernel>(vector, words).dcOf(record, {}, 0);
   };
   const float dc = std::sqrt(1.0f / kFourPi);
-  EXPECT_NEAR(dcOf(kPlain, row), dc, 1e-6f);
+  EXPECT_NEAR(dcOf(plain, row), dc, 1e-6f);
   EXPECT_NEAR(dcOf(mapped, matrix), dc, 1e-6f);
   EXPECT_NEAR(dcOf(visibility, open), dc, 1e-6f);
   const std::vector<std::uint32_t> gaunt = gauntWords(kOrder, 3);
@@ -226,7 +229,7 @@ TEST(TransferValueKernels, OpenSurfacesOfEveryKindHaveTheSameNumbers) {
     // The sum over m of ((A_l/pi) y_lm(n))² does not depend on n.
     const float energy =
         kCosineOverPi[band] * kCosineOverPi[band] * static_cast<float>(2 * band + 1) / kFourPi;
-    EXPECT_NEAR(energyOf(kernelOf<BandKernel>(row, words), kPlain, band), energy, 1e-6f);
+    EXPECT_NEAR(energyOf(kernelOf<BandKernel>(row, words), plain, band), energy, 1e-6f);
     EXPECT_NEAR(energyOf(kernelOf<BandKernel>(matrix, words), mapped, band), energy, 1e-6f);
     EXPECT_NEAR(energyOf(kernelOf<VisibilityBandKernel>(open, words), visibility, band), energy, 1e-6f);
   }

@@ -50,8 +50,10 @@ struct Kernel;
 #include "tests/support/glsl/glossy_kernels_of_bands.inc"
 #undef LAMBENT_BANDS
 #define LAMBENT_BANDS 5
+#include "tests/support/glsl/glossy_kernels_of_bands.inc"
 #undef LAMBENT_BANDS
 #define LAMBENT_BANDS 6
+#include "tests/support/glsl/glossy_kernels_of_bands.inc"
 #undef LAMBENT_BANDS
 #undef LAMBENT_TEST_AXES
 

@@ -17,6 +17,7 @@ struct Vertices : Invocation {
 
 struct MappedVertices : Invocation {
 #define LAMBENT_OUTPUTS 9
+#include "as_cpp/diffuse_vertices.comp"
 #undef LAMBENT_OUTPUTS
 };
 
