@@ -310,12 +310,18 @@ std::span<const std::string_view> qualitySettings() {
 Result<void> putQuality(FrameSettings& settings, std::string_view name) {
   if (std::ranges::find(kNames, name) == kNames.end())
     return fail("quality", fmt::format("\"{}\" is not known", name), "give low, default or high");
-  FrameSettings chosen;
-  if (name == "low") chosen = {.keys = 4, .key_size = 2048, .key_samples = 12};
-  if (name == "high") chosen = {.keys = 32, .key_size = 8192, .key_samples = 64};
-  settings.keys = chosen.keys;
-  settings.key_size = chosen.key_size;
-  settings.key_samples = chosen.key_samples;
+  const auto put = [&](auto keys, auto size, auto samples) {
+    settings.keys = keys;
+    settings.key_size = size;
+    settings.key_samples = samples;
+  };
+  const FrameSettings normal;
+  if (name == "low")
+    put(4u, 2048u, 12u);
+  else if (name == "high")
+    put(32u, 8192u, 64u);
+  else
+    put(normal.keys, normal.key_size, normal.key_samples);
   return {};
 }
 

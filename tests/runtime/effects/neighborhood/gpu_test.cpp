@@ -51,8 +51,8 @@ struct Bench : lambent::testing::ShadingBench {
     for (const Grid& grid : neighborhood.grids()) {
       const streaming::ResidentGroup& group = residency.groups()[grid.group];
       auto& arena = const_cast<streaming::Residency&>(residency).samples();
-      std::vector<glm::vec4> samples(arena.page(group.samples.page).byteCount() / sizeof(glm::vec4));
-      arena.page(group.samples.page).read(0, std::span(samples));
+      std::vector<glm::vec4> values(arena.page(group.samples.page).byteCount() / sizeof(glm::vec4));
+      arena.page(group.samples.page).read(0, std::span(values));
       uint first_point = 0;
       for (std::uint32_t c = group.first_cell; c < group.first_cell + group.cell_count; ++c) {
         const streaming::ResidentCell& cell = residency.cells()[c];
@@ -63,7 +63,7 @@ struct Bench : lambent::testing::ShadingBench {
                      .first_point = first_point,
                      .point_count = cell.sample_count,
                      .pad = 0},
-                    samples);
+                    values);
         first_point += cell.sample_count;
       }
     }
