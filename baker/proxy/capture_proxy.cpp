@@ -219,7 +219,7 @@ class ProxyMaker {
   // beyond what eyes see, and under the walls of their room, is therefore cut into triangles that grow with
   // the distance.
   void cutAroundEyes(std::vector<SimpleMesh>& simple) const {
-    constexpr float kNear = 1.0f / 16.0f, kGrowth = 0.5f;
+    constexpr float kWide = 4.0f, kNear = 0.125f, kGrowth = 0.5f;  // in extents of what is seen
     const float extent = importance_.extent();
     std::size_t left =
         bundle::kMaxPatchTriangles - std::min<std::size_t>(trianglesOf(simple), bundle::kMaxPatchTriangles);
@@ -235,7 +235,7 @@ class ProxyMaker {
         return static_cast<int>(std::ranges::max_element(lengths) - lengths.begin());
       };
       for (const glm::uvec3& t : mesh.triangles)
-        if (edge(t, longest(t)) > extent)
+        if (edge(t, longest(t)) > kWide * extent)
           wide.push_back(t);
         else
           done.push_back(t);
