@@ -8,9 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "baker/bake/bake.hpp"
 #include "baker/cache/key.hpp"
-#include "baker/import/scene.hpp"
+#include "baker/import/scene_digest.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "reference/camera.hpp"
 #include "reference/film.hpp"

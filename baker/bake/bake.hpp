@@ -97,9 +97,6 @@ Result<void> checkRequest(const BakeOptions& options, const std::filesystem::pat
 // Returns the plan that bake() follows under these options.
 Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options);
 
-// Returns a digest of everything in the scene that a bake reads.
-std::uint64_t sceneDigest(const Scene& scene);
-
 // Returns what a bundle of this scene under these options records about how it was made.
 bundle::Generator generatorOf(const Scene& scene, const BakeOptions& options);
 

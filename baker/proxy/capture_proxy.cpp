@@ -219,7 +219,7 @@ class ProxyMaker {
   // beyond what eyes see, and under the walls of their room, is therefore cut into triangles that grow with
   // the distance.
   void cutAroundEyes(std::vector<SimpleMesh>& simple) const {
-    constexpr float kWide = 4.0f, kNear = 0.125f, kGrowth = 0.5f;  // in extents of what is seen
+    constexpr float kWide = 4.0f, kNear = 0.0625f, kGrowth = 0.5f;  // in extents of what is seen
     const float extent = importance_.extent();
     std::size_t left =
         bundle::kMaxPatchTriangles - std::min<std::size_t>(trianglesOf(simple), bundle::kMaxPatchTriangles);

@@ -9,6 +9,7 @@
 
 #include "baker/bake/bake.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/import/scene_digest.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/process.hpp"
 

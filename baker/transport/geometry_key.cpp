@@ -61,10 +61,4 @@ void addTextureRef(const Scene& scene, const gltf::TextureRef& ref, KeyMaker& ke
   key.add(ref.texcoord).add(ref.offset).add(ref.scale).add(ref.rotation_rad);
 }
 
-void addMesh(const bundle::MeshData& mesh, KeyMaker& key) {
-  key.addList(mesh.positions).addList(mesh.normals).addList(mesh.normal_weights);
-  key.addList(mesh.texcoords0).addList(mesh.texcoords1);
-  key.addList(mesh.colors).addList(mesh.tangents).addList(mesh.indices);
-}
-
 }  // namespace lambent::baker

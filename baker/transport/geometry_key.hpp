@@ -12,7 +12,7 @@
 
 #include "baker/cache/bytes.hpp"
 #include "baker/cache/key.hpp"
-#include "baker/import/scene.hpp"
+#include "baker/import/scene_digest.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
 
@@ -20,8 +20,6 @@ namespace lambent::baker {
 
 template <>
 inline constexpr bool kPlainBytes<SampleOrigin> = sizeof(SampleOrigin) == 11 * sizeof(float);
-template <>
-inline constexpr bool kPlainBytes<BrdfMeasurement> = sizeof(BrdfMeasurement) == 7 * sizeof(float);
 
 // Adds triangles, normals and kinds of samples, which determine all samples.
 void addShape(const GroupGeometry& geometry, KeyMaker& key);
@@ -32,8 +30,6 @@ void addOpacity(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key
 // Adds a texture as it is looked up: the bytes of its image and its sampler.
 void addTexture(const Scene& scene, std::int32_t texture, KeyMaker& key);
 void addTextureRef(const Scene& scene, const gltf::TextureRef& ref, KeyMaker& key);
-
-void addMesh(const bundle::MeshData& mesh, KeyMaker& key);
 
 template <>
 inline constexpr auto kKeptMembers<bundle::MeshData> =

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/import/gltf.hpp"
+#include "baker/import/scene_digest.hpp"
 #include "runtime/bundle/container.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -12,6 +12,7 @@
 #include "baker/bake/bake.hpp"
 #include "baker/bake/group_scene.hpp"
 #include "baker/cache/cache.hpp"
+#include "baker/import/scene_digest.hpp"
 #include "runtime/base/process.hpp"
 #include "tests/support/material_values.hpp"
 #include "tests/support/shapes.hpp"

@@ -70,8 +70,11 @@ TEST_F(OverlayTest, TheBallOfALightProbeHasConstantRadianceUnderConstantLight) {
   // The sample of the written bundle stands at the origin, in front of a quad, whichever way its group lies.
   const glm::vec3 radiance(0.25f, 0.5f, 2.0f);
   const glm::mat4 away = glm::translate(glm::mat4(1.0f), {0.0f, 0.0f, -0.5f});
+  gltf::Material gray;
+  gray.base_color = glm::vec4(0.2f, 0.2f, 0.2f, 1.0f);
+  gray.metallic = 0.0f;
   ViewStage stage(BundleBuilder(5)
-                      .add({quadMesh(), {}, away})
+                      .add({quadMesh(), gray, away})
                       .groupRotation(glm::angleAxis(1.0f, glm::vec3(0, 0.6f, 0.8f))),
                   {spec::ConstantLight{.radiance = radiance}}, linearOptions());
   OverlayOptions shown;
