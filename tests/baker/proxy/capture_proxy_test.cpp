@@ -144,6 +144,20 @@ TEST(CaptureProxyPatches, ShowAHouseToItselfMoreFinelyThanToOthers) {
   EXPECT_NEAR(area / (4.0f * std::numbers::pi_v<float>), 1.0f, 0.02f);  // its corners lie on the sphere
 }
 
+TEST(CaptureProxyPatches, OfAWideGroundGrowWithTheDistanceFromWhatIsSeen) {
+  const bundle::CaptureProxy proxy =
+      proxyOf(Transport(sceneOf({icosphere({0, 1, 0}, 1.0f, 3), grid({0, 0, 0}, 1000.0f, 1)})));
+  float area = 0.0f;
+  for (const bundle::PatchTriangle& triangle : proxy.patches.triangles) {
+    Corners corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = proxy.patches.positions[triangle.vertices[k]];
+    area += triangleArea(corners);
+    const float away = glm::length((corners[0] + corners[1] + corners[2]) / 3.0f);
+    EXPECT_LT(std::sqrt(triangleArea(corners)), 3.0f + 0.6f * away);
+  }
+  EXPECT_NEAR(area / (1e6f + 4.0f * std::numbers::pi_v<float>), 1.0f, 1e-4f);
+}
+
 TEST(CaptureProxyPatches, AreNotStoredWhereTheFinestLevelDoes) {
   EXPECT_TRUE(proxyOf(Transport(sceneOf({box({0, 0, 0}, {1, 1, 1}, 2)}))).patches.triangles.empty());
   // A fine mesh of large faces needs few triangles.

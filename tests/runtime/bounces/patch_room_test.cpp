@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/runtime/lighting/rooms.hpp"
+#include "tests/support/glsl/glsl.hpp"
 
 namespace lambent::frame {
 
@@ -19,6 +20,25 @@ using testing::RoomBuilder;
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
+
+namespace text {
+using namespace lambent::glsl;
+struct PatchChange {
+#include "as_cpp/patch_change.glsl"
+};
+}  // namespace text
+
+TEST(ShareOfChange, OfKeyLightsIsWhatTransferKnowsOfWhatPatchesSee) {
+  text::PatchChange rule;
+  const glm::vec3 known(0.1f), more(5.0f), less(-5.0f);
+  // A vertex of a ceiling that lies outside of its room sees ten times the light that arrives at the ceiling.
+  EXPECT_NEAR(rule.shareOfChange(known, more, -1.0f), 0.1f, 1e-6f);
+  EXPECT_NEAR(rule.shareOfChange(known, less, -1.0f), 0.1f, 1e-6f);
+  EXPECT_EQ(rule.shareOfChange(known, more, -0.05f), 1.0f);
+  // With lamps, what is added may be theirs.
+  EXPECT_EQ(rule.shareOfChange(known, more, 1.0f), 1.0f);
+  EXPECT_NEAR(rule.shareOfChange(known, less, 1.0f), 0.1f, 1e-6f);
+}
 
 LocalLight pointLamp(glm::vec3 position, glm::vec3 power = glm::vec3(1.0f)) {
   LocalLight light;
