@@ -64,7 +64,7 @@ struct BakeOptions {
   // against the light that arrives. 0: no edges are split; negative: as the quality says.
   float refine_bound = -1.0f;
   // True if values at vertices are those with which interpolation over the faces shows light best
-  // (bake/surface_transport.hpp), and not what the vertices see. Unset: they are, except on glossy surfaces
+  // (bake/surface_transport.cpp), and not what the vertices see. Unset: they are, except on glossy surfaces
   // of drafts.
   std::optional<bool> fit = {};
   int light_probes = 0;        // per cell, 1..32; 0: chosen by how near light comes (local_light.hpp)

@@ -19,7 +19,7 @@ std::string changedReflection(const gltf::Material& a, const gltf::Material& b) 
   return changed;
 }
 
-// Follows the rule by which glossy_record.cpp chooses a table.
+// Follows the rule by which surface_record.cpp chooses a table.
 bool tableMissing(const gltf::Material& material, const std::vector<bundle::BrdfFamily>& tables) {
   using Family = bundle::BrdfFamily;
   const Family family = bundle::brdfFamilyOf(material);
