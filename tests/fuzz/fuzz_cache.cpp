@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static_cast<void>(baker::unpackEntry(baker::Key{}, bytes));
   baker::ByteReader meshes(bytes), hits(bytes);
   bundle::MeshData mesh;
-  static_cast<void>(baker::readMesh(meshes, mesh));
+  static_cast<void>(baker::read(meshes, mesh));
   baker::RangeHits range;
   if (baker::readHits(hits, 2, 100, range))
     for (const baker::GatherHit& hit : range.hits)
