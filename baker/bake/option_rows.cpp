@@ -157,7 +157,7 @@ std::string notOfItsKind(const OptionRow& row) {
   return fmt::format("is {} {}", kinds.size() == 1 ? "not" : "neither", fmt::join(kinds, " nor "));
 }
 
-// What limits cannot say.
+// Checks what limits of a row cannot express.
 Result<void> checkMore(const OptionRow& row, const BakeOptions& options) {
   if (row.name != "effects") return {};
   if (const auto known = effectsNamed(options.effects); !known) return failAgain(known.error());

@@ -80,7 +80,7 @@ class PictureSums {
     std::size_t points = 0;
     for (std::size_t e = 0; e < of_eye_.size(); ++e) {
       if (!(light[e] > kLeastLight * mean)) continue;
-      // Where a screen shows the mean as middle grey, it clips what is so many times as bright.
+      // A screen that shows the mean as middle grey clips light that is kWhite times as bright.
       const double white = kWhite * kWhite * light[e];
       double of_light = 0.0, of_all = 0.0, of_codes = 0.0, of_samples = 0.0;
       for (const Squares& at : of_eye_[e]) {

@@ -56,12 +56,6 @@ using nlohmann::json;
 
 constexpr int kVersion = 3;
 
-std::filesystem::path plain(const std::filesystem::path& path) {
-  std::error_code ignored;
-  const std::filesystem::path absolute = std::filesystem::absolute(path, ignored);
-  return (ignored ? path : absolute).lexically_normal();
-}
-
 // Writes every option as a word.
 json optionsJson(const BakeOptions& options) {
   json words = json::object();
@@ -79,16 +73,22 @@ BakeOptions readOptions(const json& words) {
 
 }  // namespace
 
+std::filesystem::path plainPath(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::path absolute = std::filesystem::absolute(path, ignored);
+  return (ignored ? path : absolute).lexically_normal();
+}
+
 std::string requestKey(const BakeRequest& request) {
-  const std::string text = plain(request.scene).string() + '\n' + plain(request.output).string();
+  const std::string text = plainPath(request.scene).string() + '\n' + plainPath(request.output).string();
   return fmt::format("{:016x}", bundle::checksum(std::as_bytes(std::span(text))));
 }
 
 std::string requestText(const BakeRequest& request) {
   const json text = {{"version", kVersion},
                      {"program", LAMBENT_VERSION},
-                     {"scene", plain(request.scene).string()},
-                     {"output", plain(request.output).string()},
+                     {"scene", plainPath(request.scene).string()},
+                     {"output", plainPath(request.output).string()},
                      {"allowOutside", request.import.allow_outside},
                      {"options", optionsJson(request.options)},
                      {"edits", json::parse(editsText(request.edits))},

@@ -41,7 +41,10 @@ struct BakeRequest {
   PreviewLevel last = PreviewLevel::Final;  // the job is done at this level
 };
 
-// Returns 16 hex digits, for file names, from both paths made absolute and without "." and "..".
+// Returns the path made absolute and without "." and "..".
+std::filesystem::path plainPath(const std::filesystem::path& path);
+
+// Returns 16 hex digits, for file names, from plainPath() of both paths.
 std::string requestKey(const BakeRequest& request);
 
 std::string requestText(const BakeRequest& request);

@@ -66,6 +66,48 @@ std::optional<std::vector<std::size_t>> shares(const std::vector<ProxyPart>& par
   }
 }
 
+// All patches of a triangle are of one size, and what they send counts alike. A ground that reaches far
+// beyond what eyes see, and under the walls of their room, is therefore cut into triangles that grow with the
+// distance. Makes at most `most` cuts and returns how many.
+std::size_t cutWide(SimpleMesh& mesh, const Importance& importance, std::size_t most) {
+  constexpr float kWide = 4.0f, kNear = 0.0625f, kGrowth = 0.5f;  // in extents of what is seen
+  const float extent = importance.extent();
+  const auto edge = [&](const glm::uvec3& t, int k) {
+    return glm::distance(mesh.positions[t[k]], mesh.positions[t[(k + 1) % 3]]);
+  };
+  const auto longest = [&](const glm::uvec3& t) {
+    const std::array lengths = {edge(t, 0), edge(t, 1), edge(t, 2)};
+    return static_cast<int>(std::ranges::max_element(lengths) - lengths.begin());
+  };
+  std::deque<glm::uvec3> wide;
+  std::vector<glm::uvec3> done;
+  for (const glm::uvec3& t : mesh.triangles)
+    if (edge(t, longest(t)) > kWide * extent)
+      wide.push_back(t);
+    else
+      done.push_back(t);
+  std::size_t cuts = 0;
+  for (; !wide.empty(); wide.pop_front()) {
+    const glm::uvec3 t = wide.front();
+    const int k = longest(t);
+    const float length = edge(t, k);
+    const glm::vec3 middle = (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0f;
+    const float away = glm::distance(middle, importance.middle()) - length - 0.5f * extent;
+    if (length <= std::max(kNear * extent, kGrowth * away) || cuts == most) {
+      done.push_back(t);
+      continue;
+    }
+    ++cuts;
+    const auto cut = static_cast<std::uint32_t>(mesh.positions.size());
+    const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
+    mesh.positions.push_back(0.5f * (mesh.positions[a] + mesh.positions[b]));
+    wide.push_back({a, cut, c});
+    wide.push_back({cut, b, c});
+  }
+  mesh.triangles = std::move(done);
+  return cuts;
+}
+
 class ProxyMaker {
  public:
   ProxyMaker(const GroupGeometry& geometry, const SampleSet& samples, const SurfaceColors& colors,
@@ -215,50 +257,11 @@ class ProxyMaker {
     for (glm::vec3& position : patches.positions) position += geometry_.origin;
   }
 
-  // All patches of a triangle are of one size, and what they send counts alike. A ground that reaches far
-  // beyond what eyes see, and under the walls of their room, is therefore cut into triangles that grow with
-  // the distance.
   void cutAroundEyes(std::vector<SimpleMesh>& simple) const {
-    constexpr float kWide = 4.0f, kNear = 0.0625f, kGrowth = 0.5f;  // in extents of what is seen
-    const float extent = importance_.extent();
     std::size_t left =
         bundle::kMaxPatchTriangles - std::min<std::size_t>(trianglesOf(simple), bundle::kMaxPatchTriangles);
-    for (std::size_t p = 0; p < simple.size(); ++p) {
-      SimpleMesh& mesh = simple[p];
-      std::deque<glm::uvec3> wide;
-      std::vector<glm::uvec3> done;
-      const auto edge = [&](const glm::uvec3& t, int k) {
-        return glm::distance(mesh.positions[t[k]], mesh.positions[t[(k + 1) % 3]]);
-      };
-      const auto longest = [&](const glm::uvec3& t) {
-        const std::array lengths = {edge(t, 0), edge(t, 1), edge(t, 2)};
-        return static_cast<int>(std::ranges::max_element(lengths) - lengths.begin());
-      };
-      for (const glm::uvec3& t : mesh.triangles)
-        if (edge(t, longest(t)) > kWide * extent)
-          wide.push_back(t);
-        else
-          done.push_back(t);
-      while (!wide.empty()) {
-        const glm::uvec3 t = wide.front();
-        wide.pop_front();
-        const int k = longest(t);
-        const float length = edge(t, k);
-        const glm::vec3 middle = (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0f;
-        const float away = glm::distance(middle, importance_.middle()) - length - 0.5f * extent;
-        if (length <= std::max(kNear * extent, kGrowth * away) || left < parts_[p].sides()) {
-          done.push_back(t);
-          continue;
-        }
-        left -= parts_[p].sides();
-        const auto cut = static_cast<std::uint32_t>(mesh.positions.size());
-        const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
-        mesh.positions.push_back(0.5f * (mesh.positions[a] + mesh.positions[b]));
-        wide.push_back({a, cut, c});
-        wide.push_back({cut, b, c});
-      }
-      mesh.triangles = std::move(done);
-    }
+    for (std::size_t p = 0; p < simple.size(); ++p)
+      left -= parts_[p].sides() * cutWide(simple[p], importance_, left / parts_[p].sides());
   }
 
   // Patches are to be as small as what they send matters where eyes look. Points a little in front of the

@@ -11,7 +11,7 @@
 
 namespace lambent::baker {
 
-// What is kept of refinement.
+// Everything that the cache keeps of a refinement.
 struct RefineOutcome {
   RefineReport report;
   std::vector<std::vector<bundle::MeshData>> meshes;

@@ -247,7 +247,7 @@ void AssetPictures::update() {
     coming_ = std::async(std::launch::async, make, std::move(wanted_.front()));
     wanted_.pop_front();
   }
-  // What is still shown is made again.
+  // Pictures that are still shown are made again.
   if (pictures_.size() <= kMostPictures || busy()) return;
   pictures_.clear();
   asked_.clear();

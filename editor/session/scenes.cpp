@@ -19,12 +19,6 @@ bool isBundle(const std::filesystem::path& path) {
   return path.filename().string().ends_with(kBundleEnd);
 }
 
-std::filesystem::path plain(const std::filesystem::path& path) {
-  std::error_code ignored;
-  const std::filesystem::path absolute = std::filesystem::absolute(path, ignored);
-  return (ignored ? path : absolute).lexically_normal();
-}
-
 bool writable(const std::filesystem::path& folder) {
   std::error_code ignored;
   const auto rights = std::filesystem::status(folder, ignored).permissions();
@@ -100,7 +94,7 @@ std::filesystem::path Scenes::bundleFor(const std::filesystem::path& scene) cons
 }
 
 Result<void> Scenes::open(const std::filesystem::path& path) {
-  const std::filesystem::path place = plain(path);
+  const std::filesystem::path place = baker::plainPath(path);
   std::error_code ignored;
   if (std::filesystem::is_directory(place, ignored)) return openFolder(place);
   if (!std::filesystem::exists(place, ignored))
@@ -116,14 +110,14 @@ Result<void> Scenes::open(const std::filesystem::path& path) {
 }
 
 void Scenes::open(const BundleEntry& saved, const std::filesystem::path& folder) {
-  SceneEntry entry{.bundle = plain(folder / saved.path),
+  SceneEntry entry{.bundle = baker::plainPath(folder / saved.path),
                    .id = saved.id,
                    .instance = saved.instance,
                    .options = optionsOf(saved),
                    .unknown = saved.unknown};
   std::error_code ignored;
   if (!saved.source.empty()) {
-    entry.source = plain(folder / saved.source);
+    entry.source = baker::plainPath(folder / saved.source);
     if (const auto edits = saved.bake_options.find(kEditsOption); edits != saved.bake_options.end()) {
       if (auto read = baker::readEdits(edits->second))
         entry.edits = entry.shown_edits = std::move(*read);
@@ -282,7 +276,7 @@ bool Scenes::isWatched(const std::filesystem::path& scene) const {
 
 void Scenes::take(const baker::WatchEvent& event) {
   using Kind = baker::WatchEvent::Kind;
-  const std::filesystem::path scene = plain(event.scene);
+  const std::filesystem::path scene = baker::plainPath(event.scene);
   SceneEntry* entry = find(scene);
   if (event.kind == Kind::Broken && event.error) {
     // A scene that was broken when it was opened has been reported by its bake.
@@ -371,7 +365,7 @@ void Scenes::closeAll() {
 
 std::vector<BundleEntry> Scenes::state(const std::filesystem::path& folder) const {
   const auto relative = [&](const std::filesystem::path& path) {
-    const std::filesystem::path way = path.lexically_relative(plain(folder));
+    const std::filesystem::path way = path.lexically_relative(baker::plainPath(folder));
     return (way.empty() ? path : way).generic_string();
   };
   std::vector<BundleEntry> bundles;

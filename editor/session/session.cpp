@@ -65,10 +65,7 @@ std::vector<Error> Stage::follow(const WorldState& state) {
 
 void Stage::followEnvironment() {
   const auto* component = world_.registry().tryGet<scene::EnvironmentComponent>(environment_entity_);
-  if (!component) return;
-  environment_.setTurn(component->rotation_deg);
-  environment_.setFade(component->fade);
-  environment_.setIntensity(component->intensity);
+  if (component) environment_.follow(*component);
 }
 
 namespace {

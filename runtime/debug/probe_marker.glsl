@@ -53,38 +53,12 @@ layout(location = 0) out vec4 color;
 
 vec3 turned(vec4 turn, vec3 v) { return v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v); }
 
-// Returns the sum over i of l_i y_i(n), with the recurrences of unshadowedRadiance in diffuse_eval.glsl
-// without its weights.
-vec3 harmonics(vec3 n, uint light, int order) {
-  vec3 sum = vec3(0.0);
-  float c = 1.0, s = 0.0, sectoral = 0.28209479177387814;
-  for (int m = 0; m < order; ++m) {
-    if (m > 0) {
-      float next_c = n.x * c - n.y * s;
-      s = n.x * s + n.y * c;
-      c = next_c;
-      sectoral *= m == 1 ? sqrt(3.0) : sqrt(float(2 * m + 1) / float(2 * m));
-    }
-    float p = sectoral, before = 0.0;
-    for (int l = m; l < order; ++l) {
-      if (l > m) {
-        float z_factor = sqrt(float(4 * l * l - 1) / float(l * l - m * m));
-        float back = l == m + 1 ? 0.0
-                                : z_factor * sqrt(float((l - 1) * (l - 1) - m * m) / float(4 * (l - 1) * (l - 1) - 1));
-        float next = z_factor * n.z * p - back * before;
-        before = p;
-        p = next;
-      }
-      uint centre = light + uint(l * (l + 1));
-      sum += p * (m == 0 ? lights[centre].rgb : c * lights[centre + uint(m)].rgb + s * lights[centre - uint(m)].rgb);
-    }
-  }
-  return sum;
-}
+vec3 lightAt(uint index) { return lights[index].rgb; }
+#include "harmonics.glsl"
 
 void main() {
   Sign sign_of = signs[sign_index];
   vec3 dir = turned(sign_of.group_from_world, normalize(direction));
-  color = vec4(shownLight(harmonics(dir, sign_of.light, int(sign_of.order))), 1.0);
+  color = vec4(shownLight(sumOfHarmonics(dir, sign_of.light, int(sign_of.order), false)), 1.0);
 }
 #endif

@@ -172,10 +172,7 @@ void Stage::turnLight(float degrees) {
 
 void Stage::applyEnvironment() {
   const auto* component = world_.registry().tryGet<scene::EnvironmentComponent>(environment_entity_);
-  if (!component) return;
-  environment_.setTurn(component->rotation_deg);
-  environment_.setFade(component->fade);
-  environment_.setIntensity(component->intensity);
+  if (component) environment_.follow(*component);
 }
 
 void Stage::dragLight(const spec::View& view, float right, float down) {

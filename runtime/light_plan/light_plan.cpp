@@ -58,11 +58,6 @@ float peakEmission(const bundle::CaptureProxy& proxy, const std::vector<glm::vec
 
 using Path = lighting::LightCarrier::Path;
 
-const bundle::Group& describedGroup(const World& world, std::size_t group) {
-  const streaming::ResidentGroup& resident = world.residency().groups()[group];
-  return world.description(resident.bundle).groups[resident.index.value];
-}
-
 // Lists the lights that are no suns, and returns their entities.
 std::vector<ecs::Entity> gatherLights(const World& world, std::uint32_t most_suns, LightPlan& plan) {
   const Suns suns = sunsOf(world, most_suns);
@@ -156,7 +151,7 @@ void giveColumnCubes(const World& world, std::span<const ecs::Entity> light_enti
 // multiplied with this light, unless a shadow cube brings the light to the other.
 bool shadesColumn(const World& world, const LightPlan& plan, std::size_t group, std::size_t light) {
   const auto& groups = world.residency().groups();
-  if (!describedGroup(world, group).neighborhood) return false;
+  if (!world.describedGroup(group).neighborhood) return false;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (g == group || groups[g].volume >= 0 || plan.groups[g].carriers[light].path != Path::Column) continue;
     scene::Box lit = world.groupBounds(g);
@@ -246,13 +241,13 @@ bool localShadowsDiffer(const LightPlan& plan, std::size_t body, std::size_t rec
 void chooseGrids(const World& world, const PlannedGrids& grids, LightPlan& plan) {
   for (lighting::IncidentGroup& group : plan.groups) group.fades = grids.fades;
   for (const effects::neighborhood::Grid& grid : grids.grids) {
-    if (!grid.ready || !carriesLamps(describedGroup(world, grid.group))) continue;
+    if (!grid.ready || !carriesLamps(world.describedGroup(grid.group))) continue;
     ++plan.grids_ready;
     if (!grids.on) continue;
     const glm::mat4 world_from_body = world.worldFromGroup(grid.group);
     for (std::uint32_t b = 0; b < plan.groups.size(); ++b) {
       const bool before = grids.before->contains({grid.group, b});
-      if (b == grid.group || !hasSurfaces(describedGroup(world, b)) ||
+      if (b == grid.group || !hasSurfaces(world.describedGroup(b)) ||
           !meet(boxOf(grid.points, before), world_from_body, world.groupBounds(b), world.worldFromGroup(b)) ||
           (world.residency().groups()[grid.group].volume < 0 && localShadowsDiffer(plan, grid.group, b)))
         continue;
@@ -334,7 +329,7 @@ LightPlan makeLightPlan(const World& world, float surroundings, const LightPlanO
     if (options.shadowed_lights && groups[g].volume < 0)
       choosePaths(world, g, shares, cubes, options.local_radii, plan);
     // The transfer of a volume contains what it stands within.
-    const std::int32_t within = describedGroup(world, g).within;
+    const std::int32_t within = world.describedGroup(g).within;
     if (within < 0) continue;
     const std::size_t around =
         world.residency().bundles()[groups[g].bundle].first.groups + static_cast<std::size_t>(within);

@@ -333,6 +333,12 @@ void Environment::setFade(float fade) {
   change(fade_, fade, 0.0f, 1.0f);
 }
 
+void Environment::follow(const scene::EnvironmentComponent& component) {
+  setTurn(component.rotation_deg);
+  setFade(component.fade);
+  setIntensity(component.intensity);
+}
+
 void Environment::setIntensity(float intensity) {
   change(intensity_, intensity, 0.0f, kLargest);
 }

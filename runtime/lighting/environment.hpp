@@ -25,6 +25,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/lighting/key_lights.hpp"
+#include "runtime/scene/components.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/light.hpp"
@@ -66,6 +67,8 @@ class Environment {
   void setFade(float fade);
   // Sets a factor on all light, at least 0.
   void setIntensity(float intensity);
+  // Sets all three from the scene.
+  void follow(const scene::EnvironmentComponent& component);
   float turnDegrees() const { return turn_degrees_; }
   float fade() const { return fade_; }
   float intensity() const { return intensity_; }

@@ -28,11 +28,6 @@ constexpr SurfaceFunction kPixelChange[] = {
 constexpr SurfaceFunction kVertexChange[] = {
     {SurfaceHook::Vertex, CalledBy::Diffuse, "neighborhood_vertex.glsl", "addVertexChange"}};
 
-const bundle::Group& describedGroup(const World& world, std::size_t group) {
-  const streaming::ResidentGroup& resident = world.residency().groups()[group];
-  return world.description(resident.bundle).groups[resident.index.value];
-}
-
 double scaleOf(const glm::mat4& matrix) {
   return std::cbrt(std::abs(glm::determinant(glm::dmat3(glm::mat3(matrix)))));
 }
@@ -73,7 +68,7 @@ void Neighborhoods::noticeGrids(const World& world) {
   std::vector<Grid> grids;
   for (std::uint32_t g = 0; g < groups.size(); ++g) {
     now[world.keyOf(g)] = g;
-    if (const auto& points = describedGroup(world, g).neighborhood)
+    if (const auto& points = world.describedGroup(g).neighborhood)
       grids.push_back({.group = g, .id = groups[g].id, .key = world.keyOf(g), .points = *points});
   }
   effect_.setGrids(std::move(grids), world.residency());

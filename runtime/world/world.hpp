@@ -201,6 +201,11 @@ class World {
   const bundle::Description& description(std::size_t bundle) const {
     return bundles_[bundle]->reader->description();
   }
+  // Returns what that says of a resident group.
+  const bundle::Group& describedGroup(std::size_t group) const {
+    const streaming::ResidentGroup& resident = residency().groups()[group];
+    return description(resident.bundle).groups[resident.index.value];
+  }
   const bundle::Reader& reader(std::uint32_t bundle) const { return *bundles_[bundle]->reader; }
   const scene::SceneInstance& instance(std::size_t bundle) const { return bundles_[bundle]->instance; }
 
