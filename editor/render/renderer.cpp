@@ -5,7 +5,7 @@
 
 #include "editor/document/tree.hpp"
 #include "editor/session/viewing.hpp"
-#include "runtime/effects/volume/volume.hpp"
+#include "runtime/frame/frame_parts.hpp"
 
 namespace lambent::editor {
 
@@ -52,30 +52,9 @@ std::optional<PictureClock::Time> PictureClock::take() {
 
 namespace {
 
-// Returns the resident groups that hold anything that is selected.
-std::vector<std::uint32_t> selectedGroups(const Session& session) {
-  std::vector<std::uint32_t> found;
-  const ecs::Registry& registry = session.document.registry();
-  const std::vector<ecs::Entity> selected = session.selection.entities(session.document);
-  const auto& groups = session.stage.world().residency().groups();
-  const auto add = [&](const scene::RigidGroupComponent& group) {
-    for (std::uint32_t i = 0; i < groups.size(); ++i)
-      if (groups[i].bundle == group.bundle && groups[i].index.value == group.group) found.push_back(i);
-  };
-  for (const ecs::Entity entity : selected)
-    if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(entity)) add(*group);
-  for (const auto [draw, item] : registry.view<const scene::DrawItem>())
-    for (const ecs::Entity entity : selected)
-      if (draw == entity || isBelow(registry, item.node, entity))
-        if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(item.group)) add(*group);
-  return found;
-}
-
 // Returns the overlays that are asked for, with boxes around what is selected.
 frame::OverlayOptions overlaysOf(const Session& session) {
   frame::OverlayOptions overlays = session.viewing.overlays;
-  if (overlays.neighborhoods) overlays.foremost_groups = selectedGroups(session);
-  overlays.key = session.viewing.key_at_hand;
   if (!session.handles.shown) return overlays;
   constexpr glm::vec4 kColor(1.0f, 0.62f, 0.2f, 0.9f);
   for (const TurnedBox& turned : selectionBoxes(session.document, session.selection)) {
@@ -136,7 +115,7 @@ Result<void> Picture::draw(Session& session, const spec::View& view, spec::Size 
   const frame::StepCounts& counts = facts.counts = frame_.counts();
   facts.legend = frame_.legend();
   facts.passes = frame_.timers().latest();
-  facts.volume_bytes = frame_.kept<effects::volume::Volume>().textureBytes();
+  facts.volume_bytes = frame_.parts().volume.textureBytes();
   facts.settled = stage.world().loaded() && counts["light_probes_captured"] == 0 &&
                   counts["light_probes_waiting"] == 0 && counts["cells_shaded"] == 0 &&
                   counts["draws_shaded"] == 0 && counts["reflection_probes_captured"] == 0;

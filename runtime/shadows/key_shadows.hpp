@@ -77,13 +77,6 @@ class KeyShadows final : public SurfaceModule {
   std::uint64_t version() const override { return any() ? 1 : 0; }
   std::uint32_t mapsDrawn() const { return maps_drawn_; }  // by the last update
   std::uint64_t bytesResident() const;
-  // States what each drawn map covers, for display.
-  struct ShownRegion {
-    spec::Disc light;  // in world axes
-    KeyRegion region;
-    std::uint32_t texels = 0;  // along an edge
-  };
-  std::vector<ShownRegion> regions() const;
   void forget() {
     for (Map& map : maps_) map.drawn = false;
   }
