@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "editor/document/tree.hpp"
 #include "editor/session/viewing.hpp"
 #include "runtime/frame/frame_parts.hpp"
 
@@ -183,17 +182,12 @@ Result<void> ReferencePicture::show(Session& session, const baker::reference::Sn
   const spec::Size size{snapshot.image.width, snapshot.image.height};
   radiance_ = textureOf("reference", size, GL_RGBA32F);
   write(radiance_, GL_FLOAT, snapshot.image.texels.data());
-  if (!tone_mapper_) {
-    auto made = frame::ToneMapper::create(/*samples=*/0, /*linear=*/false);
-    if (!made) return failAgain(made.error());
-    tone_mapper_ = std::move(*made);
-  }
+  if (!tone_mapper_) tone_mapper_.emplace(/*samples=*/0, /*linear=*/false);
   shown_ = textureOf("reference, shown", size, GL_RGBA8);
   shown_target_ = gpu::Framebuffer("reference, shown", shown_, nullptr);
-  glBindFramebuffer(GL_FRAMEBUFFER, shown_target_.id());
-  glViewport(0, 0, static_cast<GLsizei>(size.width), static_cast<GLsizei>(size.height));
+  shown_target_.bind();
   gpu::Counters counters;
-  tone_mapper_->run(radiance_, session.picture.exposure_ev, counters);
+  if (auto done = tone_mapper_->run(radiance_, session.picture.exposure_ev, counters); !done) return done;
   if (snapshot.spp == 0 || !session.picture.settled) return {};
   return compare(session, snapshot);
 }

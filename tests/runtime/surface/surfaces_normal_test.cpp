@@ -17,7 +17,7 @@
 namespace lambent::frame {
 namespace {
 
-struct SurfaceNormal : testing::Test, glsl::SurfaceNormal {};
+struct SurfaceNormal : ::testing::Test, glsl::SurfaceNormal {};
 
 struct Random {
   std::mt19937 engine{7};
