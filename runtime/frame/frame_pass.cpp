@@ -22,20 +22,6 @@ bool changed(const ecs::Registry& registry, std::uint64_t& seen) {
   return std::exchange(seen, now) != now;
 }
 
-// The names of all counts: a list for each kind of passes, in their order.
-constexpr std::initializer_list<std::string_view> kCounts[] = {
-    {"volumes", "groups", "bodies", "local_lights", "shadowed_lights", "shadowed_lights_left_out",
-     "light_probes", "light_probes_risen", "light_probes_occluded", "light_probes_written"},
-    {"patch_rooms", "patch_rooms_to_come", "patches", "lights_bounced", "patch_draws_gathered"},
-    {"cells_shaded", "draws_shaded"},
-    {"neighborhood_grids", "neighborhood_grids_ready", "neighborhood_grids_written", "neighborhood_pairs",
-     "neighborhood_receivers", "neighborhood_arrivals", "neighborhood_vertex_receivers",
-     "neighborhood_vertex_receivers_shaded", "neighborhood_arrivals_left_out"},
-    {"light_probes_captured", "light_probes_waiting", "capture_pages", "capture_tiles",
-     "capture_bodies_drawn", "capture_triangles", "capture_pixels"},
-    {"shadow_cubes_drawn", "key_lights", "key_maps_drawn", "reflection_probes", "reflection_probes_captured"},
-    {"draws_out_of_view", "volumes_shaded", "volume_slabs_written", "volumes_out_of_view", "volumes_drawn"}};
-
 bool sameValue(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
@@ -116,9 +102,25 @@ std::string InvalidationLog::of(std::uint32_t causes, std::string_view otherwise
   return words.empty() ? std::string(otherwise) : words;
 }
 
+// The counts, in the order of the passes.
 StepCounts::StepCounts() {
-  for (const auto& names : kCounts)
+  const auto declare = [this](std::initializer_list<std::string_view> names) {
     for (const std::string_view name : names) counts_.push_back({.name = name});
+  };
+  declare({"volumes", "groups", "bodies", "local_lights", "shadowed_lights", "shadowed_lights_left_out",
+           "light_probes", "light_probes_risen", "light_probes_occluded", "light_probes_written"});
+  declare({"patch_rooms", "patch_rooms_to_come", "patches", "lights_bounced", "patch_draws_gathered"});
+  declare({"cells_shaded", "draws_shaded"});
+  declare({"neighborhood_grids", "neighborhood_grids_ready", "neighborhood_grids_written",
+           "neighborhood_pairs", "neighborhood_receivers", "neighborhood_arrivals",
+           "neighborhood_vertex_receivers", "neighborhood_vertex_receivers_shaded",
+           "neighborhood_arrivals_left_out"});
+  declare({"light_probes_captured", "light_probes_waiting", "capture_pages", "capture_tiles",
+           "capture_bodies_drawn", "capture_triangles", "capture_pixels"});
+  declare({"shadow_cubes_drawn", "key_lights", "key_maps_drawn", "reflection_probes",
+           "reflection_probes_captured"});
+  declare({"draws_out_of_view", "volumes_shaded", "volume_slabs_written", "volumes_out_of_view",
+           "volumes_drawn"});
 }
 
 void StepCounts::clear() {
