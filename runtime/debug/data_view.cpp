@@ -241,8 +241,8 @@ Result<std::optional<Picker::Seen>> Picker::drawPixel(World& world, const Surfac
 }
 
 Result<std::optional<Picked>> Picker::pick(World& world, const Surfaces& surfaces, const spec::View& view,
-                                           const PicturePoint& point, const PickOptions& options) {
-  const auto& [size, x, y] = point;
+                                           const PickPoint& point) {
+  const auto& [size, x, y, finest_texels, with_volumes] = point;
   if (!(x >= 0.0f && x < static_cast<float>(size.width) && y >= 0.0f && y < static_cast<float>(size.height)))
     return std::optional<Picked>();
   const double width = size.width, height = size.height;
@@ -258,7 +258,7 @@ Result<std::optional<Picked>> Picker::pick(World& world, const Surfaces& surface
   const glm::dmat4 clip_from_world = glm::dmat4(view.clip_from_view) * glm::dmat4(view.view_from_world);
   spec::View pixel = view;
   pixel.clip_from_view = glm::mat4(pixel_from_clip * glm::dmat4(view.clip_from_view));
-  const auto drawn = drawPixel(world, surfaces, pixel, options.finest_texels);
+  const auto drawn = drawPixel(world, surfaces, pixel, finest_texels);
   if (!drawn) return failAgain(drawn.error());
   const std::optional<Seen>& seen = *drawn;
 
@@ -286,7 +286,7 @@ Result<std::optional<Picked>> Picker::pick(World& world, const Surfaces& surface
                .normal_ws = length > 0.0f ? normal / length : normal};
     nearest = glm::dot(glm::dvec3(picked->position_ws) - ray.origin, ray.direction);
   }
-  if (!options.volumes) return picked;
+  if (!with_volumes) return picked;
   for (const streaming::ResidentVolume& volume : residency.volumes()) {
     if (!volume.ready()) continue;
     const auto hit =

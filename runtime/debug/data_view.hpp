@@ -71,13 +71,10 @@ struct Picked {
   glm::vec3 normal_ws{0.0f};  // on the visible side, interpolated; for a volume towards the eye
 };
 
-// Describes a point of a picture of this size, in pixels from its top left corner.
-struct PicturePoint {
-  spec::Size size;
-  float x = 0.0f, y = 0.0f;
-};
-
-struct PickOptions {
+// Describes a point of a picture, and what counts there.
+struct PickPoint {
+  spec::Size size;             // of the picture
+  float x = 0.0f, y = 0.0f;    // in pixels from its top left corner
   bool finest_texels = false;  // as in the surface pass
   bool volumes = true;
 };
@@ -92,7 +89,7 @@ struct PickOptions {
 class Picker {
  public:
   Result<std::optional<Picked>> pick(World& world, const Surfaces& surfaces, const spec::View& view,
-                                     const PicturePoint& point, const PickOptions& options);
+                                     const PickPoint& point);
 
  private:
   struct Seen {

@@ -54,6 +54,12 @@ struct Sign {
   std::uint32_t pad[2];
 };
 
+// Returns the radius of the world, in metres; 1 if it has none.
+float radiusOf(const World& world) {
+  const scene::Box bounds = scene::worldBounds(world.registry());
+  return bounds.empty() || !(bounds.radius() > 0.0f) ? 1.0f : bounds.radius();
+}
+
 // Returns a radius that is small relative to the scene and to the distance between neighbouring samples of a
 // group. It uses the median of these distances, because two samples may stand close together.
 float radiusFor(float scene_radius, std::span<const glm::vec3> places) {
@@ -179,13 +185,6 @@ void appendLight(const scene::LocalLightComponent& light, const glm::mat4& world
   }
 }
 
-// Returns the size of glyphs in this world, in metres.
-float signSize(const World& world) {
-  const scene::Box bounds = scene::worldBounds(world.registry());
-  const float radius = bounds.empty() ? 1.0f : bounds.radius();
-  return radius > 0.0f ? 0.05f * radius : 0.05f;
-}
-
 constexpr float kLeastOutline_rad = 0.0175f;
 constexpr glm::vec3 kDark{0.45f};
 
@@ -256,7 +255,7 @@ std::vector<OverlayLine> linesOf(const OverlayOptions& options, const OverlaySce
       appendBox({grid.points.bounds_min, grid.points.bounds_max}, world.worldFromGroup(grid.group),
                 kNeighborhoodColor, lines);
   if (options.lights) {
-    const float size = signSize(world);
+    const float size = 0.05f * radiusOf(world);
     for (auto [entity, light] : world.registry().view<const scene::LocalLightComponent>()) {
       const auto* place = world.registry().tryGet<scene::WorldTransform>(entity);
       const glm::vec3 color = light.power() != glm::vec3(0.0f) ? colorOf(light.color, 0.5f) : kDark;
@@ -318,25 +317,27 @@ Result<void> Overlays::drawProbes(const OverlayOptions& options, const OverlaySc
   const streaming::Residency& residency = scene.world.residency();
   const auto group_count =
       static_cast<std::uint32_t>(std::min(residency.groups().size(), scene.light_plan.groups.size()));
-  std::size_t count = 0, at = 0;
-  for (std::uint32_t g = 0; g < group_count; ++g) count += residency.groups()[g].light_probes.size();
-  const scene::Box bounds = scene::worldBounds(scene.world.registry());
-  const float scene_radius = bounds.empty() || bounds.radius() == 0.0f ? 1.0f : bounds.radius();
+  const float scene_radius = radiusOf(scene.world);
   std::vector<Sign> signs;
   for (std::uint32_t g = 0; g < group_count; ++g) {
     const std::span<const glm::vec3> places = scene.light_plan.groups[g].samples_ws;
     const glm::quat group_from_world = glm::conjugate(scene.world.rotationOf(g));
     const float radius = radiusFor(scene_radius, places);
-    for (std::size_t s = 0; s < places.size(); ++s, ++at) {
-      // If there are too many, the shown ones are spread evenly over all.
-      if (count > kMaxSigns && at * kMaxSigns / count == (at + 1) * kMaxSigns / count) continue;
+    for (std::size_t s = 0; s < places.size(); ++s)
       signs.push_back({.place_and_radius = glm::vec4(places[s], radius),
                        .group_from_world = {group_from_world.x, group_from_world.y, group_from_world.z,
                                             group_from_world.w},
                        .light = scene.lights.firstOf(g, s),
                        .order = residency.groups()[g].order,
                        .pad = {}});
-    }
+  }
+  // If there are too many, those that are shown are spread evenly over all.
+  if (const std::size_t count = signs.size(); count > kMaxSigns) {
+    std::size_t at = 0;
+    std::erase_if(signs, [&](const Sign&) {
+      const std::size_t before = at++ * kMaxSigns / count;
+      return before == at * kMaxSigns / count;
+    });
   }
   if (signs.empty()) return {};
   if (Result<void> done = use("probe_marker.glsl"); !done) return done;

@@ -218,14 +218,6 @@ Result<void> writePicture(const frame::Frame& frame, const Options& options, std
   return written;
 }
 
-// Reports a picture that the device cannot hold before anything is loaded.
-Result<void> checkSize(const spec::Size& size, std::uint32_t limit) {
-  if (size.width > limit || size.height > limit)
-    return fail("--size", fmt::format("this device draws at most {} pixels a side", limit),
-                "ask for a smaller picture");
-  return {};
-}
-
 }  // namespace
 
 Result<void> runHeadless(const Options& options) {
@@ -233,7 +225,11 @@ Result<void> runHeadless(const Options& options) {
   if (!environment) return failAgain(environment.error());
   Result<gpu::Context> context = gpu::Context::createHeadless();
   if (!context) return failAgain(context.error());
-  if (Result<void> fits = checkSize(options.size, context->info().max_texture_side); !fits) return fits;
+  // A picture that the device cannot hold is reported before anything is loaded.
+  const std::uint32_t limit = context->info().max_texture_side;
+  if (options.size.width > limit || options.size.height > limit)
+    return fail("--size", fmt::format("this device draws at most {} pixels a side", limit),
+                "ask for a smaller picture");
 
   const auto start = Clock::now();
   Report report;

@@ -12,7 +12,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/frame/frame_settings.hpp"
-#include "runtime/gpu/window.hpp"
+#include "runtime/gpu/context.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"

@@ -10,7 +10,7 @@
 
 #include "runtime/demo/stage.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/gpu/window.hpp"
+#include "runtime/gpu/context.hpp"
 
 namespace lambent::demo {
 

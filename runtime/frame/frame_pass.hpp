@@ -100,7 +100,7 @@ class StepCounts {
   StepCounts();
   // Sets every count to 0.
   void clear();
-  // These throw std::out_of_range for names that are not in the list (frame_pass.cpp).
+  // These throw std::out_of_range for names that are not in the list (frame.cpp).
   void add(std::string_view name, std::uint64_t value);
   std::uint64_t operator[](std::string_view name) const;
 
@@ -142,7 +142,7 @@ class PictureTargets {
   const gpu::Texture& hdr() const { return hdr_; }
   const gpu::Texture& depth() const { return depth_; }
   // Returns radiance without depth, for passes that read the depth.
-  const gpu::Framebuffer& hdrColor();
+  const gpu::Framebuffer& hdrColor() const { return hdr_color_target_; }
   // Returns the picture, with row 0 at the bottom; empty if it goes to the window.
   const gpu::Texture& picture() const { return picture_; }
 

@@ -1,8 +1,9 @@
-#include "runtime/gpu/window.hpp"
-
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
+
+#include "runtime/gpu/context.hpp"
 
 #define GLFW_INCLUDE_NONE  // epoxy declares OpenGL's functions
 #include <GLFW/glfw3.h>

@@ -169,7 +169,7 @@ Result<void> ProxyLods::draw(const spec::View& view, gpu::Counters& counters) {
   if (batches_.empty()) return {};
   view_.assignOne(ViewBlock{view.view_from_world, view.clip_from_view, {}});
   if (Result<void> done =
-          programs_.use({{GL_VERTEX_SHADER, "proxy_lod.vert"}, {GL_FRAGMENT_SHADER, "proxy_lod.frag"}});
+          programs_.use({{GL_VERTEX_SHADER, "proxy_lod.glsl"}, {GL_FRAGMENT_SHADER, "proxy_lod.glsl"}});
       !done)
     return done;
   view_.bindUniform(kBindView);

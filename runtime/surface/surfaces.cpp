@@ -1,6 +1,7 @@
 #include "runtime/surface/surfaces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,31 +59,25 @@ struct Caller {
   const char* arguments;
 };
 
-Caller vertexCaller(SurfaceReceiver receiver) {
-  return {SurfaceHook::Vertex, "vertex_light.glsl",
-          isNormalMapped(receiver) ? "addVertexLight(uint vertex, inout vec3 light[kLightCoefficients])"
-                                   : "addVertexLight(uint vertex, inout vec3 light)",
-          "vertex, light"};
-}
-
-Caller mirrorCaller(SurfaceReceiver receiver) {
-  if (isLayered(receiver))
-    return {SurfaceHook::MirroredSky, "mirrored_sky.glsl",
-            "addMirroredSky(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights)",
-            "mirror, light, mirrored, highlights"};
+std::array<Caller, 4> callersOf(SurfaceReceiver receiver) {
+  const bool layered = isLayered(receiver);
   return {
-      SurfaceHook::MirroredSky, "mirrored_sky.glsl",
-      "addMirroredSky(Reflected reflected, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights)",
-      "reflected, light, mirrored, highlights"};
+      {{SurfaceHook::Vertex, "vertex_light.glsl",
+        isNormalMapped(receiver) ? "addVertexLight(uint vertex, inout vec3 light[kLightCoefficients])"
+                                 : "addVertexLight(uint vertex, inout vec3 light)",
+        "vertex, light"},
+       {SurfaceHook::MirroredSky, "mirrored_sky.glsl",
+        layered
+            ? "addMirroredSky(Mirror mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 highlights)"
+            : "addMirroredSky(Reflected mirror, SurfaceLight light, inout vec3 mirrored, inout vec3 "
+              "highlights)",
+        "mirror, light, mirrored, highlights"},
+       {SurfaceHook::Gathered, "gathered_light.glsl",
+        "addGatheredLight(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients])",
+        "corners, weights, light"},
+       {SurfaceHook::Received, "received_light.glsl",
+        "receiveLight(SurfacePoint at, inout SurfaceLight light)", "at, light"}}};
 }
-
-constexpr Caller kPixelCallers[] = {
-    {SurfaceHook::Gathered, "gathered_light.glsl",
-     "addGatheredLight(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients])",
-     "corners, weights, light"},
-    {SurfaceHook::Received, "received_light.glsl", "receiveLight(SurfacePoint at, inout SurfaceLight light)",
-     "at, light"},
-};
 
 gpu::WrittenFile callerFile(const Caller& caller, std::span<const SurfaceFunction> functions) {
   std::string includes, body;
@@ -114,10 +109,8 @@ Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
   }
   std::vector<gpu::WrittenFile> written = {
       {"surface_kind.glsl", kindText(kind, finest_texels)},
-      {"receiver.glsl", fmt::format("#include \"{}\"\n", fileOf(receiver))},
-      callerFile(vertexCaller(receiver), functions),
-      callerFile(mirrorCaller(receiver), functions)};
-  for (const Caller& caller : kPixelCallers) written.push_back(callerFile(caller, functions));
+      {"receiver.glsl", fmt::format("#include \"{}\"\n", fileOf(receiver))}};
+  for (const Caller& caller : callersOf(receiver)) written.push_back(callerFile(caller, functions));
   std::vector<gpu::Define> defines;
   if (kind.glossy.bands > 0) defines = definesOf(kind.glossy);
   if (isNormalMapped(receiver)) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});

@@ -93,9 +93,7 @@ std::string wordOf(const ViewChoice& choice);
 
 // Returns whether the view shows numbers of the coded transfer, which are then computed for it.
 constexpr bool showsTransfer(SurfaceView view) {
-  return view == SurfaceView::TransferDc || view == SurfaceView::TransferBand ||
-         view == SurfaceView::ErrorEstimate || view == SurfaceView::Importance ||
-         view == SurfaceView::ClusterIds;
+  return rowOf(view).colors == ViewColors::Scale || rowOf(view).colors == ViewColors::Distinct;
 }
 // Returns whether the picture shows light, and so has a sky and volumes and is exposed and tone-mapped.
 constexpr bool showsLight(SurfaceView view) {

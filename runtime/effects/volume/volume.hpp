@@ -107,10 +107,10 @@ struct Picture {
 std::optional<MarchRecord> describeMarch(const streaming::ResidentVolume& volume,
                                          const glm::mat4& world_from_group, const glm::mat4& view_from_world);
 
-// Describes a rectangle in texels from the bottom left.
+// Describes a rectangle in texels from the bottom left. `end` is not in it.
 struct Rectangle {
-  std::int32_t x = 0, y = 0, width = 0, height = 0;
-  bool empty() const { return width <= 0 || height <= 0; }
+  glm::ivec2 first{0}, end{0};
+  bool empty() const { return end.x <= first.x || end.y <= first.y; }
 };
 // Returns what the box of `size` voxels may cover of the picture; returns all of the picture if the box
 // reaches behind the eye.

@@ -1,5 +1,6 @@
 // Places a corner of a triangle that stands in for surfaces, and shades the triangle by the light at its normal,
 // without shadows.
+#ifdef LAMBENT_VERTEX
 #include "proxy_lod_shared.h"
 #include "diffuse_light.glsl"
 #include "view_block.glsl"
@@ -41,3 +42,11 @@ void main() {
   vec3 position = corner == 0u ? a : corner == 1u ? b : c;
   gl_Position = clip_from_view * (view_from_world * vec4(position, 1.0));
 }
+#else
+layout(location = 0) flat in vec3 radiance;
+layout(location = 0) out vec4 color;
+
+void main() {
+  color = vec4(radiance, 1.0);
+}
+#endif
