@@ -280,9 +280,9 @@ class Assembler {
 
   void addProxies(const std::vector<BakedGroup>& baked) {
     for (std::size_t g = 0; g < baked.size(); ++g) {
-      if (baked[g].proxy.levels.empty()) continue;
-      description_.groups[g].proxy = static_cast<std::int32_t>(addPayload(
-          bundle::PayloadType::CaptureProxy, bundle::encodeCaptureProxy(baked[g].proxy), kCodebookPriority));
+      if (baked[g].proxy.bytes.empty()) continue;
+      description_.groups[g].proxy = static_cast<std::int32_t>(
+          addPayload(bundle::PayloadType::CaptureProxy, baked[g].proxy.bytes, kCodebookPriority));
       report_.proxy_bytes += blobs_.back().size();
     }
   }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,7 +23,6 @@
 #include "baker/plan/group_lights.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
-#include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
 
@@ -56,13 +57,12 @@ struct SurfaceTransport {
   const GlossyField* glossy() const { return direct.glossy.visibility.empty() ? nullptr : &direct.glossy; }
 };
 
-// The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay until
-// dropTransport().
+// The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay
+// (dropBounces).
 std::optional<SurfaceTransport> transportLight(const GroupScene& group, const BakeContext& context);
 // Measures how wrong pictures of the surfaces are, as codes show them; without codes, if they are null.
 std::optional<bundle::PictureError> shownBy(const GroupScene& group, const SurfaceTransport& light,
                                             const std::vector<std::vector<CodedTransfer>>* cells);
-void dropTransport(const GroupScene& group, const SurfaceTransport& light, const BakeContext& context);
 
 // The coded transfer of a group's surfaces: all that the group hands to the bundle of it.
 struct SurfaceCells {
@@ -73,13 +73,19 @@ struct SurfaceCells {
   SurfaceFigures figures;
 };
 
+// A capture proxy as its payload.
+struct BakedProxy {
+  bundle::Blob bytes;                    // empty without levels
+  std::vector<std::uint32_t> triangles;  // of each level, finest first
+};
+
 struct BakedGroup {
   GroupGeometry geometry;  // of which draws and bounds are used
   SampleSet samples;
   std::vector<PlannedLight> lights;
   SurfaceCells surfaces;
-  LightProbes light_probes;           // in the frame of SampleSet::positions
-  bundle::CaptureProxy proxy;         // group frame
+  LightProbes light_probes;  // in the frame of SampleSet::positions
+  BakedProxy proxy;
   std::optional<BakedVolume> volume;  // if set, the members above are empty but for light_probes
   std::optional<BakedNeighborhood> neighborhood;
 };
@@ -90,29 +96,21 @@ struct BakedGroup {
 Result<BakedGroup> bakeGroup(const SceneBake& bake, const SurfaceInputs& inputs, std::size_t index,
                              const BakeContext& context, BakeReport& report);
 
-// Bakes the neighborhood of a group, of surfaces or of a volume, as the plan and the options ask for it.
-
+// A neighborhood, of surfaces or of a volume, beside what the plan and the options ask for.
 struct Around {
   const SceneBake& bake;
   std::size_t group = 0;   // index in the plan
   glm::vec3 origin{0.0f};  // of the body's points, in the group's frame
+  Box3 bounds;             // of the body, relative to `origin`
   std::size_t rays = 0;    // from each grid point
-  BakeReport& report;      // is added to
-
-  const PlannedNeighborhood& plan() const { return bake.plan.neighborhoods[group]; }
 };
 
-// Returns the context of the neighborhood. The key of `body` must cover everything that the body's answers
-// depend on.
-BakeContext contextOf(const Around& around, const BakeContext& body);
-
-// Looks for a result in the cache. If there is one, sets the neighborhood of `out` and reports it, or adds a
-// notice if the result is that there is none. Returns false if it has to be baked.
-bool findAround(const Around& around, const BakeContext& context, BakedGroup& out);
-
-// Does the same by baking it. `bounds` are those of the body, relative to `origin`. Returns false if stopped.
-bool bakeAround(const Around& around, const Body& body, const Box3& bounds, const BakeContext& context,
-                BakedGroup& out);
+// Finds the neighborhood in the cache, or bakes it with the body that `make` returns. The key of `light` must
+// cover all that the body's answers depend on. Adds to the report, at least a notice if there is none.
+// Errors: those of `make`, "stopped".
+Result<void> bakeAround(const Around& around, const BakeContext& light,
+                        const std::function<Result<std::unique_ptr<Body>>()>& make, BakedGroup& out,
+                        BakeReport& report);
 
 // Bakes one volume, from its density to codes: quantization, rays, scattering, coding.
 

@@ -169,9 +169,4 @@ std::optional<bundle::PictureError> shownBy(const GroupScene& group, const Surfa
   return shown;
 }
 
-void dropTransport(const GroupScene& group, const SurfaceTransport& light, const BakeContext& context) {
-  const BakeContext bounces = context.keyed(group.keys.bounces);
-  if (light.bounced && bounces.keeps()) dropBounces(group.samples, light.inside, bounces);
-}
-
 }  // namespace lambent::baker
