@@ -225,7 +225,8 @@ std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceT
   const bool chooses = options.picture_bound > 0.0f && options.error_bound == 0.0f;
   std::optional<float> bound = options.effectiveErrorBound();
   if (chooses)
-    if (const auto shown = shownBy(group, light, nullptr)) bound = codesBound(*shown, options.picture_bound);
+    if (const auto shown = measurePictureError(group, light, nullptr))
+      bound = codesBound(*shown, options.picture_bound);
   for (int codings = 1; bound; ++codings) {
     out.figures.codes_bound = *bound;
     out.figures.glossy_codes_bound = chooses ? glossyCodesBound(*bound) : options.effectiveGlossyErrorBound();
@@ -233,7 +234,7 @@ std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceT
     out.figures.worst_glossy_error = light.figures.worst_glossy_error;
     if (group.anyGlossy() && !code(/*glossy=*/true)) return std::nullopt;
     if (!code(/*glossy=*/false)) return std::nullopt;
-    auto& shown = out.figures.picture_error = shownBy(group, light, &out.cells);
+    auto& shown = out.figures.picture_error = measurePictureError(group, light, &out.cells);
     bound.reset();
     if (chooses && shown && codings < kMostCodings)
       bound = nextCodesBound(out.figures.codes_bound, *shown, options.picture_bound);

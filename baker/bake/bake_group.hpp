@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "baker/bake/group_scene.hpp"
-#include "baker/bake/picture_error.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/surface/direct.hpp"
+#include "baker/effects/surface/inside_faces.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/light_probes/light_probes.hpp"
 #include "baker/plan/group_lights.hpp"
@@ -47,6 +47,46 @@ struct SurfaceFigures {
   float codes_bound = 0.0f, glossy_codes_bound = 0.0f;
 };
 
+template <>
+inline constexpr bool kPlainBytes<bundle::PictureError> = true;
+
+// Points of one part of a group's surfaces as eyes see them (baker/importance), to measure there how wrong
+// pictures are.
+struct ViewPoints {
+  FacePoints points;                // in the order of the eyes
+  std::vector<glm::vec3> weights;   // of the corners of each point's triangle
+  std::vector<glm::vec3> to_eyes;   // unit directions
+  std::vector<std::uint32_t> eyes;  // the eye that sees each point, rising
+  std::uint32_t stands_for = 1;     // so many points that are seen
+  // The same points, traced with as many rays as vertices, whose noise they tell, and with many. Null without
+  // surfaces of the part in the group.
+  std::unique_ptr<TracedPoints> noisy, exact;
+
+  bool seen(std::size_t p) const {
+    return noisy->direct.looks.valid[p] != 0 && exact->direct.looks.valid[p] != 0;
+  }
+  // Returns the share of the squared difference between few and many rays that the many make.
+  double noiseOfExact() const {
+    const std::size_t few = noisy->pass().settings().rays, many = exact->pass().settings().rays;
+    return static_cast<double>(few) / static_cast<double>(few + many);
+  }
+};
+
+struct TracedView {
+  std::vector<float> eye_weights;   // shares of all pictures
+  std::array<ViewPoints, 2> parts;  // by SurfacePart; glossy ones are a few hundred, as their rays are dear
+
+  const ViewPoints& of(SurfacePart part) const { return parts[static_cast<std::size_t>(part)]; }
+};
+
+// Returns nothing if stopped. Without surfaces in sight, there are no points. No result is kept.
+std::optional<TracedView> traceView(const DirectPass& vertices, const GroupScene& group,
+                                    const BakeContext& context);
+
+// Transfers of each sample cell: that of the environment (for a glossy cell visibility, then bounced light),
+// followed by that of the group's lights if it has any.
+using SurfaceCodes = std::vector<std::vector<CodedTransfer>>;
+
 struct SurfaceTransport {
   DirectResult direct;
   std::optional<BounceResult> bounced;
@@ -60,15 +100,15 @@ struct SurfaceTransport {
 // The group must be prepared for rays. Returns nothing if stopped. Checkpoints of the bounces stay
 // (dropBounces).
 std::optional<SurfaceTransport> transportLight(const GroupScene& group, const BakeContext& context);
-// Measures how wrong pictures of the surfaces are, as codes show them; without codes, if they are null.
-std::optional<bundle::PictureError> shownBy(const GroupScene& group, const SurfaceTransport& light,
-                                            const std::vector<std::vector<CodedTransfer>>* cells);
+// Measures how wrong pictures of the surfaces are (picture_error.cpp), as codes show them; without codes, if
+// they are null. Returns nothing if too few points are seen for a figure.
+std::optional<bundle::PictureError> measurePictureError(const GroupScene& group,
+                                                        const SurfaceTransport& light,
+                                                        const SurfaceCodes* cells);
 
 // The coded transfer of a group's surfaces: all that the group hands to the bundle of it.
 struct SurfaceCells {
-  // Transfers of each sample cell: that of the environment (for a glossy cell visibility, then bounced
-  // light), followed by that of the group's lights if it has any.
-  std::vector<std::vector<CodedTransfer>> cells;
+  SurfaceCodes cells;
   std::vector<std::uint8_t> importance;  // of each sample (description.hpp)
   SurfaceFigures figures;
 };

@@ -43,7 +43,7 @@ struct ReferenceRow {
   static void fields(auto& row, auto&& visit) { visit("seconds", row.seconds); }
 };
 
-// The bake says this of its own error (picture_error.hpp): the RMS over groups by their points. All are 0 if
+// The bake says this of its own error (picture_error.cpp): the RMS over groups by their points. All are 0 if
 // there are no diffuse surfaces.
 struct ErrorParts {
   double noise = 0.0, codes = 0.0, interpolation = 0.0;
