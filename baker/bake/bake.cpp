@@ -98,6 +98,7 @@ BakedGroup openSurfaces(const Scene& scene, const RigidGroup& group, const Shipp
   baked.samples.positions.push_back(center);
   baked.samples.cells.push_back({0, 1, center, center, SampleKind::Diffuse});
   baked.surfaces.cells.push_back({openTransfer(options.order, 1)});
+  baked.surfaces.figures.codes_bound = options.effectiveErrorBound();
   baked.samples.vertex_sample.assign(baked.geometry.positions.size(), kNoSample);
   return baked;
 }

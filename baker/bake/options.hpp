@@ -108,9 +108,8 @@ struct BakeOptions {
   // once more to be coded. Bounces of glossy samples are matrices, of more bands in two passes.
   double bytesOfTransfer(bool glossy) const;
   std::map<std::string, std::string> settings() const;
-  // Returns options with those settings, of the quality that they differ from least. Names that settings()
-  // does not have are ignored. Returns nothing if a setting is missing or not of its kind. `threads` and
-  // `memory_bytes` keep their defaults.
+  // Returns options with those settings; names that settings() does not have are ignored. Returns nothing if a
+  // setting is missing or not of its kind. `threads` and `memory_bytes` keep their defaults.
   static std::optional<BakeOptions> fromSettings(const std::map<std::string, std::string>& settings);
 };
 
