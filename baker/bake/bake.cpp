@@ -12,7 +12,6 @@
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/effects/effect_list.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/volume/volume.hpp"
