@@ -85,9 +85,9 @@ Result<void> bakeAround(const Around& around, const BakeContext& light,
   report.rays += figures.rays;
   report.rays_kept += figures.rays_kept;
   report.neighborhoods.push_back({.name = name,
-                                  .size = figures.size,
-                                  .bounds_min = figures.bounds_min,
-                                  .bounds_max = figures.bounds_max,
+                                  .size = out.neighborhood->size,
+                                  .bounds_min = out.neighborhood->bounds_min,
+                                  .bounds_max = out.neighborhood->bounds_max,
                                   .inside_points = figures.inside_points,
                                   .error = figures.error,
                                   .change_error = figures.change_error});

@@ -378,7 +378,7 @@ Result<BakedGroup> bakeVolume(const SceneBake& bake, DecodedImages& images, std:
                            std::span<float> scattered) {
       return marchVolume(*light, origin, direction, t_max, scattered);
     };
-    return std::make_unique<VolumeBody>(march, light->order, low, high, /*scatters=*/true);
+    return std::make_unique<VolumeBody>(march, light->order, low, high);
   };
   // A medium has no sharp rim to find, and each ray is marched.
   const Around around{bake, index, glm::vec3(0.0f), {low, high}, options.effectiveRays() / 4};

@@ -22,6 +22,9 @@ constexpr double kAim = 0.95;
 // figure is to that of pictures as 1 to this.
 constexpr double kQuietNoise = 0.008, kQuietRays = 256.0, kNoise = 0.65, kRefinement = 1.2;
 constexpr std::uint32_t kLeastChosenRays = 128, kMostChosenRays = 16'384, kRaysStep = 16;
+// The parts of the bound that codes, and codes of glossy surfaces, get before more is known. Codes take few:
+// half their error costs a bit a weight, half the noise four times the rays.
+constexpr float kCodesShare = 0.35f, kGlossyCodesShare = 0.7f;
 constexpr double kLeastCodes = 0.25;  // of the bound, even if nothing is left for codes
 constexpr float kMostCodes = 0.25f;   // beyond, codes would show bands of colour whatever the mean error is
 

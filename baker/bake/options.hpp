@@ -24,10 +24,6 @@ namespace lambent::baker {
 // rays, interpolation between vertices, and codes. Squares of the three add up. Rays and refinement come from
 // the bound alone; codes come last and get what the others left. All functions are pure.
 
-// The parts of the bound that codes, and codes of glossy surfaces, get before more is known. Codes take few:
-// half their error costs a bit a weight, half the noise four times the rays.
-inline constexpr float kCodesShare = 0.35f, kGlossyCodesShare = 0.7f;
-
 // Returns the rays of a sample, and the bound on refinement, with which most pictures meet theirs.
 std::uint32_t raysFor(float picture_bound);
 float refineBoundFor(float picture_bound);
@@ -108,8 +104,8 @@ struct BakeOptions {
   // once more to be coded. Bounces of glossy samples are matrices, of more bands in two passes.
   double bytesOfTransfer(bool glossy) const;
   std::map<std::string, std::string> settings() const;
-  // Returns options with those settings; names that settings() does not have are ignored. Returns nothing if a
-  // setting is missing or not of its kind. `threads` and `memory_bytes` keep their defaults.
+  // Returns options with those settings; names that settings() does not have are ignored. Returns nothing if
+  // a setting is missing or not of its kind. `threads` and `memory_bytes` keep their defaults.
   static std::optional<BakeOptions> fromSettings(const std::map<std::string, std::string>& settings);
 };
 
