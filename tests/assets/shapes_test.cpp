@@ -1,20 +1,21 @@
-// Checks that the shapes are valid, closed where they should be, and have the volumes of their formulas; and that
-// the teapot has the points of an independent copy of the data.
+// Checks that the shapes are valid, closed where they should be, and have the volumes of their formulas; and
+// that the teapot has the points of an independent copy of the data.
 #include "assets/shapes.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/assets/mesh_checks.hpp"
 #include "tests/support/shared_data.hpp"
-#include <algorithm>
-#include <fstream>
-#include <glm/common.hpp>
-#include <gtest/gtest.h>
-#include <iterator>
-#include <nlohmann/json.hpp>
-#include <numbers>
 
 namespace lambent::assets {
 namespace {
-
 
 constexpr double kPi = std::numbers::pi;
 

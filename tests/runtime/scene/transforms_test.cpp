@@ -1,20 +1,22 @@
 // Tests transforms, and the intersection of boxes against points in them.
 #include "runtime/scene/transforms.hpp"
 
-#include "runtime/scene/bounds.hpp"
-#include "runtime/scene/components.hpp"
-#include "tests/runtime/scene/values.hpp"
-#include "tests/support/differences.hpp"
 #include <cmath>
 #include <cstdint>
+#include <random>
+#include <vector>
+
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
-#include <random>
-#include <vector>
+
+#include "runtime/scene/bounds.hpp"
+#include "runtime/scene/components.hpp"
+#include "tests/runtime/scene/values.hpp"
+#include "tests/support/differences.hpp"
 
 namespace lambent::scene {
 namespace {
@@ -144,7 +146,6 @@ glm::quat randomTurn(std::mt19937& random) {
   std::normal_distribution<float> normal;
   return glm::normalize(glm::quat(normal(random), normal(random), normal(random), normal(random)));
 }
-
 
 TEST(Affine, TranslationRotationScaleComeBackAsTheyWere) {
   std::mt19937 random(1);
