@@ -201,15 +201,8 @@ struct PlanArguments {
 
 nlohmann::json decisionsJson(const std::vector<Decision>& decisions) {
   nlohmann::json json = nlohmann::json::array();
-  for (const Decision& d : decisions) {
-    nlohmann::json figures = nlohmann::json::object();
-    for (const Figure& figure : d.figures)
-      figures[figure.name] = {{"value", figure.value}, {"unit", figure.unit}};
-    json.push_back({{"effect", d.effect},
-                    {"decision", choiceName(d.choice)},
-                    {"reason", d.reason},
-                    {"figures", figures}});
-  }
+  for (const Decision& d : decisions)
+    json.push_back({{"effect", d.effect}, {"decision", choiceName(d.choice)}, {"reason", d.reason}});
   return json;
 }
 

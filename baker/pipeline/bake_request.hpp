@@ -11,7 +11,7 @@
 #include "baker/bake/bake.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/import/scene_edits.hpp"
-#include "baker/import/scene_files.hpp"
+#include "baker/import/gltf.hpp"
 
 namespace lambent::baker {
 

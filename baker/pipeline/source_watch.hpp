@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "baker/import/scene_files.hpp"
+#include "baker/import/gltf.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker {
