@@ -443,8 +443,8 @@ std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
   return lights;
 }
 
-sh::LightVector Capture::skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light) {
-  sky_.makeTurned(environment, world_from_light, weights_);
+sh::LightVector Capture::skyThroughTexels(const Environment& environment, gpu::Counters& counters) {
+  sky_is_new_ = sky_.update(environment, weights_, counters) || sky_is_new_;
   std::vector<glm::vec4> sky(static_cast<std::size_t>(sh::coefficientCount(options_.order)));
   sky_.light().read(0, std::span(sky));
   return lightFrom(sky);

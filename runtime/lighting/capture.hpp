@@ -17,7 +17,6 @@
 #include <utility>
 #include <vector>
 
-#include <glm/mat3x3.hpp>
 #include <glm/vec4.hpp>
 
 #include "runtime/base/result.hpp"
@@ -130,10 +129,6 @@ class CaptureSky {
   // Remakes the cube if the environment changed, and returns whether it did. `weights` is
   // [texel][coefficient] from sh::cubeWeights.
   bool update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters);
-  // Makes the cube with the environment maps turned by any rotation, for measurements. The next update()
-  // remakes it.
-  void makeTurned(const Environment& environment, const glm::mat3& world_from_light,
-                  const gpu::Buffer& weights);
   // Binds the texels and weights that capture_project.comp reads.
   void bindTables();
   // Returns one vec4 per coefficient: the sum of texels times weights.
@@ -188,10 +183,9 @@ class Capture {
     std::uint64_t triangles = 0, pixels = 0;
   };
   const Load& load() const { return load_; }
-  // Returns the sky as its texels represent it, turned by the given rotation and without the correction to
-  // the exact light, so that the error of the texels can be measured. Waits for the GPU. Must not be called
-  // while pending().
-  sh::LightVector skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light);
+  // Returns the sky as its texels represent it, without the correction to the exact light, so that the error
+  // of the texels can be measured. Waits for the GPU. Must not be called while pending().
+  sh::LightVector skyThroughTexels(const Environment& environment, gpu::Counters& counters);
 
  private:
   struct Proxy {

@@ -14,7 +14,6 @@ namespace lambent::lighting {
 
 namespace {
 
-constexpr std::uint64_t kNoVersion = ~std::uint64_t{0};
 constexpr std::size_t kGone = ~std::size_t{0};
 
 // Returns whether either part of a light (with and without key lights) changed by more than kLeastChange of
@@ -175,15 +174,11 @@ void IncidentLight::update(const Environment& environment, std::span<const Incid
   noticeLights(groups, lights);
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s)
-      updateSample(groups_[g].samples[s], groups_[g], environment, groups[g].samples_ws[s], lights,
-                   groups[g].open.empty()
-                       ? std::span<const float>()
-                       : std::span(groups[g].open).subspan(s * lights.size(), lights.size()));
+      updateSample(groups_[g].samples[s], groups_[g], environment, groups[g].samples_ws[s], lights);
 }
 
 void IncidentLight::updateSample(Sample& sample, const Group& group, const Environment& environment,
-                                 const glm::vec3& position_ws, std::span<const LocalLight> lights,
-                                 std::span<const float> open) {
+                                 const glm::vec3& position_ws, std::span<const LocalLight> lights) {
   ++counts_.samples;
   const bool lit = std::ranges::any_of(group.carriers, &LightCarrier::harmonics);
   if (sample.fade_begins) {
@@ -206,14 +201,12 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   // Where bodies are in sight, a turned sky waits for its capture.
   const bool new_sky = !sample.drawn && sample.environment != environment.version();
   const bool moved = lit && sample.position_ws != position_ws;
-  if (!sample.drawn_anew && !moved && !new_sky && !sample.plain && !fading && sample.lights == group.lights &&
-      std::ranges::equal(sample.open, open))
+  if (!sample.drawn_anew && !moved && !new_sky && !sample.plain && !fading && sample.lights == group.lights)
     return;
   sample.drawn_anew = false;
   sample.position_ws = position_ws;
   sample.environment = environment.version();
   sample.lights = group.lights;
-  sample.open.assign(open.begin(), open.end());
 
   const auto visible = [&](const std::vector<std::int32_t> Drawn::*queries, std::size_t index) {
     if (!sample.drawn || index >= ((*sample.drawn).*queries).size()) return 1.0f;
@@ -236,7 +229,7 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
     const sh::LightVector light = lightAt(lights[k], position_ws, order_);
     const float apart = group.carriers[k].apart();
     add(now.rest, light, (1.0f - apart) * share);
-    if (apart > 0.0f) add(now.key, light, apart * share * (open.empty() ? 1.0f : open[k]));
+    if (apart > 0.0f) add(now.key, light, apart * share);
   }
   if (fading) {
     ++counts_.fading;

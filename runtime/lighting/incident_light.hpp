@@ -89,9 +89,6 @@ struct IncidentGroup {
   std::uint32_t body = CapturePoint::kNoBody;  // index of its own body
   std::vector<glm::vec3> samples_ws;
   std::vector<LightCarrier> carriers{};  // per local light
-  // Gives the share of each light that the bodies in left_out let through, indexed by sample, then light.
-  // Empty means 1.
-  std::vector<float> open{};
   // Lists the bodies (rising indices) whose light and shadow reach the group by another carrier. They are not
   // drawn for its samples.
   std::vector<std::uint32_t> left_out{};
@@ -181,7 +178,6 @@ class IncidentLight {
     DividedLight light;
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;
-    std::vector<float> open;
     // The bodies that were left out of the light, and the fade from the light before.
     std::vector<std::uint32_t> left_out;
     bool fade_begins = false;
@@ -212,8 +208,7 @@ class IncidentLight {
   void followBodies(std::span<const IncidentBody> bodies);
   void noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights);
   void updateSample(Sample& sample, const Group& group, const Environment& environment,
-                    const glm::vec3& position_ws, std::span<const LocalLight> lights,
-                    std::span<const float> open);
+                    const glm::vec3& position_ws, std::span<const LocalLight> lights);
   static void askForLights(const Environment& environment, const IncidentGroup& group,
                            std::span<const LocalLight> lights, CapturePoint& point, Drawn& drawn);
   // somethingShines() tells whether, since the last call, the sky, a light or a body's radiance changed;

@@ -429,17 +429,9 @@ void CaptureSky::takeLights(const Environment& environment) {
 
 bool CaptureSky::update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters) {
   if (version_ == environment.version()) return false;
-  makeTurned(environment, environment.worldFromLight(), weights);
   version_ = environment.version();
-  counters.dispatches += 2;
-  return true;
-}
-
-void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& world_from_light,
-                            const gpu::Buffer& weights) {
   takeLights(environment);
-  version_ = 0;
-  const glm::mat3 light_from_world = glm::transpose(world_from_light);
+  const glm::mat3 light_from_world = glm::transpose(environment.worldFromLight());
   // Two subsamples span a texel: with one, the triangles of the linear filter would not add up evenly over a
   // turned environment map, and a sun of one texel would flicker by several per cent.
   const auto levelOf = [&](const gpu::Texture& environment_maps) {
@@ -477,6 +469,8 @@ void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& wor
   light_.bindStorage(kBindSkyLight);
   glDispatchCompute(1, 1, 1);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  counters.dispatches += 2;
+  return true;
 }
 
 void CaptureSky::bindTables() {

@@ -41,7 +41,7 @@ class LightPass final : public FramePass {
                    .causes = kLightCauses,
                    .counts = {"groups", "bodies", "local_lights", "shadowed_lights",
                               "shadowed_lights_left_out", "light_probes", "light_probes_risen",
-                              "light_probes_occluded", "light_probes_written"}}) {
+                              "light_probes_written"}}) {
     board.offer(plan_);
     board.offer(incident_);
     board.offer(group_lights_);
@@ -91,9 +91,6 @@ class LightPass final : public FramePass {
          .cubes_before = cubes_before,
          .grids = by_grids ? neighborhoods.gridsNow(frame.world, settings.neighborhoods) : PlannedGrids{}});
     if (by_grids) neighborhoods.takePairs(plan_);
-    frame.count("light_probes_occluded",
-                apart_occlusion_.update(plan_, proxiesOf(frame.world.residency()).proxies,
-                                        frame.world.residency().proxiesVersion()));
   }
 
   Result<void> prepareSampling(const FrameContext& frame) {
@@ -145,7 +142,6 @@ class LightPass final : public FramePass {
   }
 
   LightPlan plan_;
-  ApartOcclusion apart_occlusion_;
   Incident incident_;  // made once there is something to sample
   GroupLights group_lights_;
   ChangeGate<bool, bool, bool, float> carriers_;  // settings that choose carriers
