@@ -30,6 +30,8 @@
 
 namespace lambent::lighting::capture {
 
+struct PreparedProxy;
+
 // Reads results back from the GPU without stalling: they are copied into mapped memory, and a fence tells
 // when they have arrived. Sizes are in bytes. A Readback must not outlive its context.
 class Readback {
@@ -163,12 +165,12 @@ class Capture {
   // the body drawn at all.
   capture::BodySphere sphereOf(const CaptureBody& body) const;
 
-  // Draws and projects. Each page of cube maps takes at most two draws (surfaces with and without a dark
-  // side) and two dispatches, and two more dispatches when the environment changed. `triangle_radiance` holds
-  // a vec4 per triangle; values that are not finite count as black. Points that see no body cost the GPU
-  // nothing. Changes the bound framebuffer, viewport, depth and culling state. Fails if it is called while
-  // pending(), if there are fewer radiances than triangles, or if 2^21 bodies or more would be drawn (counted
-  // per face of a point).
+  // Draws and projects. Each page of cube maps takes at most two draws (bright sides, then dark ones) and two
+  // dispatches, and two more dispatches when the environment changed. `triangle_radiance` holds a vec4 per
+  // triangle; values that are not finite count as black. Points that see no body cost the GPU nothing.
+  // Changes the bound framebuffer, viewport, depth and culling state. Fails if it is called while pending(),
+  // if there are fewer radiances than triangles, or if 2^21 bodies or more would be drawn (counted per face
+  // of a point).
   Result<void> run(const Environment& environment, std::span<const CaptureBody> bodies,
                    std::span<const CapturePoint> points, const gpu::Buffer& triangle_radiance,
                    gpu::Counters& counters);
@@ -194,7 +196,7 @@ class Capture {
     std::uint32_t first_triangle = 0, first_vertex = 0;
   };
   struct PageIndices {
-    std::uint32_t first_bright = 0, first_dark = 0, end = 0;
+    std::uint32_t first = 0, front_only = 0, end = 0;  // triangles seen from one side only come last
   };
   // Holds what take() needs to know about the run.
   struct Run {
@@ -231,7 +233,7 @@ class Capture {
   std::uint32_t triangle_count_ = 0;
   std::vector<PageIndices> page_indices_;
   // These lists of indices are drawn once they are uploaded. They are members so that their memory is reused.
-  std::vector<std::uint32_t> bright_then_dark_, dark_;
+  std::vector<std::uint32_t> indices_of_draws_, front_only_;
 
   bool pending_ = false;
   Run run_;
