@@ -105,13 +105,10 @@ class KeyShadows final : public SurfaceModule {
 
   KeyShadowOptions options_;
   std::vector<Map> maps_;
-  ShadowCasters casters_{"key casters"};
+  ShadowCasters casters_{"key shadows", "key_caster.vert", "key_caster.frag"};
   scene::Box bounds_ws_;  // of all casters
-  ShadowCasters::Programs programs_;
   gpu::Program pyramid_program_;
-  gpu::Texture depths_, blockers_;
-  gpu::Handle<gpu::FramebufferTraits> target_;
-  gpu::Table views_;
+  gpu::Texture blockers_;
   mutable gpu::Table block_;  // what bind() says of its view, which is no state of the shadows
   std::uint32_t maps_drawn_ = 0;
 };
