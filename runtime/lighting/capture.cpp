@@ -425,8 +425,7 @@ void Capture::projectPage(const Page& page, const gpu::Buffer& triangle_radiance
   glUniform1ui(kFirstPoint, page.first_point);
   bindTable(values_view_, kUnitValues, GL_RGBA32F, values_.buffer());
   bindTable(texels_view_, kUnitTexels, GL_RG32UI, texels_.buffer());
-  bindTable(weights_view_, kUnitWeights, GL_RGBA32F, weights_);
-  sky_.bindTables();
+  sky_.bindTables(weights_);
   points_.bindStorage(kBindPoints);
   results_.bindStorage(kBindResults);
   glDispatchCompute(page.point_count, 1, 1);
@@ -463,13 +462,6 @@ std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
       out.visible[q] = visibleShare(point.queries[q], hidden[run_.first_words[record] + q], out.light);
   }
   return lights;
-}
-
-sh::LightVector Capture::skyThroughTexels(const Environment& environment, gpu::Counters& counters) {
-  sky_is_new_ = sky_.update(environment, weights_, counters) || sky_is_new_;
-  std::vector<glm::vec4> sky(static_cast<std::size_t>(sh::coefficientCount(options_.order)));
-  sky_.light().read(0, std::span(sky));
-  return lightFrom(sky);
 }
 
 sh::LightVector Capture::lightFrom(std::span<const glm::vec4> coefficients) const {

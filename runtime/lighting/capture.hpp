@@ -120,7 +120,7 @@ namespace lambent::lighting {
 
 // Owns the sky as the light capture sees it: one small box-filtered cube map in world axes for all points,
 // without suns. It takes an environment and provides, per texel (in the order of sh/image_layout.hpp), the
-// radiance and the weights that project it to harmonics, and the projected sum. Two dispatches remake them
+// radiance, and its sum projected to harmonics. Two dispatches remake them
 // when the environment was turned, faded or replaced. Render thread only. create() fails if a shader does not
 // compile on this device.
 class CaptureSky {
@@ -129,10 +129,10 @@ class CaptureSky {
   static Result<CaptureSky> create(const CaptureOptions& options, const Environment& environment);
 
   // Remakes the cube if the environment changed, and returns whether it did. `weights` is
-  // [texel][coefficient] from sh::cubeWeights.
+  // [texel][coefficient] from sh::cubeWeights, padded to fours.
   bool update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters);
-  // Binds the texels and weights that capture_project.comp reads.
-  void bindTables();
+  // Binds the texels and the weights that capture_project.comp reads.
+  void bindTables(const gpu::Buffer& weights);
   // Returns one vec4 per coefficient: the sum of texels times weights.
   const gpu::Buffer& light() const { return light_; }
 
@@ -141,9 +141,9 @@ class CaptureSky {
 
   CaptureOptions options_;
   gpu::Program program_, light_program_;
-  std::array<gpu::Texture, Environment::kSets> environment_maps_;  // light frame, float32, mip maps
+  std::array<gpu::Texture, Environment::kSets> environment_maps_;  // light frame, mip maps
   gpu::Sampler sampler_;
-  gpu::Buffer texels_, weights_, light_;
+  gpu::Buffer texels_, light_;
   gpu::Handle<gpu::TextureTraits> texels_view_, weights_view_;
   std::uint64_t version_ = 0;  // version of the environment that the cube shows; 0: none yet
   std::uint64_t lights_ = 0;   // version of the lights in environment_maps_
@@ -185,9 +185,6 @@ class Capture {
     std::uint64_t triangles = 0, pixels = 0;
   };
   const Load& load() const { return load_; }
-  // Returns the sky as its texels represent it, without the correction to the exact light, so that the error
-  // of the texels can be measured. Waits for the GPU. Must not be called while pending().
-  sh::LightVector skyThroughTexels(const Environment& environment, gpu::Counters& counters);
 
  private:
   struct Proxy {
@@ -226,7 +223,7 @@ class Capture {
   gpu::Table vertices_, draws_, indices_, points_, texels_, values_, lookups_, results_, hidden_;
   gpu::Buffer weights_;
   using View = gpu::Handle<gpu::TextureTraits>;
-  View vertices_view_, draws_view_, values_view_, texels_view_, weights_view_;
+  View vertices_view_, draws_view_, values_view_, texels_view_;
   capture::Readback readback_;
   std::vector<Proxy> proxies_;
   std::vector<capture::ProxyBounds> bounds_;
