@@ -265,16 +265,6 @@ bool LightPlan::needsSampling() const {
   return !lights.empty() || std::ranges::any_of(groups, seesOthers);
 }
 
-BodyProxies proxiesOf(const streaming::Residency& residency) {
-  BodyProxies bodies;
-  for (const streaming::ResidentGroup& group : residency.groups())
-    if (group.proxy) {
-      bodies.proxies.push_back(&*group.proxy);
-      bodies.keys.push_back(group.id);
-    }
-  return bodies;
-}
-
 Suns sunsOf(const World& world, std::uint32_t most) {
   const ecs::Registry& registry = world.registry();
   struct Sun {

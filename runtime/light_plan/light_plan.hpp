@@ -90,13 +90,6 @@ Suns sunsOf(const World& world, std::uint32_t most);
 // Makes the plan. `surroundings` is the mean radiance against which bodies count as bright.
 LightPlan makeLightPlan(const World& world, float surroundings, const LightPlanOptions& options = {});
 
-// Lists the proxies of the groups that have one, in the order of the bodies, and the keys of these groups.
-struct BodyProxies {
-  std::vector<const bundle::CaptureProxy*> proxies;
-  std::vector<std::uint64_t> keys;
-};
-BodyProxies proxiesOf(const streaming::Residency& residency);
-
 // Chooses which lights in the scene are shaded per pixel with shadow cubes, and with what share: those within
 // the bounds of a group, and those beside one, within a given number of its radii from its centre. Near that
 // distance the share falls to 0 continuously. No GL.

@@ -397,13 +397,6 @@ void KeyShadows::bind(const spec::View& view, const spec::Size& size) const {
   glBindSampler(kUnitKeyBlockers, 0);
 }
 
-std::vector<KeyShadows::ShownRegion> KeyShadows::regions() const {
-  std::vector<ShownRegion> shown;
-  for (const Map& map : maps_)
-    if (map.drawn) shown.push_back({map.light, map.region, map.size});
-  return shown;
-}
-
 std::uint64_t KeyShadows::bytesResident() const {
   const gpu::Texture& depths = casters_.depths();
   if (!depths) return 0;
