@@ -209,16 +209,15 @@ void appendKeys(const OverlayOptions& options, const OverlayScene& scene, std::v
         .arrow(world.center() + 1.3f * radius * key.direction, 1.05f * radius, 0.12f * radius,
                0.048f * radius);
   }
-  std::vector<KeyShadows::ShownRegion> boxes = scene.key_shadows.regions();
-  if (options.key && *options.key < keys.size())
-    std::erase_if(boxes, [&](const KeyShadows::ShownRegion& shown) {
-      return shown.light.direction != keys[*options.key].direction;
-    });
-  std::ranges::stable_sort(boxes, std::ranges::greater(),
-                           [](const KeyShadows::ShownRegion& shown) { return fluxOf(shown.light); });
-  boxes.resize(std::min(boxes.size(), kMostBoxes));
-  for (const KeyShadows::ShownRegion& shown : boxes)
-    appendEdges(cornersOf(shown.region), shownAs(shown.light, 0.7f), 1.0f, lines);
+  const bool one = options.key && *options.key < keys.size();
+  std::vector<const KeyShadows::Map*> maps;
+  for (const KeyShadows::Map& map : scene.key_shadows.maps())
+    if (map.drawn && (!one || map.light.direction == keys[*options.key].direction)) maps.push_back(&map);
+  std::ranges::stable_sort(maps, std::ranges::greater(),
+                           [](const KeyShadows::Map* map) { return fluxOf(map->light); });
+  maps.resize(std::min(maps.size(), kMostBoxes));
+  for (const KeyShadows::Map* map : maps)
+    appendEdges(cornersOf(map->region), shownAs(map->light, 0.7f), 1.0f, lines);
 }
 
 }  // namespace

@@ -34,14 +34,14 @@ float meanRadiance(const lighting::Environment& environment) {
 class LightPass final : public FramePass {
  public:
   explicit LightPass(Blackboard& board)
-      : FramePass({.name = "light",
-                   .reads = resources<World>(),
-                   .reads_before = resources<Incident, Neighborhoods>(),
-                   .writes = resources<LightPlan, Incident, GroupLights, Neighborhoods>(),
-                   .causes = kLightCauses,
-                   .counts = {"groups", "bodies", "local_lights", "shadowed_lights",
-                              "shadowed_lights_left_out", "light_probes", "light_probes_risen",
-                              "light_probes_occluded", "light_probes_written"}}) {
+      : FramePass(
+            {.name = "light",
+             .reads = resources<World>(),
+             .reads_before = resources<Incident, Neighborhoods>(),
+             .writes = resources<LightPlan, Incident, GroupLights, Neighborhoods>(),
+             .causes = kLightCauses,
+             .counts = {"groups", "bodies", "local_lights", "shadowed_lights", "shadowed_lights_left_out",
+                        "light_probes", "light_probes_risen", "light_probes_written"}}) {
     board.offer(plan_);
     board.offer(incident_);
     board.offer(group_lights_);
@@ -91,9 +91,6 @@ class LightPass final : public FramePass {
          .cubes_before = cubes_before,
          .grids = by_grids ? neighborhoods.gridsNow(frame.world, settings.neighborhoods) : PlannedGrids{}});
     if (by_grids) neighborhoods.takePairs(plan_);
-    frame.count("light_probes_occluded",
-                apart_occlusion_.update(plan_, proxiesOf(frame.world.residency()).proxies,
-                                        frame.world.residency().proxiesVersion()));
   }
 
   Result<void> prepareSampling(const FrameContext& frame) {
@@ -113,8 +110,14 @@ class LightPass final : public FramePass {
     }
     capture_order_ = options.order;
     if (proxies_.renew(frame.world.residency().proxiesVersion())) {
-      const BodyProxies bodies = proxiesOf(frame.world.residency());
-      incident_->captures().setProxies(bodies.proxies, frame.counters(), bodies.keys);
+      std::vector<const bundle::CaptureProxy*> proxies;  // in the order of the bodies
+      std::vector<std::uint64_t> keys;
+      for (const streaming::ResidentGroup& group : frame.world.residency().groups()) {
+        if (!group.proxy) continue;
+        proxies.push_back(&*group.proxy);
+        keys.push_back(group.id);
+      }
+      incident_->captures().setProxies(proxies, frame.counters(), keys);
     }
     return {};
   }
@@ -145,7 +148,6 @@ class LightPass final : public FramePass {
   }
 
   LightPlan plan_;
-  ApartOcclusion apart_occlusion_;
   Incident incident_;  // made once there is something to sample
   GroupLights group_lights_;
   ChangeGate<bool, bool, bool, float> carriers_;  // settings that choose carriers

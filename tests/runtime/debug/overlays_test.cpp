@@ -186,8 +186,8 @@ TEST_F(OverlayTest, KeyLightsAreMarkedWhereTheSkyShowsThem) {
   std::size_t beside = 0;
   for (const std::size_t i : changed) beside += glm::distance(glm::vec2(i % 64, i / 64), sun) < 6.0f;
   EXPECT_GE(beside, 6u) << "a ring about it";
-  ASSERT_EQ(stage.frame->kept<KeyShadows>().regions().size(), 1u);
-  EXPECT_LT(glm::distance(stage.frame->kept<KeyShadows>().regions()[0].light.direction,
+  ASSERT_EQ(stage.frame->kept<KeyShadows>().maps().size(), 1u);
+  EXPECT_LT(glm::distance(stage.frame->kept<KeyShadows>().maps()[0].light.direction,
                           stage.environment.keys()[0].direction),
             1e-6f);
   stage.frame->setOverlays({});
