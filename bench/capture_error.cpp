@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include "runtime/gpu/context.hpp"
@@ -172,18 +173,10 @@ void printTable(const std::vector<Row>& rows, int order) {
 int main(int argc, char** argv) {
   int directions = 500;
   std::filesystem::path environment_maps;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool has_value = i + 1 < argc;
-    if (word == "--directions" && has_value) {
-      directions = std::max(1, std::atoi(argv[++i]));
-    } else if (word == "--probes" && has_value) {
-      environment_maps = argv[++i];
-    } else {
-      std::fprintf(stderr, "capture_error [--directions N] [--probes DIR]\n");
-      return 2;
-    }
-  }
+  CLI::App app("Measures the time and the error of cube maps of light.");
+  app.add_option("--directions", directions)->check(CLI::PositiveNumber);
+  app.add_option("--probes", environment_maps);
+  CLI11_PARSE(app, argc, argv);
   const gpu::Context context = must(gpu::Context::createHeadless());
   std::printf("%s\n", context.info().renderer.c_str());
   std::vector<Row> rows;
