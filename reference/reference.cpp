@@ -91,7 +91,7 @@ struct SampleCounts {
 };
 
 // Renders the picture pass by pass, and writes a checkpoint every few seconds and when stopped.
-Result<void> renderAll(const Integrator& integrator, Film& film, const SampleCounts& samples,
+Result<void> renderAll(const World& world, Film& film, const SampleCounts& samples,
                        const fs::path& checkpoint, Progress& progress, const std::stop_token& stop) {
   const double seconds_before = film.seconds;
   const Clock::time_point begin = Clock::now();
@@ -105,8 +105,8 @@ Result<void> renderAll(const Integrator& integrator, Film& film, const SampleCou
   for (std::uint32_t pass = 0; pass < samples.per_pixel; pass += samples.in_pass)
     for (std::uint32_t row = 0; row < film.size().height; row += kRowsAtOnce) {
       const Rows rows{row, std::min(row + kRowsAtOnce, film.size().height)};
-      const bool whole = addSamples(integrator, film, rows,
-                                    std::min(samples.per_pixel, pass + samples.in_pass), progress, stop);
+      const bool whole =
+          addSamples(world, film, rows, std::min(samples.per_pixel, pass + samples.in_pass), progress, stop);
       if (!whole || Clock::now() - saved > kCheckpointEvery)
         if (auto done = save(); !done) return done;
       if (!whole)
@@ -175,10 +175,9 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
     left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
   // Trace the paths.
   progress.begin("paths", left, "samples");
-  const World world{**traced, environment, shapes, EyeRays(*view, options.size)};
-  auto done =
-      renderAll(Integrator(world, options), film, {options.spp, samplesInPass(options, (*traced)->volumes)},
-                checkpoint, progress, stop);
+  const World world{**traced, environment, shapes, EyeRays(*view, options.size), options};
+  auto done = renderAll(world, film, {options.spp, samplesInPass(options, (*traced)->volumes)}, checkpoint,
+                        progress, stop);
   if (!done) return failAgain(std::move(done.error()));
   report.image = film.image();
   report.rays = film.rays();
