@@ -406,16 +406,9 @@ sh::LightVector shapeLight(const spec::LocalLight& light, int order, const glm::
   return std::visit([&](const auto& shape) { return truncated(shape, order, glm::dvec3(point)); }, light);
 }
 
-Result<std::vector<spec::DistantLights>> loadEach(const std::vector<spec::Light>& lights) {
-  std::vector<spec::DistantLights> each;
-  for (const spec::Light& light : lights) {
-    auto loaded = spec::loadDistantLights({light});
-    if (!loaded) return failAgain(std::move(loaded.error()));
-    each.push_back(std::move(*loaded));
-  }
-  return each;
-}
+namespace {
 
+// Combines the lights, each times its factor, and those in `more`, which may be null.
 spec::DistantLights together(const std::vector<spec::DistantLights>& each, const std::vector<float>& factors,
                              const spec::DistantLights* more) {
   spec::DistantLights all;
@@ -432,12 +425,14 @@ spec::DistantLights together(const std::vector<spec::DistantLights>& each, const
     }
   };
   for (std::size_t i = 0; i < each.size(); ++i) {
-    add(each[i], i < factors.size() ? factors[i] : 1.0f);
+    add(each[i], factors[i]);
     all.notices.insert(all.notices.end(), each[i].notices.begin(), each[i].notices.end());
   }
   if (more) add(*more, 1.0f);
   return all;
 }
+
+}  // namespace
 
 Result<std::shared_ptr<const Environment>> LightCache::environment(
     const std::vector<spec::Light>& lights, const std::vector<float>& factors, const Options& options,
@@ -452,23 +447,24 @@ Result<std::shared_ptr<const Environment>> LightCache::environment(
     distant.push_back(lights[i]);
     of_distant.push_back(i < factors.size() ? factors[i] : 1.0f);
   }
-  if (!loaded_ || distant != lights_) {
-    loaded_.reset(), environment_.reset();
-    auto loaded = loadEach(distant);
-    if (!loaded) return failAgain(std::move(loaded.error()));
-    loaded_ = std::move(*loaded);
-    lights_ = std::move(distant);
+  if (loaded_from_.renew(distant)) {
+    made_from_.forget();
+    loaded_.clear();
+    for (const spec::Light& light : distant) {
+      auto loaded = spec::loadDistantLights({light});
+      if (!loaded) {
+        loaded_from_.forget();
+        return failAgain(std::move(loaded.error()));
+      }
+      loaded_.push_back(std::move(*loaded));
+    }
   }
   const int band_limit = options.band_limit ? options.band_limit->in : 0;
-  if (!environment_ || factors_ != of_distant || turn_deg_ != options.rotate_light_deg ||
-      band_limit_ != band_limit || more_ != more) {
-    more_ = more;
-    factors_ = std::move(of_distant);
-    turn_deg_ = options.rotate_light_deg;
-    band_limit_ = band_limit;
-    spec::DistantLights combined = together(*loaded_, factors_, more_.get());
+  if (made_from_.renew(of_distant, more, options.rotate_light_deg, band_limit)) {
+    spec::DistantLights combined = together(loaded_, of_distant, more.get());
     notices_ = combined.notices;
-    environment_ = std::make_shared<const Environment>(std::move(combined), turn_deg_, band_limit_);
+    environment_ =
+        std::make_shared<const Environment>(std::move(combined), options.rotate_light_deg, band_limit);
   }
   return environment_;
 }
