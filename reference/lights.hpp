@@ -14,7 +14,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "reference/options.hpp"
+#include "reference/reference.hpp"
 #include "reference/surfaces.hpp"
 #include "runtime/base/change_gate.hpp"
 #include "runtime/sh/basis.hpp"

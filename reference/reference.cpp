@@ -14,7 +14,6 @@
 #include "reference/camera.hpp"
 #include "reference/film.hpp"
 #include "reference/lights.hpp"
-#include "reference/options.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/process.hpp"
 #include "runtime/base/result.hpp"
