@@ -219,14 +219,6 @@ float leastBlend(const Channels& channels) {
   return best;
 }
 
-BandWeights hannWeights(int order) {
-  BandWeights weights{};
-  for (int l = 0; l < order; ++l)
-    weights[static_cast<std::size_t>(l)] =
-        static_cast<float>(0.5 * (1 + std::cos(std::numbers::pi * l / static_cast<double>(order))));
-  return weights;
-}
-
 BandWeights integratedPositiveWeights(int order) {
   BandWeights weights{};
   weights[0] = 1;
@@ -280,7 +272,6 @@ BandWeights positiveWeights(int order) {
 }
 
 BandWeights windowWeights(const LightVector& light, Window window) {
-  if (window == Window::Hann) return hannWeights(light.order);
   const BandWeights kernel = positiveWeights(light.order);
   const float blend = window == Window::Auto ? blendFor(light, kernel) : 0.0f;
   BandWeights weights{};
