@@ -278,7 +278,6 @@ std::vector<PunctualLight> punctualLights(const Scene& scene) {
   return out;
 }
 
-// Follows KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles".
 std::optional<Beam> beamAt(const PunctualLight& light, const glm::vec3& position) {
   const gltf::Light& l = light.light;
   Beam beam{.distance = std::numeric_limits<float>::infinity(), .irradiance = l.intensity * l.color};
@@ -290,17 +289,11 @@ std::optional<Beam> beamAt(const PunctualLight& light, const glm::vec3& position
   beam.distance = glm::length(to);
   if (!(beam.distance > 0.0f)) return std::nullopt;
   beam.to_light = to / beam.distance;
-  float fade = 1.0f / (beam.distance * beam.distance);
-  if (l.range_m > 0.0f) {
-    const float share = beam.distance / l.range_m, share2 = share * share;
-    fade *= std::clamp(1.0f - share2 * share2, 0.0f, 1.0f);
-  }
-  if (l.type == gltf::Light::Type::Spot) {
-    const float cos_outer = std::cos(l.outer_cone_rad);
-    const float scale = 1.0f / std::max(0.001f, std::cos(l.inner_cone_rad) - cos_outer);
-    const float inside = std::clamp((glm::dot(light.along, -beam.to_light) - cos_outer) * scale, 0.0f, 1.0f);
-    fade *= inside * inside;
-  }
+  const double distance = beam.distance;
+  auto fade = static_cast<float>(sh::rangeFade(distance, l.range_m) / (distance * distance));
+  if (l.type == gltf::Light::Type::Spot)
+    fade *= static_cast<float>(
+        sh::coneFade(glm::dot(light.along, -beam.to_light), l.inner_cone_rad, l.outer_cone_rad));
   if (!(fade > 0.0f)) return std::nullopt;
   beam.irradiance *= fade;
   return beam;

@@ -166,7 +166,16 @@ Result<std::shared_ptr<const DecodedImage>> DecodedImages::ofTexture(std::int32_
   return image;
 }
 
-glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
+namespace {
+
+glm::vec4 data(const DecodedImage& image, const gltf::Sampler& sampler, std::int64_t x, std::int64_t y) {
+  const std::uint8_t* p = bytesOf(image, sampler, x, y);
+  return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
+}
+
+// `texel` reads one texel, as texel() and data() do.
+template <typename Texel>
+glm::vec4 sample(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv, const Texel& texel) {
   // Texel centres lie at half-integers. Coordinates are clamped to stay in integer range.
   const glm::dvec2 size(image.width, image.height);
   const glm::dvec2 at =
@@ -179,13 +188,19 @@ glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, g
                   glm::mix(texel(image, sampler, x, y + 1), texel(image, sampler, x + 1, y + 1), f.x), f.y);
 }
 
-namespace {
-
 glm::vec2 texelPlace(const DecodedImage& image, glm::vec2 uv) {
   return glm::floor(glm::clamp(uv * glm::vec2(image.width, image.height), -1e15f, 1e15f));
 }
 
 }  // namespace
+
+glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
+  return sample(image, sampler, uv, texel);
+}
+
+glm::vec4 sampleData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
+  return sample(image, sampler, uv, data);
+}
 
 glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
   const glm::vec2 at = texelPlace(image, uv);
@@ -194,9 +209,7 @@ glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, 
 
 glm::vec4 nearestData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
   const glm::vec2 at = texelPlace(image, uv);
-  const std::uint8_t* p =
-      bytesOf(image, sampler, static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y));
-  return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
+  return data(image, sampler, static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y));
 }
 
 namespace {

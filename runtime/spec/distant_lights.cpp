@@ -173,16 +173,12 @@ Result<DistantLights> loadDistantLights(
 }
 
 sh::LightVector DistantLights::lightVector() const {
-  return skyVector() + discVector(discs);
-}
-
-sh::LightVector DistantLights::skyVector() const {
   sh::LightVector light = sh::constantLight(sh::kMaxOrder, constant);
   for (const EnvironmentMap& environment_map : environment_maps)
     light +=
         sh::projectImage(sh::kMaxOrder, environment_map.layout, static_cast<int>(environment_map.image.width),
                          static_cast<int>(environment_map.image.height), environment_map.image.texels);
-  return light;
+  return light + discVector(discs);
 }
 
 sh::LightVector discVector(std::span<const Disc> discs) {
