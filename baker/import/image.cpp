@@ -173,19 +173,19 @@ glm::vec4 data(const DecodedImage& image, const gltf::Sampler& sampler, std::int
   return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
 }
 
-// `texel` reads one texel, as texel() and data() do.
+// `read` returns one texel, as texel() and data() do.
 template <typename Texel>
-glm::vec4 sample(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv, const Texel& texel) {
+glm::vec4 sample(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv, const Texel& read) {
   // Texel centres lie at half-integers. Coordinates are clamped to stay in integer range.
   const glm::dvec2 size(image.width, image.height);
   const glm::dvec2 at =
       glm::clamp(glm::dvec2(uv) * size, -1e15, 1e15) - (sampler.mag_filter == kNearest ? 0.0 : 0.5);
   const glm::dvec2 base = glm::floor(at);
   const auto x = static_cast<std::int64_t>(base.x), y = static_cast<std::int64_t>(base.y);
-  if (sampler.mag_filter == kNearest) return texel(image, sampler, x, y);
+  if (sampler.mag_filter == kNearest) return read(image, sampler, x, y);
   const glm::vec2 f(at - base);
-  return glm::mix(glm::mix(texel(image, sampler, x, y), texel(image, sampler, x + 1, y), f.x),
-                  glm::mix(texel(image, sampler, x, y + 1), texel(image, sampler, x + 1, y + 1), f.x), f.y);
+  return glm::mix(glm::mix(read(image, sampler, x, y), read(image, sampler, x + 1, y), f.x),
+                  glm::mix(read(image, sampler, x, y + 1), read(image, sampler, x + 1, y + 1), f.x), f.y);
 }
 
 glm::vec2 texelPlace(const DecodedImage& image, glm::vec2 uv) {
