@@ -155,6 +155,26 @@ glm::vec4 texel(const DecodedImage& image, const gltf::Sampler& sampler, std::in
   return {srgbTable()[p[0]], srgbTable()[p[1]], srgbTable()[p[2]], static_cast<float>(p[3]) / 255.0f};
 }
 
+glm::vec4 data(const DecodedImage& image, const gltf::Sampler& sampler, std::int64_t x, std::int64_t y) {
+  const std::uint8_t* p = bytesOf(image, sampler, x, y);
+  return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
+}
+
+// Interpolates what `read` returns of texels.
+template <typename Read>
+glm::vec4 sample(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv, const Read& read) {
+  // Texel centres lie at half-integers. Coordinates are clamped to stay in integer range.
+  const glm::dvec2 size(image.width, image.height);
+  const glm::dvec2 at =
+      glm::clamp(glm::dvec2(uv) * size, -1e15, 1e15) - (sampler.mag_filter == kNearest ? 0.0 : 0.5);
+  const glm::dvec2 base = glm::floor(at);
+  const auto x = static_cast<std::int64_t>(base.x), y = static_cast<std::int64_t>(base.y);
+  if (sampler.mag_filter == kNearest) return read(image, sampler, x, y);
+  const glm::vec2 f(at - base);
+  return glm::mix(glm::mix(read(image, sampler, x, y), read(image, sampler, x + 1, y), f.x),
+                  glm::mix(read(image, sampler, x, y + 1), read(image, sampler, x + 1, y + 1), f.x), f.y);
+}
+
 DecodedImage decode(const SceneImage& image, const std::string& subject) {
   const OpenImageIo& reader = *orThrow(openImageIo());
   std::vector<std::byte> essential;
@@ -200,16 +220,11 @@ Result<std::shared_ptr<const DecodedImage>> DecodedImages::ofTexture(std::int32_
 }
 
 glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
-  // Texel centres lie at half-integers. Coordinates are clamped to stay in integer range.
-  const glm::dvec2 size(image.width, image.height);
-  const glm::dvec2 at =
-      glm::clamp(glm::dvec2(uv) * size, -1e15, 1e15) - (sampler.mag_filter == kNearest ? 0.0 : 0.5);
-  const glm::dvec2 base = glm::floor(at);
-  const auto x = static_cast<std::int64_t>(base.x), y = static_cast<std::int64_t>(base.y);
-  if (sampler.mag_filter == kNearest) return texel(image, sampler, x, y);
-  const glm::vec2 f(at - base);
-  return glm::mix(glm::mix(texel(image, sampler, x, y), texel(image, sampler, x + 1, y), f.x),
-                  glm::mix(texel(image, sampler, x, y + 1), texel(image, sampler, x + 1, y + 1), f.x), f.y);
+  return sample(image, sampler, uv, texel);
+}
+
+glm::vec4 sampleData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
+  return sample(image, sampler, uv, data);
 }
 
 glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
@@ -219,8 +234,7 @@ glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, 
 
 glm::vec4 nearestData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
   const glm::i64vec2 at = texelAt(image, uv);
-  const std::uint8_t* p = bytesOf(image, sampler, at.x, at.y);
-  return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
+  return data(image, sampler, at.x, at.y);
 }
 
 namespace {

@@ -50,11 +50,12 @@ class DecodedImages {
 
 // Returns a bilinear look-up at uv under the sampler's wrap modes: linear RGB and alpha, each 0..1.
 glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
+// Does the same for an image that holds no colours: all four channels are 0..1 as stored.
+glm::vec4 sampleData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
 
 // Returns the texel that contains uv, for sums over so many look-ups that blending between texels makes no
 // difference.
 glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
-// Does the same for an image that holds no colours: all four channels are 0..1 as stored.
 glm::vec4 nearestData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
 
 }  // namespace lambent::baker
