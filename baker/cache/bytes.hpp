@@ -10,7 +10,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -35,7 +34,6 @@ class ByteWriter {
   void addList(const std::vector<T>& list) {
     addList(std::span<const T>(list));
   }
-  void addText(std::string_view text) { addList(std::span<const char>(text)); }
   // Appends what another writer wrote.
   void addBytes(std::span<const std::byte> bytes) { append(bytes); }
 
@@ -57,10 +55,11 @@ class ByteReader {
   bool read(T& value) {
     return copy(std::as_writable_bytes(std::span(&value, 1)));
   }
-  template <PlainBytes T>
-  bool readList(std::vector<T>& list) {
+  // Reads a vector or a text.
+  template <typename List>
+  bool readList(List& list) {
     std::uint64_t count = 0;
-    if (!read(count) || count > left_.size() / sizeof(T)) return failed();
+    if (!read(count) || count > left_.size() / sizeof(list[0])) return failed();
     list.resize(static_cast<std::size_t>(count));
     return copy(std::as_writable_bytes(std::span(list)));
   }
@@ -70,12 +69,6 @@ class ByteReader {
     std::uint64_t count = 0;
     if (!read(count) || count != list.size()) return failed();
     return copy(std::as_writable_bytes(list));
-  }
-  bool readText(std::string& text) {
-    std::uint64_t count = 0;
-    if (!read(count) || count > left_.size()) return failed();
-    text.resize(static_cast<std::size_t>(count));
-    return copy(std::as_writable_bytes(std::span(text)));
   }
   // Returns a reader for the next `count` bytes, and moves past them.
   ByteReader part(std::uint64_t count) {
@@ -127,10 +120,10 @@ bool read(ByteReader& in, T& value) {
 }
 
 inline void write(const std::string& text, ByteWriter& out) {
-  out.addText(text);
+  out.addList(std::span<const char>(text));
 }
 inline bool read(ByteReader& in, std::string& text) {
-  return in.readText(text);
+  return in.readList(text);
 }
 
 template <typename T>

@@ -17,6 +17,8 @@
 
 #include <glm/fwd.hpp>
 
+struct XXH3_state_s;  // of xxhash.h
+
 namespace lambent::baker {
 
 struct Key {
@@ -46,9 +48,6 @@ class KeyMaker {
   KeyMaker();  // begins with nothing
   // Begins the key of a stage's result with the program's digest and the stage's name.
   static KeyMaker ofStage(std::string_view stage);
-  KeyMaker(KeyMaker&&) noexcept;
-  KeyMaker& operator=(KeyMaker&&) noexcept;
-  ~KeyMaker();
 
   template <PlainBytes... T>
   KeyMaker& add(const T&... values) {
@@ -72,8 +71,10 @@ class KeyMaker {
  private:
   KeyMaker& addBytes(std::span<const std::byte> bytes);
 
-  struct State;
-  std::unique_ptr<State> state_;
+  struct Free {
+    void operator()(XXH3_state_s* hash) const;
+  };
+  std::unique_ptr<XXH3_state_s, Free> hash_;
 };
 
 // Returns a digest of the sources of the baker and of what it uses, the compiler and its flags.

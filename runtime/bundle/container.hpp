@@ -24,9 +24,18 @@
 
 namespace lambent::bundle {
 
+// Constants of the GLB container, which is little endian.
+inline constexpr std::uint32_t kGlbMagic = 0x46546C67;      // "glTF"
+inline constexpr std::uint32_t kGlbJsonChunk = 0x4E4F534A;  // "JSON"
+inline constexpr std::uint32_t kGlbBinChunk = 0x004E4942;   // "BIN\0"
+inline constexpr std::uint64_t kGlbHeaderBytes = 12, kGlbChunkHeaderBytes = 8;
+
 // XXH3-64 is the checksum and the digest of the whole format. It is fast enough to be checked on every read.
 // It detects accidents, not forgery.
 std::uint64_t checksum(std::span<const std::byte> bytes);
+
+// Holds the bytes of a view or a payload.
+using Blob = std::vector<std::byte>;
 
 // Compresses and decompresses all payloads, with zstd. Damaged or truncated bytes are reported as an Error
 // that names `subject`.
@@ -86,9 +95,6 @@ class Reader {
   explicit Reader(std::unique_ptr<File> file);
   std::unique_ptr<File> file_;
 };
-
-// Holds the bytes of a view.
-using Blob = std::vector<std::byte>;
 
 // Looks at a whole bundle before it takes the place of the old one.
 using PartCheck = std::function<Result<void>(const std::filesystem::path& part)>;

@@ -133,13 +133,6 @@ void Residency::structureChanged() {
   ++proxies_version_;
 }
 
-Result<std::uint32_t> Residency::add(const bundle::Description& description) {
-  const auto empty = std::ranges::find(tables_.bundles, false, &ResidentBundle::present);
-  const auto slot = static_cast<std::uint32_t>(empty - tables_.bundles.begin());
-  if (const Result<void> added = add(description, slot); !added) return failAgain(added.error());
-  return slot;
-}
-
 Result<void> Residency::add(const bundle::Description& description, std::uint32_t slot) {
   Result<ResidentTables> made = make(description);
   if (!made) return failAgain(made.error());

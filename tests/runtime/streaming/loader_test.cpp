@@ -226,7 +226,7 @@ TEST_F(LoaderTest, BringsThePartsThatAreAskedForInTheirOrder) {
   write(testing::sampleBundle());
   Loader loader(open(),
                 {ImageRequest{1}, MeshRequest{1, 1}, CodebookRequest{bundle::GroupIndex{1}, {}, {}},
-                 PlaneRequest{bundle::GroupIndex{1}, {}, {}, {}}},
+                 PlaneRequest{{bundle::GroupIndex{1}, {}, {}}, {}}},
                 threads_, 2);
   EXPECT_EQ(names(drain(loader, 1 << 20)),
             (std::vector<std::string>{"image 1", "mesh 1.1", "codebook 1.0.0", "plane 1.0.0.0"}));
