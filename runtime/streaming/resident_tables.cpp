@@ -113,9 +113,7 @@ ResidentTransfer describe(const bundle::CellTransfer& transfer) {
   resident.shape = transfer.shape;
   resident.clusters = transfer.clusters;
   resident.axes = transfer.axes;
-  for (const bundle::WeightPlane& plane : transfer.planes)
-    resident.planes.push_back(
-        {.block = {}, .bits = plane.bits, .count = plane.count, .variance = plane.variance});
+  for (const bundle::WeightPlane& plane : transfer.planes) resident.planes.push_back({plane});
   return resident;
 }
 
