@@ -18,7 +18,7 @@
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/base/payload_bytes.hpp"
 #include "runtime/bundle/description_json.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::bundle {
 

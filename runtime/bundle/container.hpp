@@ -20,7 +20,7 @@
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::bundle {
 

@@ -6,7 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/bundle/description_json.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::bundle {
 

@@ -23,7 +23,7 @@
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/streaming/textures.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::streaming {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::transfer {
 namespace {

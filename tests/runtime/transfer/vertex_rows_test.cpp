@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/bundle/container.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::transfer {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "runtime/bundle/description.hpp"
 #include "runtime/streaming/loader.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::testing {
 
