@@ -108,8 +108,7 @@ class BundleMaker {
       addDraw(made, options, g, glossy_outputs, mapped, surface_cells * options.samples);
     if (options.proxy_triangles > 0) {
       group.proxy = 0;
-      made.proxies.push_back(
-          {.group = bundle::GroupIndex{g}, .proxy = makeProxy(options, group.sample_count)});
+      made.proxies.push_back({{bundle::GroupIndex{g}}, makeProxy(options, group.sample_count)});
     }
     description.groups.push_back(std::move(group));
   }
