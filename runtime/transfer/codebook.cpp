@@ -251,54 +251,44 @@ Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> 
 
 // --- whole cells ---
 
-TransferDecoder::TransferDecoder(const TransferShape& shape, const Codebook& codebook,
-                                 std::span<const std::uint32_t> cluster_of,
-                                 std::span<const std::vector<std::uint32_t>> planes)
-    : size_(shape.size()),
-      codebook_(codebook),
-      cluster_of_(cluster_of),
-      planes_(planes),
-      first_axis_(codebook.clusters() + 1, 0),
-      sample_at_(positionsOf(cluster_of, static_cast<std::uint32_t>(codebook.clusters()))) {
-  for (std::size_t c = 0; c < codebook.clusters(); ++c)
-    first_axis_[c + 1] = first_axis_[c] + codebook.axis_counts[c];
-  assert(codebook.axes.size() == first_axis_.back() &&
-         codebook.vectors.size() == (first_axis_.back() + codebook.clusters()) * size_);
-}
-
-void TransferDecoder::decode(std::size_t begin, std::size_t end, std::span<float> out) const {
-  for (std::size_t position = begin; position < end; ++position) {
-    const std::size_t sample = sample_at_[position], cluster = cluster_of_[sample];
-    const std::size_t axes = std::min<std::size_t>(codebook_.axis_counts[cluster], planes_.size());
-    const float* mean = codebook_.vectors.data() + (first_axis_[cluster] + cluster) * size_;
-    float* vector = out.data() + sample * size_;
-    std::copy_n(mean, size_, vector);
-    const auto weight = [&](std::size_t j) {
-      const AxisCode& code = codebook_.axes[first_axis_[cluster] + j];
-      return code.offset + code.scale * static_cast<float>(planes_[j][position]);
-    };
-    std::size_t j = 0;
-    for (; j + 4 <= axes; j += 4) {  // four at a time, since the sum is loaded and stored for each pass
-      const std::array<float, 4> w = {weight(j), weight(j + 1), weight(j + 2), weight(j + 3)};
-      const float* axis = mean + (1 + j) * size_;
-      for (std::size_t i = 0; i < size_; ++i) {
-        float sum = vector[i];
-        for (std::size_t k = 0; k < w.size(); ++k) sum += w[k] * axis[k * size_ + i];
-        vector[i] = sum;
-      }
-    }
-    for (; j < axes; ++j) {
-      const float w = weight(j), *axis = mean + (1 + j) * size_;
-      for (std::size_t i = 0; i < size_; ++i) vector[i] += w * axis[i];
-    }
-  }
-}
-
 std::vector<float> decodeTransfer(const TransferShape& shape, const Codebook& codebook,
                                   std::span<const std::uint32_t> cluster_of,
-                                  std::span<const std::vector<std::uint32_t>> planes) {
-  std::vector<float> out(cluster_of.size() * shape.size());
-  TransferDecoder(shape, codebook, cluster_of, planes).decode(0, cluster_of.size(), out);
+                                  std::span<const std::vector<std::uint32_t>> planes, const RunRanges& run) {
+  const std::size_t size = shape.size();
+  std::vector<std::size_t> first_axis(codebook.clusters() + 1, 0);
+  for (std::size_t c = 0; c < codebook.clusters(); ++c)
+    first_axis[c + 1] = first_axis[c] + codebook.axis_counts[c];
+  assert(codebook.axes.size() == first_axis.back() &&
+         codebook.vectors.size() == (first_axis.back() + codebook.clusters()) * size);
+  const auto sample_at = positionsOf(cluster_of, static_cast<std::uint32_t>(codebook.clusters()));
+  std::vector<float> out(cluster_of.size() * size);
+  run(cluster_of.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t position = begin; position < end; ++position) {
+      const std::size_t sample = sample_at[position], cluster = cluster_of[sample];
+      const std::size_t axes = std::min<std::size_t>(codebook.axis_counts[cluster], planes.size());
+      const float* mean = codebook.vectors.data() + (first_axis[cluster] + cluster) * size;
+      float* vector = out.data() + sample * size;
+      std::copy_n(mean, size, vector);
+      const auto weight = [&](std::size_t j) {
+        const AxisCode& code = codebook.axes[first_axis[cluster] + j];
+        return code.offset + code.scale * static_cast<float>(planes[j][position]);
+      };
+      std::size_t j = 0;
+      for (; j + 4 <= axes; j += 4) {  // four at a time, since the sum is loaded and stored for each pass
+        const std::array<float, 4> w = {weight(j), weight(j + 1), weight(j + 2), weight(j + 3)};
+        const float* axis = mean + (1 + j) * size;
+        for (std::size_t i = 0; i < size; ++i) {
+          float sum = vector[i];
+          for (std::size_t k = 0; k < w.size(); ++k) sum += w[k] * axis[k * size + i];
+          vector[i] = sum;
+        }
+      }
+      for (; j < axes; ++j) {
+        const float w = weight(j), *axis = mean + (1 + j) * size;
+        for (std::size_t i = 0; i < size; ++i) vector[i] += w * axis[i];
+      }
+    }
+  });
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -151,30 +152,17 @@ std::vector<std::byte> encodeWeightPlane(std::span<const std::uint32_t> codes, s
 Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> bytes, std::uint32_t bits,
                                                      std::uint32_t count, const std::string& subject);
 
-// Decodes the samples of a cell. `planes` may hold only the first planes of the cell; their lengths are those
-// of planeCounts. This is the CPU twin of the shader decoder. What it is given must outlive it.
-class TransferDecoder {
- public:
-  TransferDecoder(const TransferShape& shape, const Codebook& codebook,
-                  std::span<const std::uint32_t> cluster_of,
-                  std::span<const std::vector<std::uint32_t>> planes);
-  // Decodes those samples whose codes lie at positions [begin, end), and writes shape.size() values of each
-  // to its place in `out`, which has room for all samples.
-  void decode(std::size_t begin, std::size_t end, std::span<float> out) const;
+// Runs body(begin, end) over ranges of [0, count), in any order.
+using RunRanges = std::function<void(std::size_t count,
+                                     const std::function<void(std::size_t begin, std::size_t end)>& body)>;
 
- private:
-  std::size_t size_;
-  const Codebook& codebook_;
-  std::span<const std::uint32_t> cluster_of_;
-  std::span<const std::vector<std::uint32_t>> planes_;
-  std::vector<std::size_t> first_axis_;   // of each cluster
-  std::vector<std::uint32_t> sample_at_;  // of each position
-};
-
-// Returns the transfer vectors of all samples.
-std::vector<float> decodeTransfer(const TransferShape& shape, const Codebook& codebook,
-                                  std::span<const std::uint32_t> cluster_of,
-                                  std::span<const std::vector<std::uint32_t>> planes);
+// Returns the transfer vectors of all samples of a cell, shape.size() values each. `planes` may hold only the
+// first planes of the cell; their lengths are those of planeCounts. This is the CPU twin of the shader
+// decoder.
+std::vector<float> decodeTransfer(
+    const TransferShape& shape, const Codebook& codebook, std::span<const std::uint32_t> cluster_of,
+    std::span<const std::vector<std::uint32_t>> planes,
+    const RunRanges& run = [](std::size_t count, const auto& body) { body(0, count); });
 
 // Weights that blend: those of the samples from which a vertex takes its light, and those of the light probes
 // from which a sample takes its own.
