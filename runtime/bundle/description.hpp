@@ -46,8 +46,11 @@ inline constexpr std::string_view kExtensionName = "LAMBENT_radiance_transfer";
 // Format versions, newest last; code asks for these names, never for a bare number.
 inline constexpr std::uint32_t kVersionFirstLight = 1;
 inline constexpr std::uint32_t kVersionClusteredTransfer = 2;
+inline constexpr std::uint32_t kVersionLocalLight = 3;
+inline constexpr std::uint32_t kVersionGlossyTransfer = 4;
 inline constexpr std::uint32_t kVersionVolumesAndNeighborhoods = 5;
 inline constexpr std::uint32_t kVersionWeightedNormals = 6;
+inline constexpr std::uint32_t kVersionFans = 7;
 inline constexpr std::uint32_t kVersionLampShapes = 8;
 inline constexpr std::uint32_t kVersionCurrent = kVersionLampShapes;
 
