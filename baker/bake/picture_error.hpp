@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "baker/bake/group_scene.hpp"
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/effects/surface/bounces.hpp"
 #include "baker/effects/surface/inside_faces.hpp"

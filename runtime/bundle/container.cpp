@@ -97,7 +97,7 @@ Result<std::string> Reader::File::open() {
     return fail(name, fmt::format("cannot be read: {}", std::strerror(errno)), "check its permissions");
   file_bytes = static_cast<std::uint64_t>(status.st_size);
 
-  std::array<std::uint32_t, (kGlbHeaderBytes + kGlbChunkHeaderBytes) / 4> head;
+  std::array<std::uint32_t, (kGlbHeaderBytes + kGlbChunkHeaderBytes) / 4> head{};
   if (file_bytes < sizeof(head))
     return fail(name, fmt::format("is not a bundle: only {} bytes long", file_bytes), kCopyAgain);
   if (auto read = readAt(0, std::as_writable_bytes(std::span(head))); !read) return failAgain(read.error());
@@ -117,7 +117,7 @@ Result<std::string> Reader::File::open() {
   if (auto read = readAt(sizeof(head), std::as_writable_bytes(std::span(json))); !read)
     return failAgain(read.error());
 
-  std::array<std::uint32_t, kGlbChunkHeaderBytes / 4> bin;
+  std::array<std::uint32_t, kGlbChunkHeaderBytes / 4> bin{};
   if (auto read = readAt(json_end, std::as_writable_bytes(std::span(bin))); !read)
     return failAgain(read.error());
   bin_offset = json_end + kGlbChunkHeaderBytes;

@@ -1,6 +1,6 @@
 // Converts a Description to and from the JSON chunk of a bundle, a glTF 2.0 document with the extension
-// LAMBENT_radiance_transfer. gltf_json.cpp, material_json.cpp and animation_json.cpp have the glTF part,
-// transfer_json.cpp has the extension. Only this room and its tests include this header.
+// LAMBENT_radiance_transfer. gltf_json.cpp and gltf_parts_json.cpp have the glTF part, transfer_json.cpp has
+// the extension. Only this room and its tests include this header.
 //
 // Every look-up in the JSON knows its path, so an error in a damaged file reads
 // "groups[2].cells[0].sampleCount is missing". Faults are thrown as JsonFault; fromJson() turns them into an

@@ -20,7 +20,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/effects/volume/volume.hpp"
 #include "baker/effects/volume/volume_rays.hpp"
 #include "baker/jobs/stage.hpp"
