@@ -49,30 +49,9 @@ Result<std::vector<std::byte>> decompressZstd(std::span<const std::byte> bytes, 
   return out;
 }
 
-// Reads the GLB container: a 12-byte header, a JSON chunk and a binary chunk (glTF 2.0 specification, section
-// 4). All const calls may come from any thread.
-struct Reader::File {
-  explicit File(const std::filesystem::path& file) : path(file) {}
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  ~File() {
-    if (descriptor >= 0) ::close(descriptor);
-  }
-
-  // Opens the file and returns the JSON text, including its padding. Fails if the file is missing,
-  // unreadable, not a GLB or truncated, has trailing bytes, or if the chunks do not fill it.
-  Result<std::string> open();
-  // Fills `out` with bytes from `offset` of the file.
-  Result<void> readAt(std::uint64_t offset, std::span<std::byte> out) const;
-  // Checks the JSON chunk against the integrity view, which holds its checksum and the complement of that
-  // (description_json.hpp).
-  Result<void> checkJson(const std::string& json) const;
-
-  std::filesystem::path path;
-  int descriptor = -1;
-  std::uint64_t file_bytes = 0, bin_offset = 0, bin_length = 0;
-  Description description;
-};
+Reader::File::~File() {
+  if (descriptor >= 0) ::close(descriptor);
+}
 
 Result<void> Reader::File::readAt(std::uint64_t offset, std::span<std::byte> out) const {
   while (!out.empty()) {
@@ -138,13 +117,8 @@ Result<void> Reader::File::checkJson(const std::string& json) const {
   return {};
 }
 
-Reader::Reader(std::unique_ptr<File> file) : file_(std::move(file)) {}
-Reader::Reader(Reader&&) noexcept = default;
-Reader& Reader::operator=(Reader&&) noexcept = default;
-Reader::~Reader() = default;
-
 Result<Reader> Reader::open(const std::filesystem::path& path) {
-  Reader reader(std::make_unique<File>(path));
+  Reader reader(path);
   File& file = *reader.file_;
   const auto json = file.open();
   if (!json) return failAgain(json.error());
@@ -163,20 +137,6 @@ Result<Reader> Reader::open(const std::filesystem::path& path) {
                   "bake it again");
   }
   return reader;
-}
-
-void Reader::countFrom(const glm::dvec3& origin) {
-  bundle::countFrom(origin, file_->description);
-}
-
-const std::filesystem::path& Reader::path() const {
-  return file_->path;
-}
-const Description& Reader::description() const {
-  return file_->description;
-}
-std::uint64_t Reader::fileBytes() const {
-  return file_->file_bytes;
 }
 
 Result<std::vector<std::byte>> Reader::readView(std::uint32_t index) const {

@@ -55,16 +55,12 @@ class Reader {
   // has indices out of range.
   static Result<Reader> open(const std::filesystem::path& path);
 
-  Reader(Reader&&) noexcept;
-  Reader& operator=(Reader&&) noexcept;
-  ~Reader();
-
   // Makes the description count from another origin; that of a file that was opened is the file's.
-  void countFrom(const glm::dvec3& origin);
+  void countFrom(const glm::dvec3& origin) { bundle::countFrom(origin, file_->description); }
 
-  const std::filesystem::path& path() const;
-  const Description& description() const;
-  std::uint64_t fileBytes() const;
+  const std::filesystem::path& path() const { return file_->path; }
+  const Description& description() const { return file_->description; }
+  std::uint64_t fileBytes() const { return file_->file_bytes; }
 
   // Returns the bytes of a view without padding, after checking their checksum.
   Result<std::vector<std::byte>> readView(std::uint32_t view) const;
@@ -91,8 +87,30 @@ class Reader {
   Result<void> checkAll() const;
 
  private:
-  struct File;
-  explicit Reader(std::unique_ptr<File> file);
+  // Reads the GLB container: a 12-byte header, a JSON chunk and a binary chunk (glTF 2.0 specification,
+  // section 4). All const calls may come from any thread.
+  struct File {
+    explicit File(const std::filesystem::path& file) : path(file) {}
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    ~File();
+
+    // Opens the file and returns the JSON text, including its padding. Fails if the file is missing,
+    // unreadable, not a GLB or truncated, has trailing bytes, or if the chunks do not fill it.
+    Result<std::string> open();
+    // Fills `out` with bytes from `offset` of the file.
+    Result<void> readAt(std::uint64_t offset, std::span<std::byte> out) const;
+    // Checks the JSON chunk against the integrity view, which holds its checksum and the complement of that
+    // (description_json.hpp).
+    Result<void> checkJson(const std::string& json) const;
+
+    std::filesystem::path path;
+    int descriptor = -1;
+    std::uint64_t file_bytes = 0, bin_offset = 0, bin_length = 0;
+    Description description;
+  };
+  explicit Reader(const std::filesystem::path& path) : file_(std::make_unique<File>(path)) {}
+
   std::unique_ptr<File> file_;
 };
 
