@@ -7,7 +7,7 @@
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/bundle/container.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/transfer/weights.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::baker {
 

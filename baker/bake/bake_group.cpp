@@ -12,7 +12,7 @@
 #include "baker/bake/group_scene.hpp"
 #include "baker/bake/options.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/bodies.hpp"
 #include "baker/effects/neighborhood/neighborhood.hpp"

@@ -14,7 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/bake/bake_group.hpp"
-#include "baker/compress/light_weights.hpp"
+#include "baker/compress/cpca.hpp"
 #include "baker/effects/surface/hemisphere.hpp"
 #include "baker/transport/texel_samples.hpp"
 #include "runtime/sh/basis.hpp"

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "runtime/base/atomic_file.hpp"
-#include "runtime/bundle/glb.hpp"
+#include "runtime/bundle/container.hpp"
 
 namespace lambent::baker {
 

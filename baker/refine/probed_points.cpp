@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
-#include "baker/compress/light_weights.hpp"
+#include "baker/compress/cpca.hpp"
 #include "baker/jobs/stage.hpp"
 #include "baker/refine/group_refiner.hpp"
 #include "baker/transport/geometry_key.hpp"

@@ -103,7 +103,7 @@ void TransferTable::add(const streaming::ResidentCell& cell, const lighting::Gro
     }
     record.first_plane = static_cast<std::uint32_t>(places.size());
     for (std::uint32_t j = 0; j < transfer.planes_resident; ++j)
-      places.push_back(transfer.planes[j].word |
+      places.push_back(transfer.planes[j].block.word() |
                        (transfer.planes[j].bits == 16 ? transfer::kCodes16Bit : 0u));
     record.first_product = product_count;
     product_count += record.light_count * record.light_products;

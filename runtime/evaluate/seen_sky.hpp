@@ -15,7 +15,6 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/evaluate/samples.hpp"
-#include "runtime/evaluate/seen_sky_kernels.h"
 #include "runtime/gpu/program.hpp"
 #include "runtime/transfer/seen_sky_shared.h"
 

@@ -16,7 +16,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/draws/surface_module.hpp"
-#include "runtime/evaluate/kernels.hpp"
+#include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/lighting/probe_places.hpp"
 #include "runtime/lighting/sky.hpp"

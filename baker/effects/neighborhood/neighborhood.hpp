@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/effects/neighborhood/light_change.hpp"

@@ -9,7 +9,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/effects/volume/grids.hpp"
 #include "baker/effects/volume/volume_rays.hpp"
 #include "baker/jobs/bake_context.hpp"

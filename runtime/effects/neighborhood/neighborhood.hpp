@@ -20,7 +20,6 @@
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/effects/neighborhood/neighborhood_shared.h"
-#include "runtime/evaluate/kernels.hpp"
 #include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"

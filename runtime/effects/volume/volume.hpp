@@ -16,7 +16,6 @@
 #include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/volume/volume_shared.h"
-#include "runtime/evaluate/kernels.hpp"
 #include "runtime/evaluate/samples.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/group_lights.hpp"
