@@ -21,7 +21,6 @@ constexpr std::array kPanels = {
           &drawEnvironment},
     Panel{"Settings", Dock::Right, "How the picture is computed: bands, captures, effects", &drawSettings},
     Panel{"Bakes", Dock::Bottom, "What is being baked, how far, and what came of it", &drawBakes},
-    Panel{"Assets", Dock::Bottom, "Environment maps, scenes, bundles and worlds to use or open", &drawAssets},
     Panel{"Cost", Dock::Bottom, "What ran in the last frame, how long it took, and why", &drawCost},
     Panel{"Streaming", Dock::Bottom, "What is on the GPU, what is on its way, how even frames are",
           &drawStreaming},

@@ -190,13 +190,11 @@ void drawCommand(Session& session, Marks& marks, const char* id, const char* tex
   tooltip(fmt::format("{} ({})\n{}{}", command->title, command->shortcut, command->help, more));
 }
 
-void drawStep(Session& session, Marks& marks, const char* name, float& step, const char* format,
-              double most) {
+void drawStep(Marks& marks, const char* name, float& step, const char* format, double most) {
   ImGui::SetNextItemWidth(em(kStepEms));
   const std::string id = fmt::format("##{}", name);
   dragNumber(id.c_str(), step,
-             {.speed = 0.005 * double{step}, .least = 0.001, .most = most, .format = format, .step = 0.05},
-             session.field_edit.number);
+             {.speed = 0.005 * double{step}, .least = 0.001, .most = most, .format = format});
   marks.put(fmt::format("tool.snap.{}", name));
   tooltip(fmt::format("Step of a drag that snaps\n{}", kNumberHelp));
 }
@@ -220,9 +218,9 @@ void drawToolBar(Session& session, Marks& marks) {
     ImGui::SameLine(0.0f, em(1.0f));
     drawCommand(session, marks, "snap", "Snap");
   }
-  if (sameLineIfFits(em(kStepEms))) drawStep(session, marks, "metres", options.snap_m, "%.3g m", 1e3);
-  if (sameLineIfFits(em(kStepEms))) drawStep(session, marks, "degrees", options.snap_deg, "%.3g°", 180.0);
-  if (sameLineIfFits(em(kStepEms))) drawStep(session, marks, "factor", options.snap_scale, "× %.3g", 10.0);
+  if (sameLineIfFits(em(kStepEms))) drawStep(marks, "metres", options.snap_m, "%.3g m", 1e3);
+  if (sameLineIfFits(em(kStepEms))) drawStep(marks, "degrees", options.snap_deg, "%.3g°", 180.0);
+  if (sameLineIfFits(em(kStepEms))) drawStep(marks, "factor", options.snap_scale, "× %.3g", 10.0);
   ImGui::EndGroup();
 }
 

@@ -141,7 +141,6 @@ void Session::update(double seconds) {
   }
   logBundleErrors();
   followDocument();
-  asset_pictures.update();
   if (playback.playing) {
     stage.world().playAnimations(static_cast<float>(seconds));
     playback.time_s += static_cast<float>(seconds);
@@ -162,7 +161,7 @@ bool Session::moving() const {
 }
 
 bool Session::awaits() const {
-  return scenes.busy() || asset_pictures.busy() || log.hasToasts();
+  return scenes.busy() || log.hasToasts();
 }
 
 bool holdsWords(std::string_view text, std::string_view search) {

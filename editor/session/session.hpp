@@ -18,9 +18,8 @@
 #include "editor/document/history.hpp"
 #include "editor/document/tree.hpp"
 #include "editor/gizmo/gizmo.hpp"
-#include "editor/gizmo/light_gizmos.hpp"
 #include "editor/gizmo/projection.hpp"
-#include "editor/session/assets.hpp"
+#include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/field_numbers.hpp"
 #include "editor/session/files.hpp"
 #include "editor/session/key_lights.hpp"
@@ -140,12 +139,11 @@ struct SessionOptions {
   baker::Quality quality = baker::Quality::Standard;
 };
 
-// Holds the state of the gizmos between frames: the handles that move, turn and scale the selection, shape
-// lights, and drag suns. editor/panels/viewport.cpp drives them.
+// Holds the state of the gizmos between frames: the handles that move, turn and scale the selection,
+// and drag suns. editor/panels/viewport.cpp drives them.
 struct Handles {
   bool shown = true;
   Gizmo gizmo;
-  LightGizmo light_gizmo;
   SunGizmo sun_gizmo;
   FinePointer pointer;
   std::optional<SunOnSky> sun_taken;  // the sun as it was when its drag began
@@ -200,10 +198,8 @@ class Session {
   PictureFacts picture;
   ReferenceView reference;
   SettingStudy settings;
-  AssetBrowser assets;
-  AssetPictures asset_pictures;
   Clip clipboard;
-  FieldEditState field_edit;
+  std::vector<HeldAngles> angles;  // of the rotations that were edited last
   WindowRequests window;
 
  private:

@@ -126,32 +126,6 @@ TEST(LightUnits, OfASpotAreTheIntegralOfItsFalloff) {
   EXPECT_NEAR(unitOf(spot, "lm").factor, 2.0 * kPi, 1e-6) << "half of all directions";
 }
 
-// Returns what the typed text makes of 10.
-double ofTen(std::string_view text) {
-  const auto edit = parseNumberEdit(text);
-  EXPECT_TRUE(edit) << text;
-  return edit ? edit->appliedTo(10.0) : -1.0;
-}
-
-TEST(NumberEdit, SetsWhatIsTyped) {
-  EXPECT_EQ(ofTen("2.5"), 2.5);
-  EXPECT_EQ(ofTen("-3"), -3.0) << "a number, not a difference";
-  EXPECT_EQ(ofTen(" +1e2 "), 100.0);
-}
-
-TEST(NumberEdit, ShiftsAndScalesTheNumberThatIsThere) {
-  EXPECT_EQ(ofTen("+=1"), 11.0);
-  EXPECT_EQ(ofTen("-= 4"), 6.0);
-  EXPECT_EQ(ofTen("*2"), 20.0);
-  EXPECT_EQ(ofTen("*=1.5"), 15.0);
-  EXPECT_EQ(ofTen("/4"), 2.5);
-}
-
-TEST(NumberEdit, RefusesWhatIsNoFiniteNumber) {
-  for (const char* text : {"", " ", "2*", "two", "/0", "nan", "inf", "1e999", "+=", "++1", "2 3"})
-    EXPECT_FALSE(parseNumberEdit(text)) << text;
-}
-
 class NewLights : public testing::Windowless {
  protected:
   void SetUp() override {

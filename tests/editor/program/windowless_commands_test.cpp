@@ -357,26 +357,6 @@ TEST_F(WindowlessCommands, ChangeALayoutThatIsRemembered) {
   EXPECT_EQ(session->preferences.layout, WindowLayout());
 }
 
-TEST_F(WindowlessCommands, UseAnAssetByItsName) {
-  openHello();
-  const json listed = answer("assets", {"hello scene"});
-  ASSERT_FALSE(listed.empty());
-  EXPECT_EQ(listed[0]["file"], (folder.path() / "hello.glb").string())
-      << "the folder of what was opened last";
-  EXPECT_FALSE(run("use-asset", {"nowhere.hdr"}));
-  const std::string world = (folder.path() / "hall.world.json").string();
-  keepBundle();
-  answer("save", {world});
-  answer("create-point");
-  answer("use-asset", {"hall.world.json"});
-  ASSERT_TRUE(session->window.dialog) << "the edit is not saved";
-  EXPECT_TRUE(session->files.modified());
-  const Dialog asked = takeDialog();
-  asked.answered(*session, {});
-  EXPECT_FALSE(session->files.modified());
-  EXPECT_EQ(session->files.world(), world);
-}
-
 TEST_F(WindowlessCommands, SaveProposesTheScenesNameAndReplacesNoOtherFileUnasked) {
   openHello();
   answer("save");

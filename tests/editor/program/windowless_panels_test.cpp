@@ -156,9 +156,9 @@ TEST_F(WindowlessPanels, ARotationDoesNotJumpBeyondAQuarterTurn) {
   answer("create-empty");
   const Panel& inspector = panel("Inspector");
   // Euler angles that are made of this rotation anew would be 180, 80, 180.
-  session->field_edit.angles.degrees = {0.0f, 100.0f, 0.0f};
-  session->field_edit.angles.rotation = glm::quat(glm::radians(session->field_edit.angles.degrees));
-  const glm::quat& q = session->field_edit.angles.rotation;
+  const glm::vec3 degrees(0.0f, 100.0f, 0.0f);
+  const glm::quat q(glm::radians(degrees));
+  session->angles = {{q, degrees}};
   answer("set", {"Transform.rotation", std::to_string(q.x), std::to_string(q.y), std::to_string(q.z),
                  std::to_string(q.w)});
   EXPECT_NE(textOf(inspector).find("100.0"), std::string::npos) << textOf(inspector);
@@ -171,7 +171,7 @@ TEST_F(WindowlessPanels, KeepTheirWidgetsWithinNarrowRoomAtALargeFont) {
   answer("select", {"type:material box"});
   ImGui::GetIO().FontGlobalScale = 2.0f;
   ImGui::GetStyle().ScaleAllSizes(2.0f);
-  for (const char* name : {"Scene", "Inspector", "Environment", "Settings", "Assets", "History", "Log"}) {
+  for (const char* name : {"Scene", "Inspector", "Environment", "Settings", "History", "Log"}) {
     const Panel& row = panel(name);
     const float width = (row.dock == Dock::Left ? 13.0f : 22.0f) * 26.0f;
     ImGui::GetIO().DisplaySize = ImVec2(width, 900.0f);
