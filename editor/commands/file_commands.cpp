@@ -70,10 +70,10 @@ std::vector<Command> fileCommands() {
            .taking("FILE", 1, 1),
        separator(),
        item("close", "Close scene", "Ctrl+W",
-            "Take the scene that is selected out of the world; its files stay, undo brings it back",
+            "Take the scene that is selected out of the world; its files stay",
             [](Session& session, Words words) {
               return findScene(session, wordAt(words, 0)).map([&](std::size_t entry) {
-                session.scene_steps.close(entry);
+                session.files.close(entry);
               });
             })
            .taking("[SCENE]", 0, 1)

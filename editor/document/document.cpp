@@ -197,21 +197,6 @@ ecs::Entity makeEntity(Document& document, const EntitySnapshot& snapshot) {
   return entity;
 }
 
-std::size_t bytesOf(const scene::Value& value) {
-  std::size_t bytes = sizeof(value);
-  if (const auto* text = std::get_if<std::string>(&value)) bytes += text->size();
-  return bytes;
-}
-
-std::size_t bytesOf(const EntitySnapshot& snapshot) {
-  std::size_t bytes = sizeof(snapshot);
-  for (const ComponentValues& part : snapshot.components) {
-    bytes += sizeof(part);
-    for (const scene::Value& value : part.values) bytes += bytesOf(value);
-  }
-  return bytes;
-}
-
 namespace {
 
 // Returns the defaults of a component, with another value for one field.

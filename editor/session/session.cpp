@@ -136,7 +136,7 @@ void Session::logBundleErrors() {
 void Session::update(double seconds) {
   if (scenes.update()) {
     document.adoptAll();
-    scene_steps.update();
+    files.restoreAwaited();
     viewing.changed = true;
   }
   logBundleErrors();

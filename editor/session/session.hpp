@@ -189,7 +189,6 @@ class Session {
   History history;
   Selection selection;
   TreeRows tree;
-  SceneSteps scene_steps{*this};
   SceneChanges changes{stage.world(), scenes, history, log};
   Files files{*this};
   Viewing viewing;
