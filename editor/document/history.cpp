@@ -227,12 +227,6 @@ std::string History::undoName() const {
   return done_ > 0 ? "Undo " + steps_[done_ - 1].name : "Undo";
 }
 
-std::vector<std::string> History::stepNames() const {
-  std::vector<std::string> names;
-  for (const Step& step : steps_) names.push_back(step.name);
-  return names;
-}
-
 void History::markSaved() {
   while (open()) commit();
   saved_ = forgotten_ + done_;

@@ -92,8 +92,6 @@ class History {
   bool canRedo() const { return !edited() && done_ < steps_.size(); }
   std::string undoName() const;  // "Undo move of ball"; "Undo" if there is nothing to undo
   std::string redoName() const { return canRedo() ? "Redo " + steps_[done_].name : "Redo"; }
-  // Return the names of all steps, oldest first, and how many of them are done.
-  std::vector<std::string> stepNames() const;
   std::size_t stepsDone() const { return done_; }
 
   // Returns whether anything was edited since markSaved().

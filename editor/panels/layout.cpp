@@ -22,9 +22,6 @@ constexpr std::array kPanels = {
     Panel{"Settings", Dock::Right, "How the picture is computed: bands, captures, effects", &drawSettings},
     Panel{"Bakes", Dock::Bottom, "What is being baked, how far, and what came of it", &drawBakes},
     Panel{"Cost", Dock::Bottom, "What ran in the last frame, how long it took, and why", &drawCost},
-    Panel{"Streaming", Dock::Bottom, "What is on the GPU, what is on its way, how even frames are",
-          &drawStreaming},
-    Panel{"History", Dock::Bottom, "The steps that undo takes back; a click goes there", &drawHistory},
     Panel{"Log", Dock::Bottom, "Notices and errors", &drawLog},
 };
 
@@ -199,7 +196,6 @@ void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
   session.window.raise_tabs = false;
   drawDialogs(session, marks);
   drawKeys(session, marks);
-  drawPalette(session, marks);
   drawToasts(session, marks, {{left, top}, {left + middle, top + height - bottom}});
 }
 

@@ -40,8 +40,6 @@ void drawExposure(Session& session, Marks& marks, const std::string& mark);
 void drawSettings(Session& session, Marks& marks);
 void drawBakes(Session& session, Marks& marks);
 void drawCost(Session& session, Marks& marks);
-void drawStreaming(Session& session, Marks& marks);
-void drawHistory(Session& session, Marks& marks);
 void drawLog(Session& session, Marks& marks);
 
 // Draws the window's contents: panels in docks on each side and below, the view in the middle, and edges
@@ -56,7 +54,6 @@ void drawToasts(Session& session, Marks& marks, const Rectangle& view);  // in t
 void drawStartPage(Session& session, Marks& marks);  // in the view while the world is empty
 void drawDialogs(Session& session, Marks& marks);
 void drawKeys(Session& session, Marks& marks);
-void drawPalette(Session& session, Marks& marks);
 // Draws the items of a menu about what is selected, for rows of the tree and the view.
 void drawSelectionMenu(Session& session, Marks& marks);
 

@@ -66,7 +66,7 @@ std::vector<std::uint32_t> selectedGroups(const Session& session) {
     if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(entity)) add(*group);
   for (const auto [draw, item] : registry.view<const scene::DrawItem>())
     for (const ecs::Entity entity : selected)
-      if (draw == entity || isBelow(registry, item.node, entity))
+      if (isBelow(registry, item.node, entity))
         if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(item.group)) add(*group);
   return found;
 }

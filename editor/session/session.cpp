@@ -1,14 +1,12 @@
 #include "editor/session/session.hpp"
 
 #include <algorithm>
-#include <sstream>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "runtime/base/lower_case.hpp"
 #include "runtime/scene/instantiate.hpp"
 #include "runtime/spec/light.hpp"
 
@@ -164,14 +162,6 @@ bool Session::awaits() const {
   return scenes.busy() || log.hasToasts();
 }
 
-bool holdsWords(std::string_view text, std::string_view search) {
-  const std::string low = lowerCase(text);
-  std::istringstream words(lowerCase(search));
-  for (std::string word; words >> word;)
-    if (low.find(word) == std::string::npos) return false;
-  return true;
-}
-
 Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std::string& word) {
   TreeQuery query;
   query.filter =
@@ -198,7 +188,7 @@ std::optional<std::size_t> sceneAtHand(const Session& session) {
     const auto holds = [&](const std::vector<ecs::Entity>& list) {
       return std::find(list.begin(), list.end(), primary) != list.end();
     };
-    if (holds(instance.groups) || holds(instance.draws) || holds(instance.animations)) return i;
+    if (holds(instance.groups) || holds(instance.animations) || holds(instance.materials)) return i;
   }
   return 0;
 }

@@ -121,9 +121,7 @@ struct WindowRequests {
   bool raise_tabs = true;                  // also bring the preferences' tabs to the front
   // Ids of commands to run in the next frame, when fields that were open have taken over what was typed.
   std::vector<std::string> wanted_commands;
-  bool palette = false;  // the list of commands is open
-  bool keys = false;     // the list of keys is open
-  std::string palette_words;
+  bool keys = false;  // the list of keys is open
   bool quit = false;
   std::uint64_t frames = 0;  // how many the window has drawn
 };
@@ -213,8 +211,6 @@ class Session {
 
 // ---- Words of scripts and menus, for entities by name, id or search, and for scenes by id or number.
 
-// Returns whether all words of the search are parts of the text.
-bool holdsWords(std::string_view text, std::string_view search);
 // Returns all matches, or an error if there is none. A match of the whole name wins over matches of parts.
 Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std::string& word);
 // Returns the scene of the primary selected entity, else the first scene, or none if no scene is open.

@@ -185,12 +185,12 @@ TEST_F(Editing, ADragIsOneStepAndOneThatComesBackIsNone) {
   for (int i = 0; i <= 100; ++i)
     ASSERT_TRUE(history.setField(lamp, "Light", "strength", 0.1f * static_cast<float>(i)));
   history.commit();
-  EXPECT_EQ(history.stepNames(), std::vector<std::string>{"drag"});
+  EXPECT_EQ(history.undoName(), "Undo drag");
   history.begin("to and fro");
   ASSERT_TRUE(history.setField(lamp, "Light", "strength", 3.0f));
   ASSERT_TRUE(history.setField(lamp, "Light", "strength", 10.0f));
   history.commit();
-  EXPECT_EQ(history.stepNames().size(), 1u);
+  EXPECT_EQ(history.stepsDone(), 1u);
   EXPECT_TRUE(history.undo().done);
   EXPECT_EQ(strength(lamp), 7.0f) << "the bundle's";
 }
