@@ -200,7 +200,7 @@ Result<void> run(const Options& options) {
     s.update(std::chrono::duration<double>(now - last).count());
     last = now;
     // The last frame shows what was awaited, so there is one more when it has come.
-    const bool awaits = s.awaits();
+    const bool awaits = s.scenes.busy();
     if (!woken && !awaits && !std::exchange(awaited, false) && !s.moving() && !ui.typing()) continue;
     awaited = awaits;
     ui.begin(scripted);

@@ -13,7 +13,7 @@ Result<void> open(Session& session, Words words) {
   session.window.dialog =
       Dialog{.kind = Dialog::Kind::OpenFile,
              .title = "Open",
-             .kinds = {{"Scenes", {".gltf", ".glb"}}, {"Bundles", {".lmb.glb"}}, {"Worlds", {".json"}}},
+             .endings = {".gltf", ".glb", ".json"},
              .folder = startFolder(session),
              .yes = "Open",
              .answered = [](Session& s, const std::string& file) { s.files.openLogged({file}); }};

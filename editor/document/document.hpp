@@ -135,6 +135,8 @@ struct EntitySnapshot {
   std::vector<ComponentValues> components;
 
   const scene::Value* find(std::string_view component, std::string_view field) const;
+  // Sets a field of a component that the snapshot has.
+  void put(std::string_view component, std::string_view field, scene::Value value);
 };
 
 ComponentValues componentValues(const ecs::Registry& registry, ecs::Entity entity,

@@ -91,9 +91,6 @@ void drawComponentMenu(Session& session, const ComponentInfo& component,
                        std::span<const ecs::Entity> entities) {
   if (!ImGui::BeginPopupContextItem()) return;
   const std::string name(component.name);
-  if (ImGui::MenuItem("Copy")) runOrLog(session, "copy", std::array{name});
-  if (ImGui::MenuItem("Paste", nullptr, false, session.clipboard.component.has_value()))
-    runOrLog(session, "paste", {});
   if (ImGui::MenuItem("Reset")) runOrLog(session, "reset", std::array{name});
   if (component.removable && allCreated(session, entities) && ImGui::MenuItem("Remove")) {
     session.history.begin(

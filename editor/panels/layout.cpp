@@ -103,6 +103,7 @@ void raisePanel(Session& session, const std::string& name) {
     dock.shown = true;
     layout.view_only = false;
     session.window.raise_tabs = true;
+    session.viewing.changed = true;  // the tab opens in the next frame
     return;
   }
   session.log.warn("there is no panel \"" + name + "\"");
@@ -143,6 +144,7 @@ std::span<const Panel> panelList() {
 
 void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
   drawMenus(session, marks);
+  if (session.log.takeNewErrors()) session.window.wanted_panels.emplace_back("Log");
   for (const std::string& wanted : std::exchange(session.window.wanted_panels, {}))
     raisePanel(session, wanted);
   const float top = ImGui::GetFrameHeight();
@@ -196,7 +198,6 @@ void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
   session.window.raise_tabs = false;
   drawDialogs(session, marks);
   drawKeys(session, marks);
-  drawToasts(session, marks, {{left, top}, {left + middle, top + height - bottom}});
 }
 
 }  // namespace lambent::editor

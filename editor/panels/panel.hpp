@@ -49,8 +49,7 @@ void drawLayout(Session& session, Renderer& renderer, Marks& marks);
 // These are not in a dock: the menu bar, the view in the middle, and what is drawn above everything.
 void drawMenus(Session& session, Marks& marks);
 void drawViewport(Session& session, Renderer& renderer, Marks& marks);
-void drawToolBar(Session& session, Marks& marks);                        // above the view
-void drawToasts(Session& session, Marks& marks, const Rectangle& view);  // in the view's lower right corner
+void drawToolBar(Session& session, Marks& marks);    // above the view
 void drawStartPage(Session& session, Marks& marks);  // in the view while the world is empty
 void drawDialogs(Session& session, Marks& marks);
 void drawKeys(Session& session, Marks& marks);

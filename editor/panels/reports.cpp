@@ -100,13 +100,6 @@ void drawCost(Session& session, Marks& marks) {
   marks.put("cost.passes");
 }
 
-namespace {
-
-// Toasts are no wider than the view.
-constexpr float kToastEms = 28.0f, kToastGap = 12.0f;
-
-}  // namespace
-
 void drawLog(Session& session, Marks& marks) {
   const auto entries = session.log.entries();
   if (ImGui::Button("Clear")) session.log.clear();
@@ -130,30 +123,6 @@ void drawLog(Session& session, Marks& marks) {
   }
   if (ImGui::GetScrollY() >= ImGui::GetScrollMaxY()) ImGui::SetScrollHereY(1.0f);
   ImGui::EndChild();
-}
-
-void drawToasts(Session& session, Marks& marks, const Rectangle& view) {
-  const std::vector<LogEntry> recent = session.log.toasts(std::chrono::steady_clock::now());
-  const float room = view.max.x - view.min.x - 2.0f * kToastGap, right = view.max.x - kToastGap;
-  const float width = std::max(std::min(em(kToastEms), room), 1.0f);
-  float bottom = view.max.y - kToastGap;
-  for (std::size_t i = recent.size(); i-- > 0;) {
-    const LogEntry& entry = recent[i];
-    ImGui::SetNextWindowPos(ImVec2(right, bottom), ImGuiCond_Always, ImVec2(1.0f, 1.0f));
-    ImGui::SetNextWindowSize(ImVec2(width, 0.0f));
-    ImGui::SetNextWindowBgAlpha(0.94f);
-    ImGui::PushStyleColor(ImGuiCol_Border, severityColor(entry.severity));
-    const std::string id = fmt::format("##toast{}", entry.number);
-    ImGui::Begin(id.c_str(), nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoInputs);
-    ImGui::TextWrapped("%s", entry.text.c_str());
-    bottom -= ImGui::GetWindowHeight() + 8.0f;
-    ImGui::End();
-    ImGui::PopStyleColor();
-  }
-  if (!recent.empty()) marks.put("toasts", {{right - width, bottom}, {right, view.max.y}});
 }
 
 }  // namespace lambent::editor

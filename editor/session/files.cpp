@@ -88,6 +88,7 @@ void Files::openWorld(const std::filesystem::path& path, WorldFile file) {
   Log& log = session_.log;
   for (const BundleEntry& bundle : file.state.bundles) session_.scenes.open(bundle, path.parent_path());
   for (const std::string& notice : file.notices) log.warn(path.string() + ": " + notice);
+  if (!file.notices.empty()) session_.window.wanted_panels.emplace_back("Log");  // saving would lose these
   const ApplyReport applied = applyWorld(session_.document, file);
   awaited_ = lacking(session_.document, file.entities);
   if (!allShown(session_)) {
@@ -261,7 +262,7 @@ void askWhereToSave(Session& session, Then then) {
   Dialog ask;
   ask.kind = Dialog::Kind::SaveFile;
   ask.title = "Save the world";
-  ask.kinds = {{"Worlds", {".json"}}};
+  ask.endings = {".json"};
   ask.folder = startFolder(session);
   ask.name = proposedName(session);
   ask.yes = "Save";

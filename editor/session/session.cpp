@@ -158,10 +158,6 @@ bool Session::moving() const {
          (reference.on() && !reference.done()) || !measured();
 }
 
-bool Session::awaits() const {
-  return scenes.busy() || log.hasToasts();
-}
-
 Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std::string& word) {
   TreeQuery query;
   query.filter =

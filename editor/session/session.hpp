@@ -88,18 +88,11 @@ struct DialogFile {
   bool is_folder = false;
 };
 
-// Names a kind of file by the endings of its names.
-struct FileKind {
-  std::string name;
-  std::vector<std::string> endings;
-};
-
 struct Dialog {
   enum class Kind : std::uint8_t { OpenFile, SaveFile, Folder, Confirm, Text };
   Kind kind = Kind::Confirm;
   std::string title{}, question{};
-  std::vector<FileKind> kinds{};                   // of files to list; empty: all files
-  std::size_t filter = 0;                          // 0: all these kinds; n: the nth; past the last: all files
+  std::vector<std::string> endings{};              // of the files to list; empty: all files
   std::filesystem::path folder{};                  // the folder that is shown
   std::string name{};                              // the text typed so far
   std::string yes = "OK", no = "Cancel", third{};  // button texts; an empty third one has no button
@@ -110,7 +103,7 @@ struct Dialog {
   // of the folder. Disks are not asked in every frame.
   std::vector<DialogPlace> places{};
   std::vector<DialogFile> files{};
-  ChangeGate<std::filesystem::path, std::filesystem::file_time_type, std::size_t> listed{};
+  ChangeGate<std::filesystem::path, std::filesystem::file_time_type> listed{};
 };
 
 // Holds what commands request from the window: a dialog, panels to bring to the front, or the end of the
@@ -175,9 +168,6 @@ class Session {
   bool measured() const { return !settings.busy(); }
   // Returns whether frames must be drawn even without input.
   bool moving() const;
-  // Returns whether something comes from elsewhere that the window will show: bakes, files that are read,
-  // notices that vanish. It need not be looked at in every frame.
-  bool awaits() const;
 
   Log log;
   Preferences preferences;
@@ -195,7 +185,7 @@ class Session {
   PictureFacts picture;
   ReferenceView reference;
   SettingStudy settings;
-  Clip clipboard;
+  std::vector<EntitySnapshot> clipboard;
   std::vector<HeldAngles> angles;  // of the rotations that were edited last
   WindowRequests window;
 

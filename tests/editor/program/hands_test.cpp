@@ -166,20 +166,10 @@ key F11
   }
 }
 
-// Notices must not lie over what panels say.
-TEST_F(EditorProgram, ShowsToastsInTheView) {
-  for (const char* scale : {"1", "2"}) {
-    const Played played =
-        play(fmt::format("drop {}\nwait frames 5\nwhere toasts\nwhere viewport\n", path("lost.glb")),
-             {"--scale", scale, "--fresh"});
-    const json &toasts = played.answer("where toasts"), &view = played.answer("where viewport");
-    const auto end = [](const json& area, const char* at, const char* extent) {
-      return area[at].get<double>() + area[extent].get<double>();
-    };
-    EXPECT_GE(toasts["x"], view["x"]) << "at scale " << scale;
-    EXPECT_LE(end(toasts, "x", "width"), end(view, "x", "width"));
-    EXPECT_LE(end(toasts, "y", "height"), end(view, "y", "height") + 1.0) << "to a pixel";
-  }
+TEST_F(EditorProgram, BringsTheLogUpWhereThereIsAnError) {
+  const Played played = play(
+      fmt::format("panel Bakes\nwait frames 3\ndrop {}\nwait frames 5\nwhere log.clear\n", path("lost.glb")));
+  EXPECT_GT(played.answer("where log.clear")["width"], 0.0);
 }
 
 // At twice the size in a small window, nothing that is clicked may be covered or out of reach.

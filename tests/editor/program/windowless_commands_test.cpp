@@ -64,15 +64,6 @@ TEST_F(WindowlessCommands, DeleteAndBringBack) {
   EXPECT_EQ(answer("tree", {"type:light"}).size(), 2u);
 }
 
-TEST_F(WindowlessCommands, CopyAndPasteAComponent) {
-  answer("create-disc");
-  answer("set", {"Light.strength", "5"});
-  answer("copy", {"Light"});
-  answer("create-sphere");
-  answer("paste");
-  EXPECT_EQ(answer("get", {"Light.strength"}), 5.0);
-}
-
 TEST_F(WindowlessCommands, AddLightsThatComeOnStage) {
   answer("add-light", {"sun:35,45,0.5,20000"});
   session->update(0.0);
