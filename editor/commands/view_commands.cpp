@@ -273,17 +273,12 @@ std::vector<Command> windowCommands() {
             }),
        separator(), dockOf(Dock::Left, "left-panels", "Left panels", "The scene tree"),
        dockOf(Dock::Right, "right-panels", "Right panels", "Inspector, light, settings"),
-       dockOf(Dock::Bottom, "bottom-panels", "Bottom panels", "Bakes, assets, cost, streaming, log"),
+       dockOf(Dock::Bottom, "bottom-panels", "Bottom panels", "Bakes, cost, log"),
        scripted("panel", "Bring a panel up", "NAME", 1, 1,
                 [](Session& session, Words words) { session.window.wanted_panels.push_back(words[0]); })});
   const std::vector<Command> help = inMenu(
       "Help", {item("shortcuts", "Keys and pointer", "F1", "All keys, and what the pointer does in the view",
                     [](Session& session) { session.window.keys = true; }),
-               item("palette", "Command palette", "Ctrl+P", "Find a command by its words, and run it",
-                    [](Session& session) {
-                      session.window.palette = true;
-                      session.window.palette_words.clear();
-                    }),
                item("about", "About", "", "Version and origin", showAbout),
                scripted("commands", "All commands, as JSON", "", 0, 0, listCommands)});
   window.insert(window.end(), help.begin(), help.end());
