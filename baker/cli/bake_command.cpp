@@ -1,4 +1,4 @@
-// Implements lambent bake SCENE [-o OUT.lmb.glb], --resume. SCENE may be a folder.
+// Implements lambent bake SCENE [-o OUT.lmb.glb]. SCENE may be a folder.
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -22,7 +22,6 @@
 #include "baker/cli/commands.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/guess_seconds.hpp"
-#include "baker/pipeline/journal.hpp"
 #include "baker/pipeline/source_watch.hpp"
 #include "baker/pipeline/whole_progress.hpp"
 #include "baker/plan/counted.hpp"
@@ -58,7 +57,6 @@ namespace fs = std::filesystem;
 
 struct BakeArguments {
   std::filesystem::path scene, output;
-  bool resume = false;
   double checkpoint_s = 0.0;  // 0 keeps the cache's own interval
   BakeOptions options;
   bool force = false, json = false, allow_outside = false;
@@ -86,36 +84,19 @@ std::optional<Cache> bakeCache(const BakeArguments& a) {
   return std::move(*cache);
 }
 
-// The journal of this program lies in the cache's folder.
-Journal bakeJournal(const std::optional<Cache>& cache) {
-  return Journal(cache ? cache->folder() / "journal" : std::filesystem::path());
-}
-
-// Returns the report, or nothing if the bundle was up to date. Bakes are recorded in the journal, progress is
-// shown, and a bundle that is up to date is left alone.
+// Returns the report, or nothing if the bundle was up to date. Progress is shown, and a bundle that is up
+// to date is left alone.
 Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cache,
                               const std::stop_token& stop) {
   if (const auto readable = checkRegularFile(a.scene, "a scene, .gltf or .glb"); !readable)
     return failAgain(readable.error());
   if (const auto checked = checkRequest(a.options, a.output); !checked) return failAgain(checked.error());
-  Journal::Entry record = bakeJournal(cache).begin({.scene = a.scene,
-                                                    .output = a.output,
-                                                    .options = a.options,
-                                                    .import = {.allow_outside = a.allow_outside}});
-  if (record.error())
-    fmt::print(stderr, "lambent: {}; --resume will not know of this bake\n", record.error()->line());
   Progress progress;
   progress.begin("import");
   auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
-  if (!scene) {
-    record.done();
-    return failAgain(scene.error());
-  }
+  if (!scene) return failAgain(scene.error());
   for (const std::string& warning : scene->warnings) reportNotice(a.scene, warning);
-  if (!a.force && isUpToDate(*scene, a.options, a.output)) {
-    record.done();
-    return BakeOutcome{};
-  }
+  if (!a.force && isUpToDate(*scene, a.options, a.output)) return BakeOutcome{};
   PartSeconds expected;
   if (const auto plan = planFor(*scene, a.options)) {
     BakeGuess guess = guessBake(*scene, *plan, a.options);
@@ -128,10 +109,9 @@ Result<BakeOutcome> bakeScene(const BakeArguments& a, std::optional<Cache>& cach
     const ProgressLine line(progress, WholeProgress(std::move(expected)), a.say, a.scene);
     return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
   }();
-  if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
   if (!report) {
     if (stop.stop_requested())
-      report.error().hint = cache ? "bake it again, or give --resume, and it goes on from where it was"
+      report.error().hint = cache ? "bake it again, and it goes on from where it was"
                                   : "with a cache, the next bake would go on from where it was";
     return failAgain(report.error());
   }
@@ -272,45 +252,13 @@ int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
   return failsStrictly(a, *outcome) ? 1 : 0;
 }
 
-// Bakes everything that was cut short, with the options that it had.
-int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
-  if (!cache) return reportError({"--resume", "there is no cache that would tell", "leave out --cache off"});
-  const std::vector<BakeRequest> unfinished = bakeJournal(cache).unfinished();
-  if (unfinished.empty() && !a.say.quiet) fmt::print(stderr, "lambent: no bake was cut short\n");
-  int worst = 0;
-  for (const BakeRequest& request : unfinished) {
-    if (stop.stop_requested()) break;
-    if (std::error_code unknown; !std::filesystem::exists(request.scene, unknown)) {
-      reportNotice(request.scene, "is gone; its bake is given up");
-      bakeJournal(cache).forget(request);
-      continue;
-    }
-    if (!a.say.quiet)
-      fmt::print(stderr, "lambent: going on with {} to {}\n", request.scene.string(),
-                 request.output.string());
-    BakeArguments one = a;
-    one.scene = request.scene;
-    one.output = request.output;
-    one.options = request.options;
-    one.allow_outside = request.import.allow_outside;
-    worst = std::max(worst, printOutcome(one, bakeScene(one, cache, stop)));
-  }
-  return worst;
-}
-
 int runBake(BakeArguments a) {
-  if (a.scene.empty() && !a.resume)
-    return wrongUsage({"SCENE", "is missing", "name a scene or a folder of scenes"});
-  if (a.scene.empty() && !a.output.empty())
-    return wrongUsage(
-        {"--output", "is given with --resume alone", "leave it out: each bake knows its bundle"});
   std::error_code failed;
   const bool folder = std::filesystem::is_directory(a.scene, failed);
   if (!folder && a.output.empty()) a.output = bundleBeside(a.scene);
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
   std::optional<Cache> cache = bakeCache(a);
-  if (a.scene.empty()) return resumeBakes(a, cache, stop.get_token());
   if (folder) return bakeFolder(a, cache, stop.get_token());
   return printOutcome(a, bakeScene(a, cache, stop.get_token()));
 }
@@ -320,13 +268,11 @@ int runBake(BakeArguments a) {
 void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
   CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene, or a folder of them, into bundles");
-  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb, or a folder: all scenes in it and below");
+  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb, or a folder: all scenes in it and below")
+      ->required();
   command_line::addValue(*command, "-o,--output", a->output, "PATH",
                          "The bundle to write, OUT.lmb.glb, or of a folder of scenes one for bundles; "
                          "default: beside the scene, with its name");
-  command->add_flag("--resume", a->resume,
-                    "Without SCENE: finish all bakes that were cut short. With it there is no need: a bake "
-                    "always goes on from what the cache holds of it");
   addBakeOptions(*command, a->options);
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
@@ -348,7 +294,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
   command->add_flag("--json", a->json, "Print figures as JSON; of a folder an array of them");
   addQuiet(*command, a->say);
   addProgress(*command, a->say);
-  command_line::group(*command, "Files and runs", {"--output", "--resume", "--force", "--allow-outside"});
+  command_line::group(*command, "Files and runs", {"--output", "--force", "--allow-outside"});
   command_line::group(*command, "Accuracy", {"--strict"});
   command_line::group(*command, "Machine", {"--cache", "--cache-size", "--checkpoint"});
   command_line::group(*command, "Output", {"--json", "--quiet", "--progress"});

@@ -120,9 +120,6 @@ class MaterialConverter {
     return {};
   }
 
-  // Returns whether an image could not be read.
-  bool lacksImages() const { return lacks_images_; }
-
  private:
   static constexpr std::int32_t kUnknown = -2;
 
@@ -147,7 +144,6 @@ class MaterialConverter {
   Scene& scene_;
   std::size_t number_ = 0;  // of the material at hand
   std::vector<std::int32_t> texture_of_, image_of_;
-  bool lacks_images_ = false;
   std::map<std::pair<std::int32_t, float>, std::int32_t> roughness_of_;  // by texture and factor
   std::map<std::filesystem::path, std::int32_t> brdf_of_;  // materials that name one file share its BRDF
 };
@@ -218,7 +214,6 @@ std::int32_t MaterialConverter::takeImage(std::size_t index) {
     image = static_cast<std::int32_t>(scene_.images.size());
     scene_.images.push_back(std::move(*read));
   } else {
-    lacks_images_ = true;
     const Error& error = read.error();
     const std::string uri = document_.at("images", index).value("uri", "");
     scene_.warnings.push_back(fmt::format(
@@ -348,8 +343,6 @@ Result<void> convertMaterials(const Document& document, Scene& scene) {
   MaterialConverter converter(document, scene);
   for (const json& source : document.list("materials"))
     if (auto done = converter.convert(source); !done) return done;
-  if (document.options.whole_images && converter.lacksImages())
-    return fail(document.file(), "has an image that cannot be read", "write it again");
   return {};
 }
 
