@@ -1,18 +1,127 @@
 // Runs a whole sweep: every setting in turn, what is known already from an earlier run. A request comes in;
 // what was measured goes out, also if the sweep was stopped or a setting failed. The folder `output` holds
-// results.jsonl (store.hpp) and the folder `work`. Runs on the calling thread.
+// results.jsonl (Store) and the folder `work`, for files that later measurements need. Runs on the calling
+// thread. All programs run one after the other, since times are measured. Errors name the program that
+// failed.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <stop_token>
 #include <string>
 #include <vector>
 
-#include "baker/sweep/measure.hpp"
+#include <nlohmann/json.hpp>
+
+#include "baker/sweep/knobs.hpp"
+#include "runtime/base/process.hpp"
+#include "runtime/base/result.hpp"
+#include "runtime/spec/image.hpp"
 
 namespace lambent::baker {
+
+// Keeps what a sweep measures in a file, one row a line, each appended as soon as it is measured. A sweep
+// that was cut short finds them there and measures only what is missing. A row is found by a key of
+// everything that it depends on, so those of another scene, program or option may lie in the same file. A
+// last line that was cut short, and lines of another form, are left out.
+class Store {
+ public:
+  // Reads the file, if it is there.
+  static Result<Store> open(const std::filesystem::path& file);
+
+  // Returns null if there is no such row.
+  const nlohmann::json* find(const std::string& key) const;
+  // Adds a row, in place of an earlier one of that key. `what` says in words what it measures, for readers.
+  Result<void> add(const std::string& key, const std::string& what, nlohmann::json row);
+  std::size_t added() const { return added_; }
+
+ private:
+  explicit Store(std::filesystem::path file) : file_(std::move(file)) {}
+
+  std::filesystem::path file_;
+  std::map<std::string, nlohmann::json> rows_;
+  std::size_t added_ = 0;
+  bool cut_short_ = false;  // the file's last line has no end
+};
+
+// View is what all pictures of a sweep have in common.
+struct SweepView {
+  std::vector<std::string> lights = {};  // as on the command line
+  std::string camera = {}, size = {};
+  std::uint32_t spp = 64;  // of each of two references
+  int frames = 5;          // over which frame times are taken
+};
+
+// The programs that a sweep runs. The baker cannot link the runtime's frame, so lambent-demo draws pictures.
+struct Programs {
+  std::filesystem::path lambent, demo;
+};
+
+// A Measured is one setting with all that is known of it.
+struct Measured {
+  Setting setting;
+  std::string key;               // equal for settings that come to the same
+  nlohmann::json bake, picture;  // rows of the store, with the fields of sweep.json (docs/accuracy.md)
+  double visible = 0.0;          // share of the pixels that an eye sees as different from the reference
+  spec::Rgba8Image shown = {};   // the picture as a screen shows it
+};
+
+// Makes one measurement at a time: a reference, a bake or a picture. Each is looked up in the store first, so
+// that what is known is not measured again.
+class Measurer {
+ public:
+  struct Job {
+    Programs programs;
+    std::filesystem::path scene, work;
+    std::uint64_t scene_digest = 0;
+    bool glossy = false, allow_outside = false;
+    SweepView view;
+    // Is called before something is measured, which takes a while.
+    std::function<void(const std::string& what)> begin;
+  };
+
+  Measurer(Job job, Store& store, std::stop_token stop);
+
+  Result<Measured> measure(const Setting& setting);
+
+  // Two pictures with independent noise.
+  struct Reference {
+    double seconds = 0.0;  // of both together
+    spec::RgbaImage a, b;
+    spec::Rgba8Image shown;  // their mean as a screen shows it
+  };
+  // Takes the bands as `lambent reference` does; empty: light as it is. The result lives as long as this.
+  Result<const Reference*> reference(const std::string& bands);
+
+ private:
+  using Words = std::map<std::string, std::string>;
+
+  // Returns the row of this key, which `make` measures if it is not known, or if its file is gone.
+  Result<nlohmann::json> known(const std::string& key, const std::string& what,
+                               const std::filesystem::path& file,
+                               const std::function<Result<nlohmann::json>()>& make);
+  std::string key(const std::string& kind, const std::string& text) const;
+  std::string bakeKey(const Setting& setting) const;
+  std::string pictureKey(const Setting& setting) const;
+  std::filesystem::path bundleOf(const Setting& setting) const;
+  std::vector<std::string> viewWords() const;
+  Result<nlohmann::json> runReference(const std::string& bands, int seed, const std::filesystem::path& file);
+  Result<nlohmann::json> runBake(const Setting& setting);
+  // Returns the bytes on the GPU with the setting's share of the planes of transfer.
+  Result<std::string> memoryLimit(const Setting& setting, const std::filesystem::path& file);
+  Result<nlohmann::json> drawPictures(const Setting& setting, const std::filesystem::path& file);
+  Result<Ran> draw(const Setting& setting, const Words& words, const std::filesystem::path& file, int frames);
+
+  Job job_;
+  Store& store_;
+  std::stop_token stop_;
+  std::string bakes_, common_;                   // what keys of bakes depend on, and all other keys
+  std::map<std::string, Reference> references_;  // by bands
+  float exposure_ = 1.0f;                        // of all pictures, by the reference of light as it is
+};
 
 struct SweepRequest {
   std::filesystem::path scene, output;  // no scene: a sample scene
