@@ -10,7 +10,7 @@
 #include "baker/bake/options.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/plan/counted.hpp"
-#include "baker/sweep/report.hpp"
+#include "baker/sweep/sweep.hpp"
 #include "runtime/command_line/help.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"

@@ -21,7 +21,6 @@
 #include "baker/cli/bake_report.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/import/gltf.hpp"
-#include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/source_watch.hpp"
 #include "baker/pipeline/whole_progress.hpp"
 #include "baker/plan/counted.hpp"

@@ -17,7 +17,7 @@
 #include "baker/decisions/decisions.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/import/scene.hpp"
-#include "baker/pipeline/guess_seconds.hpp"
+#include "baker/pipeline/whole_progress.hpp"
 #include "baker/plan/counted.hpp"
 #include "baker/plan/effect_plan.hpp"
 #include "runtime/command_line/help.hpp"

@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include "baker/import/gltf.hpp"
-#include "baker/pipeline/guess_seconds.hpp"
 #include "baker/pipeline/whole_progress.hpp"
 #include "runtime/bundle/container.hpp"
 

@@ -1,5 +1,3 @@
-#include "baker/sweep/report.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "baker/import/openimageio/module.hpp"
 #include "baker/plan/counted.hpp"
+#include "baker/sweep/sweep.hpp"
 #include "lambent_sweep_embedded.hpp"
 #include "runtime/base/atomic_file.hpp"
 

@@ -1,10 +1,9 @@
-#include "baker/sweep/report.hpp"
-
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
+#include "baker/sweep/sweep.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
