@@ -128,114 +128,76 @@ nlohmann::json outcomeJson(const BakeArguments& a, const BakeOutcome& outcome) {
   return reportJson({a.output, a.options, *outcome});
 }
 
-// Says where each scene of a folder is baked to: beside the scene, or under a folder for bundles that mirrors
-// the scenes' own.
-class FolderOutputs {
- public:
-  // If `output` is empty, bundles lie beside their scenes.
-  FolderOutputs(fs::path folder, fs::path output) : folder_(std::move(folder)), output_(std::move(output)) {}
-
-  // Returns the bundle, whose folder it makes. Fails if another scene, as a.gltf beside a.glb, has it.
-  Result<fs::path> outputOf(const fs::path& scene) {
-    fs::path output = bundleBeside(scene);
-    if (!output_.empty())
-      output =
-          (output_ / scene.parent_path().lexically_relative(folder_)).lexically_normal() / output.filename();
-    const auto [entry, added] = scene_of_.try_emplace(output, scene);
-    if (!added && entry->second != scene)
-      return fail(scene.string(),
-                  fmt::format("would be baked to {}, where {} is", output.string(), entry->second.string()),
-                  "rename one of them");
-    std::error_code ignored;  // the bake reports that it cannot write
-    fs::create_directories(output.parent_path(), ignored);
-    return output;
-  }
-
- private:
-  fs::path folder_, output_;
-  std::map<fs::path, fs::path> scene_of_;  // by output
-};
+// Returns where a scene of a folder is baked to: beside the scene, or under a folder for bundles that mirrors
+// the scenes' own, which it makes.
+fs::path outputOf(const BakeArguments& a, const fs::path& scene) {
+  fs::path output = bundleBeside(scene);
+  if (!a.output.empty())
+    output =
+        (a.output / scene.parent_path().lexically_relative(a.scene)).lexically_normal() / output.filename();
+  std::error_code ignored;  // the bake reports that it cannot write
+  fs::create_directories(output.parent_path(), ignored);
+  return output;
+}
 
 double secondsSince(std::chrono::steady_clock::time_point begun) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 }
 
-// Counts and prints what came of each scene.
-class FolderReport {
- public:
-  explicit FolderReport(const BakeArguments& arguments) : arguments_(arguments) {}
-
-  void failed(const fs::path& scene, const Error& error) {
-    ++failed_;
-    // Errors of options and outputs do not name the scene.
-    reportError(error.subject == scene.string() ? error : Error{scene.string(), error.line(), {}});
-    json_.push_back({{"scene", scene.string()}, {"error", error.line()}});
-  }
-  void baked(const BakeArguments& one, const BakeOutcome& outcome, double seconds) {
-    ++(outcome ? baked_ : up_to_date_);
-    missed_ |= failsStrictly(one, outcome);
-    if (!arguments_.json) {
-      say("{}: {}", one.scene.string(),
-          outcome ? fmt::format("{} in {}, {}", one.output.string(), durationText(seconds),
-                                bytesText(static_cast<double>(outcome->file_bytes)))
-                  : one.output.string() + " is up to date");
-      return;
-    }
-    json_.push_back(outcomeJson(one, outcome));
-    json_.back()["scene"] = one.scene.string();
-  }
-  // Prints the last line, or the array, and returns the exit code.
-  int end(std::size_t scenes) const {
-    const std::size_t missing = scenes - baked_ - up_to_date_ - failed_;
-    if (arguments_.json)
-      fmt::print("{}\n", json_.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-    else
-      say("{}: {} baked, {} up to date, {} failed{} in {}", counted(scenes, "scene"), baked_, up_to_date_,
-          failed_, missing > 0 ? fmt::format(", {} not begun", missing) : "",
-          durationText(secondsSince(begun_)));
-    return failed_ + missing > 0 || missed_ ? 1 : 0;
-  }
-
- private:
-  template <class... Words>
-  void say(fmt::format_string<Words...> text, Words&&... words) const {
-    if (arguments_.say.quiet) return;
-    fmt::print("{}\n", fmt::format(text, std::forward<Words>(words)...));
-    std::fflush(stdout);
-  }
-
-  const BakeArguments& arguments_;
-  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
-  std::size_t baked_ = 0, up_to_date_ = 0, failed_ = 0;
-  bool missed_ = false;  // a bound that bakes are held to
-  nlohmann::json json_ = nlohmann::json::array();
-};
-
-// Bakes every scene of the folder `a.scene` once. `a.output` is a folder for bundles, or empty: beside the
-// scenes. Returns the exit code: 1 if a scene has no bundle that shows it as it is.
+// Bakes every scene of the folder `a.scene` once, and counts and prints what came of each. `a.output` is a
+// folder for bundles, or empty: beside the scenes. Returns the exit code: 1 if a scene has no bundle that
+// shows it as it is.
 int bakeFolder(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
+  const auto begun = std::chrono::steady_clock::now();
   const std::vector<fs::path> scenes = scenesIn(a.scene);
   if (scenes.empty())
     return reportError({a.scene.string(), "has no scenes in it", "name a folder of .gltf or .glb files"});
-  FolderOutputs outputs(a.scene, a.output);
-  FolderReport report(a);
+  const auto say = [&](const std::string& line) {
+    if (a.json || a.say.quiet) return;
+    fmt::print("{}\n", line);
+    std::fflush(stdout);
+  };
+  std::map<fs::path, fs::path> scene_of;  // by output
+  std::size_t baked = 0, up_to_date = 0, failed = 0;
+  bool missed = false;  // a bound that bakes are held to
+  nlohmann::json json = nlohmann::json::array();
   for (std::size_t i = 0; i < scenes.size() && !stop.stop_requested(); ++i) {
-    const auto begun = std::chrono::steady_clock::now();
-    const auto output = outputs.outputOf(scenes[i]);
-    if (!output) {
-      report.failed(scenes[i], output.error());
-      continue;
-    }
+    const auto scene_begun = std::chrono::steady_clock::now();
+    const std::string scene = scenes[i].string();
     BakeArguments one = a;
     one.scene = scenes[i];
-    one.output = *output;
+    one.output = outputOf(a, scenes[i]);
     one.say.label = fmt::format("{} of {}  {}  ", i + 1, scenes.size(), scenes[i].filename().string());
-    if (const auto outcome = bakeScene(one, cache, stop))
-      report.baked(one, *outcome, secondsSince(begun));
+    const auto [entry, added] = scene_of.try_emplace(one.output, one.scene);
+    const Result<BakeOutcome> outcome = added ? bakeScene(one, cache, stop)
+                                              : fail(scene,  // such as a.gltf beside a.glb
+                                                     fmt::format("would be baked to {}, where {} is",
+                                                                 one.output.string(), entry->second.string()),
+                                                     "rename one of them");
+    if (!outcome) {
+      ++failed;
+      // Errors of options and outputs do not name the scene.
+      const Error& error = outcome.error();
+      reportError(error.subject == scene ? error : Error{scene, error.line(), {}});
+      json.push_back({{"scene", scene}, {"error", error.line()}});
+      continue;
+    }
+    ++(*outcome ? baked : up_to_date);
+    missed |= failsStrictly(one, *outcome);
+    json.push_back(outcomeJson(one, *outcome));
+    json.back()["scene"] = scene;
+    if (*outcome)
+      say(fmt::format("{}: {} in {}, {}", scene, one.output.string(), durationText(secondsSince(scene_begun)),
+                      bytesText(static_cast<double>((*outcome)->file_bytes))));
     else
-      report.failed(scenes[i], outcome.error());
+      say(fmt::format("{}: {} is up to date", scene, one.output.string()));
   }
-  return report.end(scenes.size());
+  const std::size_t missing = scenes.size() - baked - up_to_date - failed;
+  if (a.json) fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  say(fmt::format("{}: {} baked, {} up to date, {} failed{} in {}", counted(scenes.size(), "scene"), baked,
+                  up_to_date, failed, missing > 0 ? fmt::format(", {} not begun", missing) : "",
+                  durationText(secondsSince(begun))));
+  return failed + missing > 0 || missed ? 1 : 0;
 }
 
 int printOutcome(const BakeArguments& a, const Result<BakeOutcome>& outcome) {
