@@ -103,16 +103,17 @@ class Rounds {
         context_(context),
         report_(report),
         few_(options.rays),
-        many_(options.many_rays) {
-    for (std::size_t g = 0; g < from.groups.size(); ++g) refiners_.emplace_back(few_, many_, options.glossy);
-  }
+        many_(options.many_rays) {}
 
   // `geometries` are those of the groups before any split. Errors: stopped; no memory for the hierarchy.
   Result<void> run(std::vector<GroupGeometry> geometries) {
     geometries_ = std::move(geometries);
-    for (std::size_t g = 0; g < from_.groups.size(); ++g)
-      if (any(g))
-        if (auto prepared = refiners_[g].prepare(from_, g, geometries_[g]); !prepared) return prepared;
+    for (std::size_t g = 0; g < from_.groups.size(); ++g) {
+      refiners_.emplace_back();
+      if (from_.groups[g].draws.empty() || !from_.transport[g].shadows) continue;
+      refiners_[g] = std::make_unique<GroupRefiner>(from_, geometries_[g], few_, many_, options_.glossy);
+      if (auto prepared = refiners_[g]->prepare(from_.groups[g]); !prepared) return prepared;
+    }
     if (auto measured = measure(); !measured) return measured;
     report_.error_before = report_.error_after;
     if (auto cut = cutLeaks(); !cut) return cut;
@@ -120,7 +121,7 @@ class Rounds {
     std::uint64_t done_before = 0;
     for (int round = 0; round < options_.rounds && room() > 0; ++round) {
       const auto marked = split([&](std::size_t g, std::size_t& left, MarkedEdges& edges) {
-        return refiners_[g].markWorst(g, geometries_[g], double{options_.bound}, left, edges);
+        return refiners_[g]->markWorst(g, geometries_[g], double{options_.bound}, left, edges);
       });
       if (!marked) return failAgain(marked.error());
       if (*marked == 0) return cutLeaks();
@@ -136,12 +137,12 @@ class Rounds {
     return {};
   }
 
-  const std::vector<GroupRefiner>& refiners() const { return refiners_; }
+  void addRays() {
+    for (const auto& refiner : refiners_)
+      if (refiner) report_.rays += refiner->raysTraced(), report_.rays_kept += refiner->raysKept();
+  }
 
  private:
-  bool any(std::size_t group) const {
-    return !from_.groups[group].draws.empty() && from_.transport[group].shadows;
-  }
   std::size_t room() const { return most_ - std::min(most_, countDrawn(copies_, meshes_)); }
 
   // Tells the progress what the rounds up to the bound are expected to probe, each as much as the last one.
@@ -156,11 +157,11 @@ class Rounds {
   Result<void> measure() {
     report_.error_after = 0.0;
     for (std::size_t g = 0; g < refiners_.size(); ++g) {
-      if (!any(g)) continue;
-      const auto measured = refiners_[g].measure(geometries_[g], double{options_.bound}, context_);
+      if (!refiners_[g]) continue;
+      const auto measured = refiners_[g]->measure(geometries_[g], double{options_.bound}, context_);
       if (!measured) return failAgain(measured.error());
       if (!*measured) return stopped(from_);
-      report_.error_after = std::max(report_.error_after, refiners_[g].relativeError());
+      report_.error_after = std::max(report_.error_after, refiners_[g]->relativeError());
     }
     return {};
   }
@@ -172,7 +173,7 @@ class Rounds {
     MarkedEdges edges(from_.groups, geometries_, meshes_);
     std::size_t left = room(), marked = 0;
     for (std::size_t g = 0; g < refiners_.size(); ++g) {
-      if (!any(g)) continue;
+      if (!refiners_[g]) continue;
       const std::optional<std::size_t> more = mark(g, left, edges);
       if (!more) return stopped(from_);
       marked += *more;
@@ -187,7 +188,7 @@ class Rounds {
     bool cut = false;
     for (int round = 0; round < kMostLeakRounds; ++round) {
       const auto marked = split([&](std::size_t g, std::size_t& left, MarkedEdges& edges) {
-        return refiners_[g].markLeaks(g, geometries_[g], left, edges, context_);
+        return refiners_[g]->markLeaks(g, geometries_[g], left, edges, context_);
       });
       if (!marked) return failAgain(marked.error());
       if (*marked == 0) break;
@@ -204,7 +205,7 @@ class Rounds {
   const BakeContext& context_;
   RefineReport& report_;
   ShadowProbe few_, many_;
-  std::vector<GroupRefiner> refiners_;
+  std::vector<std::unique_ptr<GroupRefiner>> refiners_;  // null for groups that stay as they are
   std::vector<GroupGeometry> geometries_;
 };
 
@@ -240,8 +241,7 @@ Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& 
   Rounds rounds(from, options, most, meshes, context, report);
   if (auto refined = rounds.run(std::move(geometries)); !refined) return failAgain(refined.error());
   report.vertices_after = countVertices(meshes);
-  for (const GroupRefiner& refiner : rounds.refiners())
-    report.rays += refiner.raysTraced(), report.rays_kept += refiner.raysKept();
+  rounds.addRays();
   if (outcome_context.keeps()) {
     outcome.meshes = meshes;
     keepValue(outcome_context, outcome);
