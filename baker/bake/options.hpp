@@ -116,12 +116,12 @@ const char* qualityName(Quality quality);
 std::optional<glm::uvec3> gridSizeFrom(std::string_view text);
 
 // The table of a bake's options: a row for each has its name, its help and the form of its words. The command
-// line, the editor's panel and its command, the checks before a bake, the settings that a bundle records and
-// the journal of unfinished bakes all walk this table. A new option is a member of BakeOptions and a row in
+// line, the editor's panel and its command, the checks before a bake and the settings that a bundle records
+// all walk this table. A new option is a member of BakeOptions and a row in
 // option_rows.cpp. Errors name the option: a word is not of its kind, or a value lies outside its range.
 
 struct OptionRow {
-  std::string_view name;       // as in --name, in scripts and journals
+  std::string_view name;       // as in --name, in scripts
   std::string_view group;      // its heading in the help
   std::string_view setting{};  // in the settings that a bundle records; empty: it does not change the bytes
   std::string_view kind;       // what a word looks like, for help: "N|auto"

@@ -16,9 +16,6 @@ struct ImportOptions {
   // Lets buffers and images lie outside the scene's folder: absolute paths, "..", links that lead out. This
   // is for scenes from a trusted place only, since a scene chooses which files are read.
   bool allow_outside = false;
-  // Refuses images that cannot be read, which else are left out with a warning. This is for files that may
-  // still be written to.
-  bool whole_images = false;
 };
 
 // Errors: missing or unreadable file, not glTF 2.0, geometry in an unknown extension, broken accessors or

@@ -107,9 +107,6 @@ class MaterialConverter {
     scene_.materials.push_back(std::move(material));
   }
 
-  // Returns whether an image could not be read.
-  bool lacksImages() const { return lacks_images_; }
-
  private:
   static constexpr std::int32_t kUnknown = -2;
 
@@ -188,8 +185,7 @@ class MaterialConverter {
       scene_.images.push_back(storableImage(std::move(name), imageBytes(source, index)));
       image = static_cast<std::int32_t>(scene_.images.size()) - 1;
     } catch (const Error& error) {
-      lacks_images_ = true;
-      scene_.warnings.push_back(fmt::format("image {}{}: {}, so surfaces look as without it ({})", index,
+        scene_.warnings.push_back(fmt::format("image {}{}: {}, so surfaces look as without it ({})", index,
                                             file.empty() ? "" : fmt::format(" (\"{}\")", file.substr(0, 80)),
                                             error.problem, error.hint));
     }
@@ -300,7 +296,6 @@ class MaterialConverter {
   Scene& scene_;
   std::size_t number_ = 0;  // of the material at hand
   std::vector<std::int32_t> texture_of_, image_of_;
-  bool lacks_images_ = false;
   std::map<std::pair<std::int32_t, float>, std::int32_t> roughness_of_;  // by texture and factor
   std::map<std::filesystem::path, std::int32_t> brdf_of_;  // materials that name one file share its BRDF
 };
@@ -310,8 +305,6 @@ class MaterialConverter {
 void convertMaterials(const Document& document, Scene& scene) {
   MaterialConverter converter(document, scene);
   for (const json& source : document.list("materials")) converter.convert(source);
-  if (document.options.whole_images && converter.lacksImages())
-    throw Error{{}, "has an image that cannot be read", "write it again"};
 }
 
 }  // namespace lambent::baker

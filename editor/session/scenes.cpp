@@ -268,11 +268,7 @@ void Scenes::take(const baker::WatchEvent& event) {
   using Kind = baker::WatchEvent::Kind;
   const std::filesystem::path scene = baker::plainPath(event.scene);
   SceneEntry* entry = find(scene);
-  if (event.kind == Kind::Broken && event.error) {
-    // A scene that was broken when it was opened has been reported by its bake.
-    const auto job = entry ? jobOf(static_cast<std::size_t>(entry - entries_.data())) : std::nullopt;
-    if (!job || !job->error || job->error->line() != event.error->line()) log_.error(*event.error);
-  } else if (event.kind == Kind::Removed && entry) {
+  if (event.kind == Kind::Removed && entry) {
     log_.warn(scene.string() + ": is gone; its bundle stays");
   } else if (event.kind == Kind::Found && !entry && isWatched(scene)) {
     if (auto opened = open(scene); !opened) log_.error(opened.error());
