@@ -26,8 +26,8 @@ draw 08-wireframe flight $sky --view wireframe
 camera=orbit:25,14,0.8,25
 draw 09-light-samples playroom $day --overlay light-probes
 camera=main
-draw 10-neighborhoods playroom $day --overlay neighborhoods:y,0.3
+draw 10-neighborhoods playroom $day --overlay neighborhoods
 draw 11-groups-lights playroom $day --overlay groups,lights
-draw 12-volumes flight $sky --overlay volumes,neighborhoods:y,0.4
+draw 12-volumes flight $sky --overlay volumes,neighborhoods
 montage "$work"/[01][0-9]-*.png -tile 3x4 -geometry +3+3 -background '#1b1b1b' "$work/sheet.png"
 convert "$work/sheet.png" -quality 86 "$out"

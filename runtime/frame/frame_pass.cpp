@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -14,21 +15,26 @@ namespace lambent::frame {
 
 namespace {
 
-std::string counted(std::size_t count, std::string_view one) {
-  return count == 1 ? fmt::format("a {}", one) : fmt::format("{} {}s", count, one);
+// Sets `seen` to the current version of a type of components. Returns whether it was another one.
+template <typename Component>
+bool changed(const ecs::Registry& registry, std::uint64_t& seen) {
+  const std::uint64_t now = registry.version<Component>();
+  return std::exchange(seen, now) != now;
 }
 
-// Sets `seen` to the current version of a type of components. Returns how many changed, or nothing if it was
-// current already.
-template <typename Component>
-std::optional<std::size_t> changes(const ecs::Registry& registry, std::uint64_t& seen) {
-  const std::uint64_t now = registry.version<Component>(), before = std::exchange(seen, now);
-  if (now == before) return {};
-  std::size_t count = 0;
-  for (auto [entity, component] : registry.view<const Component>())
-    count += registry.version<Component>(entity) > before ? 1 : 0;
-  return count;
-}
+// The names of all counts: a list for each kind of passes, in their order.
+constexpr std::initializer_list<std::string_view> kCounts[] = {
+    {"volumes", "groups", "bodies", "local_lights", "shadowed_lights", "shadowed_lights_left_out",
+     "light_probes", "light_probes_risen", "light_probes_written"},
+    {"patch_rooms", "patch_rooms_to_come", "patches", "lights_bounced", "patch_draws_gathered"},
+    {"cells_shaded", "draws_shaded"},
+    {"neighborhood_grids", "neighborhood_grids_ready", "neighborhood_grids_written", "neighborhood_pairs",
+     "neighborhood_receivers", "neighborhood_arrivals", "neighborhood_vertex_receivers",
+     "neighborhood_vertex_receivers_shaded", "neighborhood_arrivals_left_out"},
+    {"light_probes_captured", "light_probes_waiting", "capture_pages", "capture_tiles",
+     "capture_bodies_drawn", "capture_triangles", "capture_pixels"},
+    {"shadow_cubes_drawn", "key_lights", "key_maps_drawn", "reflection_probes", "reflection_probes_captured"},
+    {"draws_out_of_view", "volumes_shaded", "volume_slabs_written", "volumes_out_of_view", "volumes_drawn"}};
 
 bool sameValue(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
@@ -54,19 +60,16 @@ void InvalidationLog::noticeArrivals(const World& world, std::uint64_t bytes) {
 
 void InvalidationLog::noticeWorld(const World& world) {
   const ecs::Registry& registry = world.registry();
-  const auto nodes = changes<scene::WorldTransform>(registry, transforms_);
-  const auto groups = changes<scene::RigidGroupComponent>(registry, groups_);
-  const bool known = std::exchange(world_known_, true);
-  if (known && groups && *groups > 0)
-    note(Cause::Moved, counted(*groups, "group") + " moved");
-  else if (known && nodes && *nodes > 0)
-    note(Cause::Moved, counted(*nodes, "node") + " moved");
-  const auto noteChanged = [&](Cause cause, std::optional<std::size_t> count, std::string_view one) {
-    if (known && count) note(cause, counted(std::max<std::size_t>(*count, 1), one) + " changed");
-  };
-  noteChanged(Cause::Lights, changes<scene::LampComponent>(registry, lamps_), "lamp");
-  noteChanged(Cause::Lights, changes<scene::LocalLightComponent>(registry, local_lights_), "light");
-  noteChanged(Cause::Materials, changes<scene::MaterialComponent>(registry, materials_), "material");
+  const bool nodes = changed<scene::WorldTransform>(registry, transforms_);
+  const bool groups = changed<scene::RigidGroupComponent>(registry, groups_);
+  const bool lamps = changed<scene::LampComponent>(registry, lamps_);
+  const bool lights = changed<scene::LocalLightComponent>(registry, local_lights_);
+  const bool materials = changed<scene::MaterialComponent>(registry, materials_);
+  if (!std::exchange(world_known_, true)) return;
+  if (groups || nodes) note(Cause::Moved, groups ? "groups moved" : "nodes moved");
+  if (lamps) note(Cause::Lights, "lamps changed");
+  if (lights) note(Cause::Lights, "lights changed");
+  if (materials) note(Cause::Materials, "materials changed");
 }
 
 void InvalidationLog::noticeEnvironment(const lighting::Environment& environment) {
@@ -113,9 +116,9 @@ std::string InvalidationLog::of(std::uint32_t causes, std::string_view otherwise
   return words.empty() ? std::string(otherwise) : words;
 }
 
-void StepCounts::declare(std::span<const std::string_view> names) {
-  for (const std::string_view name : names)
-    if (std::ranges::find(counts_, name, &Count::name) == counts_.end()) counts_.push_back({.name = name});
+StepCounts::StepCounts() {
+  for (const auto& names : kCounts)
+    for (const std::string_view name : names) counts_.push_back({.name = name});
 }
 
 void StepCounts::clear() {
@@ -133,72 +136,7 @@ void StepCounts::add(std::string_view name, std::uint64_t value) {
 }
 
 std::uint64_t StepCounts::operator[](std::string_view name) const {
-  return counts_.empty() ? 0 : counts_[placeOf(name)].value;
-}
-
-void FrameContext::because(std::string_view otherwise) const {
-  scope->because(log.of(pass->causes, otherwise));
-}
-
-bool FrameContext::declares(std::type_index type, bool to_write) const {
-  const auto has = [&](const Resources& types) { return std::ranges::find(types, type) != types.end(); };
-  return has(pass->writes) || (!to_write && (has(pass->reads) || has(pass->reads_before)));
-}
-
-namespace {
-
-using MakePass = MadePass (*)(const PassSetup&);
-
-// These lists name all passes, in their order. Passes of a step bring light to where it is needed; passes of
-// a picture draw it.
-constexpr MakePass kStepPasses[] = {
-    &makeUploadPass,        // uploads what has arrived, within the budget
-    &makeTransformsPass,    // places nodes and rigid groups
-    &makeLightPass,         // light at each light probe, windowed, in its group's frame
-    &makePatchBouncesPass,  // bounces of lights among the surfaces, and of key lights
-    &makeDiffusePass,       // E/pi at every vertex whose light or transfer changed
-    &makeSeenSkyPass,       // what vertices of smooth dielectrics see of the sky, once transfer has arrived
-    &makeGlossyPass,        // transferred light at samples of glossy surfaces, likewise
-    &makeNeighborhoodPass,  // changes of light around bodies with grids
-    &makeCapturePass,       // light between bodies, which arrives with the next step
-};
-
-constexpr MakePass kPicturePasses[] = {
-    &makeSkyPass,                     // the sky behind all surfaces
-    &makeLocalShadowsPass,            // shadow cubes of lights among the surfaces
-    &makeKeyShadowsPass,              // shadow maps of key lights over the visible area
-    &makePrefilteredEnvironmentPass,  // the sky as rough mirrors show it
-    &makeReflectionProbesPass,        // rooms as mirrors in them show them
-    &makeRasterPass,                  // surfaces, sky, blended surfaces: linear radiance
-    &makeVolumePass,                  // light in volumes that are in view, as rays look it up
-    &makeMarchPass,                   // what volumes scatter and absorb
-    &makeToneMapPass,                 // exposure, tone curve, sRGB
-    &makeOverlayPass,                 // overlays and wires, not tone-mapped
-};
-
-Result<std::vector<std::unique_ptr<FramePass>>> make(std::span<const MakePass> list, const PassSetup& setup) {
-  std::vector<std::unique_ptr<FramePass>> passes;
-  for (const MakePass one : list) {
-    MadePass made = one(setup);
-    if (!made) return failAgain(made.error());
-    passes.push_back(std::move(*made));
-  }
-  return passes;
-}
-
-}  // namespace
-
-Result<PassList> makePassList(const FrameOptions& options, const lighting::Environment& environment,
-                              Blackboard& board) {
-  auto modules = std::make_unique<SurfaceModules>();
-  board.offer(*modules);
-  const PassSetup setup{.options = options, .environment = environment, .board = board};
-  auto step = make(kStepPasses, setup);
-  if (!step) return failAgain(step.error());
-  auto picture = make(kPicturePasses, setup);
-  if (!picture) return failAgain(picture.error());
-  return PassList{
-      .surface_modules = std::move(modules), .step = std::move(*step), .picture = std::move(*picture)};
+  return counts_[placeOf(name)].value;
 }
 
 }  // namespace lambent::frame

@@ -53,7 +53,7 @@ std::vector<DisplayChoice> displayChoices() {
   return choices;
 }
 
-// A vertex shader reads at most so many storage blocks (runtime/debug/data_view.glsl).
+// A vertex shader reads at most so many storage blocks (runtime/surface/surface.vert).
 constexpr std::uint32_t kVertexStorageBlocks = 5;
 
 // OpenGL 4.5 leaves storage blocks of vertex shaders optional, and some drivers have none.

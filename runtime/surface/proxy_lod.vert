@@ -2,11 +2,8 @@
 // without shadows.
 #include "proxy_lod_shared.h"
 #include "diffuse_light.glsl"
+#include "view_block.glsl"
 
-layout(std140, binding = kBindProxyLodView) uniform ViewBlock {
-  mat4 view_from_world;
-  mat4 clip_from_view;
-};
 layout(std430, binding = kBindProxyLodGroups) readonly buffer Groups { ProxyLodGroup groups[]; };
 layout(std430, binding = kBindProxyLodTriangles) readonly buffer Triangles { ProxyLodTriangle triangles[]; };
 

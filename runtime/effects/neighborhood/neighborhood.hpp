@@ -27,9 +27,6 @@
 
 namespace lambent::effects::neighborhood {
 
-// The tables of GLSL text that programs of this room include files from.
-extern const gpu::FindText kNeighborhoodShaders[2];
-
 // Lays out the grids of all bodies in one 3D texture. Each output of a grid is a slab with one texel per grid
 // point; slabs are stacked along z and continue in a neighbouring column when that is full. There is one
 // texture for all, so that draws that receive from different bodies share a multi-draw. No GL.
@@ -83,7 +80,7 @@ class Neighborhood {
 
   std::vector<Grid> grids_;
   std::vector<std::uint64_t> written_versions_;  // per grid, that of its points when written; 0: none
-  evaluate::Kernels kernels_{kNeighborhoodShaders};
+  evaluate::Kernels kernels_;
   gpu::Texture atlas_;
   glm::uvec3 atlas_size_{0};
   gpu::Table writes_;
@@ -145,7 +142,7 @@ class VertexReceivers {
   template <typename Record>
   void dispatch(std::span<const Record> records, std::uint32_t largest, gpu::Counters& counters);
 
-  evaluate::Kernels kernels_{kNeighborhoodShaders};
+  evaluate::Kernels kernels_;
   std::map<std::uint32_t, std::uint32_t> words_;  // keyed by draw
   std::map<std::uint32_t, Places> places_;        // keyed by group
   std::map<std::uint32_t, DrawChanged> changed_;  // keyed by draw

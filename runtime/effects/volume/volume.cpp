@@ -15,7 +15,7 @@
 
 namespace lambent::effects::volume {
 
-const gpu::FindText kVolumeShaders[1] = {&embedded::lambent_effects_volume::find};
+constexpr gpu::FindText kVolumeShaders[] = {&embedded::lambent_effects_volume::find};
 
 static_assert(kBlock == streaming::kVolumeBlock && kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
 
@@ -40,7 +40,10 @@ SlabLayout slabLayoutOf(const glm::uvec3& transfer_size, std::uint32_t outputs) 
 }
 
 Volume::Volume(bool precise)
-    : precise_(precise), records_table_("volume cells"), work_("volume scatter work") {}
+    : precise_(precise),
+      kernels_(kVolumeShaders),
+      records_table_("volume cells"),
+      work_("volume scatter work") {}
 
 gpu::Texture Volume::makeTexture(const streaming::ResidentVolume& volume) const {
   const glm::uvec3 size = slabLayoutOf(volume.grid.transfer_size, volume.outputs).texture_size;
@@ -103,8 +106,7 @@ Result<void> Volume::shade(streaming::Residency& residency, const ShadedLight& l
   if (residency.volumes().empty()) return {};
   collect(residency, light, mode, in_view);
   if (work_.empty()) return {};
-  records_table_.assign(std::span<const ScatterRecord>(records_));
-  counters.uploaded_bytes += records_.size() * sizeof(ScatterRecord);
+  records_table_.assign(records_, counters);
   light.lights.bindStorage(kBindLights);
   records_table_.bindStorage(kBindScatter);
   std::vector<gpu::Define> defines;
@@ -213,8 +215,11 @@ Rectangle rectangleOf(const glm::mat4& clip_from_grid, const glm::uvec3& size, c
           std::min(static_cast<std::int32_t>(end.y), all.height) - grown.y};
 }
 
-March::March(const MarchOptions& options)
-    : options_(options), records_("marched volumes"), blocks_("blocks of volumes") {}
+March::March()
+    : programs_(kVolumeShaders),
+      records_("marched volumes"),
+      blocks_("blocks of volumes"),
+      no_vertices_("volumes") {}
 
 void March::uploadBlocks(const streaming::Residency& residency, gpu::Counters& counters) {
   std::vector<std::uint64_t> versions;
@@ -226,8 +231,7 @@ void March::uploadBlocks(const streaming::Residency& residency, gpu::Counters& c
     first_block_.push_back(static_cast<std::uint32_t>(blocks.size()));
     blocks.insert(blocks.end(), volume.block_maxima.begin(), volume.block_maxima.end());
   }
-  blocks_.assign(std::span<const float>(blocks));
-  counters.uploaded_bytes += blocks.size() * sizeof(float);
+  blocks_.assign(blocks, counters);
 }
 
 void March::makeTargets(const spec::Size& size) {
@@ -298,21 +302,15 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
   if (Result<void> done = programs_.use({triangle, {GL_FRAGMENT_SHADER, "volume_march.frag"}}, defines);
       !done)
     return done;
-  records_.assign(std::span<const MarchRecord>(records));
-  counters.uploaded_bytes += records.size() * sizeof(MarchRecord);
+  records_.assign(records, counters);
   records_.bindStorage(kBindMarch);
   blocks_.bindStorage(kBindBlocks);
   for (std::uint32_t v = 0; v < count; ++v) {
     const std::uint32_t index = items[v].volume;
     residency.volumes()[index].density.bind(kUnitDensity + v);
     light.lightOf(index).bind(kUnitDensity + count + v);
-    glBindSampler(kUnitDensity + v, 0);
-    glBindSampler(kUnitDensity + count + v, 0);
   }
   picture.depth.bind(kUnitDepth);
-  glBindSampler(kUnitDepth, 0);
-  if (!no_vertices_) no_vertices_ = gpu::VertexArray("volumes");
-  glBindVertexArray(no_vertices_.id());
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glEnable(GL_SCISSOR_TEST);
@@ -325,15 +323,9 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
     glUniform4f(kScale, p[0][0], p[1][1], p[2][2], p[3][2]);
     glUniform1i(kPerspective, p[2][3] != 0.0f ? 1 : 0);
   };
-  const auto drawTriangle = [&] {
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    ++counters.draws;
-    ++counters.draw_calls;
-  };
   const auto blend = [&] {
     glBindFramebuffer(GL_FRAMEBUFFER, picture.color.id());
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    gpu::blendPremultiplied();
   };
   if (samples > 0) {
     makeTargets(picture.size);
@@ -346,7 +338,7 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
   glUniform4f(kOffset, p[2][0], p[2][1], p[3][0], p[3][1]);
   glUniform2f(kPictureSize, static_cast<float>(picture.size.width), static_cast<float>(picture.size.height));
   glUniform1f(kStepVoxels, options_.step_voxels);
-  drawTriangle();
+  no_vertices_.draw(3, counters);
   if (samples > 0) {
     if (Result<void> done = programs_.use({triangle, {GL_FRAGMENT_SHADER, "volume_composite.frag"}},
                                           {{"LAMBENT_SAMPLES", std::to_string(samples)}});
@@ -358,7 +350,7 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
     blend();
     marched_.bind(kUnitMarched);
     setProjection();
-    drawTriangle();
+    no_vertices_.draw(3, counters);
   }
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);

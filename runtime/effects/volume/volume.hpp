@@ -24,9 +24,6 @@
 
 namespace lambent::effects::volume {
 
-// The tables of GLSL text that programs of this room include files from.
-extern const gpu::FindText kVolumeShaders[1];
-
 using evaluate::TransferMode;
 
 // Describes the arrangement of slabs in a texture: one per output, along z and, where that is full, along x.
@@ -76,7 +73,7 @@ class Volume {
   gpu::Texture makeTexture(const streaming::ResidentVolume& volume) const;
 
   bool precise_;
-  evaluate::Kernels kernels_{kVolumeShaders};
+  evaluate::Kernels kernels_;
   KeyedState<Held> held_;  // indexed by volume of the residency
   std::vector<ScatterRecord> records_;
   gpu::Table records_table_;
@@ -126,9 +123,10 @@ Rectangle rectangleOf(const glm::mat4& clip_from_grid, const glm::uvec3& size, c
 // nothing is drawn, compiled or held. Render thread only. Fails if a shader does not compile on this device.
 class March {
  public:
-  explicit March(const MarchOptions& options);
-  void setStep(float step_voxels) { options_.step_voxels = step_voxels; }
+  March();
 
+  // Takes the options from the next draw() on.
+  void set(const MarchOptions& options) { options_ = options; }
   Result<void> draw(const streaming::Residency& residency, const Volume& light,
                     std::span<const PlacedVolume> volumes, const spec::View& view, const Picture& picture,
                     gpu::Counters& counters);
@@ -149,7 +147,7 @@ class March {
                          gpu::Counters& counters);
 
   MarchOptions options_;
-  evaluate::Kernels programs_{kVolumeShaders};
+  evaluate::Kernels programs_;
   gpu::Table records_, blocks_;
   std::vector<std::uint32_t> first_block_;                 // index: residency volume
   ChangeGate<std::vector<std::uint64_t>> blocks_changed_;  // versions of the volumes

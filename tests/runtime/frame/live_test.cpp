@@ -112,7 +112,7 @@ TEST_F(LiveFrame, OnlyTheChangedMaterialGoesToTheGpuAndNothingIsShaded) {
   stage.render();
   EXPECT_EQ(stage.pass("raster")->counters.uploaded_bytes, sizeof(SurfaceDraw));
   EXPECT_EQ(stage.pass("shade")->counters.dispatches, 0u);
-  EXPECT_EQ(stage.reason("raster"), "a material changed");
+  EXPECT_EQ(stage.reason("raster"), "materials changed");
   stage.editMaterial(3).roughness = std::numeric_limits<float>::quiet_NaN();
   stage.render();
   EXPECT_EQ(stage.pass("raster")->counters.uploaded_bytes, 0u) << "no number, no change";
@@ -196,7 +196,7 @@ TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
   registry.edit<scene::Transform>(stage.world.instance(0).root).translation.x += 1.0f;
   stage.world.updateTransforms();
   stage.render();
-  EXPECT_EQ(stage.reason("transforms"), "a group moved");
+  EXPECT_EQ(stage.reason("transforms"), "groups moved");
   stage.set("window", "auto");
   stage.render();
   EXPECT_EQ(stage.reason("shade"), "ringing suppression: auto");
