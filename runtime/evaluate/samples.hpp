@@ -10,7 +10,6 @@
 
 #include <array>
 #include <cstdint>
-#include <initializer_list>
 #include <map>
 #include <span>
 #include <string>
@@ -34,22 +33,6 @@ extern const gpu::FindText kEvaluateShaders[2];
 constexpr std::uint32_t compiledOrder(std::uint32_t order) {
   return order >= 2 && order <= 6 ? order : 0;
 }
-
-// Compiles kernels and other programs when they are first needed, and keeps them.
-class Kernels {
- public:
-  explicit Kernels(std::span<const gpu::FindText> texts) : texts_(texts) {}
-
-  // Makes the kernel of this entry file the current program. Fails if it does not compile on this device.
-  Result<void> use(std::string_view file, std::vector<gpu::Define> defines = {}) {
-    return use({{GL_COMPUTE_SHADER, file}}, std::move(defines));
-  }
-  Result<void> use(std::initializer_list<gpu::Stage> stages, std::vector<gpu::Define> defines = {});
-
- private:
-  std::span<const gpu::FindText> texts_;
-  std::map<std::string, gpu::Program, std::less<>> programs_;  // keyed by files and defines
-};
 
 // Runs all batches of the list, and makes what they wrote visible to what `barriers` names. For each batch
 // `prepare` gets its key, and binds its program and its buffers but for the work itself.
@@ -148,7 +131,7 @@ class Samples {
   Result<void> runWork(Work& work, streaming::Residency& residency, gpu::Counters& counters);
   Result<void> project(gpu::WorkList& work, streaming::Residency& residency, gpu::Counters& counters);
 
-  Kernels kernels_;
+  gpu::Programs kernels_;
   std::map<std::array<std::uint32_t, 2>, gpu::Table> gaunts_;  // keyed by bands in and out
   TransferTable tables_;
   std::vector<transfer::FillRecord> fills_;

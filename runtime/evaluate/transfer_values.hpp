@@ -53,7 +53,7 @@ class TransferValues {
                 std::span<const float> of_cells);
   Result<void> run(streaming::Residency& residency, gpu::WorkList& work, gpu::Counters& counters);
 
-  Kernels kernels_{kEvaluateShaders};
+  gpu::Programs kernels_{kEvaluateShaders};
   gpu::Table cells_, transfers_, places_;
   gpu::WorkList work_, adding_work_;
   gpu::Buffer values_;

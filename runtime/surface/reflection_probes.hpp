@@ -77,7 +77,7 @@ class ReflectionProbes final : public SurfaceModule {
   Result<void> filter(std::size_t probe, gpu::Counters& counters);
 
   const SpecularEnvironmentModule& environment_;
-  evaluate::Kernels kernels_;
+  gpu::Programs kernels_;
   std::vector<lighting::ReflectedLobe> lobes_;  // one per level
   std::vector<glm::vec3> places_;
   std::vector<std::uint8_t> captured_;  // one per place

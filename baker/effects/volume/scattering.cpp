@@ -6,7 +6,7 @@
 
 #include <Eigen/IterativeLinearSolvers>
 
-#include "baker/cache/bytes.hpp"
+#include "baker/cache/key.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/jobs/stage.hpp"
 

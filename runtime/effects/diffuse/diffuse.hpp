@@ -44,7 +44,7 @@ class Diffuse {
                const evaluate::Samples& samples);
   Result<void> runTexels(streaming::Residency& residency, gpu::Counters& counters);
 
-  evaluate::Kernels kernels_;
+  gpu::Programs kernels_;
   std::vector<DrawRecord> draws_;
   gpu::Table draws_table_;
   gpu::WorkList work_;
@@ -97,7 +97,7 @@ class Proxies {
   void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights);
   void writeAdded(std::span<const AddedRadiance> added, gpu::Counters& counters);
 
-  evaluate::Kernels kernels_;
+  gpu::Programs kernels_;
   std::vector<ProxyGroupRecord> groups_;  // indexed by group of the residency
   std::vector<ProxyTriangleRecord> triangles_;
   std::vector<ProxyEntryRecord> entries_;
